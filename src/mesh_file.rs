@@ -11,8 +11,8 @@
 //! - The first fault ends the reading. It is a [`MeshError`]: one line with the position.
 //! - Any bytes give a mesh or an error in linear time. Memory is not reserved for a claimed count that the file could
 //!   not hold, so that it stays within a small multiple of the file's size (40 times the JSON of a glTF file that names
-//!   nothing but empty meshes, at most 8 times elsewhere). At most [`MAX_MESH_BYTES`] are read, [`MAX_TRIANGLES`] made, and
-//!   [`MAX_TEXELS`] decoded.
+//!   nothing but empty meshes, at most 8 times elsewhere). At most [`MAX_MESH_BYTES`] are read, [`MAX_TRIANGLES`] made,
+//!   and [`MAX_TEXELS`] decoded.
 //!
 //! Side files (MTL files, textures, buffers of glTF) are requested by their path relative to the mesh through a
 //! function passed in; no URL and no absolute path is ever requested. A missing side file is an error, because a
@@ -88,8 +88,8 @@ pub use unread::is_mesh;
 use crate::color::LinearRgb;
 use glam::{Mat3, Vec2, Vec3};
 
-/// Triangles and their attributes as in a file. All numbers are finite, all indices in range, and there is at least one
-/// triangle; some may have no area.
+/// Triangles and their attributes as in a file. All numbers are finite, all indices in range, and
+/// there is at least one triangle; some may have no area.
 ///
 /// ```
 /// use termtrace::internals::mesh_file::MeshFile;
@@ -99,7 +99,7 @@ use glam::{Mat3, Vec2, Vec3};
 /// assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 2, 3]]);
 ///
 /// let error = MeshFile::from_bytes("x.obj", b"v 0 0 0\nf 1 2 3\n", &mut |_| unreachable!()).unwrap_err();
-/// assert_eq!(error.to_string(), "x.obj:2:5: vertex 2 does not exist: 1 stands above this line");
+/// assert_eq!(error.to_string(), "x.obj:2:5: vertex 2 does not exist: 1 is defined above this line");
 /// # Ok::<(), termtrace::MeshError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -110,7 +110,8 @@ pub struct MeshFile {
     texture_coordinates: Attribute<Vec2>,
     colors: Attribute<LinearRgb>,
     materials: Vec<MeshMaterial>,
-    /// The first triangle of each run of one material, with the material, in the order of the triangles.
+    /// The first triangle of each run of one material, with the material, in the order of the
+    /// triangles.
     material_runs: Vec<(u32, Option<u32>)>,
 }
 
@@ -124,8 +125,8 @@ pub struct MeshMaterial {
 }
 
 impl MeshFile {
-    /// Returns a mesh of these triangles without attributes; `None` if there are none, an index has no position, or a
-    /// position is not finite.
+    /// Returns a mesh of these triangles without attributes; `None` if there are none, an index has
+    /// no position, or a position is not finite.
     pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Option<Self> {
         let mesh = Self {
             positions,
@@ -139,21 +140,23 @@ impl MeshFile {
         mesh.is_valid().then_some(mesh)
     }
 
-    /// Returns the mesh with a normal for each position, of any length; `None` unless there are as many normals as
-    /// positions, all finite. A zero vector stands for no normal.
+    /// Returns the mesh with a normal for each position, of any length; `None` unless there are as
+    /// many normals as positions, all finite. A zero vector stands for no normal.
     pub fn with_normals(self, normals: Vec<Vec3>) -> Option<Self> {
         let normals = normals.into_iter().map(unit_or_zero).collect();
         let mesh = Self { normals: Attribute::of_positions(normals), ..self };
         (mesh.normals.values().len() == mesh.positions.len() && mesh.is_valid()).then_some(mesh)
     }
 
-    /// Returns the mesh scaled along its axes (by no factor of 0), then rotated, then translated. A mirrored mesh keeps
-    /// its outside; `None` if a position exceeds the range of f32.
+    /// Returns the mesh scaled along its axes (by no factor of 0), then rotated, then translated. A
+    /// mirrored mesh keeps its outside; `None` if a position exceeds the range of f32.
     pub fn transformed(mut self, scale: Vec3, turn: Mat3, translation: Vec3) -> Option<Self> {
         for position in &mut self.positions {
             *position = turn * (*position * scale) + translation;
         }
+        // Normals transform by the inverse transpose, which for a scale along the axes is a division.
         self.normals = self.normals.map(|normal| unit_or_zero(turn * (normal / scale)));
+        // A mirror image reverses the orientation of every triangle.
         if scale.x * scale.y * scale.z < 0.0 {
             attribute::turn(&mut self.triangles);
             self.normals = self.normals.turned();
@@ -168,7 +171,8 @@ impl MeshFile {
         &self.positions
     }
 
-    /// Returns the triangles in the order of the file: indices of positions, counterclockwise seen from outside.
+    /// Returns the triangles in the order of the file: indices of positions, counterclockwise seen
+    /// from outside.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
@@ -178,18 +182,20 @@ impl MeshFile {
         !self.normals.values().is_empty()
     }
 
-    /// Returns the unit normals at a triangle's corners; `None` if the file does not give all three, so that it is
-    /// flat.
+    /// Returns the unit normals at a triangle's corners; `None` if the file does not give all
+    /// three, so that it is flat.
     pub fn normals_of(&self, triangle: usize) -> Option<[Vec3; 3]> {
         self.normals.of(triangle, &self.triangles).filter(|normals| normals.iter().all(|&n| n != Vec3::ZERO))
     }
 
-    /// Returns the texture coordinates at a triangle's corners: u to the right, v down from the texture's top row.
+    /// Returns the texture coordinates at a triangle's corners: u to the right, v down from the
+    /// texture's top row.
     pub fn texture_coordinates_of(&self, triangle: usize) -> Option<[Vec2; 3]> {
         self.texture_coordinates.of(triangle, &self.triangles)
     }
 
-    /// Returns the colours at a triangle's corners: factors of its material's reflectance, each channel in 0..=1.
+    /// Returns the colours at a triangle's corners: factors of its material's reflectance, each
+    /// channel in 0..=1.
     pub fn colors_of(&self, triangle: usize) -> Option<[LinearRgb; 3]> {
         self.colors.of(triangle, &self.triangles)
     }
@@ -214,8 +220,10 @@ impl MeshFile {
         &self.materials
     }
 
-    /// Returns the material of a triangle as an index of [`materials`](Self::materials); `None` if the file gives none.
+    /// Returns the material of a triangle as an index of [`materials`](Self::materials); `None` if
+    /// the file gives none.
     pub fn material_of(&self, triangle: usize) -> Option<usize> {
+        // Runs instead of an index per triangle: files sort triangles by material, so there are few runs.
         let runs_so_far = self.material_runs.partition_point(|&(first, _)| first as usize <= triangle);
         let (_, material) = *self.material_runs.get(runs_so_far.checked_sub(1)?)?;
         material.map(|index| index as usize)

@@ -1,9 +1,11 @@
 //! Attributes of vertices besides the position.
 
-/// The normals, texture coordinates or colours of a mesh: values, and the indices of each triangle's corners.
+/// The normals, texture coordinates or colours of a mesh: values, and the indices of each
+/// triangle's corners.
 ///
 /// PLY and glTF give each vertex one value; OBJ lets every corner choose. So corners have indices of their own only
-/// where these differ from those of the positions.
+/// where these differ from those of the positions: a mesh without such corners saves 12 bytes per triangle and
+/// attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attribute<T> {
     values: Vec<T>,
@@ -24,7 +26,7 @@ enum CornerIndices {
 /// The indices of a triangle without values.
 const NONE: [u32; 3] = [u32::MAX; 3];
 
-/// Exchanges the last two corners of each triangle.
+/// Exchanges the last two corners of each triangle, which turns it inside out.
 pub(super) fn turn(triangles: &mut [[u32; 3]]) {
     for corners in triangles {
         corners.swap(1, 2);
@@ -82,13 +84,16 @@ impl<T: Copy> Attribute<T> {
 
     /// Adds the values of a triangle's corners and returns their indices.
     pub(super) fn add(&mut self, values: [T; 3]) -> [u32; 3] {
-        let first = self.values.len() as u32; // three for each of `MAX_TRIANGLES` at most
+        // Three for each of `MAX_TRIANGLES` at most.
+        let first = self.values.len() as u32;
         self.values.extend(values);
         [first, first + 1, first + 2]
     }
 
-    /// Sets the indices of the next triangle, which is number `triangles` and has the given `positions`.
+    /// Adds the indices of the triangle after `triangles`, whose corners have the indices
+    /// `positions`.
     pub(super) fn push(&mut self, triangles: &[[u32; 3]], positions: [u32; 3], corner: Option<[u32; 3]>) {
+        // The first triangle that differs turns the short representation into lists, for all triangles before it too.
         match (&mut self.corners, corner) {
             (CornerIndices::Absent, None) => {}
             (CornerIndices::Absent, Some(corner)) if triangles.is_empty() && corner == positions => {
@@ -140,7 +145,7 @@ mod tests {
     const A: [u32; 3] = [0, 1, 2];
     const B: [u32; 3] = [2, 1, 3];
 
-    /// Asserts the indices found again after pushing, and the representation.
+    /// Returns the indices found again after pushing, and the representation.
     fn pushed(corners: &[Option<[u32; 3]>]) -> (Vec<Option<[u32; 3]>>, CornerIndices) {
         let mut attribute = Attribute { values: vec![0.0; 9], corners: CornerIndices::Absent };
         let triangles: Vec<_> = [A, B].into_iter().cycle().take(corners.len()).collect();

@@ -19,7 +19,7 @@ pub(super) struct MeshBuilder {
     pub(super) material_runs: Vec<(u32, Option<u32>)>,
 }
 
-/// A triangle: the indices of its corners' attributes.
+/// The indices of a triangle's corners, for its positions and each attribute that it has.
 #[derive(Clone, Copy)]
 pub(super) struct TriangleIndices {
     pub(super) positions: [u32; 3],
@@ -52,6 +52,7 @@ impl MeshBuilder {
     /// Sets the material of the triangles added from here on.
     pub(super) fn set_material(&mut self, material: Option<u32>) {
         let from = self.triangles.len() as u32; // at most MAX_TRIANGLES
+        // A run that has no triangle yet is replaced, so that no two runs start at the same triangle.
         if self.material_runs.last().is_some_and(|&(start, _)| start == from) {
             self.material_runs.pop();
         }
@@ -60,7 +61,8 @@ impl MeshBuilder {
         }
     }
 
-    /// Returns the mesh. `nothing` describes the contents of a file without triangles, for the message.
+    /// Returns the mesh. `nothing` describes the contents of a file without triangles, for the
+    /// message.
     pub(super) fn finish(mut self, nothing: &str) -> Result<MeshFile, MeshFault> {
         if self.triangles.is_empty() {
             return Err(MeshFault::of_file(format!("there are no triangles in this file: {nothing}")));
@@ -76,6 +78,8 @@ impl MeshBuilder {
         }
     }
 
+    /// Frees unused capacity: a mesh lives as long as its scene, and a vector that grew is up to
+    /// twice as large.
     fn shrink(&mut self) {
         self.positions.shrink_to_fit();
         self.triangles.shrink_to_fit();
@@ -85,7 +89,7 @@ impl MeshBuilder {
     }
 }
 
-/// The message about a mesh with too many triangles.
+/// Returns the message about a mesh with too many triangles.
 pub(super) fn too_many() -> String {
     format!("there are more than {MAX_TRIANGLES} triangles in this file, which is the most that are read")
 }
@@ -95,5 +99,6 @@ pub(super) fn unit(direction: DVec3) -> Vec3 {
     // Scaled first, so that no square overflows or underflows.
     let direction = direction / direction.abs().max_element();
     let length = direction.length();
+    // False for NaN too, which a zero vector has become.
     if length > 0.0 { (direction / length).as_vec3() } else { Vec3::ZERO }
 }

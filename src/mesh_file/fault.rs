@@ -4,8 +4,9 @@ use super::{FilePosition, MeshError};
 use crate::progress::{Cancelled, Unfinished};
 use crate::scene_text::clipped;
 
-/// A fault, or a cancel, before the file's name is added. Boxed, because a result of eight bytes keeps the parsing of
-/// numbers fast.
+/// A fault, or a cancellation, before the file's name is added.
+///
+/// Boxed, because every parsed number is a `Result` of it: with eight bytes the result stays in registers.
 #[derive(Debug)]
 pub(super) struct MeshFault(Box<Cause>);
 
@@ -21,7 +22,8 @@ enum Cause {
     Cancelled,
 }
 
-/// A position as readers know it: the number of bytes before it.
+/// The position of a fault: the number of bytes before it. Lines and columns are counted only once
+/// a fault is reported.
 #[derive(Clone, Copy, Debug)]
 enum FaultOffset {
     File,
@@ -87,7 +89,8 @@ impl From<Cancelled> for MeshFault {
     }
 }
 
-/// Counts lines, which end with a line feed, a carriage return, or both.
+/// Returns the line and column of a byte, counted from 1. Lines end with a line feed, a carriage
+/// return, or both.
 fn line_and_column(bytes: &[u8], at: usize) -> (usize, usize) {
     let before = &bytes[..at.min(bytes.len())];
     let ends_line =
@@ -96,6 +99,7 @@ fn line_and_column(bytes: &[u8], at: usize) -> (usize, usize) {
     let start = (0..before.len()).rev().find(ends_line).map_or(0, |end| end + 1);
     // A byte order mark takes no column.
     let text = before[start..].strip_prefix(b"\xef\xbb\xbf").unwrap_or(&before[start..]);
+    // A mesh in Latin-1 is read too: a run of bytes that are not UTF-8 counts as one character.
     let characters = |chunk: std::str::Utf8Chunk<'_>| chunk.valid().chars().count() + chunk.invalid().len().min(1);
     (line, 1 + text.utf8_chunks().map(characters).sum::<usize>())
 }

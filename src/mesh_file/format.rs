@@ -1,4 +1,4 @@
-//! Recognition of a file's format by its content.
+//! Recognition of a mesh file's format by its content.
 
 use super::fault::{MeshFault, shown};
 use super::{obj, stl};
@@ -15,7 +15,8 @@ pub(super) enum MeshFormat {
     Glb,
 }
 
-/// Signatures of other formats, with a hint for each.
+/// Signatures of formats that are not read, each with a hint. The order matters: `<?xml` comes
+/// before `<`.
 const OTHERS: [(&[u8], &str); 17] = [
     (b"\x1f\x8b", "is gzip-compressed: unpack it first (gunzip)"),
     (b"BZh", "is bzip2-compressed: unpack it first (bunzip2)"),
@@ -41,8 +42,10 @@ const OTHERS: [(&[u8], &str); 17] = [
 
 const READ: &str = "OBJ, STL, PLY, glTF and GLB files are read";
 
-/// Returns the format of the bytes. The file name's extension counts only where the content does not decide.
+/// Returns the format of the bytes. The file name's extension counts only if the content does not
+/// decide, because downloads are often misnamed.
 pub(super) fn recognised(name: &str, bytes: &[u8]) -> Result<MeshFormat, MeshFault> {
+    // A text may start with a byte order mark and blank lines.
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     if text.is_empty() {
         return Err(MeshFault::of_file(format!("the file is empty; {READ}")));
@@ -50,6 +53,7 @@ pub(super) fn recognised(name: &str, bytes: &[u8]) -> Result<MeshFormat, MeshFau
     if let Some(format) = by_content(bytes, text) {
         return Ok(format);
     }
+    // Before the extension: a compressed file still ends in `.stl`.
     if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
         return Err(MeshFault::of_file(format!("this {what}")));
     }
@@ -69,8 +73,11 @@ fn by_content(bytes: &[u8], text: &[u8]) -> Option<MeshFormat> {
     }
 }
 
-/// Returns whether the bytes start with `solid` and contain no byte near the start that text never has.
+/// Returns whether the bytes start with `solid` and contain no byte near the start that text never
+/// has.
 fn is_stl_text(text: &[u8]) -> bool {
+    // A binary file that was cut short may begin with "solid" too, but its count and its first floats contain bytes
+    // that are never part of UTF-8 or Latin text.
     let begins = text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let ends_word = text.get(5).is_none_or(u8::is_ascii_whitespace);
     begins && ends_word && !text.iter().take(512).any(|&byte| byte == 0 || byte >= 0xf8)
@@ -87,6 +94,7 @@ fn first_word(line: &[u8]) -> &[u8] {
     line.split(u8::is_ascii_whitespace).next().unwrap_or_default()
 }
 
+/// Returns the format by the file name's extension, in either case.
 pub(super) fn by_ending(name: &str) -> Option<MeshFormat> {
     let ending = Path::new(name).extension()?.to_str()?.to_ascii_lowercase();
     Some(match ending.as_str() {
@@ -105,7 +113,7 @@ fn not_known(name: &str, bytes: &[u8]) -> String {
         None => "neither its name, which has no ending,".to_owned(),
     };
     format!(
-        "this is no mesh that is known: {ending} nor its first bytes {} say what it is; {READ}",
+        "this is not a known mesh format: {ending} nor its first bytes {} tell the format; {READ}",
         shown(&bytes[..bytes.len().min(8)])
     )
 }

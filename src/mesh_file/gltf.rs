@@ -1,5 +1,5 @@
-//! glTF 2.0, as JSON and as GLB: the triangles of the default scene, transformed by their nodes, with normals, colours,
-//! base colours and base-colour textures.
+//! glTF 2.0, as JSON and as GLB: the triangles of the default scene, transformed by their nodes,
+//! with normals, colours, base colours and base-colour textures.
 //!
 //! Not read: skins and morph targets (a mesh is in its modelled pose), cameras and lights, other properties of
 //! materials than the base colour, and samplers (textures repeat).
@@ -19,11 +19,13 @@ use buffers::Buffers;
 use json::Json;
 use serde_json::Value;
 
+/// Reads a glTF file in JSON.
 pub(super) fn read_json(bytes: &[u8], side_files: &mut SideFiles<'_>, meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
     read(bytes, 0, None, side_files, meter)
 }
 
-/// Splits a GLB: a header of 12 bytes and chunks, the first of which is JSON and the second may be a buffer.
+/// Reads a GLB file: a header of 12 bytes and chunks, of which the first is JSON and the second may
+/// be a buffer.
 pub(super) fn read_binary(
     bytes: &[u8],
     side_files: &mut SideFiles<'_>,
@@ -43,6 +45,7 @@ pub(super) fn read_binary(
     if version != 2 {
         return Err(MeshFault::at_byte(4, format!("this is version {version} of GLB; only version 2 is read")));
     }
+    // A longer file is accepted: bytes after the end are ignored.
     if length as usize > bytes.len() {
         let found = bytes.len();
         return Err(MeshFault::at_byte(
@@ -64,6 +67,7 @@ pub(super) fn read_binary(
         })
     };
     let json = chunk(HEADER, b"JSON", "JSON")?;
+    // A chunk starts at a multiple of four bytes, whether or not the length before it counts the padding.
     let buffer_at = (HEADER + 8 + json.len()).next_multiple_of(4);
     let buffer = if buffer_at < bytes.len() { Some(chunk(buffer_at, b"BIN\0", "BIN")?) } else { None };
     read(json, HEADER + 8, buffer, side_files, meter)
@@ -87,12 +91,14 @@ fn read(
     nodes::read(root, &mut Buffers::new(root, json.len(), glb_buffer, side_files), &mut meter)
 }
 
-/// Limits on the objects, and on the items of lists and objects, in a document: as values they take 600 and 32 bytes
-/// each, many times their size as text.
+/// Limits on the objects, and on the items of lists and objects, in a document. Parsed, they take
+/// 600 and 32 bytes each: `{}` takes 300 times its size as text, so that a file of 2 GiB could exhaust any memory.
 const MAX_OBJECTS: usize = 1 << 20;
 const MAX_ITEMS: usize = 16 << 20;
 
+/// Refuses a document with too many values, before it is parsed.
 fn check_count(json: &[u8]) -> Result<(), MeshFault> {
+    // Brackets and commas within strings are counted as well; no real file comes near the limits.
     let count = |wanted: &[u8]| json.iter().filter(|byte| wanted.contains(byte)).count();
     if count(b"{") > MAX_OBJECTS || count(b"[,") > MAX_ITEMS {
         let message = format!("the JSON has more than {MAX_OBJECTS} objects or {MAX_ITEMS} items, too many to be read");
@@ -113,7 +119,7 @@ fn syntax_fault(error: &serde_json::Error, json: &[u8], text: &[u8], at: usize) 
 
 fn check_version(root: Json<'_>) -> Result<(), MeshFault> {
     let Some(asset) = root.field("asset")? else {
-        return Err(MeshFault::of_file("this JSON is no glTF: it lacks asset: {version: \"2.0\"}"));
+        return Err(MeshFault::of_file("this JSON is not glTF: it lacks asset: {version: \"2.0\"}"));
     };
     let version = asset.required("version")?;
     if version.string()?.starts_with("2.") {
@@ -122,10 +128,11 @@ fn check_version(root: Json<'_>) -> Result<(), MeshFault> {
     Err(version.fault(format!("this is glTF {}; only 2.0 is read", version.string()?)))
 }
 
-/// A file that requires an unsupported extension would be drawn wrong.
+/// Refuses a file that requires an unsupported extension: it would be drawn wrong.
 fn check_extensions(root: Json<'_>) -> Result<(), MeshFault> {
     for extension in root.list("extensionsRequired")? {
         let name = extension.string()?;
+        // Extensions of materials change how light is reflected, not the shape: without them a picture is still useful.
         let is_known = name.starts_with("KHR_materials_")
             || ["KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual"].contains(&name);
         if !is_known {

@@ -1,13 +1,26 @@
-//! The error of a file that is not a mesh: one line with the position.
+//! The error of reading a mesh: one line with the position.
 
 use crate::text::visible;
 use std::fmt;
 
-/// The error of reading a mesh: its first fault. Its `Display` is one line without control characters:
+/// The error of reading a mesh: its first fault. Its `Display` is one line without control
+/// characters:
 ///
 /// ```text
-/// bunny.obj:1042:9: vertex 35948 does not exist: 35947 stand above this line
+/// bunny.obj:1042:9: vertex 35948 does not exist: 35947 are defined above this line
 /// bunny.glb: byte 20: this chunk should be JSON, but is "BIN"
+/// ```
+///
+/// ```
+/// use termtrace::{LoadError, Scene};
+///
+/// let path = std::env::temp_dir().join(format!("termtrace-{}.obj", std::process::id()));
+/// std::fs::write(&path, "v 0 0 0\nf 1 2 3\n")?;
+/// let error = Scene::load(&path).expect_err("there is only one vertex");
+/// std::fs::remove_file(&path)?;
+/// assert!(matches!(error, LoadError::Mesh(_)));
+/// assert!(error.to_string().ends_with(".obj:2:5: vertex 2 does not exist: 1 is defined above this line"));
+/// # Ok::<(), std::io::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeshError {
@@ -19,7 +32,7 @@ pub struct MeshError {
 /// The position of a fault in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilePosition {
-    /// The whole file, or as the message says.
+    /// The file as a whole; the message may contain a path in its JSON.
     File,
     /// In a text: line and column, counted from 1, the column in characters.
     Text {
@@ -42,7 +55,7 @@ impl MeshError {
         Self { name: visible(name), position, message: visible(message) }
     }
 
-    /// Returns the file with the fault: the mesh, or a side file.
+    /// Returns the name of the file with the fault: the mesh, or a side file.
     #[doc(hidden)]
     pub fn name(&self) -> &str {
         &self.name

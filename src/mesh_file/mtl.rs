@@ -36,7 +36,7 @@ impl Library {
     }
 }
 
-/// Reads an MTL file, whose path is relative to the mesh.
+/// Reads an MTL file into the library. `path` is relative to the mesh.
 pub(super) fn read(
     path: &Path,
     bytes: &[u8],
@@ -47,7 +47,7 @@ pub(super) fn read(
     let folder = path.parent().unwrap_or(Path::new(""));
     let name = side_files.name_of(path);
     let mut reader = MtlReader { text: TextCursor::new(bytes), folder, side_files, library };
-    // The fault is in this file, not in the one that names it.
+    // The error names this file: the fault is not in the one that names it.
     reader.statements().map_err(|fault| MeshFault::from(fault.into_error(&name, bytes)))
 }
 
@@ -58,9 +58,9 @@ struct MtlReader<'a, 'b> {
     library: &'a mut Library,
 }
 
-/// The material without any property: it reflects all the light that its texture does; without a texture it is light
-/// grey.
-const UNSAID: LinearRgb = LinearRgb::grey(0.8);
+/// The reflectance of a material without `Kd` and without a texture: light grey. With a texture it
+/// is 1, so that the texture's colours stay.
+const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
 
 impl MtlReader<'_, '_> {
     fn statements(&mut self) -> Result<(), MeshFault> {
@@ -92,20 +92,21 @@ impl MtlReader<'_, '_> {
         Ok(())
     }
 
-    /// Of two materials with one name, the later one counts.
+    /// Starts a material. Of two materials with one name, the later one counts.
     fn new_material(&mut self) {
         let name = self.text.rest_of_line();
         let index = self.library.materials.len() as u32; // fewer than bytes
         self.library.by_name.insert(name.into(), index);
-        self.library.materials.push(MeshMaterial { reflectance: UNSAID, texture: None });
+        self.library.materials.push(MeshMaterial { reflectance: DEFAULT_REFLECTANCE, texture: None });
     }
 
     fn material(&mut self, at: usize) -> Result<&mut MeshMaterial, MeshFault> {
         let last = self.library.materials.last_mut();
-        last.ok_or_else(|| MeshFault::in_text(at, "this line belongs to no material: newmtl must stand above it"))
+        last.ok_or_else(|| MeshFault::in_text(at, "this line needs a material: newmtl must come before it"))
     }
 
-    /// Reads `Kd r g b`, or `Kd r` for a grey. Values are clamped to 0..=1.
+    /// Reads `Kd r g b`, or `Kd r` for a grey. Values are clamped to 0..=1, not refused, as other
+    /// programs do.
     fn reflectance(&mut self) -> Result<LinearRgb, MeshFault> {
         let r = self.text.number()?.clamp(0.0, 1.0);
         if self.text.is_at_line_end() {
@@ -120,6 +121,7 @@ impl MtlReader<'_, '_> {
         let at = self.text.at() - name.len();
         let name = String::from_utf8_lossy(name);
         let path = local_path(self.folder, &name).map_err(|message| MeshFault::in_text(at, message))?;
+        // Materials often share a texture: decoding it takes longer than everything else in the file.
         let texture = match self.library.textures.get(&path) {
             Some(texture) => Arc::clone(texture),
             None => self.load(path, at)?,
@@ -129,10 +131,7 @@ impl MtlReader<'_, '_> {
 
     fn load(&mut self, path: PathBuf, at: usize) -> Result<Arc<Texture>, MeshFault> {
         let bytes = self.side_files.read(&path).map_err(|message| {
-            MeshFault::in_text(
-                at,
-                format!("the texture is missing: {message}; put that file there, or take this line out"),
-            )
+            MeshFault::in_text(at, format!("the texture is missing: {message}; add the file, or remove this line"))
         })?;
         let name = shown(self.side_files.name_of(&path).as_bytes());
         let texture = texture::decode(&bytes, &mut self.library.budget)
@@ -142,7 +141,8 @@ impl MtlReader<'_, '_> {
         Ok(texture)
     }
 
-    /// Reads the options before the file name: `-s` (scale) and `-o` (offset) take effect, others are skipped.
+    /// Reads the options before the file name: `-s` (scale) and `-o` (offset) take effect, others
+    /// are skipped.
     fn options(&mut self) -> Result<[Vec3; 2], MeshFault> {
         let (mut scale, mut offset) = ([1.0; 2], [0.0; 2]);
         loop {
@@ -160,7 +160,7 @@ impl MtlReader<'_, '_> {
                 }
             }
         }
-        // v is measured from the bottom here, and from the top in a mesh.
+        // In the file v is measured from the bottom, in a mesh from the top.
         let v = Vec3::new(0.0, scale[1], 1.0 - scale[1] - offset[1]);
         let u = Vec3::new(scale[0], 0.0, offset[0]);
         if u.is_finite() && v.is_finite() {
@@ -175,7 +175,7 @@ impl MtlReader<'_, '_> {
         }
     }
 
-    /// Reads one to three numbers, of which the first two count.
+    /// Reads one to three numbers, of which the first two count: the third is for 3D textures.
     fn two_of_three(&mut self, values: &mut [f32; 2]) -> Result<(), MeshFault> {
         values[0] = self.text.number()?;
         for i in 1..3 {

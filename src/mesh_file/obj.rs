@@ -1,5 +1,5 @@
-//! Wavefront OBJ: polygons, normals, texture coordinates, the colours that some programs write after a position, and
-//! materials of MTL files. Lines, points, curves and surfaces are skipped.
+//! Wavefront OBJ: polygons, normals, texture coordinates, the colours that some programs write
+//! after a position, and materials of MTL files. Lines, points, curves and surfaces are skipped.
 
 use super::builder::{MeshBuilder, TriangleIndices, unit};
 use super::fault::{MeshFault, shown};
@@ -12,9 +12,11 @@ use crate::progress::Meter;
 use glam::{Vec2, Vec3};
 use std::path::Path;
 
+/// Reads an OBJ file.
 pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
-    if let Some(place) = bytes.iter().position(|&byte| byte == 0) {
-        return Err(MeshFault::at_byte(place, "an OBJ file is text, and this byte is a NUL"));
+    // Without this check a binary file would fail at its first line with a message about a word that it does not have.
+    if let Some(offset) = bytes.iter().position(|&byte| byte == 0) {
+        return Err(MeshFault::at_byte(offset, "an OBJ file is text, and this byte is a NUL"));
     }
     let text = TextCursor::new(bytes);
     let mut reader =
@@ -38,7 +40,8 @@ struct ObjReader<'a, 'b> {
     side_files: &'a mut SideFiles<'b>,
 }
 
-/// The indices of a face's corners. Each corner has texture coordinates or none has; the same for normals.
+/// The indices of a face's corners. Each corner has texture coordinates or none has; the same for
+/// normals.
 #[derive(Default)]
 struct FaceCorners {
     positions: Vec<u32>,
@@ -61,14 +64,11 @@ impl ObjReader<'_, '_> {
                 self.text.skip_line();
                 Ok(())
             }
-            _ => Err(MeshFault::in_text(
-                at,
-                format!("{} begins no line of an OBJ file (v, vt, vn, f, ...)", shown(word)),
-            )),
+            _ => Err(MeshFault::in_text(at, format!("{} is not a keyword of OBJ (v, vt, vn, f, ...)", shown(word)))),
         }
     }
 
-    /// Reads `v x y z`, `v x y z w` or `v x y z r g b`.
+    /// Reads `v x y z`, `v x y z w` or `v x y z r g b`. The weight w is for curves and is ignored.
     fn vertex(&mut self) -> Result<(), MeshFault> {
         let position = self.numbers()?;
         self.mesh.positions.push(Vec3::from(position));
@@ -86,7 +86,8 @@ impl ObjReader<'_, '_> {
         Ok([self.text.number()?, self.text.number()?, self.text.number()?])
     }
 
-    /// Adds the colour of the last vertex. Vertices without a colour among others with one are white.
+    /// Adds the colour of the last vertex. Vertices without a colour among others with one are
+    /// white.
     fn color(&mut self, encoded: [f32; 3]) {
         let [r, g, b] = encoded.map(|channel| linear_from_srgb(f64::from(channel.clamp(0.0, 1.0))) as f32);
         self.pad_colors(self.mesh.positions.len() - 1);
@@ -103,11 +104,13 @@ impl ObjReader<'_, '_> {
         self.text.end_line()
     }
 
-    /// Reads `vt u`, `vt u v` or `vt u v w`; v is measured from the bottom.
+    /// Reads `vt u`, `vt u v` or `vt u v w`. In the file v is measured from the bottom, in a mesh
+    /// from the top.
     fn texture_coordinate(&mut self) -> Result<(), MeshFault> {
         let u = self.text.number()?;
         let v = if self.text.is_at_line_end() { 0.0 } else { self.text.number()? };
         self.mesh.texture_coordinates.values_mut().push(Vec2::new(u, 1.0 - v));
+        // The rest, a third coordinate, is for 3D textures.
         self.text.skip_line();
         Ok(())
     }
@@ -137,6 +140,7 @@ impl ObjReader<'_, '_> {
     /// Adds the triangles of the current face.
     fn triangles(&mut self) -> Result<(), MeshFault> {
         let has_colors = !self.mesh.colors.values().is_empty();
+        // Vertices after the last coloured one have no colour yet, and the triangle's indices must be in range.
         if has_colors {
             self.pad_colors(self.mesh.positions.len());
         }
@@ -204,9 +208,9 @@ impl ObjReader<'_, '_> {
         let at = self.text.at() - name.len();
         let material = match &self.library {
             Some(library) if !is_no_material(name) => Some(library.index_of(name).ok_or_else(|| {
-                MeshFault::in_text(at, format!("material {} is in no MTL file that was named above", shown(name)))
+                MeshFault::in_text(at, format!("material {} is not in any MTL file named above this line", shown(name)))
             })?),
-            // Texture coordinates without any `vt`: a model exported without them.
+            // A model without its MTL files is shown without its colours.
             _ => None,
         };
         self.mesh.set_material(material);
@@ -221,13 +225,14 @@ impl ObjReader<'_, '_> {
         for name in library_names(&text) {
             let path = local_path(Path::new(""), name).map_err(|message| MeshFault::in_text(at, message))?;
             let library = self.library.get_or_insert_default();
+            // A file may repeat the line before each group.
             if library.has_file(&path) {
                 continue;
             }
             let bytes = self.side_files.read(&path).map_err(|message| {
                 MeshFault::in_text(
                     at,
-                    format!("the materials are missing: {message}; put that file there, or take this line out"),
+                    format!("the materials are missing: {message}; add the file, or remove this line"),
                 )
             })?;
             mtl::read(&path, &bytes, self.side_files, library)?;
@@ -238,20 +243,21 @@ impl ObjReader<'_, '_> {
 }
 
 fn no_such_index(what: &str, written: i64, count: usize) -> String {
-    let stand = if count == 1 { "stands" } else { "stand" };
+    let are = if count == 1 { "is" } else { "are" };
     match (written, count) {
         (0, _) => format!("there is no {what} 0: the first one is 1, the last one before this line -1"),
-        (_, 0) => format!("{what} {written} does not exist: none stands above this line"),
-        _ => format!("{what} {written} does not exist: {count} {stand} above this line"),
+        (_, 0) => format!("{what} {written} does not exist: none is defined above this line"),
+        _ => format!("{what} {written} does not exist: {count} {are} defined above this line"),
     }
 }
 
-/// Names that programs write for a face without a material.
+/// Returns whether a name is one of those that exporters write for a face without a material.
 fn is_no_material(name: &[u8]) -> bool {
     [&b""[..], b"None", b"(null)", b"null"].contains(&name)
 }
 
-/// Splits the names of a line. Several names may be on one line, and a name may contain blanks: it ends with `.mtl`.
+/// Splits the names of a line. Several names may be on one line, and a name may contain blanks: it
+/// ends with `.mtl`.
 fn library_names(text: &str) -> Vec<&str> {
     let mut names = Vec::new();
     let mut start = 0;
@@ -274,7 +280,8 @@ pub(super) fn is_statement(word: &[u8]) -> bool {
     [&b"v"[..], b"vn", b"vt", b"f", b"fo", b"usemtl", b"mtllib"].contains(&word) || is_passed_over(word)
 }
 
-/// Keywords of OBJ that make no triangles.
+/// Returns whether a word is a keyword of OBJ that makes no triangles. Any other word is a fault:
+/// it is the first sign of a file that is not OBJ.
 fn is_passed_over(word: &[u8]) -> bool {
     const WORDS: [&str; 38] = [
         "g",

@@ -1,5 +1,5 @@
-//! PLY, as text and as binary in either byte order: faces and triangle strips, normals and colours of vertices. Other
-//! elements and properties are skipped, whatever their type and order.
+//! PLY, as text and as binary in either byte order: faces and triangle strips, normals and colours
+//! of vertices. Other elements and properties are skipped, whatever their type and order.
 
 mod header;
 mod body;
@@ -13,6 +13,7 @@ use body::{AsciiRows, BinaryRows, RowReader};
 use glam::Vec3;
 use header::{Element, Encoding, Header, Property, PropertyType, ScalarType};
 
+/// Reads a PLY file.
 pub(super) fn read(bytes: &[u8], meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
     let header = Header::read(bytes)?;
     match header.encoding {
@@ -32,7 +33,7 @@ fn read_body(header: &Header<'_>, mut rows: impl RowReader) -> Result<MeshFile, 
             ("vertex", _) => read_vertices(element, &mut rows, &mut mesh)?,
             ("face", Some(at)) => read_faces(element, at, vertex_count, &mut rows, &mut mesh)?,
             ("tristrips", Some(at)) => read_strips(element, at, vertex_count, &mut rows, &mut mesh)?,
-            // Any number of rows without properties takes no time.
+            // The header may claim 4 billion rows without properties, which take no bytes; they must take no time.
             _ if element.properties.is_empty() => {}
             _ => each_row(element, &mut rows, |rows| skip(&element.properties, rows))?,
         }
@@ -41,7 +42,7 @@ fn read_body(header: &Header<'_>, mut rows: impl RowReader) -> Result<MeshFile, 
     mesh.finish(if is_cloud { "it has vertices but no faces (a cloud of points?)" } else { "it has no faces" })
 }
 
-/// Calls back at the start and end of each row of an element.
+/// Calls `read` for each row of an element, between the row's begin and end.
 fn each_row<R: RowReader>(
     element: &Element<'_>,
     rows: &mut R,
@@ -65,7 +66,8 @@ fn skip(properties: &[Property<'_>], rows: &mut impl RowReader) -> Result<(), Me
     })
 }
 
-/// The slots that a vertex is read into: three components each of these, and one for skipped values.
+/// The slots that a vertex is read into: three for each of these, and one for values that are
+/// skipped. Properties come in any order; with slots one pass over them is enough.
 const POSITION: usize = 0;
 const NORMAL: usize = 3;
 const COLOR: usize = 6;
@@ -97,10 +99,12 @@ fn read_vertices(element: &Element<'_>, rows: &mut impl RowReader, mesh: &mut Me
     let color_type = slots.iter().position(|&slot| slot == COLOR).map(|i| element.properties[i].shape);
     let (has_normals, color_type) = (has(NORMAL), color_type.filter(|_| has(COLOR)));
     let room = room(element, rows);
+    // Exactly: a vector that grows by doubling needs up to three times the memory while it is copied.
     mesh.positions.reserve_exact(room);
     mesh.normals.values_mut().reserve_exact(if has_normals { room } else { 0 });
     mesh.colors.values_mut().reserve_exact(if color_type.is_some() { room } else { 0 });
     each_row(element, rows, |rows| {
+        // On the stack: a vertex costs no allocation.
         let mut values = [0.0; NOTHING + 1];
         for (property, &slot) in element.properties.iter().zip(&slots) {
             match property.shape {
@@ -120,13 +124,15 @@ fn read_vertices(element: &Element<'_>, rows: &mut impl RowReader, mesh: &mut Me
     })
 }
 
-/// Returns the number of rows that the file can hold, at most what the element claims.
+/// Returns the number of rows to reserve memory for: as many as the element claims, but at most as
+/// many as the rest of the file can hold.
 fn room(element: &Element<'_>, rows: &impl RowReader) -> usize {
     let least = rows.least_size(&element.properties).max(1);
     (element.count as usize).min(rows.left() / least)
 }
 
-/// Returns the scale of a colour: integers range from 0 to the largest of their type, floats from 0 to 1.
+/// Returns a colour as linear light. Integers range from 0 to the largest of their type, floats
+/// from 0 to 1.
 fn color(channels: [f32; 3], shape: PropertyType) -> LinearRgb {
     let white = match shape {
         PropertyType::Scalar(ScalarType::U8) => {
@@ -154,6 +160,7 @@ fn read_faces(
 ) -> Result<(), MeshFault> {
     let (before, indices, after) = parts(element, at);
     mesh.triangles.reserve(room(element, rows));
+    // One list for all faces, kept for its allocation.
     let mut corners = Vec::new();
     each_row(element, rows, |rows| {
         skip(before, rows)?;
@@ -241,7 +248,8 @@ struct Strip {
 }
 
 impl Strip {
-    /// Every second triangle has the opposite orientation.
+    /// Adds a corner and returns the triangle that it completes. Every second one is turned around:
+    /// in a strip the orientation alternates.
     fn next(&mut self, corner: u32) -> Option<[u32; 3]> {
         let [a, b] = self.last;
         self.last = [b, corner];
@@ -251,7 +259,7 @@ impl Strip {
     }
 }
 
-/// Triangles have the attributes of their vertices.
+/// Adds a triangle, whose corners have the attributes of their vertices.
 fn push(mesh: &mut MeshBuilder, positions: [u32; 3]) -> Result<(), MeshFault> {
     let (normals, colors) = (!mesh.normals.values().is_empty(), !mesh.colors.values().is_empty());
     mesh.push(TriangleIndices {

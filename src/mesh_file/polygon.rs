@@ -2,13 +2,16 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-/// Polygons with more corners become a fan, whatever their shape: ear clipping takes cubic time.
+/// Limit on the corners of a polygon that is cut by ear clipping, which takes cubic time: a file of
+/// one huge polygon would take hours. Modelled faces have few corners; larger ones are mostly caps of cylinders, which
+/// are convex.
 const MAX_EARS: usize = 64;
 
-/// Triangulates a polygon. `corners` are indices into `positions`; each triangle is three indices into `corners`, with
-/// the polygon's orientation. A convex polygon becomes a fan; any other is cut by ear clipping. If the positions are
-/// unknown, or no ear is left because the outline crosses itself, the rest becomes a fan.
+/// Triangulates a polygon. `corners` are indices into `positions`; each triangle is three indices
+/// into `corners`, with the polygon's orientation. A convex polygon becomes a fan; any other is cut by ear clipping. If
+/// the positions are unknown, or no ear is left because the outline crosses itself, the rest becomes a fan.
 pub(super) fn cut(corners: &[u32], positions: &[Vec3]) -> impl Iterator<Item = [usize; 3]> + use<> {
+    // Triangles and quads are nearly all faces; a triangle needs no test at all.
     let may_be_concave = (4..=MAX_EARS).contains(&corners.len());
     let outline = if may_be_concave { projected(corners, positions) } else { None };
     let mut ears = Vec::new();
@@ -27,7 +30,7 @@ fn projected(corners: &[u32], positions: &[Vec3]) -> Option<Vec<DVec2>> {
     let points: Vec<DVec3> =
         corners.iter().map(|&i| positions.get(i as usize).map(|p| p.as_dvec3())).collect::<Option<_>>()?;
     let next = |i: usize| points[(i + 1) % points.len()];
-    // Newell's normal: twice the polygon's area along each axis.
+    // Newell's normal: twice the polygon's area along each axis. One corner's cross product would be wrong at a notch.
     let normal: DVec3 = (0..points.len()).map(|i| (points[i] - points[0]).cross(next(i) - points[0])).sum();
     let size = normal.abs();
     let flat = |p: &DVec3| match size.max_element() {
@@ -43,10 +46,11 @@ fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Returns whether the fan around the first corner covers the polygon: all its triangles have the polygon's
-/// orientation.
+/// Returns whether the fan around the first corner covers the polygon: all its triangles have the
+/// polygon's orientation.
 fn is_convex(outline: &[DVec2]) -> bool {
     let n = outline.len();
+    // Turning left at each corner is not enough: a star turns left everywhere, twice around.
     let turns_left = (0..n).all(|i| area(outline[i], outline[(i + 1) % n], outline[(i + 2) % n]) >= 0.0);
     turns_left && (2..n).all(|i| area(outline[0], outline[i - 1], outline[i]) >= 0.0)
 }
@@ -55,6 +59,7 @@ fn is_convex(outline: &[DVec2]) -> bool {
 fn cut_ears(outline: &[DVec2]) -> (Vec<[usize; 3]>, Vec<usize>) {
     let mut ears = Vec::new();
     let mut left: Vec<usize> = (0..outline.len()).collect();
+    // The last three corners become the fan.
     while left.len() > 3 {
         let Some(ear) = (0..left.len()).find(|&i| is_ear(outline, &left, i)) else { break };
         ears.push(around(&left, ear));
@@ -63,7 +68,7 @@ fn cut_ears(outline: &[DVec2]) -> (Vec<[usize; 3]>, Vec<usize>) {
     (ears, left)
 }
 
-/// A corner with its neighbours.
+/// Returns a corner between its two neighbours.
 fn around(left: &[usize], i: usize) -> [usize; 3] {
     let n = left.len();
     [left[(i + n - 1) % n], left[i], left[(i + 1) % n]]
@@ -77,6 +82,7 @@ fn is_ear(outline: &[DVec2], left: &[usize], i: usize) -> bool {
     area(a, b, c) > 0.0
         && !left.iter().any(|&other| {
             let p = outline[other];
+            // A corner at the same point as one of the ear's does not block it: outlines with a hole go there twice.
             !corners.contains(&other) && ![a, b, c].contains(&p) && is_inside(p)
         })
 }
@@ -102,7 +108,8 @@ mod tests {
         assert_eq!(triangles(&vec![Vec3::ZERO; 200]).len(), 198);
     }
 
-    /// For every plane and first corner, the triangles of an L have its orientation and their areas sum up to its area.
+    /// For every plane and first corner, the triangles of an L have its orientation and their areas
+    /// sum up to its area.
     #[test]
     fn a_concave_polygon_is_covered_once() {
         let l = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];

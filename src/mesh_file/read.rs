@@ -11,8 +11,8 @@ use std::io;
 use std::path::Path;
 
 impl MeshFile {
-    /// Returns the mesh of a file's bytes. `name` is used in messages, and its extension where the content does not
-    /// tell the format; `open` returns the bytes of a side file by its path relative to the mesh.
+    /// Returns the mesh of a file's bytes. `name` is used in messages, and its extension where the
+    /// content does not tell the format; `open` returns the bytes of a side file by its path relative to the mesh.
     ///
     /// # Errors
     /// The first fault.
@@ -66,6 +66,7 @@ impl MeshFile {
         reporter: &Reporter<'_>,
     ) -> Result<Self, Unfinished<MeshError>> {
         let read = named_file::read(path, accepted, |_| MAX_MESH_BYTES, reporter);
+        // A cancelled read ends with an error of its own, which must not be shown.
         if reporter.is_cancelled() {
             return Err(Unfinished::Cancelled);
         }
@@ -75,7 +76,8 @@ impl MeshFile {
         Self::of_file(path, &bytes, reporter)
     }
 
-    /// Returns the mesh of these bytes of the file at `path`. Side files are read from the same folder.
+    /// Returns the mesh of these bytes of the file at `path`. Side files are read from the same
+    /// folder.
     pub(crate) fn of_file(path: &Path, bytes: &[u8], reporter: &Reporter<'_>) -> Result<Self, Unfinished<MeshError>> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut open = |relative: &Path| {
@@ -92,7 +94,7 @@ pub fn is_mesh(name: &str, bytes: &[u8]) -> bool {
     format::by_ending(name).is_some() || bytes.starts_with(b"ply") || bytes.starts_with(b"glTF")
 }
 
-/// The one place where the formats are told apart.
+/// Recognises the format and reads the mesh.
 fn read(
     name: &str,
     bytes: &[u8],
@@ -103,6 +105,8 @@ fn read(
         return Err(MeshFault::of_file("the file is larger than 2 GiB, too large to be read"));
     }
     let meter = Meter::new(reporter, name, bytes.len());
+    // A failed allocation aborts the process and leaves the terminal in raw mode, so memory is checked beforehand.
+    // Fallible allocations would need a `Result` in every signature of the readers and the tree builder.
     has_memory(bytes.len() * PEAK_PER_BYTE, "to read it")?;
     let mesh = match format::recognised(name, bytes)? {
         MeshFormat::Obj => obj::read(bytes, side_files, meter),
@@ -112,17 +116,18 @@ fn read(
         MeshFormat::Gltf => gltf::read_json(bytes, side_files, meter),
         MeshFormat::Glb => gltf::read_binary(bytes, side_files, meter),
     }?;
+    // The trees are built later, but a mesh that cannot have them should fail here, with its name.
     let triangles = mesh.triangles().len();
     has_memory(triangles * PEAK_PER_TRIANGLE, &format!("for its {triangles} triangles"))?;
     Ok(mesh)
 }
 
-/// Limit on the memory per byte of a file while it is read, besides the file itself. PLY has the fewest bytes per
-/// triangle.
+/// Limit on the memory per byte of a file while it is read, besides the file itself. It is reached
+/// by PLY, which has the fewest bytes per triangle.
 const PEAK_PER_BYTE: usize = 8;
 
-/// Limit on the memory per triangle while trees are built; 230 (PLY) to 290 bytes (STL) were measured, including the
-/// file.
+/// Limit on the memory per triangle while trees are built. Measured: 230 bytes (PLY) to 290 bytes
+/// (STL), including the file.
 const PEAK_PER_TRIANGLE: usize = 320;
 
 fn has_memory(bytes: usize, what_for: &str) -> Result<(), MeshFault> {

@@ -6,7 +6,7 @@ use crate::named_file;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-/// The one way to side files, with a limit on the total number of bytes read.
+/// The only access to side files, with a limit on the total number of bytes read.
 pub(super) struct SideFiles<'a> {
     open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     bytes_left: usize,
@@ -21,7 +21,8 @@ impl<'a> SideFiles<'a> {
         Self { open, bytes_left: MAX_MESH_BYTES, folder }
     }
 
-    /// Returns a side file's name for messages: relative to the user's current folder, like the mesh's own.
+    /// Returns a side file's name for messages: relative to the user's current folder, like the
+    /// mesh's own.
     pub(super) fn name_of(&self, path: &Path) -> String {
         self.folder.join(path).to_string_lossy().into_owned()
     }
@@ -37,30 +38,33 @@ impl<'a> SideFiles<'a> {
     }
 }
 
-/// Limit on the length of a path: no supported system allows more, and messages stay readable.
+/// Limit on the length of a path in bytes: no supported system allows longer file names, and
+/// messages stay readable.
 const MAX_PATH_BYTES: usize = 255;
 
-/// Returns the path that a file in `folder` refers to, relative to the mesh. `\` is a separator too, as Windows writes
-/// it. An `Err` says why it is refused: it is a URL, absolute, or empty.
+/// Returns the path that a file in `folder` refers to, relative to the mesh. `\` is a separator
+/// too, as Windows writes it. An `Err` says why it is refused: it is a URL, absolute, or empty.
 pub(super) fn local_path(folder: &Path, written: &str) -> Result<PathBuf, String> {
     let name = shown(written.as_bytes());
     let say = |what: &str| Err(format!("{name} {what}"));
     if written.len() > MAX_PATH_BYTES {
         return say("is longer than a path may be");
     }
+    // Nothing is ever fetched: a picture must not depend on the network, and a mesh must not reveal who views it.
     if written.contains("://") || written.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("data:")) {
         return say("is a URL; only files beside this one are read");
     }
     let path = PathBuf::from(written.replace('\\', "/"));
-    // `.` and `a/..` are folders.
+    // The file name of `.` and `a/..` is `None`: they are folders.
     if written.contains('\0') || path.file_name().is_none() {
-        return say("is no file name");
+        return say("is not a file name");
     }
+    // Absolute paths would let a downloaded mesh read any file, and `C:` is one on Windows, where it was written.
     let has_drive = written.as_bytes().get(1) == Some(&b':');
     if has_drive || path.components().any(|part| matches!(part, Component::RootDir | Component::Prefix(_))) {
         return say("is an absolute path; write it relative to this file");
     }
-    // One spelling for each file, without `./`.
+    // One spelling for each file, without `./`: files that were read are found again by their path.
     Ok(folder.join(path.components().filter(|part| *part != Component::CurDir).collect::<PathBuf>()))
 }
 

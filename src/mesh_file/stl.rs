@@ -1,5 +1,6 @@
-//! STL, text and binary: triangles without shared vertices. The facets' normals are not read, because the corners give
-//! them with more digits; nor are the colours that some programs put into the attribute bytes, each in its own way.
+//! STL, text and binary: triangles without shared vertices. The facets' normals are not read,
+//! because the corners give them with more digits; nor are the colours that some programs put into the attribute bytes,
+//! each in its own way.
 
 use super::MeshFile;
 use super::builder::{MeshBuilder, TriangleIndices, too_many};
@@ -21,12 +22,14 @@ fn claimed_size(bytes: &[u8]) -> Option<u64> {
     Some(HEADER as u64 + u64::from(count) * FACET as u64)
 }
 
-/// Returns whether the bytes are a binary file of exactly the size that its count implies. A text never is: its count
-/// would consist of letters and be huge.
+/// Returns whether the bytes are a binary file of exactly the size that its count implies. A text
+/// never is: four of its characters, read as a count, are above 150 million, and such a file would be larger than the
+/// limit.
 pub(super) fn size_fits(bytes: &[u8]) -> bool {
     claimed_size(bytes) == Some(bytes.len() as u64)
 }
 
+/// Reads a binary STL file.
 pub(super) fn read_binary(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
     let size = claimed_size(bytes).ok_or_else(|| {
         let message = "the file ends within the header of 84 bytes that a binary STL file begins with";
@@ -43,6 +46,7 @@ pub(super) fn read_binary(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile
     if facets.len() > MAX_TRIANGLES {
         return Err(MeshFault::at_byte(HEADER - 4, too_many()));
     }
+    // Equal corners are not merged: the tracer needs no shared vertices.
     let mut mesh = MeshBuilder { positions: Vec::with_capacity(3 * facets.len()), ..MeshBuilder::default() };
     for (i, facet) in facets.enumerate() {
         meter.advance_to(HEADER + i * FACET)?;
@@ -55,17 +59,19 @@ pub(super) fn read_binary(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile
     mesh.finish("its count is 0")
 }
 
-/// Reads twelve bytes with their position.
+/// Returns the vertex in twelve bytes. `at` is their offset, for faults.
 fn vertex_from(bytes: &[u8], at: usize) -> Result<Vec3, MeshFault> {
     let coordinate = |axis: usize| f32::from_le_bytes(std::array::from_fn(|i| bytes[4 * axis + i]));
     let vertex = Vec3::new(coordinate(0), coordinate(1), coordinate(2));
     if vertex.is_finite() {
         return Ok(vertex);
     }
+    // The first coordinate that is not finite.
     let axis = usize::from(vertex.x.is_finite()) * (1 + usize::from(vertex.y.is_finite()));
     Err(MeshFault::at_byte(at + 4 * axis, format!("{} is not a finite number", coordinate(axis))))
 }
 
+/// Reads a text STL file, of one or several solids.
 pub(super) fn read_text(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
     let mut reader = TextReader { text: TextCursor::new(bytes), mesh: MeshBuilder::default(), open: None };
     while reader.text.go_to_statement() {
@@ -93,16 +99,14 @@ impl TextReader<'_> {
             b"vertex" if self.open.is_some() => return self.vertex(),
             b"outer" if self.open.is_none() => self.open = Some(self.mesh.positions.len() as u32), // below 2^31 bytes
             b"endloop" if self.open.is_some() => self.end_loop(at)?,
+            // Their order is not checked: some writers leave lines out, and only vertices and loops matter.
             b"solid" | b"facet" | b"endfacet" | b"endsolid" | b"color" if self.open.is_none() => {}
             _ if self.open.is_some() => {
-                return Err(MeshFault::in_text(
-                    at,
-                    format!("{} stands where vertex or endloop should be", shown(word)),
-                ));
+                return Err(MeshFault::in_text(at, format!("expected vertex or endloop, found {}", shown(word))));
             }
             _ => {
                 let wanted = "solid, facet, outer loop, endfacet or endsolid";
-                return Err(MeshFault::in_text(at, format!("{} stands where {wanted} should be", shown(word))));
+                return Err(MeshFault::in_text(at, format!("expected {wanted}, found {}", shown(word))));
             }
         }
         self.text.skip_line();
@@ -115,7 +119,8 @@ impl TextReader<'_> {
         self.text.end_line()
     }
 
-    /// Adds the triangles of a loop; some programs write polygons.
+    /// Adds the triangles of a loop. The format knows only triangles, but some programs write
+    /// polygons.
     fn end_loop(&mut self, at: usize) -> Result<(), MeshFault> {
         let corners: Vec<u32> = (self.open.take().unwrap_or_default()..self.mesh.positions.len() as u32).collect();
         if corners.len() < 3 {

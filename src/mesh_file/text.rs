@@ -1,11 +1,13 @@
 //! Words, numbers and line ends of a text, in one pass over its bytes.
 //!
-//! OBJ, MTL, STL and PLY have in common that words are separated by blanks and a line is a statement. Comments after
-//! `#` and lines continued by `\`, which only OBJ has, do not occur in the others.
+//! In OBJ, MTL, STL and PLY words are separated by blanks and a line is a statement. Comments after `#` and lines
+//! continued by `\` are part of OBJ only, but no valid file of the others contains either sign.
 
 use super::fault::{MeshFault, shown};
 
-/// A position in a text, and the reading from there.
+/// A position in a text, from which words and numbers are read.
+///
+/// Works on bytes, not `str`: checking for UTF-8 would take a second pass, and comments in Latin-1 would be refused.
 pub(super) struct TextCursor<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -122,15 +124,18 @@ impl<'a> TextCursor<'a> {
         self.is_word_end(self.at)
     }
 
-    /// Returns a reader at an earlier position of the same text.
+    /// Returns a cursor at another position of the same text.
     pub(super) fn back_at(&self, at: usize) -> Self {
         Self { bytes: self.bytes, at }
     }
 
     /// Reads a word that must be a finite number, correctly rounded.
+    // `#[inline]` on what is called for each number: a mesh of a million vertices has ten million of them.
     #[inline]
     pub(super) fn number(&mut self) -> Result<f32, MeshFault> {
         self.skip_blanks();
+        // The crate's parser is correctly rounded, as the standard library's, but takes bytes and stops at the first
+        // one that is not part of a number: no search for the word's end, no check for UTF-8.
         if let Ok((value, length)) = fast_float2::parse_partial::<f32, _>(&self.bytes[self.at..])
             && value.is_finite()
             && self.is_word_end(self.at + length)
@@ -172,7 +177,8 @@ impl<'a> TextCursor<'a> {
         }
     }
 
-    /// Reads an integer that may end inside a word, of at most 18 digits.
+    /// Reads an integer that may end inside a word, of at most 18 digits, so that it cannot
+    /// overflow.
     #[inline]
     pub(super) fn digits(&mut self) -> Option<i64> {
         let negative = self.take(b'-');
@@ -205,11 +211,11 @@ impl<'a> TextCursor<'a> {
         let is_line_end = self.is_at_line_end();
         let start = self.at;
         let found = match self.word() {
-            _ if start >= self.bytes.len() => "the file ends".to_owned(),
-            _ if is_line_end => "the line ends".to_owned(),
-            word => format!("{} stands", shown(word)),
+            _ if start >= self.bytes.len() => "the end of the file".to_owned(),
+            _ if is_line_end => "the end of the line".to_owned(),
+            word => shown(word),
         };
-        MeshFault::in_text(start, format!("{found} where {wanted} should be"))
+        MeshFault::in_text(start, format!("expected {wanted}, found {found}"))
     }
 }
 

@@ -24,8 +24,8 @@ pub struct Texture {
 pub struct TexturePlacement {
     /// The image.
     pub texture: Arc<Texture>,
-    /// The transform from the mesh's texture coordinates to the image's: u' and v' are the dot products of these with
-    /// (u, v, 1). Finite.
+    /// The transform from the mesh's texture coordinates to the image's: u' and v' are the dot
+    /// products of these with (u, v, 1). Finite.
     pub transform: [Vec3; 2],
 }
 
@@ -48,13 +48,14 @@ impl Texture {
         self.height
     }
 
-    /// Returns the colour at these coordinates as linear light, bilinearly interpolated between the centres of four
-    /// texels. Takes any coordinates; the image repeats.
+    /// Returns the colour at these coordinates as linear light, bilinearly interpolated between the
+    /// centres of four texels. Takes any coordinates; the image repeats.
     pub fn color_at(&self, at: Vec2) -> LinearRgb {
+        // Texel centres are at half coordinates, hence the 0.5.
         let place = |coordinate: f32, length: u32| {
             let place = (coordinate - coordinate.floor()) * length as f32 - 0.5;
             let first = place.floor();
-            // The texel before the first is the last.
+            // The image repeats: the texel before the first one is the last one.
             let index = (first as i64).rem_euclid(length.into()) as u32;
             ([index, (index + 1) % length], place - first)
         };

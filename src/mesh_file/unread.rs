@@ -1,5 +1,5 @@
-//! Replacement of the readers without the feature `mesh`: mesh files are recognised by names and first bytes, and each
-//! is an error.
+//! Replacement of the readers without the feature `mesh`: mesh files are recognised by names and
+//! first bytes, and each is an error.
 
 use super::{MeshError, MeshFile};
 use crate::named_file::Accepted;

@@ -293,7 +293,7 @@ fn repeated_meshes_are_limited() {
         "bufferViews":[{"buffer":0,"byteLength":1440000}],
         "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":120000}]}"#;
     let error = read_with("x.gltf", &json, &[("x.bin", &positions)]).unwrap_err();
-    assert!(error.contains("nodes show meshes so often"), "{error}");
+    assert!(error.contains("the nodes repeat meshes"), "{error}");
 }
 
 #[test]

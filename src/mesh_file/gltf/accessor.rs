@@ -11,7 +11,7 @@ pub(super) struct Accessor<'a> {
     width: usize,
     pub(super) count: usize,
     normalized: bool,
-    /// No buffer view: all components are zero.
+    /// `None` without a buffer view: all components are zero.
     elements: Option<Elements<'a>>,
     sparse: Option<Sparse<'a>>,
 }
@@ -51,7 +51,7 @@ impl Component {
             5123 => Self::U16,
             5125 => Self::U32,
             5126 => Self::F32,
-            other => return Err(field.fault(format!("{other} is no component type (5120 to 5123, 5125, 5126)"))),
+            other => return Err(field.fault(format!("{other} is not a component type (5120 to 5123, 5125, 5126)"))),
         })
     }
 
@@ -67,7 +67,7 @@ impl Component {
         matches!(self, Self::U8 | Self::U16 | Self::U32)
     }
 
-    /// Returns the number in these bytes, which must be enough.
+    /// Returns the number at the start of these bytes, of which there must be enough.
     fn number(self, b: &[u8], normalized: bool) -> f32 {
         let (value, largest) = match self {
             Self::F32 => return f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
@@ -77,10 +77,11 @@ impl Component {
             Self::U16 => (f32::from(u16::from_le_bytes([b[0], b[1]])), 65535.0),
             Self::U32 => (u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32, 4_294_967_295.0),
         };
+        // As in the glTF specification: -128 and -127 both mean -1.
         if normalized { (value / largest).max(-1.0) } else { value }
     }
 
-    /// Returns the index in these bytes, which must be enough.
+    /// Returns the index at the start of these bytes, of which there must be enough.
     fn index(self, b: &[u8]) -> u32 {
         match self {
             Self::I8 | Self::U8 => u32::from(b[0]),
@@ -102,6 +103,7 @@ impl<'a> Elements<'a> {
         let view = buffers.view(view)?;
         let offset = json.index_or("byteOffset", 0)?;
         let stride = view.stride.unwrap_or(size);
+        // The numbers come from the file and may overflow. The last element need not be followed by a whole stride.
         let last = count.saturating_sub(1).checked_mul(stride);
         let end = last.and_then(|last| last.checked_add(offset)?.checked_add(size));
         let length = view.bytes().len();
@@ -109,6 +111,7 @@ impl<'a> Elements<'a> {
             let message = format!("{count} elements of {size} bytes do not fit into their buffer view of {length}");
             return Err(json.fault(message));
         }
+        // Overlapping elements are a mistake of the file, not a feature.
         if stride < size && count > 1 {
             return Err(json.fault(format!("elements of {size} bytes lie only {stride} bytes apart (byteStride)")));
         }
@@ -131,10 +134,11 @@ impl<'a> Accessor<'a> {
             "VEC2" => 2,
             "VEC3" => 3,
             "VEC4" => 4,
-            _ => return Err(kind.fault("SCALAR, VEC2, VEC3 or VEC4 should be here")),
+            _ => return Err(kind.fault("expected SCALAR, VEC2, VEC3 or VEC4")),
         };
         let count = json.required("count")?.index()?;
         let elements = Elements::new(json, width * component.size(), count, buffers)?;
+        // Zeros cost the file no bytes, so their count has a limit of its own.
         if elements.is_none() && count > buffers.max_elements() {
             return Err(json.fault(format!("{count} elements of zeros are too many for a file of this size")));
         }
@@ -153,7 +157,7 @@ impl<'a> Accessor<'a> {
     /// Returns the first N components of the elements, which must be finite.
     pub(super) fn vectors<const N: usize>(&self) -> Result<Vec<[f32; N]>, MeshFault> {
         if self.width < N {
-            return Err(self.fault(format!("elements of {N} numbers should be here, not of {}", self.width)));
+            return Err(self.fault(format!("expected elements of {N} numbers, found elements of {}", self.width)));
         }
         let vector = |bytes: &[u8]| -> [f32; N] {
             std::array::from_fn(|i| self.component.number(&bytes[i * self.component.size()..], self.normalized))
@@ -206,6 +210,7 @@ impl<'a> Sparse<'a> {
             index_component,
             count,
         };
+        // Checked once here, so that `all` may index without checks that can fail.
         let out = (0..count).map(|i| index_component.index(sparse.indices.at(i))).find(|&i| i as usize >= elements);
         match out {
             Some(index) => Err(indices.fault(format!("index {index} is out of range: there are {elements} elements"))),

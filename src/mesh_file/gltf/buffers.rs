@@ -10,14 +10,14 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// All buffers of a file, each read when it is first used.
+/// All buffers of a file, each read on first use.
 pub(super) struct Buffers<'a, 'b> {
     root: Json<'a>,
     glb: Option<&'a [u8]>,
     side_files: &'a mut SideFiles<'b>,
     read: HashMap<usize, Bytes<'a>>,
     files: HashMap<PathBuf, Rc<[u8]>>,
-    /// Number of bytes that the JSON, its buffers and its images have so far.
+    /// Number of bytes of the JSON and of the buffers and images read so far.
     size: usize,
 }
 
@@ -65,8 +65,8 @@ impl<'a, 'b> Buffers<'a, 'b> {
         self.root
     }
 
-    /// Returns the limit on the triangles or vertices that a document of this size may make, so that a small file
-    /// cannot exhaust memory.
+    /// Returns the limit on the triangles or vertices of a document of this size: one per byte, and
+    /// a million more, so that a small file whose nodes show the same mesh very often cannot exhaust memory.
     pub(super) fn max_elements(&self) -> usize {
         self.size.saturating_add(1 << 20).min(MAX_TRIANGLES)
     }
@@ -74,6 +74,7 @@ impl<'a, 'b> Buffers<'a, 'b> {
     /// Returns the buffer view whose index is in a field of `value`.
     pub(super) fn view(&mut self, index: Json<'a>) -> Result<BufferView<'a>, MeshFault> {
         let (_, view) = index.item_of(self.root, "bufferViews")?;
+        // A file may use the extension without requiring it, and still have no plain bytes to fall back on.
         if view.extension("EXT_meshopt_compression")?.is_some() {
             return Err(view.fault("this part of the file is compressed with meshopt, which is not supported"));
         }
@@ -118,6 +119,7 @@ impl<'a, 'b> Buffers<'a, 'b> {
             return data_of(data).map(|bytes| Bytes::Read(bytes.into())).map_err(|message| uri.fault(message));
         }
         let path = local_path(Path::new(""), &percent_decoded(text)).map_err(|message| uri.fault(message))?;
+        // Several buffers and images may name the same file, under different indices.
         if let Some(bytes) = self.files.get(&path) {
             return Ok(Bytes::Read(Rc::clone(bytes)));
         }
@@ -131,6 +133,7 @@ impl<'a, 'b> Buffers<'a, 'b> {
 
 /// Returns the bytes after `data:`.
 fn data_of(data: &str) -> Result<Vec<u8>, String> {
+    // Padding that is left out, as URIs often do, does not change the bytes.
     const LENIENT: GeneralPurposeConfig =
         GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
     let Some((_, encoded)) = data.split_once(";base64,") else {
@@ -145,6 +148,7 @@ fn data_of(data: &str) -> Result<Vec<u8>, String> {
 /// Decodes percent escapes: `%20` is a blank.
 fn percent_decoded(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
+    // Bytes, not characters: an escape may be half a character.
     let mut rest = uri.as_bytes();
     while let [first, after @ ..] = rest {
         let code = after.get(..2).and_then(|digits| std::str::from_utf8(digits).ok());
@@ -159,7 +163,7 @@ fn percent_decoded(uri: &str) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// The start of an image's messages.
+/// Returns the name of an image for messages: its file, or "the picture" if it is in the mesh file.
 pub(super) fn described(uri: Option<&str>) -> String {
     match uri.filter(|uri| !uri.starts_with("data:")) {
         Some(uri) => shown(uri.as_bytes()),

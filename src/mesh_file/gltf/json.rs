@@ -11,8 +11,10 @@ pub(super) struct Json<'a> {
     path: JsonPath<'a>,
 }
 
-/// A path such as `meshes[2].primitives`, as much of it as fits without an allocation. The relevant parts of glTF are
-/// at most four steps deep.
+/// A path such as `meshes[2].primitives`, of which six steps are kept and later ones dropped.
+///
+/// A fixed array without allocations, because a path is extended for every value but shown only in a fault. The deepest
+/// values that are read are fields of `materials[0].pbrMetallicRoughness.baseColorTexture.extensions.X`.
 #[derive(Clone, Copy)]
 struct JsonPath<'a> {
     steps: [Option<Step<'a>>; 6],
@@ -74,7 +76,7 @@ impl<'a> Json<'a> {
             Value::Array(_) => "a list".to_owned(),
             Value::Object(_) => "an object".to_owned(),
         };
-        self.fault(format!("{found} stands where {wanted} should be"))
+        self.fault(format!("expected {wanted}, found {found}"))
     }
 
     fn object(self) -> Result<&'a Map<String, Value>, MeshFault> {
@@ -92,7 +94,7 @@ impl<'a> Json<'a> {
         self.field(name)?.ok_or_else(|| self.fault(format!("the field {name} is missing")))
     }
 
-    /// Returns the fields of an object in a field, by name; none if it is missing.
+    /// Returns the extension `name` of this value, if it has it.
     pub(super) fn extension(self, name: &'static str) -> Result<Option<Self>, MeshFault> {
         self.field("extensions")?.map_or(Ok(None), |extensions| extensions.field(name))
     }
@@ -155,7 +157,7 @@ impl<'a> Json<'a> {
     /// Returns an optional field as exactly `N` numbers.
     pub(super) fn numbers<const N: usize>(self, name: &'static str) -> Result<Option<[f64; N]>, MeshFault> {
         let Some(list) = self.field(name)? else { return Ok(None) };
-        let wanted = || list.fault(format!("{N} numbers should be here"));
+        let wanted = || list.fault(format!("expected {N} numbers"));
         let items: &[Value; N] = list.items()?.try_into().map_err(|_| wanted())?;
         let mut numbers = [0.0; N];
         for (number, value) in numbers.iter_mut().zip(items) {

@@ -31,7 +31,7 @@ struct MaterialReader<'r, 'a, 'b> {
 
 impl<'a> MaterialReader<'_, 'a, '_> {
     fn material(&mut self, json: Json<'a>) -> Result<Material, MeshFault> {
-        // The specular-glossiness extension, which older files use instead of a base colour.
+        // Older files use the specular-glossiness extension instead of a base colour.
         let (base, factor, texture) = match json.extension("KHR_materials_pbrSpecularGlossiness")? {
             Some(older) => (Some(older), "diffuseFactor", "diffuseTexture"),
             None => (json.field("pbrMetallicRoughness")?, "baseColorFactor", "baseColorTexture"),
@@ -52,7 +52,8 @@ impl<'a> MaterialReader<'_, 'a, '_> {
         Ok(material)
     }
 
-    /// Returns the texture that a material names, with its placement and its texture coordinate set.
+    /// Returns the texture that a material names, with its placement and its texture coordinate
+    /// set.
     fn placement(&mut self, info: Json<'a>) -> Result<(TexturePlacement, usize), MeshFault> {
         let (_, texture) = info.required("index")?.item_of(self.buffers.root(), "textures")?;
         let Some(source) = texture.field("source")? else {
@@ -84,7 +85,8 @@ impl<'a> MaterialReader<'_, 'a, '_> {
     }
 }
 
-/// Reads `KHR_texture_transform`: scaled, rotated, translated.
+/// Reads `KHR_texture_transform`: scale, then rotation, then translation, as the rows of a 2 x 3
+/// matrix.
 fn transform_of(json: Json<'_>) -> Result<[Vec3; 2], MeshFault> {
     let [offset_u, offset_v] = json.numbers("offset")?.unwrap_or([0.0; 2]);
     let [scale_u, scale_v] = json.numbers("scale")?.unwrap_or([1.0; 2]);

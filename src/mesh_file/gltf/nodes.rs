@@ -16,12 +16,13 @@ pub(super) fn read<'a>(
 ) -> Result<MeshFile, MeshFault> {
     let mut is_visited = vec![false; root.count("nodes")?];
     let mut primitives = Primitives::new(buffers)?;
-    // An explicit stack: trees may be deep.
+    // An explicit stack, because a file may nest its nodes a million deep. Reversed, so that the triangles come in the
+    // order of the file.
     let mut open: Vec<_> = roots(root)?.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
     while let Some(((number, node), parent)) = open.pop() {
         meter.step()?;
         if std::mem::replace(&mut is_visited[number], true) {
-            return Err(node.fault("the scene comes to this node twice: nodes must form a tree"));
+            return Err(node.fault("this node is reached twice: nodes must form a tree"));
         }
         let transform = parent * local_transform(node)?;
         if let Some(mesh) = node.field("mesh")? {
@@ -42,8 +43,8 @@ fn nodes_in<'a>(json: Json<'a>, list: &'static str, root: Json<'a>) -> Result<Ve
     json.list(list)?.map(|index| index.item_of(root, "nodes")).collect()
 }
 
-/// Returns the roots of the default scene, or of the first one; in a file without scenes, all nodes that are not
-/// children.
+/// Returns the roots of the default scene, or of the first one; in a file without scenes, all nodes
+/// that are not children.
 fn roots(root: Json<'_>) -> Result<Vec<IndexedNode<'_>>, MeshFault> {
     let scene = match root.field("scene")? {
         Some(index) => Some(index.item_of(root, "scenes")?.1),
@@ -70,7 +71,7 @@ fn local_transform(node: Json<'_>) -> Result<DMat4, MeshFault> {
     let scale = node.numbers("scale")?.map_or(DVec3::ONE, DVec3::from_array);
     let rotation = node.numbers("rotation")?.map_or(DVec4::W, DVec4::from_array);
     let Some(rotation) = rotation.try_normalize() else {
-        return Err(node.fault("the rotation is no quaternion: its length is zero or too large"));
+        return Err(node.fault("the rotation is not a quaternion: its length is zero or too large"));
     };
     Ok(DMat4::from_scale_rotation_translation(scale, DQuat::from_vec4(rotation), translation))
 }

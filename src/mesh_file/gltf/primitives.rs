@@ -11,24 +11,26 @@ use crate::mesh_file::fault::MeshFault;
 use glam::{DMat3, DMat4, Vec2, Vec3};
 use std::collections::HashMap;
 
-/// The triangles and attributes read so far.
+/// The mesh made of the primitives read so far.
 pub(super) struct Primitives<'r, 'a, 'b> {
     buffers: &'r mut Buffers<'a, 'b>,
     mesh: MeshBuilder,
     /// The texture coordinate set that each material uses.
     texture_coordinate_sets: Vec<usize>,
-    /// Positions and normals of the current node, by their accessors.
+    /// Positions and normals of the current node, by accessor: each node transforms them
+    /// differently.
     positions: Ranges,
     normals: Ranges,
-    /// Texture coordinates and colours by their accessors, which are the same at all nodes.
+    /// Texture coordinates and colours by accessor, the same at all nodes.
     texture_coordinates: Ranges,
     colors: Ranges,
 }
 
-/// The elements of accessors that were read already. Primitives share them.
+/// The elements read so far, by the index of their accessor. Primitives often share accessors: a
+/// mesh that is split by material may keep one list of vertices.
 type Ranges = HashMap<usize, Range>;
 
-/// The range of an accessor's elements among a mesh's.
+/// The range of an accessor's elements in the mesh's list.
 #[derive(Clone, Copy)]
 struct Range {
     start: u32,
@@ -61,6 +63,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
 
     /// Reads the primitives of a mesh at a node.
     pub(super) fn add_mesh(&mut self, mesh: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<(), MeshFault> {
+        // Another node transforms them differently.
         self.positions.clear();
         self.normals.clear();
         for primitive in mesh.list("primitives")? {
@@ -72,7 +75,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
     fn add(&mut self, primitive: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<(), MeshFault> {
         let mode = primitive.index_or("mode", 4)?;
         if mode < 4 {
-            // Points and lines.
+            // Points and lines have no surface.
             return Ok(());
         }
         let material = primitive.field("material")?.map(|index| index.item_of(self.buffers.root(), "materials"));
@@ -91,6 +94,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         let indices = self.indices(primitive, positions.count)?;
         let length = indices.as_ref().map_or(positions.count, Vec::len);
         self.mesh.set_material(material.map(|index| index as u32)); // fewer than bytes
+        // glTF: a negative determinant reverses the orientation of the triangles.
         let is_mirrored = DMat3::from_mat4(transform).determinant() < 0.0;
         for mut corners in triangles(mode, length).ok_or_else(|| primitive.fault(format!("there is no mode {mode}")))? {
             if is_mirrored {
@@ -112,7 +116,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         let most = self.buffers.max_elements();
         if self.mesh.triangles.len().max(self.mesh.positions.len()) > most {
             return Err(
-                json.fault(format!("nodes show meshes so often that there are more than {most} triangles or vertices"))
+                json.fault(format!("the nodes repeat meshes until there are more than {most} triangles or vertices"))
             );
         }
         Ok(())
@@ -131,6 +135,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         if !self.mesh.positions[range.start as usize..].iter().all(|position| position.is_finite()) {
             return Err(node.fault("this node and those above it put vertices beyond 3.4e38"));
         }
+        // Here too, before any triangle: a mesh of points alone would fill memory otherwise.
         self.check_size(node)?;
         self.positions.insert(number, range);
         Ok(range)
@@ -205,7 +210,8 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
     }
 }
 
-/// Counts are below 2^31: no file is larger.
+/// Returns the range of `count` elements after `length` others. Both are below 2^31, because no
+/// file is larger.
 fn range_after(length: usize, count: usize) -> Range {
     Range { start: length as u32, count }
 }
@@ -225,8 +231,8 @@ fn triangles(mode: usize, length: usize) -> Option<impl Iterator<Item = [usize; 
     }))
 }
 
-/// Returns the transform of normals: the inverse transpose of the matrix, but for a positive factor; also for singular
-/// matrices.
+/// Returns the transform of normals: the inverse transpose of the matrix times a positive factor.
+/// Unlike the inverse, the matrix of cofactors exists for singular matrices too, which flatten a mesh.
 fn cofactors(matrix: DMat3) -> DMat3 {
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = matrix;
     let sign = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };

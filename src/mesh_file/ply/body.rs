@@ -5,7 +5,8 @@ use crate::mesh_file::fault::MeshFault;
 use crate::mesh_file::text::TextCursor;
 use crate::progress::Meter;
 
-/// A body: rows of numbers.
+/// A reader of the body: rows of numbers. Used as a generic parameter, not as a trait object, so
+/// that reading a number is inlined: a body has millions.
 pub(super) trait RowReader {
     /// Starts a row; `row` counts from 0.
     fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault>;
@@ -30,7 +31,7 @@ pub(super) trait RowReader {
     fn length(&mut self, kind: ScalarType) -> Result<usize, MeshFault> {
         let position = self.position();
         let length = self.integer(kind)?;
-        usize::try_from(length).map_err(|_| self.fault(position, format!("a list has no {length} items")))
+        usize::try_from(length).map_err(|_| self.fault(position, format!("a list cannot have {length} items")))
     }
 }
 
@@ -93,6 +94,7 @@ impl RowReader for AsciiRows<'_> {
 
     fn fault(&self, position: usize, message: String) -> MeshFault {
         let mut text = self.text.back_at(position);
+        // The position is before the blanks that separate the word from the previous one.
         text.skip_blanks();
         MeshFault::in_text(text.at(), message)
     }
@@ -101,7 +103,7 @@ impl RowReader for AsciiRows<'_> {
         self.text.left()
     }
 
-    /// A digit and a blank for each number.
+    /// Returns a digit and a blank for each number.
     fn least_size(&self, properties: &[Property<'_>]) -> usize {
         2 * properties.len()
     }
@@ -121,6 +123,7 @@ impl<'a, const BIG_ENDIAN: bool> BinaryRows<'a, BIG_ENDIAN> {
 
     #[inline]
     fn take<const N: usize>(&mut self) -> Result<[u8; N], MeshFault> {
+        // An array of a constant size, so that the compiler reads it with one load.
         let Some(&taken) = self.bytes.get(self.at..).and_then(|rest| rest.first_chunk::<N>()) else {
             return Err(self.cut_short());
         };
@@ -190,6 +193,7 @@ impl<const BIG_ENDIAN: bool> RowReader for BinaryRows<'_, BIG_ENDIAN> {
     }
 
     fn skip(&mut self, kind: ScalarType, count: usize) -> Result<(), MeshFault> {
+        // The count comes from the file and may overflow.
         let end = kind.size().checked_mul(count).and_then(|size| self.at.checked_add(size));
         self.at = end.filter(|&end| end <= self.bytes.len()).ok_or_else(|| self.cut_short())?;
         Ok(())

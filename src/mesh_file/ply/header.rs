@@ -3,11 +3,11 @@
 use crate::mesh_file::fault::{MeshFault, shown};
 use crate::mesh_file::text::TextCursor;
 
-/// A header.
+/// A header: the encoding of the body, and its elements in order.
 pub(super) struct Header<'a> {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element<'a>>,
-    /// The start of the body.
+    /// The offset of the body.
     pub(super) end: usize,
 }
 
@@ -23,7 +23,7 @@ pub(super) struct Element<'a> {
     pub(super) name: &'a str,
     pub(super) count: u32,
     pub(super) properties: Vec<Property<'a>>,
-    /// The position of its declaration.
+    /// The offset of its declaration.
     pub(super) at: usize,
 }
 
@@ -78,7 +78,7 @@ impl ScalarType {
         matches!(self, Self::F32 | Self::F64)
     }
 
-    /// Size in a binary file, in bytes.
+    /// Returns the size in a binary file, in bytes.
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -92,14 +92,14 @@ impl ScalarType {
 impl<'a> Header<'a> {
     pub(super) fn read(bytes: &'a [u8]) -> Result<Self, MeshFault> {
         let mut reader = HeaderReader { text: TextCursor::new(bytes), encoding: None, elements: Vec::new() };
+        // Exactly: the format is known by these bytes.
         if reader.text.rest_of_line() != b"ply" {
             return Err(MeshFault::in_text(0, "a PLY file begins with a line that says ply"));
         }
         reader.text.skip_line();
         while reader.statement()? {}
-        // A body may start with a byte that looks like the second half of a line end. It counts as one only if line
-        // ends in the header have two bytes.
-        // been one before.
+        // A binary body may start with a byte that looks like the second half of a line end (10). It belongs to the
+        // line end only if the first line ended with two bytes as well.
         let line_end = if bytes.get(3..5) == Some(b"\r\n") { 2 } else { 1 };
         let end = (reader.text.at() + line_end).min(bytes.len());
         let encoding = reader.encoding.ok_or_else(|| {
@@ -137,7 +137,7 @@ impl<'a> HeaderReader<'a> {
             }
             _ => {
                 let message =
-                    format!("{} begins no line of a header (format, element, property, comment)", shown(word));
+                    format!("{} is not a keyword of a header (format, element, property, comment)", shown(word));
                 return Err(MeshFault::in_text(at, message));
             }
         }
@@ -171,8 +171,9 @@ impl<'a> HeaderReader<'a> {
                 format!("{count} rows are not possible: there are 0 to {}", u32::MAX),
             ));
         };
+        // The readers take the first element of a name; a second one would be lost without a word.
         if matches!(name, "vertex" | "face" | "tristrips") && self.elements.iter().any(|element| element.name == name) {
-            return Err(MeshFault::in_text(at, format!("the element {name} is there twice")));
+            return Err(MeshFault::in_text(at, format!("duplicate element {name}")));
         }
         self.elements.push(Element { name, count, properties: Vec::new(), at });
         self.text.end_line()
@@ -204,7 +205,7 @@ impl<'a> HeaderReader<'a> {
         };
         let name = self.name()?;
         let Some(element) = self.elements.last_mut() else {
-            return Err(MeshFault::in_text(at, "this property belongs to no element: one must stand above it"));
+            return Err(MeshFault::in_text(at, "this property needs an element: one must come before it"));
         };
         element.properties.push(Property { name, shape });
         self.text.end_line()

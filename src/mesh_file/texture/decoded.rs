@@ -13,7 +13,7 @@ use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
 impl TexturePlacement {
-    /// Returns the texture with its placement.
+    /// Returns the texture placed by the mesh's own coordinates, without a transform.
     pub(in crate::mesh_file) fn plain(texture: Arc<Texture>) -> Self {
         Self { texture, transform: [Vec3::X, Vec3::Y] }
     }
@@ -56,8 +56,10 @@ pub(in crate::mesh_file) fn decode(bytes: &[u8], budget: &mut TexelBudget) -> Re
 
 fn decode_png(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String> {
     let say = |error: png::DecodingError| format!("is a PNG picture that cannot be read: {error}");
+    // 8 bytes per texel: 16-bit RGBA before it is reduced to 8 bits.
     let limits = png::Limits { bytes: 8 * MAX_TEXELS };
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
+    // Palettes, 16 bits and few bits per sample all become 8 bits per channel.
     decoder.set_transformations(png::Transformations::normalize_to_color8());
     let mut reader = decoder.read_info().map_err(say)?;
     let (width, height) = reader.info().size();
@@ -66,6 +68,7 @@ fn decode_png(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String>
     let size = reader.output_buffer_size().ok_or("is a PNG picture that is too large")?;
     let mut samples = vec![0; size];
     let frame = reader.next_frame(&mut samples).map_err(say)?;
+    // The frame of an animation may be smaller than the buffer.
     samples.truncate(frame.buffer_size());
     let texels = match frame.color_type.samples() {
         1 => samples.iter().map(|&y| Srgb8::new(y, y, y)).collect(),
@@ -80,7 +83,7 @@ fn decode_jpeg(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String
     let options = DecoderOptions::default()
         .set_max_width(MAX_TEXELS)
         .set_max_height(MAX_TEXELS)
-        // Otherwise the missing part of an image would be grey.
+        // A decoder that is not strict fills the missing part of an image with grey.
         .set_strict_mode(true)
         .jpeg_set_out_colorspace(ColorSpace::RGB);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
@@ -93,8 +96,10 @@ fn decode_jpeg(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String
     complete(width as u32, height as u32, texels, "JPEG") // sizes of JPEG have 16 bits
 }
 
-/// Returns whether the file can hold as many texels as it claims, before they cost time and memory: a byte of PNG
-/// decodes to at most 1032 bytes of one bit per texel; in JPEG each block of 64 texels takes at least a bit.
+/// Refuses a file that cannot hold as many texels as it claims, before they cost time and memory.
+///
+/// A byte of PNG decodes to at most 1032 bytes (the limit of deflate) of one bit per texel; in JPEG each block of 64
+/// texels takes at least a bit. The fuzzer found a JPEG of 700 bytes whose 16 million texels took seconds to decode.
 fn check_plausible(texels: usize, bytes: &[u8], most_per_byte: usize, format: &str) -> Result<(), String> {
     if texels / most_per_byte > bytes.len() { Err(cut_short(format)) } else { Ok(()) }
 }
@@ -103,7 +108,8 @@ fn cut_short(format: &str) -> String {
     format!("is a {format} picture that is cut short")
 }
 
-/// The decoders promise the header's number of texels; that is checked here all the same.
+/// Returns the texture. The decoders promise the header's number of texels; indexing relies on it,
+/// so it is checked.
 fn complete(width: u32, height: u32, texels: Vec<Srgb8>, format: &str) -> Result<Texture, String> {
     if texels.len() != width as usize * height as usize {
         return Err(cut_short(format));
