@@ -1,30 +1,36 @@
-//! The rules for the numbers of a scene, each with its message: the same for scene files and for code.
+//! The rules for the numbers of a scene, each with its message: the same for scene files and for
+//! code.
 //!
-//! Numbers of a scene file come through [`Validator`](crate::written::Validator), which knows their positions; numbers
-//! from code come through the functions whose names begin with `given`, which know the names of the parameters.
+//! Numbers of a scene file come through [`Validator`](crate::written::Validator), which knows their spans; numbers from
+//! code come through the functions whose names begin with `checked`, which know the names of the parameters.
 
 use crate::color::LinearRgb;
 use glam::{DVec3, Vec3};
 use std::borrow::Cow;
 use std::fmt;
 
-/// Limit on coordinates: beyond it, squaring twice on a ray's way would exceed f32.
+/// Limit on coordinates. A ray's computation squares lengths twice: (1e9)^4 = 1e36 is within f32,
+/// whose largest value is 3.4e38, with a factor of 340 left for sums.
 const MAX_COORDINATE: f64 = 1e9;
 
-/// Limit on lengths: below it, squaring twice would underflow f32.
+/// Least length. Squared twice it is 1e-36, within f32, whose least normal value is 1.2e-38.
 const MIN_LENGTH: f64 = 1e-9;
 
+/// Limit on an amount of light. Sums over lights and the product with the exposure stay far below
+/// f32's 3.4e38.
 const MAX_LIGHT: f64 = 1e12;
+/// Limit on the exposure, for the same reason.
 const MAX_EXPOSURE: f64 = 1e6;
 
 /// Limit on the ratio of two lengths of a view rectangle.
 const MAX_RATIO: f64 = 1e6;
 
-/// The message for a value, which says what would be right where possible: one line without a full stop.
+/// The message for a value, which says what would be right where possible: one line without a full
+/// stop.
 pub(crate) type Message = Cow<'static, str>;
 
-/// An error about a value of a scene that is out of range: its name, the value, and the message that a scene file gets
-/// for the same value.
+/// The error of a value that no scene may have: its name, the value, and the message of a scene
+/// file's error.
 ///
 /// ```
 /// use termtrace::{LinearRgb, PointLight};
@@ -59,8 +65,8 @@ impl fmt::Display for SceneFault {
 
 impl std::error::Error for SceneFault {}
 
-/// Returns whether a number, rounded as it will be stored, is within `least` and `most`, so that a value written back
-/// to a file is accepted again.
+/// Returns whether a number, rounded as it will be stored, is within `least` and `most`, so that a
+/// value written back to a file is accepted again.
 fn is_within(value: f64, least: f64, most: f64) -> bool {
     (least as f32..=most as f32).contains(&(value as f32))
 }
@@ -83,7 +89,7 @@ pub(crate) fn are_near(points: &[Vec3]) -> bool {
     points.iter().all(|point| f64::from(point.abs().max_element()) <= MAX_COORDINATE)
 }
 
-/// Returns the message for a mesh that is not [near](are_near).
+/// The message for a mesh that is not [near](are_near).
 pub(crate) const MESH_TOO_FAR: &str = "this mesh reaches beyond ±1e9; scale it down, or light cannot be followed";
 
 /// Checks that a length is positive and can be squared in f32.
@@ -133,6 +139,7 @@ pub(crate) fn reflectance(channel: f64) -> Result<f32, Message> {
 
 /// Checks an exposure.
 pub(crate) fn exposure(value: f64) -> Result<f32, Message> {
+    // The second comparison refuses numbers that f32 rounds to 0, which would make the picture black.
     if value > 0.0 && value as f32 > 0.0 && value <= MAX_EXPOSURE {
         return Ok(value as f32);
     }
@@ -146,11 +153,12 @@ pub(crate) fn unit_vector(what: &str, vector: DVec3) -> Result<DVec3, Message> {
     if largest == 0.0 {
         return Err(format!("the {what} must have a length; (0, 0, 0) points nowhere").into());
     }
+    // Scaled first, so that the square of a tiny vector does not underflow.
     let vector = vector / largest;
     Ok(vector / vector.dot(vector).sqrt())
 }
 
-/// Three corners that span a triangle.
+/// Checks that three corners span a triangle.
 pub(crate) fn corners(corners: [Vec3; 3]) -> Result<[Vec3; 3], Message> {
     let [a, b, c] = corners.map(Vec3::as_dvec3);
     // Both differences are exact in f64, or off by so little that the product is not 0.
@@ -160,24 +168,25 @@ pub(crate) fn corners(corners: [Vec3; 3]) -> Result<[Vec3; 3], Message> {
     Ok(corners)
 }
 
-/// A length over another one, such as an aspect ratio.
+/// Returns whether the ratio of two lengths, such as an aspect ratio, is within its limits.
 pub(crate) fn is_ratio(value: f64) -> bool {
     is_within(value, 1.0 / MAX_RATIO, MAX_RATIO)
 }
 
-/// Whether an up vector has a length that can be squared.
+/// Returns whether an up vector has a length that can be squared in f32.
 pub(crate) fn is_long(vector: Vec3) -> bool {
     vector.abs().max_element() >= MIN_LENGTH as f32
 }
 
-/// Whether all coordinates are such that light can be followed there.
+/// Returns whether a point is within the range that rays can be traced in.
 pub(crate) fn is_near(vector: DVec3) -> bool {
     vector.abs().max_element() <= MAX_COORDINATE
 }
 
-// What code gives -------------------------------------------------------------------------------------------------------
+// Parameters of constructors
+// --------------------------------------------------------------------------------------------
 
-/// Checks a number that code gives.
+/// Checks a number given in code.
 pub(crate) fn checked_number(
     name: &'static str,
     value: f32,
@@ -187,7 +196,7 @@ pub(crate) fn checked_number(
     checked.map_err(|message| SceneFault::new(format!("{name} is {value}"), message))
 }
 
-/// Checks a vector that code gives.
+/// Checks a vector given in code.
 fn checked_vector<T>(
     name: impl fmt::Display,
     vector: Vec3,
@@ -204,17 +213,17 @@ fn checked_vector<T>(
     })
 }
 
-/// Checks a point that code gives.
+/// Checks a point given in code.
 pub(crate) fn checked_point(name: impl fmt::Display, point: Vec3) -> Result<Vec3, SceneFault> {
     checked_vector(name, point, |_| Ok(point))
 }
 
-/// Checks a direction that code gives, of any length but 0. Returns it with unit length.
+/// Checks a direction given in code, of any length but 0. Returns it with unit length.
 pub(crate) fn checked_direction(name: &'static str, direction: Vec3) -> Result<Vec3, SceneFault> {
     checked_vector(name, direction, |numbers| unit_vector(name, numbers)).map(DVec3::as_vec3)
 }
 
-/// Checks a colour that code gives, channel by channel.
+/// Checks each channel of a colour given in code.
 pub(crate) fn checked_color(
     name: &'static str,
     color: LinearRgb,

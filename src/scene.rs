@@ -1,4 +1,5 @@
-//! The checked scene with the trees over it. A [`Scene`] is always valid, and rays can be traced in it.
+//! The checked scene with the trees over it. A [`Scene`] is always valid, and rays can be traced in
+//! it.
 //!
 //! All units are fixed here: world units, radians, linear light, unit vectors. [`Scene::load`], [`Scene::from_ron`] and
 //! [`Scene::builder`] are the only ways to a scene. A [`Draft`] is checked but has no trees yet.
@@ -36,7 +37,8 @@ use crate::shape::Shape;
 use std::fmt;
 use std::sync::Arc;
 
-/// A scene: everything that a picture depends on besides its size, and the trees that rays are traced in.
+/// A scene: everything that a picture depends on besides its size, and the trees that rays are
+/// traced in.
 ///
 /// The checked values and the trees are built once, never change, and are shared by clones. A scene with other lights
 /// or another camera shares the trees.
@@ -58,11 +60,12 @@ pub struct Scene {
 /// Shows the checked values, without the trees.
 impl fmt::Debug for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Destructured, so that a new field cannot be forgotten here.
         let Checked { camera, views, background, ambient, lights, shadows, exposure, tone_curve, objects } =
             &*self.checked;
         let mut scene = f.debug_struct("Scene");
         scene.field("camera", camera).field("views", views);
-        // Each colour in one line.
+        // Each colour on one line, also in the alternate form: three lines per colour make a scene hard to read.
         scene.field("background", &format_args!("{background:?}")).field("ambient", &format_args!("{ambient:?}"));
         scene.field("lights", lights).field("shadows", shadows);
         scene.field("exposure", exposure).field("tone_curve", tone_curve).field("objects", objects);
@@ -71,6 +74,8 @@ impl fmt::Debug for Scene {
 }
 
 /// The checked values. Only the `with_` methods of [`Scene`] and [`Draft`] assign its fields.
+///
+/// Behind an `Arc`, because a renderer on another thread keeps a scene while the viewer changes lights and camera.
 #[derive(Clone, Debug, PartialEq)]
 struct Checked {
     camera: Camera,
@@ -81,7 +86,7 @@ struct Checked {
     shadows: bool,
     exposure: f32,
     tone_curve: ToneCurve,
-    /// Shared, so that a copy with other lights is cheap.
+    /// Shared, so that a scene with other lights does not copy a million objects.
     objects: Arc<[Object]>,
 }
 
@@ -107,8 +112,8 @@ impl Checked {
 }
 
 impl Scene {
-    /// Returns a builder of a scene seen by `camera`, with no objects and no lights, a black background, shadows,
-    /// exposure 1 and no tone curve.
+    /// Returns a builder of a scene seen by `camera`, with no objects and no lights, a black
+    /// background, shadows, exposure 1 and no tone curve.
     ///
     /// ```
     /// use glam::Vec3;
@@ -129,8 +134,8 @@ impl Scene {
         SceneBuilder::new(camera)
     }
 
-    /// Returns a scene with these objects and the defaults of [`builder`](Self::builder), without checking that their
-    /// shapes can have their materials.
+    /// Returns a scene with these objects and the defaults of [`builder`](Self::builder), without
+    /// checking that their shapes can have their materials.
     #[doc(hidden)]
     pub fn new(camera: Camera, objects: Vec<Object>) -> Self {
         Draft::new(Checked::new(camera, objects)).finish()
@@ -163,13 +168,13 @@ impl Scene {
         &self.checked.lights
     }
 
-    /// Returns whether objects cast shadows; without, this is the lecture's first version.
+    /// Returns whether objects cast shadows. The lecture's first version has none.
     #[doc(hidden)]
     pub fn shadows(&self) -> bool {
         self.checked.shadows
     }
 
-    /// Returns the factor of all light before display; greater than 0.
+    /// Returns the exposure: the factor of all light before the tone curve, greater than 0.
     #[doc(hidden)]
     pub fn exposure(&self) -> f32 {
         self.checked.exposure
@@ -265,16 +270,28 @@ impl Scene {
     /// Returns whether both are clones of one scene, unchanged since.
     #[cfg(feature = "ratatui")]
     pub(crate) fn is_copy_of(&self, other: &Self) -> bool {
+        // Pointers, not values: comparing a million objects would take longer than drawing a frame.
         Arc::ptr_eq(&self.checked, &other.checked) && Arc::ptr_eq(&self.accelerator, &other.accelerator)
     }
 
+    /// Changes the checked values; clones of this scene keep theirs.
     fn with(mut self, change: impl FnOnce(&mut Checked)) -> Self {
+        // Copies the values only if a clone shares them.
         change(Arc::make_mut(&mut self.checked));
         self
     }
 }
 
 /// A surface and its material.
+///
+/// ```
+/// use termtrace::Scene;
+///
+/// let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Sphere(center: (0, 0, 0), radius: 1)])";
+/// let scene = Scene::from_ron("ball.ron", text)?;
+/// assert!(scene.objects().iter().all(|object| object.material == termtrace::Material::default()));
+/// # Ok::<(), termtrace::SceneError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
     /// The surface.
@@ -292,6 +309,16 @@ impl Object {
 }
 
 /// The light along rays that hit no object.
+///
+/// ```
+/// use termtrace::glam::Vec3;
+/// use termtrace::{Background, Camera, LinearRgb, Scene};
+///
+/// let sky = Background::Gradient { bottom: LinearRgb::grey(0.8), top: "#87a6cc".parse()? };
+/// let scene = Scene::builder(Camera::look_at(Vec3::Z, Vec3::ZERO)?).background(sky).build()?;
+/// # let _ = scene;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Background {
@@ -326,6 +353,16 @@ impl From<LinearRgb> for Background {
 }
 
 /// A mapping of light beyond the screen's range into it.
+///
+/// ```
+/// use termtrace::glam::Vec3;
+/// use termtrace::{Camera, Scene, ToneCurve};
+///
+/// let camera = Camera::look_at(Vec3::new(0.0, 1.0, 5.0), Vec3::ZERO)?;
+/// let scene = Scene::builder(camera).exposure(2.0).tone_curve(ToneCurve::Filmic).build()?;
+/// # let _ = scene;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ToneCurve {

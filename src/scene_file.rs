@@ -1,4 +1,5 @@
-//! Scene files as the author wrote them, typed, in the author's units: degrees, sRGB strings, normals of any length.
+//! Scene files as the author wrote them, typed, in the author's units: degrees, sRGB strings,
+//! normals of any length.
 //!
 //! [`SceneFile::read`] knows the grammar of scenes, [`PathFile::read`] that of camera paths: the fields, their types,
 //! and which are required. They continue after a fault, so that one run reports all. Whether a radius is positive or a
@@ -35,13 +36,14 @@ pub struct SceneFile {
     pub lights: Vec<WrittenLight>,
     /// The named materials, in the order of the file.
     pub materials: Vec<NamedMaterial>,
-    /// Whether all entries of `materials` could be read. If not, an unknown name of a material is not reported.
+    /// Whether all entries of `materials` could be read. If not, unknown names of materials are not
+    /// reported.
     pub materials_complete: bool,
     /// The objects.
     pub objects: Vec<WrittenObject>,
     /// Whether objects cast shadows.
     pub shadows: Option<bool>,
-    /// The factor of all light before display.
+    /// The exposure.
     pub exposure: Option<WrittenNumber>,
     /// The tone curve.
     pub tone_curve: Option<WrittenToneCurve>,
@@ -100,12 +102,14 @@ pub struct WrittenObject {
 }
 
 impl SceneFile {
-    /// Reads a scene from its tree; anything else is added to `faults`. After a cancel the lists end early.
+    /// Reads a scene from its syntax tree and adds every fault to `faults`. After a cancellation
+    /// the lists end early.
     pub fn read(root: &SyntaxNode<'_>, reporter: &Reporter<'_>, faults: &mut Faults) -> Self {
         let mut reader = NodeReader::new(faults, reporter);
         let Some(fields) = reader.root(root) else {
             return Self::default();
         };
+        // Each field is read whatever became of the others, so that all faults are found.
         let mut scene = Self {
             camera: reader.required(&fields, "camera", NodeReader::camera),
             views: reader.optional(&fields, "views", NodeReader::views).unwrap_or_default(),
@@ -144,6 +148,7 @@ impl NodeReader<'_> {
     }
 
     fn background(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenBackground> {
+        // A colour is never a named group, so the form decides before any fault is reported.
         if !matches!(node.value, Value::Group(ref group) if group.name.is_some()) {
             return self.color(node).map(WrittenBackground::Color);
         }

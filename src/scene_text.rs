@@ -1,10 +1,10 @@
-//! The reader of RON: text to a syntax tree with positions; faults with line, column and caret.
+//! The reader of RON: text to a syntax tree with spans; faults with line, column and caret.
 //!
 //! Scenes are written in RON (Rusty Object Notation). The tree knows nothing of scenes: their grammar is that of
-//! [`scene_file`](crate::scene_file). It guarantees two things. Every [`SyntaxNode`] has its byte range, so that a later
-//! check can point at it, and a program can replace it without touching the comments around it. And no text, however
-//! large, deep or broken, causes more than a [`Fault`]: nesting is limited, memory is bounded by a small multiple of
-//! the text, time is linear.
+//! [`scene_file`](crate::scene_file). It guarantees two things. Every [`SyntaxNode`] has its byte range, so that a
+//! later check can point at it, and a program can replace it without touching the comments around it. And no text,
+//! however large, deep or broken, causes more than a [`Fault`]: nesting is limited, memory is bounded by a small
+//! multiple of the text, time is linear.
 //!
 //! # Crates that were tried
 //!
@@ -22,16 +22,16 @@ mod parser;
 #[cfg(feature = "ron")]
 mod tokens;
 #[cfg(feature = "ron")]
-mod read;
+mod document;
 
+#[cfg(feature = "ron")]
+pub(crate) use document::read_or_cancel;
+#[cfg(feature = "ron")]
+pub use document::{read, text_from};
 pub use fault::{Fault, Faults, Report, SceneError, line_and_column};
 pub(crate) use fault::{clipped, quoted};
 #[cfg(feature = "ron")]
 pub use parser::parse;
-#[cfg(feature = "ron")]
-pub(crate) use read::read_or_cancel;
-#[cfg(feature = "ron")]
-pub use read::{read, text_from};
 
 /// A range of bytes in the text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,8 +43,8 @@ pub struct Span {
 }
 
 impl Span {
-    /// Returns the range from `start` up to, but not including, `end`. A text has at most 16 MiB, so 32 bits hold every
-    /// index.
+    /// Returns the range from `start` up to, but not including, `end`. A text has at most 16 MiB,
+    /// so 32 bits hold every index.
     pub fn new(start: usize, end: usize) -> Self {
         Self { start: start as u32, end: end as u32 }
     }
@@ -58,10 +58,11 @@ impl Span {
 /// Limit on the size of a text: 16 MiB, which holds a scene of 200,000 spheres.
 pub const MAX_TEXT_BYTES: usize = 16 << 20;
 
-/// Limit on the nesting of values.
+/// Limit on the nesting of values: the parser is recursive, and a deeper text could overflow the
+/// stack. A scene needs 5.
 pub const MAX_NESTING: usize = 128;
 
-/// A value and its position.
+/// A value and its span.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SyntaxNode<'a> {
     /// The range of the whole value, brackets included.
@@ -101,7 +102,7 @@ pub struct Group<'a> {
 pub struct Name<'a> {
     /// The word.
     pub text: &'a str,
-    /// Its position.
+    /// The span of the word.
     pub span: Span,
 }
 
@@ -146,7 +147,8 @@ impl<'a> SyntaxNode<'a> {
         }
     }
 
-    /// Returns the position to point at when something is missing in this value: its name, or its first bracket.
+    /// Returns the span to point at when something is missing in this value: its name, or its first
+    /// bracket. The whole value may be a thousand lines long.
     pub fn head(&self) -> Span {
         match &self.value {
             Value::Group(group) => match group.name {

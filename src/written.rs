@@ -1,4 +1,4 @@
-//! Values as written, each with its position: reading from the syntax tree, and checking.
+//! Values as written, each with its span: reading from the syntax tree, and checking.
 //!
 //! A [`NodeReader`] continues after a fault, so that one run reports all. A missing or faulty value is `None`, and its
 //! fault has been reported. A [`Validator`] checks what types do not: that a radius is positive, or that a coordinate
@@ -16,12 +16,12 @@ pub use validator::Validator;
 use crate::scene_text::{Span, SyntaxNode};
 use std::fmt::Debug;
 
-/// A value and its position.
+/// A value and its span.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spanned<T> {
     /// The value.
     pub value: T,
-    /// Its range in the text.
+    /// The range of the value in the text.
     pub span: Span,
 }
 
@@ -37,7 +37,8 @@ pub struct WrittenVector {
     pub span: Span,
 }
 
-/// A value that a scene file writes as a name with fields, such as `Sphere(center: ..., radius: ...)`.
+/// A value that a scene file writes as a name with fields, such as `Sphere(center: ..., radius:
+/// ...)`.
 pub trait InSceneFile {
     /// The value as written.
     type Written: Clone + Debug + PartialEq;
@@ -51,13 +52,13 @@ pub trait InSceneFile {
     /// The full form: "Sphere(center: ..., radius: ...)".
     const FORM: &'static str;
 
-    /// The names of its fields; a surface's end with `material`, which every object has.
+    /// The names of the fields; those of a surface end with `material`, which every object has.
     const FIELDS: &'static [&'static str];
 
-    /// Reads its fields.
+    /// Reads the value from its fields.
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> Self::Written;
 
-    /// Reads the whole value, name and fields.
+    /// Reads the value from its node: the group of fields after its name.
     fn read_node(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self::Written> {
         let fields = reader.fields(node, Self::OWNER, Self::FORM, Self::FIELDS)?;
         Some(Self::read(reader, &fields))

@@ -8,12 +8,27 @@ use crate::light::Light;
 use crate::material::Material;
 use crate::shape::{Shape, without_coordinates};
 
-/// A builder of a scene: see [`Scene::builder`]. Its values are checked already, or by [`build`](Self::build).
+/// A builder of a scene, made by [`Scene::builder`].
+///
+/// ```
+/// use termtrace::glam::Vec3;
+/// use termtrace::{Camera, LinearRgb, Material, Scene, Sphere};
+///
+/// let camera = Camera::look_at(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO)?;
+/// let ball = Sphere::new(Vec3::ZERO, 1.0)?;
+/// let scene = Scene::builder(camera).object(ball, Material::default()).ambient(LinearRgb::grey(1.0)).build()?;
+/// assert_eq!(scene.objects().len(), 1);
+///
+/// let error = Scene::builder(camera).exposure(0.0).build().unwrap_err();
+/// assert_eq!(error.to_string(), "exposure is 0: the exposure must be greater than 0");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 #[must_use = "there is no scene before `build`"]
 pub struct SceneBuilder {
     objects: Vec<Object>,
-    /// Returns a builder without objects. Background, ambient light and exposure are not checked yet.
+    /// All values but the objects. Background, ambient light and exposure are not checked yet:
+    /// [`build`](Self::build) checks them, so that the methods before it return no `Result`.
     rest: Checked,
 }
 
@@ -41,7 +56,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Adds a view besides that of the camera.
+    /// Adds a view besides the camera's.
     #[doc(hidden)]
     pub fn view(mut self, camera: Camera) -> Self {
         self.rest.views.push(camera);
@@ -58,7 +73,7 @@ impl SceneBuilder {
         Self { rest: Checked { ambient, ..self.rest }, ..self }
     }
 
-    /// Sets the factor of all light before display; 1 by default.
+    /// Sets the exposure: the factor of all light before the tone curve; 1 by default.
     pub fn exposure(self, exposure: f32) -> Self {
         Self { rest: Checked { exposure, ..self.rest }, ..self }
     }
@@ -84,6 +99,7 @@ impl SceneBuilder {
             if let Some(pattern) = material.pattern()
                 && !shape.has_coordinates()
             {
+                // Counted from 1, as in descriptions and explanations.
                 return Err(SceneFault::new(format!("object {}", at + 1), without_coordinates(pattern, shape.owner())));
             }
         }

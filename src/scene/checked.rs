@@ -1,7 +1,8 @@
-//! The one conversion from written to checked values: every change of unit and colour space, and every check of a value
-//! beyond its type.
+//! The one conversion from written to checked values: every change of unit and colour space, and
+//! every check of a value beyond its type.
 //!
-//! It continues after a fault. A missing value has its fault already and is left out.
+//! Checking continues after a fault, so that one run reports all. A value that is missing because of an earlier fault
+//! is skipped in silence.
 
 mod camera;
 pub(super) mod path;
@@ -18,7 +19,8 @@ use crate::text::{closest, listed};
 use crate::written::{Spanned, Validator};
 use std::collections::HashMap;
 
-/// Returns the checked scene; if `None`, every fault has been added. After a cancel, objects are left out.
+/// Returns the checked scene; if `None`, every fault has been added. After a cancellation objects
+/// may be missing.
 pub(super) fn check(
     file: &SceneFile,
     meshes: &mut dyn Meshes,
@@ -26,6 +28,7 @@ pub(super) fn check(
     faults: &mut Faults,
 ) -> Option<Draft> {
     let mut validator = Validator { faults };
+    // Every value is checked before the first fault ends anything; only the order of the messages is that of the file.
     let camera = file.camera.as_ref().and_then(|camera| validator.camera(camera));
     let views = file.views.iter().filter_map(|view| validator.view(view, camera.as_ref())).collect();
     let background = file.background.as_ref().and_then(|written| validator.background(written));
@@ -67,6 +70,7 @@ impl Validator<'_> {
     // Objects -------------------------------------------------------------------------------------------------------
 
     fn objects(&mut self, file: &SceneFile, meshes: &mut dyn Meshes, reporter: &Reporter<'_>) -> Vec<Object> {
+        // Each named material is checked once, although thousands of objects may use it.
         let mut materials = HashMap::new();
         for NamedMaterial { name, material } in &file.materials {
             let checked = material.as_ref().map(|written| CheckedMaterial { written, material: written.check(self) });
@@ -74,12 +78,14 @@ impl Validator<'_> {
         }
         let object = |written: &WrittenObject| {
             let (shape, material) = (written.shape.check(self, meshes), self.material_of(written, file, &materials));
+            // Both were checked before one of them may end this object.
             let (shape, material) = (shape?, material?);
             Some(Object { shape, material })
         };
         file.objects.iter().take_while(|_| !reporter.is_cancelled()).filter_map(object).collect()
     }
 
+    /// Returns the material of an object: written in place, by name, or the default of its shape.
     fn material_of(
         &mut self,
         object: &WrittenObject,
@@ -93,6 +99,7 @@ impl Validator<'_> {
             MaterialUse::Inline(written) => CheckedMaterial { written, material: written.check(self) },
             MaterialUse::Named(name) => match materials.get(&**name) {
                 Some(&checked) => checked?,
+                // The name may be that of an entry with a fault: reporting it too would mislead.
                 None if !file.materials_complete => return None,
                 None => return self.fault(*span, || unknown_material(name, file)),
             },
@@ -114,6 +121,8 @@ struct CheckedMaterial<'f> {
     material: Option<Material>,
 }
 
+/// Returns the message about an unknown material, with the material or colour that was probably
+/// meant.
 fn unknown_material(name: &str, file: &SceneFile) -> String {
     let unknown = format!("unknown material {}", quoted(name));
     let names = || file.materials.iter().map(|named| &*named.name);
@@ -126,6 +135,7 @@ fn unknown_material(name: &str, file: &SceneFile) -> String {
         (None, true) => return format!("{unknown}; a colour is written Diffuse({})", quoted(name)),
         (None, false) => {}
     }
+    // Eight names fit on a line; a generated scene may have thousands.
     let shown: Vec<_> = names().take(8).map(quoted).collect();
     match file.materials.len() {
         0 => format!("{unknown}; the scene has no named materials"),

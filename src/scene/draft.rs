@@ -1,4 +1,4 @@
-//! A scene that is read and checked but not built.
+//! A scene that is read and checked but has no trees yet.
 
 use super::{Checked, Scene};
 use crate::accel::Accelerator;

@@ -1,21 +1,25 @@
-//! A coarse scene to show while the trees of large meshes are built.
+//! The sketch: a scene with decimated meshes, shown while the trees of large meshes are built.
 
 use super::{Checked, Draft, Object, Scene};
 use crate::shape::{Mesh, Shape};
 
-/// Least number of triangles for which a sketch is made: building fewer is as fast.
+/// Least number of triangles for which a sketch is made. The trees of fewer are built in about the
+/// time of a sketch, a few hundredths of a second.
 const MIN_SKETCHED_TRIANGLES: u32 = 1 << 17;
 
-/// Approximate number of details along a sketched mesh's longest side: as many as a screen resolves.
+/// Approximate number of cubes along a sketched mesh's longest side: as many as a small screen
+/// resolves. Several meshes share them, so that the time of a sketch stays the same.
 const DETAILS: f32 = 64.0;
 
 impl Draft {
-    /// Returns the scene with coarse meshes, which are built in a moment; `None` if the scene itself is built as fast.
+    /// Returns the scene with decimated meshes, whose trees are built in a few hundredths of a
+    /// second; `None` if the trees of the scene itself are built as fast.
     pub fn sketch(&self) -> Option<Scene> {
         let meshes = || self.checked.objects.iter().filter_map(|object| mesh_of(&object.shape));
         if meshes().map(Mesh::triangle_count).fold(0, u32::saturating_add) < MIN_SKETCHED_TRIANGLES {
             return None;
         }
+        // The number of a mesh's triangles grows with the square of its cubes.
         let details = DETAILS / (meshes().count() as f32).sqrt();
         let sketched = |object: &Object| match mesh_of(&object.shape) {
             Some(mesh) => {

@@ -1,11 +1,11 @@
-//! The text of a camera in a scene file.
+//! Cameras written as text for a scene file.
 
 use crate::camera::{Camera, ViewRectangle, radians};
 use glam::Vec3;
 
 impl Camera {
-    /// Returns the camera as in a scene file: `camera: (eye: ..., target: ..., ...)`, each number with the fewest
-    /// digits that are read back with the same bits.
+    /// Returns the camera as in a scene file: `camera: (eye: ..., target: ..., ...)`, each number
+    /// with the fewest digits that are read back with the same bits.
     ///
     /// ```
     /// use termtrace::Scene;
@@ -43,8 +43,9 @@ fn vector(v: Vec3) -> String {
 /// Returns the shortest decimal that is read back as `x`.
 fn number(x: f32) -> String {
     let plain = x.to_string();
+    // Rust never writes an exponent by itself: 1e-30 would have 31 digits.
     let short = if plain.len() > 16 { format!("{x:e}") } else { plain };
-    // The reader rounds twice, to f64 and then to f32. For all but a few numbers that makes no difference.
+    // The reader rounds twice, to f64 and then to f32, which changes a few numbers: these are written with all digits.
     if reads_as(&short, |value| value as f32 == x) { short } else { f64::from(x).to_string() }
 }
 
@@ -52,14 +53,15 @@ fn reads_as(text: &str, is_right: impl Fn(f64) -> bool) -> bool {
     text.parse().is_ok_and(is_right)
 }
 
-/// Returns the lens in degrees if that gives the same bits; otherwise as the lecture's f, w and h, with f = 1.
+/// Returns the lens in degrees if that gives the same bits; otherwise as the lecture's f, w and h,
+/// with f = 1.
 fn lens(rectangle: &ViewRectangle) -> String {
     let Some(width) = rectangle.width() else {
         let degrees = degrees(rectangle).unwrap_or_else(|| approximate_degrees(rectangle).to_string());
         return format!("vertical_fov: {degrees}");
     };
     match (degrees(rectangle), aspect_ratio(rectangle, width)) {
-        // An angle that needs all digits was not written as an angle.
+        // An angle or ratio that needs more digits was not written as such by the author.
         (Some(degrees), Some(ratio)) if degrees.len() <= 6 && ratio.len() <= 9 => {
             format!("vertical_fov: {degrees}, aspect_ratio: {ratio}")
         }
@@ -88,7 +90,10 @@ fn aspect_ratio(rectangle: &ViewRectangle, width: f32) -> Option<String> {
     shortest(f64::from(width) / f64::from(rectangle.height()), gives_the_width)
 }
 
+/// Returns the decimal with the fewest digits after the point that passes the check.
 fn shortest(value: f64, is_right: impl Fn(f64) -> bool) -> Option<String> {
+    // Tried from the shortest on. Each try parses a number, but a camera is written only when a view is saved or
+    // copied.
     let digits = (0..=15).map(|digits| format!("{value:.digits$}"));
     let exact = value.to_string();
     digits.chain([exact]).find(|text| reads_as(text, &is_right))

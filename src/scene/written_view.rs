@@ -1,11 +1,13 @@
-//! Insertion of a view into a scene file's text, which keeps all other bytes, comments and blanks included.
+//! Insertion of a view into a scene file's text, which keeps all other bytes, comments and blanks
+//! included.
 
 use crate::camera::Camera;
 use crate::progress::Reporter;
 use crate::scene_file::SceneFile;
 use crate::scene_text::{Body, Faults, Field, SyntaxNode, Value, parse};
 
-/// Returns the text of a scene file with `camera` added as the last of its `views`. `None` if the text is not a scene.
+/// Returns the text of a scene file with `camera` added as the last of its `views`. `None` if the
+/// text is not a scene.
 ///
 /// ```
 /// use termtrace::Scene;
@@ -33,18 +35,21 @@ pub fn with_view(text: &str, camera: &Camera) -> Option<String> {
         None => after(text, field("camera")?, &view),
     };
     let written = inserted(text, additions);
+    // The user's file is replaced by this text, so it is parsed again: better no view than a broken file.
     (count(&written)? == count(text)? + 1).then_some(written)
 }
 
 /// A text to insert at a byte.
 type Addition = (usize, String);
 
-/// Returns the insertion into an existing list of views, on a line of its own if the closing bracket has one.
+/// Returns the insertion into an existing list of views, on a line of its own if the closing
+/// bracket has one.
 fn to_list(text: &str, list: &SyntaxNode<'_>, view: &str) -> Option<Vec<Addition>> {
     let items = items(list)?;
     let close = list.span.end as usize - 1;
     let last = items.last().map(|item| item.span.end as usize);
     let before = text[..close].trim_end().len();
+    // A list on one line stays on one line.
     if !text[before..close].contains('\n') {
         return Some(vec![last.map_or_else(|| (close, view.to_owned()), |end| (end, format!(", {view}")))]);
     }
@@ -53,11 +58,13 @@ fn to_list(text: &str, list: &SyntaxNode<'_>, view: &str) -> Option<Vec<Addition
         None => format!("{}    ", indent_of(text, close)),
     };
     let missing = last.filter(|&end| !text[skip_blanks(text, end)..].starts_with(','));
+    // The comma goes directly after the value: a comment may follow on its line.
     let comma = missing.map(|end| (end, ",".to_owned()));
     Some(comma.into_iter().chain([(before, format!("{}{indent}{view},", line_end(text)))]).collect())
 }
 
-/// Returns the insertion of a new list after a field, on lines of its own if the field's line ends with it.
+/// Returns the insertion of a new list after a field, on lines of its own if the field's line ends
+/// with it.
 fn after(text: &str, field: &Field<'_>, view: &str) -> Vec<Addition> {
     let end = field.value.span.end as usize;
     let comma = Some(skip_blanks(text, end)).filter(|&at| text[at..].starts_with(','));
@@ -127,8 +134,8 @@ fn line_end(text: &str) -> &'static str {
     if text.contains("\r\n") { "\r\n" } else { "\n" }
 }
 
-/// Returns the first index at or after `from` that is neither blank nor comment. The text has been parsed, so every
-/// comment ends.
+/// Returns the first index from `at` on that is neither in a blank nor in a comment. The text has
+/// been parsed, so every comment ends.
 fn skip_blanks(text: &str, mut at: usize) -> usize {
     loop {
         let rest = &text[at..];

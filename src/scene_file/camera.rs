@@ -7,7 +7,7 @@ use crate::written::{Fields, NodeReader, WrittenNumber, WrittenVector};
 /// The camera or a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenCamera {
-    /// Position to point at when it is wrong as a whole.
+    /// The span to point at when the camera is wrong as a whole.
     pub span: Span,
     /// The eye point.
     pub eye: Option<WrittenVector>,
@@ -17,7 +17,8 @@ pub struct WrittenCamera {
     pub up: Option<WrittenVector>,
     /// The intrinsic parameters; if not given for a view, the camera's.
     pub lens: WrittenLens,
-    /// The shift of the view rectangle off centre, to the right and up, in heights of the rectangle.
+    /// The shift of the view rectangle off centre, to the right and up, in heights of the
+    /// rectangle.
     pub shift: Option<[WrittenNumber; 2]>,
 }
 
@@ -61,6 +62,7 @@ impl NodeReader<'_> {
         Some(self.each(items, |reader, item| reader.camera_called(item, "a view", "a view (eye: ..., target: ...)")))
     }
 
+    /// Reads a camera or a view. `owner` and `form` are its names in messages.
     fn camera_called(&mut self, node: &SyntaxNode<'_>, owner: &'static str, form: &str) -> Option<WrittenCamera> {
         const FIELDS: &[&str] =
             &["eye", "target", "up", "vertical_fov", "aspect_ratio", "focal_length", "width", "height", "shift"];
@@ -77,6 +79,7 @@ impl NodeReader<'_> {
 
     fn lens(&mut self, fields: &Fields<'_>) -> WrittenLens {
         const FOCAL: [&str; 3] = ["focal_length", "width", "height"];
+        // One field of the focal form is enough to tell which form was meant.
         if FOCAL.iter().all(|&name| fields.get(name).is_none()) {
             return WrittenLens::FieldOfView {
                 vertical_fov: self.optional(fields, "vertical_fov", NodeReader::number),
@@ -86,7 +89,7 @@ impl NodeReader<'_> {
         for name in ["vertical_fov", "aspect_ratio"] {
             if let Some(field) = fields.field(name) {
                 self.fault(field.name.span, || {
-                    format!("\"{name}\" cannot stand beside focal_length, width and height; use either form")
+                    format!("\"{name}\" cannot be combined with focal_length, width and height; use either form")
                 });
             }
         }
@@ -95,10 +98,12 @@ impl NodeReader<'_> {
         WrittenLens::FocalLength { focal_length, width, height }
     }
 
+    /// Reports which fields of the focal form are missing: all three go together.
     fn missing_of_focal_form(&mut self, fields: &Fields<'_>, names: &[&str]) {
         let missing = names.iter().filter(|name| !fields.is_given(name));
         let missing: Vec<_> = missing.map(|name| quoted(name)).collect();
         let given = names.iter().find_map(|name| fields.field(name));
+        // One fault for all missing fields, at the first one that is there.
         if let (false, Some(given)) = (missing.is_empty(), given) {
             let s = if missing.len() > 1 { "s" } else { "" };
             self.fault(given.name.span, || {

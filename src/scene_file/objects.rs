@@ -28,9 +28,11 @@ impl NodeReader<'_> {
         Some(Spanned { value, span: node.span })
     }
 
-    /// Reads the entries of `materials`. Returns `false` with them if a name may be missing because an entry is faulty.
+    /// Reads the entries of `materials`. Returns `false` if a name may be missing because its entry
+    /// has a fault.
     pub(super) fn materials(&mut self, node: &SyntaxNode<'_>, materials: &mut Vec<NamedMaterial>) -> bool {
         let Value::Map(entries) = &node.value else {
+            // `materials: []` and `()` mean no materials, as an empty map does.
             let is_empty = values(node).is_some_and(<[_]>::is_empty);
             if !is_empty {
                 self.fault(node.head(), || {
@@ -43,6 +45,7 @@ impl NodeReader<'_> {
         let mut complete = true;
         let mut names = HashSet::new();
         for (key, value) in entries {
+            // Read even if the name is a duplicate, so that its own faults are found.
             let material = self.material(value);
             match self.material_name(key) {
                 Some(name) if names.insert(name) => materials.push(NamedMaterial { name: name.into(), material }),
@@ -53,13 +56,13 @@ impl NodeReader<'_> {
         complete
     }
 
-    /// Reports a bare word as a fault that names the quoted material.
+    /// Returns the name of a material. A word without quotes is a fault, but its name is known.
     fn material_name<'n>(&mut self, key: &'n SyntaxNode<'n>) -> Option<&'n str> {
         match &key.value {
             Value::String(name) => return Some(name),
             Value::Group(group) if group.body == Body::Nothing => {
                 let name = group.name?.text;
-                self.fault(key.span, || format!("the name of a material stands in quotes: {}", quoted(name)));
+                self.fault(key.span, || format!("the name of a material is written in quotes: {}", quoted(name)));
                 return Some(name);
             }
             _ => self.mismatch(key, "the name of a material in quotes"),

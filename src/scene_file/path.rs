@@ -7,14 +7,14 @@ use crate::written::{NodeReader, WrittenNumber, WrittenVector};
 /// A camera path file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathFile {
-    /// The keyframes, in the order of the file, with their positions.
+    /// The keyframes, in the order of the file, and the span of their list.
     pub keyframes: Option<(Vec<WrittenKeyframe>, Span)>,
 }
 
 /// A keyframe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenKeyframe {
-    /// Position to point at when it is wrong as a whole.
+    /// The span to point at when the keyframe is wrong as a whole.
     pub span: Span,
     /// The time in seconds from the start of the film.
     pub time: Option<WrittenNumber>,
@@ -29,7 +29,7 @@ pub struct WrittenKeyframe {
 }
 
 impl PathFile {
-    /// Reads a camera path from its tree; anything else is added to `faults`.
+    /// Reads a camera path from its syntax tree and adds every fault to `faults`.
     pub fn read(root: &SyntaxNode<'_>, faults: &mut Faults) -> Self {
         const FORM: &str = "a camera path (keyframes: [(time: ..., eye: ..., target: ...), ...])";
         let reporter = Reporter::silent();

@@ -1,4 +1,4 @@
-//! Faults and their presentation: all at once, in the order of the text, as compilers do.
+//! Faults and their display: all at once, in the order of the text, as compilers do.
 
 use super::Span;
 use crate::progress::Unfinished;
@@ -6,7 +6,7 @@ use crate::text::{Notice, visible, visible_char};
 use std::fmt;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// A fault of a text and its position.
+/// A fault of a text and its span.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
     /// The message, which says what would be right where possible: one line without a full stop.
@@ -29,6 +29,8 @@ pub struct Faults {
 }
 
 impl Faults {
+    /// Limit on the faults that are kept: a generated file may have the same fault a million times,
+    /// and sorting and excerpts of all would take seconds.
     const MAX_KEPT: usize = 1000;
 
     /// Adds a fault. `message` is called only if the fault is kept.
@@ -53,13 +55,19 @@ impl From<Fault> for Faults {
     }
 }
 
-/// The error of a text that is not a scene or camera path, with every fault found in it. Its `Display` reads like a
-/// compiler's message:
+/// The error of a text that is not a scene or camera path, with every fault found in it. Its
+/// `Display` reads like a compiler's message:
 ///
-/// ```text
-/// my.ron:3:32: unknown field "radus"; did you mean "radius"?
-///   3 |         Sphere(center: (0, 1, 0), radus: 1),
-///     |                                   ^^^^^
+/// ```
+/// use termtrace::Scene;
+///
+/// let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)),\n objects: [Sphere(center: (0, 1, 0), radus: 1)])";
+/// let error = Scene::from_ron("x.ron", text).expect_err("a field is misspelt");
+/// assert_eq!(error.to_string(), r#"
+/// x.ron:2:38: unknown field "radus"; did you mean "radius"?
+///   2 |  objects: [Sphere(center: (0, 1, 0), radus: 1)])
+///     |                                      ^^^^^
+/// "#.trim());
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {
@@ -94,7 +102,8 @@ impl Report {
         format!("{name}:{line}:{column}: {message}")
     }
 
-    /// Returns the line of the text with its number and carets below it; `None` if no line is worth showing.
+    /// Returns the line of the text with its number and carets below it; `None` if no line is worth
+    /// showing.
     fn excerpt(&self) -> Option<[String; 2]> {
         let Self { line, source, caret, caret_width, .. } = self;
         let number = line.to_string();
@@ -105,12 +114,15 @@ impl Report {
 }
 
 impl SceneError {
+    /// Limit on the faults that are printed: more scroll the first ones, which often cause the
+    /// others, off the screen.
     const MAX_PRINTED: usize = 50;
 
     /// Returns the error with these faults of a text. `name` is the file's, for messages only.
     #[doc(hidden)]
     pub fn new(name: &str, text: &str, faults: impl Into<Faults>) -> Self {
         let Faults { mut kept, more } = faults.into();
+        // Faults of the syntax tree's fields and of checks come in two passes.
         kept.sort_by_key(|fault| (fault.span.start, fault.span.end));
         let mut counter = LineCounter::new(text);
         let reports = kept.iter().map(|fault| counter.report(fault)).collect();
@@ -181,8 +193,8 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
-/// A position in the text that moves from fault to fault and counts lines and columns, so that all of them take one
-/// pass.
+/// A position in the text that moves from fault to fault and counts lines and columns. A thousand
+/// faults in a file of 16 MiB take one pass; counting each from the start would take a thousand.
 struct LineCounter<'a> {
     text: &'a str,
     at: usize,
@@ -228,6 +240,7 @@ impl<'a> LineCounter<'a> {
 
 /// Returns the start of the character that contains a byte.
 fn character_at(text: &str, offset: usize) -> usize {
+    // A fault may point after the last byte, or into a character that a lossy conversion replaced.
     let offset = offset.min(text.len());
     (0..=offset).rev().find(|&byte| text.is_char_boundary(byte)).unwrap_or(0)
 }
@@ -247,15 +260,18 @@ struct Excerpt {
 }
 
 impl Excerpt {
-    /// Limit on the columns shown.
+    /// Limit on the columns shown: with the line number it fits on a screen of 120 columns.
     const MAX_EXCERPT_WIDTH: usize = 100;
-    /// A fault this near the start of the line is shown with the whole start of the line;
+    /// A fault within this many columns of the line's start is shown with the whole start of the
+    /// line.
     const WHOLE_START: usize = 75;
-    /// any other with this many columns before it.
+    /// Number of columns shown before any other fault: half of the excerpt.
     const CONTEXT_BEFORE: usize = 50;
 
-    /// Returns the part to show of `text`, which starts with the line; the fault is at bytes `start` to `end`.
+    /// Returns the part to show of `text`, which starts with the line; the fault is at bytes
+    /// `start` to `end`.
     fn new(text: &str, start: usize, end: usize) -> Self {
+        // Only as many characters as needed are counted: a generated file may be one line of megabytes.
         let is_long =
             text.chars().take(Self::MAX_EXCERPT_WIDTH + 1).take_while(|&c| c != '\n').count() > Self::MAX_EXCERPT_WIDTH;
         let is_far = is_long && back_by(text, start, Self::WHOLE_START) > 0;
@@ -266,6 +282,8 @@ impl Excerpt {
         excerpt
     }
 
+    /// Appends the text from `from` on, up to the line's end or the width limit, and finds the
+    /// columns of the carets.
     fn take(&mut self, text: &str, from: usize, start: usize, end: usize) {
         let (mut caret_end, mut budget) = (None, Self::MAX_EXCERPT_WIDTH);
         let mut caret = None;
@@ -277,9 +295,11 @@ impl Excerpt {
             if at >= end && caret_end.is_none() {
                 caret_end = Some(self.source.width());
             }
+            // A lone carriage return within the text is shown as a replacement character: it does not end a line.
             if c == '\n' || rest.starts_with("\r\n") || rest == "\r" {
                 break;
             }
+            // What is shown decides the width, not what was written: a control character would have none.
             let shown = visible_char(c);
             budget = budget.saturating_sub(shown.width().unwrap_or(1).max(1));
             if budget == 0 {
@@ -311,6 +331,7 @@ fn back_by(text: &str, offset: usize, columns: usize) -> usize {
 
 /// Returns a piece of the file for a message, truncated if long.
 pub(crate) fn clipped(text: &str) -> String {
+    // Long enough for any name in a real scene; the message should still fit on a line.
     const MAX_QUOTED_CHARS: usize = 40;
     let mut shown: String = text.chars().take(MAX_QUOTED_CHARS).map(visible_char).collect();
     if text.chars().nth(MAX_QUOTED_CHARS).is_some() {

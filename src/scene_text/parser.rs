@@ -1,4 +1,5 @@
-//! The parser: tokens to the tree. It stops at the first fault, because the meaning of the text after it is guesswork.
+//! The parser: tokens to a syntax tree. It stops at the first fault: after a missing bracket the
+//! meaning of the rest is unknown, and further faults would be noise.
 
 use super::fault::{clipped, line_and_column, quoted};
 use super::tokens::{Token, Tokens};
@@ -38,10 +39,12 @@ struct Parser<'a, 'm> {
     next: Token<'a>,
     span: Span,
     previous_end: u32,
-    /// The open brackets and their positions.
+    /// The open brackets and their spans.
     open: Vec<(char, Span)>,
-    /// The first bracket whose closing bracket is the first on its line but indented differently from the opening
-    /// bracket's line. If a closing bracket is missing at the end of the text, it is most likely this one's.
+    /// The first bracket whose closing bracket is the first on its line but indented differently
+    /// from the opening bracket's line. If a closing bracket is missing at the end of the text, it is most likely this
+    /// one's. The bracket that is left open tells nothing: each closing bracket has closed the next inner one, so the
+    /// outermost is left.
     misaligned: Option<(char, Span)>,
 }
 
@@ -55,8 +58,10 @@ impl<'a> Parser<'a, '_> {
         Ok(std::mem::replace(&mut self.next, next))
     }
 
-    /// Returns whether the token after the next one is a colon, so that the next one is a field's name.
+    /// Returns whether the token after the next one is a colon, so that the next one is a field's
+    /// name.
     fn colon_follows(&self) -> bool {
+        // A copy of the lexer looks ahead, which costs nothing: the lexer is a position in the text.
         let mut tokens = self.tokens;
         matches!(tokens.next(), Ok((Token::Colon, _)))
     }
@@ -112,11 +117,13 @@ impl<'a> Parser<'a, '_> {
         Ok(self.node(span.start, value))
     }
 
+    /// Parses `Name(...)`. `Some(x)` becomes x, as with RON's extension `implicit_some`.
     fn named_group(&mut self, name: Name<'a>) -> Parsed<SyntaxNode<'a>> {
         let body = self.body()?;
         if let ("Some", Body::Values(values)) = (name.text, &body)
             && let [inner] = &values[..]
         {
+            // A copy, because the body is borrowed; `Some(...)` is rare in scenes.
             return Ok(inner.clone());
         }
         let group = Group { name: Some(name), body };
@@ -139,6 +146,7 @@ impl<'a> Parser<'a, '_> {
         let mut items = Vec::new();
         while !self.at_end() {
             items.push(self.value()?);
+            // The first item decided that there are no names. Without this message, a comma would be reported missing.
             if matches!(self.next, Token::Colon) {
                 return Err(
                     self.here("unexpected `:`; all values in these brackets have names, or none has".to_owned())
@@ -192,6 +200,7 @@ impl<'a> Parser<'a, '_> {
         matches!(self.next, Token::Close(_) | Token::End)
     }
 
+    /// Skips a comma and returns whether there was one.
     fn comma(&mut self) -> Parsed<bool> {
         let comma = self.next == Token::Comma;
         if comma {
@@ -201,8 +210,9 @@ impl<'a> Parser<'a, '_> {
     }
 
     fn open(&mut self) -> Parsed<()> {
+        // Checked here, where brackets open, so that every path of the recursion is bounded.
         if self.open.len() == MAX_NESTING {
-            return Err(self.here(format!("brackets lie more than {MAX_NESTING} deep in each other")));
+            return Err(self.here(format!("brackets are nested more than {MAX_NESTING} deep")));
         }
         if let Token::Open(bracket) = self.next {
             self.open.push((bracket, self.span));
@@ -227,10 +237,12 @@ impl<'a> Parser<'a, '_> {
         Ok(())
     }
 
-    /// Returns whether the next token is the first on its line and indented differently from the bracket's line.
+    /// Returns whether the next token is the first on its line and indented differently from the
+    /// bracket's line.
     fn is_misaligned(&self, opened: Span) -> bool {
         let line_before = |at: u32| self.text[..at as usize].rsplit('\n').next().unwrap_or_default();
-        // A very long line is not indented by hand, and scanning it for every token would take quadratic time.
+        // More than 1000 bytes of white space are not indentation, and scanning them for every token would take
+        // quadratic time.
         if self.span.start - opened.end < 2 || self.span.start - self.previous_end > 1000 {
             return false;
         }
@@ -245,6 +257,7 @@ impl<'a> Parser<'a, '_> {
 
     // Messages --------------------------------------------------------------------------------------------------------
 
+    /// Returns a fault at the next token.
     fn here(&self, message: String) -> Unfinished<Fault> {
         Fault { message, span: self.span }.into()
     }
@@ -271,6 +284,8 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
+    /// Returns the fault that no colon follows a field's name, or that a bracket before it is
+    /// missing.
     fn no_colon(&self, name: Name<'_>) -> Unfinished<Fault> {
         let word = quoted_word(name.text);
         match (&self.next, self.open.last()) {
@@ -287,7 +302,8 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    /// Reports another token where a comma or the closing bracket is expected.
+    /// Returns the fault that another token was found where a comma or the closing bracket is
+    /// expected.
     fn not_closed(&self, bracket: char, opened: Span) -> Unfinished<Fault> {
         let right = closing(bracket);
         match self.next {

@@ -15,7 +15,7 @@ pub(super) enum Token<'a> {
     Word(&'a str),
     Number(f64),
     String(Box<str>),
-    /// A character that RON does not allow there.
+    /// A character that is not part of RON.
     Other(char),
     /// The end of the text.
     End,
@@ -41,7 +41,8 @@ impl<'a> Tokens<'a> {
         Ok((token, Span::new(start, self.at)))
     }
 
-    /// Skips attributes of the whole text, such as `#![enable(implicit_some)]`, which have no effect here.
+    /// Skips attributes of the whole text, such as `#![enable(implicit_some)]`, which have no
+    /// effect here.
     pub(super) fn skip_attributes(&mut self) -> Result<(), Fault> {
         if self.rest().starts_with(BYTE_ORDER_MARK) {
             self.at += BYTE_ORDER_MARK.len_utf8();
@@ -66,6 +67,7 @@ impl<'a> Tokens<'a> {
         let Some(first) = rest.chars().next() else {
             return Ok(Token::End);
         };
+        // Before words: a raw string starts with the letter r.
         if let Some(hashes) = raw_string_hashes(rest) {
             return self.raw_string(hashes);
         }
@@ -102,7 +104,8 @@ impl<'a> Tokens<'a> {
         &rest[..end]
     }
 
-    /// Takes every character that may belong to a number, so that a malformed number is reported as a whole.
+    /// Takes every character that may belong to a number, so that a malformed number is reported as
+    /// a whole.
     fn number(&mut self) -> Result<Token<'a>, Fault> {
         let start = self.at;
         self.at += 1;
@@ -122,7 +125,9 @@ impl<'a> Tokens<'a> {
         })
     }
 
-    /// A scene's strings are names and colours: a string that does not end on its line lacks its closing quote.
+    /// Takes a string in double quotes. A string that does not end on its line lacks its closing
+    /// quote, although RON allows line ends in strings: a scene's strings are names and colours, and the fault is at
+    /// the right line this way.
     fn string(&mut self) -> Result<Token<'a>, Fault> {
         let start = self.at;
         let mut value = String::new();
@@ -195,10 +200,12 @@ fn is_space(c: char) -> bool {
     )
 }
 
-/// Skips a block comment, which may contain others.
+/// Returns the length of the block comment at the start of the text, with nested ones; `None` if it
+/// never ends.
 fn block_comment_length(text: &str) -> Option<usize> {
     let mut depth = 0_usize;
     let mut at = 0;
+    // Iterative, because comments may nest a million deep.
     while let Some(step) = text[at..].find(['/', '*']) {
         at += step;
         if text[at..].starts_with("/*") {
@@ -234,6 +241,7 @@ fn unescaped(chars: &mut std::str::CharIndices<'_>) -> Option<char> {
         '0' => '\0',
         '\\' | '"' | '\'' => kind,
         'x' => {
+            // `from_str_radix` accepts a sign here too, which is not worth a message of its own.
             let digits: String = chars.by_ref().take(2).map(|(_, c)| c).collect();
             char::from(u8::from_str_radix(&digits, 16).ok()?)
         }
@@ -272,7 +280,7 @@ fn prefixed_number(text: &str) -> Option<f64> {
         _ => 2,
     };
     let digits = digits[2..].replace('_', "");
-    // `from_str_radix` would accept a second sign.
+    // `from_str_radix` would accept a second sign, as in `-0x-1`.
     if digits.starts_with(['+', '-']) {
         return None;
     }

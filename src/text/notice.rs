@@ -3,7 +3,8 @@
 use super::visible;
 use std::convert::Infallible;
 
-/// An error message and the source line that it refers to. None of its characters controls a terminal.
+/// An error message and the source line that it refers to. None of its characters controls a
+/// terminal.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Notice {
     /// The message, after its position if it has one: one line.

@@ -3,7 +3,14 @@
 use super::{closest, listed, visible};
 use std::fmt;
 
-/// The reason why a text could not be parsed: what was found, and what would be right.
+/// The error of parsing a value from text: what was found, and what would be right.
+///
+/// ```
+/// use termtrace::{Map, ParseError};
+///
+/// let error: ParseError = "norml".parse::<Map>().unwrap_err();
+/// assert_eq!(error.to_string(), "unknown map \"norml\"; did you mean \"normal\"?");
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParseError {
     message: String,

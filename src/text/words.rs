@@ -21,11 +21,11 @@ fn joined(words: &[impl AsRef<str>], conjunction: &str) -> String {
     }
 }
 
-/// Returns the word that was probably meant: one with few different letters, or one that contains the written word
-/// (`vertical_fov` for `fov`).
+/// Returns the word that was probably meant: one with few different letters, or one that contains
+/// the written word (`vertical_fov` for `fov`).
 pub fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
-    // The distance takes time proportional to the product of the lengths, and a name this long is no misspelling. Among
-    // thousands of names, one is always close.
+    // The distance takes time proportional to the product of the lengths, and a longer word is not a misspelt name.
+    // Among more than a thousand names one is close by chance, so later ones are not compared.
     const MAX_WORD_BYTES: usize = 64;
     const MAX_CANDIDATES: usize = 1000;
     if word.len() > MAX_WORD_BYTES {
@@ -41,20 +41,24 @@ pub fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) -> Opti
         .map(|(_, known)| known)
 }
 
-/// Returns the distance if it is small enough for a misspelling.
+/// Returns the edit distance if it is small enough for a misspelling, at most a third of the
+/// letters, or if the word is a part of the name.
 fn misspelling_distance(written: &str, known: &str) -> Option<usize> {
     let distance = edit_distance(written, known);
+    // Parts of two letters are in too many names.
     let is_part = written.len() >= 3 && known.split('_').any(|part| part == written);
     let allowed = match written.chars().count() {
+        // In two letters one changed letter leaves nothing in common.
         ..3 => 0,
         length => (length / 3).max(1),
     };
     (distance <= allowed || is_part).then_some(distance)
 }
 
-/// Returns the distance of two words by optimal string alignment: the least number of letters added, removed, changed,
-/// or exchanged with their neighbours, where no letter is changed twice (Damerau, A technique for computer detection
-/// and correction of spelling errors, 1964).
+/// Returns the distance of two words by optimal string alignment: the least number of letters
+/// added, removed, changed, or exchanged with their neighbours, where no letter is changed twice (Damerau, A technique
+/// for computer detection and correction of spelling errors, 1964). Our own in 20 lines; the tests compare it with
+/// `strsim`.
 fn edit_distance(written: &str, known: &str) -> usize {
     let known: Vec<_> = known.chars().collect();
     // Three rows of the table of distances between prefixes: for the letter before the last, the last, and the current

@@ -43,7 +43,7 @@ impl NodeReader<'_> {
             Value::Number(_) => self.number(node).map(WrittenColor::Grey),
             Value::Group(group) if is_color_word(group) => {
                 let name = group.name.map_or("", |name| name.text);
-                self.fault(node.span, || format!("a colour stands in quotes: {}", quoted(name)));
+                self.fault(node.span, || format!("a colour is written in quotes: {}", quoted(name)));
                 None
             }
             _ if values(node).is_some() => self.numbers(node, WANTED).map(WrittenColor::Linear),
@@ -72,12 +72,13 @@ impl FromStr for LinearRgb {
     }
 }
 
-/// Reports the name of a CSS colour without quotes.
+/// Returns whether a group is the name of a CSS colour without quotes.
 fn is_color_word(group: &Group<'_>) -> bool {
     group.body == Body::Nothing && group.name.is_some_and(|name| Srgb8::from_name(name.text).is_some())
 }
 
 fn color_from(string: &str) -> Result<Srgb8, String> {
+    // Blanks around a name cannot mean anything else.
     let name = string.trim();
     if let Some(digits) = name.strip_prefix('#') {
         return from_hex(digits).ok_or_else(|| bad_hex(string, digits));
@@ -86,6 +87,7 @@ fn color_from(string: &str) -> Result<Srgb8, String> {
 }
 
 fn from_hex(digits: &str) -> Option<Srgb8> {
+    // `from_str_radix` would accept a sign.
     if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
         return None;
     }

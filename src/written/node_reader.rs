@@ -1,4 +1,4 @@
-//! The reader of typed values from nodes of the tree.
+//! The reader of typed values from nodes of the syntax tree.
 
 use super::{Spanned, WrittenNumber, WrittenVector};
 use crate::checks;
@@ -6,7 +6,7 @@ use crate::progress::Reporter;
 use crate::scene_text::{Body, Faults, Field, Group, Name, Span, SyntaxNode, Value, clipped, quoted};
 use crate::text::{closest, listed};
 
-/// Reads values and reports faults.
+/// A reader of typed values that reports faults and continues.
 pub struct NodeReader<'f> {
     faults: &'f mut Faults,
     reporter: &'f Reporter<'f>,
@@ -17,9 +17,9 @@ pub struct Fields<'n> {
     entries: &'n [Field<'n>],
     /// The group's owner for messages: "a Sphere".
     owner: &'static str,
-    /// Position to point at when a field is missing.
+    /// The span to point at when a field is missing.
     head: Span,
-    /// Fields given under a misspelt name, which are not reported as missing too.
+    /// Fields given under a misspelt name, which are not reported as missing as well.
     misspelt: Vec<&'static str>,
 }
 
@@ -29,7 +29,7 @@ impl<'n> Fields<'n> {
         self.entries.iter().find(|field| field.name.text == name)
     }
 
-    /// Its value.
+    /// Returns the value of the field of this name.
     pub(crate) fn get(&self, name: &str) -> Option<&'n SyntaxNode<'n>> {
         self.field(name).map(|field| &field.value)
     }
@@ -80,12 +80,14 @@ impl<'f> NodeReader<'f> {
         Some(Fields { entries, owner, head: node.head(), misspelt: self.check_names(entries, owner, known) })
     }
 
-    /// Reports unknown and duplicate fields. Returns the fields that the unknown ones were probably meant to be.
+    /// Reports unknown and duplicate fields. Returns the fields that the unknown ones were probably
+    /// meant to be.
     fn check_names(&mut self, entries: &[Field<'_>], owner: &str, known: &[&'static str]) -> Vec<&'static str> {
         let mut seen = vec![false; known.len()];
         let mut misspelt = Vec::new();
         for Field { name, .. } in entries {
             match known.iter().position(|&known| known == name.text) {
+                // The suggestion is also remembered: a misspelt required field is one mistake, not two.
                 None => self.fault(name.span, || {
                     let meant = meant_field(name.text, known);
                     misspelt.extend(meant);
@@ -123,6 +125,7 @@ impl<'f> NodeReader<'f> {
         read: impl FnOnce(&mut Self, &SyntaxNode<'_>) -> Option<T>,
     ) -> Option<T> {
         let node = fields.get(name)?;
+        // Files that serde wrote have `None` for absent values.
         if is_word(node, "None") {
             return None;
         }
@@ -179,6 +182,7 @@ impl<'f> NodeReader<'f> {
                 }
                 _ => self.mismatch(node, &wanted),
             },
+            // The most likely mistake gets a message of its own.
             Value::String(string) if words.contains(&&**string) => {
                 self.fault(node.span, || format!("expected {wanted}; write {string} without quotes"));
             }
@@ -187,7 +191,7 @@ impl<'f> NodeReader<'f> {
         None
     }
 
-    /// Returns the values of all items that can be read; fewer after a cancel.
+    /// Returns the values of all items that can be read; fewer after a cancellation.
     pub(crate) fn each<'n, T>(
         &mut self,
         items: &'n [SyntaxNode<'n>],
@@ -259,6 +263,7 @@ impl<'f> NodeReader<'f> {
             self.mismatch(node, wanted);
             return None;
         };
+        // Read all before one may fail: each faulty number is reported.
         let read: Vec<_> = items.iter().map(|item| self.number(item)).collect();
         let numbers: Option<Vec<_>> = read.into_iter().collect();
         numbers?.try_into().ok()
@@ -282,8 +287,8 @@ fn is_word(node: &SyntaxNode<'_>, word: &str) -> bool {
         if group.body == Body::Nothing && group.name.is_some_and(|name| name.text == word))
 }
 
-/// Returns the field that an unknown name was probably meant to be: one spelt much like it, or known elsewhere by that
-/// name.
+/// Returns the field that an unknown name was probably meant to be: one with a similar spelling, or
+/// one that other programs call by this name.
 fn meant_field(name: &str, known: &[&'static str]) -> Option<&'static str> {
     const ALSO_CALLED: [(&str, &str); 8] = [
         ("look_at", "target"),
@@ -319,7 +324,7 @@ fn unknown_variant(name: Name<'_>, kind: &str, known: &[&str]) -> String {
     }
 }
 
-/// Describes what was found, for a message.
+/// Returns the description of a found value, for a message.
 pub(crate) fn description(node: &SyntaxNode<'_>) -> String {
     match &node.value {
         Value::Bool(value) => value.to_string(),
@@ -336,7 +341,7 @@ pub(crate) fn description(node: &SyntaxNode<'_>) -> String {
     }
 }
 
-/// Describes what was found in brackets, for a message.
+/// Returns the description of values in brackets, for a message.
 pub(crate) fn group_of_values(items: &[SyntaxNode<'_>], a_group_of: &str) -> String {
     let numbers = items.iter().all(|item| matches!(item.value, Value::Number(_)));
     match (items.len(), numbers) {

@@ -1,4 +1,4 @@
-//! The checks of values in scene files, with their positions. The rules are those of [`checks`].
+//! The checks of values in scene files, with their spans. The rules are those of [`checks`].
 
 use super::{WrittenColor, WrittenNumber, WrittenVector};
 use crate::checks::{self, Message};
@@ -6,7 +6,7 @@ use crate::color::LinearRgb;
 use crate::scene_text::{Faults, Span};
 use glam::{DVec3, Vec3};
 
-/// Checks values and reports faults.
+/// A checker of written values that reports faults.
 pub struct Validator<'f> {
     pub(crate) faults: &'f mut Faults,
 }
@@ -25,8 +25,9 @@ impl Validator<'_> {
         }
     }
 
-    /// Checks that all three coordinates are within the range that a picture can be traced in.
+    /// Checks that all three coordinates are within the range that rays can be traced in.
     pub(crate) fn coordinates(&mut self, written: WrittenVector) -> Option<DVec3> {
+        // All three are checked before one fails, so that each fault is reported.
         let near =
             written.components.map(|number| self.accept(number.span, checks::coordinate(number.value)).is_some());
         (near == [true; 3]).then(|| DVec3::from_array(written.components.map(|component| component.value)))
@@ -46,7 +47,7 @@ impl Validator<'_> {
         self.accept(written.span, checks::amount(what, written.value))
     }
 
-    /// Checks a colour of light, which may have any amount.
+    /// Checks a colour of light, whose channels may exceed 1.
     pub(crate) fn light_color(&mut self, written: WrittenColor) -> Option<LinearRgb> {
         self.color(written, checks::light)
     }

@@ -1,4 +1,4 @@
-//! Checking of cameras: degrees to radians, and errors for values without a basis.
+//! Checking of cameras: degrees become radians, and a pose without a basis u, v, w is a fault.
 
 use crate::camera::{Camera, CameraError, Pose, ViewRectangle, radians};
 use crate::checks;
@@ -13,8 +13,8 @@ impl Validator<'_> {
         self.camera_with(written, (Vec3::Y, "its up vector (0, 1, 0)"), rectangle)
     }
 
-    /// Checks a view. Parameters that it does not give are the camera's; if those are faulty, the view is still
-    /// checked.
+    /// Checks a view. Parameters that it does not give are the camera's; if those are faulty, the
+    /// view is still checked.
     pub(super) fn view(&mut self, written: &WrittenCamera, camera: Option<&Camera>) -> Option<Camera> {
         let rectangle = match camera {
             Some(camera) if written.is_without_lens() => Some(camera.rectangle()),
@@ -24,7 +24,8 @@ impl Validator<'_> {
         self.camera_with(written, (up, "the camera's up vector"), rectangle)
     }
 
-    /// Returns the up vector, or `default` under its name if none is written.
+    /// Checks a camera with this view rectangle. `up_if_none` is the up vector if none is written,
+    /// with its name for messages.
     fn camera_with(
         &mut self,
         written: &WrittenCamera,
@@ -59,13 +60,14 @@ impl Validator<'_> {
         rectangle?.with_shift(shift?).ok()
     }
 
-    /// Returns the camera, or reports a fault at the pose's position.
+    /// Returns the camera, or reports a fault at the part of the pose that is wrong.
     pub(super) fn camera_of(&mut self, pose: Pose, rectangle: ViewRectangle, spans: PoseSpans) -> Option<Camera> {
         let error = match Camera::new(pose, rectangle) {
             Ok(camera) => return Some(camera),
             Err(error) => error,
         };
         let span = match error {
+            // Without an up vector in the file it is the target that makes the default unusable.
             CameraError::UpIsZero | CameraError::UpAlongView => spans.up.or(spans.target),
             _ => spans.target,
         };
@@ -82,6 +84,7 @@ impl Validator<'_> {
     }
 
     pub(super) fn up(&mut self, written: WrittenVector) -> Option<Vec3> {
+        // For its message only: the camera keeps the vector as written, so that it is written back the same.
         self.unit_vector("up vector", written)?;
         let up = self.point(written)?;
         if !checks::is_long(up) {
@@ -153,6 +156,7 @@ impl Validator<'_> {
         Some(value as f32)
     }
 
+    /// Checks a shift, in heights of the view rectangle.
     fn shift(&mut self, written: &[WrittenNumber; 2]) -> Option<Vec2> {
         let too_far = |number: &&WrittenNumber| number.value.abs() > f64::from(ViewRectangle::MAX_SHIFT);
         if let Some(number) = written.iter().find(too_far) {
@@ -163,12 +167,12 @@ impl Validator<'_> {
     }
 }
 
-/// Positions of a pose's parts, to point at when one is wrong.
+/// The spans of a pose's parts, to point at when one is wrong.
 #[derive(Clone, Copy)]
 pub(super) struct PoseSpans {
     pub(super) whole: Span,
     pub(super) target: Option<Span>,
     pub(super) up: Option<Span>,
-    /// The default of `up`.
+    /// The name, in messages, of the up vector that is used if none is written.
     pub(super) up_if_none: &'static str,
 }

@@ -7,11 +7,12 @@ use crate::scene_file::{PathFile, WrittenKeyframe};
 use crate::scene_text::Faults;
 use crate::written::{Spanned, Validator, WrittenNumber};
 
-/// Limit on times in seconds: more than eleven days.
+/// Limit on times in seconds: more than eleven days. As f64 the time of each frame is still exact
+/// to a nanosecond.
 const MAX_SECONDS: f64 = 1e6;
 
-/// Returns the path; if `None`, every fault has been added. Parameters that a keyframe does not give are those of
-/// `camera`.
+/// Returns the path; if `None`, every fault has been added. Parameters that a keyframe does not
+/// give are those of `camera`.
 pub(in crate::scene) fn check(file: &PathFile, camera: &Camera, faults: &mut Faults) -> Option<CameraPath> {
     let mut validator = Validator { faults };
     let (written, span) = file.keyframes.as_ref()?;
@@ -45,7 +46,7 @@ impl Validator<'_> {
             up: written.up.map(|up| up.span),
             up_if_none: "the scene's up vector",
         };
-        // If the angle is faulty the pose is checked without it.
+        // If the angle is faulty, the pose is checked with the camera's, so that its faults are reported too.
         let camera = self.camera_of(pose, rectangle.unwrap_or(camera.rectangle()), spans)?;
         rectangle.and(Some(Keyframe { time: time?, camera }))
     }

@@ -1,10 +1,11 @@
-//! Reading of a whole file: bytes to text to tree to a checked value, with a fault for bytes that are not text.
+//! Reading of a whole file: bytes to text to a syntax tree to a checked value, with a fault for
+//! bytes that are not text.
 
 use super::parser::parse_or_cancel;
 use super::{Fault, Faults, MAX_TEXT_BYTES, SceneError, Span, SyntaxNode};
 use crate::progress::{Meter, Reporter, Unfinished};
 
-/// Returns what `check` makes of a text's tree.
+/// Parses a text and returns the value that `check` makes of its syntax tree.
 ///
 /// `smallest` is the example shown for an empty text, `name` the file's name for messages.
 ///
@@ -23,7 +24,7 @@ pub fn read<T>(
 /// Reads as [`read`] does and reports progress to the reporter, which may cancel it.
 ///
 /// `check` owns the tree, so that it can free it before it has finished: for a scene of 400,000 spheres the peak is 394
-/// MB instead of 462. After a cancel its result is ignored.
+/// MB instead of 462. After a cancellation its result is ignored.
 ///
 /// # Errors
 /// As [`read`], and if the reporter cancels.
@@ -54,7 +55,7 @@ pub(crate) fn read_or_cancel<'a, T>(
 /// If there are more than [`MAX_TEXT_BYTES`], they are not UTF-8, or they are evidently not text.
 pub fn text_from<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, SceneError> {
     decoded(bytes).map_err(|fault| {
-        // For a file that is not text from its first byte on, no line is worth showing.
+        // A file that is not text from its first byte on has no line worth showing.
         let shown = if fault.span.start == 0 { &[] } else { bytes };
         SceneError::new(name, &String::from_utf8_lossy(shown), fault)
     })
@@ -69,7 +70,7 @@ fn decoded(bytes: &[u8]) -> Result<&str, Fault> {
     std::str::from_utf8(bytes).map_err(|error| {
         let offset = error.valid_up_to();
         let byte = bytes.get(offset).copied().unwrap_or_default();
-        fault_at(offset, format!("the file is not UTF-8 text: byte 0x{byte:02x} begins no character here"))
+        fault_at(offset, format!("the file is not UTF-8 text: byte 0x{byte:02x} does not start a character"))
     })
 }
 
@@ -87,7 +88,7 @@ fn not_empty(text: &str, smallest: &str) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Text contains no NUL, and nearly every binary format has one near its start.
+/// Refuses a NUL, which text never contains and nearly every binary format has near its start.
 fn no_nul(bytes: &[u8]) -> Result<(), Fault> {
     let Some(offset) = bytes.iter().position(|&byte| byte == 0) else {
         return Ok(());
