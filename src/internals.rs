@@ -1,7 +1,8 @@
-//! Unstable: all modules, for this project's own program, tests, benches and fuzz targets. Anything here may change in
-//! any release.
+//! Unstable: all modules, for this project's own program, tests, benches and fuzz targets. Anything
+//! here may change in any release.
 
-/// Re-exports the `pub` items of each module.
+/// Re-exports the `pub` items of each module. A list, because a module with a feature needs the
+/// feature here too.
 macro_rules! modules {
     ($($module:ident)*) => {
         $(pub mod $module {

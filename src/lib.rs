@@ -17,8 +17,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The same scene without a file. What no scene may hold is an error of its constructor, in the words of a scene file's
-//! error:
+//! The same scene in code. A value that no scene may have is an error of its constructor, with the message of a scene
+//! file's error:
 //!
 //! ```
 //! use termtrace::glam::Vec3;
@@ -37,8 +37,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A library user meets [`Scene`]: all that was checked, together with the trees that rays go through. Loading one, or
-//! building one in code, builds the trees once; copies share them, and no function that takes a scene builds any.
+//! Start with [`Scene`]: the checked values of a scene and the trees that rays are traced in. Loading a scene, or
+//! building one in code, builds the trees once; clones share them, and no function that takes a scene builds any.
 //!
 //! # The surface
 //!
@@ -57,69 +57,69 @@
 //!
 //! # Features
 //!
-//! Without any there are scenes in code, pictures and maps, descriptions and explanations, cells, the encoder, and
-//! text, ANSI, SVG and HTML. What more there is with a feature, and how many crates are compiled in all, this one
-//! included:
+//! Without features there are scenes in code, pictures and maps, descriptions and explanations, cells, the encoder, and
+//! text, ANSI, SVG and HTML. This table shows what each feature adds, and the number of crates that are compiled with
+//! it, this one included:
 //!
-//! | features | what they bring | crates |
+//! | features | additions | crates |
 //! |---|---|--:|
 //! | (none) | | 4 |
 //! | `ron` | scene files and camera paths, and the plain files beside them | 4 |
 //! | `parallel` | tracing, toning and building trees on all threads of the current rayon pool; the same bits | 10 |
-//! | `ron`, `parallel` | the least that traces a scene file on all cores | 10 |
+//! | `ron`, `parallel` | both: the minimum for tracing a scene file on all cores | 10 |
 //! | `mesh` | OBJ, STL, PLY and glTF files with their textures; includes `ron` | 23 |
 //! | `png` | PNG files | 14 |
 //! | `gif` | films as GIF | 7 |
 //! | `cast` | films as asciicast | 9 |
 //! | `ratatui` | ratatui's buffers laid over cells, on `ratatui-core` alone | 33 |
-//! | `underline-color` | the colours of their underlines; all of the program's ratatui backends must have theirs on | 33 |
+//! | `underline-color` | the colours of their underlines; turn it on with that of all other ratatui backends | 33 |
 //! | `backend` | the encoder as a backend of ratatui; includes `ratatui` | 33 |
 //! | `scrolling-regions` | the same beside ratatui's feature of this name; includes `backend` | 33 |
 //! | `serde` | cameras, colours, sizes, maps and samplings in the formats of serde, checked when they are read | 11 |
 //! | `live` | the live view, on Linux and macOS; includes all of the above but `gif`, `cast` and the last four | 92 |
 //! | `cli` | the program `termtrace`, by default | 107 |
 //!
-//! A program that only uses the library turns the default off:
+//! A program that uses only the library turns the default features off:
 //! `termtrace = { version = "0.1", default-features = false, features = ["ron", "parallel"] }`.
 //!
 //! # The route
 //!
-//! One file per stage, in the order in which the data travels; a stage that outgrows its file has a folder of the same
+//! One file per stage, in the order in which the data travels. A stage that outgrows its file has a folder of the same
 //! name.
 //!
-//! Words that all stages speak:
-//! - `table`: a type with a row for each of its values
+//! Foundations for all stages:
+//! - `table`: an enum with a row of constants for each of its values
 //! - `color`: linear RGB, 8-bit sRGB, and the transfer function between them
-//! - `lanes`: a number, or eight side by side
-//! - `simd`: eight numbers in one register, where the CPU has such
+//! - `lanes`: formulas for one number or for eight lanes
+//! - `simd`: eight lanes in one register, on CPUs that have such registers
 //! - `ray`: origin + t * direction, and intervals of t
-//! - `bounds`: boxes along the axes
-//! - `text`: text for messages: printable, lists, the word that was meant
-//! - `memory`: asked for before it is used
-//! - `progress`: progress reports, and the token by which work is cancelled
-//! - `threads`: work in parallel, on the threads of rayon or without
+//! - `bounds`: axis-aligned boxes
+//! - `text`: text for messages: printable text, lists, spelling suggestions
+//! - `memory`: checks that memory is available before it is used
+//! - `progress`: progress reports, and the token that cancels work
+//! - `threads`: parallel work, on rayon's threads or on the calling thread
 //! - `checks`: the rules for the numbers of a scene, from a file or from code
-//! - `named_file`: the bytes of a file that a person names, within bounds
+//! - `named_file`: the bytes of a file that the user names, within limits
 //!
-//! What was written:
-//! - `scene_text`: RON -> a syntax tree with places; faults with line, column and caret
-//! - `mesh_file`: OBJ, STL, PLY or glTF -> triangles, checked
-//! - `written`: values as the author wrote them, with places: read from the tree, and checked
+//! Files as written:
+//! - `scene_text`: RON -> a syntax tree with spans; faults with line, column and caret
+//! - `mesh_file`: OBJ, STL, PLY or glTF -> checked triangles
+//! - `written`: values as the author wrote them, with spans: read from the tree, and checked
 //!
-//! What is drawn, checked once, in radians, linear light and unit vectors:
-//! - `bvh`: which of many boxes a ray may meet
-//! - `shape`: surfaces f(p) = 0, where a ray crosses them, their normals
+//! The scene, checked once, in radians, linear light and unit vectors:
+//! - `bvh`: the bounding volume hierarchy, eight boxes to a node
+//! - `shape`: surfaces f(p) = 0, their intersections with rays, their normals
 //! - `accel`: the trees over all shapes of a scene, built once
 //! - `material`: diffuse reflectance
 //! - `light`: point lights
 //! - `camera`: eye, target, up, field of view -> basis u, v, w -> eye rays
-//! - `camera_path`: the camera over time: an orbit, or through keyframes
+//! - `camera_path`: the camera over time: an orbit, or a path through keyframes
 //! - `scene_file`: a whole file as the author wrote it, typed
-//! - `scene`: all of it, and the one conversion from what was written
+//! - `scene`: the whole scene, and the one conversion from written to checked values
 //!
 //! From the eye to the light:
 //! - `hit`: the closest hit, any hit
-//! - `shade`: light from a surface to the eye
+//! - `shade`: the light that a surface sends to the eye
 //! - `framebuffer`: linear light per pixel
 //! - `render`: tile by tile, eye rays -> hits -> shadow rays -> shade
 //!
@@ -128,108 +128,177 @@
 //! - `maps`: the shaded picture, or a map: depths, normals, objects, shadows
 //! - `describe`: the picture in words
 //! - `grid`: the cell grid
-//! - `cell`: picture -> grid, by half blocks or characters, in the colours that there are
-//! - `capabilities`: what a terminal's cells can be made of
-//! - `explain`: one pixel, and all that its light came from
+//! - `cell`: picture -> grid, as half blocks or characters, in the terminal's colours
+//! - `capabilities`: the colours, glyphs and sizes that a terminal supports
+//! - `explain`: one pixel, and how its light is computed
 //! - `overlay`: any ratatui buffer laid over the grid, and the grid as such a buffer
 //! - `widget`: a scene in a ratatui program
 //! - `encode`: wanted grid, shown grid, pen -> bytes
 //! - `export`: grid or picture -> text, ANSI, SVG, HTML, PNG
 //! - `record`: frames over time -> asciicast, GIF
 //! - `serialized`: plain values in the formats of serde
-//! - `output_file`: bytes -> a file that is replaced whole, or not at all
+//! - `output_file`: bytes -> a file that is replaced atomically
 //!
-//! With a person:
+//! The live view:
 //! - `input`: bytes -> events and replies
-//! - `protocol`: modes and queries -> bytes; replies -> what is still outstanding
-//! - `pace`: what may be in flight, and when
+//! - `protocol`: modes and queries -> bytes; replies -> outstanding queries
+//! - `pace`: congestion control: how many bytes may be in flight, and when to send
 //! - `control`: keys, mouse + camera -> camera
-//! - `viewer`: one person's view: bytes, scenes, frames and time in; bytes and frames to be traced out
-//! - `terminal`: the one owner of the terminal
+//! - `viewer`: one user's view: bytes, scenes, frames and time in; bytes and requests for frames out
+//! - `terminal`: the only owner of the terminal
 //! - `app`: a viewer on the terminal
 //!
 //! For programs that use the crate:
-//! - [`live`]: what of `app` and `terminal` is promised
-//! - [`prelude`]: what a first program imports
+//! - [`live`]: the promised part of `app` and `terminal`
+//! - [`prelude`]: the imports of a typical program
 //! - `internals`: every module of the route, without any promise, for this project's own program, tests and benches
 //!
 //! # Laws
 //!
-//! 1. A module uses only what stands above it here. Within a module the files of one folder form no cycle, and between
-//!    a file and those in its folder only types go one of the ways (`tests/laws.rs` reads the imports).
-//! 2. Written, then checked: `scene_file` holds what the author wrote and where, of surfaces in the terms of `shape`;
-//!    `scene` has it converted once into a value that cannot be wrong. Units and colour spaces change there and nowhere
-//!    else.
+//! 1. A module uses only modules above it in this list. The files of one folder form no cycle of imports, and of a file
+//!    and those in its folder one side takes only types from the other (`tests/laws.rs` reads the imports).
+//! 2. Written, then checked: `scene_file` holds the author's values with their spans; `scene` converts them once into a
+//!    value that is always valid. Units and colour spaces change there and nowhere else.
 //! 3. The value between two layers has a name: [`Scene`], [`Camera`],
 //!    [`Hit`], [`Framebuffer`], [`Picture`], [`Grid`],
-//!    bytes. Each can be made by hand in a test.
-//! 4. The picture is a pure function of scene, camera, resolution and samples: no clock, no randomness, no number of
-//!    threads, and the same bits on any CPU, because only + - * / and the square root are on its path, with libm in
-//!    Rust at set-up (clippy bans the rest; `tests/hashes.txt` has the bits).
-//! 5. Only `terminal` touches the operating system's terminal and signals, and it is the one owner of what is turned
-//!    on. Everything above bytes runs without a terminal. The feature `test-hooks`, which this crate's tests turn on
-//!    for themselves (a dev-dependency of the crate on itself), lets them say where it is to fail; no other build has
-//!    it. `input`, `protocol`, `pace`, `control` and `viewer` know no file, thread or clock: they are told the time.
-//! 6. The newest picture wins: nothing stale is queued; when nothing changes, nothing is computed or sent, and no timer
-//!    runs. *When* to trace, refine, draw and wait is decided by one function of one snapshot of facts
-//!    (`viewer::schedule`). Each piece of state has one owner: no field is assigned but in the file that defines its
-//!    type.
+//!    bytes. A test can construct each directly.
+//! 4. The picture is a pure function of scene, camera, resolution and samples. It depends on no clock, no random number
+//!    and no number of threads, and has the same bits on any CPU, because its path uses only + - * / and the square
+//!    root, and libm in Rust at set-up (clippy bans the rest; `tests/hashes.txt` has the bits).
+//! 5. Only `terminal` touches the operating system's terminal and signals, and it owns every mode that is switched on.
+//!    Everything above bytes runs without a terminal. With the feature `test-hooks`, which only this crate's tests turn
+//!    on (a dev-dependency of the crate on itself), tests inject faults. `input`, `protocol`, `pace`, `control` and
+//!    `viewer` use no file, thread or clock: time is a parameter.
+//! 6. The newest picture wins: nothing stale is queued. When nothing changes, nothing is computed or sent, and no timer
+//!    runs. One function of one snapshot of facts (`viewer::schedule`) decides *when* to trace, refine, draw and wait.
+//!    Each piece of state has one owner: a field is assigned only in the file that defines its type.
 //! 7. The library neither prints nor exits, and installs nothing by itself.
-//! 8. What crosses a tile goes together: eye rays, hits, shadow rays and shading are steps over arrays of its rays, in
-//!    which eight rays stand side by side all the way (`EightRays`), each with a bit for whether it is asked about.
+//! 8. The rays of a tile are traced together: eye rays, hits, shadow rays and shading are steps over arrays of rays, in
+//!    groups of eight lanes (`EightRays`) with a mask of the active ones.
 //! 9. Only `output_file` writes files, for the library and the program.
 //!
 //! # What is not here
 //!
-//! No trait objects in the tracer: a [`Shape`] is an enum, its `Primitive`s are what rays are tested against. A new surface
-//! is one file under `shape/`, where it implements `Surface`, `Described`, `InSceneFile` and `CheckedShape`, and one
-//! line in the table of `shape`, from which the enums, the lists and trees of `accel`, and what reads, describes and
-//! explains it are made (`shape::cube` is such a surface, for tests). In the same way a material is a file under
-//! `material/` with a type that is `Reflecting` and a line in the table of `material`, and a light a file under
-//! `light/` with a `LightSource` and a line in the table of `light` (`material::stripes` and `light::sun`, for tests).
-//! No crate reads scenes or meshes: `scene_text` and `mesh_file` say which were tried, and at which file each failed.
-//! No fixed epsilon: see `SurfacePoint::ray_origin`. No order of the tree that could show: see `Bounds::crossed`. No
-//! flag says that a picture is out of date: the shot that is wanted is compared with the one that was begun. A kind of
-//! cells is a file under `cell/` with all that is particular to it, and a row of the table of [`Glyphs`]; an export
-//! format is a file under `export/` and a row of the table of [`Format`](export::Format)s: flags, keys, commands,
-//! panels and the check against a golden file follow from these. No list of panels: a panel is a layer of the viewer,
-//! one file with a type that implements `viewer::layers::Layer`, and the line that opens it.
+//! - No trait objects in the tracer: a [`Shape`] is an enum, and rays are tested against its primitives. A new
+//!   surface is one file under `shape/`, which implements `Surface`, `Described`, `InSceneFile` and `CheckedShape`, and
+//!   one line in the table of `shape`. The enums, the lists and trees of `accel`, and the code that reads, describes
+//!   and explains it are generated from the table (`shape::cube` is such a surface, for tests). A new material is a
+//!   file under `material/` with a `Reflecting` type and a line in the table of `material`, and a new light a file
+//!   under `light/` with a `LightSource` and a line in the table of `light` (`material::stripes` and `light::sun`, for
+//!   tests).
+//! - No crate reads scenes or meshes: `scene_text` and `mesh_file` list those that were tried, and where each failed.
+//! - No fixed epsilon: see `SurfacePoint::ray_origin`.
+//! - No effect of the tree's order on the picture: see `Bounds::crossed`.
+//! - No flag that marks a picture as stale: the wanted shot is compared with the one that was begun.
+//! - No list of cell kinds, formats or panels outside their tables: a cell kind is a file under `cell/` and a row of
+//!   the table of [`Glyphs`]; an export format is a file under `export/` and a row of the table of
+//!   [`Format`](export::Format)s. Flags, keys, commands, panels and the check against a golden file follow from these.
+//!   A panel is one file with a type that implements `viewer::layers::Layer`, and the line that opens it.
 //!
 //! # One eye ray
 //!
-//! `render` goes over a picture for `maps` or `app::renderer`: `render::uniform` with the same number of samples for
-//! each pixel, `render::adaptive` with more where there are edges. `render::schedule` gives each thread its tiles and
-//! cuts their samples into batches; `render::steps` takes a batch through the five steps. `render::tiles` makes the eye
-//! rays (by `camera`) -> `hit` finds the closest hits: among the objects that stand alone, then in the trees (`accel`,
-//! over `bvh`), whose leaves are parts of `shape`s -> `shade` works out the points that were met (`shade::points`)
-//! -> it sends shadow rays (`hit` again) and adds up what arrives from the `light`s -> it has the
-//! `material` reflect that. `render::tiles` puts a tile's light into the `framebuffer` -> `tone` -> `cell` ->
-//! `encode` or `export`.
+//! `maps` or `app::renderer` calls `render`: `render::uniform` traces the same number of samples for each pixel,
+//! `render::adaptive` more at edges. `render::schedule` gives each thread its tiles and cuts their samples into
+//! batches; `render::steps` takes a batch through the five steps. `render::tiles` makes the eye rays (by `camera`) ->
+//! `hit` finds the closest hits: among the unbounded objects, then in the trees (`accel`, over `bvh`), whose leaves
+//! hold primitives of `shape`s -> `shade` computes the surface points (`shade::points`) -> it traces shadow rays (`hit`
+//! again) and adds up the light of the `light`s that reach the points -> the `material` reflects it. `render::tiles`
+//! writes a tile's light into the `framebuffer` -> `tone` -> `cell` -> `encode` or `export`.
 //!
 //! # One scene with a typo
 //!
-//! `scene::load` has the bytes read (`named_file`) -> `scene_text` makes a tree of them, in which every node has its
-//! place -> `scene_file` reads the fields, those of a `shape`, `material` or `light` in its own file; a name that is
-//! not known is a fault there, with the word that was meant (`text`) -> `scene::checked` is silent about what is
-//! missing only because of that -> `scene_text::fault` puts all faults in order, each with its line and carets -> the
-//! error goes back to who loaded the scene: the command line prints it, and the live view shows the first fault of it
-//! (`viewer::error_panel`).
+//! `scene::load` reads the bytes (`named_file`) -> `scene_text` parses them to a syntax tree, in which every node has
+//! its span -> `scene_file` reads the fields; those of a `shape`, `material` or `light` are read in its own file. An
+//! unknown name is a fault there, with the name that was probably meant (`text`) -> `scene::checked` does not report
+//! what is missing because of that fault -> `scene_text::fault` sorts all faults and adds lines and carets -> the error
+//! returns to the caller: the command line prints it, and the live view shows its first fault (`viewer::error_panel`).
 //!
 //! # One key press
 //!
-//! `app::live` reads the terminal's bytes -> `viewer::events`: the receiver of `protocol` cuts them into inputs
-//! (`input`), the keymap of `control` into a command, and that moves the eye (`viewer::eye`) -> `viewer::schedule`
-//! decides that a frame is to be traced -> `app::renderer` traces it (`render`) -> the frame comes to `viewer::screen`,
-//! and the schedule decides that it is to be drawn: cells (`cell`), layers over them, bytes (`encode`) ->
-//! `terminal`.
+//! `app::live` reads the terminal's bytes -> `viewer::events`: the receiver of `protocol` parses them to inputs
+//! (`input`), the keymap of `control` maps a key to a command, and the command moves the eye (`viewer::eye`) ->
+//! `viewer::schedule` decides to trace a frame -> `app::renderer` traces it (`render`) -> `viewer::screen` receives the
+//! frame, and the schedule decides to draw it: cells (`cell`), layers over them, bytes (`encode`) -> `terminal`.
+//!
+//! # Glossary
+//!
+//! The terms of the code, its comments, the help and the README, in the order of the route.
+//!
+//! Files and scenes:
+//! - **RON**: Rusty Object Notation, the syntax of scenes, camera paths, `config.ron` and `keys.ron`.
+//! - **span**: a range of bytes in a text. Lines and columns are computed from it for messages.
+//! - **fault**: something wrong in a file, with its position. An error holds one or more faults.
+//! - **written value**: a value in the author's units, with its span; **checked value**: a valid one in scene units.
+//! - **scene**: the checked values and the trees over its primitives; **draft**: a scene without trees yet.
+//! - **sketch**: a scene with decimated meshes, shown while the trees of the draft are built.
+//! - **side file**: a file that a mesh file names: materials, textures, buffers.
+//! - **view**: a camera that a scene file stores besides the scene's own.
+//! - **camera path**: the camera as a function of time, an orbit or through **keyframes**.
+//! - **pose**: eye point, target point and up vector; **view rectangle**: the lecture's rectangle that pixels divide.
+//! - **basis** u, v, w: unit vectors to the right of the picture, up in it, and from the target to the eye.
+//!
+//! Surfaces and trees:
+//! - **shape**: a surface f(p) = 0 of an object: sphere, plane, triangle or mesh.
+//! - **primitive**: a single sphere, triangle or plane that rays are tested against; a mesh has one for each triangle.
+//! - **primitive index**: the number of a primitive among all of its kind in the scene.
+//! - **BVH**: bounding volume hierarchy, a tree of axis-aligned boxes over primitives; a **node** has eight children.
+//! - **leaf**: a node's child with up to eight primitives, stored as **SoA** (structure of arrays), one lane each.
+//! - **unbounded**: without a box around it, as a plane is. Such primitives are in a list, not in a tree.
+//!
+//! Rays:
+//! - **eye ray**: from the eye through a pixel; **shadow ray**: from a surface point to a light.
+//! - **interval**: the range of t in which a hit counts; **t**: the ray's parameter in origin + t * direction.
+//! - **closest hit**: the hit with the least t in the interval; **any hit**: whether there is one, for shadow rays.
+//! - **lane**: one of the eight numbers of a SIMD register; **mask**: one bit per lane.
+//! - **active mask**: the lanes whose result is used. **hit mask**: the lanes whose ray hits.
+//! - **packet**: up to 64 rays that are traced together; **single ray**: one ray against eight boxes at once.
+//! - **common-origin packet**: a packet whose rays share an origin, such as eye rays, which allows cheaper culling.
+//! - **culling**: excluding a box or primitive for a whole group of rays by one conservative test.
+//! - **error bound**: a bound on the rounding error of a computed value, by which conservative tests are widened.
+//! - **edge function**: the sign of a ray's side of a triangle's edge.
+//! - **observer**: a receiver of every test of a traversal, for the cost map and explanations.
+//!
+//! Light:
+//! - **surface point**: the position p of a hit with its normals, texture coordinates and material.
+//! - **geometric normal**: the normal of the primitive; **shading normal**: the one interpolated over a smooth mesh.
+//! - **footprint**: the size of a pixel on the surface, by which patterns and textures are averaged.
+//! - **reflectance**: the reflected share of the arriving light, per **channel** (red, green, blue).
+//! - **falloff**: the decrease of a light with distance. **ambient light**: light that arrives from everywhere.
+//!
+//! Rendering:
+//! - **sampling**: the samples (eye rays) per pixel: a fixed number, or adaptively more at edges (`best`).
+//! - **tile**: a square of pixels that one thread traces; **sample batch**: some of its samples, traced in one go.
+//! - **executor**: what runs tiles: the current thread, or rayon's pool.
+//! - **G-buffer**: the hit of each pixel, from which maps are drawn without light.
+//! - **accumulator**: the sum and variance of a pixel's samples so far.
+//! - **framebuffer**: the picture in linear light; **picture**: the picture in 8-bit sRGB.
+//! - **exposure**, **tone curve**: the factor on all light and the mapping into the screen's range before 8 bits.
+//! - **map**: a picture of something other than light: depth, normals, objects, cost.
+//!
+//! Cells:
+//! - **cell**: one character position; **grid**: the cells of a screen; **cell aspect**: cell height over width.
+//! - **glyph**: the character in a cell; **ink**: its foreground or background colour.
+//! - **half block**: `▀` or `▄`, which makes two pixels of a cell. **ramp**: characters by lightness.
+//! - **cell mode**: the kind of glyphs and the number of colours that a picture is drawn with.
+//! - **pen**: the colours and attributes that a terminal uses for the next character.
+//! - **encoder**: turns the difference of two grids into bytes; **quality**: how exactly it does so in motion.
+//! - **golden frame**: a frame in a file that later frames are compared with.
+//!
+//! Terminal and live view:
+//! - **query**: bytes that ask the terminal something; **reply**: its answer. **fence**: the query after all others.
+//! - **capability**: something that the terminal supports, and the source that says so.
+//! - **in flight**: bytes that were sent and not yet confirmed by a reply.
+//! - **round trip**: the time from a query to its reply; **rate**: the bytes per second of the link.
+//! - **congestion window**: the limit on the bytes in flight: rate times shortest round trip, and one frame.
+//! - **shot**: what a frame shows: scene, camera, size, map and sampling.
+//! - **refinement**: tracing the same shot with more samples while nothing moves.
+//! - **keymap**: which key runs which **command**, for each mode. **layer**: a panel over the picture.
 
 // Labels on docs.rs: which feature an item needs.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[cfg(all(feature = "live", not(any(target_os = "linux", target_os = "macos"))))]
-compile_error!(
-    "the feature `live` of termtrace is for Linux and macOS: it talks to the terminal through POSIX termios, poll and signals"
-);
+compile_error!("the feature `live` of termtrace is for Linux and macOS: it needs POSIX termios, poll and signals");
 
 mod table;
 mod color;
