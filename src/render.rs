@@ -52,6 +52,7 @@ pub use single_pixel::{PixelTrace, trace_pixel};
 /// assert_eq!(light.pixels().len(), 12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(hidden)]
 pub fn render(scene: &Scene, camera: &Camera, resolution: Resolution, sampling: impl Into<Sampling>) -> Framebuffer {
     render_partial(Executor::Pool, scene, camera, resolution, sampling.into()).framebuffer
 }
