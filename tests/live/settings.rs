@@ -159,6 +159,8 @@ fn the_help_has_pages_where_the_screen_is_small() {
         page += 1;
         session.send(b"?");
         session.wait_for_text(&format!("keys: fly, page {page} of "));
+        // The title is the first row of the frame: the others may still be on their way.
+        session.wait_for_rest();
         told += &session.seen().screen().text().concat();
     }
     session.send(b"?");
