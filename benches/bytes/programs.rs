@@ -41,17 +41,14 @@ impl Wire {
         Self(Rc::new(RefCell::new((vt100::Parser::new(side(size.rows), side(size.columns), 0), 0))))
     }
 
-    /// Returns the look of each cell: of a blank its background, of a half block the colours of
-    /// both halves.
+    /// Returns the look of each cell: of a blank its background, of a half block both colours.
     fn cells(&self, size: Size) -> Vec<String> {
         let places = (0..size.rows).flat_map(|row| (0..size.columns).map(move |column| (row, column)));
         let line = self.0.borrow();
         let shown = |(row, column)| {
             let cell = line.0.screen().cell(row, column).expect("the cell is on the screen");
-            let (fg, bg) = match cell.inverse() {
-                true => (cell.bgcolor(), cell.fgcolor()),
-                false => (cell.fgcolor(), cell.bgcolor()),
-            };
+            let (fg, bg) = (cell.fgcolor(), cell.bgcolor());
+            let (fg, bg) = if cell.inverse() { (bg, fg) } else { (fg, bg) };
             let halves = match cell.contents() {
                 "" | " " => Some([bg, bg]),
                 "▄" => Some([bg, fg]),
