@@ -28,7 +28,7 @@ pub(crate) fn of_rust(source: &str) -> Vec<Comment<'_>> {
 /// Returns the comments of a file whose comments start with `#`: TOML, YAML and shell.
 pub(crate) fn of_script(source: &str) -> Vec<Comment<'_>> {
     let comments = source.lines().enumerate().filter_map(|(index, line)| {
-        let text = if line.starts_with('#') { &line[1..] } else { line.split_once(" #")?.1 };
+        let text = line.strip_prefix('#').or_else(|| Some(line.split_once(" #")?.1))?;
         Some(Comment { line: index + 1, text: text.trim(), opens_doc: false })
     });
     comments.collect()
@@ -43,15 +43,12 @@ fn doc_marker(line: &str) -> Option<&str> {
 
 /// Returns the text of the comment that a line is, or ends in.
 fn rust_comment(line: &str) -> Option<&str> {
-    let text = match line.trim_start().strip_prefix("//") {
-        Some(comment) => comment,
-        None => {
-            let (before, comment) = line.split_once(" // ")?;
-            // An odd number of quotes: the slashes are inside a string.
-            let escaped = before.matches("\\\"").count();
-            ((before.matches('"').count() - escaped) % 2 == 0).then_some(comment)?
-        }
-    };
+    let text = line.trim_start().strip_prefix("//").or_else(|| {
+        let (before, comment) = line.split_once(" // ")?;
+        // An odd number of quotes: the slashes are inside a string.
+        let escaped = before.matches("\\\"").count();
+        ((before.matches('"').count() - escaped) % 2 == 0).then_some(comment)
+    })?;
     Some(text.trim_start_matches(['/', '!']).trim())
 }
 

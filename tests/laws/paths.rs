@@ -86,7 +86,8 @@ fn paths_in_comments_exist() {
 #[test]
 fn snapshots_name_files_that_exist() {
     let files = repository_files();
-    let snapshots: Vec<_> = files.iter().filter(|file| file.ends_with(".snap")).collect();
+    let snapshots: Vec<_> =
+        files.iter().filter(|file| Path::new(file).extension().is_some_and(|ending| ending == "snap")).collect();
     assert!(snapshots.len() > 20, "{} snapshots were found", snapshots.len());
     for snapshot in snapshots {
         let text = fs::read_to_string(root().join(snapshot)).expect("snapshots are UTF-8");

@@ -607,7 +607,7 @@ fn output_that_is_no_terminal_gets_one_plain_frame() {
     assert_eq!(text, termtrace::text_frame(&Scene::load(Path::new(SCENE)).unwrap(), termtrace::Size::new(80, 24)));
 }
 
-/// O_NONBLOCK would stay on the shared terminal after the program, and the shell would find it set.
+/// `O_NONBLOCK` would stay on the shared terminal after the program, where the shell would find it.
 #[cfg(target_os = "linux")]
 #[test]
 fn the_shared_terminal_never_gets_nonblocking() {
