@@ -85,7 +85,8 @@ const SILENT_FRAME_TIME: Duration = Duration::from_micros(33_334);
 
 /// Congestion window in bytes on a slow link after a resync, until the round trip is known.
 ///
-/// 80 ms of 50 KB/s. The rate may be wrong by then. With the window of that rate a lost first reply cost a key 3.2 s instead of 1.4 s.
+/// 80 ms of 50 KB/s. The rate may be wrong by then. With the window of that rate a lost first reply cost a key
+/// 3.2 s instead of 1.4 s.
 const RESYNC_WINDOW: f64 = 4_000.0;
 
 /// A link to a terminal, with its estimates and the times at which it may be sent more.
