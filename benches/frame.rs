@@ -14,8 +14,8 @@ use termtrace::{
 const SIZES: [Size; 2] = [Size::new(80, 24), Size::new(200, 60)];
 
 fn scene(name: &str) -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
-    Scene::load(&path).expect("shipped scenes are fine")
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/scenes").join(name);
+    Scene::load(&path).expect("the scenes of the benches are valid")
 }
 
 fn picture(scene: &Scene, camera: &Camera, size: Size) -> Picture {

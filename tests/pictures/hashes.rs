@@ -1,7 +1,7 @@
 //! Hashes of pictures: the same bits on any number of threads, in any build, on any machine.
 //!
-//! `tests/hashes.txt` has a hash of the light of every shipped scene (before tone and rounding, which would hide a
-//! wrong last bit). `BLESS=1 cargo test --test pictures hashes` writes it anew. Both builds are held to this one file.
+//! `tests/hashes.txt` has a hash of the light of every scene in `benches/scenes` (before tone and rounding, which would
+//! hide a wrong last bit). `BLESS=1 cargo test --test pictures hashes` writes it anew. Both builds are held to this one file.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -20,16 +20,28 @@ fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-/// Returns all shipped scenes by name.
+/// Returns the scenes of `benches/scenes`, by name, and the shipped scenes that differ from those, as `scenes/NAME`.
+///
+/// The copies never change, so that their hashes can be compared over the whole history.
 fn scenes() -> BTreeMap<String, Scene> {
-    std::fs::read_dir(path("scenes"))
+    let copies = scene_files("benches/scenes");
+    let is_copied = |(name, path): &(String, PathBuf)| {
+        let same = |(copy, at): &(String, PathBuf)| copy == name && std::fs::read(at).ok() == std::fs::read(path).ok();
+        copies.iter().any(same)
+    };
+    let shipped = scene_files("scenes").into_iter().filter(|scene| !is_copied(scene));
+    let shipped = shipped.map(|(name, path)| (format!("scenes/{name}"), path));
+    let load = |(name, path): (String, PathBuf)| (name, Scene::load(&path).unwrap_or_else(|error| panic!("{error}")));
+    copies.iter().cloned().chain(shipped).map(load).collect()
+}
+
+/// Returns name and path of the scene files in a folder.
+fn scene_files(folder: &str) -> Vec<(String, PathBuf)> {
+    std::fs::read_dir(path(folder))
         .expect("the folder is there")
         .map(|entry| entry.expect("the folder can be read").path())
         .filter(|path| path.extension().is_some_and(|ending| ending == "ron"))
-        .map(|path| {
-            let name = path.file_stem().expect("it has an ending").to_string_lossy().into_owned();
-            (name, Scene::load(&path).unwrap_or_else(|error| panic!("{error}")))
-        })
+        .map(|path| (path.file_stem().expect("it has an ending").to_string_lossy().into_owned(), path))
         .collect()
 }
 
