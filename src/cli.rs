@@ -22,6 +22,7 @@ mod record;
 mod renamed;
 mod scene_args;
 mod settings;
+mod shipped;
 mod threads;
 
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -35,6 +36,7 @@ const EXAMPLES: &str = "\
 Without a scene the built-in one is shown. With several, n shows the next one and p the previous one.
 
 Examples:
+  termtrace corridor                                     open a built-in scene; termtrace scenes lists them
   termtrace scenes/three_spheres.ron                     open a scene; ? shows the keys, q quits
   termtrace scenes/three_spheres.ron --eye 0,4,9         from another eye point
   termtrace frame scenes/three_spheres.ron               one frame as text
@@ -74,6 +76,8 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// List the built-in scenes
+    Scenes(DeferredArgs<shipped::ScenesArgs>),
     /// Print one frame, or compare it with a golden frame
     Frame(DeferredArgs<frame::FrameArgs>),
     /// Record a film along a camera path: asciicast, GIF or numbered PNGs
@@ -111,6 +115,7 @@ pub(crate) fn main() -> ExitCode {
     // The matches of the subcommand if there is one: only these know which flags the user gave.
     let given = given.subcommand().map_or(&given, |(_, given)| given);
     let done = match cli.command {
+        Some(Command::Scenes(_)) => shipped::list(),
         Some(Command::Frame(DeferredArgs(args))) => frame::run(&args),
         Some(Command::Record(DeferredArgs(args))) => record::run(&args),
         Some(Command::Explain(DeferredArgs(args))) => explain::run(&args),

@@ -46,6 +46,9 @@ _termtrace() {
             termtrace,record)
                 cmd="termtrace__subcmd__record"
                 ;;
+            termtrace,scenes)
+                cmd="termtrace__subcmd__scenes"
+                ;;
             *)
                 ;;
         esac
@@ -53,7 +56,7 @@ _termtrace() {
 
     case "${cmd}" in
         termtrace)
-            opts="-h -V --eye --target --up --fov --threads --color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --order --compressed-link --quiet --no-config --help --version frame record explain check describe bench doctor config completions man"
+            opts="-h -V --eye --target --up --fov --threads --color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order --compressed-link --quiet --no-config --help --version scenes frame record explain check describe bench doctor config completions man"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 1 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
@@ -120,6 +123,10 @@ _termtrace() {
                     return 0
                     ;;
                 --reduced-motion)
+                    COMPREPLY=($(compgen -W "true false" -- "${cur}"))
+                    return 0
+                    ;;
+                --hint)
                     COMPREPLY=($(compgen -W "true false" -- "${cur}"))
                     return 0
                     ;;
@@ -221,7 +228,7 @@ _termtrace() {
             return 0
             ;;
         termtrace__subcmd__config)
-            opts="-h --no-config --color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --keys --help"
+            opts="-h --no-config --color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --keys --help"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
@@ -268,6 +275,10 @@ _termtrace() {
                     return 0
                     ;;
                 --reduced-motion)
+                    COMPREPLY=($(compgen -W "true false" -- "${cur}"))
+                    return 0
+                    ;;
+                --hint)
                     COMPREPLY=($(compgen -W "true false" -- "${cur}"))
                     return 0
                     ;;
@@ -571,6 +582,20 @@ _termtrace() {
                     COMPREPLY=($(compgen -f "${cur}"))
                     return 0
                     ;;
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        termtrace__subcmd__scenes)
+            opts="-h --no-config --help"
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
                 *)
                     COMPREPLY=()
                     ;;

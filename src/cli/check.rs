@@ -1,8 +1,10 @@
 //! `termtrace check`: reports every fault of a scene file.
 
 use super::outcome::{CommandResult, write_stdout};
-use super::scene_args::SceneArgs;
+use super::scene_args::CameraArgs;
+use super::scene_source::SceneSource;
 use clap::Args;
+use std::path::PathBuf;
 use termtrace::internals::text::visible;
 
 const EXAMPLES: &str = "\
@@ -13,16 +15,19 @@ Examples:
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct CheckArgs {
+    /// The scene file or mesh; - reads the scene from standard input
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
     #[command(flatten)]
-    scene: SceneArgs,
+    camera_args: CameraArgs,
 }
 
 /// Loads the scene, whose error lists every fault, and prints that it has none.
 pub(super) fn run(args: &CheckArgs) -> CommandResult {
-    let scene = args.scene.load()?;
+    let scene = args.camera_args.load(&SceneSource::of(&args.scene)?)?;
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let objects = count(scene.objects().len(), "object");
     let lights = count(scene.lights().len(), "light");
-    let path = args.scene.path().display().to_string();
+    let path = args.scene.display().to_string();
     write_stdout(format!("{}: OK ({objects}, {lights})\n", visible(&path)).as_bytes())
 }

@@ -33,7 +33,7 @@ pub(super) fn run(args: &DescribeArgs) -> CommandResult {
     check_pixel_count(width.into(), height.into())?;
     let resolution = Resolution::square(width, height);
     let scene = args.scene.load()?;
-    let name = visible(&args.scene.path().display().to_string());
+    let name = visible(&args.scene.name());
     let text = args.scene.on_threads(|| describe(&name, &scene, scene.camera(), resolution))?;
     write_stdout(text.as_bytes())
 }

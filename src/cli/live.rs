@@ -1,39 +1,47 @@
 //! `termtrace SCENE`: the live view on a terminal, one frame anywhere else.
 
-use super::Cli;
 use super::completions::{command_near, no_command};
 use super::encoding::OrderArgs;
-use super::outcome::{CommandResult, Failure, exit_after_panic, print_clap_message, reason, usage, write_stdout};
+use super::outcome::{CommandResult, Failure, exit_after_panic, reason, usage, write_stdout};
 use super::scene_args::CameraArgs;
 use super::scene_source::SceneSource;
 use super::settings::{SettingArgs, Settings, keys};
+use super::shipped::ShippedScene;
 use super::threads::on_threads;
-use clap::error::ErrorKind;
-use clap::{ArgMatches, Args, CommandFactory};
+use clap::{ArgMatches, Args};
 use std::io::{self, IsTerminal};
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use termtrace::internals::capabilities::USUAL_CELL_ASPECT;
-use termtrace::internals::control::{Command, KeyMode, Keymap};
+use termtrace::internals::control::{Command, Direction, KeyMode, Keymap};
 use termtrace::internals::mesh_file::is_mesh;
 use termtrace::internals::terminal::die_of;
 use termtrace::internals::{app, cell, maps};
 use termtrace::live::{Ending, Options, Outcome, Signals, Source};
 use termtrace::{Colors, Sampling, Size, export};
 
-/// Returns the note shown at the start if the command line names no scene.
-fn welcome(keymap: &Keymap) -> String {
-    let said = [(Command::Help, "shows the keys"), (Command::Quit, "quits")].map(|(command, does)| {
-        let key = keymap.key_of(&[KeyMode::Fly, KeyMode::Always], command);
-        key.map_or_else(String::new, |key| format!("; {key} {does}"))
-    });
-    format!("a built-in scene; termtrace FILE opens yours{}", said.concat())
+/// Returns the line shown until the first key: what to press, by the keys that are bound.
+fn hint(keymap: &Keymap, is_demo: bool) -> String {
+    let key = |command| keymap.key_of(&[KeyMode::Fly, KeyMode::Always], command).map(|key| key.to_string());
+    let moves = [Direction::Forward, Direction::Left, Direction::Back, Direction::Right];
+    let moves: Option<Vec<_>> = moves.into_iter().map(|direction| key(Command::Move(direction))).collect();
+    let moves = moves.filter(|keys| keys.iter().all(|key| key.len() == 1)).map(|keys| keys.concat().to_uppercase());
+    let does = |command, does: &str| key(command).map(|key| format!("{key} {does}"));
+    let moves = Some(moves.map_or_else(|| "drag to look".to_owned(), |keys| format!("drag or {keys} to move")));
+    let (help, quit) = (does(Command::Help, "keys"), does(Command::Quit, "quit"));
+    // Both fit 80 columns.
+    let parts = if is_demo {
+        vec![moves, help, quit, Some("termtrace FILE opens yours".to_owned())]
+    } else {
+        vec![moves, does(Command::NextMap, "maps"), does(Command::Explain, "explain"), help, quit]
+    };
+    parts.into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 
 #[derive(Args)]
 pub(super) struct LiveArgs {
-    /// The scene files; - reads a scene from standard input [default: the built-in scene]
+    /// The scenes: files, names of built-in scenes, or - for standard input [default: three_spheres]
     #[arg(value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     #[command(flatten)]
@@ -61,7 +69,7 @@ impl LiveArgs {
         options.reduced_motion = settings.reduced_motion();
         options.map = settings.map.map();
         options.exports = Some(PathBuf::from("."));
-        options.welcome = self.scenes.is_empty().then(|| welcome(&keymap));
+        options.welcome = settings.hint().then(|| hint(&keymap, self.scenes.is_empty()));
         options.keymap = keymap;
         options.threads = self.camera_args.threads.map(usize::from);
         options
@@ -74,6 +82,7 @@ pub(super) fn run(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
     // clap takes a misspelt command for the name of a scene. A file of that name wins.
     if let Some(first) = args.scenes.first().and_then(|first| first.to_str())
         && !Path::new(first).exists()
+        && ShippedScene::named(Path::new(first)).is_none()
         && command_near(first).is_some()
     {
         return Err(no_command(first));
@@ -86,26 +95,19 @@ pub(super) fn run(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
 fn print_frame(args: &LiveArgs) -> CommandResult {
     let settings = &args.settings;
     settings.check_samples()?;
-    let source = match &args.scenes[..] {
-        [] => {
-            let missing = "standard output is not a terminal: name a scene to print, as in termtrace <SCENE>";
-            print_clap_message(&Cli::command().error(ErrorKind::MissingRequiredArgument, missing));
-            return Err(Failure::Reported(2));
-        }
-        [scene] => SceneSource::of(scene)?,
-        [first, more @ ..] => {
-            let more: Vec<_> = more.iter().map(|path| path.to_string_lossy()).collect();
-            let message = format!(
-                "standard output is not a terminal: only one scene can be printed, but \"{}\" follows \"{}\"",
-                more.join(" "),
-                first.display()
-            );
-            return Err(Failure::Usage(message));
-        }
-    };
-    let scene = source.load(args.camera_args.threads)?;
-    let camera = args.camera_args.camera(scene.camera()).map_err(usage)?;
-    let scene = scene.with_camera(camera);
+    if let [first, more @ ..] = &args.scenes[..]
+        && !more.is_empty()
+    {
+        let more: Vec<_> = more.iter().map(|path| path.to_string_lossy()).collect();
+        let message = format!(
+            "standard output is not a terminal: only one scene can be printed, but \"{}\" follows \"{}\"",
+            more.join(" "),
+            first.display()
+        );
+        return Err(Failure::Usage(message));
+    }
+    let source = SceneSource::of_argument(args.scenes.first().map(PathBuf::as_path))?;
+    let scene = args.camera_args.load(&source)?;
     let cell_aspect = settings.terminal.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
     let cell_mode = settings.terminal.cells.mode_for_file(Colors::None);
     let resolution = cell::resolution(cell_mode, Size::new(80, 24), cell_aspect).map_err(usage)?;
@@ -156,7 +158,7 @@ fn open_view(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
 /// mode: it may be typed.
 fn sources(args: &LiveArgs) -> Result<Vec<Source<Failure>>, Failure> {
     if args.scenes.is_empty() {
-        return Ok(vec![live_source(SceneSource::BuiltIn, &args.camera_args)]);
+        return Ok(vec![live_source(SceneSource::of_argument(None)?, &args.camera_args)]);
     }
     args.scenes.iter().map(|path| SceneSource::of(path).map(|scene| live_source(scene, &args.camera_args))).collect()
 }

@@ -2,6 +2,7 @@
 
 use super::outcome::{CommandResult, Failure, usage};
 use super::scene_source::SceneSource;
+use super::shipped::ShippedScene;
 use super::threads::on_threads;
 use clap::Args;
 use glam::Vec3;
@@ -13,17 +14,17 @@ use termtrace::{Camera, CameraError, Pose, Scene};
 /// The scene and the camera.
 #[derive(Args)]
 pub(super) struct SceneArgs {
-    /// The scene file; - reads the scene from standard input
+    /// The scene: a file, the name of a built-in scene, or - for standard input [default: three_spheres]
     #[arg(value_name = "SCENE")]
-    pub(super) scene: PathBuf,
+    scene: Option<PathBuf>,
     #[command(flatten)]
     pub(super) camera_args: CameraArgs,
 }
 
 impl SceneArgs {
-    /// Returns the scene's file name.
-    pub(super) fn path(&self) -> &Path {
-        &self.scene
+    /// Returns the name of the scene for messages.
+    pub(super) fn name(&self) -> String {
+        self.scene.as_deref().unwrap_or(Path::new(ShippedScene::default_scene().name)).display().to_string()
     }
 
     /// Refuses an output file that is the scene file or one of the `others`, by whatever path.
@@ -34,7 +35,7 @@ impl SceneArgs {
             // An output that does not exist yet overwrites nothing.
             _ => false,
         };
-        if [&[self.path()], others].concat().iter().any(is_output) {
+        if self.scene.as_deref().iter().chain(others).any(is_output) {
             return Err(Failure::Usage(format!("{} is an input file and would be overwritten", output.display())));
         }
         Ok(())
@@ -42,9 +43,7 @@ impl SceneArgs {
 
     /// Loads the scene, with the camera of the command line.
     pub(super) fn load(&self) -> Result<Scene, Failure> {
-        let scene = SceneSource::of(&self.scene)?.load(self.camera_args.threads)?;
-        let camera = self.camera_args.camera(scene.camera()).map_err(usage)?;
-        Ok(scene.with_camera(camera))
+        self.camera_args.load(&SceneSource::of_argument(self.scene.as_deref())?)
     }
 
     /// Runs `work` on the number of threads of the command line.
@@ -74,6 +73,13 @@ pub(super) struct CameraArgs {
 }
 
 impl CameraArgs {
+    /// Returns the scene with the camera that the command line wants.
+    pub(super) fn load(&self, source: &SceneSource) -> Result<Scene, Failure> {
+        let scene = source.load(self.threads)?;
+        let camera = self.camera(scene.camera()).map_err(usage)?;
+        Ok(scene.with_camera(camera))
+    }
+
     /// Loads the scene with this camera, without building its trees, until the reporter cancels.
     pub(super) fn draft(&self, source: &SceneSource, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
         let draft = source.draft(reporter)?;

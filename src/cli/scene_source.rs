@@ -1,6 +1,7 @@
 //! The source of a scene: a file, standard input, or the program itself.
 
 use super::outcome::{Failure, reason, usage};
+use super::shipped::ShippedScene;
 use super::suggestions;
 use super::threads::on_threads;
 use std::fmt;
@@ -8,10 +9,8 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use termtrace::internals::progress::{Reporter, Unfinished};
 use termtrace::internals::scene::Draft;
+use termtrace::internals::text::closest;
 use termtrace::{LoadError, Scene, SceneError};
-
-/// The scene that is shown if the command line names none.
-const BUILT_IN: &str = include_str!("../../scenes/three_spheres.ron");
 
 /// The source of a scene, which can be read repeatedly.
 #[derive(Clone)]
@@ -19,15 +18,25 @@ pub(super) enum SceneSource {
     File(PathBuf),
     /// The contents of standard input.
     Stdin(Vec<u8>),
-    /// The scene that is built into the program.
-    BuiltIn,
+    /// A scene that is part of the program.
+    Shipped(&'static ShippedScene),
 }
 
 impl SceneSource {
     /// Returns the source that a command line argument names. Standard input (`-`) is read here,
     /// before the terminal, which it may be, is put into raw mode.
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
-        if path == Path::new("-") { read_stdin().map(Self::Stdin) } else { Ok(Self::File(path.to_owned())) }
+        if path == Path::new("-") {
+            return read_stdin().map(Self::Stdin);
+        }
+        // A file of that name wins, even one that cannot be read.
+        let shipped = ShippedScene::named(path).filter(|_| path.symlink_metadata().is_err());
+        Ok(shipped.map_or_else(|| Self::File(path.to_owned()), Self::Shipped))
+    }
+
+    /// Returns the source of a scene that a command was given, or the default scene.
+    pub(super) fn of_argument(path: Option<&Path>) -> Result<Self, Failure> {
+        path.map_or_else(|| Ok(Self::Shipped(ShippedScene::default_scene())), Self::of)
     }
 
     /// Loads the scene and builds its trees on this number of threads.
@@ -41,7 +50,9 @@ impl SceneSource {
         match self {
             Self::File(path) => Draft::load(path, reporter).map_err(|error| not_loaded(path, error)),
             Self::Stdin(text) => Draft::from_bytes("standard input", text, reporter).map_err(wrong),
-            Self::BuiltIn => Draft::from_bytes("built-in scene", BUILT_IN.as_bytes(), reporter).map_err(wrong),
+            Self::Shipped(scene) => {
+                Draft::from_embedded(scene.name, scene.text.as_bytes(), scene.meshes, reporter).map_err(wrong)
+            }
         }
     }
 }
@@ -51,7 +62,7 @@ impl fmt::Display for SceneSource {
         match self {
             Self::File(path) => path.display().fmt(f),
             Self::Stdin(_) => f.write_str("standard input"),
-            Self::BuiltIn => f.write_str("built-in scene"),
+            Self::Shipped(scene) => f.write_str(scene.name),
         }
     }
 }
@@ -69,11 +80,16 @@ fn not_loaded(path: &Path, error: Unfinished<LoadError>) -> Failure {
         return Failure::Scene(error);
     }
     // A file that exists was read and is wrong: another name would not help.
-    let meant = if path.exists() { None } else { suggestions::scene_like(path) };
+    let meant = if path.exists() { None } else { suggestions::scene_like(path).or_else(|| shipped_like(path)) };
     Failure::Usage(match meant {
         Some(meant) => format!("{error}; did you mean {}?", meant.display()),
         None => error.to_string(),
     })
+}
+
+/// Returns the name of the built-in scene that is most like a name.
+fn shipped_like(name: &Path) -> Option<PathBuf> {
+    closest(name.to_str()?, ShippedScene::names()).map(PathBuf::from)
 }
 
 /// Reads standard input, up to one byte more than a scene may have: the excess byte becomes the

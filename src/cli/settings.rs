@@ -72,6 +72,9 @@ pub(super) struct SettingArgs {
     #[arg(help = defaults::help("reduced_motion", "Each key press moves one step at once; nothing moves by itself"))]
     #[arg(hide_possible_values = true)]
     reduced_motion: Option<bool>,
+    #[arg(long, help = defaults::help("hint", "Say in the lowest row which keys to press, until the first one"), value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    #[arg(hide_possible_values = true)]
+    hint: Option<bool>,
 }
 
 impl SettingArgs {
@@ -86,6 +89,11 @@ impl SettingArgs {
 
     pub(super) fn reduced_motion(&self) -> bool {
         self.reduced_motion.unwrap_or(false)
+    }
+
+    /// Returns whether the keys to press are shown at the start.
+    pub(super) fn hint(&self) -> bool {
+        self.hint.unwrap_or(true)
     }
 }
 

@@ -41,7 +41,7 @@ impl Scene {
     /// The first fault of the syntax; if there is none, all others: unknown and missing fields, wrong types, and values
     /// out of range.
     pub fn from_ron(name: &str, text: &str) -> Result<Self, SceneError> {
-        draft(name, text, &Reporter::silent()).map(Draft::finish).map_err(Unfinished::failure)
+        draft(name, text, &[], &Reporter::silent()).map(Draft::finish).map_err(Unfinished::failure)
     }
 
     /// Parses a scene from a file's bytes, which should be UTF-8 text.
@@ -109,7 +109,20 @@ impl Draft {
     /// # Errors
     /// As [`Scene::from_bytes`], and if the reporter cancels.
     pub fn from_bytes(name: &str, bytes: &[u8], reporter: &Reporter<'_>) -> Result<Self, Unfinished<SceneError>> {
-        draft(name, text_from(name, bytes).map_err(Unfinished::Failed)?, reporter)
+        Self::from_embedded(name, bytes, &[], reporter)
+    }
+
+    /// Reads as [`Draft::from_bytes`] does, with the bytes of `meshes` in the place of mesh files of these names.
+    ///
+    /// # Errors
+    /// As [`Scene::from_bytes`], and if the reporter cancels.
+    pub fn from_embedded(
+        name: &str,
+        bytes: &[u8],
+        meshes: &[(&str, &[u8])],
+        reporter: &Reporter<'_>,
+    ) -> Result<Self, Unfinished<SceneError>> {
+        draft(name, text_from(name, bytes).map_err(Unfinished::Failed)?, meshes, reporter)
     }
 
     /// Reads as [`Scene::load`] does without building trees, until the reporter cancels it.
@@ -138,11 +151,16 @@ fn load(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, Unfinished<LoadEr
     memory::check(bytes.len() * PEAK_PER_TEXT_BYTE)
         .map_err(|error| LoadError::CannotRead { path: path.to_owned(), error: error.into() })?;
     let text = text_from(&name, &bytes).map_err(LoadError::Scene)?;
-    draft(&name, text, reporter).map_err(|unfinished| unfinished.map(LoadError::Scene))
+    draft(&name, text, &[], reporter).map_err(|unfinished| unfinished.map(LoadError::Scene))
 }
 
-fn draft(name: &str, text: &str, reporter: &Reporter<'_>) -> Result<Draft, Unfinished<SceneError>> {
-    let mut meshes = Meshes::beside(Path::new(name), reporter);
+fn draft(
+    name: &str,
+    text: &str,
+    embedded: &[(&str, &[u8])],
+    reporter: &Reporter<'_>,
+) -> Result<Draft, Unfinished<SceneError>> {
+    let mut meshes = Meshes::beside(Path::new(name), embedded, reporter);
     read_or_cancel(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", reporter, |root, faults| {
         let file = SceneFile::read(&root, reporter, faults);
         // Freed before the checks: with 400,000 spheres the peak is 394 MB instead of 462.
@@ -301,26 +319,32 @@ fn around_mesh(path: &Path, bytes: &[u8], reporter: &Reporter<'_>) -> Result<Dra
 /// The meshes that a scene names, each read once: objects may share one with different transforms.
 struct Meshes<'w> {
     folder: PathBuf,
+    /// Names and bytes of meshes that are read from memory.
+    embedded: &'w [(&'w str, &'w [u8])],
     read: HashMap<PathBuf, MeshFile>,
     reporter: &'w Reporter<'w>,
 }
 
 impl<'w> Meshes<'w> {
-    fn beside(scene: &Path, reporter: &'w Reporter<'w>) -> Self {
-        Self { folder: scene.parent().unwrap_or(Path::new("")).to_owned(), read: HashMap::new(), reporter }
+    fn beside(scene: &Path, embedded: &'w [(&'w str, &'w [u8])], reporter: &'w Reporter<'w>) -> Self {
+        Self { folder: scene.parent().unwrap_or(Path::new("")).to_owned(), embedded, read: HashMap::new(), reporter }
     }
 }
 
 impl shape::Meshes for Meshes<'_> {
-    fn mesh(&mut self, path: &str) -> Result<MeshFile, Unfinished<String>> {
-        let path = self.folder.join(path);
+    fn mesh(&mut self, name: &str) -> Result<MeshFile, Unfinished<String>> {
+        let path = self.folder.join(name);
         // A copy of the arrays: each object transforms its own.
         if let Some(mesh) = self.read.get(&path) {
             return Ok(mesh.clone());
         }
-        self.reporter.report_dependency(&path);
-        // Plain files only: a pipe could be read once, but a scene is loaded again when it changes.
-        let mesh = MeshFile::read_whole(&path, Accepted::Files, self.reporter);
+        let mesh = if let Some((_, bytes)) = self.embedded.iter().find(|(embedded, _)| *embedded == name) {
+            MeshFile::of_file(&path, bytes, self.reporter)
+        } else {
+            self.reporter.report_dependency(&path);
+            // Plain files only: a pipe could be read once, but a scene is loaded again when it changes.
+            MeshFile::read_whole(&path, Accepted::Files, self.reporter)
+        };
         let mesh = mesh.map_err(|unfinished| unfinished.map(|error| error.to_string()))?;
         self.read.insert(path, mesh.clone());
         Ok(mesh)

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each file in `assets/`, and the command that prints it.
-const ASSETS: [(&str, &str); 16] = [
+const ASSETS: [(&str, &str); 17] = [
     ("completions/termtrace.bash", "completions bash"),
     ("completions/termtrace.elv", "completions elvish"),
     ("completions/termtrace.fish", "completions fish"),
@@ -26,6 +26,7 @@ const ASSETS: [(&str, &str); 16] = [
     ("man/termtrace-frame.1", "man frame"),
     ("man/termtrace-man.1", "man man"),
     ("man/termtrace-record.1", "man record"),
+    ("man/termtrace-scenes.1", "man scenes"),
 ];
 
 fn assets() -> PathBuf {

@@ -149,8 +149,6 @@ fn version_is_the_crates() {
 #[test]
 fn a_wrong_command_line_is_reported_with_help() {
     let folder = Folder::new();
-    folder.run("").is_misused("<SCENE>");
-    folder.run("frame").is_misused("<SCENE>");
     folder.run("check").is_misused("<SCENE>");
     folder.run("frame ball.ron --pixel 8x8").is_misused("'--pixels'");
     folder.run("frame ball.ron --sample 2").is_misused("'--samples'");

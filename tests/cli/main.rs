@@ -22,6 +22,7 @@ mod pipes;
 mod pty;
 mod record;
 mod shells;
+mod shipped;
 mod sizes;
 mod web;
 

@@ -174,8 +174,8 @@ fn base64(bytes: &[u8]) -> String {
 #[test]
 fn a_built_in_scene_saves_no_view() {
     let program = Path::new(env!("CARGO_BIN_EXE_termtrace"));
-    let mut session = Start::new(program).spawn();
-    session.wait_for_text("a built-in scene; termtrace FILE opens yours");
+    let mut session = Start::new(program).env("TERMTRACE_HINT", "true").spawn();
+    session.wait_for_text("termtrace FILE opens yours");
     session.send(b"Y");
     session.wait_for_text("this scene has no scene file to save views to");
     leave(&mut session);

@@ -5,6 +5,7 @@ mod files;
 #[path = "../gravel/mod.rs"]
 mod gravel;
 mod harness;
+mod hint;
 mod keyboard;
 mod leaving;
 mod lights;

@@ -139,6 +139,8 @@ impl Start {
             .env("TERM", "xterm-256color")
             .env("COLORTERM", "truecolor")
             .env("LC_ALL", "C.UTF-8")
+            // The lowest row shows the picture from the first frame on; `live/hint.rs` turns the hint on.
+            .env("TERMTRACE_HINT", "false")
     }
 
     /// Prepares `sh` with a script.

@@ -2,7 +2,7 @@
 
 /// Each setting and its default. A table of text, because some defaults are decided while the
 /// program runs.
-const DEFAULTS: [(&str, &str); 11] = [
+const DEFAULTS: [(&str, &str); 12] = [
     ("color", "auto"),
     ("glyphs", "auto"),
     ("map", "shaded"),
@@ -14,6 +14,7 @@ const DEFAULTS: [(&str, &str); 11] = [
     ("move_speed", "1"),
     ("turn_speed", "1"),
     ("reduced_motion", "false"),
+    ("hint", "true"),
 ];
 
 /// Returns the default of the setting with this name.

@@ -1,0 +1,103 @@
+//! The scenes that are part of the program: opened by name from any folder, and listed by `termtrace scenes`.
+
+use super::outcome::{CommandResult, write_stdout};
+use clap::Args;
+use std::fmt::Write;
+use std::path::Path;
+
+/// A scene of the folder `scenes/`.
+#[derive(Debug)]
+pub(super) struct ShippedScene {
+    /// Its file name without the ending.
+    pub(super) name: &'static str,
+    /// The scene file.
+    pub(super) text: &'static str,
+    /// Names and bytes of the mesh files that the scene refers to.
+    pub(super) meshes: &'static [(&'static str, &'static [u8])],
+}
+
+/// Makes the table of shipped scenes; each row is the name of a scene and the mesh files that it refers to.
+macro_rules! shipped {
+    ($($name:literal $([$($mesh:literal),+])?),+ $(,)?) => {
+        /// All shipped scenes; the first is the default scene.
+        static SHIPPED: &[ShippedScene] = &[$(ShippedScene {
+            name: $name,
+            text: include_str!(concat!("../../scenes/", $name, ".ron")),
+            meshes: &[$($(($mesh, include_bytes!(concat!("../../scenes/", $mesh))),)+)?],
+        }),+];
+    };
+}
+
+shipped! {
+    "three_spheres",
+    "bare",
+    "two_lights",
+    "three_lights",
+    "inside_sphere",
+    "many_spheres",
+    "near_fov",
+    "far_fov",
+    "corridor",
+    "tilted_up",
+    "off_centre",
+    "teapots" ["teapot.obj"],
+}
+
+impl ShippedScene {
+    /// Returns the scene that is shown when none is named.
+    pub(super) fn default_scene() -> &'static Self {
+        &SHIPPED[0]
+    }
+
+    /// Returns the shipped scene of a name that was given in the place of a file.
+    pub(super) fn named(name: &Path) -> Option<&'static Self> {
+        SHIPPED.iter().find(|scene| Path::new(scene.name) == name)
+    }
+
+    /// Returns the names of all shipped scenes.
+    pub(super) fn names() -> impl Iterator<Item = &'static str> {
+        SHIPPED.iter().map(|scene| scene.name)
+    }
+
+    /// Returns the first line of the comment that the scene file begins with.
+    fn title(&self) -> &'static str {
+        self.text.lines().next().and_then(|line| line.strip_prefix("// ")).unwrap_or_default()
+    }
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  termtrace corridor                look into a built-in scene, from any folder
+  termtrace frame teapots           every command takes these names; a file of the same name wins";
+
+#[derive(Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct ScenesArgs {}
+
+/// `termtrace scenes`: prints the name of each shipped scene and what it shows.
+pub(super) fn list() -> CommandResult {
+    let width = ShippedScene::names().map(str::len).max().unwrap_or(0);
+    let lines = SHIPPED.iter().fold(String::new(), |mut lines, scene| {
+        let _ = writeln!(lines, "{:width$}  {}", scene.name, scene.title());
+        lines
+    });
+    write_stdout(lines.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_scene_of_the_folder_is_shipped_with_a_title() {
+        let files =
+            std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")).expect("the folder is there");
+        let files = files.map(|file| file.expect("the folder can be read").file_name().into_string().expect("UTF-8"));
+        let names: BTreeSet<_> = files.filter_map(|file| file.strip_suffix(".ron").map(str::to_owned)).collect();
+        assert_eq!(ShippedScene::names().map(str::to_owned).collect::<BTreeSet<_>>(), names);
+        for scene in SHIPPED {
+            assert!((10..=120).contains(&scene.title().len()), "{}: {:?}", scene.name, scene.title());
+        }
+    }
+}

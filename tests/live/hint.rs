@@ -1,0 +1,63 @@
+//! The hint in the lowest row: which keys to press, until the first one.
+
+use crate::pty::{SOON, Session, Size, Start};
+use std::fs;
+use tempfile::TempDir;
+
+const HINT: &str = "drag or WASD to move; v maps; x explain; ? keys; q quit";
+
+fn start(scene: &str, size: Size) -> Start {
+    Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(scene).env("TERMTRACE_HINT", "true").size(size)
+}
+
+fn leave(mut session: Session) {
+    session.send(b"q");
+    session.wait_exit(SOON);
+}
+
+#[test]
+fn every_scene_and_mesh_opens_with_the_keys_to_press() {
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/teapot.obj");
+    for scene in ["corridor", "tests/scenes/ball.ron", mesh] {
+        let mut session = start(scene, Size::cells(80, 24)).spawn();
+        session.wait_for_text(HINT);
+        let rows = session.seen().screen().text();
+        assert!(rows[..23].iter().all(|row| !row.contains("quit")), "{scene}: {rows:?}");
+        leave(session);
+    }
+}
+
+#[test]
+fn the_hint_goes_at_the_first_key_and_at_the_first_mouse_press() {
+    for input in [&b"e"[..], b"\x1b[<0;40;12M"] {
+        let mut session = start("corridor", Size::cells(80, 24)).spawn();
+        session.wait_for_text(HINT);
+        session.send(input);
+        session.wait_for("the hint to go", SOON, |seen| !seen.screen().text().concat().contains("q quit"));
+        leave(session);
+    }
+}
+
+/// The file of settings turns the hint off; the keys named are those that are bound.
+#[test]
+fn settings_and_bindings_hold_for_the_hint() {
+    let user = |name: &str, text: &str| -> TempDir {
+        let home = tempfile::tempdir().expect("a folder can be made");
+        let folder = home.path().join(".config/termtrace");
+        fs::create_dir_all(&folder).expect("a folder can be made");
+        fs::write(folder.join(name), text).expect("a file can be written");
+        home
+    };
+    let home = user("keys.ron", r#"(always: { "z": Help, "?": None })"#);
+    let mut session = start("corridor", Size::cells(80, 24)).env("HOME", home.path()).spawn();
+    session.wait_for_text("z keys; q quit");
+    leave(session);
+
+    let home = user("config.ron", "(hint: false)");
+    let start = start("corridor", Size::cells(80, 24)).env("HOME", home.path()).env("TERMTRACE_HINT", "");
+    let mut session = start.says_when_it_rests().spawn();
+    session.wait_for("a picture", SOON, |seen| seen.screen().text().concat().contains('▄'));
+    session.wait_for_rest();
+    assert!(!session.seen().screen().text().concat().contains("q quit"));
+    leave(session);
+}
