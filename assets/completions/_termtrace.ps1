@@ -37,6 +37,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--move-speed', '--move-speed', [CompletionResultType]::ParameterName, 'Speed at which keys move the eye: a factor from 0.1 to 10 [default: 1]')
             [CompletionResult]::new('--turn-speed', '--turn-speed', [CompletionResultType]::ParameterName, 'Speed at which keys turn the view: a factor from 0.1 to 10 [default: 1]')
             [CompletionResult]::new('--reduced-motion', '--reduced-motion', [CompletionResultType]::ParameterName, 'Each key press moves one step at once; nothing moves by itself [default: false]')
+            [CompletionResult]::new('--hint', '--hint', [CompletionResultType]::ParameterName, 'Say in the lowest row which keys to press, until the first one [default: true]')
             [CompletionResult]::new('--order', '--order', [CompletionResultType]::ParameterName, 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]')
             [CompletionResult]::new('--compressed-link', '--compressed-link', [CompletionResultType]::ParameterName, 'The link compresses, as ssh -C does; the same as --order raster')
             [CompletionResult]::new('--quiet', '--quiet', [CompletionResultType]::ParameterName, 'Do not print the camera on exit')
@@ -45,6 +46,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help')
             [CompletionResult]::new('-V', '-V ', [CompletionResultType]::ParameterName, 'Print version')
             [CompletionResult]::new('--version', '--version', [CompletionResultType]::ParameterName, 'Print version')
+            [CompletionResult]::new('scenes', 'scenes', [CompletionResultType]::ParameterValue, 'List the built-in scenes')
             [CompletionResult]::new('frame', 'frame', [CompletionResultType]::ParameterValue, 'Print one frame, or compare it with a golden frame')
             [CompletionResult]::new('record', 'record', [CompletionResultType]::ParameterValue, 'Record a film along a camera path: asciicast, GIF or numbered PNGs')
             [CompletionResult]::new('explain', 'explain', [CompletionResultType]::ParameterValue, 'Explain one pixel: its ray, what it hit, each light')
@@ -55,6 +57,12 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('config', 'config', [CompletionResultType]::ParameterValue, 'Show the effective settings and where each comes from')
             [CompletionResult]::new('completions', 'completions', [CompletionResultType]::ParameterValue, 'Print shell completions')
             [CompletionResult]::new('man', 'man', [CompletionResultType]::ParameterValue, 'Print the man page')
+            break
+        }
+        'termtrace;scenes' {
+            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help')
             break
         }
         'termtrace;frame' {
@@ -179,6 +187,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--move-speed', '--move-speed', [CompletionResultType]::ParameterName, 'Speed at which keys move the eye: a factor from 0.1 to 10 [default: 1]')
             [CompletionResult]::new('--turn-speed', '--turn-speed', [CompletionResultType]::ParameterName, 'Speed at which keys turn the view: a factor from 0.1 to 10 [default: 1]')
             [CompletionResult]::new('--reduced-motion', '--reduced-motion', [CompletionResultType]::ParameterName, 'Each key press moves one step at once; nothing moves by itself [default: false]')
+            [CompletionResult]::new('--hint', '--hint', [CompletionResultType]::ParameterName, 'Say in the lowest row which keys to press, until the first one [default: true]')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
             [CompletionResult]::new('--keys', '--keys', [CompletionResultType]::ParameterName, 'Print the keys instead, in the form of keys.ron')
             [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help')

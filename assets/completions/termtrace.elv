@@ -34,6 +34,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --move-speed 'Speed at which keys move the eye: a factor from 0.1 to 10 [default: 1]'
             cand --turn-speed 'Speed at which keys turn the view: a factor from 0.1 to 10 [default: 1]'
             cand --reduced-motion 'Each key press moves one step at once; nothing moves by itself [default: false]'
+            cand --hint 'Say in the lowest row which keys to press, until the first one [default: true]'
             cand --order 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]'
             cand --compressed-link 'The link compresses, as ssh -C does; the same as --order raster'
             cand --quiet 'Do not print the camera on exit'
@@ -42,6 +43,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --help 'Print help'
             cand -V 'Print version'
             cand --version 'Print version'
+            cand scenes 'List the built-in scenes'
             cand frame 'Print one frame, or compare it with a golden frame'
             cand record 'Record a film along a camera path: asciicast, GIF or numbered PNGs'
             cand explain 'Explain one pixel: its ray, what it hit, each light'
@@ -52,6 +54,11 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand config 'Show the effective settings and where each comes from'
             cand completions 'Print shell completions'
             cand man 'Print the man page'
+        }
+        &'termtrace;scenes'= {
+            cand --no-config 'Ignore config.ron and keys.ron'
+            cand -h 'Print help'
+            cand --help 'Print help'
         }
         &'termtrace;frame'= {
             cand --eye 'Eye point, instead of the scene''s'
@@ -168,6 +175,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --move-speed 'Speed at which keys move the eye: a factor from 0.1 to 10 [default: 1]'
             cand --turn-speed 'Speed at which keys turn the view: a factor from 0.1 to 10 [default: 1]'
             cand --reduced-motion 'Each key press moves one step at once; nothing moves by itself [default: false]'
+            cand --hint 'Say in the lowest row which keys to press, until the first one [default: true]'
             cand --no-config 'Ignore config.ron and keys.ron'
             cand --keys 'Print the keys instead, in the form of keys.ron'
             cand -h 'Print help'

@@ -1,6 +1,6 @@
 # Print an optspec for argparse to handle cmd's options that are independent of any subcommand.
 function __fish_termtrace_global_optspecs
-    string join \n eye= target= up= fov= threads= color= glyphs= cell-aspect= map= samples= quality= max-rate= fps= move-speed= turn-speed= reduced-motion= order= compressed-link quiet no-config h/help V/version
+    string join \n eye= target= up= fov= threads= color= glyphs= cell-aspect= map= samples= quality= max-rate= fps= move-speed= turn-speed= reduced-motion= hint= order= compressed-link quiet no-config h/help V/version
 end
 
 function __fish_termtrace_needs_command
@@ -59,6 +59,8 @@ complete -c termtrace -n "__fish_termtrace_needs_command" -l move-speed -d 'Spee
 complete -c termtrace -n "__fish_termtrace_needs_command" -l turn-speed -d 'Speed at which keys turn the view: a factor from 0.1 to 10 [default: 1]' -r
 complete -c termtrace -n "__fish_termtrace_needs_command" -l reduced-motion -d 'Each key press moves one step at once; nothing moves by itself [default: false]' -r -f -a "true\t''
 false\t''"
+complete -c termtrace -n "__fish_termtrace_needs_command" -l hint -d 'Say in the lowest row which keys to press, until the first one [default: true]' -r -f -a "true\t''
+false\t''"
 complete -c termtrace -n "__fish_termtrace_needs_command" -l order -d 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]' -r -f -a "color\t''
 raster\t''"
 complete -c termtrace -n "__fish_termtrace_needs_command" -l compressed-link -d 'The link compresses, as ssh -C does; the same as --order raster'
@@ -66,6 +68,7 @@ complete -c termtrace -n "__fish_termtrace_needs_command" -l quiet -d 'Do not pr
 complete -c termtrace -n "__fish_termtrace_needs_command" -l no-config -d 'Ignore config.ron and keys.ron'
 complete -c termtrace -n "__fish_termtrace_needs_command" -s h -l help -d 'Print help'
 complete -c termtrace -n "__fish_termtrace_needs_command" -s V -l version -d 'Print version'
+complete -c termtrace -n "__fish_termtrace_needs_command" -a "scenes" -d 'List the built-in scenes'
 complete -c termtrace -n "__fish_termtrace_needs_command" -a "frame" -d 'Print one frame, or compare it with a golden frame'
 complete -c termtrace -n "__fish_termtrace_needs_command" -a "record" -d 'Record a film along a camera path: asciicast, GIF or numbered PNGs'
 complete -c termtrace -n "__fish_termtrace_needs_command" -a "explain" -d 'Explain one pixel: its ray, what it hit, each light'
@@ -76,6 +79,8 @@ complete -c termtrace -n "__fish_termtrace_needs_command" -a "doctor" -d 'Show w
 complete -c termtrace -n "__fish_termtrace_needs_command" -a "config" -d 'Show the effective settings and where each comes from'
 complete -c termtrace -n "__fish_termtrace_needs_command" -a "completions" -d 'Print shell completions'
 complete -c termtrace -n "__fish_termtrace_needs_command" -a "man" -d 'Print the man page'
+complete -c termtrace -n "__fish_termtrace_using_subcommand scenes" -l no-config -d 'Ignore config.ron and keys.ron'
+complete -c termtrace -n "__fish_termtrace_using_subcommand scenes" -s h -l help -d 'Print help'
 complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l eye -d 'Eye point, instead of the scene\'s' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l target -d 'Target point, instead of the scene\'s' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l up -d 'Up vector, vertical in the picture, instead of the scene\'s' -r
@@ -229,6 +234,8 @@ complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l fps -d 'F
 complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l move-speed -d 'Speed at which keys move the eye: a factor from 0.1 to 10 [default: 1]' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l turn-speed -d 'Speed at which keys turn the view: a factor from 0.1 to 10 [default: 1]' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l reduced-motion -d 'Each key press moves one step at once; nothing moves by itself [default: false]' -r -f -a "true\t''
+false\t''"
+complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l hint -d 'Say in the lowest row which keys to press, until the first one [default: true]' -r -f -a "true\t''
 false\t''"
 complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l no-config -d 'Ignore config.ron and keys.ron'
 complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l keys -d 'Print the keys instead, in the form of keys.ron'
