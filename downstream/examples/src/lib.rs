@@ -1,0 +1,1 @@
+//! The examples of the repository, built against the package (see `Cargo.toml`).
