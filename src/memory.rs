@@ -51,17 +51,5 @@ pub fn check(bytes: usize) -> Result<(), OutOfMemory> {
     reserved.map_err(|_| OutOfMemory { what_for: String::new() })
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_no_machine_has_is_an_error() {
-        assert!(check(1 << 20).is_ok());
-        for bytes in [1 << 60, usize::MAX] {
-            let error = io::Error::from(check(bytes).expect_err("no machine has it").when("for a test"));
-            assert_eq!(error.kind(), io::ErrorKind::OutOfMemory);
-            assert_eq!(error.to_string(), "there is not enough memory for a test");
-        }
-    }
-}
+#[cfg(all(test, unit_tests))]
+mod tests;

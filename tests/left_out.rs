@@ -1,6 +1,6 @@
 //! Names what `cargo test` leaves out in the package.
 //!
-//! The package has no test data, so of the test programs it has this one alone, and it lacks the files of the larger
+//! The package has no test data, so of the test programs it has this one alone, and it lacks the files of the
 //! unit tests. There this program prints the other programs and the modules of these files by name; in the repository
 //! it fails if a test program is missing from its list, or if it finds no such module.
 
@@ -39,9 +39,7 @@ fn main() -> ExitCode {
         return ExitCode::FAILURE;
     }
     if there.is_empty() {
-        println!(
-            "The package has the smaller unit tests and the documentation's examples. The others are in the repository:"
-        );
+        println!("The package has the documentation's examples. These tests are in the repository only:");
         for module in &modules {
             println!("unit tests {module} ... left out");
         }

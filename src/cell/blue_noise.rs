@@ -109,27 +109,5 @@ fn wrapped_distance(a: usize, b: usize) -> usize {
 /// Its sigma of 1.5 pixels is Ulichney's.
 const GAUSSIAN: [i32; TILE_SIDE / 2 + 1] = [10_000, 8_007, 4_111, 1_353, 286, 39, 3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn thresholds_are_equally_frequent() {
-        let mut counts = [0; 256];
-        THRESHOLDS.iter().for_each(|&threshold| counts[usize::from(threshold)] += 1);
-        assert_eq!(counts, [TILE_PIXELS / 256; 256]);
-    }
-
-    /// The means of blocks of 16 pixels hardly vary; those of white noise deviate by 74 / 4 = 18.
-    #[test]
-    fn block_means_vary_less_than_those_of_white_noise() {
-        let mean = |x: usize, y: usize| {
-            let block = (0..16).map(|k| f64::from(threshold(x + k % 4, y + k / 4)));
-            block.sum::<f64>() / 16.0 - 127.5
-        };
-        let square = |x: f64| x * x;
-        let sum: f64 = (0..TILE_PIXELS).map(|at| square(mean(at % TILE_SIDE, at / TILE_SIDE))).sum();
-        let deviation = (sum / TILE_PIXELS as f64).sqrt();
-        assert!(deviation < 10.0, "{deviation}");
-    }
-}
+#[cfg(all(test, unit_tests))]
+mod tests;

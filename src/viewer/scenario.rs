@@ -277,52 +277,5 @@ fn window(size: Size) -> Window {
     Window { size, cell: CellShape::default(), cell_pixels: Some((10, 20)) }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::collection::vec;
-    use proptest::prelude::*;
-    use proptest::sample::select;
-
-    /// Keys with a meaning in some mode.
-    const KEYS: &[u8] = b"wasdqezxhjklfogtvVcnNpPimLr?1[]<>\t\x1b 5";
-
-    proptest! {
-        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(200) })]
-
-        #[test]
-        fn the_rules_hold_in_any_story(scenario in vec(any::<u8>(), 0..300)) {
-            run_scenario(&scenario);
-        }
-
-        /// Keys with a meaning, in a loaded scene.
-        #[test]
-        fn the_rules_hold_whatever_keys_are_pressed(
-            keys in vec((select(KEYS), 0_u8..9, any::<u8>()), 0..60),
-        ) {
-            let shown = [6, 0, 0, 3, 1, 5, 4];
-            let pressed = keys.into_iter().flat_map(|(key, event, more)| [0, 1, key, event, more, 3, 2, 4]);
-            run_scenario(&shown.into_iter().chain(pressed).collect::<Vec<_>>());
-        }
-    }
-
-    /// A scene is drawn once its frame is finished, and again when it moves.
-    #[test]
-    fn a_scene_is_drawn_and_moves() {
-        let mut driver = Driver::new(0);
-        driver.viewer.show(SCENES[0].clone(), 0, false);
-        driver.act();
-        assert!(driver.job.is_some() && !driver.viewer.has_shown());
-        driver.finish_job(5);
-        driver.act();
-        assert!(driver.viewer.has_shown());
-        driver.come_to_rest();
-        let home = driver.viewer.moved();
-        driver.receive(b"w");
-        driver.now += Duration::from_millis(100);
-        driver.act();
-        assert!(home.is_none() && driver.viewer.moved().is_some(), "{home:?}");
-        assert!(driver.job.is_some());
-        driver.come_to_rest();
-    }
-}
+#[cfg(all(test, unit_tests))]
+mod tests;

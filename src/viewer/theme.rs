@@ -96,13 +96,5 @@ pub(super) fn draw_line(text: &str, theme: Theme, area: Rect, buffer: &mut Buffe
     Paragraph::new(text).style(theme.style).render(area, buffer);
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn small_screens_have_no_room() {
-        let fits = |columns, rows| has_room(Rect::new(0, 0, columns, rows));
-        assert!(fits(40, 12) && !fits(39, 24) && !fits(80, 11));
-    }
-}
+#[cfg(all(test, unit_tests))]
+mod tests;

@@ -52,18 +52,5 @@ impl<T> DerefMut for Tracked<T> {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_mutable_borrow_counts_as_a_change() {
-        let mut list = Tracked::new(vec![1]);
-        assert!(list.is_changed());
-        list.settle();
-        list.quietly().push(2);
-        assert!(list.len() == 2 && !list.is_changed());
-        list.push(3);
-        assert!(list.is_changed());
-    }
-}
+#[cfg(all(test, unit_tests))]
+mod tests;

@@ -1,0 +1,51 @@
+use super::*;
+use crate::capabilities::{Glyphs, HalfBlocks};
+
+#[test]
+fn names_are_plain_words() {
+    for (name, expected) in [
+        ("scenes/three_spheres.ron", "three_spheres"),
+        ("built-in scene", "built-in_scene"),
+        ("a\u{1b}[2J b.ply", "a__2J_b"),
+        ("-o.ron", "o"),
+        ("/", "scene"),
+        ("été.ron", "été"),
+    ] {
+        assert_eq!(stem(name), expected, "{name}");
+    }
+}
+
+#[test]
+fn what_is_shown_is_written_in_each_format() {
+    let pixels = vec![crate::color::Srgb8::new(255, 255, 255); 4];
+    let picture = Picture { width: 2, height: 2, pixels };
+    let capabilities = Capabilities {
+        cell_mode: CellMode::HALF_BLOCK,
+        cell_aspect: 2.0,
+        half_blocks: HalfBlocks::Lower,
+        light_background: false,
+        synchronized_output: false,
+    };
+    let written = |format| contents(format, &picture, &capabilities).expect("written");
+    assert_eq!(String::from_utf8_lossy(&written(Format::Text)), "@@\n");
+    assert_eq!(String::from_utf8_lossy(&written(Format::Tally)), "@ 2\n");
+    let dots = CellMode { glyphs: Glyphs::Dots, ..CellMode::HALF_BLOCK };
+    let in_dots = contents(Format::Text, &picture, &Capabilities { cell_mode: dots, ..capabilities });
+    assert_eq!(String::from_utf8_lossy(&in_dots.expect("written")), "oo\noo\n");
+    for &format in Format::ALL {
+        assert!(!written(format).is_empty(), "{format:?}");
+    }
+}
+
+#[test]
+fn nothing_is_written_over() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let write = |contents: &[u8]| write_new(folder.path(), "ball", Format::Svg, contents);
+    assert_eq!(write(b"1").expect("written"), "ball.svg");
+    std::fs::create_dir(folder.path().join("ball-2.svg")).expect("a folder can be made");
+    assert_eq!(write(b"3").expect("written"), "ball-3.svg");
+    assert_eq!(std::fs::read(folder.path().join("ball.svg")).expect("it is there"), b"1");
+    std::fs::remove_file(folder.path().join("ball.svg")).expect("it can be removed");
+    assert_eq!(write(b"again").expect("written"), "ball.svg");
+    assert!(write_new(&folder.path().join("missing"), "ball", Format::Png, b"").is_err());
+}

@@ -1,0 +1,75 @@
+use super::*;
+use crate::bvh::cut::{Around, Item, item};
+use glam::Vec3;
+
+/// A binary tree whose leaves have one box each, of arbitrary boxes.
+fn pairs(boxes: usize, seed: u32) -> Vec<BinaryNode> {
+    let mut state = seed;
+    let mut number = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / 16_777_216.0
+    };
+    let mut items: Vec<Item> = (0..boxes as u32)
+        .map(|at| {
+            let min = Vec3::new(number(), number(), number()) * 10.0;
+            item((at, &Bounds { min, max: min + Vec3::new(number(), number(), number()) }))
+        })
+        .collect();
+    let mut nodes = Vec::new();
+    one_by_one(&mut items, 0, &mut nodes);
+    nodes
+}
+
+/// Appends a binary tree down to single boxes, as `build::append` does down to leaves.
+fn one_by_one(items: &mut [Item], first: usize, nodes: &mut Vec<BinaryNode>) {
+    let bounds = Around::of(items).boxes.bounds();
+    let at = nodes.len();
+    if items.len() == 1 {
+        return nodes.push(BinaryNode { bounds, count: 1, at: first as u32 });
+    }
+    nodes.push(BinaryNode { bounds, count: 0, at: 0 });
+    let cut = 1 + (items.len() * 3 + first) % (items.len() - 1);
+    let (left, right) = items.split_at_mut(cut);
+    one_by_one(left, first, nodes);
+    nodes[at].at = (nodes.len() - at) as u32;
+    one_by_one(right, first + cut, nodes);
+}
+
+/// The least sum of half areas of wide nodes, found by trying all distributions.
+fn least_cost(pairs: &[BinaryNode], at: usize, places: usize) -> f64 {
+    let pair = &pairs[at];
+    if pair.count > 0 {
+        return 0.0;
+    }
+    let right = at + pair.at as usize;
+    let split = |places: usize| {
+        let of_left = 1..places;
+        let both = of_left.map(|left| least_cost(pairs, at + 1, left) + least_cost(pairs, right, places - left));
+        both.fold(f64::INFINITY, f64::min)
+    };
+    let whole = || f64::from(pair.bounds.half_area()) + split(LANES);
+    if places == 1 { whole() } else { split(places).min(whole()) }
+}
+
+/// The sum of half areas of the wide nodes of the fillings, and the number of boxes reached.
+fn cost_and_boxes(wide: &Wide<'_>, at: usize) -> (f64, usize) {
+    if wide.pairs[at].count > 0 {
+        return (0.0, 1);
+    }
+    let mut children = Children::default();
+    wide.gather(at, LANES, &mut children);
+    let below = children.pairs[..children.count].iter().map(|&child| cost_and_boxes(wide, child));
+    let own = f64::from(wide.pairs[at].bounds.half_area());
+    below.fold((own, 0), |(cost, boxes), (more, others)| (cost + more, boxes + others))
+}
+
+#[test]
+fn wide_nodes_are_the_cheapest_of_all_distributions() {
+    for seed in 0..6 {
+        let pairs = pairs(14, seed);
+        let (cost, boxes) = cost_and_boxes(&Wide::of(&pairs), 0);
+        let least = least_cost(&pairs, 0, 1);
+        assert_eq!(boxes, 14, "seed {seed}");
+        assert!((cost - least).abs() < 1e-4 * least, "seed {seed}: {cost}, but {least} is possible");
+    }
+}

@@ -1,0 +1,32 @@
+use super::*;
+use crate::grid::{Cell, Ink};
+use std::collections::HashSet;
+
+const BLACK: Srgb8 = Srgb8::new(0, 0, 0);
+const BLUE: Srgb8 = Srgb8::new(0, 0, 255);
+
+/// The kind consists of one file, its `mod` line and its row of the table.
+#[test]
+fn a_glyph_kind_for_tests_is_found_and_painted() {
+    let glyphs = Glyphs::from_name("dots").expect("by its name");
+    let picture = Picture { width: 2, height: 1, pixels: vec![BLUE, BLACK] };
+    let mode = CellMode { glyphs, colors: Colors::Truecolor };
+    let resolution = resolution(mode, Size::new(2, 1), 2.0).expect("a small screen");
+    assert_eq!((resolution.width(), resolution.height()), (picture.width, picture.height));
+    let grid = grid_from_picture(mode, &picture);
+    assert_eq!(*grid.cell(0, 0), Cell::new('o', Ink::Rgb(BLUE), Ink::Rgb(BLACK)));
+    assert_eq!(*grid.cell(1, 0), Cell::new(' ', Ink::Default, Ink::Rgb(BLACK)));
+    let on_light = Painter::new(mode.plain()).with_light_background(true).grid(&picture);
+    assert_eq!(on_light.cells().iter().map(|cell| cell.glyph.to_string()).collect::<String>(), "oo");
+}
+
+#[test]
+fn glyph_kinds_have_unique_names_and_plain_kinds_of_equal_pixel_counts() {
+    let mut names = HashSet::new();
+    for &glyphs in Glyphs::ALL {
+        assert!(names.insert(glyphs.name()), "{glyphs:?}");
+        let mode = CellMode { glyphs, colors: Colors::Truecolor };
+        assert_eq!(mode.plain().pixels_per_cell(), mode.pixels_per_cell(), "{glyphs:?}");
+        assert_eq!(mode.plain().plain(), mode.plain(), "{glyphs:?}");
+    }
+}

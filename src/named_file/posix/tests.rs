@@ -1,0 +1,73 @@
+use super::*;
+use crate::named_file::{read, reason};
+use crate::progress::Reporter;
+use nix::sys::stat::Mode;
+use nix::unistd::mkfifo;
+use std::fs;
+use std::io::Write;
+use std::os::unix::net::UnixListener;
+use std::path::PathBuf;
+
+fn read_up_to(most: usize, path: &Path, accepted: Accepted) -> Result<Vec<u8>, String> {
+    read(path, accepted, |_| most, &Reporter::silent()).map_err(|error| reason(&error))
+}
+
+fn fifo(folder: &Path) -> PathBuf {
+    let path = folder.join("fifo");
+    mkfifo(&path, Mode::S_IRWXU).expect("a pipe can be made");
+    path
+}
+
+#[test]
+fn only_accepted_kinds_of_files_are_read() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let (file, socket) = (folder.path().join("file"), folder.path().join("socket"));
+    fs::write(&file, "hello").expect("written");
+    let _listener = UnixListener::bind(&socket).expect("a socket can be made");
+    let fifo = fifo(folder.path());
+    let [zero, null] = ["/dev/zero", "/dev/null"].map(Path::new);
+    let refusal = |what: &str| Err(what.to_owned());
+    for (path, for_user, for_file) in [
+        (&*file, Ok(b"hello".to_vec()), Ok(b"hello".to_vec())),
+        (null, Ok(Vec::new()), refusal("this is a device, not a plain file")),
+        (zero, refusal("this is a device, not a file or a pipe"), refusal("this is a device, not a plain file")),
+        (&socket, refusal("this is a socket, not a file or a pipe"), refusal("this is a socket, not a plain file")),
+        (&fifo, refusal("this pipe delivered nothing for a second"), refusal("this is a pipe, not a plain file")),
+        (folder.path(), refusal("this is a directory, not a file"), refusal("this is a directory, not a file")),
+    ] {
+        assert_eq!(read_up_to(9, path, Accepted::FilesAndPipes), for_user, "{}", path.display());
+        assert_eq!(read_up_to(9, path, Accepted::Files), for_file, "{}", path.display());
+    }
+}
+
+/// The writer yields after each part, so that the reader finds the pipe empty, or is about to.
+#[test]
+fn a_slow_pipe_is_read_to_its_end() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let path = fifo(folder.path());
+    let parts: Vec<_> = (0..40).map(|part| vec![part; 100_000]).collect();
+    let (whole, writer) = (parts.concat(), path.clone());
+    let writing = std::thread::spawn(move || {
+        let mut pipe = OpenOptions::new().write(true).open(writer).expect("the reader opens it");
+        for part in parts {
+            pipe.write_all(&part).expect("the reader reads on");
+            std::thread::yield_now();
+        }
+    });
+    assert!(read_up_to(4_000_000, &path, Accepted::FilesAndPipes) == Ok(whole), "all that was written");
+    writing.join().expect("all was written");
+}
+
+#[test]
+fn a_pipe_without_end_is_refused_at_the_limit() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let path = fifo(folder.path());
+    let writer = path.clone();
+    let writing = std::thread::spawn(move || {
+        let mut pipe = OpenOptions::new().write(true).open(writer).expect("the reader opens it");
+        while pipe.write_all(&[0; 4096]).is_ok() {}
+    });
+    let too_large = "the file is larger than 2 MiB, too large to be read";
+    assert_eq!(read_up_to(2 << 20, &path, Accepted::FilesAndPipes), Err(too_large.to_owned()));
+    writing.join().expect("the pipe has closed");
+}

@@ -1,0 +1,40 @@
+use super::super::ledger::{Ledger, Query};
+use super::super::tests::ms;
+use super::*;
+
+/// Frames of 1,000 bytes are sent every 25 ms through 50 KB/s and 200 ms, and their replies
+/// arrive this much later than through an empty link. Returns the number of the reply that shows a loss, if any.
+fn shows_loss(frames: usize, later: impl Fn(usize) -> u64) -> Option<usize> {
+    let mut alignment = Alignment::default();
+    (0..frames).find(|&number| {
+        let mut ledger = Ledger::default();
+        let sent = (number..number + 8).map(|number| ms(25 * number as u64));
+        sent.for_each(|sent| ledger.record(Query::Counted, 1_000, sent));
+        let now = ms(25 * number as u64 + 220 + later(number));
+        alignment.is_misaligned(ledger.counted(), ms(200), 50_000.0, now)
+    })
+}
+
+#[test]
+fn replies_that_come_when_the_next_ones_should_show_a_loss() {
+    assert_eq!(shows_loss(100, |_| 0), None);
+    assert_eq!(shows_loss(100, |number| if number < 10 { 0 } else { 25 }), Some(13));
+}
+
+#[test]
+fn a_queue_that_drains_shows_no_loss() {
+    for drains in 4..=20 {
+        assert_eq!(
+            shows_loss(100, |number| 200_u64.saturating_sub(drains * number as u64)),
+            None,
+            "{drains} ms a frame"
+        );
+    }
+}
+
+#[test]
+fn replies_that_are_later_still_show_no_loss() {
+    for later in [12, 40, 100, 300] {
+        assert_eq!(shows_loss(100, |number| if number < 10 { 0 } else { later }), None, "{later} ms");
+    }
+}

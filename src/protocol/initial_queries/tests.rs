@@ -1,0 +1,97 @@
+use super::*;
+
+fn hints(term: &str, colorterm: &str) -> Hints {
+    let variable = |name: &str| match name {
+        "TERM" => Some(term.to_owned()),
+        "COLORTERM" => Some(colorterm.to_owned()),
+        _ => None,
+    };
+    Hints::gather(&variable, &|_| None)
+}
+
+fn has(queries: &InitialQueries, part: &[u8]) -> bool {
+    queries.bytes().windows(part.len()).any(|bytes| bytes == part)
+}
+
+#[test]
+fn a_batch_ends_with_its_fence_and_holds_one() {
+    for term in ["xterm", "tmux-256color", "screen", "linux"] {
+        let queries = InitialQueries::all(&hints(term, ""));
+        assert!(queries.bytes().ends_with(FENCE) && queries.is_open(), "{term}");
+        assert_eq!(queries.bytes().windows(3).filter(|bytes| *bytes == FENCE).count(), 1, "{term}");
+    }
+}
+
+#[test]
+fn each_terminal_gets_the_queries_that_it_understands() {
+    let parts: [&[u8]; 7] =
+        [b"\x1b[6n", b"\x1b]11;?", b"?2026$p", b"?1006$p", b"\x1b[16t", b"\x1bP$qm", b"\x1b]4;15;?"];
+    for (term, expected) in [
+        ("xterm", [true; 7]),
+        ("tmux-256color", [true, true, true, false, false, false, false]),
+        ("screen", [true, false, false, false, false, false, false]),
+        ("linux", [true, false, false, false, false, false, false]),
+        ("dumb", [false; 7]),
+    ] {
+        let queries = InitialQueries::all(&hints(term, ""));
+        assert_eq!(parts.map(|part| has(&queries, part)), expected, "{term}");
+    }
+    assert!(InitialQueries::all(&hints("dumb", "")).bytes().is_empty());
+}
+
+#[test]
+fn known_facts_are_not_queried() {
+    let queries = InitialQueries::needed(&hints("xterm", "truecolor"));
+    assert!(!has(&queries, b"$qm") && !has(&queries, b"\x1b]4;"));
+    assert!(has(&InitialQueries::needed(&hints("xterm", "")), b"$qm"));
+    assert!(has(&InitialQueries::needed(&hints("xterm-16color", "")), b"\x1b]4;0;?"));
+}
+
+#[test]
+fn replies_count_up_to_the_fence() {
+    let mut queries = InitialQueries::all(&hints("xterm", ""));
+    let replies = [
+        Reply::CursorPosition { row: 1, column: 2 },
+        Reply::Mode { mode: 2026, state: 2 },
+        Reply::KeyboardFlags(0),
+        Reply::CellPixels { width: 10, height: 20 },
+        Reply::Osc(b"11;rgb:ffff/ffff/ffff".to_vec()),
+        Reply::Dcs(b"1$r48;2;1;2;3m".to_vec()),
+        Reply::Status(0),
+    ];
+    for reply in &replies {
+        assert!(!queries.take(reply), "{reply:?}");
+    }
+    assert!(queries.take(&Reply::DeviceAttributes(vec![62])));
+    let replies = queries.replies().clone();
+    assert_eq!((replies.block_width, replies.synchronized_output), (Some(1), Some(true)));
+    assert_eq!((replies.kitty_keyboard, replies.cell_pixels), (Some(true), Some((10, 20))));
+    assert_eq!((replies.truecolor, replies.light_background()), (Some(true), Some(true)));
+    // Forged, or a reply to another program.
+    assert!(!queries.take(&Reply::CursorPosition { row: 1, column: 3 }));
+    assert!(!queries.take(&Reply::DeviceAttributes(vec![62])));
+    assert_eq!(queries.replies(), &replies);
+}
+
+#[test]
+fn a_batch_with_a_lost_fence_is_closed_once() {
+    let mut queries = InitialQueries::all(&hints("xterm", ""));
+    queries.take(&Reply::Mode { mode: 2026, state: 2 });
+    assert!(queries.close() && !queries.close() && !queries.is_open());
+    assert_eq!(queries.replies().synchronized_output, Some(true));
+}
+
+#[test]
+fn tags_are_tried_where_modes_are_queried() {
+    for (term, expected) in [("xterm", true), ("tmux-256color", true), ("screen", false), ("linux", false)] {
+        assert_eq!(has(&InitialQueries::needed(&hints(term, "")), &Tag::FIRST.query()), expected, "{term}");
+    }
+}
+
+#[test]
+fn replies_without_queries_are_ignored() {
+    let mut queries = InitialQueries::all(&hints("dumb", ""));
+    assert!(!queries.take(&Reply::DeviceAttributes(vec![62])));
+    assert!(!queries.take(&Reply::CursorPosition { row: 1, column: 3 }));
+    assert_eq!(queries.replies(), &Replies::default());
+}

@@ -1,0 +1,54 @@
+use super::*;
+use crate::scene::Scene;
+
+const VIEW: &str = "(eye: (3, 1, 2), target: (0, 0, 0), up: (0, 1, 0), vertical_fov: 45)";
+
+/// Returns the result for `text`, with `+` for the new view's text.
+fn added(text: &str) -> String {
+    let camera = *Scene::from_ron("x", "(camera: (eye: (3, 1, 2), target: (0, 0, 0)))").expect("a scene").camera();
+    let text = text
+        .replace('C', "camera: (eye: (0, 0, 5), target: (0, 0, 0))")
+        .replace('V', "(eye: (0, 1, 5), target: (0, 0, 0))");
+    let before = Scene::from_ron("x", &text).expect("a scene");
+    let written = with_view(&text, &camera).expect("it is a scene");
+    let scene = Scene::from_ron("x", &written).expect("it still is");
+    assert_eq!(scene.views().split_last(), Some((&camera, before.views())), "{written}");
+    assert_eq!(scene.with_views(before.views().to_vec()), before);
+    let short = written.replace("camera: (eye: (0, 0, 5), target: (0, 0, 0))", "C").replace(VIEW, "+");
+    short.replace("(eye: (0, 1, 5), target: (0, 0, 0))", "V")
+}
+
+#[test]
+fn all_else_stays_as_it_is() {
+    for (text, wanted) in [
+        ("(C)", "(C, views: [+])"),
+        ("(C,)", "(C, views: [+],)"),
+        ("(C, shadows: true)", "(C, views: [+], shadows: true)"),
+        ("(C /* , */ , // so\n)", "(C /* , */ , // so\nviews: [\n    +,\n],\n)"),
+        ("(\n    C // so\n)\n", "(\n    C, // so\n    views: [\n        +,\n    ],\n)\n"),
+        ("(\r\n\tC,\r\n)", "(\r\n\tC,\r\n\tviews: [\r\n\t    +,\r\n\t],\r\n)"),
+        ("(views: [], C)", "(views: [+], C)"),
+        ("(C, views: [V])", "(C, views: [V, +])"),
+        ("(C, views: (V, /* ] */ V, ))", "(C, views: (V, /* ] */ V, +, ))"),
+        ("(C, views: [\n    V\n])", "(C, views: [\n    V,\n    +,\n])"),
+        (
+            "(C, views: [\n  V, // a\n  V, // b, c\n  // d\n])",
+            "(C, views: [\n  V, // a\n  V, // b, c\n  // d\n  +,\n])",
+        ),
+        ("(C, views: [\n  V /* /* , */ */ // b\n])", "(C, views: [\n  V, /* /* , */ */ // b\n  +,\n])"),
+        ("(C, views: [\n    // none yet\n])", "(C, views: [\n    // none yet\n    +,\n])"),
+        ("// \"é\" ☃\nScene(C, ambient: 1)", "// \"é\" ☃\nScene(C, views: [+], ambient: 1)"),
+    ] {
+        assert_eq!(added(text), wanted, "{text}");
+        // A second insertion into the result.
+        added(&wanted.replace('+', "V"));
+    }
+}
+
+#[test]
+fn what_is_no_scene_is_left_alone() {
+    let camera = *Scene::from_ron("x", "(camera: (eye: (3, 1, 2), target: (0, 0, 0)))").expect("a scene").camera();
+    for text in ["", "(", "5", "()", "(1, 2)", "(keyframes: [])", "(camera: 5, views: 5)", "(views: None)"] {
+        assert_eq!(with_view(text, &camera), None, "{text}");
+    }
+}

@@ -1,0 +1,59 @@
+use super::*;
+use crate::grid::Size;
+
+/// A panel of this test: all that a panel takes is its type and the line that opens it.
+struct Letter<const LETTER: char>(Level);
+
+impl<const LETTER: char> Layer for Letter<LETTER> {
+    fn level(&self) -> Level {
+        self.0
+    }
+
+    fn mode(&self, _: Rect) -> Option<KeyMode> {
+        (LETTER == 'L').then_some(KeyMode::Light)
+    }
+
+    fn takes_all_keys(&self) -> bool {
+        LETTER == '?'
+    }
+
+    fn draw(&mut self, canvas: &mut Canvas<'_>) {
+        canvas.write_line(&LETTER.to_string(), canvas.foot(0));
+    }
+}
+
+fn topmost(layers: &mut Layers) -> String {
+    let mut grid = Grid::new(Size::new(1, 1));
+    let (keymap, figures) = (Keymap::default(), FrameStatistics::default());
+    let mode = CellMode::HALF_BLOCK;
+    layers.draw(&mut Canvas {
+        grid: &mut grid,
+        cell_mode: mode,
+        keymap: &keymap,
+        modes: &[],
+        frame: None,
+        figures,
+        status_rows: 0,
+    });
+    crate::export::text(&grid).trim().to_owned()
+}
+
+#[test]
+fn layers_are_drawn_by_their_level_whenever_they_were_opened() {
+    let mut layers = Layers::default();
+    layers.open(Letter::<'h'>(Level::Help));
+    layers.open(Letter::<'m'>(Level::Mark));
+    assert_eq!(topmost(&mut layers), "h");
+    assert!(layers.close::<Letter<'h'>>().is_some() && layers.close::<Letter<'h'>>().is_none());
+    assert_eq!(topmost(&mut layers), "m");
+    assert!(layers.get::<Letter<'m'>>().is_some() && layers.get::<Letter<'h'>>().is_none());
+}
+
+#[test]
+fn a_question_takes_all_keys_and_others_lie_over_movement() {
+    let (screen, mut layers) = (Rect::new(0, 0, 80, 24), Layers::default());
+    layers.open(Letter::<'L'>(Level::Mark));
+    assert_eq!(layers.modes(screen, KeyMode::Fly), [KeyMode::Light, KeyMode::Fly, KeyMode::Always]);
+    layers.open(Letter::<'?'>(Level::Question));
+    assert_eq!(layers.modes(screen, KeyMode::Fly), [KeyMode::Always]);
+}

@@ -1,0 +1,141 @@
+use super::*;
+use proptest::option;
+use proptest::prelude::*;
+
+const NOW: Duration = Duration::from_secs(10);
+const LATER: Duration = Duration::from_secs(11);
+const FRAME: Duration = Duration::from_millis(16);
+
+/// Returns the facts at rest: nothing moves, and the screen is up to date.
+const AT_REST: Facts = Facts {
+    busy: DriverState { sending: false, tracing: None },
+    picture: Picture::Finished,
+    holds_first_back: false,
+    begun: Some(Duration::from_secs(1)),
+    moved_until: None,
+    frame_time: FRAME,
+    link_free_at: Duration::from_secs(2),
+    is_changed: false,
+    improvable_at: None,
+};
+
+fn tracing(tracing: Tracing) -> DriverState {
+    DriverState { sending: false, tracing: Some(tracing) }
+}
+
+#[test]
+fn at_rest_nothing_is_waited_for() {
+    assert_eq!(decide(&AT_REST, NOW), Action::Wait(None));
+}
+
+#[test]
+fn the_newest_picture_wins() {
+    let stale = Facts { picture: Picture::Stale, ..AT_REST };
+    assert_eq!(decide(&stale, NOW), Action::Trace);
+    let refining = Facts { busy: tracing(Tracing::Refinement), ..stale };
+    assert_eq!(decide(&refining, NOW), Action::GiveUp);
+    // A frame in progress is shown first, however old it is by then.
+    let behind = Facts { busy: tracing(Tracing::NewView), ..stale };
+    assert_eq!(decide(&behind, NOW), Action::Wait(None));
+    assert_eq!(decide(&Facts { is_changed: true, ..behind }, NOW), Action::Draw);
+}
+
+#[test]
+fn frames_keep_their_distance() {
+    let stale = Facts { picture: Picture::Stale, begun: Some(NOW), ..AT_REST };
+    assert_eq!(decide(&stale, NOW), Action::Wait(Some(NOW + FRAME)));
+    let moving = Facts { moved_until: Some(NOW), ..AT_REST };
+    assert_eq!(decide(&moving, NOW), Action::Wait(Some(NOW + FRAME)));
+    let slow = Facts { link_free_at: LATER, ..stale };
+    assert_eq!(decide(&slow, NOW), Action::Wait(Some(LATER)));
+    assert_eq!(decide(&Facts { is_changed: true, ..slow }, NOW), Action::Wait(Some(LATER)));
+}
+
+#[test]
+fn nothing_is_drawn_or_begun_that_cannot_be_sent() {
+    for picture in [Picture::Stale, Picture::Refinable] {
+        let busy = DriverState { sending: true, tracing: None };
+        let facts = Facts { busy, picture, is_changed: true, improvable_at: Some(Duration::ZERO), ..AT_REST };
+        assert_eq!(decide(&facts, NOW), Action::Wait(None), "the driver knows when all is sent");
+    }
+}
+
+#[test]
+fn what_is_shown_is_made_better_only_while_it_lasts() {
+    let improvable = Facts { improvable_at: Some(Duration::ZERO), ..AT_REST };
+    assert_eq!(decide(&improvable, NOW), Action::Draw);
+    assert_eq!(decide(&Facts { improvable_at: Some(LATER), ..AT_REST }, NOW), Action::Wait(Some(LATER)));
+    let replaced = Facts { busy: tracing(Tracing::NewView), ..improvable };
+    assert_eq!(decide(&replaced, NOW), Action::Wait(None));
+    let refined = Facts { busy: tracing(Tracing::Refinement), ..improvable };
+    assert_eq!(decide(&refined, NOW), Action::Draw);
+}
+
+#[test]
+fn the_first_picture_is_held_back_only_for_a_refinement_that_soon_ends() {
+    let first = Facts { picture: Picture::Refinable, holds_first_back: true, is_changed: true, ..AT_REST };
+    assert_eq!(decide(&first, NOW), Action::Refine);
+    let refining = Facts { busy: tracing(Tracing::Refinement), ..first };
+    assert_eq!(decide(&refining, NOW), Action::Wait(None));
+    assert_eq!(decide(&Facts { holds_first_back: false, ..first }, NOW), Action::Draw);
+    assert_eq!(decide(&Facts { picture: Picture::Finished, ..first }, NOW), Action::Draw);
+}
+
+fn time() -> impl Strategy<Value = Duration> {
+    (0_u64..20_000).prop_map(Duration::from_millis)
+}
+
+fn busy() -> impl Strategy<Value = DriverState> {
+    let tracing = option::of(prop_oneof![Just(Tracing::NewView), Just(Tracing::Refinement)]);
+    (any::<bool>(), tracing).prop_map(|(sending, tracing)| DriverState { sending, tracing })
+}
+
+fn picture() -> impl Strategy<Value = Picture> {
+    prop_oneof![Just(Picture::Stale), Just(Picture::Refinable), Just(Picture::Finished)]
+}
+
+prop_compose! {
+    fn facts()(
+        busy in busy(),
+        picture in picture(),
+        [holds_first_back, is_changed, moves] in any::<[bool; 3]>(),
+        begun in option::of(time()),
+        link_free_at in time(),
+        improvable_at in option::of(time()),
+    ) -> Facts {
+        let (moved_until, frame_time) = (moves.then_some(NOW), FRAME);
+        Facts {
+            busy, picture, holds_first_back, begun, moved_until, frame_time, link_free_at, is_changed,
+            improvable_at,
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn no_time_is_waited_for_that_has_passed(facts in facts()) {
+        if let Action::Wait(Some(until)) = decide(&facts, NOW) {
+            prop_assert!(until > NOW, "{until:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_begun_can_be_sent(facts in facts()) {
+        match decide(&facts, NOW) {
+            Action::Draw => prop_assert!(!facts.busy.sending),
+            Action::Trace | Action::Refine => prop_assert_eq!(facts.busy, DriverState::default()),
+            Action::GiveUp => prop_assert_eq!(facts.busy.tracing, Some(Tracing::Refinement)),
+            Action::Wait(_) => {}
+        }
+    }
+
+    /// The final picture is reached by the ends of frames and sends alone.
+    #[test]
+    fn no_work_is_forgotten(facts in facts()) {
+        let is_idle = facts.busy == DriverState::default();
+        let has_work = facts.is_changed || facts.picture != Picture::Finished || facts.moved_until.is_some();
+        if is_idle && has_work {
+            prop_assert_ne!(decide(&facts, NOW), Action::Wait(None));
+        }
+    }
+}

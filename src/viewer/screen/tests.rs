@@ -1,0 +1,55 @@
+use super::*;
+use crate::capabilities::CellMode;
+use crate::export;
+use crate::render::{Cost, Sampling};
+use crate::scene::Scene;
+use crate::tone::tone;
+use crate::viewer::frame::Shot;
+use crate::viewer::view_layout::ViewLayout;
+use std::num::NonZeroU32;
+
+/// Returns the order of cells: by colour while the link is slow, raster otherwise, unless the
+/// user has chosen one.
+#[test]
+fn the_order_is_the_links() {
+    let text = include_str!("../../../scenes/three_spheres.ron");
+    let scene = Scene::from_ron("three_spheres.ron", text).expect("the scene is fine");
+    let capabilities = Capabilities {
+        cell_mode: CellMode::HALF_BLOCK,
+        cell_aspect: 2.0,
+        half_blocks: HalfBlocks::Lower,
+        light_background: false,
+        synchronized_output: false,
+    };
+    let size = Size::new(40, 12);
+    let resolution = cell::resolution(capabilities.cell_mode, size, 2.0).expect("a small screen");
+    let light = crate::render::render(&scene, scene.camera(), resolution, NonZeroU32::MIN);
+    let frame = || Frame {
+        scene: scene.clone(),
+        shot: Shot { scene: 0, lights: 0, camera: *scene.camera(), resolution, layout: ViewLayout::default() },
+        picture: tone(&light, &scene),
+        parts: Vec::new(),
+        legends: Vec::new(),
+        cost: Cost::default(),
+        sampling: Sampling::Each(NonZeroU32::MIN),
+        refines: false,
+        trace: Duration::ZERO,
+    };
+    let grid = export::frame_grid(&scene, capabilities.cell_mode, size, 2.0);
+    let slow = Some(Limit { rate: Some(1e5), max_bytes: usize::MAX });
+    let exact = Some(Quality::Exact);
+    for (asked, link, order) in [
+        (None, None, Order::Raster),
+        (None, slow, Order::Color),
+        (Some(Order::Color), None, Order::Color),
+        (Some(Order::Raster), slow, Order::Raster),
+    ] {
+        let mut screen = Screen::new(&capabilities, asked, exact);
+        screen.take_frame(frame(), None);
+        let mut wanted = Vec::new();
+        Encoder::new().with_order(order).encode(&grid, &mut wanted);
+        let mut bytes = Vec::new();
+        screen.draw(size, &Keymap::default(), link, Duration::ZERO, &mut bytes);
+        assert!(bytes == wanted, "{asked:?} {link:?}");
+    }
+}

@@ -1,0 +1,87 @@
+use super::*;
+
+fn shown(map: Map, other: Map, split: Split) -> ViewLayout {
+    ViewLayout { map, right: Some(RightMap { map: other, split }) }
+}
+
+#[test]
+fn maps_go_round_and_the_right_one_alone_of_two() {
+    let mut seen = ViewLayout::default();
+    for map in Map::ALL.into_iter().cycle().skip(1).take(Map::ALL.len()) {
+        seen.change_map(Map::next);
+        assert_eq!(seen, ViewLayout::one(map));
+    }
+    let mut two = shown(Map::Lambert, Map::Shaded, Split::Beside);
+    two.change_map(Map::next);
+    assert_eq!(two, shown(Map::Lambert, Map::Depth, Split::Beside), "not what is on the left");
+    two.change_map(Map::back);
+    assert_eq!(two, shown(Map::Lambert, Map::Shaded, Split::Beside));
+}
+
+#[test]
+fn two_maps_are_beside_each_other_then_wiped_then_one() {
+    let mut seen = ViewLayout::one(Map::Depth);
+    seen.compare();
+    assert_eq!(seen, shown(Map::Depth, Map::Normal, Split::Beside));
+    seen.compare();
+    assert!(seen.is_wipe());
+    seen.compare();
+    assert_eq!(seen, ViewLayout::one(Map::Depth));
+}
+
+/// Side by side, two maps have no more pixels than one; a wipe traces both in full.
+#[test]
+fn two_maps_side_by_side_cost_one_picture_and_a_wipe_two() {
+    let whole = Resolution::square(80, 4).with_pixel_aspect(0.5).expect("a shape of pixels");
+    let parts = shown(Map::Shaded, Map::Depth, Split::Beside).parts(whole);
+    let widths: Vec<_> = parts.iter().map(|(_, part)| part.width()).collect();
+    assert_eq!(widths, [39, 40]);
+    assert!(parts.iter().all(|(_, part)| part.height() == 4 && part.pixel_aspect() == 0.5));
+    let parts = shown(Map::Shaded, Map::Depth, Split::Wipe).parts(whole);
+    assert_eq!(parts, [(Map::Shaded, whole), (Map::Depth, whole)]);
+}
+
+/// Maps other than the shaded one get one ray per pixel.
+#[test]
+fn only_the_shaded_map_is_refined() {
+    let one = Sampling::UpTo(NonZeroU32::MIN);
+    assert_eq!(ViewLayout::default().sampling(Sampling::BEST), Sampling::BEST);
+    assert_eq!(ViewLayout::one(Map::Depth).sampling(Sampling::BEST), one);
+    assert_eq!(ViewLayout::one(Map::Depth).sampling(Sampling::Coarse), Sampling::Coarse);
+    assert_eq!(shown(Map::Depth, Map::Shaded, Split::Wipe).sampling(Sampling::BEST), Sampling::BEST);
+    assert_eq!(shown(Map::Depth, Map::Object, Split::Beside).sampling(Sampling::BEST), one);
+}
+
+fn flat(width: u32, band: u8) -> Picture {
+    Picture { width, height: 2, pixels: vec![Srgb8::new(band, band, band); 2 * width as usize] }
+}
+
+/// Returns the rows as text: a digit for each pixel, which identifies its picture, and a bar
+/// for the line.
+fn rows(picture: &Picture) -> Vec<String> {
+    let text = |pixel: &Srgb8| if *pixel == LINE { '|' } else { char::from(b'0' + pixel.r) };
+    picture.pixels.chunks(picture.width as usize).map(|row| row.iter().map(text).collect()).collect()
+}
+
+#[test]
+fn a_line_separates_two_pictures() {
+    let beside = shown(Map::Shaded, Map::Depth, Split::Beside);
+    assert_eq!(rows(&beside.combined(&[flat(3, 1), flat(4, 2)], 0.5).expect("two")), ["111|2222"; 2]);
+    let wipe = shown(Map::Shaded, Map::Depth, Split::Wipe);
+    for (share, row) in [(0.0, "|222"), (0.5, "11|2"), (0.9, "111|"), (1.0, "111|")] {
+        assert_eq!(rows(&wipe.combined(&[flat(4, 1), flat(4, 2)], share).expect("two")), [row; 2]);
+    }
+}
+
+#[test]
+fn no_screen_is_too_narrow() {
+    for width in 1..5 {
+        let whole = Resolution::square(width, 2);
+        for split in [Split::Beside, Split::Wipe] {
+            let seen = shown(Map::Shaded, Map::Depth, split);
+            let parts: Vec<_> = seen.parts(whole).iter().map(|(_, part)| flat(part.width(), 1)).collect();
+            let combined = seen.combined(&parts, 0.5).expect("two");
+            assert_eq!((combined.width, combined.pixels.len()), (width, 2 * width as usize));
+        }
+    }
+}
