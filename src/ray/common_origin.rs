@@ -24,7 +24,7 @@ pub struct CommonOrigin<N: Lanes> {
     pub max_offset: N,
     /// The range of the rays' origins along z, relative to the common origin.
     ///
-    /// Infinite unless all rays have this dominant axis and a length in [`SAFE_LENGTHS`].
+    /// Infinite unless all rays have this dominant axis and a length in `SAFE_LENGTHS`.
     pub depth_range: [N; 2],
 }
 
