@@ -59,7 +59,7 @@ complete -c termtrace -n "__fish_termtrace_needs_command" -l move-speed -d 'Spee
 complete -c termtrace -n "__fish_termtrace_needs_command" -l turn-speed -d 'Speed at which keys turn the view: a factor from 0.1 to 10 [default: 1]' -r
 complete -c termtrace -n "__fish_termtrace_needs_command" -l reduced-motion -d 'Each key press moves one step at once; nothing moves by itself [default: false]' -r -f -a "true\t''
 false\t''"
-complete -c termtrace -n "__fish_termtrace_needs_command" -l hint -d 'Say in the lowest row which keys to press, until the first one [default: true]' -r -f -a "true\t''
+complete -c termtrace -n "__fish_termtrace_needs_command" -l hint -d 'Show the keys to press in the lowest row until the first one [default: true]' -r -f -a "true\t''
 false\t''"
 complete -c termtrace -n "__fish_termtrace_needs_command" -l order -d 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]' -r -f -a "color\t''
 raster\t''"
@@ -235,7 +235,7 @@ complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l move-spee
 complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l turn-speed -d 'Speed at which keys turn the view: a factor from 0.1 to 10 [default: 1]' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l reduced-motion -d 'Each key press moves one step at once; nothing moves by itself [default: false]' -r -f -a "true\t''
 false\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l hint -d 'Say in the lowest row which keys to press, until the first one [default: true]' -r -f -a "true\t''
+complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l hint -d 'Show the keys to press in the lowest row until the first one [default: true]' -r -f -a "true\t''
 false\t''"
 complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l no-config -d 'Ignore config.ron and keys.ron'
 complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l keys -d 'Print the keys instead, in the form of keys.ron'

@@ -41,7 +41,7 @@ fn hint(keymap: &Keymap, is_demo: bool) -> String {
 
 #[derive(Args)]
 pub(super) struct LiveArgs {
-    /// The scenes: files, names of built-in scenes, or - for standard input [default: `three_spheres`]
+    /// Scene files, names of built-in scenes, or - for standard input [default: `three_spheres`]
     #[arg(value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     #[command(flatten)]

@@ -14,7 +14,7 @@ use termtrace::{Camera, CameraError, Pose, Scene};
 /// The scene and the camera.
 #[derive(Args)]
 pub(super) struct SceneArgs {
-    /// The scene: a file, the name of a built-in scene, or - for standard input [default: `three_spheres`]
+    /// Scene file, name of a built-in scene, or - for standard input [default: `three_spheres`]
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
     #[command(flatten)]

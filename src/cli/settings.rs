@@ -72,7 +72,8 @@ pub(super) struct SettingArgs {
     #[arg(help = defaults::help("reduced_motion", "Each key press moves one step at once; nothing moves by itself"))]
     #[arg(hide_possible_values = true)]
     reduced_motion: Option<bool>,
-    #[arg(long, help = defaults::help("hint", "Say in the lowest row which keys to press, until the first one"), value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    #[arg(help = defaults::help("hint", "Show the keys to press in the lowest row until the first one"))]
     #[arg(hide_possible_values = true)]
     hint: Option<bool>,
 }

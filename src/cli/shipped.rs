@@ -1,4 +1,6 @@
-//! The scenes that are part of the program: opened by name from any folder, and listed by `termtrace scenes`.
+//! The scenes that are part of the program.
+//!
+//! A name opens one from any folder, and `termtrace scenes` lists them.
 
 use super::outcome::{CommandResult, write_stdout};
 use clap::Args;
@@ -16,7 +18,9 @@ pub(super) struct ShippedScene {
     pub(super) meshes: &'static [(&'static str, &'static [u8])],
 }
 
-/// Makes the table of shipped scenes; each row is the name of a scene and the mesh files that it refers to.
+/// Makes the table of shipped scenes.
+///
+/// Each row is the name of a scene and the mesh files that it refers to.
 macro_rules! shipped {
     ($($name:literal $([$($mesh:literal),+])?),+ $(,)?) => {
         /// All shipped scenes; the first is the default scene.

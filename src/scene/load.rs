@@ -112,7 +112,7 @@ impl Draft {
         Self::from_embedded(name, bytes, &[], reporter)
     }
 
-    /// Reads as [`Draft::from_bytes`] does, with the bytes of `meshes` in the place of mesh files of these names.
+    /// Reads as [`Draft::from_bytes`] does, with mesh files by name from `meshes`.
     ///
     /// # Errors
     /// As [`Scene::from_bytes`], and if the reporter cancels.

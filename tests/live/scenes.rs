@@ -275,7 +275,7 @@ fn a_broken_scene_among_several_is_reported_and_skipped() {
 
 #[test]
 fn the_built_in_scene_is_the_default() {
-    let mut session = program().spawn();
+    let mut session = program().env("TERMTRACE_HINT", "true").spawn();
     session.wait_for_text("termtrace FILE opens yours");
     // The message stays until the first key.
     session.send(b" ");

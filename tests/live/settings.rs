@@ -128,8 +128,9 @@ fn user_keys_work_and_are_shown_in_the_help() {
 fn every_text_names_the_bound_keys() {
     let keys = r#"(explain: { "Space": ScrollDown, "PageDown": None }, always: { "Q": Quit, "q": None, "F1": Help, "?": None })"#;
     let home = user(&[("keys.ron", keys)]);
-    let mut session = Start::new(env!("CARGO_BIN_EXE_termtrace")).env("HOME", home.path()).spawn();
-    wait_for_last(&mut session, "; F1 shows the keys; Q quits");
+    let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).env("HOME", home.path());
+    let mut session = start.env("TERMTRACE_HINT", "true").spawn();
+    wait_for_last(&mut session, "drag or WASD to move; F1 keys; Q quit");
     session.send(b"\t");
     wait_for_last(&mut session, "orbit; F1 shows its keys");
     session.send(b"x");

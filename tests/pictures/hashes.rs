@@ -20,17 +20,20 @@ fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-/// Returns the scenes of `benches/scenes`, by name, and the shipped scenes that differ from those, as `scenes/NAME`.
+/// Returns the scenes of `benches/scenes` by name, and as `shipped NAME` those that differ.
 ///
-/// The copies never change, so that their hashes can be compared over the whole history.
+/// The copies never change, so that their hashes can be compared over the whole history. A shipped scene that differs
+/// from its copy in more than comments is hashed as well.
 fn scenes() -> BTreeMap<String, Scene> {
-    let copies = scene_files("benches/scenes");
-    let is_copied = |(name, path): &(String, PathBuf)| {
-        let same = |(copy, at): &(String, PathBuf)| copy == name && std::fs::read(at).ok() == std::fs::read(path).ok();
-        copies.iter().any(same)
+    let contents = |path: &PathBuf| -> Vec<String> {
+        let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        text.lines().filter(|line| !line.trim_start().starts_with("//")).map(str::to_owned).collect()
     };
-    let shipped = scene_files("scenes").into_iter().filter(|scene| !is_copied(scene));
-    let shipped = shipped.map(|(name, path)| (format!("scenes/{name}"), path));
+    let copies = scene_files("benches/scenes");
+    let shipped = scene_files("scenes").into_iter().filter(|(name, path)| {
+        copies.iter().all(|(copy, copy_path)| copy != name || contents(copy_path) != contents(path))
+    });
+    let shipped = shipped.map(|(name, path)| (format!("shipped {name}"), path));
     let load = |(name, path): (String, PathBuf)| (name, Scene::load(&path).unwrap_or_else(|error| panic!("{error}")));
     copies.iter().cloned().chain(shipped).map(load).collect()
 }

@@ -218,9 +218,11 @@ fn cells() -> Vec<Case> {
         ("resolution of cells of aspect 0", With("a pixel's height over its width must be greater than 0"), || {
             made(cell::resolution(CellMode::HALF_BLOCK, Size::new(0, 0), 0.0))
         }),
-        ("resolution of 65,535x65,535 cells", With(TOO_LARGE), || {
-            made(cell::resolution(CellMode::HALF_BLOCK, Size::new(u16::MAX, u16::MAX), 2.0))
-        }),
+        (
+            "resolution of 65,535x65,535 cells",
+            With("a grid of 65535x65535 cells is too large; at most 16777216 cells in all"),
+            || made(cell::resolution(CellMode::HALF_BLOCK, Size::new(u16::MAX, u16::MAX), 2.0)),
+        ),
         ("text frame of 0x0", With(""), || text_frame(&scene(), Size::new(0, 0))),
         ("text frame of 0x5", With(""), || text_frame(&scene(), Size::new(0, 5))),
         ("text frame of 5x0", With(""), || text_frame(&scene(), Size::new(5, 0))),
