@@ -5,7 +5,7 @@ use crate::memory::OutOfMemory;
 use crate::scene::{LoadError, Scene};
 use crate::terminal::{self, Signals, Terminal};
 use crate::text::Notice;
-/// For the fuzz target: no build that is not a test has it.
+/// For the fuzz target; compiled in test builds only.
 #[cfg(feature = "test-hooks")]
 pub use crate::viewer::run_scenario as run_viewer_scenario;
 pub use crate::viewer::{MAX_PIXELS, Options};

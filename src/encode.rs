@@ -54,7 +54,7 @@ pub enum Order {
     /// Row by row from the top: for links that compress, and for fast links.
     #[default]
     Raster,
-    /// By the colours that cells share: for slow links that do not compress.
+    /// Cells of equal colours one after another: for slow links that do not compress.
     Color,
 }
 
@@ -283,7 +283,9 @@ impl Encoder {
         })
     }
 
-    /// Appends an exact frame, not enclosed, and returns the cursor's position, if certain.
+    /// Appends an exact frame without the marks of a synchronized update.
+    ///
+    /// Returns the cursor's position, or `None` where terminals differ about it.
     fn draw(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let mut known = self.take_state(wanted.size(), bytes);
         let cursor = self.write(wanted, &mut known, bytes);

@@ -16,7 +16,7 @@ pub struct OutOfMemory {
 }
 
 impl OutOfMemory {
-    /// Returns the error with a purpose.
+    /// Adds what the memory was needed for to the message.
     #[must_use]
     pub fn when(self, what_for: impl Into<String>) -> Self {
         Self { what_for: what_for.into() }

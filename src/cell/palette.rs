@@ -86,9 +86,9 @@ impl Candidates {
 }
 
 /// Share of a mix's remaining error that the next colour compensates.
-// With 1 the mean is exact, but from colours far from it, which shows as grain from near. 0.6 takes nearer colours and
-// hardly changes the look from a distance: after a blur the mean OKLab difference is 0.56 / 100 with 256 colours and
-// 1.37 / 100 with 16.
+// With 1 the mean of the mix is exact, but its colours are far from the wanted one, which is visible as grain. With
+// 0.6 they are nearer, and from a distance the picture still looks the same: after a blur its mean OKLab difference
+// from the wanted picture is 0.56 / 100 with 256 colours and 1.37 / 100 with 16.
 const ERROR_FEEDBACK: f32 = 0.6;
 
 /// Returns a mix whose mean is near the wanted light.

@@ -47,7 +47,7 @@ pub(super) fn run(given: &ArgMatches) -> CommandResult {
     let report =
         Report { settings: &settings, hints: &hints, findings: &findings, replies: questions.replies(), outcome };
     write_stdout(report::text(&report).as_bytes())?;
-    // Into a pipe the card would be escape sequences that nothing draws.
+    // The test card consists of escape sequences: in a pipe nothing would draw it.
     if is_terminal { write_stdout(&card::bytes(&findings.capabilities())) } else { Ok(()) }
 }
 

@@ -83,7 +83,7 @@ impl Coverage {
     }
 }
 
-/// The survey of a picture.
+/// The counts of a picture's pixels from which its description is made.
 pub(super) struct Survey {
     /// The part covered by each visible object.
     pub(super) covered: BTreeMap<u32, Coverage>,

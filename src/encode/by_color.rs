@@ -75,7 +75,7 @@ struct Tour<'a> {
     pairs: Vec<Pair>,
     /// The colours of the picture, sorted by key.
     colors: Vec<Color>,
-    /// The indices of the pairs of each colour, one colour after another.
+    /// For each colour, one after another, the indices of the pairs that contain it.
     // One list instead of one per colour, without an allocation for each.
     pairs_by_color: Vec<usize>,
 }
@@ -174,9 +174,10 @@ impl<'a> Tour<'a> {
         best.1
     }
 
-    /// Returns the cost in bytes of continuing with a pair.
+    /// Returns the cost in bytes of continuing with a pair of colours.
     ///
-    /// The cost is that of the pen, of the move to the first cell, and up to eight bytes for its unvisited neighbours.
+    /// The cost is that of the change of pen and of the move to the first cell. Up to eight bytes are added for the
+    /// unvisited pairs that share a colour with this one: a pair that leads to few others is better visited early.
     fn cost(&self, pair: usize) -> usize {
         let pair = &self.pairs[pair];
         let change = self.pen.switch_cost(&self.pair_pen(pair));

@@ -3,8 +3,9 @@
 //! Only the picture may differ, never text. A half cell may have another colour within the quality's cap in OKLab, as
 //! long as the whole picture keeps its signal-to-noise ratio. A cell that shows a near colour already is not written,
 //! and the others take colours that serve many of them (see [`palette`](super::palette)).
-// Bytes relative to ratatui's (orbit, plain, sphere, gradient), exact refinement included: at 80x24 exact .56 .52 .82
-// .62, `Equal` .23 .15 .42 .23, `Fast` .19 .10 .31 .16.
+// Bytes at 80x24 relative to those of ratatui's backend, including the exact frame at rest, for the bench's scenes
+// orbit, plain, sphere and gradient: .56, .52, .82 and .62 with `Exact`; .23, .15, .42 and .23 with `Equal`; .19,
+// .10, .31 and .16 with `Fast`.
 
 use super::Quality;
 use super::halves::{Halves, Tolerance, half_block_cell, picture_halves, squared_difference};

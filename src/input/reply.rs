@@ -41,9 +41,9 @@ pub enum Reply {
     },
     /// `CSI 8 ; rows ; columns t`: the size of the text area in cells. tmux 3.3a swaps the two.
     TextCells {
-        /// Cells from left to right.
+        /// The number of columns.
         columns: u16,
-        /// Cells from top to bottom.
+        /// The number of rows.
         rows: u16,
     },
     /// Any other `CSI n ; ... t`: a window report.

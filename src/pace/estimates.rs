@@ -108,7 +108,7 @@ impl BusyPeriod {
     }
 }
 
-/// A rate and its meaning.
+/// A transmission rate: the link's limit, or a lower bound of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rate {
     pub(super) bytes_per_second: f64,

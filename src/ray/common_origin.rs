@@ -42,7 +42,7 @@ impl<N: Lanes> CommonOrigin<N> {
     #[inline(always)]
     pub fn of(groups: &[Rays<N>; LANES]) -> Option<Self> {
         let zero = N::splat(0.0);
-        // A ray near the middle of the tile keeps the offsets, and so all bounds, small.
+        // Offsets are measured from a ray near the middle of the tile, so that they and all bounds are small.
         let middle = &groups[LANES / 2];
         let start = middle.origin.splat_lane(0);
         // Eye rays share their origin bit for bit: no error, and no second search.

@@ -14,7 +14,7 @@ pub trait Described {
     /// Returns a noun phrase with the colour: "a red sphere of radius 1".
     fn described(&self, color: &str) -> String;
 
-    /// Returns the lecture's equation for the ray.
+    /// Returns the equation of the lecture whose roots are the crossings of the ray.
     fn equation(&self, ray: &Ray) -> Equation;
 
     /// Returns whether the point lies inside the surface.
@@ -76,7 +76,7 @@ macro_rules! described {
         }
 
         impl Primitive<'_> {
-            /// Returns the lecture's equation for the ray.
+            /// Returns the equation of the lecture whose roots are the crossings of the ray.
             pub fn equation(&self, ray: &Ray) -> Equation {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.equation(ray),)*

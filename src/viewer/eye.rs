@@ -60,7 +60,7 @@ impl ViewState {
     }
 }
 
-/// Duration of a held key's motion that a single step equals with reduced motion.
+/// The size of a step with reduced motion, as the time for which a held key would move the eye.
 // A tenth of the distance to the target, or nine degrees: large enough to see a change between two still pictures.
 const REDUCED_MOTION_STEP: Duration = Duration::from_millis(200);
 

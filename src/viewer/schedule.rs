@@ -100,7 +100,7 @@ pub(super) fn decide(facts: &Facts, now: Duration) -> Action {
 impl Facts {
     /// Returns whether to hold back the first picture because it is nearly final.
     ///
-    /// Showing it twice would take longer.
+    /// To draw a first version and then the final one would take longer than to draw the final one at once.
     fn perfects_first(&self) -> bool {
         self.holds_first_back && self.picture == Picture::Refinable && self.moved_until.is_none()
     }

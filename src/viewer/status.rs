@@ -87,7 +87,7 @@ impl Status {
     }
 }
 
-/// Returns the largest number of samples of a pixel.
+/// Returns the samples per pixel as text: `1/4`, or the maximum.
 fn samples(sampling: Sampling) -> String {
     match sampling {
         // One ray for 2x2 pixels.

@@ -14,7 +14,7 @@ use std::num::NonZeroU32;
 /// Initial position of the line between two maps.
 pub(crate) const INITIAL_WIPE: f32 = 0.5;
 
-/// The maps on the screen.
+/// The layout of the screen: one map (shaded picture, depth, normals, ...), or two side by side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ViewLayout {
     /// The map shown, or the left one of two.

@@ -1,4 +1,4 @@
-//! Commands for the line between two maps.
+//! Commands that move the dividing line between two pictures side by side.
 
 use super::Viewer;
 use crate::control::Side;

@@ -38,7 +38,7 @@ struct SharedState {
     finished: Option<RenderedShot>,
     /// The payload of a panic in the thread.
     panic: Option<Box<dyn Any + Send>>,
-    /// Whether the state has been dropped.
+    /// Whether the `SceneState` that owns the thread has been dropped.
     is_closed: bool,
 }
 

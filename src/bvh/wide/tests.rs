@@ -51,7 +51,7 @@ fn least_cost(pairs: &[BinaryNode], at: usize, places: usize) -> f64 {
     if places == 1 { whole() } else { split(places).min(whole()) }
 }
 
-/// The sum of half areas of the wide nodes of the fillings, and the number of boxes reached.
+/// Returns the sum of the half areas of all wide nodes, and the number of leaves below them.
 fn cost_and_boxes(wide: &Wide<'_>, at: usize) -> (f64, usize) {
     if wide.pairs[at].count > 0 {
         return (0.0, 1);

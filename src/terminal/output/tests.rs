@@ -56,7 +56,7 @@ fn signals_do_not_end_the_wait_for_a_terminal() {
             }
             far.set_nonblocking(true).expect("a socket has flags");
             while far.read(&mut [0; 4096]).is_ok() {}
-            // Dropped behind the wait: a closed socket would count as writable, too.
+            // Returned, so that it is dropped after the wait: a closed socket would count as writable, too.
             far
         });
         assert!(is_writable(&near, Duration::from_secs(60)));
