@@ -16,6 +16,7 @@ mod wide;
 mod build;
 mod packet;
 
+pub use build::MIN_TASK_ITEMS;
 pub use packet::{GROUPS, Packet, Visitor};
 
 /// A bounding volume hierarchy over boxes, each known by its index.

@@ -262,7 +262,8 @@ fn load<'p, E: Send>(
     match read {
         // The result of a cancelled load is not wanted, whatever it is.
         _ if cancellation.is_cancelled() => {}
-        Ok(draft) => match pool() {
+        // Two threads for the small scenes, which are built in microseconds, would cost 130 MB of address space.
+        Ok(draft) => match draft.builds_in_parallel().then(pool).flatten() {
             Some(pool) => pool.install(|| build(draft, &reporter, events)),
             None => build(draft, &reporter, events),
         },

@@ -8,7 +8,7 @@ use crate::threads;
 
 /// Number of items below which a subtree is built on one thread.
 // The dragon's 871 k triangles still make over 100 tasks, enough to balance the threads.
-const MIN_TASK_ITEMS: usize = 8192;
+pub const MIN_TASK_ITEMS: usize = 8192;
 
 type Report<'r, E> = &'r (dyn Fn(usize) -> Result<(), E> + Sync);
 

@@ -2,8 +2,10 @@
 
 use super::{Checked, Scene};
 use crate::accel::Accelerator;
+use crate::bvh::MIN_TASK_ITEMS;
 use crate::camera::Camera;
 use crate::progress::{Cancelled, Reporter};
+use crate::shape::Shape;
 use std::sync::Arc;
 
 /// A scene whose trees are not built yet, so that no ray can be traced in it.
@@ -27,6 +29,12 @@ impl Draft {
     pub fn with_camera(mut self, camera: Camera) -> Self {
         Arc::make_mut(&mut self.checked).camera = camera;
         self
+    }
+
+    /// Returns whether the trees are large enough to be built on several threads.
+    pub fn builds_in_parallel(&self) -> bool {
+        let primitives = |shape: &Shape| if let Shape::Mesh(mesh) = shape { mesh.triangle_count() as usize } else { 1 };
+        self.checked.shapes().map(primitives).sum::<usize>() >= MIN_TASK_ITEMS
     }
 
     /// Builds the trees on all threads of the current rayon pool, until the reporter cancels it.
