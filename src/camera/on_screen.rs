@@ -9,7 +9,7 @@ use glam::{Vec2, Vec3};
 /// The action of a mouse drag on the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Grip {
-    /// Turns the view; usually with the left button.
+    /// Orbits the target, or looks around in flight; usually with the left button.
     Turn,
     /// Shifts the picture; usually with the right or middle button, or with Shift and the left.
     Pan,

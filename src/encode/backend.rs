@@ -151,8 +151,10 @@ impl<W> EncoderBackend<W> {
 
     /// Sets the quality of pictures of half blocks while they change.
     ///
-    /// `clock` returns the time from any fixed start. Text is always exact, and pictures are exact half a second after
-    /// their last change, if a frame is drawn then. A program that only draws on events has to draw once more for that.
+    /// `clock` returns the time from any fixed start. Text is always exact. From half a second after the last change
+    /// on, each frame that is drawn makes a part of the picture exact, so that no single frame is large. A program
+    /// that only draws on events therefore goes on drawing for a while after the last one: twelve frames, 100 ms
+    /// apart, were enough for all pictures that were tried.
     ///
     /// ```
     /// use ratatui::{Terminal, widgets::Paragraph};

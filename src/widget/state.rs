@@ -16,6 +16,9 @@ use std::fmt;
 /// Positions are cells of the whole buffer, as in a terminal's mouse events. Queries by position refer to the picture
 /// drawn last, which may be older than the camera.
 ///
+/// A program with several scenes keeps one state for each: it holds the camera, the last picture and, off the draw
+/// thread, one thread. A state that is not drawn starts no work.
+///
 /// ```
 /// use ratatui::{Terminal, backend::TestBackend, layout::Position};
 /// use termtrace::{Grip, Scene, SceneState, SceneView};
