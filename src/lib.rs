@@ -222,7 +222,7 @@
 //!
 //! # Glossary
 //!
-//! The terms of the code, its comments, the help and the README, in the order of the route.
+//! The terms of the code, its comments, the help and `docs/`, in the order of the route.
 //!
 //! Files and scenes:
 //! - **RON**: Rusty Object Notation, the syntax of scenes, camera paths, `config.ron` and `keys.ron`.
@@ -434,7 +434,8 @@ pub use glam;
 #[cfg(feature = "ratatui")]
 pub use ratatui_core;
 
-/// The examples of the README are compiled and run with the others.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-mod readme {}
+/// The examples of the documentation's pages, which are compiled and run with the others. The package lacks the pages.
+#[cfg(all(doctest, unit_tests))]
+#[doc = include_str!("../docs/library.md")]
+#[doc = include_str!("../docs/snapshots.md")]
+mod pages {}

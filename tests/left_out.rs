@@ -21,7 +21,7 @@ const LEFT_OUT: [(&str, &str); 13] = [
     ("package", "what is in the package"),
     ("pictures", "pictures, bit for bit"),
     ("public_api", "what the library promises"),
-    ("readme", "what the README says"),
+    ("readme", "what README and docs/ say"),
     ("slow", "limits in time"),
     ("slow_link", "a link of few bytes, late replies"),
 ];

@@ -1,80 +1,102 @@
-//! The statements of the README, tested.
+//! The statements of README, `docs/` and CONTRIBUTING, tested.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use termtrace::internals::control::{Key, Keymap};
 use termtrace::{CameraPath, Scene};
 
-fn readme() -> String {
-    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).expect("the README is there")
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The blocks of code of one language.
-fn blocks<'a>(readme: &'a str, language: &str) -> Vec<&'a str> {
+/// Returns the paths of all pages, relative to the root.
+fn pages() -> Vec<PathBuf> {
+    let docs = fs::read_dir(root().join("docs")).expect("docs is there");
+    let docs = docs.map(|entry| Path::new("docs").join(entry.expect("it can be read").file_name()));
+    let mut pages: Vec<_> = docs.filter(|path| path.extension().is_some_and(|extension| extension == "md")).collect();
+    pages.extend(["README.md", "CONTRIBUTING.md"].map(PathBuf::from));
+    pages.sort();
+    pages
+}
+
+fn page(path: impl AsRef<Path>) -> String {
+    let path = path.as_ref();
+    fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Returns the text of all pages.
+fn all_pages() -> String {
+    pages().iter().map(page).collect()
+}
+
+/// Returns the blocks of code in one language.
+fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
     let start = format!("```{language}\n");
-    readme.split(&start).skip(1).filter_map(|rest| rest.split("```").next()).collect()
+    text.split(&start).skip(1).filter_map(|rest| rest.split("```").next()).collect()
 }
 
 #[test]
-fn every_scene_and_path_in_it_loads() {
-    let readme = readme();
-    let scenes = blocks(&readme, "ron");
-    assert!(scenes.len() >= 2, "the scenes were found");
+fn every_scene_and_path_loads() {
+    let all = all_pages();
+    let scenes = blocks(&all, "ron");
+    assert!(scenes.len() >= 3, "the scenes were found");
     let any = Scene::from_ron("any", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))").expect("a scene");
     for text in scenes {
         // The camera path, too, is RON, and so are settings and keys, which are read in `tests/cli/config.rs`.
         let read = if text.contains("fps:") || text.contains("fly:") {
             continue;
         } else if text.contains("keyframes:") {
-            CameraPath::from_ron("README.md", text, any.camera()).map(|_| ())
+            CameraPath::from_ron("path.ron", text, any.camera()).map(|_| ())
         } else {
-            Scene::from_ron("README.md", text).map(|_| ())
+            Scene::from_ron("scene.ron", text).map(|_| ())
         };
         if let Err(error) = read {
-            panic!("{error}");
+            panic!("{error}\n{text}");
         }
     }
 }
 
 #[test]
 fn every_kind_of_item_is_shown() {
-    let readme = readme();
-    let scenes = blocks(&readme, "ron").concat();
+    let page = page("docs/scenes.md");
+    let scenes = blocks(&page, "ron").concat();
     for word in
         ["Point(", "Sphere(", "Plane(", "Diffuse(", "Checker(", "Gradient(", "focal_length", "vertical_fov", "shift"]
     {
-        assert!(scenes.contains(word), "no scene of the README shows {word}");
+        assert!(scenes.contains(word), "no scene of docs/scenes.md shows {word}");
     }
 }
 
 #[test]
-fn the_message_in_it_is_the_programs() {
-    let readme = readme();
-    let shown = blocks(&readme, "text").concat();
+fn the_message_is_the_programs() {
+    let page = page("docs/scenes.md");
+    let shown = blocks(&page, "text").concat();
     let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)),\n    objects: [\n        Sphere(center: (0, 1, 0), radus: 1),\n])";
     let error = Scene::from_ron("my.ron", text).expect_err("it is wrong").to_string();
-    assert!(error.contains(shown.trim_end()), "the README says\n{shown}\nthe program says\n{error}");
+    assert!(error.contains(shown.trim_end()), "the page says\n{shown}\nthe program says\n{error}");
 }
 
 #[test]
 fn the_size_of_the_live_picture_is_the_programs() {
     let cells = termtrace::internals::app::MAX_PIXELS / 2;
     let cells = format!("{},{:03},{:03} cells", cells / 1_000_000, cells / 1000 % 1000, cells % 1000);
-    assert!(readme().contains(&cells), "{cells}");
+    for name in ["docs/commands.md", "docs/limits.md"] {
+        assert!(page(name).contains(&cells), "{name} lacks {cells}");
+    }
 }
 
 #[test]
 fn every_scene_file_is_listed() {
-    let readme = readme();
-    for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")).expect("scenes are there") {
+    let page = page("docs/scenes.md");
+    for entry in fs::read_dir(root().join("scenes")).expect("scenes are there") {
         let name = entry.expect("it can be read").file_name().into_string().expect("a plain name");
-        assert!(readme.contains(&format!("`{name}`")) || name == "paths", "{name} is not in the README");
+        assert!(page.contains(&format!("`{name}`")) || name == "paths", "{name} is not in docs/scenes.md");
     }
 }
 
 #[test]
 fn every_key_is_listed() {
-    let readme = readme();
+    let page = page("docs/controls.md");
     for key in Keymap::default().bindings().iter().flat_map(|row| &row.keys).map(Key::to_string) {
         let listed = match &*key {
             "Left" | "Right" | "Up" | "Down" => "arrows".to_owned(),
@@ -85,15 +107,15 @@ fn every_key_is_listed() {
             "2" | "3" | "4" | "5" | "6" | "7" | "8" => "`1` to `9`".to_owned(),
             letter => format!("`{letter}`"),
         };
-        assert!(readme.contains(&listed), "{key} is not in the README");
+        assert!(page.contains(&listed), "{key} is not in docs/controls.md");
     }
 }
 
 /// Every key in quotes in the first column of the table of keys is bound.
 #[test]
-fn every_key_of_its_table_does_something() {
-    let readme = readme();
-    let (_, section) = readme.split_once("\n## Keys\n").expect("there is a section on keys");
+fn every_key_of_the_table_does_something() {
+    let page = page("docs/controls.md");
+    let (_, section) = page.split_once("\n## Keys\n").expect("there is a section on keys");
     let rows = section.split("\n## ").next().unwrap_or_default().lines().filter(|line| line.starts_with("| "));
     let keymap = Keymap::default();
     let mut count = 0;
@@ -108,4 +130,67 @@ fn every_key_of_its_table_does_something() {
         }
     }
     assert!(count > 25, "the table was read");
+}
+
+/// Returns the headings' anchors as GitHub and crates.io make them.
+fn anchors(text: &str) -> Vec<String> {
+    let headings = outside_code(text).filter_map(|line| line.strip_prefix('#'));
+    let slug = |heading: &str| {
+        let kept = heading.trim_start_matches('#').trim().to_lowercase().replace(' ', "-");
+        kept.chars().filter(|letter| letter.is_alphanumeric() || "-_".contains(*letter)).collect()
+    };
+    headings.map(slug).collect()
+}
+
+/// Returns the lines outside blocks of code.
+fn outside_code(text: &str) -> impl Iterator<Item = &str> {
+    let mut is_code = false;
+    text.lines().filter(move |line| {
+        is_code ^= line.starts_with("```");
+        !is_code && !line.starts_with("```")
+    })
+}
+
+/// Returns what is wrong with the relative links of a page.
+fn broken_links(path: &Path, text: &str) -> Vec<String> {
+    let text: String = outside_code(text).flat_map(|line| [line, "\n"]).collect();
+    let targets = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let targets = targets.filter(|target| !target.starts_with("https://"));
+    let fault = |target: &str| {
+        let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
+        let linked = if file.is_empty() { path.to_owned() } else { path.with_file_name(file) };
+        if !root().join(&linked).exists() {
+            return Some(format!("{}: {target}: there is no such file", path.display()));
+        }
+        let is_there = anchor.is_empty() || anchors(&page(linked)).iter().any(|found| found == anchor);
+        (!is_there).then(|| format!("{}: {target}: there is no such heading", path.display()))
+    };
+    targets.filter_map(fault).collect()
+}
+
+#[test]
+fn every_link_leads_somewhere() {
+    let faults: Vec<_> = pages().iter().flat_map(|path| broken_links(path, &page(path))).collect();
+    assert!(faults.is_empty(), "{faults:#?}");
+    let found = |text: &str| broken_links(Path::new("README.md"), text).len();
+    assert_eq!(found("[a](docs/none.md) [b](#none) ![c](media/none.png) [d](docs/scenes.md#none)"), 4);
+    assert_eq!(found("[a](docs/README.md) [b](https://example.org)\n```\n[c](none)\n```\n"), 0);
+}
+
+/// The index of `docs/` names each of its pages.
+#[test]
+fn every_page_is_in_the_index() {
+    let index = page("docs/README.md");
+    for path in pages() {
+        let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+        let is_listed = ["", "../"].iter().any(|folder| index.contains(&format!("]({folder}{name})")));
+        assert!(is_listed, "docs/README.md lacks {name}");
+    }
+}
+
+/// README is in the package, and is read first.
+#[test]
+fn the_readme_is_short() {
+    let lines = page("README.md").lines().count();
+    assert!(lines <= 200, "{lines} lines");
 }

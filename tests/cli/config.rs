@@ -17,11 +17,12 @@ fn with_file(name: &str, text: &str) -> Folder {
     folder
 }
 
-/// Returns the first block of RON in the README with these words.
-fn in_the_readme(words: &str) -> String {
-    let readme = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).expect("it is there");
-    let mut blocks = readme.split("```ron\n").filter_map(|rest| rest.split("```").next());
-    blocks.find(|text| text.contains(words)).expect("the README shows one").to_owned()
+/// Returns the first block of RON in `docs/terminals.md` with these words.
+fn in_the_docs(words: &str) -> String {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/terminals.md");
+    let page = fs::read_to_string(page).expect("it is there");
+    let mut blocks = page.split("```ron\n").filter_map(|rest| rest.split("```").next());
+    blocks.find(|text| text.contains(words)).expect("the page shows one").to_owned()
 }
 
 /// Returns the settings with their sources.
@@ -80,15 +81,15 @@ fn a_flag_can_undo_what_the_file_turns_on() {
     assert_eq!(held(&folder, "--no-config --reduced-motion", &[], "reduced_motion"), "true --reduced-motion");
 }
 
-/// The file in the README has every setting, and each takes effect.
+/// The file in the documentation has every setting, and each takes effect.
 #[test]
-fn the_readmes_file_has_every_setting() {
-    let folder = with_settings(&in_the_readme("fps:"));
+fn the_documented_file_has_every_setting() {
+    let folder = with_settings(&in_the_docs("fps:"));
     let text = config(&folder, "", &[]).text();
     let (settings, place) = text.split_once("\n\n").expect("two parts");
     assert!(settings.lines().count() >= 9, "{text}");
     for line in settings.lines() {
-        assert!(line.contains("config.ron:"), "the README's file lacks {line}");
+        assert!(line.contains("config.ron:"), "the documentation's file lacks {line}");
     }
     assert!(place.contains("settings/termtrace/config.ron (read)\n"), "{place}");
     assert!(place.ends_with("settings/termtrace/keys.ron (does not exist)\n"), "{place}");
@@ -206,7 +207,7 @@ fn the_table_of_keys_is_a_file_of_keys() {
     let built_in = Folder::new().run("config --keys").text();
     assert!(built_in.contains("    orbit: {\n") && built_in.contains("\"w\": MoveForward,"), "{built_in}");
     assert_eq!(with_file("keys.ron", &built_in).run("config --keys").text(), built_in);
-    let folder = with_file("keys.ron", &in_the_readme("fly:"));
+    let folder = with_file("keys.ron", &in_the_docs("fly:"));
     let own = folder.run("config --keys").text();
     for line in
         ["\"z\": MoveForward,", "[\"s\", \"u\", \"Home\"]: MoveBack,", "\"w\": None,", "[\"o\", \"Ctrl-P\"]: Export,"]

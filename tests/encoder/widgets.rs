@@ -261,7 +261,7 @@ fn every_widget_over_every_other() {
                 *buffer = commonly_known(std::mem::take(buffer));
             });
         }
-        // As the README says: about seven tenths.
+        // As docs/library.md says: about seven tenths.
         let sum = |line: &Wire| line.take_writes().iter().map(String::len).sum::<usize>();
         let (ours, theirs) = (sum(&pair.line), sum(&pair.other_line));
         assert!(ours * 100 < theirs * 73, "{ours} bytes, and ratatui's own backend sends {theirs}");

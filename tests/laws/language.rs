@@ -94,8 +94,9 @@ fn faults() -> Vec<String> {
     for (path, text) in &rust {
         faults.extend(faults_of_comments(text).iter().map(|fault| format!("{path}:{fault}")));
     }
-    let readme = fs::read_to_string(root().join("README.md")).expect("the README is there");
-    let wide = ["src", "docs"].into_iter().flat_map(text_files).chain([("README.md".to_owned(), readme)]);
+    let front = ["README.md", "CONTRIBUTING.md"]
+        .map(|name| (name.to_owned(), fs::read_to_string(root().join(name)).expect("the page is there")));
+    let wide = ["src", "docs"].into_iter().flat_map(text_files).chain(front);
     for (path, text) in wide {
         faults.extend(wide_lines(Path::new(&path), &text).iter().map(|fault| format!("{path}:{fault}")));
     }
