@@ -434,7 +434,8 @@ pub use glam;
 #[cfg(feature = "ratatui")]
 pub use ratatui_core;
 
-/// The examples of the documentation's pages, which are compiled and run with the others. The package lacks the pages.
+/// The examples of the documentation's pages, which are compiled and run with the others.
+// The package lacks the pages and the files of `unit_tests`.
 #[cfg(all(doctest, unit_tests))]
 #[doc = include_str!("../docs/library.md")]
 #[doc = include_str!("../docs/snapshots.md")]

@@ -91,7 +91,7 @@ fn a_coarse_map_is_of_larger_pixels() {
     }
 }
 
-/// Maps are the values that single rays find and the formulas of docs/controls.md give, pixel by pixel.
+/// Each map has the values that single rays find and the formulas of docs/controls.md give.
 #[test]
 fn maps_say_what_is_there() {
     for name in ["three_spheres", "inside_sphere", "teapots", "bare"] {
