@@ -110,8 +110,8 @@ pub struct MeshFile {
     texture_coordinates: Attribute<Vec2>,
     colors: Attribute<LinearRgb>,
     materials: Vec<MeshMaterial>,
-    /// The first triangle of each run of one material, with the material, in the order of the
-    /// triangles.
+    /// Runs of consecutive triangles with one material: the first triangle of each run, and the
+    /// index of the run's material in `materials`.
     material_runs: Vec<(u32, Option<u32>)>,
 }
 
@@ -140,16 +140,17 @@ impl MeshFile {
         mesh.is_valid().then_some(mesh)
     }
 
-    /// Returns the mesh with a normal for each position, of any length; `None` unless there are as
-    /// many normals as positions, all finite. A zero vector stands for no normal.
+    /// Returns the mesh with one normal per position; `None` unless there are as many normals as
+    /// positions, all finite. Normals of any length become unit vectors; a zero vector means "no normal here".
     pub fn with_normals(self, normals: Vec<Vec3>) -> Option<Self> {
         let normals = normals.into_iter().map(unit_or_zero).collect();
         let mesh = Self { normals: Attribute::of_positions(normals), ..self };
         (mesh.normals.values().len() == mesh.positions.len() && mesh.is_valid()).then_some(mesh)
     }
 
-    /// Returns the mesh scaled along its axes (by no factor of 0), then rotated, then translated. A
-    /// mirrored mesh keeps its outside; `None` if a position exceeds the range of f32.
+    /// Returns the mesh scaled along its axes (factors not 0), then rotated, then translated. A
+    /// mirrored mesh keeps its triangles counterclockwise seen from outside. `None` if a position exceeds the range of
+    /// f32.
     pub fn transformed(mut self, scale: Vec3, turn: Mat3, translation: Vec3) -> Option<Self> {
         for position in &mut self.positions {
             *position = turn * (*position * scale) + translation;
@@ -183,21 +184,21 @@ impl MeshFile {
     }
 
     /// Returns the unit normals at a triangle's corners; `None` if the file does not give all
-    /// three, so that it is flat.
+    /// three, in which case the triangle is shaded flat.
     pub fn normals_of(&self, triangle: usize) -> Option<[Vec3; 3]> {
-        self.normals.of(triangle, &self.triangles).filter(|normals| normals.iter().all(|&n| n != Vec3::ZERO))
+        self.normals.values_at(triangle, &self.triangles).filter(|normals| normals.iter().all(|&n| n != Vec3::ZERO))
     }
 
     /// Returns the texture coordinates at a triangle's corners: u to the right, v down from the
     /// texture's top row.
     pub fn texture_coordinates_of(&self, triangle: usize) -> Option<[Vec2; 3]> {
-        self.texture_coordinates.of(triangle, &self.triangles)
+        self.texture_coordinates.values_at(triangle, &self.triangles)
     }
 
     /// Returns the colours at a triangle's corners: factors of its material's reflectance, each
     /// channel in 0..=1.
     pub fn colors_of(&self, triangle: usize) -> Option<[LinearRgb; 3]> {
-        self.colors.of(triangle, &self.triangles)
+        self.colors.values_at(triangle, &self.triangles)
     }
 
     /// Returns all normals: unit vectors, or zero where the file has none.
@@ -215,7 +216,8 @@ impl MeshFile {
         &self.colors
     }
 
-    /// Returns the file's materials that its triangles have.
+    /// Returns the materials of the file, to which [`material_of`](Self::material_of) refers by
+    /// index.
     pub fn materials(&self) -> &[MeshMaterial] {
         &self.materials
     }
@@ -223,7 +225,8 @@ impl MeshFile {
     /// Returns the material of a triangle as an index of [`materials`](Self::materials); `None` if
     /// the file gives none.
     pub fn material_of(&self, triangle: usize) -> Option<usize> {
-        // Runs instead of an index per triangle: files sort triangles by material, so there are few runs.
+        // `material_runs` has an entry per run instead of per triangle: files sort triangles by material, so runs are
+        // few.
         let runs_so_far = self.material_runs.partition_point(|&(first, _)| first as usize <= triangle);
         let (_, material) = *self.material_runs.get(runs_so_far.checked_sub(1)?)?;
         material.map(|index| index as usize)
@@ -245,7 +248,7 @@ impl MeshFile {
 }
 
 fn unit_or_zero(normal: Vec3) -> Vec3 {
-    // Scaled first, so that the square neither overflows nor underflows.
+    // Divided by its largest component first, so that the squares in `normalize` neither overflow nor underflow.
     let largest = normal.abs().max_element();
     if largest > 0.0 { (normal / largest).normalize() } else { Vec3::ZERO }
 }

@@ -1,11 +1,10 @@
-//! Attributes of vertices besides the position.
+//! Vertex attributes other than the position: normals, texture coordinates and colours.
 
-/// The normals, texture coordinates or colours of a mesh: values, and the indices of each
-/// triangle's corners.
+/// The normals, texture coordinates or colours of a mesh: a list of values, and for each corner of
+/// each triangle the index of its value.
 ///
-/// PLY and glTF give each vertex one value; OBJ lets every corner choose. So corners have indices of their own only
-/// where these differ from those of the positions: a mesh without such corners saves 12 bytes per triangle and
-/// attribute.
+/// In PLY and glTF these indices equal the position's; in OBJ each corner may have another. They are stored only if
+/// they differ from those of the positions, which otherwise saves 12 bytes per triangle and attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attribute<T> {
     values: Vec<T>,
@@ -17,13 +16,13 @@ enum CornerIndices {
     /// No triangle has the attribute.
     #[default]
     Absent,
-    /// Every triangle has it, with the indices of its positions.
+    /// Every triangle has the attribute, at the indices of its positions.
     OfPositions,
-    /// Every triangle has its own indices, or [`NONE`].
+    /// The indices for each triangle, or [`NONE`] for a triangle without the attribute.
     Own(Vec<[u32; 3]>),
 }
 
-/// The indices of a triangle without values.
+/// Stored for a triangle without the attribute, in the place of its indices.
 const NONE: [u32; 3] = [u32::MAX; 3];
 
 /// Exchanges the last two corners of each triangle, which turns it inside out.
@@ -45,7 +44,7 @@ impl<T: Copy> Attribute<T> {
         Self { values, corners: CornerIndices::OfPositions }
     }
 
-    /// Returns the attribute with other values at the same indices.
+    /// Returns the attribute with `change` applied to each value.
     pub(super) fn map(self, change: impl FnMut(T) -> T) -> Self {
         Self { values: self.values.into_iter().map(change).collect(), ..self }
     }
@@ -63,7 +62,7 @@ impl<T: Copy> Attribute<T> {
         &self.values
     }
 
-    /// Returns the values, to add more.
+    /// Returns the list of values, for adding more.
     pub(super) fn values_mut(&mut self) -> &mut Vec<T> {
         &mut self.values
     }
@@ -78,22 +77,23 @@ impl<T: Copy> Attribute<T> {
     }
 
     /// Returns the values at a triangle's corners.
-    pub(super) fn of(&self, triangle: usize, triangles: &[[u32; 3]]) -> Option<[T; 3]> {
+    pub(super) fn values_at(&self, triangle: usize, triangles: &[[u32; 3]]) -> Option<[T; 3]> {
         self.indices_of(triangle, triangles).map(|corners| corners.map(|index| self.values[index as usize]))
     }
 
     /// Adds the values of a triangle's corners and returns their indices.
     pub(super) fn add(&mut self, values: [T; 3]) -> [u32; 3] {
-        // Three for each of `MAX_TRIANGLES` at most.
+        // At most three per triangle of `MAX_TRIANGLES`, so the index fits into 32 bits.
         let first = self.values.len() as u32;
         self.values.extend(values);
         [first, first + 1, first + 2]
     }
 
-    /// Adds the indices of the triangle after `triangles`, whose corners have the indices
-    /// `positions`.
+    /// Appends the attribute indices `corner` of the next triangle, whose position indices are
+    /// `positions`. `triangles` are the position indices of all triangles before it.
     pub(super) fn push(&mut self, triangles: &[[u32; 3]], positions: [u32; 3], corner: Option<[u32; 3]>) {
-        // The first triangle that differs turns the short representation into lists, for all triangles before it too.
+        // The first triangle whose indices differ from its positions' changes the representation to `Own`, which then
+        // also needs entries for all triangles before it.
         match (&mut self.corners, corner) {
             (CornerIndices::Absent, None) => {}
             (CornerIndices::Absent, Some(corner)) if triangles.is_empty() && corner == positions => {
@@ -114,7 +114,7 @@ impl<T: Copy> Attribute<T> {
         }
     }
 
-    /// Frees unused capacity, and everything if no triangle has a value.
+    /// Frees unused capacity, and all values if no triangle refers to one.
     pub(super) fn shrink(&mut self) {
         match &mut self.corners {
             CornerIndices::Absent => self.values = Vec::new(),

@@ -29,7 +29,7 @@ pub(super) struct TriangleIndices {
 }
 
 impl TriangleIndices {
-    /// Returns a triangle with positions only.
+    /// Returns a triangle whose corners have positions and no other attributes.
     pub(super) fn new(positions: [u32; 3]) -> Self {
         Self { positions, normals: None, texture_coordinates: None, colors: None }
     }
@@ -39,7 +39,7 @@ impl MeshBuilder {
     /// Adds a triangle, whose indices must be in range.
     pub(super) fn push(&mut self, triangle: TriangleIndices) -> Result<(), MeshFault> {
         if self.triangles.len() >= MAX_TRIANGLES {
-            return Err(MeshFault::of_file(too_many()));
+            return Err(MeshFault::of_file(too_many_triangles()));
         }
         let TriangleIndices { positions, normals, texture_coordinates, colors } = triangle;
         self.normals.push(&self.triangles, positions, normals);
@@ -70,7 +70,8 @@ impl MeshBuilder {
         self.shrink();
         let Self { positions, triangles, normals, texture_coordinates, colors, materials, material_runs } = self;
         let mesh = MeshFile { positions, triangles, normals, texture_coordinates, colors, materials, material_runs };
-        // Readers report these faults with their positions before; this is the last line of defence.
+        // Readers have already checked all this, and reported faults with their positions; this is the last line of
+        // defence.
         if mesh.is_valid() {
             Ok(mesh)
         } else {
@@ -90,15 +91,15 @@ impl MeshBuilder {
 }
 
 /// Returns the message about a mesh with too many triangles.
-pub(super) fn too_many() -> String {
+pub(super) fn too_many_triangles() -> String {
     format!("there are more than {MAX_TRIANGLES} triangles in this file, which is the most that are read")
 }
 
-/// Returns the direction as a unit vector; zero for a vector without length.
+/// Returns `direction` as a unit vector, or zero if its length is zero.
 pub(super) fn unit(direction: DVec3) -> Vec3 {
-    // Scaled first, so that no square overflows or underflows.
+    // Divided by its largest component first, so that no square overflows or underflows.
     let direction = direction / direction.abs().max_element();
     let length = direction.length();
-    // False for NaN too, which a zero vector has become.
+    // False also for NaN, which the division above makes of a zero vector.
     if length > 0.0 { (direction / length).as_vec3() } else { Vec3::ZERO }
 }

@@ -6,28 +6,29 @@ use crate::bounds::Bounds;
 use glam::{DVec3, Vec3};
 use std::collections::HashSet;
 
-/// Limit on the triangles of a decimated mesh: trees over as many are built in a few hundredths of
-/// a second.
+/// Limit on the triangles of a decimated mesh: small enough that the trees over them are built in a
+/// few hundredths of a second.
 const MAX_DECIMATED_TRIANGLES: usize = 128 << 10;
 
-/// Marks a cube without a vertex.
+/// Marks a cube that contains no vertex of the mesh.
 const NO_CLUSTER: u32 = u32::MAX;
 
 impl MeshFile {
-    /// Returns the mesh decimated by vertex clustering: space is cut into cubes, `cubes` (at most
-    /// 256) along the mesh's longest side, and the vertices of each become one, at their mean (Rossignac and Borrel,
-    /// Multi-resolution 3D approximations for rendering complex scenes, 1993). Holes and edges stay within a cube's
-    /// size. `None` if no triangle is left.
+    /// Returns the mesh decimated by vertex clustering: space is divided into cubes, `cubes` (at
+    /// most
+    /// 256) along the mesh's longest side, and all vertices in a cube are replaced by their mean (Rossignac and Borrel,
+    /// Multi-resolution 3D approximations for rendering complex scenes, 1993). No vertex moves farther than a cube's
+    /// diagonal. `None` if no triangle is left.
     ///
-    /// A selection of enlarged triangles would be simpler, but it leaves holes and changes large triangles.
+    /// Keeping some of the triangles, enlarged, would be simpler, but would leave holes and distort large triangles.
     pub fn decimated(&self, cubes: u32) -> Option<Self> {
-        let (corner_of, positions) = self.merged(cubes.clamp(1, 256));
+        let (corner_of, positions) = self.clusters(cubes.clamp(1, 256));
         let mut mesh = MeshBuilder { positions, materials: self.materials.clone(), ..MeshBuilder::default() };
         let mut seen = HashSet::new();
         for (index, corners) in self.triangles.iter().enumerate() {
             let corners = corners.map(|corner| corner_of[corner as usize]);
             let [a, b, c] = corners;
-            // Collapsed triangles are dropped, and so are doubles, of which a fine mesh has many.
+            // Triangles with two corners in one cube are dropped, and so are duplicates, of which a fine mesh has many.
             if a == b || b == c || c == a || !seen.insert(sorted(corners)) {
                 continue;
             }
@@ -39,14 +40,15 @@ impl MeshFile {
         mesh.finish("").ok()
     }
 
-    /// Returns for each vertex the index of its cube, and the mean of each cube's vertices.
-    fn merged(&self, cubes: u32) -> (Vec<u32>, Vec<Vec3>) {
+    /// Returns the cluster (index of a nonempty cube) of each vertex, and the mean position of each
+    /// cluster.
+    fn clusters(&self, cubes: u32) -> (Vec<u32>, Vec<Vec3>) {
         let bounds = Bounds::of(self.positions.iter().copied());
         let start = bounds.min.as_dvec3();
         let side = (bounds.max.as_dvec3() - start).max_element();
-        // A little less than `cubes`, so that the largest coordinate falls into the last cube, not beyond it.
+        // Scaled to a little less than `cubes`, so that the largest coordinate falls into the last cube, not beyond it.
         let scale = if side > 0.0 { f64::from(cubes) * 0.999_999 / side } else { 0.0 };
-        // A dense table of at most 2^24 cubes: a hash of cubes would cost more for each vertex.
+        // The cluster of each cube, in a dense table of at most 2^24: a hash map would cost more for each vertex.
         let mut cluster_of = vec![NO_CLUSTER; cubes.pow(3) as usize];
         let mut sums: Vec<(DVec3, u32)> = Vec::new();
         let corner_of = self.positions.iter().map(|position| {

@@ -1,4 +1,5 @@
-//! A fault on its way from the reader that found it to the [`MeshError`] that names the file.
+//! The internal error type of the readers, which becomes a [`MeshError`] once the file's name is
+//! added.
 
 use super::{FilePosition, MeshError};
 use crate::progress::{Cancelled, Unfinished};
@@ -6,7 +7,8 @@ use crate::scene_text::clipped;
 
 /// A fault, or a cancellation, before the file's name is added.
 ///
-/// Boxed, because every parsed number is a `Result` of it: with eight bytes the result stays in registers.
+/// Boxed, because parsing a number returns a `Result` with this error, which stays in registers if the error has eight
+/// bytes.
 #[derive(Debug)]
 pub(super) struct MeshFault(Box<Cause>);
 
@@ -16,7 +18,7 @@ enum Cause {
         offset: FaultOffset,
         message: String,
     },
-    /// A fault in a side file, whose name is known.
+    /// A fault in a side file, which already has that file's name.
     Elsewhere(MeshError),
     /// Not a fault: the work was cancelled.
     Cancelled,
@@ -104,9 +106,9 @@ fn line_and_column(bytes: &[u8], at: usize) -> (usize, usize) {
     (line, 1 + text.utf8_chunks().map(characters).sum::<usize>())
 }
 
-/// Returns a piece of a file as shown in messages.
+/// Returns a piece of a file as messages show it: in quotes, printable, clipped if it is long.
 pub(super) fn shown(bytes: &[u8]) -> String {
-    // Only the shown beginning of a long piece is decoded.
+    // Messages show only the beginning of a long piece, so the rest is not decoded.
     format!("\"{}\"", clipped(&String::from_utf8_lossy(&bytes[..bytes.len().min(200)])))
 }
 

@@ -15,8 +15,8 @@ pub(super) enum MeshFormat {
     Glb,
 }
 
-/// Signatures of formats that are not read, each with a hint. The order matters: `<?xml` comes
-/// before `<`.
+/// First bytes of formats that are not supported, each with the end of the error message. The order
+/// matters: `<?xml` comes before `<`.
 const OTHERS: [(&[u8], &str); 17] = [
     (b"\x1f\x8b", "is gzip-compressed: unpack it first (gunzip)"),
     (b"BZh", "is bzip2-compressed: unpack it first (bunzip2)"),
@@ -53,7 +53,7 @@ pub(super) fn recognised(name: &str, bytes: &[u8]) -> Result<MeshFormat, MeshFau
     if let Some(format) = by_content(bytes, text) {
         return Ok(format);
     }
-    // Before the extension: a compressed file still ends in `.stl`.
+    // Checked before the extension is used: a compressed file may still be named `.stl`.
     if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
         return Err(MeshFault::of_file(format!("this {what}")));
     }
@@ -73,8 +73,8 @@ fn by_content(bytes: &[u8], text: &[u8]) -> Option<MeshFormat> {
     }
 }
 
-/// Returns whether the bytes start with `solid` and contain no byte near the start that text never
-/// has.
+/// Returns whether the bytes start with the word `solid`, and the first 512 are all possible in
+/// text.
 fn is_stl_text(text: &[u8]) -> bool {
     // A binary file that was cut short may begin with "solid" too, but its count and its first floats contain bytes
     // that are never part of UTF-8 or Latin text.
@@ -94,7 +94,7 @@ fn first_word(line: &[u8]) -> &[u8] {
     line.split(u8::is_ascii_whitespace).next().unwrap_or_default()
 }
 
-/// Returns the format by the file name's extension, in either case.
+/// Returns the format by the file name's extension, in upper or lower case.
 pub(super) fn by_ending(name: &str) -> Option<MeshFormat> {
     let ending = Path::new(name).extension()?.to_str()?.to_ascii_lowercase();
     Some(match ending.as_str() {

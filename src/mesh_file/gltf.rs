@@ -45,7 +45,7 @@ pub(super) fn read_binary(
     if version != 2 {
         return Err(MeshFault::at_byte(4, format!("this is version {version} of GLB; only version 2 is read")));
     }
-    // A longer file is accepted: bytes after the end are ignored.
+    // A file longer than its header claims is accepted, and the bytes beyond that length are ignored.
     if length as usize > bytes.len() {
         let found = bytes.len();
         return Err(MeshFault::at_byte(
@@ -67,13 +67,14 @@ pub(super) fn read_binary(
         })
     };
     let json = chunk(HEADER, b"JSON", "JSON")?;
-    // A chunk starts at a multiple of four bytes, whether or not the length before it counts the padding.
+    // A chunk starts at a multiple of four bytes. Some writers include the padding in the chunk length before it,
+    // others do not.
     let buffer_at = (HEADER + 8 + json.len()).next_multiple_of(4);
     let buffer = if buffer_at < bytes.len() { Some(chunk(buffer_at, b"BIN\0", "BIN")?) } else { None };
     read(json, HEADER + 8, buffer, side_files, meter)
 }
 
-/// Parses the JSON, which starts at byte `at` of a GLB file.
+/// Parses the JSON and reads its mesh. `at` is the offset of the JSON in a GLB file, 0 otherwise.
 fn read(
     json: &[u8],
     at: usize,
@@ -91,14 +92,15 @@ fn read(
     nodes::read(root, &mut Buffers::new(root, json.len(), glb_buffer, side_files), &mut meter)
 }
 
-/// Limits on the objects, and on the items of lists and objects, in a document. Parsed, they take
-/// 600 and 32 bytes each: `{}` takes 300 times its size as text, so that a file of 2 GiB could exhaust any memory.
+/// Limits on the number of objects, and of items of lists and objects, in a JSON document. A parsed
+/// object takes 600 bytes and an item 32: `{}` takes 300 times its size as text, so a file of 2 GiB could exhaust any
+/// memory.
 const MAX_OBJECTS: usize = 1 << 20;
 const MAX_ITEMS: usize = 16 << 20;
 
 /// Refuses a document with too many values, before it is parsed.
 fn check_count(json: &[u8]) -> Result<(), MeshFault> {
-    // Brackets and commas within strings are counted as well; no real file comes near the limits.
+    // Brackets and commas within strings are counted as well, which is harmless: real files are far below the limits.
     let count = |wanted: &[u8]| json.iter().filter(|byte| wanted.contains(byte)).count();
     if count(b"{") > MAX_OBJECTS || count(b"[,") > MAX_ITEMS {
         let message = format!("the JSON has more than {MAX_OBJECTS} objects or {MAX_ITEMS} items, too many to be read");
@@ -107,11 +109,12 @@ fn check_count(json: &[u8]) -> Result<(), MeshFault> {
     Ok(())
 }
 
-/// Returns the fault of the JSON: with its line in a text, with its byte in a GLB file.
+/// Converts a syntax error of the JSON: with line and column in a text file, with the byte offset
+/// in a GLB file.
 fn syntax_fault(error: &serde_json::Error, json: &[u8], text: &[u8], at: usize) -> MeshFault {
     let line_start = text.split_inclusive(|&byte| byte == b'\n').take(error.line().saturating_sub(1)).map(<[u8]>::len);
     let place = json.len() - text.len() + line_start.sum::<usize>() + error.column().saturating_sub(1);
-    // serde_json ends its message with the position, which is given differently here.
+    // serde_json ends its message with a position; the fault has a position of its own, in the whole file.
     let (full, told) = (error.to_string(), format!(" at line {} column {}", error.line(), error.column()));
     let message = format!("this is not JSON: {}", full.strip_suffix(&told).unwrap_or(&full));
     if at == 0 { MeshFault::in_text(place, message) } else { MeshFault::at_byte(at + place, message) }

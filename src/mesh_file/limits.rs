@@ -1,11 +1,11 @@
-//! Limits on what is read.
+//! Limits on the size of meshes and textures.
 
-/// Limit on the bytes read for one mesh, side files included: 2 GiB, so that every count fits into
-/// 31 bits.
+/// Limit on the bytes read for one mesh, side files included: 2 GiB, so that numbers of vertices
+/// and triangles fit into 31 bits.
 pub const MAX_MESH_BYTES: usize = 2 << 30;
 
-/// Limit on the triangles of a mesh: 64 Mi. A glTF file that instantiates the same triangles
-/// repeatedly makes at most 1 Mi of them and one for each of its bytes.
+/// Limit on the triangles of a mesh: 64 Mi. A glTF file, whose nodes may repeat the same triangles,
+/// may have at most one per byte of the file and 1 Mi more.
 pub const MAX_TRIANGLES: usize = 64 << 20;
 
 /// Limit on the texels in all textures of a mesh: 64 Mi, as in one texture of 8192 x 8192.

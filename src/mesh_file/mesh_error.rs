@@ -32,7 +32,7 @@ pub struct MeshError {
 /// The position of a fault in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilePosition {
-    /// The file as a whole; the message may contain a path in its JSON.
+    /// The file as a whole. In glTF, the message begins with the faulty value's path in the JSON.
     File,
     /// In a text: line and column, counted from 1, the column in characters.
     Text {

@@ -47,7 +47,7 @@ pub(super) fn read(
     let folder = path.parent().unwrap_or(Path::new(""));
     let name = side_files.name_of(path);
     let mut reader = MtlReader { text: TextCursor::new(bytes), folder, side_files, library };
-    // The error names this file: the fault is not in the one that names it.
+    // The error names the MTL file, not the OBJ file that refers to it.
     reader.statements().map_err(|fault| MeshFault::from(fault.into_error(&name, bytes)))
 }
 
@@ -58,8 +58,8 @@ struct MtlReader<'a, 'b> {
     library: &'a mut Library,
 }
 
-/// The reflectance of a material without `Kd` and without a texture: light grey. With a texture it
-/// is 1, so that the texture's colours stay.
+/// The reflectance of a material with neither `Kd` nor a texture: light grey. With a texture but no
+/// `Kd` the reflectance is 1, which keeps the texture's colours.
 const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
 
 impl MtlReader<'_, '_> {
@@ -75,11 +75,11 @@ impl MtlReader<'_, '_> {
                 }
                 b"Kd" => {
                     has_reflectance = true;
-                    self.material(at)?.reflectance = self.reflectance()?;
+                    self.last_material(at)?.reflectance = self.reflectance()?;
                 }
                 b"map_Kd" => {
                     let texture = self.texture()?;
-                    let material = self.material(at)?;
+                    let material = self.last_material(at)?;
                     material.texture = Some(texture);
                     if !has_reflectance {
                         material.reflectance = LinearRgb::grey(1.0);
@@ -92,7 +92,7 @@ impl MtlReader<'_, '_> {
         Ok(())
     }
 
-    /// Starts a material. Of two materials with one name, the later one counts.
+    /// Reads `newmtl` and starts a material. If two have the same name, the later one counts.
     fn new_material(&mut self) {
         let name = self.text.rest_of_line();
         let index = self.library.materials.len() as u32; // fewer than bytes
@@ -100,7 +100,7 @@ impl MtlReader<'_, '_> {
         self.library.materials.push(MeshMaterial { reflectance: DEFAULT_REFLECTANCE, texture: None });
     }
 
-    fn material(&mut self, at: usize) -> Result<&mut MeshMaterial, MeshFault> {
+    fn last_material(&mut self, at: usize) -> Result<&mut MeshMaterial, MeshFault> {
         let last = self.library.materials.last_mut();
         last.ok_or_else(|| MeshFault::in_text(at, "this line needs a material: newmtl must come before it"))
     }
@@ -141,8 +141,8 @@ impl MtlReader<'_, '_> {
         Ok(texture)
     }
 
-    /// Reads the options before the file name: `-s` (scale) and `-o` (offset) take effect, others
-    /// are skipped.
+    /// Reads the options between `map_Kd` and the file name: `-s` (scale) and `-o` (offset) take
+    /// effect, others are skipped. Returns the texture's transform.
     fn options(&mut self) -> Result<[Vec3; 2], MeshFault> {
         let (mut scale, mut offset) = ([1.0; 2], [0.0; 2]);
         loop {
@@ -155,12 +155,12 @@ impl MtlReader<'_, '_> {
                 b"-blendu" | b"-blendv" | b"-clamp" | b"-cc" | b"-bm" | b"-boost" | b"-texres" | b"-imfchan"
                 | b"-type" => self.skip_words(1),
                 _ => {
-                    self.text = self.text.back_at(start);
+                    self.text = self.text.cursor_at(start);
                     break;
                 }
             }
         }
-        // In the file v is measured from the bottom, in a mesh from the top.
+        // In MTL files v is measured from the bottom of the image, in a `MeshFile` from its top.
         let v = Vec3::new(0.0, scale[1], 1.0 - scale[1] - offset[1]);
         let u = Vec3::new(scale[0], 0.0, offset[0]);
         if u.is_finite() && v.is_finite() {
@@ -175,7 +175,8 @@ impl MtlReader<'_, '_> {
         }
     }
 
-    /// Reads one to three numbers, of which the first two count: the third is for 3D textures.
+    /// Reads one to three numbers. The first two are stored in `values`; the third is for 3D
+    /// textures and is ignored.
     fn two_of_three(&mut self, values: &mut [f32; 2]) -> Result<(), MeshFault> {
         values[0] = self.text.number()?;
         for i in 1..3 {
@@ -184,7 +185,7 @@ impl MtlReader<'_, '_> {
                 (Ok(value), 1) => values[1] = value,
                 (Ok(_), _) => {}
                 (Err(_), _) => {
-                    self.text = self.text.back_at(start);
+                    self.text = self.text.cursor_at(start);
                     break;
                 }
             }

@@ -14,7 +14,7 @@ use std::path::Path;
 
 /// Reads an OBJ file.
 pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
-    // Without this check a binary file would fail at its first line with a message about a word that it does not have.
+    // Without this check the message about a binary file would be that its first "word" is not a keyword.
     if let Some(offset) = bytes.iter().position(|&byte| byte == 0) {
         return Err(MeshFault::at_byte(offset, "an OBJ file is text, and this byte is a NUL"));
     }
@@ -35,13 +35,13 @@ struct ObjReader<'a, 'b> {
     mesh: MeshBuilder,
     /// The materials of the MTL files named so far; `None` before the first one.
     library: Option<Library>,
-    /// The corners of the current face, kept for its allocation.
+    /// The corners of the current face; reused for all faces, so that a face costs no allocation.
     corners: FaceCorners,
     side_files: &'a mut SideFiles<'b>,
 }
 
-/// The indices of a face's corners. Each corner has texture coordinates or none has; the same for
-/// normals.
+/// The indices of a face's corners. Either all corners have texture coordinates or none has, and
+/// likewise for normals.
 #[derive(Default)]
 struct FaceCorners {
     positions: Vec<u32>,
@@ -60,7 +60,7 @@ impl ObjReader<'_, '_> {
             b"f" | b"fo" => self.face(at),
             b"usemtl" => self.use_material(),
             b"mtllib" => self.library(),
-            _ if is_passed_over(word) => {
+            _ if is_skipped(word) => {
                 self.text.skip_line();
                 Ok(())
             }
@@ -68,7 +68,8 @@ impl ObjReader<'_, '_> {
         }
     }
 
-    /// Reads `v x y z`, `v x y z w` or `v x y z r g b`. The weight w is for curves and is ignored.
+    /// Reads a vertex: `v x y z`, `v x y z w` or `v x y z r g b`. The weight w is for curves and is
+    /// ignored.
     fn vertex(&mut self) -> Result<(), MeshFault> {
         let position = self.numbers()?;
         self.mesh.positions.push(Vec3::from(position));
@@ -86,8 +87,8 @@ impl ObjReader<'_, '_> {
         Ok([self.text.number()?, self.text.number()?, self.text.number()?])
     }
 
-    /// Adds the colour of the last vertex. Vertices without a colour among others with one are
-    /// white.
+    /// Adds the colour of the last vertex, `encoded` in sRGB. If only some vertices have colours,
+    /// the others are white.
     fn color(&mut self, encoded: [f32; 3]) {
         let [r, g, b] = encoded.map(|channel| linear_from_srgb(f64::from(channel.clamp(0.0, 1.0))) as f32);
         self.pad_colors(self.mesh.positions.len() - 1);
@@ -104,13 +105,13 @@ impl ObjReader<'_, '_> {
         self.text.end_line()
     }
 
-    /// Reads `vt u`, `vt u v` or `vt u v w`. In the file v is measured from the bottom, in a mesh
-    /// from the top.
+    /// Reads `vt u`, `vt u v` or `vt u v w`. In OBJ files v is measured from the bottom of the
+    /// image, in a `MeshFile` from its top.
     fn texture_coordinate(&mut self) -> Result<(), MeshFault> {
         let u = self.text.number()?;
         let v = if self.text.is_at_line_end() { 0.0 } else { self.text.number()? };
         self.mesh.texture_coordinates.values_mut().push(Vec2::new(u, 1.0 - v));
-        // The rest, a third coordinate, is for 3D textures.
+        // The optional third coordinate w is for 3D textures and is ignored.
         self.text.skip_line();
         Ok(())
     }
@@ -140,14 +141,15 @@ impl ObjReader<'_, '_> {
     /// Adds the triangles of the current face.
     fn triangles(&mut self) -> Result<(), MeshFault> {
         let has_colors = !self.mesh.colors.values().is_empty();
-        // Vertices after the last coloured one have no colour yet, and the triangle's indices must be in range.
+        // Vertices after the last coloured one have no colour yet, and each position needs one as soon as a triangle
+        // uses it.
         if has_colors {
             self.pad_colors(self.mesh.positions.len());
         }
         let FaceCorners { positions, texture_coordinates, normals } = &self.corners;
         let pick = |indices: &[u32], corners: [usize; 3]| corners.map(|i| indices[i]);
         let pick_any = |indices: &[u32], corners| (!indices.is_empty()).then(|| pick(indices, corners));
-        for corners in polygon::cut(positions, &self.mesh.positions) {
+        for corners in polygon::triangulated(positions, &self.mesh.positions) {
             let positions = pick(positions, corners);
             self.mesh.push(TriangleIndices {
                 positions,
@@ -159,17 +161,17 @@ impl ObjReader<'_, '_> {
         Ok(())
     }
 
-    /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    /// Reads a corner of a face: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     fn corner(&mut self) -> Result<(), MeshFault> {
         let start = self.text.at();
         let vertex = self.index("vertex", self.mesh.positions.len())?;
         self.corners.positions.push(vertex);
-        if self.text.take(b'/') {
-            if !self.text.take(b'/') {
+        if self.text.skip_byte(b'/') {
+            if !self.text.skip_byte(b'/') {
                 let count = self.mesh.texture_coordinates.values().len();
                 let texture_coordinate = self.index("texture coordinate", count)?;
                 self.corners.texture_coordinates.push(texture_coordinate);
-                if !self.text.take(b'/') {
+                if !self.text.skip_byte(b'/') {
                     return self.end_corner(start);
                 }
             }
@@ -185,11 +187,12 @@ impl ObjReader<'_, '_> {
 
     #[cold]
     fn bad_corner(&mut self, start: usize) -> MeshFault {
-        self.text = self.text.back_at(start);
+        self.text = self.text.cursor_at(start);
         self.text.expected("a corner (v, v/vt, v//vn or v/vt/vn)")
     }
 
-    /// Returns a zero-based index from one that counts from 1 or, if negative, back from the last.
+    /// Reads an index that counts from 1 or, if negative, back from the last of `count` items.
+    /// Returns it counted from 0.
     #[inline]
     fn index(&mut self, what: &str, count: usize) -> Result<u32, MeshFault> {
         let at = self.text.at();
@@ -197,7 +200,7 @@ impl ObjReader<'_, '_> {
         let size = written.unsigned_abs() as usize; // 64 bits on all that termtrace runs on
         let index = if written < 0 { count.checked_sub(size) } else { size.checked_sub(1) };
         match index.filter(|&index| index < count) {
-            // A file of 2 GiB has fewer than 2^31 of anything.
+            // No list has 2^31 items, because a file has at most 2^31 bytes.
             Some(index) => Ok(index as u32),
             None => Err(MeshFault::in_text(at, no_such_index(what, written, count))),
         }
@@ -225,7 +228,7 @@ impl ObjReader<'_, '_> {
         for name in library_names(&text) {
             let path = local_path(Path::new(""), name).map_err(|message| MeshFault::in_text(at, message))?;
             let library = self.library.get_or_insert_default();
-            // A file may repeat the line before each group.
+            // Some files repeat the same `mtllib` line before each group.
             if library.has_file(&path) {
                 continue;
             }
@@ -256,8 +259,8 @@ fn is_no_material(name: &[u8]) -> bool {
     [&b""[..], b"None", b"(null)", b"null"].contains(&name)
 }
 
-/// Splits the names of a line. Several names may be on one line, and a name may contain blanks: it
-/// ends with `.mtl`.
+/// Splits the file names of a `mtllib` line. There may be several, and each may contain blanks: a
+/// name ends with `.mtl`.
 fn library_names(text: &str) -> Vec<&str> {
     let mut names = Vec::new();
     let mut start = 0;
@@ -277,12 +280,12 @@ fn library_names(text: &str) -> Vec<&str> {
 
 /// Returns whether a line of an OBJ file may start with this word.
 pub(super) fn is_statement(word: &[u8]) -> bool {
-    [&b"v"[..], b"vn", b"vt", b"f", b"fo", b"usemtl", b"mtllib"].contains(&word) || is_passed_over(word)
+    [&b"v"[..], b"vn", b"vt", b"f", b"fo", b"usemtl", b"mtllib"].contains(&word) || is_skipped(word)
 }
 
 /// Returns whether a word is a keyword of OBJ that makes no triangles. Any other word is a fault:
 /// it is the first sign of a file that is not OBJ.
-fn is_passed_over(word: &[u8]) -> bool {
+fn is_skipped(word: &[u8]) -> bool {
     const WORDS: [&str; 38] = [
         "g",
         "o",

@@ -33,7 +33,7 @@ fn read_body(header: &Header<'_>, mut rows: impl RowReader) -> Result<MeshFile, 
             ("vertex", _) => read_vertices(element, &mut rows, &mut mesh)?,
             ("face", Some(at)) => read_faces(element, at, vertex_count, &mut rows, &mut mesh)?,
             ("tristrips", Some(at)) => read_strips(element, at, vertex_count, &mut rows, &mut mesh)?,
-            // The header may claim 4 billion rows without properties, which take no bytes; they must take no time.
+            // Rows without properties take no bytes, and the header may claim 4 billion of them, so they are not looped over.
             _ if element.properties.is_empty() => {}
             _ => each_row(element, &mut rows, |rows| skip(&element.properties, rows))?,
         }
@@ -42,7 +42,7 @@ fn read_body(header: &Header<'_>, mut rows: impl RowReader) -> Result<MeshFile, 
     mesh.finish(if is_cloud { "it has vertices but no faces (a cloud of points?)" } else { "it has no faces" })
 }
 
-/// Calls `read` for each row of an element, between the row's begin and end.
+/// Calls `read` for each row of an element, between `begin` and `end` of the row.
 fn each_row<R: RowReader>(
     element: &Element<'_>,
     rows: &mut R,
@@ -66,15 +66,16 @@ fn skip(properties: &[Property<'_>], rows: &mut impl RowReader) -> Result<(), Me
     })
 }
 
-/// The slots that a vertex is read into: three for each of these, and one for values that are
-/// skipped. Properties come in any order; with slots one pass over them is enough.
+/// Indices into an array that a row of the vertex element is read into: the first of three for
+/// position, normal and colour, and one for values that are skipped. With the array a single pass reads the properties
+/// in any order.
 const POSITION: usize = 0;
 const NORMAL: usize = 3;
 const COLOR: usize = 6;
 const NOTHING: usize = 9;
 
-/// Returns the slot of a vertex property.
-fn slot(property: &Property<'_>) -> usize {
+/// Returns the array index for the value of a vertex property.
+fn slot_of(property: &Property<'_>) -> usize {
     match property.name {
         _ if matches!(property.shape, PropertyType::List { .. }) => NOTHING,
         "x" => POSITION,
@@ -91,20 +92,20 @@ fn slot(property: &Property<'_>) -> usize {
 }
 
 fn read_vertices(element: &Element<'_>, rows: &mut impl RowReader, mesh: &mut MeshBuilder) -> Result<(), MeshFault> {
-    let slots: Vec<usize> = element.properties.iter().map(slot).collect();
+    let slots: Vec<usize> = element.properties.iter().map(slot_of).collect();
     let has = |group: usize| (group..group + 3).all(|slot| slots.contains(&slot));
     if !has(POSITION) {
         return Err(MeshFault::in_text(element.at, "the element vertex lacks one of the properties x, y and z"));
     }
     let color_type = slots.iter().position(|&slot| slot == COLOR).map(|i| element.properties[i].shape);
     let (has_normals, color_type) = (has(NORMAL), color_type.filter(|_| has(COLOR)));
-    let room = room(element, rows);
-    // Exactly: a vector that grows by doubling needs up to three times the memory while it is copied.
-    mesh.positions.reserve_exact(room);
-    mesh.normals.values_mut().reserve_exact(if has_normals { room } else { 0 });
-    mesh.colors.values_mut().reserve_exact(if color_type.is_some() { room } else { 0 });
+    let capacity = row_capacity(element, rows);
+    // Exact, because a vector that grows by doubling needs up to three times the memory while it is copied.
+    mesh.positions.reserve_exact(capacity);
+    mesh.normals.values_mut().reserve_exact(if has_normals { capacity } else { 0 });
+    mesh.colors.values_mut().reserve_exact(if color_type.is_some() { capacity } else { 0 });
     each_row(element, rows, |rows| {
-        // On the stack: a vertex costs no allocation.
+        // An array on the stack, so that a vertex costs no allocation.
         let mut values = [0.0; NOTHING + 1];
         for (property, &slot) in element.properties.iter().zip(&slots) {
             match property.shape {
@@ -126,13 +127,13 @@ fn read_vertices(element: &Element<'_>, rows: &mut impl RowReader, mesh: &mut Me
 
 /// Returns the number of rows to reserve memory for: as many as the element claims, but at most as
 /// many as the rest of the file can hold.
-fn room(element: &Element<'_>, rows: &impl RowReader) -> usize {
+fn row_capacity(element: &Element<'_>, rows: &impl RowReader) -> usize {
     let least = rows.least_size(&element.properties).max(1);
     (element.count as usize).min(rows.left() / least)
 }
 
-/// Returns a colour as linear light. Integers range from 0 to the largest of their type, floats
-/// from 0 to 1.
+/// Converts sRGB channels of a property type to linear light. Integers range from 0 to the type's
+/// maximum, floats from 0 to 1.
 fn color(channels: [f32; 3], shape: PropertyType) -> LinearRgb {
     let white = match shape {
         PropertyType::Scalar(ScalarType::U8) => {
@@ -150,7 +151,7 @@ fn color(channels: [f32; 3], shape: PropertyType) -> LinearRgb {
     LinearRgb::new(r, g, b)
 }
 
-/// Reads faces, whose corners are in property `at` of the element.
+/// Reads faces. Property number `at` of the element lists the vertex indices of a face.
 fn read_faces(
     element: &Element<'_>,
     at: usize,
@@ -158,9 +159,9 @@ fn read_faces(
     rows: &mut impl RowReader,
     mesh: &mut MeshBuilder,
 ) -> Result<(), MeshFault> {
-    let (before, indices, after) = parts(element, at);
-    mesh.triangles.reserve(room(element, rows));
-    // One list for all faces, kept for its allocation.
+    let (before, indices, after) = split_at_property(element, at);
+    mesh.triangles.reserve(row_capacity(element, rows));
+    // One list, reused for all faces, so that a face costs no allocation.
     let mut corners = Vec::new();
     each_row(element, rows, |rows| {
         skip(before, rows)?;
@@ -170,14 +171,17 @@ fn read_faces(
             let message = format!("a face has at least 3 corners; this one has {}", corners.len());
             return Err(rows.fault(start, message));
         }
-        for triangle in polygon::cut(&corners, &mesh.positions) {
+        for triangle in polygon::triangulated(&corners, &mesh.positions) {
             push(mesh, triangle.map(|i| corners[i]))?;
         }
         skip(after, rows)
     })
 }
 
-fn parts<'a, 'b>(element: &'b Element<'a>, at: usize) -> (&'b [Property<'a>], PropertyType, &'b [Property<'a>]) {
+fn split_at_property<'a, 'b>(
+    element: &'b Element<'a>,
+    at: usize,
+) -> (&'b [Property<'a>], PropertyType, &'b [Property<'a>]) {
     let (before, rest) = element.properties.split_at(at);
     (before, rest[0].shape, &rest[1..])
 }
@@ -193,13 +197,13 @@ fn read_corners(
     for _ in 0..rows.length(length)? {
         let position = rows.position();
         let index = rows.integer(item)?;
-        corners.push(vertex(index, vertex_count).map_err(|message| rows.fault(position, message))?);
+        corners.push(checked_index(index, vertex_count).map_err(|message| rows.fault(position, message))?);
     }
     Ok(())
 }
 
 #[inline]
-fn vertex(index: i64, count: u32) -> Result<u32, String> {
+fn checked_index(index: i64, count: u32) -> Result<u32, String> {
     u32::try_from(index).ok().filter(|&index| index < count).ok_or_else(|| no_such_vertex(index, count))
 }
 
@@ -211,7 +215,8 @@ fn no_such_vertex(index: i64, count: u32) -> String {
     }
 }
 
-/// Reads triangle strips, as in the older files of the Stanford repository: -1 ends a strip.
+/// Reads triangle strips, as in the older files of the Stanford repository. Property number `at`
+/// lists vertex indices, where -1 ends a strip.
 fn read_strips(
     element: &Element<'_>,
     at: usize,
@@ -219,7 +224,7 @@ fn read_strips(
     rows: &mut impl RowReader,
     mesh: &mut MeshBuilder,
 ) -> Result<(), MeshFault> {
-    let (before, indices, after) = parts(element, at);
+    let (before, indices, after) = split_at_property(element, at);
     let PropertyType::List { length, item } = indices else { return Ok(()) };
     each_row(element, rows, |rows| {
         skip(before, rows)?;
@@ -229,7 +234,7 @@ fn read_strips(
             match rows.integer(item)? {
                 -1 => strip = Strip::default(),
                 index => {
-                    let corner = vertex(index, vertex_count).map_err(|message| rows.fault(position, message))?;
+                    let corner = checked_index(index, vertex_count).map_err(|message| rows.fault(position, message))?;
                     if let Some(triangle) = strip.next(corner) {
                         push(mesh, triangle)?;
                     }
@@ -248,8 +253,8 @@ struct Strip {
 }
 
 impl Strip {
-    /// Adds a corner and returns the triangle that it completes. Every second one is turned around:
-    /// in a strip the orientation alternates.
+    /// Adds a corner and returns the triangle that it completes. In a strip the orientation
+    /// alternates, so two corners of every second triangle are exchanged.
     fn next(&mut self, corner: u32) -> Option<[u32; 3]> {
         let [a, b] = self.last;
         self.last = [b, corner];
@@ -259,7 +264,8 @@ impl Strip {
     }
 }
 
-/// Adds a triangle, whose corners have the attributes of their vertices.
+/// Adds a triangle. In PLY, normals and colours belong to vertices, so they have the indices of the
+/// positions.
 fn push(mesh: &mut MeshBuilder, positions: [u32; 3]) -> Result<(), MeshFault> {
     let (normals, colors) = (!mesh.normals.values().is_empty(), !mesh.colors.values().is_empty());
     mesh.push(TriangleIndices {

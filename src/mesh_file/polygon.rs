@@ -10,8 +10,8 @@ const MAX_EARS: usize = 64;
 /// Triangulates a polygon. `corners` are indices into `positions`; each triangle is three indices
 /// into `corners`, with the polygon's orientation. A convex polygon becomes a fan; any other is cut by ear clipping. If
 /// the positions are unknown, or no ear is left because the outline crosses itself, the rest becomes a fan.
-pub(super) fn cut(corners: &[u32], positions: &[Vec3]) -> impl Iterator<Item = [usize; 3]> + use<> {
-    // Triangles and quads are nearly all faces; a triangle needs no test at all.
+pub(super) fn triangulated(corners: &[u32], positions: &[Vec3]) -> impl Iterator<Item = [usize; 3]> + use<> {
+    // A triangle is always convex, and large polygons always become fans: no outline is computed for either.
     let may_be_concave = (4..=MAX_EARS).contains(&corners.len());
     let outline = if may_be_concave { projected(corners, positions) } else { None };
     let mut ears = Vec::new();
@@ -19,18 +19,20 @@ pub(super) fn cut(corners: &[u32], positions: &[Vec3]) -> impl Iterator<Item = [
     if let Some(outline) = outline.filter(|outline| !is_convex(outline)) {
         (ears, fan) = cut_ears(&outline);
     }
-    // A fan of all corners needs no list.
+    // For a convex polygon `fan` is empty, and corner `i` of the fan is corner `i` of the polygon.
     let corner = move |i: usize| fan.get(i).copied().unwrap_or(i);
     let fan_length = corners.len() - ears.len();
     ears.into_iter().chain((2..fan_length).map(move |i| [corner(0), corner(i - 1), corner(i)]))
 }
 
-/// Returns the outline, counterclockwise, in the coordinate plane where the polygon is largest.
+/// Returns the corners projected to the coordinate plane where the polygon's area is largest, as a
+/// counterclockwise outline; `None` if a corner has no position.
 fn projected(corners: &[u32], positions: &[Vec3]) -> Option<Vec<DVec2>> {
     let points: Vec<DVec3> =
         corners.iter().map(|&i| positions.get(i as usize).map(|p| p.as_dvec3())).collect::<Option<_>>()?;
     let next = |i: usize| points[(i + 1) % points.len()];
-    // Newell's normal: twice the polygon's area along each axis. One corner's cross product would be wrong at a notch.
+    // Newell's normal: its components are twice the areas projected along each axis. The cross product at a single
+    // corner would point the wrong way if that corner were concave.
     let normal: DVec3 = (0..points.len()).map(|i| (points[i] - points[0]).cross(next(i) - points[0])).sum();
     let size = normal.abs();
     let flat = |p: &DVec3| match size.max_element() {
@@ -55,34 +57,36 @@ fn is_convex(outline: &[DVec2]) -> bool {
     turns_left && (2..n).all(|i| area(outline[0], outline[i - 1], outline[i]) >= 0.0)
 }
 
-/// Returns the ears and the remaining corners.
+/// Cuts off ears until three corners or no ears remain. Returns the ears' triangles and the
+/// remaining corners.
 fn cut_ears(outline: &[DVec2]) -> (Vec<[usize; 3]>, Vec<usize>) {
     let mut ears = Vec::new();
     let mut left: Vec<usize> = (0..outline.len()).collect();
     // The last three corners become the fan.
     while left.len() > 3 {
         let Some(ear) = (0..left.len()).find(|&i| is_ear(outline, &left, i)) else { break };
-        ears.push(around(&left, ear));
+        ears.push(with_neighbours(&left, ear));
         left.remove(ear);
     }
     (ears, left)
 }
 
-/// Returns a corner between its two neighbours.
-fn around(left: &[usize], i: usize) -> [usize; 3] {
+/// Returns the corner before `left[i]`, `left[i]` itself, and the corner after it.
+fn with_neighbours(left: &[usize], i: usize) -> [usize; 3] {
     let n = left.len();
     [left[(i + n - 1) % n], left[i], left[(i + 1) % n]]
 }
 
 /// Returns whether a corner is an ear: it turns left, and no other corner lies in its triangle.
 fn is_ear(outline: &[DVec2], left: &[usize], i: usize) -> bool {
-    let corners = around(left, i);
+    let corners = with_neighbours(left, i);
     let [a, b, c] = corners.map(|corner| outline[corner]);
     let is_inside = |p: DVec2| area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0;
     area(a, b, c) > 0.0
         && !left.iter().any(|&other| {
             let p = outline[other];
-            // A corner at the same point as one of the ear's does not block it: outlines with a hole go there twice.
+            // A corner at the same point as `a`, `b` or `c` does not block the ear: an outline with a hole passes twice
+            // through the ends of the cut to the hole.
             !corners.contains(&other) && ![a, b, c].contains(&p) && is_inside(p)
         })
 }

@@ -15,7 +15,7 @@ impl MeshFile {
     /// content does not tell the format; `open` returns the bytes of a side file by its path relative to the mesh.
     ///
     /// # Errors
-    /// The first fault.
+    /// If the bytes are not a valid mesh: the first fault.
     pub fn from_bytes(
         name: &str,
         bytes: &[u8],
@@ -51,10 +51,11 @@ impl MeshFile {
         Self::load_or_cancel(path, &Reporter::silent()).map_err(Unfinished::failure)
     }
 
-    /// Loads as [`load`](Self::load) does, until the reporter cancels it.
+    /// Loads a mesh file as [`load`](Self::load) does, with progress reports, until `reporter`
+    /// cancels.
     ///
     /// # Errors
-    /// As [`MeshFile::load`], and if the reporter cancels it.
+    /// Those of [`MeshFile::load`], and [`Unfinished::Cancelled`] if the reporter cancels.
     pub fn load_or_cancel(path: &Path, reporter: &Reporter<'_>) -> Result<Self, Unfinished<MeshError>> {
         Self::read_whole(path, Accepted::FilesAndPipes, reporter)
     }
@@ -66,7 +67,7 @@ impl MeshFile {
         reporter: &Reporter<'_>,
     ) -> Result<Self, Unfinished<MeshError>> {
         let read = named_file::read(path, accepted, |_| MAX_MESH_BYTES, reporter);
-        // A cancelled read ends with an error of its own, which must not be shown.
+        // A cancelled read returns an I/O error (`Interrupted`), which must not be shown as a fault of the file.
         if reporter.is_cancelled() {
             return Err(Unfinished::Cancelled);
         }
@@ -89,7 +90,7 @@ impl MeshFile {
     }
 }
 
-/// Returns whether a file with this name, or with this beginning, is meant to be a mesh.
+/// Returns whether a file is meant to be a mesh, by its name's extension or its first bytes.
 pub fn is_mesh(name: &str, bytes: &[u8]) -> bool {
     format::by_ending(name).is_some() || bytes.starts_with(b"ply") || bytes.starts_with(b"glTF")
 }
@@ -116,18 +117,19 @@ fn read(
         MeshFormat::Gltf => gltf::read_json(bytes, side_files, meter),
         MeshFormat::Glb => gltf::read_binary(bytes, side_files, meter),
     }?;
-    // The trees are built later, but a mesh that cannot have them should fail here, with its name.
+    // The trees over the triangles are built later. If memory will not suffice for them, the error should come from
+    // here, where it names the mesh file.
     let triangles = mesh.triangles().len();
     has_memory(triangles * PEAK_PER_TRIANGLE, &format!("for its {triangles} triangles"))?;
     Ok(mesh)
 }
 
-/// Limit on the memory per byte of a file while it is read, besides the file itself. It is reached
-/// by PLY, which has the fewest bytes per triangle.
+/// The most bytes of memory per byte of a file that reading takes, besides the file itself. PLY
+/// takes the most, because it has the fewest bytes per triangle.
 const PEAK_PER_BYTE: usize = 8;
 
-/// Limit on the memory per triangle while trees are built. Measured: 230 bytes (PLY) to 290 bytes
-/// (STL), including the file.
+/// The most bytes of memory per triangle while trees are built. Measured: 230 (PLY) to 290 (STL),
+/// including the file.
 const PEAK_PER_TRIANGLE: usize = 320;
 
 fn has_memory(bytes: usize, what_for: &str) -> Result<(), MeshFault> {

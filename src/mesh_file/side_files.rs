@@ -1,4 +1,4 @@
-//! The side files of a mesh.
+//! Reading of a mesh's side files: materials, textures and buffers that the mesh file names.
 
 use super::fault::shown;
 use super::limits::MAX_MESH_BYTES;
@@ -6,16 +6,16 @@ use crate::named_file;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-/// The only access to side files, with a limit on the total number of bytes read.
+/// Reads the side files of one mesh, with a limit on their total number of bytes.
 pub(super) struct SideFiles<'a> {
     open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     bytes_left: usize,
-    /// The folder of the mesh, for messages.
+    /// The folder of the mesh file, which messages put before a side file's name.
     folder: PathBuf,
 }
 
 impl<'a> SideFiles<'a> {
-    /// Returns the side files of the mesh of this name.
+    /// Returns a reader of the side files of the mesh file `name`, whose bytes `open` returns.
     pub(super) fn new(name: &str, open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>) -> Self {
         let folder = Path::new(name).parent().unwrap_or(Path::new("")).to_owned();
         Self { open, bytes_left: MAX_MESH_BYTES, folder }
@@ -42,8 +42,9 @@ impl<'a> SideFiles<'a> {
 /// messages stay readable.
 const MAX_PATH_BYTES: usize = 255;
 
-/// Returns the path that a file in `folder` refers to, relative to the mesh. `\` is a separator
-/// too, as Windows writes it. An `Err` says why it is refused: it is a URL, absolute, or empty.
+/// Returns the path of a side file relative to the mesh, given the path `written` in a file that
+/// lies in `folder`. `\` is a separator too, as on Windows. URLs, absolute paths and empty names are refused with a
+/// message.
 pub(super) fn local_path(folder: &Path, written: &str) -> Result<PathBuf, String> {
     let name = shown(written.as_bytes());
     let say = |what: &str| Err(format!("{name} {what}"));

@@ -3,7 +3,7 @@
 //! each in its own way.
 
 use super::MeshFile;
-use super::builder::{MeshBuilder, TriangleIndices, too_many};
+use super::builder::{MeshBuilder, TriangleIndices, too_many_triangles};
 use super::fault::{MeshFault, shown};
 use super::limits::MAX_TRIANGLES;
 use super::polygon;
@@ -16,15 +16,16 @@ const HEADER: usize = 84;
 /// Size of a triangle: a normal, three corners, two attribute bytes.
 const FACET: usize = 50;
 
-/// Returns the size of a binary file with as many triangles as it claims.
+/// Returns the size in bytes that a binary file should have, by the number of triangles in its
+/// header.
 fn claimed_size(bytes: &[u8]) -> Option<u64> {
     let count = bytes.get(HEADER - 4..HEADER)?.try_into().map(u32::from_le_bytes).ok()?;
     Some(HEADER as u64 + u64::from(count) * FACET as u64)
 }
 
-/// Returns whether the bytes are a binary file of exactly the size that its count implies. A text
-/// never is: four of its characters, read as a count, are above 150 million, and such a file would be larger than the
-/// limit.
+/// Returns whether the bytes are a binary file of exactly the size that its number of triangles
+/// implies. A text never is: four characters, read as that number, are above 150 million, and such a file would exceed
+/// [`MAX_MESH_BYTES`](super::MAX_MESH_BYTES).
 pub(super) fn size_fits(bytes: &[u8]) -> bool {
     claimed_size(bytes) == Some(bytes.len() as u64)
 }
@@ -44,7 +45,7 @@ pub(super) fn read_binary(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile
     }
     let facets = bytes[HEADER..].chunks_exact(FACET);
     if facets.len() > MAX_TRIANGLES {
-        return Err(MeshFault::at_byte(HEADER - 4, too_many()));
+        return Err(MeshFault::at_byte(HEADER - 4, too_many_triangles()));
     }
     // Equal corners are not merged: the tracer needs no shared vertices.
     let mut mesh = MeshBuilder { positions: Vec::with_capacity(3 * facets.len()), ..MeshBuilder::default() };
@@ -59,14 +60,15 @@ pub(super) fn read_binary(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile
     mesh.finish("its count is 0")
 }
 
-/// Returns the vertex in twelve bytes. `at` is their offset, for faults.
+/// Returns the vertex in twelve bytes. `at` is their offset in the file, for the message of a
+/// fault.
 fn vertex_from(bytes: &[u8], at: usize) -> Result<Vec3, MeshFault> {
     let coordinate = |axis: usize| f32::from_le_bytes(std::array::from_fn(|i| bytes[4 * axis + i]));
     let vertex = Vec3::new(coordinate(0), coordinate(1), coordinate(2));
     if vertex.is_finite() {
         return Ok(vertex);
     }
-    // The first coordinate that is not finite.
+    // The index of the first coordinate that is not finite.
     let axis = usize::from(vertex.x.is_finite()) * (1 + usize::from(vertex.y.is_finite()));
     Err(MeshFault::at_byte(at + 4 * axis, format!("{} is not a finite number", coordinate(axis))))
 }
@@ -87,7 +89,7 @@ pub(super) fn read_text(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, 
 struct TextReader<'a> {
     text: TextCursor<'a>,
     mesh: MeshBuilder,
-    /// Index of the first vertex of the open loop.
+    /// Index of the first vertex of the current `outer loop`; `None` between loops.
     open: Option<u32>,
 }
 
@@ -99,7 +101,7 @@ impl TextReader<'_> {
             b"vertex" if self.open.is_some() => return self.vertex(),
             b"outer" if self.open.is_none() => self.open = Some(self.mesh.positions.len() as u32), // below 2^31 bytes
             b"endloop" if self.open.is_some() => self.end_loop(at)?,
-            // Their order is not checked: some writers leave lines out, and only vertices and loops matter.
+            // The order of these lines is not checked: some writers leave some out, and only vertices and loops matter.
             b"solid" | b"facet" | b"endfacet" | b"endsolid" | b"color" if self.open.is_none() => {}
             _ if self.open.is_some() => {
                 return Err(MeshFault::in_text(at, format!("expected vertex or endloop, found {}", shown(word))));
@@ -119,15 +121,15 @@ impl TextReader<'_> {
         self.text.end_line()
     }
 
-    /// Adds the triangles of a loop. The format knows only triangles, but some programs write
-    /// polygons.
+    /// Adds the triangles of a loop. The format allows only triangles, but some programs write
+    /// larger polygons.
     fn end_loop(&mut self, at: usize) -> Result<(), MeshFault> {
         let corners: Vec<u32> = (self.open.take().unwrap_or_default()..self.mesh.positions.len() as u32).collect();
         if corners.len() < 3 {
             let message = format!("this loop has {} vertices; a facet has at least 3", corners.len());
             return Err(MeshFault::in_text(at, message));
         }
-        for triangle in polygon::cut(&corners, &self.mesh.positions) {
+        for triangle in polygon::triangulated(&corners, &self.mesh.positions) {
             self.mesh.push(TriangleIndices::new(triangle.map(|i| corners[i])))?;
         }
         Ok(())

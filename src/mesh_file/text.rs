@@ -1,4 +1,4 @@
-//! Words, numbers and line ends of a text, in one pass over its bytes.
+//! A cursor over a text file's bytes that reads words, numbers and line ends in one pass.
 //!
 //! In OBJ, MTL, STL and PLY words are separated by blanks and a line is a statement. Comments after `#` and lines
 //! continued by `\` are part of OBJ only, but no valid file of the others contains either sign.
@@ -14,14 +14,14 @@ pub(super) struct TextCursor<'a> {
 }
 
 impl<'a> TextCursor<'a> {
-    /// Starts at the beginning of a text, after its byte order mark if it has one.
+    /// Returns a cursor at the beginning of a text, after its byte order mark if it has one.
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Self { bytes, at }
     }
 
-    /// Starts at a byte.
-    pub(super) fn from(bytes: &'a [u8], at: usize) -> Self {
+    /// Returns a cursor at byte offset `at` of a text.
+    pub(super) fn starting_at(bytes: &'a [u8], at: usize) -> Self {
         Self { bytes, at }
     }
 
@@ -39,7 +39,7 @@ impl<'a> TextCursor<'a> {
         self.bytes.get(self.at).copied()
     }
 
-    /// Skips blanks, and line ends after a backslash.
+    /// Skips blanks and line continuations (a backslash and a line end).
     pub(super) fn skip_blanks(&mut self) {
         loop {
             match self.peek() {
@@ -70,7 +70,7 @@ impl<'a> TextCursor<'a> {
         self.at += line_end(&self.bytes[self.at..]);
     }
 
-    /// Moves to the next line with content; `false` if there is none.
+    /// Moves past blank lines and comments to the next statement. Returns whether there is one.
     pub(super) fn go_to_statement(&mut self) -> bool {
         while self.is_at_line_end() {
             if self.is_at_end() {
@@ -81,7 +81,7 @@ impl<'a> TextCursor<'a> {
         true
     }
 
-    /// Checks that the statement ends here.
+    /// Skips the end of the line; a fault if the statement goes on here.
     pub(super) fn end_line(&mut self) -> Result<(), MeshFault> {
         if self.is_at_line_end() {
             self.skip_line();
@@ -118,24 +118,24 @@ impl<'a> TextCursor<'a> {
         }
     }
 
-    /// Returns whether a word ends here.
+    /// Returns whether a word would end at the cursor.
     #[inline]
     pub(super) fn is_at_word_end(&self) -> bool {
         self.is_word_end(self.at)
     }
 
-    /// Returns a cursor at another position of the same text.
-    pub(super) fn back_at(&self, at: usize) -> Self {
+    /// Returns a cursor at byte offset `at` of the same text.
+    pub(super) fn cursor_at(&self, at: usize) -> Self {
         Self { bytes: self.bytes, at }
     }
 
     /// Reads a word that must be a finite number, correctly rounded.
-    // `#[inline]` on what is called for each number: a mesh of a million vertices has ten million of them.
+    // `#[inline]` on each function that is called per number: a mesh of a million vertices has ten million numbers.
     #[inline]
     pub(super) fn number(&mut self) -> Result<f32, MeshFault> {
         self.skip_blanks();
-        // The crate's parser is correctly rounded, as the standard library's, but takes bytes and stops at the first
-        // one that is not part of a number: no search for the word's end, no check for UTF-8.
+        // `fast_float2` rounds correctly, as the standard library does, but parses bytes and stops at the first one
+        // that is not part of a number: no search for the word's end, no check for UTF-8.
         if let Ok((value, length)) = fast_float2::parse_partial::<f32, _>(&self.bytes[self.at..])
             && value.is_finite()
             && self.is_word_end(self.at + length)
@@ -143,11 +143,11 @@ impl<'a> TextCursor<'a> {
             self.at += length;
             return Ok(value);
         }
-        Err(self.no_number())
+        Err(self.number_fault())
     }
 
     #[cold]
-    fn no_number(&mut self) -> MeshFault {
+    fn number_fault(&mut self) -> MeshFault {
         let start = self.at;
         let word = self.word();
         match fast_float2::parse::<f64, _>(word) {
@@ -177,13 +177,13 @@ impl<'a> TextCursor<'a> {
         }
     }
 
-    /// Reads an integer that may end inside a word, of at most 18 digits, so that it cannot
-    /// overflow.
+    /// Reads an integer of at most 18 digits, which cannot overflow. Other characters may follow in
+    /// the same word, as in `3/1`.
     #[inline]
     pub(super) fn digits(&mut self) -> Option<i64> {
-        let negative = self.take(b'-');
+        let negative = self.skip_byte(b'-');
         if !negative {
-            self.take(b'+');
+            self.skip_byte(b'+');
         }
         let start = self.at;
         let mut value = 0_i64;
@@ -197,15 +197,15 @@ impl<'a> TextCursor<'a> {
         (self.at > start).then_some(if negative { -value } else { value })
     }
 
-    /// Skips a byte if it is the next one. Returns whether it was.
+    /// Skips the next byte if it is `byte`. Returns whether it was.
     #[inline]
-    pub(super) fn take(&mut self, byte: u8) -> bool {
+    pub(super) fn skip_byte(&mut self, byte: u8) -> bool {
         let is_next = self.peek() == Some(byte);
         self.at += usize::from(is_next);
         is_next
     }
 
-    /// Returns the fault that something else was expected here.
+    /// Returns a fault at the cursor: "expected `wanted`, found" the next word.
     #[cold]
     pub(super) fn expected(&mut self, wanted: &str) -> MeshFault {
         let is_line_end = self.is_at_line_end();

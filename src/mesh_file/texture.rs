@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 use std::fmt;
 use std::sync::Arc;
 
-/// An image as in its file: sRGB, 8 bits, without transparency.
+/// A decoded image: 8-bit sRGB texels, without transparency.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Texture {
     width: u32,
@@ -19,18 +19,19 @@ pub struct Texture {
     texels: Vec<Srgb8>,
 }
 
-/// A texture and its placement on a surface. It repeats without end.
+/// A texture and its placement on a surface, over which the image repeats without end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TexturePlacement {
     /// The image.
     pub texture: Arc<Texture>,
-    /// The transform from the mesh's texture coordinates to the image's: u' and v' are the dot
-    /// products of these with (u, v, 1). Finite.
+    /// The transform from the mesh's texture coordinates (u, v) to the image's (u', v'): the dot
+    /// products of the two vectors with (u, v, 1). All numbers are finite.
     pub transform: [Vec3; 2],
 }
 
 impl TexturePlacement {
-    /// Returns the image's coordinates: (0, 0) is the top left corner, (1, 1) the bottom right one.
+    /// Returns the image coordinates for the mesh's texture coordinates: (0, 0) is the image's top
+    /// left corner, (1, 1) the bottom right one.
     pub fn at(&self, uv: Vec2) -> Vec2 {
         let uv1 = uv.extend(1.0);
         Vec2::new(self.transform[0].dot(uv1), self.transform[1].dot(uv1))
@@ -48,10 +49,10 @@ impl Texture {
         self.height
     }
 
-    /// Returns the colour at these coordinates as linear light, bilinearly interpolated between the
-    /// centres of four texels. Takes any coordinates; the image repeats.
+    /// Returns the colour at image coordinates as linear light, bilinearly interpolated between the
+    /// centres of four texels. The image repeats beyond 0..1.
     pub fn color_at(&self, at: Vec2) -> LinearRgb {
-        // Texel centres are at half coordinates, hence the 0.5.
+        // The centre of texel `i` is at (i + 0.5) / length, hence the 0.5.
         let place = |coordinate: f32, length: u32| {
             let place = (coordinate - coordinate.floor()) * length as f32 - 0.5;
             let first = place.floor();

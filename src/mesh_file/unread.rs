@@ -1,5 +1,5 @@
-//! Replacement of the readers without the feature `mesh`: mesh files are recognised by names and
-//! first bytes, and each is an error.
+//! Stand-in for the readers when the feature `mesh` is off: mesh files are recognised, and reading
+//! one is an error.
 
 use super::{MeshError, MeshFile};
 use crate::named_file::Accepted;
@@ -19,7 +19,7 @@ impl MeshFile {
     }
 }
 
-/// Returns whether a file with this name, or with this beginning, is meant to be a mesh.
+/// Returns whether a file is meant to be a mesh, by its name's extension or its first bytes.
 pub fn is_mesh(name: &str, bytes: &[u8]) -> bool {
     let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
     let is_known = ending.is_some_and(|ending| ["obj", "stl", "ply", "gltf", "glb"].contains(&&*ending));

@@ -3,7 +3,8 @@ use super::*;
 const A: [u32; 3] = [0, 1, 2];
 const B: [u32; 3] = [2, 1, 3];
 
-/// Returns the indices found again after pushing, and the representation.
+/// Pushes a triangle for each item of `corners`. Returns their attribute indices as read back, and
+/// the representation.
 fn pushed(corners: &[Option<[u32; 3]>]) -> (Vec<Option<[u32; 3]>>, CornerIndices) {
     let mut attribute = Attribute { values: vec![0.0; 9], corners: CornerIndices::Absent };
     let triangles: Vec<_> = [A, B].into_iter().cycle().take(corners.len()).collect();

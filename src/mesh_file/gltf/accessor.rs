@@ -1,29 +1,30 @@
-//! Accessors: typed views of a buffer's bytes.
+//! The accessors of a glTF file: typed views of a buffer's bytes.
 
 use super::buffers::{BufferView, Buffers};
 use super::json::Json;
 use crate::mesh_file::fault::MeshFault;
 
-/// An accessor: `count` elements of several components each.
+/// A glTF accessor: `count` elements, each with `width` components.
 pub(super) struct Accessor<'a> {
     json: Json<'a>,
     component: Component,
     width: usize,
     pub(super) count: usize,
     normalized: bool,
-    /// `None` without a buffer view: all components are zero.
+    /// The elements' bytes; `None` if the accessor has no buffer view, which makes all components
+    /// zero.
     elements: Option<Elements<'a>>,
     sparse: Option<Sparse<'a>>,
 }
 
-/// The bytes of the elements.
+/// Elements in a buffer view: the first at `offset`, each `stride` bytes after the previous one.
 struct Elements<'a> {
     view: BufferView<'a>,
     offset: usize,
     stride: usize,
 }
 
-/// Elements that replace some of the others.
+/// The sparse part of an accessor: `values` replace the elements at `indices`.
 struct Sparse<'a> {
     indices: Elements<'a>,
     index_component: Component,
@@ -67,7 +68,8 @@ impl Component {
         matches!(self, Self::U8 | Self::U16 | Self::U32)
     }
 
-    /// Returns the number at the start of these bytes, of which there must be enough.
+    /// Returns the component at the start of `b` as a number. Panics if `b` is shorter than the
+    /// component.
     fn number(self, b: &[u8], normalized: bool) -> f32 {
         let (value, largest) = match self {
             Self::F32 => return f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
@@ -81,7 +83,8 @@ impl Component {
         if normalized { (value / largest).max(-1.0) } else { value }
     }
 
-    /// Returns the index at the start of these bytes, of which there must be enough.
+    /// Returns the component at the start of `b` as an index. Panics if `b` is shorter than the
+    /// component.
     fn index(self, b: &[u8]) -> u32 {
         match self {
             Self::I8 | Self::U8 => u32::from(b[0]),
@@ -92,7 +95,8 @@ impl Component {
 }
 
 impl<'a> Elements<'a> {
-    /// Returns `count` elements of `size` bytes, after checking that they lie in the view.
+    /// Returns `count` elements of `size` bytes, after checking that they lie within the buffer
+    /// view that `json` names; `None` if it names none.
     fn new(
         json: Json<'a>,
         size: usize,
@@ -103,7 +107,8 @@ impl<'a> Elements<'a> {
         let view = buffers.view(view)?;
         let offset = json.index_or("byteOffset", 0)?;
         let stride = view.stride.unwrap_or(size);
-        // The numbers come from the file and may overflow. The last element need not be followed by a whole stride.
+        // Checked arithmetic, because the numbers come from the file. The last element takes `size` bytes, not a whole
+        // stride.
         let last = count.saturating_sub(1).checked_mul(stride);
         let end = last.and_then(|last| last.checked_add(offset)?.checked_add(size));
         let length = view.bytes().len();
@@ -111,7 +116,7 @@ impl<'a> Elements<'a> {
             let message = format!("{count} elements of {size} bytes do not fit into their buffer view of {length}");
             return Err(json.fault(message));
         }
-        // Overlapping elements are a mistake of the file, not a feature.
+        // With such a stride elements would overlap, which glTF does not allow.
         if stride < size && count > 1 {
             return Err(json.fault(format!("elements of {size} bytes lie only {stride} bytes apart (byteStride)")));
         }
@@ -138,7 +143,7 @@ impl<'a> Accessor<'a> {
         };
         let count = json.required("count")?.index()?;
         let elements = Elements::new(json, width * component.size(), count, buffers)?;
-        // Zeros cost the file no bytes, so their count has a limit of its own.
+        // Elements without a buffer view take no bytes of the file, so its size does not limit their number.
         if elements.is_none() && count > buffers.max_elements() {
             return Err(json.fault(format!("{count} elements of zeros are too many for a file of this size")));
         }
@@ -149,12 +154,12 @@ impl<'a> Accessor<'a> {
         Ok(Self { json, component, width, count, normalized: json.is_true("normalized")?, elements, sparse })
     }
 
-    /// Returns a fault of this accessor.
+    /// Returns a fault whose message starts with this accessor's path.
     pub(super) fn fault(&self, message: impl std::fmt::Display) -> MeshFault {
         self.json.fault(message)
     }
 
-    /// Returns the first N components of the elements, which must be finite.
+    /// Returns the first `N` components of each element; all must be finite.
     pub(super) fn vectors<const N: usize>(&self) -> Result<Vec<[f32; N]>, MeshFault> {
         if self.width < N {
             return Err(self.fault(format!("expected elements of {N} numbers, found elements of {}", self.width)));
@@ -162,7 +167,7 @@ impl<'a> Accessor<'a> {
         let vector = |bytes: &[u8]| -> [f32; N] {
             std::array::from_fn(|i| self.component.number(&bytes[i * self.component.size()..], self.normalized))
         };
-        let vectors = self.all([0.0; N], vector);
+        let vectors = self.read_elements([0.0; N], vector);
         match vectors.iter().position(|vector| vector.iter().any(|number| !number.is_finite())) {
             Some(i) => Err(self.fault(format!("element {i} is not finite: {:?}", vectors[i]))),
             None => Ok(vectors),
@@ -174,10 +179,10 @@ impl<'a> Accessor<'a> {
         if self.width != 1 || !self.component.is_index() {
             return Err(self.fault("indices are SCALAR and of component type 5121, 5123 or 5125"));
         }
-        Ok(self.all(0, |bytes| self.component.index(bytes)))
+        Ok(self.read_elements(0, |bytes| self.component.index(bytes)))
     }
 
-    fn all<T: Copy>(&self, zero: T, read: impl Fn(&[u8]) -> T) -> Vec<T> {
+    fn read_elements<T: Copy>(&self, zero: T, read: impl Fn(&[u8]) -> T) -> Vec<T> {
         let mut all = match &self.elements {
             Some(elements) => (0..self.count).map(|i| read(elements.at(i))).collect(),
             None => vec![zero; self.count],
@@ -210,7 +215,7 @@ impl<'a> Sparse<'a> {
             index_component,
             count,
         };
-        // Checked once here, so that `all` may index without checks that can fail.
+        // Checked once here, so that indexing in `read_elements` cannot panic.
         let out = (0..count).map(|i| index_component.index(sparse.indices.at(i))).find(|&i| i as usize >= elements);
         match out {
             Some(index) => Err(indices.fault(format!("index {index} is out of range: there are {elements} elements"))),

@@ -1,4 +1,4 @@
-//! Buffers: in the GLB file, in a side file, or in a `data:` URI.
+//! The buffers of a glTF file: in the GLB file, in side files, or in `data:` URIs.
 
 use super::json::Json;
 use crate::mesh_file::MAX_TRIANGLES;
@@ -10,14 +10,14 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// All buffers of a file, each read on first use.
+/// All buffers of a glTF file, each read on first use.
 pub(super) struct Buffers<'a, 'b> {
     root: Json<'a>,
     glb: Option<&'a [u8]>,
     side_files: &'a mut SideFiles<'b>,
     read: HashMap<usize, Bytes<'a>>,
     files: HashMap<PathBuf, Rc<[u8]>>,
-    /// Number of bytes of the JSON and of the buffers and images read so far.
+    /// Total number of bytes of the JSON, and of the buffers and images read so far.
     size: usize,
 }
 
@@ -38,13 +38,14 @@ impl std::ops::Deref for Bytes<'_> {
     }
 }
 
-/// A buffer view.
+/// A glTF buffer view: a range of a buffer's bytes.
 #[derive(Clone)]
 pub(super) struct BufferView<'a> {
     buffer: Bytes<'a>,
     start: usize,
     end: usize,
-    /// The distance between elements, if they are not contiguous.
+    /// The bytes from the start of an element to that of the next; `None` if elements are
+    /// contiguous.
     pub(super) stride: Option<usize>,
 }
 
@@ -55,7 +56,8 @@ impl BufferView<'_> {
 }
 
 impl<'a, 'b> Buffers<'a, 'b> {
-    /// Returns the buffers of a document of `size` bytes.
+    /// Returns the buffers of the document `root`, whose JSON has `size` bytes. `glb` is the BIN
+    /// chunk of a GLB file.
     pub(super) fn new(root: Json<'a>, size: usize, glb: Option<&'a [u8]>, side_files: &'a mut SideFiles<'b>) -> Self {
         let size = size + glb.map_or(0, <[u8]>::len);
         Self { root, glb, side_files, read: HashMap::new(), files: HashMap::new(), size }
@@ -65,16 +67,16 @@ impl<'a, 'b> Buffers<'a, 'b> {
         self.root
     }
 
-    /// Returns the limit on the triangles or vertices of a document of this size: one per byte, and
-    /// a million more, so that a small file whose nodes show the same mesh very often cannot exhaust memory.
+    /// Returns the limit on the triangles, and on the vertices, of a file of this size: one per
+    /// byte and a million more. Without it a small file whose nodes repeat a mesh could exhaust memory.
     pub(super) fn max_elements(&self) -> usize {
         self.size.saturating_add(1 << 20).min(MAX_TRIANGLES)
     }
 
-    /// Returns the buffer view whose index is in a field of `value`.
+    /// Returns the buffer view with this index.
     pub(super) fn view(&mut self, index: Json<'a>) -> Result<BufferView<'a>, MeshFault> {
         let (_, view) = index.item_of(self.root, "bufferViews")?;
-        // A file may use the extension without requiring it, and still have no plain bytes to fall back on.
+        // Refused even if the extension is not listed as required: such files often have no uncompressed fallback.
         if view.extension("EXT_meshopt_compression")?.is_some() {
             return Err(view.fault("this part of the file is compressed with meshopt, which is not supported"));
         }
@@ -131,9 +133,9 @@ impl<'a, 'b> Buffers<'a, 'b> {
     }
 }
 
-/// Returns the bytes after `data:`.
+/// Decodes the base64 of a `data:` URI, given the part after `data:`.
 fn data_of(data: &str) -> Result<Vec<u8>, String> {
-    // Padding that is left out, as URIs often do, does not change the bytes.
+    // URIs often omit the padding at the end of base64, which does not change the bytes.
     const LENIENT: GeneralPurposeConfig =
         GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
     let Some((_, encoded)) = data.split_once(";base64,") else {
@@ -145,10 +147,10 @@ fn data_of(data: &str) -> Result<Vec<u8>, String> {
         .map_err(|error| format!("the data: URI is not base64: {}", error.to_string().trim_end_matches('.')))
 }
 
-/// Decodes percent escapes: `%20` is a blank.
+/// Decodes percent escapes, such as `%20` for a blank.
 fn percent_decoded(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
-    // Bytes, not characters: an escape may be half a character.
+    // Works on bytes, because one character may take several escapes.
     let mut rest = uri.as_bytes();
     while let [first, after @ ..] = rest {
         let code = after.get(..2).and_then(|digits| std::str::from_utf8(digits).ok());

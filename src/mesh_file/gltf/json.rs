@@ -1,20 +1,21 @@
-//! JSON values with their path in the document, for the positions of faults.
+//! JSON values with their path in the document, which faults show as the position.
 
 use crate::mesh_file::fault::{MeshFault, shown};
 use serde_json::{Map, Value};
 use std::fmt::{self, Write};
 
-/// A value and its path.
+/// A JSON value and its path in the document.
 #[derive(Clone, Copy)]
 pub(super) struct Json<'a> {
     value: &'a Value,
     path: JsonPath<'a>,
 }
 
-/// A path such as `meshes[2].primitives`, of which six steps are kept and later ones dropped.
+/// A path in a JSON document, such as `meshes[2].primitives`. Steps after the sixth are dropped.
 ///
-/// A fixed array without allocations, because a path is extended for every value but shown only in a fault. The deepest
-/// values that are read are fields of `materials[0].pbrMetallicRoughness.baseColorTexture.extensions.X`.
+/// An array needs no allocation, which matters because a path is extended for every value but shown only in a fault.
+/// The deepest values that are read are fields of
+/// `materials[0].pbrMetallicRoughness.baseColorTexture.extensions.X`.
 #[derive(Clone, Copy)]
 struct JsonPath<'a> {
     steps: [Option<Step<'a>>; 6],
@@ -27,7 +28,7 @@ enum Step<'a> {
 }
 
 impl<'a> JsonPath<'a> {
-    fn and(mut self, step: Step<'a>) -> Self {
+    fn with_step(mut self, step: Step<'a>) -> Self {
         if let Some(free) = self.steps.iter_mut().find(|step| step.is_none()) {
             *free = Some(step);
         }
@@ -54,14 +55,14 @@ impl<'a> Json<'a> {
         root.object().map(|_| root)
     }
 
-    /// Returns a fault of this value.
+    /// Returns a fault whose message starts with this value's path.
     #[cold]
     pub(super) fn fault(self, message: impl fmt::Display) -> MeshFault {
         let mut text = self.path.to_string();
         if !text.is_empty() {
             text.push_str(": ");
         }
-        // Writing to a string does not fail.
+        // The result is ignored because writing to a string cannot fail.
         let _ = write!(text, "{message}");
         MeshFault::of_file(text)
     }
@@ -83,13 +84,13 @@ impl<'a> Json<'a> {
         self.value.as_object().ok_or_else(|| self.mismatch("an object"))
     }
 
-    /// Returns a field, if it exists.
+    /// Returns the field `name` of this object, if it exists.
     pub(super) fn field(self, name: &'static str) -> Result<Option<Self>, MeshFault> {
-        let path = self.path.and(Step::Field(name));
+        let path = self.path.with_step(Step::Field(name));
         Ok(self.object()?.get(name).map(|value| Self { value, path }))
     }
 
-    /// Returns a required field.
+    /// Returns the field `name` of this object; a fault if it is missing.
     pub(super) fn required(self, name: &'static str) -> Result<Self, MeshFault> {
         self.field(name)?.ok_or_else(|| self.fault(format!("the field {name} is missing")))
     }
@@ -99,26 +100,27 @@ impl<'a> Json<'a> {
         self.field("extensions")?.map_or(Ok(None), |extensions| extensions.field(name))
     }
 
-    /// Returns the items of a list in a field; none if it is missing.
+    /// Returns the items of the list in the field `name`; no items if the field is missing.
     pub(super) fn list(self, name: &'static str) -> Result<impl Iterator<Item = Self> + use<'a>, MeshFault> {
         let list = self.field(name)?;
         let items = list.map_or(Ok(&[][..]), Self::items)?;
         Ok(items
             .iter()
             .enumerate()
-            .filter_map(move |(i, value)| list.map(|list| Self { value, path: list.path.and(Step::Item(i)) })))
+            .filter_map(move |(i, value)| list.map(|list| Self { value, path: list.path.with_step(Step::Item(i)) })))
     }
 
     fn items(self) -> Result<&'a [Value], MeshFault> {
         self.value.as_array().map(Vec::as_slice).ok_or_else(|| self.mismatch("a list"))
     }
 
-    /// Returns the number of items of a list in a field; 0 if it is missing.
+    /// Returns the number of items of the list in the field `name`; 0 if the field is missing.
     pub(super) fn count(self, name: &'static str) -> Result<usize, MeshFault> {
         self.field(name)?.map_or(Ok(0), |list| list.items().map(<[Value]>::len))
     }
 
-    /// Returns the item of the root's list `name` whose index is this value.
+    /// Resolves this value as an index into the list `name` of the root object. Returns the index
+    /// and the item.
     pub(super) fn item_of(self, root: Json<'a>, name: &'static str) -> Result<(usize, Self), MeshFault> {
         let index = self.index()?;
         let list = root.field(name)?;
@@ -126,7 +128,7 @@ impl<'a> Json<'a> {
         let count = items.len();
         let missing = || self.fault(format!("{name}[{index}] does not exist: the file has {count}"));
         let value = items.get(index).ok_or_else(missing)?;
-        let path = root.path.and(Step::Field(name)).and(Step::Item(index));
+        let path = root.path.with_step(Step::Field(name)).with_step(Step::Item(index));
         Ok((index, Self { value, path }))
     }
 
@@ -136,7 +138,7 @@ impl<'a> Json<'a> {
         number.ok_or_else(|| self.mismatch("a whole number that is not negative"))
     }
 
-    /// Returns an optional field as a non-negative integer.
+    /// Returns the field `name` as a non-negative integer, or `default` if it is missing.
     pub(super) fn index_or(self, name: &'static str, default: usize) -> Result<usize, MeshFault> {
         self.field(name)?.map_or(Ok(default), Self::index)
     }
@@ -154,7 +156,7 @@ impl<'a> Json<'a> {
         self.value.as_f64().filter(|number| number.is_finite()).ok_or_else(|| self.mismatch("a finite number"))
     }
 
-    /// Returns an optional field as exactly `N` numbers.
+    /// Returns the field `name` as exactly `N` numbers; `None` if it is missing.
     pub(super) fn numbers<const N: usize>(self, name: &'static str) -> Result<Option<[f64; N]>, MeshFault> {
         let Some(list) = self.field(name)? else { return Ok(None) };
         let wanted = || list.fault(format!("expected {N} numbers"));

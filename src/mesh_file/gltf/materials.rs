@@ -1,4 +1,4 @@
-//! Materials: base colours and their textures.
+//! The materials of a glTF file: base colours and their textures.
 
 use super::buffers::{Buffers, described};
 use super::json::Json;
@@ -10,13 +10,13 @@ use glam::Vec3;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A material and the texture coordinate set that it uses.
+/// A material, and the number of the texture coordinate set (`TEXCOORD_n`) that it uses.
 pub(super) struct Material {
     pub(super) material: MeshMaterial,
     pub(super) texture_coordinates: usize,
 }
 
-/// All materials of the document.
+/// Returns all materials of the document.
 pub(super) fn read(buffers: &mut Buffers<'_, '_>) -> Result<Vec<Material>, MeshFault> {
     let mut reader = MaterialReader { buffers, textures: HashMap::new(), budget: TexelBudget::default() };
     reader.buffers.root().list("materials")?.map(|material| reader.material(material)).collect()
@@ -24,7 +24,7 @@ pub(super) fn read(buffers: &mut Buffers<'_, '_>) -> Result<Vec<Material>, MeshF
 
 struct MaterialReader<'r, 'a, 'b> {
     buffers: &'r mut Buffers<'a, 'b>,
-    /// The images read so far, by their index.
+    /// The textures decoded so far, by the index of their image.
     textures: HashMap<usize, Arc<Texture>>,
     budget: TexelBudget,
 }
@@ -52,8 +52,8 @@ impl<'a> MaterialReader<'_, 'a, '_> {
         Ok(material)
     }
 
-    /// Returns the texture that a material names, with its placement and its texture coordinate
-    /// set.
+    /// Returns the texture that `info`, a glTF textureInfo, names, with its placement, and the
+    /// number of its texture coordinate set.
     fn placement(&mut self, info: Json<'a>) -> Result<(TexturePlacement, usize), MeshFault> {
         let (_, texture) = info.required("index")?.item_of(self.buffers.root(), "textures")?;
         let Some(source) = texture.field("source")? else {
@@ -85,8 +85,8 @@ impl<'a> MaterialReader<'_, 'a, '_> {
     }
 }
 
-/// Reads `KHR_texture_transform`: scale, then rotation, then translation, as the rows of a 2 x 3
-/// matrix.
+/// Reads `KHR_texture_transform`. Returns the rows of a 2 x 3 matrix that scales, then rotates,
+/// then translates.
 fn transform_of(json: Json<'_>) -> Result<[Vec3; 2], MeshFault> {
     let [offset_u, offset_v] = json.numbers("offset")?.unwrap_or([0.0; 2]);
     let [scale_u, scale_v] = json.numbers("scale")?.unwrap_or([1.0; 2]);

@@ -1,4 +1,4 @@
-//! The tree of nodes, which transform meshes.
+//! The node tree of a glTF file, whose nodes transform meshes.
 
 use super::buffers::Buffers;
 use super::json::Json;
@@ -8,7 +8,7 @@ use crate::mesh_file::fault::MeshFault;
 use crate::progress::Meter;
 use glam::{DMat4, DQuat, DVec3, DVec4};
 
-/// Reads the triangles of the scene to show.
+/// Reads the triangles of all meshes in the default scene, transformed by their nodes.
 pub(super) fn read<'a>(
     root: Json<'a>,
     buffers: &mut Buffers<'a, '_>,
@@ -16,8 +16,8 @@ pub(super) fn read<'a>(
 ) -> Result<MeshFile, MeshFault> {
     let mut is_visited = vec![false; root.count("nodes")?];
     let mut primitives = Primitives::new(buffers)?;
-    // An explicit stack, because a file may nest its nodes a million deep. Reversed, so that the triangles come in the
-    // order of the file.
+    // An explicit stack, because a file may nest its nodes a million deep. Nodes are pushed in reverse, so that they
+    // are popped, and their triangles added, in the order of the file.
     let mut open: Vec<_> = roots(root)?.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
     while let Some(((number, node), parent)) = open.pop() {
         meter.step()?;
@@ -35,10 +35,10 @@ pub(super) fn read<'a>(
     primitives.finish()
 }
 
-/// A node and its index.
+/// A node with its index in the list of nodes.
 type IndexedNode<'a> = (usize, Json<'a>);
 
-/// Returns the nodes whose indices are in a list.
+/// Returns the nodes whose indices are in the field `list` of `json`.
 fn nodes_in<'a>(json: Json<'a>, list: &'static str, root: Json<'a>) -> Result<Vec<IndexedNode<'a>>, MeshFault> {
     json.list(list)?.map(|index| index.item_of(root, "nodes")).collect()
 }
@@ -62,7 +62,7 @@ fn roots(root: Json<'_>) -> Result<Vec<IndexedNode<'_>>, MeshFault> {
     Ok(root.list("nodes")?.enumerate().filter(|&(number, _)| !is_child[number]).collect())
 }
 
-/// Returns the transform of a node in its parent.
+/// Returns the transform from a node's coordinates to its parent's.
 fn local_transform(node: Json<'_>) -> Result<DMat4, MeshFault> {
     if let Some(matrix) = node.numbers::<16>("matrix")? {
         return Ok(DMat4::from_cols_array(&matrix));

@@ -1,4 +1,4 @@
-//! Primitives: triangles transformed by their node.
+//! The primitives of glTF meshes, read as triangles and transformed by their node.
 
 use super::accessor::Accessor;
 use super::buffers::Buffers;
@@ -11,33 +11,34 @@ use crate::mesh_file::fault::MeshFault;
 use glam::{DMat3, DMat4, Vec2, Vec3};
 use std::collections::HashMap;
 
-/// The mesh made of the primitives read so far.
+/// A builder of the mesh from the glTF primitives read so far.
 pub(super) struct Primitives<'r, 'a, 'b> {
     buffers: &'r mut Buffers<'a, 'b>,
     mesh: MeshBuilder,
-    /// The texture coordinate set that each material uses.
+    /// The number of the texture coordinate set (`TEXCOORD_n`) that each material uses.
     texture_coordinate_sets: Vec<usize>,
-    /// Positions and normals of the current node, by accessor: each node transforms them
-    /// differently.
+    /// Ranges of the positions and normals of the current node only, because each node transforms
+    /// them differently.
     positions: Ranges,
     normals: Ranges,
-    /// Texture coordinates and colours by accessor, the same at all nodes.
+    /// Ranges of texture coordinates and colours, which no node transforms.
     texture_coordinates: Ranges,
     colors: Ranges,
 }
 
-/// The elements read so far, by the index of their accessor. Primitives often share accessors: a
-/// mesh that is split by material may keep one list of vertices.
+/// Where the elements of each accessor that was read are, by the accessor's index. Primitives often
+/// share accessors: a mesh that is split by material may keep one list of vertices.
 type Ranges = HashMap<usize, Range>;
 
-/// The range of an accessor's elements in the mesh's list.
+/// The range of an accessor's elements in the mesh's list of positions, normals, texture
+/// coordinates or colours.
 #[derive(Clone, Copy)]
 struct Range {
     start: u32,
     count: usize,
 }
 
-/// The names of the texture coordinate sets.
+/// The attribute names of the texture coordinate sets, by number.
 const TEXTURE_COORDINATES: [&str; 8] =
     ["TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3", "TEXCOORD_4", "TEXCOORD_5", "TEXCOORD_6", "TEXCOORD_7"];
 
@@ -61,9 +62,9 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         self.mesh.finish("its scene shows no mesh of triangles")
     }
 
-    /// Reads the primitives of a mesh at a node.
+    /// Adds the primitives of a mesh, transformed by the node that shows it.
     pub(super) fn add_mesh(&mut self, mesh: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<(), MeshFault> {
-        // Another node transforms them differently.
+        // Positions and normals of the previous node have that node's transform.
         self.positions.clear();
         self.normals.clear();
         for primitive in mesh.list("primitives")? {
@@ -135,7 +136,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         if !self.mesh.positions[range.start as usize..].iter().all(|position| position.is_finite()) {
             return Err(node.fault("this node and those above it put vertices beyond 3.4e38"));
         }
-        // Here too, before any triangle: a mesh of points alone would fill memory otherwise.
+        // Checked here as well as after the triangles: vertices without triangles could exhaust memory too.
         self.check_size(node)?;
         self.positions.insert(number, range);
         Ok(range)
@@ -195,7 +196,8 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         Ok(Some(range))
     }
 
-    /// Returns the indices, each below `count`; `None` for a primitive without indices.
+    /// Returns the vertex indices of a primitive, each below `count`; `None` if the primitive has
+    /// no index list.
     fn indices(&mut self, primitive: Json<'a>, count: usize) -> Result<Option<Vec<u32>>, MeshFault> {
         let Some(index) = primitive.field("indices")? else { return Ok(None) };
         let accessor = Accessor::read(index, self.buffers)?;
@@ -210,13 +212,14 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
     }
 }
 
-/// Returns the range of `count` elements after `length` others. Both are below 2^31, because no
-/// file is larger.
+/// Returns the range of `count` elements that are appended to a list of `length`. Both are below
+/// 2^31, the limit on a file's size.
 fn range_after(length: usize, count: usize) -> Range {
     Range { start: length as u32, count }
 }
 
-/// Returns the corners of each triangle as positions among the indices; `None` for an unknown mode.
+/// Returns the corners of each triangle, as positions in an index list of `length`, for a glTF
+/// primitive mode: 4 is triangles, 5 a strip, 6 a fan. `None` for an unknown mode.
 fn triangles(mode: usize, length: usize) -> Option<impl Iterator<Item = [usize; 3]>> {
     let count = match mode {
         4 => length / 3,
@@ -231,8 +234,8 @@ fn triangles(mode: usize, length: usize) -> Option<impl Iterator<Item = [usize; 
     }))
 }
 
-/// Returns the transform of normals: the inverse transpose of the matrix times a positive factor.
-/// Unlike the inverse, the matrix of cofactors exists for singular matrices too, which flatten a mesh.
+/// Returns the matrix that transforms normals: the inverse transpose times a positive factor.
+/// Unlike the inverse, the matrix of cofactors also exists for singular matrices, which flatten a mesh.
 fn cofactors(matrix: DMat3) -> DMat3 {
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = matrix;
     let sign = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };

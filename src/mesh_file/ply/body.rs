@@ -1,30 +1,30 @@
-//! The numbers of the body, as text or binary.
+//! Reading of the numbers of a PLY body, as text or binary.
 
 use super::header::{Element, Property, PropertyType, ScalarType};
 use crate::mesh_file::fault::MeshFault;
 use crate::mesh_file::text::TextCursor;
 use crate::progress::Meter;
 
-/// A reader of the body: rows of numbers. Used as a generic parameter, not as a trait object, so
-/// that reading a number is inlined: a body has millions.
+/// A reader of a PLY body, which consists of rows of numbers. It is a generic parameter, not a
+/// trait object, so that reading a number is inlined: a body has millions.
 pub(super) trait RowReader {
-    /// Starts a row; `row` counts from 0.
+    /// Starts reading row number `row` of the element, counted from 0.
     fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault>;
-    /// Ends a row after all its numbers.
+    /// Checks that a row ends after its last number.
     fn end(&mut self, element: &Element<'_>) -> Result<(), MeshFault>;
-    /// Reads a finite number.
+    /// Reads a number, which must be finite.
     fn number(&mut self, kind: ScalarType) -> Result<f32, MeshFault>;
-    /// Reads an integer, whose type is not a float.
+    /// Reads an integer of a type that is not a float.
     fn integer(&mut self, kind: ScalarType) -> Result<i64, MeshFault>;
-    /// Skips numbers.
+    /// Skips `count` numbers of a type.
     fn skip(&mut self, kind: ScalarType, count: usize) -> Result<(), MeshFault>;
-    /// Returns the position, for `fault`.
+    /// Returns the byte offset of the next number, for [`fault`](Self::fault).
     fn position(&self) -> usize;
-    /// Returns a fault at a position.
+    /// Returns a fault at a byte offset that [`position`](Self::position) has returned.
     fn fault(&self, position: usize, message: String) -> MeshFault;
-    /// Returns the number of bytes left.
+    /// Returns the number of bytes of the body that are not read yet.
     fn left(&self) -> usize;
-    /// Returns the least size of a row in bytes.
+    /// Returns the fewest bytes that a row of these properties can take.
     fn least_size(&self, properties: &[Property<'_>]) -> usize;
 
     /// Reads the length of a list, which must not be negative.
@@ -35,7 +35,7 @@ pub(super) trait RowReader {
     }
 }
 
-/// A text body, where a row is a line.
+/// A text body, in which each line is a row.
 pub(super) struct AsciiRows<'a> {
     text: TextCursor<'a>,
     meter: Meter<'a>,
@@ -43,7 +43,7 @@ pub(super) struct AsciiRows<'a> {
 
 impl<'a> AsciiRows<'a> {
     pub(super) fn new(bytes: &'a [u8], at: usize, meter: Meter<'a>) -> Self {
-        Self { text: TextCursor::from(bytes, at), meter }
+        Self { text: TextCursor::starting_at(bytes, at), meter }
     }
 }
 
@@ -93,8 +93,8 @@ impl RowReader for AsciiRows<'_> {
     }
 
     fn fault(&self, position: usize, message: String) -> MeshFault {
-        let mut text = self.text.back_at(position);
-        // The position is before the blanks that separate the word from the previous one.
+        let mut text = self.text.cursor_at(position);
+        // `position` was taken before the blanks that separate this word from the previous one.
         text.skip_blanks();
         MeshFault::in_text(text.at(), message)
     }
@@ -103,13 +103,14 @@ impl RowReader for AsciiRows<'_> {
         self.text.left()
     }
 
-    /// Returns a digit and a blank for each number.
+    /// Returns two bytes per number: a digit and a blank.
     fn least_size(&self, properties: &[Property<'_>]) -> usize {
         2 * properties.len()
     }
 }
 
-/// A binary body, where rows are contiguous and numbers have the size of their type.
+/// A binary body, in which rows follow each other without gaps and each number has the size of its
+/// type.
 pub(super) struct BinaryRows<'a, const BIG_ENDIAN: bool> {
     bytes: &'a [u8],
     at: usize,
@@ -122,8 +123,8 @@ impl<'a, const BIG_ENDIAN: bool> BinaryRows<'a, BIG_ENDIAN> {
     }
 
     #[inline]
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], MeshFault> {
-        // An array of a constant size, so that the compiler reads it with one load.
+    fn next_bytes<const N: usize>(&mut self) -> Result<[u8; N], MeshFault> {
+        // An array of constant size `N`, so that the compiler reads it with one load.
         let Some(&taken) = self.bytes.get(self.at..).and_then(|rest| rest.first_chunk::<N>()) else {
             return Err(self.cut_short());
         };
@@ -143,8 +144,8 @@ impl<'a, const BIG_ENDIAN: bool> BinaryRows<'a, BIG_ENDIAN> {
     #[inline]
     fn value(&mut self, kind: ScalarType) -> Result<f64, MeshFault> {
         Ok(match kind {
-            ScalarType::F32 => f64::from(f32::from_le_bytes(self.take()?)),
-            ScalarType::F64 => f64::from_le_bytes(self.take()?),
+            ScalarType::F32 => f64::from(f32::from_le_bytes(self.next_bytes()?)),
+            ScalarType::F64 => f64::from_le_bytes(self.next_bytes()?),
             kind => self.integer(kind)? as f64,
         })
     }
@@ -180,15 +181,15 @@ impl<const BIG_ENDIAN: bool> RowReader for BinaryRows<'_, BIG_ENDIAN> {
     #[inline]
     fn integer(&mut self, kind: ScalarType) -> Result<i64, MeshFault> {
         Ok(match kind {
-            ScalarType::I8 => i64::from(i8::from_le_bytes(self.take()?)),
-            ScalarType::U8 => i64::from(u8::from_le_bytes(self.take()?)),
-            ScalarType::I16 => i64::from(i16::from_le_bytes(self.take()?)),
-            ScalarType::U16 => i64::from(u16::from_le_bytes(self.take()?)),
-            ScalarType::I32 => i64::from(i32::from_le_bytes(self.take()?)),
-            ScalarType::U32 => i64::from(u32::from_le_bytes(self.take()?)),
-            // Floats never get here: the header refuses them where an integer is required.
-            ScalarType::F32 => f32::from_le_bytes(self.take()?) as i64,
-            ScalarType::F64 => f64::from_le_bytes(self.take()?) as i64,
+            ScalarType::I8 => i64::from(i8::from_le_bytes(self.next_bytes()?)),
+            ScalarType::U8 => i64::from(u8::from_le_bytes(self.next_bytes()?)),
+            ScalarType::I16 => i64::from(i16::from_le_bytes(self.next_bytes()?)),
+            ScalarType::U16 => i64::from(u16::from_le_bytes(self.next_bytes()?)),
+            ScalarType::I32 => i64::from(i32::from_le_bytes(self.next_bytes()?)),
+            ScalarType::U32 => i64::from(u32::from_le_bytes(self.next_bytes()?)),
+            // Unreachable: the header refuses float types where an integer is required.
+            ScalarType::F32 => f32::from_le_bytes(self.next_bytes()?) as i64,
+            ScalarType::F64 => f64::from_le_bytes(self.next_bytes()?) as i64,
         })
     }
 

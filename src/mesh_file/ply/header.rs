@@ -1,13 +1,13 @@
-//! The header: the elements and the properties of their rows.
+//! The PLY header: the elements, and the properties of their rows.
 
 use crate::mesh_file::fault::{MeshFault, shown};
 use crate::mesh_file::text::TextCursor;
 
-/// A header: the encoding of the body, and its elements in order.
+/// A PLY header: the encoding of the body, and the elements in the order of the file.
 pub(super) struct Header<'a> {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element<'a>>,
-    /// The offset of the body.
+    /// The byte offset of the body.
     pub(super) end: usize,
 }
 
@@ -18,12 +18,12 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// An element: rows with the same properties.
+/// An element, such as `vertex` or `face`: `count` rows with the same properties.
 pub(super) struct Element<'a> {
     pub(super) name: &'a str,
     pub(super) count: u32,
     pub(super) properties: Vec<Property<'a>>,
-    /// The offset of its declaration.
+    /// The byte offset of the element's declaration, for faults.
     pub(super) at: usize,
 }
 
@@ -92,14 +92,14 @@ impl ScalarType {
 impl<'a> Header<'a> {
     pub(super) fn read(bytes: &'a [u8]) -> Result<Self, MeshFault> {
         let mut reader = HeaderReader { text: TextCursor::new(bytes), encoding: None, elements: Vec::new() };
-        // Exactly: the format is known by these bytes.
+        // The format was recognised by these bytes, but the whole line must be `ply`.
         if reader.text.rest_of_line() != b"ply" {
             return Err(MeshFault::in_text(0, "a PLY file begins with a line that says ply"));
         }
         reader.text.skip_line();
         while reader.statement()? {}
-        // A binary body may start with a byte that looks like the second half of a line end (10). It belongs to the
-        // line end only if the first line ended with two bytes as well.
+        // A byte 10 after a carriage return may be the second half of the line end or the first byte of a binary body.
+        // It belongs to the line end only if the first line of the file ended with two bytes as well.
         let line_end = if bytes.get(3..5) == Some(b"\r\n") { 2 } else { 1 };
         let end = (reader.text.at() + line_end).min(bytes.len());
         let encoding = reader.encoding.ok_or_else(|| {
@@ -119,7 +119,8 @@ struct HeaderReader<'a> {
 }
 
 impl<'a> HeaderReader<'a> {
-    /// Reads a line. Returns `false` after the last one, whose end is not skipped.
+    /// Reads a line of the header. Returns `false` after `end_header`, whose line end is left to
+    /// the caller.
     fn statement(&mut self) -> Result<bool, MeshFault> {
         if !self.text.go_to_statement() {
             return Err(self.text.expected("end_header"));
@@ -171,7 +172,7 @@ impl<'a> HeaderReader<'a> {
                 format!("{count} rows are not possible: there are 0 to {}", u32::MAX),
             ));
         };
-        // The readers take the first element of a name; a second one would be lost without a word.
+        // The readers use only the first element of a name, so a second one would be ignored silently.
         if matches!(name, "vertex" | "face" | "tristrips") && self.elements.iter().any(|element| element.name == name) {
             return Err(MeshFault::in_text(at, format!("duplicate element {name}")));
         }
@@ -200,7 +201,7 @@ impl<'a> HeaderReader<'a> {
             }
             shape
         } else {
-            self.text = self.text.back_at(start);
+            self.text = self.text.cursor_at(start);
             PropertyType::Scalar(self.kind()?)
         };
         let name = self.name()?;

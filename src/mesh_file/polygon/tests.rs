@@ -3,7 +3,7 @@ use glam::Vec3Swizzles;
 
 fn triangles(outline: &[Vec3]) -> Vec<[usize; 3]> {
     let corners: Vec<u32> = (0..outline.len() as u32).collect();
-    cut(&corners, outline).collect()
+    triangulated(&corners, outline).collect()
 }
 
 fn normal([a, b, c]: [usize; 3], outline: &[Vec3]) -> Vec3 {
@@ -17,8 +17,8 @@ fn a_convex_polygon_becomes_a_fan() {
     assert_eq!(triangles(&vec![Vec3::ZERO; 200]).len(), 198);
 }
 
-/// For every plane and first corner, the triangles of an L have its orientation and their areas
-/// sum up to its area.
+/// Triangulates an L-shaped polygon in several planes and from each first corner: all triangles
+/// have its orientation, and their areas sum up to its area.
 #[test]
 fn a_concave_polygon_is_covered_once() {
     let l = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];

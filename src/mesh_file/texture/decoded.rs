@@ -13,7 +13,7 @@ use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
 impl TexturePlacement {
-    /// Returns the texture placed by the mesh's own coordinates, without a transform.
+    /// Returns the placement by the mesh's texture coordinates as they are, without a transform.
     pub(in crate::mesh_file) fn plain(texture: Arc<Texture>) -> Self {
         Self { texture, transform: [Vec3::X, Vec3::Y] }
     }
@@ -29,7 +29,7 @@ impl Default for TexelBudget {
 }
 
 impl TexelBudget {
-    fn take(&mut self, width: usize, height: usize) -> Result<(), String> {
+    fn spend(&mut self, width: usize, height: usize) -> Result<(), String> {
         if width == 0 || height == 0 {
             return Err("is a picture without pixels".to_owned());
         }
@@ -41,7 +41,8 @@ impl TexelBudget {
     }
 }
 
-/// Decodes an image. An `Err` describes the file, as in "is neither PNG nor JPEG".
+/// Decodes an image. An `Err` is a message without its subject, such as "is neither a PNG nor a
+/// JPEG picture".
 pub(in crate::mesh_file) fn decode(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String> {
     if bytes.starts_with(b"\x89PNG") {
         decode_png(bytes, budget)
@@ -56,14 +57,14 @@ pub(in crate::mesh_file) fn decode(bytes: &[u8], budget: &mut TexelBudget) -> Re
 
 fn decode_png(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String> {
     let say = |error: png::DecodingError| format!("is a PNG picture that cannot be read: {error}");
-    // 8 bytes per texel: 16-bit RGBA before it is reduced to 8 bits.
+    // At most 8 bytes per texel: 16-bit RGBA, before it is reduced to 8 bits per channel.
     let limits = png::Limits { bytes: 8 * MAX_TEXELS };
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
-    // Palettes, 16 bits and few bits per sample all become 8 bits per channel.
+    // Makes the decoder expand palettes and 1, 2 or 4 bits per sample, and reduce 16, to 8 bits per channel.
     decoder.set_transformations(png::Transformations::normalize_to_color8());
     let mut reader = decoder.read_info().map_err(say)?;
     let (width, height) = reader.info().size();
-    budget.take(width as usize, height as usize)?;
+    budget.spend(width as usize, height as usize)?;
     check_plausible(width as usize * height as usize, bytes, 8 * 1032, "PNG")?;
     let size = reader.output_buffer_size().ok_or("is a PNG picture that is too large")?;
     let mut samples = vec![0; size];
@@ -89,17 +90,18 @@ fn decode_jpeg(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
     decoder.decode_headers().map_err(|error| say(&error))?;
     let (width, height) = decoder.dimensions().ok_or("is a JPEG picture without a size")?;
-    budget.take(width, height)?;
+    budget.spend(width, height)?;
     check_plausible(width * height, bytes, 8 * 64, "JPEG")?;
     let samples = decoder.decode().map_err(|error| say(&error))?;
     let texels = samples.chunks_exact(3).map(|s| Srgb8::new(s[0], s[1], s[2])).collect();
     complete(width as u32, height as u32, texels, "JPEG") // sizes of JPEG have 16 bits
 }
 
-/// Refuses a file that cannot hold as many texels as it claims, before they cost time and memory.
+/// Refuses a file too short for the texels that it claims, before they cost time and memory.
 ///
-/// A byte of PNG decodes to at most 1032 bytes (the limit of deflate) of one bit per texel; in JPEG each block of 64
-/// texels takes at least a bit. The fuzzer found a JPEG of 700 bytes whose 16 million texels took seconds to decode.
+/// The limit is `most_per_byte` texels per byte. A byte of PNG decodes to at most 1032 bytes (the limit of deflate) of
+/// one bit per texel; in JPEG each block of 64 texels takes at least a bit. The fuzzer found a JPEG of 700 bytes whose
+/// 16 million texels took seconds to decode.
 fn check_plausible(texels: usize, bytes: &[u8], most_per_byte: usize, format: &str) -> Result<(), String> {
     if texels / most_per_byte > bytes.len() { Err(cut_short(format)) } else { Ok(()) }
 }
@@ -108,8 +110,8 @@ fn cut_short(format: &str) -> String {
     format!("is a {format} picture that is cut short")
 }
 
-/// Returns the texture. The decoders promise the header's number of texels; indexing relies on it,
-/// so it is checked.
+/// Returns the texture, after checking that the decoder returned `width * height` texels: indexing
+/// relies on it.
 fn complete(width: u32, height: u32, texels: Vec<Srgb8>, format: &str) -> Result<Texture, String> {
     if texels.len() != width as usize * height as usize {
         return Err(cut_short(format));
