@@ -58,9 +58,9 @@ pub enum Order {
     Color,
 }
 
-/// The nearness of a moving picture to the wanted one.
+/// The accuracy of a moving picture: how far shown colours may differ from the wanted ones.
 ///
-/// Text is always exact, and so is the picture within a second after its last change.
+/// Text is always exact, and the picture becomes exact within a second after its last change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Quality {
@@ -75,18 +75,20 @@ pub enum Quality {
     Fast,
 }
 
-/// The quality, time and size of a frame.
+/// The limits on a lossy frame: its quality and number of bytes, and its time.
 #[derive(Clone, Copy, Debug)]
 pub struct Allowance {
     /// The quality of the picture.
     pub quality: Quality,
-    /// The time at which the frame is sent, from any start that all frames share.
+    /// The time at which the frame is sent, since any start that is the same for all frames.
     pub now: Duration,
     /// The largest number of bytes that the frame should take; `None` for no limit.
     ///
-    /// If the limit is exceeded, the least errors wait for a later frame, even those beyond the quality's caps. Exact
-    /// colours also wait beyond 8 bytes per cell of the screen. Text, cells that replace text or an unknown screen, and
-    /// the largest error never wait; with [`Quality::Exact`] nothing does.
+    /// Above the limit, the cells with the smallest errors wait for a later frame, even if they exceed the quality's
+    /// caps.
+    /// Cells that are only made exact also wait above 8 bytes per cell of the screen. Text, picture cells that replace
+    /// text
+    /// or unknown contents, and the cell with the largest error never wait; with [`Quality::Exact`] no cell does.
     pub max_bytes: Option<usize>,
 }
 
@@ -100,21 +102,21 @@ pub struct Encoder {
     /// The terminal's state; `None` at first and after a resize.
     known: Option<TerminalState>,
     change_times: ChangeTimes,
-    /// The time at which cells that are not shown exactly are due.
+    /// The time at which the cells that are not exact are to be sent; `None` if all are exact.
     due: Option<Duration>,
 }
 
-/// The state of the terminal, as far as it follows from the bytes sent.
+/// The state of the terminal, as known from the bytes sent.
 #[derive(Clone, Debug)]
 struct TerminalState {
-    /// The shown grid.
+    /// The grid that the terminal shows.
     shown: Grid,
-    /// The pen with which the terminal would write now.
+    /// The colours and attributes with which the terminal would write the next character.
     pen: Pen,
 }
 
-/// Largest number of bytes per cell for a frame of refinement.
-// tmux discards output that it cannot pass on when it exceeds 8 bytes per cell of the screen (its `TTY_BLOCK_START`).
+/// Largest number of bytes, per cell of the screen, for a frame that makes lossy cells exact.
+// tmux discards pending output above 8 bytes per cell of the screen (its `TTY_BLOCK_START`).
 const TMUX_BYTES_PER_CELL: usize = 8;
 
 /// The sequence that begins synchronized output (DEC private mode 2026).
@@ -147,7 +149,7 @@ impl Encoder {
         Self { order, ..self }
     }
 
-    /// Sets the order of an encoder in use.
+    /// Sets the order in which cells are sent from the next frame on.
     #[cfg(feature = "live")]
     pub(crate) fn set_order(&mut self, order: Order) {
         self.order = order;
@@ -162,8 +164,8 @@ impl Encoder {
         Self { half_blocks, ..self }
     }
 
-    /// Sets the half blocks of an encoder in use.
-    // A window may move to a screen with other cells.
+    /// Sets the half blocks that cells may use from the next frame on.
+    // The best choice changes when the window moves to a screen whose cells have another height in pixels.
     #[cfg(feature = "live")]
     pub(crate) fn set_half_blocks(&mut self, half_blocks: HalfBlocks) {
         self.half_blocks = half_blocks;
@@ -177,7 +179,7 @@ impl Encoder {
         Self { synchronized, ..self }
     }
 
-    /// Sets whether any sequence about colours is sent, including the reset to the default colours.
+    /// Sets whether sequences that set or reset colours are sent at all.
     #[doc(hidden)]
     pub fn with_colors(self, colors: bool) -> Self {
         Self { colorless: !colors, ..self }
@@ -219,7 +221,9 @@ impl Encoder {
         self.bracket(start, bytes);
     }
 
-    /// Appends a lossy frame, not enclosed, and returns the cursor's position, if certain.
+    /// Appends a lossy frame without the marks of a synchronized update.
+    ///
+    /// Returns the cursor's position, or `None` where terminals differ about it.
     fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let Some(caps) = lossy::QualityCaps::of(allowance.quality) else { return self.draw(wanted, bytes) };
         self.change_times.record(wanted, allowance.now);
@@ -244,34 +248,37 @@ impl Encoder {
             let taken = bytes.len() - start + self.bracket_len();
             let refines = writes > refines_from;
             let (limit, fewest) = if refines { (usual, refines_from) } else { (max_bytes, plan.min_writes(false)) };
-            // At least one cell, or all might wait for ever.
+            // At least one cell is written, or all might wait for ever.
             let fewest = fewest.max(1);
             if taken <= limit || writes <= fewest {
                 break (next, cursor);
             }
             bytes.truncate(start);
-            // A thirty-second less than the share that fits, so that a second try hardly ever fails. With a sixteenth
-            // less, 84.5 to 85.2 % of a link of 50 kB/s were used instead of 86.5 to 87.3 %.
+            // Tries again with the share of the cells that should fit, less a thirty-second, so that the next try
+            // hardly ever fails. With a sixteenth less, 84.5 to 85.2 % of a link of 50 kB/s were used instead of 86.5
+            // to 87.3 %.
             writes = (writes * limit / taken * 31 / 32).clamp(fewest, writes - 1);
         };
         let is_cut = writes < plan.writes();
-        // All at once, when the last of them is due. Each at its own time, a dozen frames of a few scattered cells
-        // followed each movement: 1.40 full frames of bytes (orbit, 80x24), now 1.14.
+        // All inexact cells are made exact at once, at the latest time of any of them. Each at its own time took a
+        // dozen frames of a few scattered cells after each movement: 1.40 full frames of bytes (orbit, 80x24) instead
+        // of 1.14.
         let refines = plan.inexact(&next.shown).map(|at| self.change_times.exact_at(at)).max();
         self.due = if is_cut { Some(allowance.now) } else { refines };
         self.known = Some(next);
         cursor
     }
 
-    /// Returns the time at which to encode the last wanted grid again, unless another is wanted.
+    /// Returns the time at which to encode the last grid again if it has not changed.
     ///
-    /// Cells that are not shown exactly are then sent. `None` means that all cells are exact and nothing would be sent.
+    /// That frame sends the cells that are not exact yet. `None` means that all cells are exact.
     #[doc(hidden)]
     pub fn due(&self) -> Option<Duration> {
         self.due
     }
 
-    /// Takes the state of a terminal of this size; an unknown one begins with a reset.
+    /// Takes the known state of the terminal. If it is unknown, or of another size, appends a reset
+    /// of the colours and returns a state with unknown cells.
     fn take_state(&mut self, size: Size, bytes: &mut Vec<u8>) -> TerminalState {
         self.known.take().filter(|known| known.shown.size() == size).unwrap_or_else(|| {
             let mut pen = Pen::default();
@@ -298,7 +305,8 @@ impl Encoder {
     fn bracket(&self, start: usize, bytes: &mut Vec<u8>) {
         if self.synchronized && bytes.len() > start {
             bytes.extend_from_slice(BEGIN_SYNCHRONIZED);
-            // Only now is it known that the frame is not empty, so the start is moved to the front.
+            // Only now is it known that the frame is not empty, so the beginning sequence is appended and rotated to
+            // the front.
             bytes[start..].rotate_right(BEGIN_SYNCHRONIZED.len());
             bytes.extend_from_slice(END_SYNCHRONIZED);
         }
@@ -309,7 +317,7 @@ impl Encoder {
         if self.synchronized { BEGIN_SYNCHRONIZED.len() + END_SYNCHRONIZED.len() } else { 0 }
     }
 
-    /// Writes the bytes; on an error the terminal's state is forgotten.
+    /// Writes the bytes to `writer`; on an error, forgets the terminal's state.
     fn send(&mut self, bytes: &[u8], writer: &mut impl Write) -> io::Result<()> {
         if bytes.is_empty() {
             return Ok(());
@@ -317,7 +325,8 @@ impl Encoder {
         writer.write_all(bytes).and_then(|()| writer.flush()).inspect_err(|_| self.forget())
     }
 
-    /// Appends the bytes that show a grid, and returns the cursor's position, if certain.
+    /// Appends the bytes that change the `known` grid to `wanted`. Returns the cursor's position,
+    /// or `None` where terminals differ about it.
     fn write(&self, wanted: &Grid, known: &mut TerminalState, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let changed = update(&mut known.shown, wanted);
         let strokes = match self.order {
@@ -325,8 +334,8 @@ impl Encoder {
             Order::Color => {
                 let order = by_color::order(wanted, &changed, self.half_blocks, known.pen);
                 let mut strokes = strokes::choose(wanted, &order, self.half_blocks, known.pen);
-                // Not for raster order, where a compressor finds fewer repetitions then, which costs more than this
-                // saves.
+                // Done in this order only: in raster order it saves less than it costs, because a compressor then finds
+                // fewer repetitions.
                 strokes::share_next_fg(wanted, &mut strokes);
                 strokes
             }
@@ -335,10 +344,10 @@ impl Encoder {
     }
 }
 
-/// Updates the shown grid, and returns the cells to write, row by row.
+/// Makes `shown` equal to `wanted`, and returns the cells to write, row by row.
 ///
 /// Covered and foreign cells are never written.
-// In place, instead of a copy of the whole grid for each frame.
+// The grid is updated in place, which saves copying it for each frame.
 fn update(shown: &mut Grid, wanted: &Grid) -> Vec<CellPosition> {
     let mut changed = Vec::new();
     for ((shown, wanted), row) in shown.rows_mut().zip(wanted.rows()).zip(0..) {
@@ -347,9 +356,10 @@ fn update(shown: &mut Grid, wanted: &Grid) -> Vec<CellPosition> {
     changed
 }
 
-/// Updates a row, and calls `write` with the column of each glyph to write.
-// Cells behind a cluster are written again with it: a terminal that shows the cluster's characters one by one has
-// overwritten them.
+/// Makes the row `shown` equal to `wanted`, and calls `write` with the column of each glyph to
+/// write.
+// The cells after a grapheme cluster are written again with it, because a terminal that shows the cluster's characters
+// one by one overwrites them.
 fn update_row(shown: &mut [Cell], wanted: &[Cell], mut write: impl FnMut(u16)) {
     let mut safe_from = 0;
     let mut column = 0;
@@ -359,7 +369,8 @@ fn update_row(shown: &mut [Cell], wanted: &[Cell], mut write: impl FnMut(u16)) {
         let is_ours = !matches!(wanted[0].glyph, Glyph::Covered | Glyph::Foreign);
         if is_ours && (column < safe_from || shown != wanted) {
             let looks_alike = shown.iter().zip(wanted).all(|(shown, wanted)| pen::look_alike(shown, wanted));
-            // Even if both look alike: a blank of a panel is text, one of the picture is not.
+            // Updated even if both look alike, because cells also record whether they are text, as a panel's blank is,
+            // or picture.
             shown.clone_from_slice(wanted);
             if !looks_alike || column < safe_from {
                 write(column as u16);

@@ -84,7 +84,7 @@ impl BenchArgs {
     /// Returns the scene's name and the scene.
     fn scene(&self) -> Result<(String, Scene), Failure> {
         let (name, scene) = if let Some(path) = &self.scene {
-            (visible(&path.display().to_string()), SceneSource::of(path)?.load(self.threads)?)
+            (visible(&path.display().to_string()), SceneSource::from_path(path)?.load(self.threads)?)
         } else {
             let generated = self.generated.unwrap_or(Generated::Three);
             (format!("{generated:?}").to_lowercase(), generated.scene().map_err(usage)?)
@@ -101,16 +101,16 @@ impl BenchArgs {
 }
 
 pub(super) fn run(args: &BenchArgs) -> CommandResult {
-    // Before the scene is generated or read, which takes seconds for a large one.
+    // Checked before the scene is generated or read, which takes seconds if the scene is large.
     let resolution = args.resolution()?;
-    // The scene is built in the same pool, so that `--threads` also sets the time of the build.
+    // The trees are built in the same pool, so that `--threads` also applies to the measured time of the build.
     on_threads(args.threads, || {
         let (name, scene) = args.scene()?;
-        write_stdout(tree(&name, &scene).as_bytes())?;
+        write_stdout(tree_line(&name, &scene).as_bytes())?;
         for number in 1..=args.rounds {
             let samples = NonZeroU32::new(args.samples).unwrap_or(NonZeroU32::MIN);
-            // Each round is printed as soon as it ends: a bench that is stopped has its figures so far.
-            let round = Round::of(args.kernel.kernel(), &scene, resolution, samples);
+            // Each round is printed as soon as it ends, so that an interrupted bench has shown its results so far.
+            let round = Round::measured(args.kernel.kernel(), &scene, resolution, samples);
             write_stdout(round.line(number).as_bytes())?;
         }
         Ok(())
@@ -118,8 +118,8 @@ pub(super) fn run(args: &BenchArgs) -> CommandResult {
 }
 
 /// Returns the line about the scene's trees: the time of a build and their size.
-fn tree(name: &str, scene: &Scene) -> String {
-    // Built a second time, because loading the scene has timed its parsing as well.
+fn tree_line(name: &str, scene: &Scene) -> String {
+    // The trees are built a second time to be timed: loading the scene includes parsing it.
     let objects = scene.objects().to_vec();
     let start = Instant::now();
     let again = Scene::new(*scene.camera(), objects);
@@ -127,7 +127,7 @@ fn tree(name: &str, scene: &Scene) -> String {
     format!("{name}: built in {:.3} s, {} bytes\n", built.as_secs_f64(), again.tree_bytes())
 }
 
-/// The counts and times of one round.
+/// The ray counts and times of one round.
 struct Round {
     counts: Counts,
     trace: Duration,
@@ -136,7 +136,7 @@ struct Round {
 }
 
 impl Round {
-    fn of(kernel: Kernel, scene: &Scene, resolution: Resolution, samples: NonZeroU32) -> Self {
+    fn measured(kernel: Kernel, scene: &Scene, resolution: Resolution, samples: NonZeroU32) -> Self {
         let start = Instant::now();
         let counts = count(kernel, scene, scene.camera(), resolution, samples);
         let trace = start.elapsed();
@@ -150,7 +150,7 @@ impl Round {
     fn line(&self, number: u32) -> String {
         let Counts { rays, hits, lit, depths } = self.counts;
         let [trace, frame] = [self.trace, self.frame].map(|time| time.as_secs_f64());
-        // A clock may be too coarse for a tiny picture: no division by 0.
+        // Avoids a division by 0: a coarse clock may measure no time for a tiny picture.
         let rate = rays as f64 / trace.max(1e-9) / 1e6;
         let mut line = format!("round {number}: {rays} rays, {hits} hits, {lit} lit, depths {depths:.3}, ");
         let _ = writeln!(line, "{trace:.6} s, {rate:.1} Mrays/s; frame {frame:.6} s, hash {:016x}", self.hash);

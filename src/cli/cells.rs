@@ -17,7 +17,7 @@ The colours (--color):
 The characters of cells (--glyphs):
   auto       half blocks; shape if there is no colour, the locale is not UTF-8, or a block is not one column wide";
 
-/// Returns the help text below the options: the colours, and every kind of glyphs.
+/// Returns the help text below the options, which describes the colours and every kind of glyphs.
 pub(super) fn after_help() -> String {
     Glyphs::ALL
         .iter()
@@ -45,7 +45,7 @@ enum ColorArg {
     Indexed16,
 }
 
-/// The value that leaves the choice to the terminal, or to the file format.
+/// The value of `--color` and `--glyphs` that leaves the choice to the terminal or the file format.
 const AUTO: &str = "auto";
 
 fn glyph_parser() -> impl TypedValueParser<Value = GlyphChoice> {
@@ -54,12 +54,12 @@ fn glyph_parser() -> impl TypedValueParser<Value = GlyphChoice> {
 }
 
 impl CellArgs {
-    /// Returns whether either flag is given.
+    /// Returns whether `--color` or `--glyphs` is given.
     pub(super) fn is_given(&self) -> bool {
         self.color.is_some() || self.glyphs.is_some()
     }
 
-    /// Returns whether the flags require colours.
+    /// Returns whether `--color` requires colours: neither `auto` nor `never`.
     pub(super) fn wants_color(&self) -> bool {
         !matches!(self.color_choice(), ColorChoice::Auto | ColorChoice::Never)
     }
@@ -79,8 +79,8 @@ impl CellArgs {
         self.glyphs.flatten()
     }
 
-    /// Returns the flags and the environment variables from which a terminal's capabilities are
-    /// detected.
+    /// Returns the hints from which a terminal's capabilities are detected: these flags, and
+    /// environment variables.
     pub(super) fn hints(&self, cell_aspect: Option<f32>) -> Hints {
         let mut hints = Hints::gather(&|name| std::env::var(name).ok(), &terminfo_colors);
         hints.color = self.color_choice();
@@ -89,8 +89,8 @@ impl CellArgs {
         hints
     }
 
-    /// Returns the cell mode for a file or a pipe, about which the environment says nothing. `auto`
-    /// are the colours if the flags leave the choice.
+    /// Returns the cell mode for a file or pipe, which does not depend on the environment. `auto`
+    /// are the colours if `--color` is `auto`.
     pub(super) fn mode_for_file(&self, auto: Colors) -> CellMode {
         let colors = match self.color_choice() {
             ColorChoice::Auto => auto,
@@ -98,8 +98,8 @@ impl CellArgs {
             ColorChoice::Never => Colors::None,
             ColorChoice::Exactly(colors) => colors,
         };
-        // Without colours the ramp, not shapes: golden frames are compared as text, and the ramp is promised not to
-        // change.
+        // Text without colours uses the ramp, not `shape`: golden frames are compared as text, and only the ramp is
+        // guaranteed not to change.
         let auto = if colors == Colors::None { Glyphs::Ramp } else { Glyphs::Half };
         CellMode { glyphs: self.glyph_choice().unwrap_or(auto), colors }
     }

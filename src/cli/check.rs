@@ -22,9 +22,9 @@ pub(super) struct CheckArgs {
     camera_args: CameraArgs,
 }
 
-/// Loads the scene, whose error lists every fault, and prints that it has none.
+/// Loads the scene and prints that it has no faults; otherwise the error lists every fault.
 pub(super) fn run(args: &CheckArgs) -> CommandResult {
-    let scene = args.camera_args.load(&SceneSource::of(&args.scene)?)?;
+    let scene = args.camera_args.load(&SceneSource::from_path(&args.scene)?)?;
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let objects = count(scene.objects().len(), "object");
     let lights = count(scene.lights().len(), "light");

@@ -45,7 +45,7 @@ pub(super) fn complete(args: &CompletionsArgs) -> CommandResult {
 /// Prints a man page, as roff.
 pub(super) fn man(args: &ManArgs) -> CommandResult {
     let mut program = Cli::command();
-    // Lists the deferred arguments of all commands, without which their pages would be empty.
+    // Adds the deferred arguments to all commands; without them the man pages would be empty.
     program.build();
     let page = match &args.command {
         None => program,
@@ -57,10 +57,10 @@ pub(super) fn man(args: &ManArgs) -> CommandResult {
     write_stdout(&roff)
 }
 
-/// Returns the error about an unknown command, with the command that was probably meant. A known
-/// one got here because of a flag before it, after which clap takes it for the name of a scene.
+/// Returns the error about a word that clap took for a scene though a command was meant: a misspelt
+/// command, or a known one after a flag, where clap expects a scene.
 pub(super) fn no_command(name: &str) -> Failure {
-    // A known command is no misspelling: the flag before it is at fault.
+    // A known command is not misspelt; it was not recognised because of the flag before it.
     if Cli::command().find_subcommand(name).is_some() {
         return Failure::Usage(format!("flags of a command go after it: termtrace {name} ..."));
     }
@@ -68,7 +68,7 @@ pub(super) fn no_command(name: &str) -> Failure {
     Failure::Usage(format!("there is no command \"{name}\"{meant}"))
 }
 
-/// Returns the command that was probably meant by an unknown name.
+/// Returns the command whose name is most similar to `name`, if one is similar.
 pub(super) fn command_near(name: &str) -> Option<String> {
     let program = Cli::command();
     closest(name, program.get_subcommands().map(clap::Command::get_name)).map(str::to_owned)

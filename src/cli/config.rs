@@ -1,4 +1,4 @@
-//! `termtrace config`: every setting with its effective value and its source; and the keys.
+//! `termtrace config`: prints every setting with its effective value and its source, or the keys.
 
 use super::outcome::{CommandResult, write_stdout};
 use super::settings::files::path_of;
@@ -18,7 +18,8 @@ Examples:
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct ConfigArgs {
-    // Parsed here only for the help: `Settings::gather` reads clap's matches, which know which flags were given.
+    // Present only for parsing and the help: `Settings::gather` reads clap's matches, which also say which flags were
+    // given.
     #[command(flatten)]
     _settings: SettingArgs,
     /// Print the keys instead, in the form of keys.ron
@@ -33,7 +34,7 @@ pub(super) fn run(args: &ConfigArgs, given: &ArgMatches) -> CommandResult {
         return write_stdout(keymap.to_ron().as_bytes());
     }
     let settings = Settings::gather(given)?;
-    // Columns, not characters: a value from the environment may contain wide characters.
+    // The width is in terminal columns, because a value from the environment may contain wide characters.
     let width = settings.effective.iter().map(|held| held.value.width()).max().unwrap_or(0);
     let mut text = String::new();
     for EffectiveSetting { name, value, source } in &settings.effective {
@@ -43,11 +44,11 @@ pub(super) fn run(args: &ConfigArgs, given: &ArgMatches) -> CommandResult {
     for name in ["config.ron", "keys.ron"] {
         let _ = writeln!(text, "{name:<16}{}", status(name, no_config));
     }
-    // Paths and variables may contain escape sequences.
+    // Made printable, because paths and environment variables may contain escape sequences.
     write_stdout(visible_lines(&text).as_bytes())
 }
 
-/// Returns the path of one of the user's files and whether it was read.
+/// Returns a line about a user's file such as `config.ron`: its path, and whether it was read.
 fn status(name: &str, is_ignored: bool) -> String {
     let Some(path) = path_of(name) else {
         return "nowhere: neither XDG_CONFIG_HOME nor HOME is the path of a folder".to_owned();

@@ -1,11 +1,11 @@
-//! Arguments of a command, built only if the command is used.
+//! Arguments of a command that clap builds only if the command is used.
 
 use clap::{ArgMatches, Args, Command, Error, FromArgMatches};
 
 /// The arguments `T` of a command, which clap builds only when the command is used.
 ///
-/// Building those of all commands took three quarters of the time of parsing, which the first picture waits for:
-/// deferred, `termtrace --version` takes 1.64 instead of 1.93 ms and 138 instead of 165 page faults.
+/// Building the arguments of all commands took three quarters of the time of parsing, which delays the first picture.
+/// With deferral, `termtrace --version` takes 1.64 instead of 1.93 ms and 138 instead of 165 page faults.
 pub(super) struct DeferredArgs<T>(pub(super) T);
 
 impl<T: Args> Args for DeferredArgs<T> {
@@ -28,8 +28,8 @@ impl<T: Args> FromArgMatches for DeferredArgs<T> {
     }
 }
 
-/// Adds arguments to a command and keeps its description, which a derived `T` would replace by its
-/// own.
+/// Adds arguments to a command by `list`, and keeps the command's description, which clap's derived
+/// code would replace.
 fn keep_about(command: Command, list: fn(Command) -> Command) -> Command {
     let about = command.get_about().cloned().unwrap_or_default();
     list(command).about(about)

@@ -18,13 +18,14 @@ use termtrace::live::Signals;
 
 #[derive(Args)]
 pub(super) struct DoctorArgs {
-    // Parsed here only for the help: `Settings::gather` reads clap's matches, which know which flags were given.
+    // Present only for parsing and the help: `Settings::gather` reads clap's matches, which also say which flags were
+    // given.
     #[command(flatten)]
     _terminal: TerminalArgs,
 }
 
-/// Time limit for the terminal's replies. Generous, because the command shows whether a slow
-/// terminal replies at all; the live view does not wait for replies.
+/// Time limit for the terminal's replies. It is long because the command should also show the
+/// replies of a slow terminal; the live view does not wait for replies.
 const QUERY_TIMEOUT: Duration = Duration::from_secs(2);
 
 pub(super) fn run(given: &ArgMatches) -> CommandResult {
@@ -35,10 +36,10 @@ pub(super) fn run(given: &ArgMatches) -> CommandResult {
     let is_terminal = io::stdout().is_terminal();
     let outcome = match hints.safe_queries() {
         _ if !is_terminal => QueryOutcome::NoTerminal,
-        // Such a terminal would print any query instead of replying.
+        // No query is sent to a terminal that would print it instead of replying.
         SafeQueries::None => QueryOutcome::Answered(Duration::ZERO),
         _ => match query_terminal(&mut questions, &mut cell) {
-            // Replies would arrive on standard input, which is not this terminal.
+            // No query was possible: replies arrive on standard input, which is not the terminal.
             Err(_) if !io::stdin().is_terminal() => QueryOutcome::NoTerminal,
             outcome => outcome.map_err(|error| Failure::runtime("terminal", reason(&error)))?,
         },
@@ -47,15 +48,16 @@ pub(super) fn run(given: &ArgMatches) -> CommandResult {
     let report =
         Report { settings: &settings, hints: &hints, findings: &findings, replies: questions.replies(), outcome };
     write_stdout(report::text(&report).as_bytes())?;
-    // The test card consists of escape sequences: in a pipe nothing would draw it.
+    // The test card consists of escape sequences, which only a terminal draws.
     if is_terminal { write_stdout(&card::bytes(&findings.capabilities())) } else { Ok(()) }
 }
 
-/// Takes the terminal, sends the queries, waits for the replies, and restores the terminal.
+/// Puts the terminal into raw mode, sends the queries, waits for the replies, and restores the
+/// terminal.
 fn query_terminal(questions: &mut InitialQueries, cell: &mut CellShape) -> io::Result<QueryOutcome> {
     let mut signals = Signals::catch()?;
     let mut terminal = Terminal::take(&signals).inspect_err(|_| {
-        // A signal that came while the program waited to be brought to the foreground.
+        // A deadly signal may have arrived while the program waited to be brought to the foreground.
         if let Some(signal) = signals.deadly() {
             die_of(signal);
         }
@@ -69,14 +71,15 @@ fn query_terminal(questions: &mut InitialQueries, cell: &mut CellShape) -> io::R
         await_replies(&mut terminal, &mut receiver, &mut signals, questions, asked)
     });
     terminal.restore(&mut receiver, asked.elapsed());
-    // Only after the terminal is restored; the shell must see the death by the signal, not an exit code.
+    // The program dies only after the terminal is restored, and by the signal itself: the shell must see the signal,
+    // not an exit code.
     if let Some(signal) = signals.deadly() {
         die_of(signal);
     }
     outcome
 }
 
-/// Waits for the last reply, at most [`QUERY_TIMEOUT`], or until a signal ends the program.
+/// Waits until the last reply has arrived, [`QUERY_TIMEOUT`] is over, or a deadly signal arrives.
 fn await_replies(
     terminal: &mut Terminal,
     receiver: &mut Receiver,
@@ -100,7 +103,7 @@ fn await_replies(
     Ok(QueryOutcome::Answered(asked.elapsed()))
 }
 
-/// Reads replies that have arrived. Keys among them are discarded.
+/// Reads the replies that have arrived. Key presses among them are discarded.
 fn take_replies(
     terminal: &mut Terminal,
     receiver: &mut Receiver,

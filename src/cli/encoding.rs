@@ -23,7 +23,7 @@ pub(super) struct EncodingArgs {
     pub(super) loss: LossArgs,
 }
 
-/// The flags for the order of cells.
+/// The flags for the order in which cells are sent.
 #[derive(Args)]
 pub(super) struct OrderArgs {
     /// Order in which changed cells are sent [default: color; live, raster until the link is found
@@ -60,19 +60,19 @@ enum QualityArg {
 }
 
 impl EncodingArgs {
-    /// Returns whether any of the flags is given.
+    /// Returns whether any of the encoding flags is given.
     pub(super) fn is_given(&self) -> bool {
         self.order().is_some() || self.loss.quality.is_some() || self.loss.max_rate.is_some()
     }
 
-    /// Returns the order, if given.
+    /// Returns the order of cells, if `--order` or `--compressed-link` is given.
     pub(super) fn order(&self) -> Option<encode::Order> {
         self.order.order()
     }
 }
 
 impl OrderArgs {
-    /// Returns the order, if given by either flag.
+    /// Returns the order of cells, if `--order` or `--compressed-link` is given.
     pub(super) fn order(&self) -> Option<encode::Order> {
         match self.order {
             Some(OrderArg::Raster) => Some(encode::Order::Raster),
@@ -83,7 +83,7 @@ impl OrderArgs {
 }
 
 impl LossArgs {
-    /// Returns the quality, if given.
+    /// Returns the value of `--quality`, if given.
     pub(super) fn quality(&self) -> Option<encode::Quality> {
         self.quality.map(|quality| match quality {
             QualityArg::Exact => encode::Quality::Exact,
@@ -92,14 +92,14 @@ impl LossArgs {
         })
     }
 
-    /// Returns the bandwidth cap in bytes per second, if given.
+    /// Returns the value of `--max-rate` in bytes per second, if given.
     pub(super) fn max_rate(&self) -> Option<u32> {
         self.max_rate
     }
 }
 
-/// Parses a number of bytes per second, where k stands for thousands and M for millions. At least
-/// 1,000: below, a single screen would take many seconds.
+/// Parses a number of bytes per second, such as `50k` or `1M` (k is 1,000, M is 1,000,000). At
+/// least 1,000, because at lower rates a single screen would take many seconds.
 fn parse_rate(text: &str) -> Result<u32, String> {
     let (digits, unit) = match text.strip_suffix(['k', 'K']) {
         Some(digits) => (digits, 1_000),

@@ -31,7 +31,7 @@ pub(super) struct ExplainArgs {
 }
 
 pub(super) fn run(args: &ExplainArgs) -> CommandResult {
-    // The mode of the live view, so that a pixel has the same number in both.
+    // The live view's default mode, so that a pixel has the same column and row in both.
     let mode = CellMode::HALF_BLOCK;
     let resolution = args.size.resolution(mode)?;
     let [width, height] = [resolution.width(), resolution.height()];

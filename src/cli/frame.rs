@@ -18,7 +18,7 @@ use termtrace::internals::export::Contents;
 use termtrace::internals::text::{any_of, listed};
 use termtrace::{CellMode, Colors};
 
-/// The format if neither `--format` nor a file name decides.
+/// The format if neither `--format` nor the extension of a file name decides.
 const DEFAULT: Format = Format::Text;
 
 const FILES: &str = "\
@@ -61,11 +61,11 @@ pub(super) struct FrameArgs {
     bless: bool,
 }
 
-/// Returns all formats in the order of the help: the default, other formats of cells, formats of
-/// pixels.
+/// Returns all formats in the order of the help: the default, then other formats of cells, then
+/// formats of pixels.
 fn formats() -> Vec<Format> {
     let mut formats = Format::ALL.to_vec();
-    // A stable sort: within each group the order of the table stays.
+    // The sort is stable, so each group keeps the order of `Format::ALL`.
     formats.sort_by_key(|&format| (format != DEFAULT, format.has_pixels()));
     formats
 }
@@ -76,7 +76,7 @@ fn format_parser() -> impl TypedValueParser<Value = Format> {
 }
 
 impl FrameArgs {
-    /// Returns the format: from the flag, or else from the file's name.
+    /// Returns the format: from `--format`, or else from the extension of the file's name.
     fn format(&self) -> Result<Format, Failure> {
         match (self.format, self.output().or(self.check.as_deref())) {
             (Some(format), _) => Ok(format),
@@ -90,7 +90,8 @@ impl FrameArgs {
         self.output.as_deref().filter(|&path| path != Path::new("-"))
     }
 
-    /// Returns the cell mode of the frame. A picture file has the pixels of half blocks.
+    /// Returns the cell mode of the frame. A picture file has as many pixels per cell as half
+    /// blocks.
     fn cell_mode(&self, format: Format) -> CellMode {
         match format.contents() {
             Contents::Pixels(_) => CellMode::HALF_BLOCK,
@@ -99,8 +100,8 @@ impl FrameArgs {
         }
     }
 
-    /// Refuses flags that have no effect on the format: an ignored flag would look like a fault of
-    /// the program.
+    /// Refuses flags that have no effect on the format: ignoring one would look like a bug of the
+    /// program.
     fn check_flags(&self, format: Format) -> CommandResult {
         let wrong = |why: String| Err(Failure::Usage(why));
         self.map.check_samples(self.picture.samples())?;
@@ -124,7 +125,7 @@ impl FrameArgs {
         }
     }
 
-    /// Returns the bytes of the frame in a format.
+    /// Traces the frame and returns its bytes in `format`.
     fn contents(&self, format: Format) -> Result<Vec<u8>, Failure> {
         let scene = self.scene.load()?;
         let mode = self.cell_mode(format);
@@ -132,7 +133,7 @@ impl FrameArgs {
         self.picture.check_scaled_pixel_count(resolution)?;
         let samples = self.picture.samples();
         let map = self.map.map();
-        // Only tracing runs in the pool of `--threads`; one thread encodes the file.
+        // Only tracing runs in the pool of `--threads`; the file is encoded on one thread.
         let picture = self
             .scene
             .on_threads(|| termtrace::internals::maps::picture(map, &scene, scene.camera(), resolution, samples))?;
@@ -149,7 +150,7 @@ impl FrameArgs {
 
 pub(super) fn run(args: &FrameArgs) -> CommandResult {
     let format = args.format()?;
-    // All that can be refused is refused before the scene is loaded, which may take seconds.
+    // Arguments are checked before the scene is loaded, which may take seconds.
     args.check_flags(format)?;
     if let Some(file) = args.output().or(args.check.as_deref().filter(|_| args.bless)) {
         args.scene.refuse_overwriting(&[], file)?;

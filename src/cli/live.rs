@@ -1,4 +1,5 @@
-//! `termtrace SCENE`: the live view on a terminal, one frame anywhere else.
+//! `termtrace SCENE`: opens the live view on a terminal, or prints one frame if the output is not a
+//! terminal.
 
 use super::completions::{command_near, no_command};
 use super::encoding::OrderArgs;
@@ -21,7 +22,7 @@ use termtrace::internals::{app, cell, maps};
 use termtrace::live::{Ending, Options, Outcome, Signals, Source};
 use termtrace::{Colors, Sampling, Size, export};
 
-/// Returns the line shown until the first key: what to press, by the keys that are bound.
+/// Returns the hint shown until the first key press: the main commands and the keys bound to them.
 fn hint(keymap: &Keymap, is_demo: bool) -> String {
     let key = |command| keymap.key_of(&[KeyMode::Fly, KeyMode::Always], command).map(|key| key.to_string());
     let moves = [Direction::Forward, Direction::Left, Direction::Back, Direction::Right];
@@ -30,7 +31,7 @@ fn hint(keymap: &Keymap, is_demo: bool) -> String {
     let does = |command, does: &str| key(command).map(|key| format!("{key} {does}"));
     let moves = Some(moves.map_or_else(|| "drag to look".to_owned(), |keys| format!("drag or {keys} to move")));
     let (help, quit) = (does(Command::Help, "keys"), does(Command::Quit, "quit"));
-    // Both fit 80 columns.
+    // Either line fits into 80 columns.
     let parts = if is_demo {
         vec![moves, help, quit, Some("termtrace FILE opens yours".to_owned())]
     } else {
@@ -56,8 +57,8 @@ pub(super) struct LiveArgs {
 }
 
 impl LiveArgs {
-    /// Returns the options of the live view: `settings` are the effective ones, with this command
-    /// line's flags in them.
+    /// Returns the options of the live view from the effective `settings`, which already include
+    /// this command line's flags.
     fn options(&self, settings: &SettingArgs, keymap: Keymap) -> Options {
         let mut options = Options::new(settings.terminal.hints());
         options.order = self.order.order();
@@ -77,9 +78,9 @@ impl LiveArgs {
 }
 
 /// Opens the live view if standard output is a terminal, and prints one frame otherwise. `given`
-/// are clap's matches of `args`, which know which flags were given.
+/// are clap's matches of `args`, which also say which flags were given.
 pub(super) fn run(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
-    // clap takes a misspelt command for the name of a scene. A file of that name wins.
+    // A misspelt command is parsed by clap as the name of a scene. If a file of that name exists, it is a scene.
     if let Some(first) = args.scenes.first().and_then(|first| first.to_str())
         && !Path::new(first).exists()
         && ShippedScene::named(Path::new(first)).is_none()
@@ -90,8 +91,8 @@ pub(super) fn run(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
     if io::stdout().is_terminal() { open_view(args, given) } else { print_frame(args) }
 }
 
-/// Prints one frame as `termtrace frame` does, from the flags alone: a pipe's bytes must not depend
-/// on config.ron.
+/// Prints one frame as `termtrace frame` does. Only flags are used, because output to a file or
+/// pipe must not depend on config.ron.
 fn print_frame(args: &LiveArgs) -> CommandResult {
     let settings = &args.settings;
     settings.check_samples()?;
@@ -106,7 +107,7 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
         );
         return Err(Failure::Usage(message));
     }
-    let source = SceneSource::of_argument(args.scenes.first().map(PathBuf::as_path))?;
+    let source = SceneSource::from_argument(args.scenes.first().map(PathBuf::as_path))?;
     let scene = args.camera_args.load(&source)?;
     let cell_aspect = settings.terminal.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
     let cell_mode = settings.terminal.cells.mode_for_file(Colors::None);
@@ -119,8 +120,8 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
     write_stdout(&export::ansi_or_text(&grid, cell_mode.colors))
 }
 
-/// Runs the live view. However it ends, even by a panic, the terminal is restored before anything
-/// is printed.
+/// Runs the live view. After its end, even by a panic, the terminal is restored before a message is
+/// printed.
 fn open_view(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
     #[cfg(feature = "test-hooks")]
     inject_faults();
@@ -128,12 +129,12 @@ fn open_view(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
     settings.check_samples()?;
     let keymap = keys::keymap(given.get_flag("no_config"))?;
     let (sources, options) = (sources(args)?, args.options(&settings, keymap));
-    // Caught before the terminal is put into raw mode, which no signal may leave behind.
+    // Signal handlers are installed before the terminal is put into raw mode, so that no signal can leave it so.
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
     let ended = catch_unwind(AssertUnwindSafe(|| app::open(sources, options, &mut signals)));
     let Outcome { ending, moved, heard, .. } = match ended {
         Ok(outcome) => outcome.map_err(|error| match error {
-            // The message names the picture's size already; "terminal: " before it would mislead.
+            // The message already names the picture's size; a prefix "terminal: " would mislead.
             app::Error::Terminal(error) if error.kind() == io::ErrorKind::OutOfMemory => {
                 Failure::Runtime(error.to_string())
             }
@@ -144,36 +145,39 @@ fn open_view(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
         Err(_) => exit_after_panic(),
     };
     if let Ending::Signal(signal) = ending {
-        // The shell must see the death by the signal, not an exit code.
+        // The program ends by the signal itself, because the shell must see the signal and not an exit code.
         die_of(signal);
     }
     match moved {
-        // The comma makes it a complete line of a scene file.
+        // With the comma, the printed camera is a complete line of a scene file.
         Some(camera) if heard && !args.quiet => write_stdout(format!("{},\n", camera.to_ron()).as_bytes()),
         _ => Ok(()),
     }
 }
 
-/// Returns the scenes to show. Standard input is read here, before the terminal is put into raw
-/// mode: it may be typed.
+/// Returns the scenes to show. Standard input is read here, before raw mode, because the user may
+/// type it.
 fn sources(args: &LiveArgs) -> Result<Vec<Source<Failure>>, Failure> {
     if args.scenes.is_empty() {
-        return Ok(vec![live_source(SceneSource::of_argument(None)?, &args.camera_args)]);
+        return Ok(vec![live_source(SceneSource::from_argument(None)?, &args.camera_args)]);
     }
-    args.scenes.iter().map(|path| SceneSource::of(path).map(|scene| live_source(scene, &args.camera_args))).collect()
+    args.scenes
+        .iter()
+        .map(|path| SceneSource::from_path(path).map(|scene| live_source(scene, &args.camera_args)))
+        .collect()
 }
 
 fn live_source(scene: SceneSource, camera_args: &CameraArgs) -> Source<Failure> {
     let file = if let SceneSource::File(path) = &scene { Some(path.clone()) } else { None };
     let (name, camera_args) = (scene.to_string(), camera_args.clone());
-    // By the name alone: the file is read later, on another thread.
+    // Decided by the name alone, because the file is read later, on another thread.
     let is_mesh = is_mesh(&name, &[]);
     let source = Source::new(name, move |watcher| camera_args.draft(&scene, watcher));
     let source = if is_mesh { source.orbited() } else { source };
     file.into_iter().fold(source, Source::with_file)
 }
 
-/// Connects to the test that started the program, which then injects faults.
+/// Connects to the test that started the program, so that the test can inject faults.
 #[cfg(feature = "test-hooks")]
 fn inject_faults() {
     let path = std::env::var_os("TERMTRACE_TEST_SOCKET");

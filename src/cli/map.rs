@@ -36,8 +36,8 @@ impl MapArgs {
         self.map.unwrap_or_default()
     }
 
-    /// Refuses more than one sample per pixel for a map that does not average: half an object
-    /// number means nothing.
+    /// Refuses more than one sample per pixel for a map whose values cannot be averaged: the mean
+    /// of two object numbers has no meaning.
     pub(super) fn check_samples(&self, sampling: Sampling) -> CommandResult {
         let map = self.map();
         if map.refines() || sampling == Sampling::Each(NonZeroU32::MIN) {

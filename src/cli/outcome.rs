@@ -8,25 +8,25 @@ use termtrace::internals::text::{Notice, visible_lines};
 
 /// The reason why a command failed.
 pub(super) enum Failure {
-    /// The system refused something: exit code 1.
+    /// An operation of the operating system failed: exit code 1.
     Runtime(String),
     /// The command line or a file is wrong: exit code 2.
     Usage(String),
     /// The scene is wrong: exit code 2.
     Scene(SceneError),
-    /// The message has been printed already; the exit code is left.
+    /// The message has already been printed; only this exit code is to be returned.
     Reported(u8),
 }
 
 impl Failure {
-    /// Returns a failure with the message `what: why`, such as a file's name and the system's
-    /// reason.
+    /// Returns a [`Failure::Runtime`] with the message `what: why`, such as a file's name and the
+    /// system's reason.
     pub(super) fn runtime(what: impl Display, why: impl Display) -> Self {
         Self::Runtime(format!("{what}: {why}"))
     }
 }
 
-/// Returns the failure of a wrong command line or file.
+/// Converts an error about the command line or a file to [`Failure::Usage`].
 pub(super) fn usage(error: impl Display) -> Failure {
     Failure::Usage(error.to_string())
 }
@@ -71,7 +71,7 @@ pub(super) fn print_clap_message(message: &clap::Error) -> ExitCode {
         print_error(&text);
         return ExitCode::from(2);
     }
-    // Help into a closed or full pipe is still a success, as with other programs.
+    // An error of writing is ignored: printing help into a closed pipe counts as a success, as in other programs.
     let _ = write_stdout(text.as_bytes());
     ExitCode::SUCCESS
 }
@@ -81,10 +81,10 @@ fn report_failure(message: &str, code: u8) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// Prints a message to standard error, unless the write could block or stop the program.
+/// Prints a message to standard error, unless the write could block the program or suspend it.
 fn print_error(text: &str) {
-    // A background process that writes to a terminal with `stty tostop` is stopped by SIGTTOU. A failed write is
-    // ignored: there is no other place for the message, and the exit code reports the failure.
+    // With `stty tostop`, SIGTTOU suspends a background process that writes to the terminal. A failed write is ignored:
+    // there is no other place for the message, and the exit code reports the failure.
     if termtrace::internals::terminal::stderr_accepts_message() {
         let _ = io::stderr().write_all(text.as_bytes());
     }
@@ -97,7 +97,8 @@ pub(super) fn reason(error: &io::Error) -> String {
     number.and_then(|number| text.strip_suffix(&number)).unwrap_or(&text).to_owned()
 }
 
-/// Prints the held panic messages of all threads and exits with 101, the code of a panic.
+/// Prints the panic messages held back while the terminal was in use, and exits with 101, the code
+/// of a panic.
 pub(super) fn exit_after_panic() -> ! {
     // Several threads may have panicked; the first message is the cause.
     let messages = termtrace::internals::terminal::take_panic_messages();

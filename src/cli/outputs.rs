@@ -1,4 +1,4 @@
-//! The files that a command writes. A signal that ends the program removes the unfinished one
+//! The output files of a command. If a signal ends the program, the unfinished file is removed
 //! first.
 
 use super::outcome::{CommandResult, Failure, reason};
@@ -9,32 +9,32 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use termtrace::internals::output_file::{OutputFile, open_stream};
 use termtrace::internals::terminal::before_death;
 
-/// The file being written, shared with the signal thread. The lock covers every begin, write,
-/// finish and removal, so that a signal meets a consistent state. Streams are not in it: a write to a full pipe blocks,
-/// and with the lock held the signal thread would wait for it.
+/// The file being written, shared with the signal thread, which removes it. The lock is held during
+/// each creation, write, finish and removal, so that the signal thread finds a consistent state. It does not cover
+/// streams: a write to a full pipe blocks, and the signal thread would wait for the lock.
 type PartialFile = Mutex<Option<OutputFile>>;
 
-/// Writes a file as a whole or not at all.
+/// Writes a whole file; if that fails or a signal interrupts it, no file is left.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> CommandResult {
     let mut outputs = Outputs::default();
     outputs.remove_on_signals(|| ());
     outputs.write(path, bytes).map_err(|error| Failure::runtime(path.display(), reason(&error)))
 }
 
-/// The files of a command, written one after the other.
+/// The output files of a command, which are written one after the other.
 #[derive(Default)]
 pub(super) struct Outputs {
     unfinished: Arc<PartialFile>,
-    /// Whether leftovers of killed runs were removed: once is enough for the thousands of files of
-    /// a film.
+    /// Whether temporary files that killed runs left behind were removed. Once per command
+    /// suffices: a film may have thousands of files.
     has_cleaned: bool,
 }
 
 impl Outputs {
-    /// Has a deadly signal remove the unfinished file and call `last_act` before the program dies.
+    /// Installs a handler for deadly signals that removes the unfinished file and calls `last_act`.
     pub(super) fn remove_on_signals(&self, last_act: impl FnOnce() + Send + 'static) {
         let unfinished = Arc::downgrade(&self.unfinished);
-        // If signals cannot be caught, the next run removes the file: not a reason to fail.
+        // An error is ignored: if signals cannot be caught, the next run removes the unfinished file.
         let _ = before_death(move || {
             abandon(&unfinished);
             last_act();
@@ -70,7 +70,7 @@ pub(super) enum Output {
 }
 
 impl Output {
-    /// Finishes the output; only now a file gets its name.
+    /// Flushes the output. A file has a temporary name until then, and is now renamed.
     pub(super) fn finish(mut self) -> io::Result<()> {
         self.flush()?;
         match self {
@@ -88,7 +88,7 @@ impl Write for Output {
         match self {
             Self::Stdout(stdout) => stdout.write(bytes),
             Self::Stream(file) => file.write(bytes),
-            // Without a file a signal has removed it: the bytes are dropped until the program dies.
+            // `None` means that the signal thread has removed the file: bytes are dropped until the program dies.
             Self::File(unfinished) => locked(unfinished).as_mut().map_or(Ok(bytes.len()), |file| file.write(bytes)),
         }
     }
@@ -96,21 +96,21 @@ impl Write for Output {
     fn flush(&mut self) -> io::Result<()> {
         match self {
             Self::Stdout(stdout) => stdout.flush(),
-            // Neither has a buffer of its own.
+            // Neither has a buffer, so there is nothing to flush.
             Self::Stream(_) | Self::File(_) => Ok(()),
         }
     }
 }
 
 fn locked(unfinished: &PartialFile) -> MutexGuard<'_, Option<OutputFile>> {
-    // A panic in another thread must not keep the file from being removed.
+    // The lock's poisoning is ignored: the file must be removable even after a panic in another thread.
     unfinished.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes the unfinished file and keeps the lock for ever, so that no other file is created before
-/// the program dies.
+/// Removes the unfinished file, and never releases the lock, so that no other file is created
+/// before the program dies.
 fn abandon(unfinished: &Weak<PartialFile>) {
-    // A weak reference: outputs that are dropped have no file to remove.
+    // If the reference is dead, the outputs were dropped and there is no unfinished file.
     if let Some(unfinished) = unfinished.upgrade() {
         let mut file = locked(&unfinished);
         file.take();

@@ -38,7 +38,7 @@ impl SizeArgs {
         let (across, down) = mode.pixels_per_cell();
         let (columns, rows) = self.size.unwrap_or((80, 24));
         let (width, height) = self.pixels.unwrap_or((columns.saturating_mul(across), rows.saturating_mul(down)));
-        // A grid counts its columns and rows in 16 bits.
+        // The numbers of columns and rows of a `Grid` are u16.
         let limit = u32::from(u16::MAX);
         if width > across * limit || height > down * limit {
             return Err(too_large(width.into(), height.into()));
@@ -54,7 +54,7 @@ impl PictureArgs {
         self.size.resolution(mode)
     }
 
-    /// Returns a cell's height over its width.
+    /// Returns the value of `--cell-aspect`: a cell's height over its width.
     pub(super) fn cell_aspect(&self) -> f32 {
         self.size.cell_aspect
     }
@@ -63,12 +63,13 @@ impl PictureArgs {
         self.samples
     }
 
-    /// Returns the side of the square of file pixels that stands for one pixel of the picture.
+    /// Returns the value of `--scale`: each pixel of the picture becomes a square of `scale` by
+    /// `scale` pixels in the file.
     pub(super) fn scale(&self) -> u32 {
         self.scale.unwrap_or(1)
     }
 
-    /// Refuses a picture that is too large at its scale.
+    /// Refuses a picture whose file would have too many pixels at the scale of `--scale`.
     pub(super) fn check_scaled_pixel_count(&self, resolution: Resolution) -> CommandResult {
         let [width, height] =
             [resolution.width(), resolution.height()].map(|side| u64::from(side) * u64::from(self.scale()));
@@ -84,7 +85,7 @@ impl PictureArgs {
 /// Refuses a picture with more than [`Resolution::MAX_PIXELS`], which memory may not hold.
 pub(super) fn check_pixel_count(width: u64, height: u64) -> CommandResult {
     let most = u64::from(Resolution::MAX_PIXELS);
-    // Saturating: two sides of 32 bits, times a scale, may exceed 64.
+    // Saturating, because a product of two 32-bit sides, each times a scale, may exceed 64 bits.
     if width.saturating_mul(height) > most { Err(too_large(width, height)) } else { Ok(()) }
 }
 
@@ -112,7 +113,7 @@ pub(super) fn parse_samples(text: &str) -> Result<Sampling, String> {
     number.map(Sampling::Each).ok_or_else(|| "expected a whole number from 1 to 65536, or best".to_owned())
 }
 
-/// Parses a cell's height over its width. Text would be unreadable in a cell beyond the limits.
+/// Parses a cell's height over its width, within limits beyond which text would be unreadable.
 pub(super) fn parse_cell_aspect(text: &str) -> Result<f32, String> {
     let aspect = text.parse().ok().filter(|aspect| CELL_ASPECT_RANGE.contains(aspect));
     aspect.ok_or_else(|| "expected a number from 0.1 to 10, such as 2".to_owned())

@@ -56,16 +56,16 @@ pub(super) struct RecordArgs {
     output: Option<PathBuf>,
 }
 
-/// Limit on the frames of a film: more than an hour at 25 per second. All cameras are computed
-/// before the first frame.
+/// Limit on the frames of a film: more than an hour at 25 per second. It bounds the memory of the
+/// cameras, which are all computed before the first frame.
 const MAX_FRAMES: usize = 100_000;
-/// Limit on the frame rate of a GIF: delays are in hundredths of a second, and viewers take a delay
-/// of 1 for 10.
+/// Limit on the frame rate of a GIF. Delays between frames are in hundredths of a second, and
+/// viewers treat a delay of 1 as 10.
 const MAX_GIF_FPS: u32 = 50;
 /// Default length of an orbit in seconds.
 const ORBIT_SECONDS: f64 = 8.0;
 
-/// The format of a film and its files.
+/// The format of a film, with the files to write.
 enum FilmFormat {
     /// An asciicast, on standard output if there is no file.
     Cast(Option<PathBuf>),
@@ -106,7 +106,8 @@ impl RecordArgs {
         Ok(Film { scene, cameras, resolution, format })
     }
 
-    /// Refuses what the format cannot represent, and flags that have no effect on it.
+    /// Refuses sizes and frame rates that the format cannot represent, and flags that have no
+    /// effect on it.
     fn check_flags(&self, format: &FilmFormat, resolution: Resolution) -> CommandResult {
         let wrong = |why: &str| Err(Failure::Usage(why.to_owned()));
         self.map.check_samples(self.picture.samples())?;
@@ -122,7 +123,7 @@ impl RecordArgs {
                 "--order, --compressed-link, --quality and --max-rate are for an asciicast; other films send no cells",
             );
         }
-        // A GIF has square pixels, so its size differs from the resolution.
+        // A GIF has square pixels, so its size in pixels differs from the resolution of the frames.
         let (width, height) = gif_size(resolution, self.picture.scale());
         match format {
             FilmFormat::Cast(_) => Ok(()),
@@ -145,7 +146,8 @@ impl RecordArgs {
         if seconds == 0.0 {
             return Err(Failure::Usage(format!("{name}: the path ends at 0 seconds; set a length with --seconds")));
         }
-        // At most 120 million, because `--seconds` is at most 1e6 and `--fps` 120: the cast does not saturate.
+        // The cast to usize does not saturate: `--seconds` is at most 1e6 and `--fps` 120, which makes 120 million
+        // frames.
         let frames = ((seconds * f64::from(self.fps)).round() as usize).max(1);
         if frames > MAX_FRAMES {
             return Err(Failure::Usage(format!("a film of {frames} frames is too long; at most {MAX_FRAMES}")));
@@ -178,7 +180,7 @@ impl RecordArgs {
                 let encoder = Encoder::new()
                     .with_order(self.encoding.order().unwrap_or(Order::Color))
                     .with_half_blocks(HalfBlocks::Either);
-                // Frames are written in many small pieces.
+                // Buffered, because `Cast` writes a frame in many small pieces.
                 let cast = Cast::begin(BufWriter::new(out), size, encoder, self.fps)?;
                 Sink::Cast(
                     cast.with_quality(self.encoding.loss.quality().unwrap_or_default())
@@ -194,7 +196,7 @@ impl RecordArgs {
     }
 }
 
-/// The destination of frames.
+/// The writer of a film's frames, by format.
 enum Sink {
     Cast(Cast<BufWriter<Output>>),
     Gif(Gif<BufWriter<Output>>),
@@ -202,7 +204,7 @@ enum Sink {
 }
 
 impl Sink {
-    fn take(&mut self, picture: &Picture, file: &Path, outputs: &mut Outputs) -> io::Result<()> {
+    fn write_frame(&mut self, picture: &Picture, file: &Path, outputs: &mut Outputs) -> io::Result<()> {
         match self {
             Self::Cast(cast) => cast.frame(cell::grid_from_picture(CellMode::HALF_BLOCK, picture)),
             Self::Gif(gif) => gif.frame(picture),
@@ -227,7 +229,7 @@ fn finish(out: BufWriter<Output>) -> io::Result<()> {
 }
 
 impl Film {
-    /// Returns the file of a frame, counted from 0.
+    /// Returns the file that frame number `frame`, counted from 0, is written to, for messages too.
     fn file(&self, frame: usize) -> PathBuf {
         match &self.format {
             FilmFormat::Cast(None) => "standard output".into(),
@@ -236,8 +238,8 @@ impl Film {
         }
     }
 
-    /// Adds the file of a frame to an error of writing. A closed pipe, as after `| head`, is not an
-    /// error.
+    /// Adds the frame's file name to an error of writing it. A closed pipe, as after `| head`,
+    /// becomes [`Stop::NoReader`].
     fn written<T>(&self, frame: usize, result: io::Result<T>) -> Result<T, Stop> {
         result.map_err(|error| match self.format {
             FilmFormat::Cast(None) if error.kind() == io::ErrorKind::BrokenPipe => Stop::NoReader,
@@ -246,7 +248,7 @@ impl Film {
     }
 }
 
-/// The reason why a film ends early.
+/// The reason why a film ends before its last frame.
 enum Stop {
     /// The reader of standard output has closed the pipe.
     NoReader,
@@ -262,27 +264,28 @@ pub(super) fn run(args: &RecordArgs) -> CommandResult {
     }
 }
 
-/// Traces and writes frame by frame, so that memory does not grow with the length of the film.
+/// Traces and writes the film frame by frame, so that memory does not grow with its length.
 fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
     let mut outputs = Outputs::default();
     let bar = progress::bar(film.cameras.len() as u64);
     let shown = bar.downgrade();
     outputs.remove_on_signals(move || {
-        // Otherwise the shell's prompt would follow the bar on its line.
+        // If a signal ends the program, the bar is erased first; otherwise the shell's prompt would follow it on its
+        // line.
         if let Some(bar) = shown.upgrade() {
             bar.finish_and_clear();
         }
     });
-    // Drawn only now: before the handler above, a signal would leave the bar on the screen.
+    // The bar is first drawn after the signal handler is installed: before, a signal would leave it on the screen.
     bar.tick();
     let mut sink = film.written(0, args.sink(film, &mut outputs))?;
     for (frame, camera) in film.cameras.iter().enumerate() {
         let (map, samples) = (args.map.map(), args.picture.samples());
         let picture = termtrace::internals::maps::picture(map, &film.scene, camera, film.resolution, samples);
-        film.written(frame, sink.take(&picture, &film.file(frame), &mut outputs))?;
+        film.written(frame, sink.write_frame(&picture, &film.file(frame), &mut outputs))?;
         bar.inc(1);
     }
-    // Only now a cast or GIF gets its name: a film that was interrupted leaves no file.
+    // `end` gives an asciicast or GIF its name, so an interrupted film leaves no file.
     film.written(0, sink.end())
 }
 

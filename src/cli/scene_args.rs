@@ -11,7 +11,7 @@ use termtrace::internals::progress::Reporter;
 use termtrace::internals::scene::Draft;
 use termtrace::{Camera, CameraError, Pose, Scene};
 
-/// The scene and the camera.
+/// The arguments that name a scene and change its camera.
 #[derive(Args)]
 pub(super) struct SceneArgs {
     /// Scene file, name of a built-in scene, or - for standard input [default: `three_spheres`]
@@ -22,17 +22,17 @@ pub(super) struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// Returns the name of the scene for messages.
+    /// Returns the scene's name as messages show it.
     pub(super) fn name(&self) -> String {
         self.scene.as_deref().unwrap_or(Path::new(ShippedScene::default_scene().name)).display().to_string()
     }
 
-    /// Refuses an output file that is the scene file or one of the `others`, by whatever path.
+    /// Refuses an output file that is the scene file or one of the `others`, under any path.
     pub(super) fn refuse_overwriting(&self, others: &[&Path], output: &Path) -> CommandResult {
         let is_output = |input: &&Path| match (input.canonicalize(), output.canonicalize()) {
-            // Canonical paths, so that a link or another spelling of the path does not hide the scene.
+            // Canonical paths are compared, so that a link or another spelling of the path is recognised.
             (Ok(input), Ok(output)) => input == output,
-            // An output that does not exist yet overwrites nothing.
+            // A file that does not exist yet has no canonical path, and nothing is overwritten.
             _ => false,
         };
         if self.scene.as_deref().iter().chain(others).any(is_output) {
@@ -41,12 +41,12 @@ impl SceneArgs {
         Ok(())
     }
 
-    /// Loads the scene, with the camera of the command line.
+    /// Loads the scene, with the camera changed by the flags.
     pub(super) fn load(&self) -> Result<Scene, Failure> {
-        self.camera_args.load(&SceneSource::of_argument(self.scene.as_deref())?)
+        self.camera_args.load(&SceneSource::from_argument(self.scene.as_deref())?)
     }
 
-    /// Runs `work` on the number of threads of the command line.
+    /// Runs `work` in a pool with the number of threads given by `--threads`.
     pub(super) fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
         on_threads(self.camera_args.threads, work)
     }
@@ -73,21 +73,22 @@ pub(super) struct CameraArgs {
 }
 
 impl CameraArgs {
-    /// Returns the scene with the camera that the command line wants.
+    /// Loads the scene, with the camera changed by the flags.
     pub(super) fn load(&self, source: &SceneSource) -> Result<Scene, Failure> {
         let scene = source.load(self.threads)?;
         let camera = self.camera(scene.camera()).map_err(usage)?;
         Ok(scene.with_camera(camera))
     }
 
-    /// Loads the scene with this camera, without building its trees, until the reporter cancels.
+    /// Loads the scene without building its trees, with the camera changed by the flags, until the
+    /// reporter cancels.
     pub(super) fn draft(&self, source: &SceneSource, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
         let draft = source.draft(reporter)?;
         let camera = self.camera(draft.camera()).map_err(usage)?;
         Ok(draft.with_camera(camera))
     }
 
-    /// Returns `camera` with the values that the flags give.
+    /// Returns `camera` changed by the flags `--eye`, `--target`, `--up` and `--fov`.
     pub(super) fn camera(&self, camera: &Camera) -> Result<Camera, CameraError> {
         let Pose { eye, target, up } = camera.pose();
         let pose =
@@ -100,11 +101,11 @@ impl CameraArgs {
     }
 }
 
-/// Parses `x,y,z`, within the limits of a scene file.
+/// Parses a vector such as `0,1.5,6`, each number within a scene file's limits.
 fn parse_vec3(text: &str) -> Result<Vec3, String> {
     let numbers: Result<Vec<f32>, _> = text.split(',').map(|number| number.trim().parse::<f32>()).collect();
     match numbers.as_deref() {
-        // Also refuses NaN and infinity, for which no comparison holds.
+        // The comparison is false for NaN and infinity too.
         Ok(&[x, y, z]) if [x, y, z].iter().all(|number| number.abs() <= 1e9) => Ok(Vec3::new(x, y, z)),
         _ => Err("expected three numbers from -1e9 to 1e9 with commas between them, such as 0,1.5,6".to_owned()),
     }

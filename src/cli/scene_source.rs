@@ -1,4 +1,4 @@
-//! The source of a scene: a file, standard input, or the program itself.
+//! The source of a scene: a file, standard input, or a scene embedded in the program.
 
 use super::outcome::{Failure, reason, usage};
 use super::shipped::ShippedScene;
@@ -12,34 +12,35 @@ use termtrace::internals::scene::Draft;
 use termtrace::internals::text::closest;
 use termtrace::{LoadError, Scene, SceneError};
 
-/// The source of a scene, which can be read repeatedly.
+/// The source of a scene, which can be loaded repeatedly.
 #[derive(Clone)]
 pub(super) enum SceneSource {
     File(PathBuf),
     /// The contents of standard input.
     Stdin(Vec<u8>),
-    /// A scene that is part of the program.
+    /// A scene embedded in the program.
     Shipped(&'static ShippedScene),
 }
 
 impl SceneSource {
     /// Returns the source that a command line argument names. Standard input (`-`) is read here,
-    /// before the terminal, which it may be, is put into raw mode.
-    pub(super) fn of(path: &Path) -> Result<Self, Failure> {
+    /// before raw mode, because it may be the terminal.
+    pub(super) fn from_path(path: &Path) -> Result<Self, Failure> {
         if path == Path::new("-") {
             return read_stdin().map(Self::Stdin);
         }
-        // A file of that name wins, even one that cannot be read.
+        // A file takes precedence over a shipped scene of the same name, even a file that cannot be read.
         let shipped = ShippedScene::named(path).filter(|_| path.symlink_metadata().is_err());
         Ok(shipped.map_or_else(|| Self::File(path.to_owned()), Self::Shipped))
     }
 
-    /// Returns the source of a scene that a command was given, or the default scene.
-    pub(super) fn of_argument(path: Option<&Path>) -> Result<Self, Failure> {
-        path.map_or_else(|| Ok(Self::Shipped(ShippedScene::default_scene())), Self::of)
+    /// Returns the source that an optional command line argument names; the default scene if there
+    /// is none.
+    pub(super) fn from_argument(path: Option<&Path>) -> Result<Self, Failure> {
+        path.map_or_else(|| Ok(Self::Shipped(ShippedScene::default_scene())), Self::from_path)
     }
 
-    /// Loads the scene and builds its trees on this number of threads.
+    /// Loads the scene and builds its trees on `threads` threads; by default one per core.
     pub(super) fn load(&self, threads: Option<u16>) -> Result<Scene, Failure> {
         let draft = self.draft(&Reporter::silent())?;
         on_threads(threads, || draft.finish())
@@ -79,7 +80,7 @@ fn not_loaded(path: &Path, error: Unfinished<LoadError>) -> Failure {
     if let Unfinished::Failed(LoadError::Scene(error)) = error {
         return Failure::Scene(error);
     }
-    // A file that exists was read and is wrong: another name would not help.
+    // A suggestion is made only if no such file exists: an existing file has been read, and its contents are wrong.
     let meant = if path.exists() { None } else { suggestions::scene_like(path).or_else(|| shipped_like(path)) };
     Failure::Usage(match meant {
         Some(meant) => format!("{error}; did you mean {}?", meant.display()),
@@ -87,13 +88,13 @@ fn not_loaded(path: &Path, error: Unfinished<LoadError>) -> Failure {
     })
 }
 
-/// Returns the name of the built-in scene that is most like a name.
+/// Returns the name of the shipped scene that is most similar to `name`, if one is similar.
 fn shipped_like(name: &Path) -> Option<PathBuf> {
     closest(name.to_str()?, ShippedScene::names()).map(PathBuf::from)
 }
 
-/// Reads standard input, up to one byte more than a scene may have: the excess byte becomes the
-/// error about the size.
+/// Reads standard input, up to one byte more than a scene may have. With that byte the scene's
+/// parser reports that the input is too large.
 fn read_stdin() -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     let limit = termtrace::internals::scene_text::MAX_TEXT_BYTES as u64 + 1;

@@ -1,7 +1,7 @@
 //! Settings: flags of the live view that can also be set in the environment and in `config.ron`.
 //!
-//! Each argument of [`SettingArgs`] is a setting, and clap is the only list and parser of them: a setting's name in the
-//! file is the flag's with underscores, and its value there is parsed as the flag's. Precedence: flag, environment,
+//! Each argument of [`SettingArgs`] is a setting, and clap is the only list and parser of them: a setting has the
+//! flag's name with underscores in the file, and its value is parsed as the flag's. Precedence: flag, environment,
 //! file, default.
 
 pub(super) mod defaults;
@@ -41,7 +41,8 @@ pub(super) struct TerminalArgs {
 }
 
 impl TerminalArgs {
-    /// Returns these flags and the environment variables from which capabilities are detected.
+    /// Returns the hints from which the terminal's capabilities are detected: these flags, and
+    /// environment variables.
     pub(super) fn hints(&self) -> Hints {
         self.cells.hints(self.cell_aspect)
     }
@@ -79,7 +80,7 @@ pub(super) struct SettingArgs {
 }
 
 impl SettingArgs {
-    /// Refuses more than one sample per pixel for a map that does not average.
+    /// Refuses more than one sample per pixel for a map whose values cannot be averaged.
     pub(super) fn check_samples(&self) -> CommandResult {
         self.samples.map_or(Ok(()), |samples| self.map.check_samples(samples))
     }
@@ -92,35 +93,35 @@ impl SettingArgs {
         self.reduced_motion.unwrap_or(false)
     }
 
-    /// Returns whether the keys to press are shown at the start.
+    /// Returns whether the view starts with a line that shows the main keys.
     pub(super) fn hint(&self) -> bool {
         self.hint.unwrap_or(true)
     }
 }
 
-/// Parses a frame rate: at least one frame in 100 seconds, because with fewer a typing error would
-/// look like a hang.
+/// Parses a frame rate of at least 0.01 frames per second: a lower one, probably a typing error,
+/// would look like a hang.
 fn parse_fps(text: &str) -> Result<f32, String> {
     let number = text.parse::<f32>().ok().filter(|fps| (0.01..=1_000.0).contains(fps));
     number.ok_or_else(|| "expected frames per second, from 0.01 to 1000".to_owned())
 }
 
-/// Parses a factor of the default speed.
+/// Parses a speed as a factor of the default speed, from 0.1 to 10.
 fn parse_speed(text: &str) -> Result<f32, String> {
     let number = text.parse::<f32>().ok().filter(|speed| (0.1..=10.0).contains(speed));
     number.ok_or_else(|| "expected a factor from 0.1 to 10".to_owned())
 }
 
-/// The effective settings.
+/// The effective settings, after flags, environment and `config.ron` are merged.
 pub(super) struct Settings {
     pub(super) args: SettingArgs,
-    /// The settings with their sources, in the order of the help.
+    /// The effective value and the source of each setting, in the order of the help.
     pub(super) effective: Vec<EffectiveSetting>,
 }
 
-/// The value of a setting and its source.
+/// The effective value of a setting, and its source.
 pub(super) struct EffectiveSetting {
-    /// The name in `config.ron`.
+    /// The setting's name in `config.ron`.
     pub(super) name: String,
     pub(super) value: String,
     pub(super) source: SettingSource,
@@ -131,7 +132,7 @@ pub(super) enum SettingSource {
     Flag(String),
     /// An environment variable.
     Variable(String),
-    /// The file and the line, counted from 1.
+    /// The path of `config.ron`, and the line of the setting, counted from 1.
     File(PathBuf, usize),
     Default,
 }
@@ -163,11 +164,14 @@ impl Settings {
                 let said = by_flag(setting, given)
                     .or_else(|| by_environment(setting))
                     .or_else(|| by_file(setting, &entries, file.as_ref()?))
-                    .unwrap_or_else(|| (defaults::of(setting.get_id().as_str()).to_owned(), SettingSource::Default));
+                    .unwrap_or_else(|| {
+                        (defaults::of_setting(setting.get_id().as_str()).to_owned(), SettingSource::Default)
+                    });
                 EffectiveSetting { name: setting.get_id().to_string(), value: said.0, source: said.1 }
             })
             .collect();
-        // The winning values become a command line of their own: what parses it is what parses the flags.
+        // The effective values are written as a command line and parsed by clap, so that all sources have the flags'
+        // parser.
         let mut words = Vec::new();
         for (setting, held) in command.get_arguments().zip(&effective) {
             if let SettingSource::Variable(name) = &held.source {
@@ -182,13 +186,13 @@ impl Settings {
         Ok(Self { args: args.map_err(usage)?, effective })
     }
 
-    /// Returns the source of the setting with this name.
+    /// Returns the source of the value of the setting `name`.
     pub(super) fn source(&self, name: &str) -> &SettingSource {
         self.effective.iter().find(|held| held.name == name).map_or(&SettingSource::Default, |held| &held.source)
     }
 }
 
-/// Returns a command line with only the settings.
+/// Returns a clap command whose only arguments are the settings.
 fn command() -> Command {
     SettingArgs::augment_args(Command::new("termtrace").no_binary_name(true))
 }
@@ -197,14 +201,14 @@ type Given = (String, SettingSource);
 
 fn by_flag(setting: &Arg, given: &ArgMatches) -> Option<Given> {
     let id = setting.get_id().as_str();
-    // A command need not have every setting as a flag: `doctor` has only those of the terminal.
+    // The result is `None` if the command has no such flag: `doctor` has only those of the terminal.
     let text = given.try_get_raw(id).ok()??.next()?.to_string_lossy().into_owned();
     let is_given = given.value_source(id) == Some(ValueSource::CommandLine);
     is_given.then_some((text, SettingSource::Flag(values::flag(setting))))
 }
 
-/// Returns the value from the setting's own variable or, for colours, from those that are common to
-/// all programs.
+/// Returns the setting's value from its variable `TERMTRACE_...` or, for colours, from a common one
+/// such as `NO_COLOR`.
 fn by_environment(setting: &Arg) -> Option<Given> {
     let name = format!("TERMTRACE_{}", setting.get_id().as_str().to_uppercase());
     // An empty variable counts as unset, as for `NO_COLOR`.

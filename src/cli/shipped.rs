@@ -1,26 +1,24 @@
-//! The scenes that are part of the program.
+//! The scenes that are embedded in the program.
 //!
-//! A name opens one from any folder, and `termtrace scenes` lists them.
+//! They can be opened by name from any folder, and `termtrace scenes` lists them.
 
 use super::outcome::{CommandResult, write_stdout};
 use clap::Args;
 use std::fmt::Write;
 use std::path::Path;
 
-/// A scene of the folder `scenes/`.
+/// A scene of the folder `scenes/` that is embedded in the program.
 #[derive(Debug)]
 pub(super) struct ShippedScene {
-    /// Its file name without the ending.
+    /// The scene's file name without the extension.
     pub(super) name: &'static str,
-    /// The scene file.
+    /// The text of the scene file.
     pub(super) text: &'static str,
     /// Names and bytes of the mesh files that the scene refers to.
     pub(super) meshes: &'static [(&'static str, &'static [u8])],
 }
 
-/// Makes the table of shipped scenes.
-///
-/// Each row is the name of a scene and the mesh files that it refers to.
+/// Defines the table `SHIPPED`. Each row is a scene's name and the mesh files that it refers to.
 macro_rules! shipped {
     ($($name:literal $([$($mesh:literal),+])?),+ $(,)?) => {
         /// All shipped scenes; the first is the default scene.
@@ -53,7 +51,8 @@ impl ShippedScene {
         &SHIPPED[0]
     }
 
-    /// Returns the shipped scene of a name that was given in the place of a file.
+    /// Returns the shipped scene whose name is `name`, a command line argument that could also be a
+    /// path.
     pub(super) fn named(name: &Path) -> Option<&'static Self> {
         SHIPPED.iter().find(|scene| Path::new(scene.name) == name)
     }
@@ -63,7 +62,7 @@ impl ShippedScene {
         SHIPPED.iter().map(|scene| scene.name)
     }
 
-    /// Returns the first line of the comment that the scene file begins with.
+    /// Returns the scene's title: the first line of the comment at the start of the file.
     fn title(&self) -> &'static str {
         self.text.lines().next().and_then(|line| line.strip_prefix("// ")).unwrap_or_default()
     }

@@ -4,19 +4,19 @@ use std::path::{Path, PathBuf};
 use termtrace::internals::mesh_file::is_mesh;
 use termtrace::internals::text::closest;
 
-/// Limit on the files of a folder that are compared, so that an error message does not wait for a
-/// huge folder.
+/// Limit on the number of files in a folder that are compared, so that a huge folder does not delay
+/// the error message.
 const MAX_LISTED_FILES: usize = 10_000;
 
-/// Returns the scene or mesh in the same folder with the most similar name, compared without
-/// extensions. Among equally similar names, the same extension wins.
+/// Returns the scene or mesh in `path`'s folder whose name is most similar, compared without
+/// extensions. Among equally similar names, one with `path`'s extension wins.
 pub(super) fn scene_like(path: &Path) -> Option<PathBuf> {
     let name = path.file_name()?.to_str()?;
     let folder = path.parent().filter(|folder| *folder != Path::new(""));
     let files = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
     let names = files.take(MAX_LISTED_FILES).filter_map(|file| file.ok()?.file_name().into_string().ok());
     let scenes = names.filter(|name| is_mesh(name, &[]) || Path::new(name).extension().is_some_and(|end| end == "ron"));
-    // A folder also lists dangling links, and the misspelt name itself may be one.
+    // Excludes dangling symbolic links, which a folder lists too; `path` itself may be one.
     let there: Vec<_> = scenes.filter(|other| path.with_file_name(other).exists()).collect();
     nearest(name, there).map(|other| path.with_file_name(other))
 }

@@ -1,11 +1,11 @@
-//! The threads that commands build and trace on.
+//! The thread pool in which commands build trees and trace.
 
 use super::outcome::{Failure, reason};
 use rayon::{ThreadPoolBuildError, ThreadPoolBuilder};
 use std::error::Error;
 use std::io;
 
-/// Runs `work` on this number of threads; by default on as many as there are cores.
+/// Runs `work` in a pool of `threads` threads, or of one per core if `threads` is `None`.
 ///
 /// # Errors
 /// If no thread can be started.
@@ -14,8 +14,8 @@ pub(super) fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T
         let pool = ThreadPoolBuilder::new().num_threads(threads.into()).build();
         return pool.map(|pool| pool.install(work)).map_err(|error| not_started("--threads", &error));
     }
-    // Rayon would start its global pool by itself, but panics if that fails. An error without a source means that the
-    // pool is there already.
+    // Rayon would start its global pool on first use, but would panic if that failed. An error without a source means
+    // that the pool exists already.
     match ThreadPoolBuilder::new().build_global() {
         Err(error) if error.source().is_some() => Err(not_started("threads", &error)),
         _ => Ok(work()),

@@ -1,8 +1,8 @@
 //! Lossy frames: grids that hardly differ from the wanted one and take fewer bytes to show.
 //!
-//! Only the picture may differ, never text. A half cell may have another colour within the quality's cap in OKLab, as
-//! long as the whole picture keeps its signal-to-noise ratio. A cell that shows a near colour already is not written,
-//! and the others take colours that serve many of them (see [`palette`](super::palette)).
+//! Only the picture may differ, never text. The colour of a half cell may differ up to the quality's cap in OKLab, as
+//! long as the whole picture keeps its signal-to-noise ratio. A cell that already shows a near colour is not written,
+//! and the other cells get colours that many of them can share (see [`palette`](super::palette)).
 // Bytes at 80x24 relative to those of ratatui's backend, including the exact frame at rest, for the bench's scenes
 // orbit, plain, sphere and gradient: .56, .52, .82 and .62 with `Exact`; .23, .15, .42 and .23 with `Equal`; .19,
 // .10, .31 and .16 with `Fast`.
@@ -16,9 +16,9 @@ use std::cmp::Reverse;
 /// The limits of a quality on the difference between the shown and the wanted picture.
 #[derive(Clone, Copy)]
 pub(super) struct QualityCaps {
-    /// The largest OKLab distance of a half cell.
+    /// The largest OKLab distance between the shown and the wanted colour of a half cell.
     distance: f32,
-    /// The largest mean of the squared differences of all halves, in 8-bit sRGB per channel.
+    /// The largest mean squared difference per channel, in 8-bit sRGB, over all half cells.
     ///
     /// A peak signal-to-noise ratio of `d` decibels is `255^2 / 10^(d / 10)`.
     mean_square: f64,
@@ -28,7 +28,7 @@ impl QualityCaps {
     pub(super) fn of(quality: Quality) -> Option<Self> {
         match quality {
             Quality::Exact => None,
-            // The mean squares are those of 44 and 41 decibels.
+            // The mean squares correspond to signal-to-noise ratios of 44 and 41 decibels.
             Quality::Equal => Some(Self { distance: 0.01, mean_square: 2.588_6 }),
             Quality::Fast => Some(Self { distance: 0.02, mean_square: 5.165_1 }),
         }
@@ -40,11 +40,12 @@ pub(super) struct LossyFrame<'a> {
     pub(super) shown: &'a Grid,
     pub(super) wanted: &'a Grid,
     pub(super) caps: QualityCaps,
-    /// The half blocks that cells may use: with either, a pair of colours serves both ways round.
+    /// The half blocks that cells may use. With both, a pair of colours can be drawn either way
+    /// round.
     pub(super) half_blocks: HalfBlocks,
-    /// The pen's colours: of glyphs and of the background.
+    /// The pen's foreground and background colours.
     pub(super) pen: [Ink; 2],
-    /// Returns whether the cell at this index is to be shown exactly now.
+    /// Returns whether the cell at an index has waited long enough and is to be made exact now.
     pub(super) has_waited: &'a dyn Fn(usize) -> bool,
 }
 
@@ -53,22 +54,24 @@ struct Difference {
     /// The cell's index in the grid.
     at: usize,
     wanted: Halves,
-    /// The shown halves; `None` if no picture is shown there.
+    /// The halves that the terminal shows; `None` if the cell shows text or is unknown.
     shown: Option<Halves>,
     urgency: Urgency,
 }
 
-/// The urgency of writing a cell; the more urgent is greater.
+/// The urgency of writing a cell, in ascending order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Urgency {
-    /// The shown halves are within the tolerance.
+    /// The shown halves are within the tolerance and need not be written now.
     Waits,
     /// The shown halves are within the tolerance, but the cell is due to be shown exactly.
-    // Their difference is not ordered: it is invisible, and neighbours written in one frame take the fewest bytes.
+    // Not ordered by the size of the difference, which is invisible: neighbours written in one frame take the fewest
+    // bytes.
     Refines,
-    /// The halves differ by more than the tolerance; the larger squared difference.
+    /// The halves differ by more than the tolerance; the number is the larger squared difference of
+    /// the two.
     Differs(u32),
-    /// No picture is shown there yet.
+    /// The cell does not show the picture yet, but text or unknown contents.
     Appears,
 }
 
@@ -77,9 +80,9 @@ pub(super) struct Plan<'a> {
     frame: LossyFrame<'a>,
     tolerance: Tolerance,
     differences: Vec<Difference>,
-    /// The number of differences to write.
+    /// The number of `differences` to write, from the first.
     writes: usize,
-    /// The indices of text cells.
+    /// The indices of the cells that are text in the wanted grid.
     text: Vec<usize>,
 }
 
@@ -113,8 +116,10 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the largest squared difference of a half that keeps the mean within its cap.
-    // Halves that differ more are written, and then differ by anything up to this square: by a third of it in the mean.
+    /// Returns the largest squared difference of a half cell that may be tolerated without
+    /// exceeding the cap on the mean.
+    // Halves that differ more are written. Their new squared difference may be anything up to this value, and is
+    // counted as a third of it.
     fn max_square(&self) -> u32 {
         const HISTOGRAM_LEN: usize = 1024;
         let mut counts = [0_usize; HISTOGRAM_LEN];
@@ -136,7 +141,7 @@ impl<'a> Plan<'a> {
         max_square
     }
 
-    /// Returns the largest sum of the squared differences of all halves.
+    /// Returns the largest allowed sum of the squared differences of all half cells.
     fn square_budget(&self) -> f64 {
         let halves = 2 * (self.frame.wanted.cells().len() - self.text.len());
         self.frame.caps.mean_square * (3 * halves) as f64
@@ -161,14 +166,14 @@ impl<'a> Plan<'a> {
         self.differences.partition_point(|difference| difference.urgency >= least)
     }
 
-    /// Returns the number of the picture's cells to write.
+    /// Returns the number of picture cells to write.
     pub(super) fn writes(&self) -> usize {
         self.writes
     }
 
-    /// Returns the number of cells that cannot wait.
+    /// Returns the number of picture cells that must be written in this frame.
     ///
-    /// With `within_caps` those that differ too much cannot wait either.
+    /// They include the cells that exceed the quality's caps if `within_caps` is set.
     pub(super) fn min_writes(&self, within_caps: bool) -> usize {
         self.count_from(if within_caps { Urgency::Differs(0) } else { Urgency::Appears })
     }

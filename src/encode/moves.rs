@@ -6,38 +6,39 @@
 
 use super::numbers::{digit_count, write_number};
 
-/// The column and row of a cell or of the cursor, counted from 0 at the top left.
+/// The column and row of a cell or the cursor, counted from 0 at the top left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CellPosition {
     pub(super) column: u16,
     pub(super) row: u16,
 }
 
-/// A move of the cursor.
+/// A sequence that moves the cursor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Move {
-    /// To a cell (CUP).
+    /// Moves to a cell by its column and row (CUP).
     To(CellPosition),
-    /// Down by this number of rows (LF), then along the row.
+    /// Moves down by a number of rows (an LF each), then along the row.
     Down(u16, Along),
 }
 
 /// A move along a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Along {
-    /// No move.
+    /// Stays in the column.
     Stay,
-    /// Right by this number of columns (CUF).
+    /// Moves right by a number of columns (CUF).
     Right(u16),
-    /// Left by this number of columns (BS each).
+    /// Moves left by a number of columns (a BS each).
     Left(u16),
-    /// To the first column (CR).
+    /// Moves to the first column (CR).
     Start,
-    /// To this column (CHA).
+    /// Moves to a column by its number (CHA).
     Column(u16),
 }
 
-/// Returns the cheapest move; `from` is `None` if the cursor is unknown or beyond the last column.
+/// Returns the move with the fewest bytes. `from` is `None` if the cursor's position is unknown or
+/// beyond the last column.
 pub(super) fn cheapest_move(from: Option<CellPosition>, to: CellPosition) -> Move {
     if from == Some(to) {
         return Move::Down(0, Along::Stay);
@@ -64,7 +65,7 @@ fn cheapest_along(from: u16, to: u16) -> Along {
 }
 
 impl Move {
-    /// Returns the length of the sequence in bytes.
+    /// Returns the length of the move's sequence in bytes.
     pub(super) fn len(self) -> usize {
         match self {
             Self::To(CellPosition { column: 0, row: 0 }) => 3,
@@ -74,7 +75,7 @@ impl Move {
         }
     }
 
-    /// Appends the sequence.
+    /// Appends the move's sequence to `bytes`.
     pub(super) fn write(self, bytes: &mut Vec<u8>) {
         match self {
             Self::To(CellPosition { column: 0, row: 0 }) => bytes.extend_from_slice(b"\x1b[H"),
@@ -118,7 +119,7 @@ impl Along {
     }
 }
 
-/// Appends CSI with one parameter.
+/// Appends a CSI sequence with the parameter `number` and the final byte `last`.
 fn sequence(bytes: &mut Vec<u8>, number: u16, last: u8) {
     bytes.extend_from_slice(b"\x1b[");
     write_number(number, bytes);

@@ -1,4 +1,4 @@
-//! Generated scenes with many shapes, which other programs can generate too, for comparisons.
+//! Generated scenes for benchmarks, which other programs can generate too, for comparisons.
 
 use clap::ValueEnum;
 use glam::Vec3;
@@ -48,7 +48,7 @@ fn camera() -> Result<Camera, CameraError> {
 /// Returns `count` spheres at random positions in a cube of side 2.4, with radii of 0.5 to 1.5
 /// times `radius`.
 fn spheres(count: usize, radius: f32) -> Vec<Shape> {
-    // A fixed seed, so that figures of different days and programs are about the same scene.
+    // The seed is fixed, so that results of different days and programs are about the same scene.
     let mut random = Xorshift(0x9E37_79B9_7F4A_7C15);
     let sphere = |_| {
         let [x, y, z] = [(); 3].map(|()| random.next() * 2.4 - 1.2);
@@ -63,8 +63,8 @@ fn spheres(count: usize, radius: f32) -> Vec<Shape> {
 struct Xorshift(u64);
 
 impl Xorshift {
-    /// Returns the next number, uniform in 0..1: the upper 24 bits, as many as f32 represents
-    /// exactly.
+    /// Returns the next random number, uniform in 0..1, from the upper 24 bits of the state: as
+    /// many as an f32 represents exactly.
     fn next(&mut self) -> f32 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;

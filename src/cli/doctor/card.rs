@@ -1,18 +1,18 @@
-//! The test card: a circle, a gradient and stripes of half cells, with the flag to set if one of
-//! them looks wrong.
+//! The test card: a circle, a gradient and stripes of half cells, with advice which flag to set if
+//! one of them looks wrong.
 
 use termtrace::internals::capabilities::{Capabilities, HalfBlocks};
 use termtrace::internals::cell;
 use termtrace::{Cell, Colors, Grid, LinearRgb, Painter, Picture, Size, Srgb8, export};
 
-/// Height of the card. With the report above it, everything fits on a screen of 24 rows.
+/// Height of the card in cells. Card, advice and the report above them fit on a screen of 24 rows.
 const ROWS: u16 = 8;
-/// First columns of the gradient and the stripes, and the width of the card. The circle starts at
-/// column 0.
+/// The columns at which the gradient and the stripes start, and the width of the card. The circle
+/// starts at column 0.
 const GRADIENT: u16 = 24;
 const STRIPES: u16 = 50;
 const COLUMNS: u16 = 70;
-/// Black columns between two parts, without which the circle's edge could not be told from the
+/// Number of black columns between two parts of the card, which separate the circle's edge from the
 /// gradient.
 const GAP: u16 = 2;
 
@@ -59,7 +59,8 @@ fn grid(capabilities: &Capabilities) -> Grid {
     grid
 }
 
-/// Draws the same two colours with the upper half block instead of the lower one.
+/// Replaces a lower half block by an upper one with the colours exchanged, which shows the same two
+/// halves.
 fn use_upper_half(cell: &mut Cell) {
     if cell.glyph == '▄' {
         *cell = Cell::new('▀', cell.bg, cell.fg);
@@ -84,7 +85,7 @@ fn picture(capabilities: &Capabilities) -> Picture {
     Picture::from_pixels(resolution.width(), resolution.height(), pixels).expect("a pixel for each place")
 }
 
-/// The centre of a pixel on the card and the pixel's size, both in cells.
+/// A pixel of the card: the column and row of its centre and its size, all in cells.
 struct CardPoint {
     column: f32,
     row: f32,
@@ -106,11 +107,11 @@ impl CardPoint {
         }
     }
 
-    /// Returns the colour of a disc that fills its part of the card.
+    /// Returns the colour of the pixel in the disc's part of the card.
     fn disc(&self, cell_aspect: f32) -> Srgb8 {
-        // All lengths are in cell widths.
+        // All lengths here are in cell widths, as the disc must be round on the screen.
         let (width, height) = (f32::from(GRADIENT - GAP), f32::from(ROWS) * cell_aspect);
-        // 4 x 4 samples per pixel: steps along the edge would hide whether the disc is round.
+        // The edge is smoothed by 4 x 4 samples per pixel: jagged, it would not show whether the disc is round.
         let radius = 0.46 * width.min(height);
         let samples = (0..16).filter(|sample| {
             let within = |sample: u32| (sample as f32 + 0.5) / 4.0 - 0.5;
@@ -122,14 +123,14 @@ impl CardPoint {
         Srgb8::from_linear(LinearRgb { g: light.g * 0.7, b: light.b * 0.3, ..light })
     }
 
-    /// Returns the colour of the gradient, whose steps are so small that a terminal with few
-    /// colours shows bands.
+    /// Returns the gradient's colour; `along` is 0 at its left end and 1 at the right. Its steps
+    /// are so small that a terminal with few colours shows bands.
     fn shade(&self, along: f32) -> Srgb8 {
         let down = self.row / f32::from(ROWS);
         Srgb8::new((50.0 + 110.0 * along) as u8, (70.0 + 80.0 * down) as u8, (150.0 - 90.0 * along) as u8)
     }
 
-    /// Returns the colour of the stripes: half cells, alternately dark and light.
+    /// Returns the colour of the stripes: each is half a cell high, alternately dark and light.
     fn stripe(&self) -> Srgb8 {
         let level = if ((self.row * 2.0) as u32).is_multiple_of(2) { 40 } else { 230 };
         Srgb8::new(level, level, level)

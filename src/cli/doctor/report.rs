@@ -12,13 +12,13 @@ use termtrace::internals::text::visible_lines;
 pub(super) enum QueryOutcome {
     /// Standard input or output is not a terminal.
     NoTerminal,
-    /// The last reply came after this time; zero if no query was sent.
+    /// All replies arrived; the last one after this time, or zero if no query was sent.
     Answered(Duration),
-    /// The last reply did not come within the time limit.
+    /// The last reply did not arrive within [`QUERY_TIMEOUT`](super::QUERY_TIMEOUT).
     TimedOut,
 }
 
-/// The contents of the table.
+/// The inputs of the table.
 pub(super) struct Report<'a> {
     pub(super) settings: &'a Settings,
     pub(super) hints: &'a Hints,
@@ -34,11 +34,11 @@ pub(super) fn text(report: &Report<'_>) -> String {
     for (what, value, source) in report.rows() {
         let _ = writeln!(text, "{what:<20}  {value:<28}  {source}");
     }
-    // TERM and the locale come from the environment and may contain escape sequences.
+    // Made printable, because TERM and the locale come from the environment and may contain escape sequences.
     visible_lines(&text)
 }
 
-/// A capability, its value, and the source that decided.
+/// A row of the table: a capability, its value, and the source that decided the value.
 type ReportRow = (&'static str, String, String);
 
 impl Report<'_> {
@@ -46,23 +46,25 @@ impl Report<'_> {
         let findings = self.findings;
         vec![
             self.queries(),
-            self.set("colours", "color", findings.colors, colors),
+            self.overridable_row("colours", "color", findings.colors, colors),
             self.locale(),
-            self.set("cells", self.chosen_by(), findings.glyphs, |cells| cells.title().to_owned() + &self.width()),
-            self.set("cell, height/width", "cell_aspect", findings.cell_aspect, |aspect| {
-                format!("{aspect:.3}{}", self.pixels())
+            self.overridable_row("cells", self.chosen_by(), findings.glyphs, |cells| {
+                cells.title().to_owned() + &self.block_width()
+            }),
+            self.overridable_row("cell, height/width", "cell_aspect", findings.cell_aspect, |aspect| {
+                format!("{aspect:.3}{}", self.cell_pixels())
             }),
             self.half_blocks(),
             self.background(),
-            self.sixteen(),
-            self.yes("synchronized output", findings.synchronized_output),
-            self.yes("kitty keyboard", findings.kitty_keyboard),
+            self.palette(),
+            self.yes_no_row("synchronized output", findings.synchronized_output),
+            self.yes_no_row("kitty keyboard", findings.kitty_keyboard),
             self.mouse(),
         ]
     }
 
-    /// Returns the row of a capability that the user may override by `setting`.
-    fn set<T>(
+    /// Returns the row of a capability that the setting `setting` may override.
+    fn overridable_row<T>(
         &self,
         what: &'static str,
         setting: &str,
@@ -75,8 +77,8 @@ impl Report<'_> {
         }
     }
 
-    /// Returns the setting that decides the glyphs: `color`, if without colours the glyphs follow
-    /// from it.
+    /// Returns the setting that decides the glyphs: `glyphs` if it is set, otherwise `color`,
+    /// because without colours other glyphs are used.
     fn chosen_by(&self) -> &'static str {
         if self.hints.glyphs.is_some() { "glyphs" } else { "color" }
     }
@@ -107,16 +109,17 @@ impl Report<'_> {
         ("locale", value, source)
     }
 
-    /// Returns the number of columns that a half block takes, if it was measured.
-    fn width(&self) -> String {
+    /// Returns the measured width of a half block, such as ", 1 column"; empty if it was not
+    /// measured.
+    fn block_width(&self) -> String {
         self.replies.block_width.map_or_else(String::new, |width| format!(", {}", columns(width)))
     }
 
-    fn pixels(&self) -> String {
+    fn cell_pixels(&self) -> String {
         self.replies.cell_pixels.map_or_else(String::new, |(width, height)| format!(" ({width}x{height} pixels)"))
     }
 
-    fn replied(&self, what: &'static str, reply: Option<String>) -> ReportRow {
+    fn reply_row(&self, what: &'static str, reply: Option<String>) -> ReportRow {
         match reply {
             Some(reply) => (what, reply, "its reply".to_owned()),
             None => (what, "unknown".to_owned(), self.no_reply().to_owned()),
@@ -127,12 +130,12 @@ impl Report<'_> {
         match (self.outcome, self.hints.safe_queries()) {
             (QueryOutcome::NoTerminal, _) | (_, SafeQueries::None) => "not queried",
             (_, SafeQueries::All) => "no reply",
-            // Not every query is safe for such a terminal, so that this one may not have been sent.
+            // Only some queries are safe for such a terminal, so this one may not have been sent.
             _ => "no reply, or not queried",
         }
     }
 
-    fn yes(&self, what: &'static str, found: Detected<bool>) -> ReportRow {
+    fn yes_no_row(&self, what: &'static str, found: Detected<bool>) -> ReportRow {
         if found.source == Source::Assumed {
             return (what, "unknown (assumed no)".to_owned(), self.no_reply().to_owned());
         }
@@ -141,20 +144,20 @@ impl Report<'_> {
 
     fn half_blocks(&self) -> ReportRow {
         let Detected { value, source } = self.findings.half_blocks;
-        self.yes("half blocks join", Detected { value: value == HalfBlocks::Either, source })
+        self.yes_no_row("half blocks join", Detected { value: value == HalfBlocks::Either, source })
     }
 
     fn background(&self) -> ReportRow {
         let kind = if self.findings.light_background.value { "light" } else { "dark" };
         match self.replies.background {
-            Some(c) => self.replied("background", Some(format!("{kind}, #{:02x}{:02x}{:02x}", c.r, c.g, c.b))),
+            Some(c) => self.reply_row("background", Some(format!("{kind}, #{:02x}{:02x}{:02x}", c.r, c.g, c.b))),
             None => ("background", format!("unknown (assumed {kind})"), self.no_reply().to_owned()),
         }
     }
 
-    fn sixteen(&self) -> ReportRow {
+    fn palette(&self) -> ReportRow {
         let count = self.replies.sixteen.iter().flatten().count();
-        self.replied("palette", (count > 0).then(|| format!("{count} of 16 colours known")))
+        self.reply_row("palette", (count > 0).then(|| format!("{count} of 16 colours known")))
     }
 
     fn mouse(&self) -> ReportRow {
@@ -167,7 +170,7 @@ impl Report<'_> {
                 (false, false) => "none",
             }),
         };
-        self.replied("mouse reports", units.map(str::to_owned))
+        self.reply_row("mouse reports", units.map(str::to_owned))
     }
 }
 

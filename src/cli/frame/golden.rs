@@ -8,12 +8,13 @@ use termtrace::internals::named_file::{self, Accepted};
 use termtrace::internals::progress::Reporter;
 use termtrace::internals::text::visible;
 
-/// Limit on the size of a golden frame: 16 MiB, as for a scene file, or four times the size of the
-/// frame that it is compared with, whichever is larger. A larger file shows another picture, and the diff would be as
-/// long.
+/// Limit on the bytes of a golden frame, as for a scene file; or four times the size of the frame
+/// to
+/// compare, if that is larger. A larger file shows another picture, and the diff would be as long as the file.
 const MAX_GOLDEN_BYTES: usize = 16 << 20;
 
-/// Returns `Ok` if the file holds exactly this frame; otherwise prints a diff to standard output.
+/// Returns `Ok` if the file contains exactly the bytes `frame`; otherwise prints a diff to standard
+/// output and fails.
 pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> CommandResult {
     let most = MAX_GOLDEN_BYTES.max(4 * frame.len());
     let golden = named_file::read(path, Accepted::FilesAndPipes, |_| most, &Reporter::silent()).map_err(|error| {

@@ -3,7 +3,8 @@
 use crate::cli::outcome::Failure;
 use std::path::{Path, PathBuf};
 
-/// A pattern for file names: the text before and after the number, and its least number of digits.
+/// A pattern for file names: the text before and after the number, and the number's least count of
+/// digits.
 #[derive(Debug, PartialEq)]
 pub(super) struct NumberedFiles {
     before: String,
@@ -12,9 +13,11 @@ pub(super) struct NumberedFiles {
 }
 
 impl NumberedFiles {
-    /// Parses a pattern as `printf` does: `%d` or `%04d` once, and `%%` for a percent sign.
+    /// Parses a `printf` pattern with one `%d` or, padded with zeros, `%04d`; `%%` is a percent
+    /// sign.
     ///
-    /// All other directives are refused, not copied: `%s` or a width without a 0 would give names that sort wrongly.
+    /// All other directives, such as `%s`, are refused. So is a width without a 0, whose names would not sort by
+    /// number.
     pub(super) fn parse(path: &Path) -> Result<Self, Failure> {
         let name = path.to_str().ok_or_else(|| wrong(path, "the name is not UTF-8"))?;
         let (mut before, mut after, mut digits) = (String::new(), String::new(), None);
@@ -46,7 +49,7 @@ impl NumberedFiles {
 
 const NUMBER: &str = "one %d or %04d must show where the frame's number goes; a percent sign is %%";
 
-/// Parses the width between `%` and `d`; `None` if it is not allowed.
+/// Parses the width between `%` and `d` as the least number of digits; `None` if it is not allowed.
 fn least_digits(width: &str) -> Option<usize> {
     let is_number = width.bytes().all(|byte| byte.is_ascii_digit());
     match width.strip_prefix('0') {

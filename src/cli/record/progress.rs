@@ -4,11 +4,12 @@ use console::Term;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle, TermLike};
 use std::io;
 
-/// Returns a bar over `frames` frames, shown from its first tick on. It is erased when dropped.
+/// Returns a progress bar over `frames` frames, which is shown from its first tick until it is
+/// dropped.
 pub(super) fn bar(frames: u64) -> ProgressBar {
     let terminal = Term::buffered_stderr();
     let is_dumb = std::env::var_os("TERM").is_some_and(|name| name == "dumb");
-    // A dumb terminal would show each update on a line of its own.
+    // A terminal with TERM=dumb would show each update on a line of its own.
     if !terminal.is_term() || is_dumb {
         return ProgressBar::hidden();
     }

@@ -1,7 +1,7 @@
 //! The defaults of settings, as text for the help.
 
-/// Each setting and its default. A table of text, because some defaults are decided while the
-/// program runs.
+/// Each setting and its default as text for the help. It is text because some defaults depend on
+/// the terminal.
 const DEFAULTS: [(&str, &str); 12] = [
     ("color", "auto"),
     ("glyphs", "auto"),
@@ -21,12 +21,12 @@ const DEFAULTS: [(&str, &str); 12] = [
 ///
 /// # Panics
 /// If there is no such setting.
-pub(in crate::cli) fn of(setting: &str) -> &'static str {
+pub(in crate::cli) fn of_setting(setting: &str) -> &'static str {
     let found = DEFAULTS.iter().find(|(name, _)| *name == setting);
     found.map(|(_, default)| *default).expect("every setting has a default")
 }
 
 /// Returns the help of a setting: its purpose and its default.
 pub(in crate::cli) fn help(setting: &str, what_for: &str) -> String {
-    format!("{what_for} [default: {}]", of(setting))
+    format!("{what_for} [default: {}]", of_setting(setting))
 }

@@ -1,4 +1,4 @@
-//! The settings in `config.ron`, each as the text that its flag would be given.
+//! The settings in `config.ron`, each as text for the parser of its flag.
 
 use super::files::UserFile;
 use super::values::check;
@@ -8,16 +8,16 @@ use termtrace::SceneError;
 use termtrace::internals::scene_text::{self, Faults, Field, Name, Value, line_and_column};
 use termtrace::internals::text::closest;
 
-/// A setting in the file.
+/// A setting in `config.ron`.
 pub(super) struct Entry {
     pub(super) name: String,
-    /// The value as it would be written after the flag.
+    /// The value as it would be written after the setting's flag.
     pub(super) text: String,
     /// The line of the setting, counted from 1.
     pub(super) line: usize,
 }
 
-/// Returns the settings of the file, or all its faults.
+/// Returns the settings in `file`, or all faults of the file.
 pub(super) fn read(file: &UserFile, command: &Command) -> Result<Vec<Entry>, SceneError> {
     let name = file.path.to_string_lossy();
     scene_text::read(&name, &file.text, "file of settings is ()", |root, faults| {
@@ -29,7 +29,8 @@ pub(super) fn read(file: &UserFile, command: &Command) -> Result<Vec<Entry>, Sce
         };
         for (i, field) in fields.iter().enumerate() {
             let Name { text: name, span } = field.name;
-            // Quadratic, but there are only a dozen settings; a file that repeats one is within 64 KiB.
+            // Quadratic in the number of fields, which is small: there are a dozen settings, and a file has at most 64
+            // KiB.
             if fields[..i].iter().any(|before| before.name.text == name) {
                 faults.add(span, || format!("duplicate setting \"{name}\""));
             } else if let Some(text) = text_of(field, command, faults) {
@@ -41,8 +42,8 @@ pub(super) fn read(file: &UserFile, command: &Command) -> Result<Vec<Entry>, Sce
     })
 }
 
-/// Returns the value as the text that the flag would be given. `None` in the file means the same as
-/// leaving it out.
+/// Returns a field's value as it would be written after the flag; `None` if it is faulty or is
+/// `None` in the file, which counts as unset.
 fn text_of(field: &Field<'_>, command: &Command, faults: &mut Faults) -> Option<String> {
     let Field { name, value } = field;
     let Some(setting) = command.get_arguments().find(|setting| setting.get_id() == name.text) else {

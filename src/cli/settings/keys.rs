@@ -1,4 +1,4 @@
-//! The user's own keys.
+//! The keymap, with the changes of the user's `keys.ron`.
 
 use super::files::UserFile;
 use crate::cli::outcome::{Failure, usage};

@@ -1,25 +1,25 @@
-//! Values of settings, as the flags have them.
+//! Settings as command line flags: a flag's name, its form with a value, and the check of a value.
 
 use clap::builder::PossibleValue;
 use clap::{Arg, Command};
 use termtrace::internals::text::closest;
 
-/// Returns the setting's flag.
+/// Returns the setting's flag, such as `--color`.
 pub(super) fn flag(setting: &Arg) -> String {
     format!("--{}", setting.get_long().unwrap_or_default())
 }
 
-/// Returns the setting with this value as one argument of a command line. With `=`, a value may
-/// begin with a hyphen.
+/// Returns the setting and its value as one command line argument, `--flag=value`. After `=` a
+/// value may begin with a hyphen.
 pub(super) fn word(setting: &Arg, text: &str) -> String {
     format!("{}={text}", flag(setting))
 }
 
-/// Checks a value with the parser of the setting's flag, and returns its message without clap's
-/// usage lines.
+/// Checks a value with the parser of the setting's flag. The error is the parser's message, without
+/// clap's usage lines.
 pub(super) fn check(command: &Command, setting: &Arg, text: &str) -> Result<(), String> {
     let Err(error) = command.clone().try_get_matches_from([word(setting, text)]) else { return Ok(()) };
-    // The message of the flag's own parser, without clap's usage lines, which are about a command line.
+    // `source` is the error of the flag's own parser; clap adds usage lines about a command line to it.
     if let Some(wrong) = std::error::Error::source(&error) {
         return Err(wrong.to_string());
     }
