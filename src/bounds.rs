@@ -67,7 +67,7 @@ impl Bounds {
 pub fn crossed<N: Number>([min, max]: [Vector<N>; 2], rays: &Rays<N>) -> [N; 2] {
     let slab = |min: N, max: N, origin: N, inverse: N| {
         let is_backward = inverse.lt(N::splat(0.0));
-        // By the sign of the inverse, not by `min` and `max` of both planes: that would lose the order of NaN
+        // The sign of the inverse chooses the near plane. `min` and `max` of both products would lose the order of NaN
         // (`culling.md`, 2).
         let near = N::select(is_backward, max, min);
         let far = N::select(is_backward, min, max);
@@ -82,11 +82,11 @@ pub fn crossed<N: Number>([min, max]: [Vector<N>; 2], rays: &Rays<N>) -> [N; 2] 
 /// Returns the intersection of the intervals of the three axes, widened.
 #[inline(always)]
 pub fn intersect_slabs<N: Number>([x, y, z]: [[N; 2]; 3]) -> [N; 2] {
-    // NaN is 0 times infinity: a ray in the plane of a face. That face must not bound the interval: where the first
-    // operand is NaN, `max` and `min` return the second, which never is.
+    // A ray in the plane of a face has NaN there, 0 times infinity, and that face must not bound its interval: if the
+    // first operand is NaN, `max` and `min` return the second, which is never NaN.
     let enters = x[0].max(y[0].max(z[0].max(N::splat(f32::NEG_INFINITY))));
     let leaves = x[1].min(y[1].min(z[1].min(N::splat(f32::INFINITY))));
-    // Of both products the outer one, whatever the sign: cheaper than a comparison with zero and a select.
+    // The outer one of both products is right for either sign, and cheaper than a comparison with zero and a select.
     let (less, more) = (N::splat(1.0 - CROSSING_SLACK), N::splat(1.0 + CROSSING_SLACK));
     [(enters * less).min(enters * more), (leaves * less).max(leaves * more)]
 }

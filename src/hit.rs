@@ -20,7 +20,7 @@ mod observer;
 
 pub use observer::{Observer, PrimitiveTest};
 
-/// The closest crossing in front of a ray's origin.
+/// The closest intersection of a ray with a scene, in front of the ray's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The ray parameter of the crossing; for eye rays, the depth in world units.
@@ -39,12 +39,12 @@ impl Hit {
     }
 }
 
-/// A way to trace rays. It changes the time, never the hits.
-// With shadow rays the bunny at 1024x1024 runs at 49 Mrays/s in packets and at 9 singly; incoherent rays of it at 1.5
-// in packets and 1.9 singly.
+/// How rays are traced. The choice changes the speed, never the hits.
+// The bunny at 1024x1024: packets trace 49 million shadow rays per second and 1.5 million incoherent rays, single rays
+// 9 and 1.9 million.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kernel {
-    /// Packets, whose rays go on as single rays where that is faster.
+    /// Packets, which are split into single rays where that is faster.
     #[default]
     Auto,
     /// Packets of 64 rays only.
@@ -62,13 +62,14 @@ pub struct EightHits {
     pub hit_mask: u32,
     /// The ray parameters of the hits. Lanes without a hit are unspecified.
     pub t: F32x8,
-    /// The bits of the primitives' indices, or of [`NO_PRIMITIVE`](Self::NO_PRIMITIVE).
+    /// The index of each ray's hit primitive, or [`NO_PRIMITIVE`](Self::NO_PRIMITIVE), as the bits
+    /// of a float.
     // Stored as floats, so that a hit's t and index are selected by the same mask in the same kind of register.
     primitives: F32x8,
 }
 
 impl EightHits {
-    /// The index of no primitive.
+    /// The primitive index of rays without a hit.
     pub(crate) const NO_PRIMITIVE: u32 = u32::MAX;
 
     /// Returns the index of the primitive that a ray hits.
@@ -83,14 +84,14 @@ impl EightHits {
         N::load(&self.primitives).has_bits(primitive).bits()
     }
 
-    /// Returns the bits of the primitives' indices; the lowest three are positions in a leaf.
-    // `gather` looks at those three bits only, so the others stay.
+    /// Returns the hit primitives' lanes in their leaves: the lowest three bits of their indices.
+    // The higher bits are not cleared, as `gather` ignores them.
     #[inline(always)]
     pub(crate) fn lanes_in_leaf<N: Lanes>(&self) -> N {
         N::load(&self.primitives)
     }
 
-    /// Returns the bits of the leaves' indices.
+    /// Returns the index of each hit primitive's leaf, as the bits of a float.
     #[inline(always)]
     pub(crate) fn leaf_indices<N: Lanes>(&self) -> N {
         let mut leaves = F32x8::ZERO;
@@ -121,7 +122,7 @@ impl EightHits {
 /// Finds the closest hit of each active ray in front of its origin.
 ///
 /// Of hits at the same t, the primitive that comes first in the scene wins.
-// Without this rule the order of traversal, and with it the kernel, would show in the picture.
+// Without this rule the picture would depend on the order of traversal, and so on the kernel.
 pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mut Vec<EightHits>) {
     hits.clear();
     let accel = scene.accelerator();
@@ -171,7 +172,7 @@ pub fn any_hit_observed(scene: &Scene, ray: &Ray, within: Interval, observer: &m
     Some(Hit { t, object, primitive: index })
 }
 
-/// A single ray with an observer.
+/// The SIMD kernel of [`closest_hit_observed`] and [`any_hit_observed`].
 struct Observed<'w, W, const ANY: bool> {
     scene: &'w Scene,
     ray: &'w Ray,
@@ -204,12 +205,12 @@ impl Kernel {
     }
 }
 
-// The values of the const parameter `ANY`. A parameter instead of a field: any hit leaves out sorting, edge tests and
-// t, and each of the two is compiled without the other's branches.
+// The values of the const parameter `ANY`. It is a parameter, not a field, so that each traversal is compiled without
+// the other's branches: the one for any hit needs no sorting, no edge tests and no t.
 const CLOSEST: bool = false;
 const ANY: bool = true;
 
-/// The kernel of [`closest_hits`].
+/// The SIMD kernel of [`closest_hits`].
 struct ClosestHits<'w> {
     kernel: Kernel,
     accel: &'w Accelerator,
@@ -261,7 +262,7 @@ fn closest_single<N: Lanes>(accel: &Accelerator, rays: &[EightRays], stack: &mut
     }
 }
 
-/// The kernel of [`any_hits`].
+/// The SIMD kernel of [`any_hits`].
 struct AnyHits<'w> {
     kernel: Kernel,
     accel: &'w Accelerator,
@@ -278,7 +279,7 @@ impl SimdKernel for AnyHits<'_> {
         let Self { kernel, accel, rays, within, hit_masks } = self;
         let mut stacks = Stacks::default();
         let mut packet = PacketRays::<N, ANY>::new(kernel, accel, within);
-        // The packets' bounds hold for t >= 0 only. Negative intervals are rare, so they take single rays.
+        // The bounds of packets are valid for t >= 0 only. Intervals with negative t are rare: single rays trace them.
         let mut uses_packets = within.min >= 0.0;
         for rays in rays.chunks(GROUPS) {
             if uses_packets && kernel.uses_packet(rays.len()) {
@@ -292,7 +293,7 @@ impl SimdKernel for AnyHits<'_> {
     }
 }
 
-/// Finds the hit masks by single rays.
+/// Finds the masks of rays that hit anything, by single rays.
 #[inline(always)]
 fn any_single<N: Lanes>(
     accel: &Accelerator,

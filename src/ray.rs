@@ -61,7 +61,7 @@ impl<N: Number> Rays<N> {
             inverse: Vector { x: one / x, y: one / y, z: one / z },
             squared_length,
             inverse_squared_length: one / squared_length,
-            // Set by the callers: a division that scenes without triangles do not need.
+            // Set by the callers, as scenes without triangles do not need its division.
             shear: Shear::none(),
         }
     }
@@ -78,7 +78,7 @@ impl<N: Lanes> Rays<N> {
     }
 
     /// Returns the ray of `lane` in all lanes.
-    // Shuffles within registers: through memory, single rays in three spheres were 22 % slower.
+    // By shuffles within registers: through memory, single rays in three spheres were 22 % slower.
     #[inline(always)]
     pub(crate) fn splat_lane(&self, lane: usize) -> Self {
         Self {
@@ -116,7 +116,7 @@ impl EightRays {
     /// # Panics
     /// If `rays` is empty.
     pub fn of(rays: &[Ray]) -> Self {
-        // The last ray is repeated: it widens no bounds, as zeros would.
+        // The last ray is repeated, because zeros would widen the bounds of a packet.
         let ray = |lane: usize| &rays[lane.min(rays.len() - 1)];
         Self {
             origin: Vector::of(from_fn(|lane| ray(lane).origin)),
@@ -207,7 +207,9 @@ impl<N: Number> Shear<N> {
         Self { axis, factor: Vector { x: x / z, y: y / z, z: N::splat(1.0) / z }, length: z.abs() }
     }
 
-    /// Transforms a vector from the ray's origin. For the error of x and y see `culling.md`, 6.
+    /// Transforms a vector that starts at the ray's origin.
+    ///
+    /// For the error of x and y see `culling.md`, 6.
     #[inline(always)]
     pub fn apply(&self, from_origin: Vector<N>) -> Vector<N> {
         let Vector { x, y, z } = self.axis.rotate_to_z(from_origin);
@@ -218,7 +220,7 @@ impl<N: Number> Shear<N> {
 /// Transforms a vector from the ray's origin as [`Shear`] does, in f64.
 ///
 /// x and y are scaled by the dominant coordinate of the direction.
-// The scale avoids a division, whose rounding would move the corners. For what is exact see `culling.md`, 8.
+// The scale avoids a division, whose rounding would move the corners. `culling.md`, 8 states which results are exact.
 pub fn sheared_in_f64(from_origin: DVec3, direction: Vec3) -> DVec3 {
     let [x, y, z] = match Shear::of(Vector::<f32>::splat(direction)).axis {
         DominantAxis::X => [1, 2, 0],
@@ -230,7 +232,7 @@ pub fn sheared_in_f64(from_origin: DVec3, direction: Vec3) -> DVec3 {
 }
 
 impl<M: Mask> DominantAxis<M> {
-    /// Returns whether all lanes of both have the same dominant axis.
+    /// Returns whether all lanes of `self` and `other` have the same dominant axis.
     #[inline(always)]
     fn is_same_for_all<O>(self, other: DominantAxis<O>) -> bool {
         matches!((self, other), (Self::X, DominantAxis::X) | (Self::Y, DominantAxis::Y) | (Self::Z, DominantAxis::Z))

@@ -1,18 +1,18 @@
-//! Traversal observers. Without one, [`NoObserver`] is compiled away.
+//! Observers of traversal. Rendering uses [`NoObserver`], which is compiled away.
 
 use crate::accel::PrimitiveId;
 
 /// An observer of the intersection tests of a single ray.
-// A parameter of the traversal that renders pictures, so that explanations and the cost map show its real tests, not
-// those of a second implementation.
+// The traversal that renders pictures has an observer as a parameter, so that explanations and the cost map show its
+// real tests, not those of a second implementation.
 pub trait Observer {
     /// Whether tests are reported; if not, their data are not computed.
     const ENABLED: bool = true;
 
-    /// Records a test against the up to eight boxes of a node.
+    /// Records that the ray was tested against the boxes of a BVH node, up to eight.
     fn node_tested(&mut self);
 
-    /// Records a test against a primitive.
+    /// Records that the ray was tested against a primitive.
     fn primitive_tested(&mut self, test: PrimitiveTest);
 }
 
@@ -23,7 +23,8 @@ pub struct PrimitiveTest {
     pub object: u32,
     /// The index of the [primitive](crate::shape::Shape::primitive) in the object's shape.
     pub primitive: u32,
-    /// The first crossing from the start of the interval on; it may lie beyond the closest hit.
+    /// The ray's first crossing of the primitive within the interval; it may lie beyond the closest
+    /// hit.
     pub t: Option<f32>,
 }
 
@@ -33,7 +34,7 @@ impl PrimitiveTest {
     }
 }
 
-/// The absent observer.
+/// An observer that ignores all tests.
 pub(super) struct NoObserver;
 
 impl Observer for NoObserver {

@@ -1,7 +1,8 @@
 //! Packet traversal: up to 64 rays in groups of eight.
 //!
-//! A packet visits a node if the interval bounds of all its rays may meet it, then its groups, then the leaf's boxes by
-//! group, and only then tests primitives: each level discards most of the next one's work.
+//! A packet tests the boxes of nodes with interval bounds, first those of all its rays, then those of each group. In a
+//! leaf it does the same with the primitives' boxes, and tests only the remaining pairs of primitive and group. Each
+//! step discards most of the next one's work.
 
 use super::single::SingleRay;
 use super::{Stacks, split};
@@ -15,8 +16,8 @@ use crate::shape::{Crossable, Endless, SoaLeaf};
 use std::ops::Range;
 
 /// The rays of a packet in groups of eight, and their hits.
-// About 5 kB. A packet is made once per call and reused: made for each 64 rays and moved, it was a part of why
-// three_spheres at 1024x1024 took 40 instead of 16 ms.
+// About 5 kB, so one packet per call is created and reused: a new one for every 64 rays, moved around, was a part of
+// why three_spheres at 1024x1024 took 40 instead of 16 ms.
 pub(super) struct PacketRays<'p, N: Lanes, const ANY: bool> {
     kernel: Kernel,
     accel: &'p Accelerator,
@@ -27,12 +28,12 @@ pub(super) struct PacketRays<'p, N: Lanes, const ANY: bool> {
     ///
     /// [`TERMINATED`] for inactive and finished rays.
     t: [N; GROUPS],
-    /// The bits of the index of each ray's hit primitive.
+    /// The index of each ray's hit primitive, as the bits of a float.
     primitive: [N; GROUPS],
     /// The largest `t_max` of each group.
     group_t_max: F32x8,
-    /// The largest `t_max` of the packet, or an earlier and larger one.
-    // Kept instead of reduced at each node and leaf: packets are about 1 % faster.
+    /// An upper bound of all `t_max`: the largest one at the last update.
+    // Stored, because computing it from `group_t_max` at each node and leaf made packets about 1 % slower.
     packet_t_max: f32,
     /// The number of times that a ray has left the packet at a node.
     rays_left: u32,
@@ -40,14 +41,14 @@ pub(super) struct PacketRays<'p, N: Lanes, const ANY: bool> {
     leaves: u32,
 }
 
-/// The index of no primitive.
+/// The primitive index of rays without a hit.
 const NO_PRIMITIVE: u32 = EightHits::NO_PRIMITIVE;
 
 /// The `t_max` of a ray that needs no further tests.
-// Less than every t, so that comparisons with t_max need no mask of their own.
+// Less than every t, so that a comparison with `t_max` excludes the ray without a separate mask.
 const TERMINATED: f32 = f32::NEG_INFINITY;
 
-/// Returns a primitive's index as the bits of a lane.
+/// Returns the float whose bits are a primitive's index, for storage in a lane.
 #[inline(always)]
 fn index_as_lane(primitive: u32) -> f32 {
     f32::from_bits(primitive)
@@ -73,7 +74,8 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
         }
     }
 
-    /// Returns whether the last rays would have been faster as single rays from the start.
+    /// Returns whether the rays of the last [`trace`](Self::trace) would have been faster as single
+    /// rays.
     #[inline(always)]
     pub(super) fn was_inefficient(&self) -> bool {
         let active = self.rays.iter().map(|rays| rays.active.count_ones()).sum();
@@ -107,7 +109,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
         }
     }
 
-    /// Terminates all rays of some groups.
+    /// Terminates all rays of the groups in a range, without a hit.
     #[inline(always)]
     fn reset(&mut self, groups: Range<usize>) {
         for group in groups {
@@ -136,7 +138,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
         }
     }
 
-    /// Finds the hits in a tree.
+    /// Finds the packet's hits with the primitives of a tree.
     #[inline(always)]
     fn trace_tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>, packet: &mut Option<Packet<N>>, stacks: &mut Stacks) {
         self.update_packet_t_max();
@@ -148,8 +150,8 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
             let Stacks { packet: stack, single: ray_stack } = stacks;
             let groups = self.rays.len();
             let mut in_tree = InTree { rays: self, tree, packet, common_origin: CommonOriginCache::Unknown, ray_stack };
-            // The bounds of incoherent rays exclude hardly any box, so these go singly from the root: the bunny runs at
-            // 1.87 instead of 1.52 Mrays/s, dragon 203k at 1.50 instead of 1.00.
+            // The bounds of incoherent rays exclude hardly any box, so such rays are traced singly from the root: the
+            // bunny runs at 1.87 instead of 1.52 Mrays/s, dragon 203k at 1.50 instead of 1.00.
             match tree.bvh.root() {
                 Some(root) if in_tree.rays.kernel == Kernel::Auto && packet.is_incoherent() => {
                     for group in 0..groups {
@@ -205,7 +207,7 @@ struct GroupHits<N, const ANY: bool> {
 }
 
 impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
-    /// Tests the primitives of a tree that is a single leaf.
+    /// Tests the group's rays against the primitives of a tree that is a single leaf.
     #[inline(always)]
     fn test_unculled<S: SoaLeaf>(&mut self, tree: &Tree<S>, rays: &Rays<N>, min: N, accel: &Accelerator) {
         let Some(leaf) = tree.leaves.first() else { return };
@@ -215,14 +217,16 @@ impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
         }
     }
 
-    /// Records a primitive for the rays that hit it closest, and returns whether any do.
+    /// Records a primitive as the hit of the rays for which it is the closest so far.
+    ///
+    /// Returns whether there are such rays.
     #[inline(always)]
     fn update(&mut self, primitive: u32, crossing: Option<(N::Mask, N)>, accel: &Accelerator) -> bool {
         let Some((crosses, t)) = crossing else { return false };
         if ANY {
             return self.record(crosses & t.le(self.t), N::splat(TERMINATED), primitive);
         }
-        // Of hits at the same t the first in the scene wins, whatever the order of the tests.
+        // At equal t the primitive that comes first in the scene wins, whatever the order of the tests.
         let is_as_close = crosses & t.eq(self.t);
         let mut is_closest = crosses & t.lt(self.t);
         if is_as_close.any() {
@@ -232,7 +236,8 @@ impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
         self.record(is_closest, t, primitive)
     }
 
-    /// Records a primitive for the rays of a mask, and returns whether there are any.
+    /// Records a primitive as the hit of the rays in the mask `is_hit`, and returns whether there
+    /// are any.
     #[inline(always)]
     fn record(&mut self, is_hit: N::Mask, t: N, primitive: u32) -> bool {
         let is_any = is_hit.any();
@@ -283,8 +288,8 @@ impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Unculled<'_, N, ANY> 
     }
 }
 
-/// Returns the mask of `others` that a primitive precedes in the scene.
-// Cold: two surfaces at the very same t are rare.
+/// Returns the mask of lanes of `others` whose primitive comes after `primitive` in the scene.
+// Cold: two surfaces at exactly the same t are rare.
 #[cold]
 fn precedes_in_scene(accel: &Accelerator, primitive: u32, others: &F32x8) -> u32 {
     let is_first = |other: u32| other == NO_PRIMITIVE || accel.id(primitive) < accel.id(other);
@@ -300,8 +305,8 @@ struct InTree<'a, 'p, N: Lanes, S, const ANY: bool> {
     ray_stack: &'a mut RayStack,
 }
 
-/// The common origin of a packet, computed at the first leaf.
-// Packets that meet no leaf do without: eye rays are 1 to 2 % faster where meshes cover half of the picture.
+/// The common origin of a packet's rays, computed at the packet's first leaf.
+// Packets that reach no leaf do not need it: eye rays are 1 to 2 % faster where meshes cover half of the picture.
 enum CommonOriginCache<N: Lanes> {
     Unknown,
     Absent,
@@ -316,8 +321,9 @@ impl<N: Lanes, S, const ANY: bool> Prefetch for InTree<'_, '_, N, S, ANY> {
 }
 
 impl<N: Lanes, S: SoaLeaf, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, ANY> {
-    // For any hit every blocker is as good. Without sorting and edge tests, dragon 871k with shadows is 1.10 times as
-    // fast, 1,000 spheres 1.03 times; closest hits keep both (without edge tests dragon 203k is 8 % slower).
+    // Any hit may be the farthest one, so sorting gains little: without it and edge tests, dragon 871k with shadows is
+    // 1.10 times as fast, 1,000 spheres 1.03 times. Closest hits use both (without edge tests dragon 203k is 8 %
+    // slower).
     const NEAREST_FIRST: bool = !ANY;
 
     const MIN_CHILDREN_TO_SPLIT: u32 = split::min_boxes_to_split(ANY);
@@ -358,15 +364,15 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, 
             None => F32x8([f32::INFINITY; LANES]),
         };
         let [low, high] = [boxes[0].store(), boxes[1].store()];
-        // All pairs of primitive and group are gathered as bits first, and tested in one loop, whose branch is
+        // All pairs of primitive and group are first collected as bits, then tested in one loop, whose branch is
         // mispredicted once, at its end. Two nested loops were 2 to 4 % slower.
         let mut pairs = 0_u64;
         for lane in set_bits(boxes_hit) {
             let one = [Vector::splat(low.of_lane(lane)), Vector::splat(high.of_lane(lane))];
             let [starts, ends] = self.packet.crossed_by_groups(one, [min, self.t_max()]);
             let mut groups = starts.le(ends).bits();
-            // The edge functions exclude 87 % of the bunny's group tests without a hit: 2.85 to 1.54 tests per group,
-            // of which 1.36 hit. Not for any hit: shadow rays are 5 % faster without.
+            // The edge functions exclude 87 % of the bunny's tests without a hit: a group takes 1.54 instead of 2.85
+            // tests, of which 1.36 hit. Shadow rays (`ANY`) do not use them, as they are 5 % faster without.
             if let (false, Some(edges), CommonOriginCache::Found(common_origin)) = (ANY, &edges, &self.common_origin) {
                 groups &= !edges.culled_groups(lane, common_origin);
             }
@@ -385,11 +391,11 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, 
     }
 
     #[inline(always)]
-    fn split(&self, one: [Vector<N>; 2], groups: u32) -> Option<[u32; GROUPS]> {
+    fn split(&self, node_box: [Vector<N>; 2], groups: u32) -> Option<[u32; GROUPS]> {
         if self.rays.kernel == Kernel::Packet {
             return None;
         }
-        split::split_at_node::<ANY>(groups, &NodeRays { rays: self.rays, one })
+        split::split_at_node::<ANY>(groups, &NodeRays { rays: self.rays, node_box })
     }
 
     #[inline(always)]
@@ -401,16 +407,16 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, 
     }
 }
 
-/// The rays of a packet at a node with bounding box `one`.
+/// The rays of a packet at a node whose bounding box is `node_box`.
 struct NodeRays<'a, 'p, N: Lanes, const ANY: bool> {
     rays: &'a PacketRays<'p, N, ANY>,
-    one: [Vector<N>; 2],
+    node_box: [Vector<N>; 2],
 }
 
 impl<N: Lanes, const ANY: bool> split::NodeRays for NodeRays<'_, '_, N, ANY> {
     #[inline(always)]
     fn hit_mask(&self, group: usize) -> u32 {
-        let [enters, leaves] = crossed(self.one, &self.rays.groups[group]);
+        let [enters, leaves] = crossed(self.node_box, &self.rays.groups[group]);
         enters.max(N::splat(self.rays.within.min)).le(leaves.min(self.rays.t[group])).bits()
     }
 }
@@ -428,8 +434,8 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool> InTree<'_, '_, N, S, ANY> {
         }
     }
 
-    /// Traces the rays of a mask singly, from a node or leaf.
-    // They take inverse directions and shears from the packet's registers instead of computing them again.
+    /// Traces the rays of a group that are in the mask `rays` singly, from a node or leaf.
+    // The single rays take inverse directions and shears from the packet instead of computing them again.
     #[inline(always)]
     fn trace_singles_of(&mut self, from: Child, group: usize, rays: u32) {
         if rays == 0 {

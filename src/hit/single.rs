@@ -8,18 +8,18 @@ use crate::ray::{Interval, Rays};
 use crate::shape::{Crossable, Endless, SoaLeaf};
 use std::ops::ControlFlow;
 
-/// A ray and its hit.
+/// A single ray in traversal, and its hit so far.
 pub(super) struct SingleRay<'p, N: Lanes, const ANY: bool, W = NoObserver> {
     accel: &'p Accelerator,
     /// The group that the ray belongs to.
-    // A reference into the group: the ray's values are spread from its registers where a test needs them. Through
-    // memory, single rays of three_spheres ran at 45 instead of 58 Mrays/s.
+    // The ray is stored as a lane of its group: a test spreads its values over a register by shuffles. Loaded from
+    // memory instead, single rays of three_spheres ran at 45 instead of 58 Mrays/s.
     rays: &'p Rays<N>,
     /// The lane of the ray in the group.
     lane: usize,
     /// The interval of t. For closest hits `max` is the closest hit so far or the interval's end.
     within: Interval,
-    /// The index of the hit primitive.
+    /// The index of the primitive hit so far.
     primitive: Option<u32>,
     observer: W,
 }
@@ -63,9 +63,9 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
         self.accel.visit(&mut AllPrimitives { ray: self, stack });
     }
 
-    /// Finds the hit in a list.
-    // Tests the whole group and takes one lane: the group's values are in registers, which gave three_spheres 65.1
-    // instead of 60.3 Mrays/s.
+    /// Finds the hit among the unbounded primitives of a list.
+    // Tests the whole group and takes one lane of the result: the group's values are in registers already, which gave
+    // three_spheres 65.1 instead of 60.3 Mrays/s.
     #[inline(always)]
     fn trace_list<S: Endless>(&mut self, list: &List<S>) {
         for (primitive, (id, surface)) in list.iter() {
@@ -82,7 +82,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
         }
     }
 
-    /// Finds the hit in a tree.
+    /// Finds the hit among the primitives of a tree.
     #[inline(always)]
     fn trace_tree<S: SoaLeaf>(&mut self, tree: &Tree<S>, stack: &mut RayStack) {
         match tree.bvh.root() {
@@ -95,8 +95,8 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
     }
 
     /// Finds the hit below a node or leaf of a tree.
-    // Not inlined: inside the packet's function, the single ray's values lived in memory instead of in registers. A
-    // function of its own saved 14 to 16 % of the instructions of incoherent rays.
+    // The search itself is not inlined: inside the packet's function, the single ray's values were in memory instead of
+    // in registers. A separate function saved 14 to 16 % of the instructions of incoherent rays.
     #[inline(always)]
     pub(super) fn trace_from<S: SoaLeaf>(&mut self, from: Child, tree: &Tree<S>, stack: &mut RayStack) {
         if ANY && self.primitive.is_some() {
@@ -132,7 +132,8 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
         }
     }
 
-    /// Records a crossing at t if it is closer, or as close and earlier in the scene.
+    /// Records a crossing at `t` if it is closer than the hit so far, or as close and earlier in
+    /// the scene.
     #[inline(always)]
     fn record(&mut self, t: f32, primitive: u32) {
         let is_first = |other: u32| self.accel.id(primitive) < self.accel.id(other);
@@ -163,7 +164,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> Visitor<'p> for AllPrimitives<'
     }
 }
 
-/// The kernel of [`SingleRay::trace_from`].
+/// The SIMD kernel of [`SingleRay::trace_from`].
 struct Search<'a, 'p, N: Lanes, S, const ANY: bool, W> {
     ray: &'a mut SingleRay<'p, N, ANY, W>,
     from: Child,
@@ -183,8 +184,8 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> SimdKernel for Search<'
         if within.min >= 0.0 {
             tree.bvh.visit(from, &rays, within, stack, &mut there);
         } else {
-            // Traversal assumes t >= 0. Negative intervals are too rare for a traversal of their own: every leaf is
-            // tested instead.
+            // Traversal assumes t >= 0. Intervals with negative t are too rare for a traversal of their own: every
+            // leaf is tested instead.
             let _ = (0..tree.leaves.len()).try_for_each(|leaf| there.visit(leaf).map_continue(|_| ()));
         }
     }

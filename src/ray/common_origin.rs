@@ -5,18 +5,21 @@ use crate::lanes::{LANES, Lanes, Mask, Vector};
 
 /// The common origin of a packet: the eye, or a light.
 ///
-/// Seen from there each ray is a point of an image plane, its *offset*, and culling becomes a test of offsets.
+/// Seen from the common origin, each ray is a point of an image plane, its *offset*, and culling compares offsets.
 ///
-/// Bounds of errors are numbered statements in `culling.md`.
+/// The numbered statements on error bounds are in `culling.md`.
 #[derive(Clone, Copy, Debug)]
 pub struct CommonOrigin<N: Lanes> {
     origin: Vector<N>,
-    /// Upper bound of a line's distance from the origin along any axis, times 2^24 (statement 9).
+    /// An upper bound of the distance of a ray's line from `origin` along any axis, times 2^24
+    /// (statement 9).
     pub origin_error: N,
     axis: DominantAxis<N::Mask>,
-    /// The slopes in x and y of a ray in the middle of the packet, per unit of its dominant axis.
+    /// The slopes in x and y, per unit of the dominant axis, of a ray in the middle of the packet.
     slope: [N; 2],
-    /// The center of each group's offsets in x and y. A ray's offset is its slope less `slope`.
+    /// The center of each group's offsets in x and y.
+    ///
+    /// A ray's offset is the ray's slope minus `slope`.
     pub centers: [N; 2],
     /// The half extents of each group's offsets around `centers`.
     pub half_extents: [N; 2],
@@ -24,21 +27,22 @@ pub struct CommonOrigin<N: Lanes> {
     pub max_offset: N,
     /// The range of the rays' origins along z, relative to the common origin.
     ///
-    /// Infinite unless all rays have this dominant axis and a length in `SAFE_LENGTHS`.
+    /// Infinite unless all rays have the dominant axis `axis`, and lengths along it within `SAFE_LENGTHS`.
     pub depth_range: [N; 2],
 }
 
-/// Lengths by which a depth can be divided and multiplied again (`culling.md`, 14).
+/// The least and the greatest length by which a depth can be divided and multiplied again
+/// (`culling.md`, 14).
 ///
-/// With an underflow of 2^-117 at most, and no overflow below 2^95.
-// Without the limit, a review found, directions of 2^120 decided wrongly for their packet.
+/// Between them, the underflow is at most 2^-117, and depths below 2^95 do not overflow.
+// Without the limit, a packet with directions of length 2^120 was culled wrongly.
 const SAFE_LENGTHS: [f32; 2] = [1.0 / 4_294_967_296.0, 4_294_967_296.0];
 
 impl<N: Lanes> CommonOrigin<N> {
     /// Finds the common origin of eye rays or shadow rays.
     ///
-    /// They start in one point, or have one at t = 1 up to rounding. Returns `None` for others, and for rays with
-    /// offsets over 1.
+    /// Eye rays start at a common point; shadow rays reach one, the light, at t = 1 up to rounding. Returns `None` for
+    /// other rays, and if an offset exceeds 1.
     #[inline(always)]
     pub fn of(groups: &[Rays<N>; LANES]) -> Option<Self> {
         let zero = N::splat(0.0);
@@ -52,7 +56,7 @@ impl<N: Lanes> CommonOrigin<N> {
         let direction = middle.direction.splat_lane(0);
         let end = middle.origin.splat_lane(0) + direction;
         let off = max_distance(groups, N::splat(1.0), end);
-        // With a larger origin error the bounds cull nothing: no statement depends on the 4096.
+        // With a larger origin error the bounds would cull nothing. No statement depends on the exact number 4096.
         if !(off * N::splat(4096.0)).le(direction.largest()).all() {
             return None;
         }
@@ -70,11 +74,11 @@ impl<N: Lanes> CommonOrigin<N> {
         let (mut depth_range, mut share_axis) = ([N::splat(f32::INFINITY), N::splat(f32::NEG_INFINITY)], true);
         for (at, rays) in groups.iter().enumerate() {
             let (direction, inverse) = (axis.rotate_to_z(rays.direction), axis.rotate_to_z(rays.inverse));
-            // A product with the inverse, which the ray has, not a division: two units of error instead of one
+            // A product with the known inverse is cheaper than a division, with two units of error instead of one
             // (statement 11).
             xs[at] = direction.x * inverse.z - slope[0];
             ys[at] = direction.y * inverse.z - slope[1];
-            // Compared this way round, NaN is not near.
+            // Comparisons with NaN are false, so NaN does not count as near.
             are_near = are_near & xs[at].abs().le(one) & ys[at].abs().le(one);
             let depth = axis.rotate_to_z(rays.origin - origin).z;
             // In this order `min` and `max` skip NaN.
@@ -87,7 +91,7 @@ impl<N: Lanes> CommonOrigin<N> {
         let (y0, y1) = (N::min_of_each(&ys), N::max_of_each(&ys));
         let half = N::splat(0.5);
         let centers = [(x0 + x1) * half, (y0 + y1) * half];
-        // 4 units for the two roundings here (statement 12).
+        // Widens by 4 units of 2^-24, for the roundings of the center and of the half extent (statement 12).
         let more = N::splat(1.0 + 1.0 / 4_194_304.0);
         let half_extents =
             [(x1 - centers[0]).max(centers[0] - x0) * more, (y1 - centers[1]).max(centers[1] - y0) * more];
@@ -112,8 +116,8 @@ impl<N: Lanes> CommonOrigin<N> {
 
     /// Transforms a point to coordinates in which the ray with `slope` runs along z.
     ///
-    /// They are relative to the common origin. For the errors see statement 10; rounding of `slope` is none, as offsets
-    /// are relative to the rounded one.
+    /// The coordinates are relative to the common origin. For their errors see statement 10; the rounding of `slope`
+    /// adds none, as offsets are relative to the rounded slope.
     #[inline(always)]
     pub fn apply(&self, point: Vector<N>) -> Vector<N> {
         let Vector { x, y, z } = self.axis.rotate_to_z(point - self.origin);

@@ -3,7 +3,9 @@ use super::*;
 const CLOSEST: bool = false;
 const ANY: bool = true;
 
-/// The masks of some groups; counting another one is a fault.
+/// A node with the hit masks of some groups, as pairs of group and mask.
+///
+/// Panics if another group is counted.
 struct Masks<'m>(&'m [(usize, u32)]);
 
 impl NodeRays for Masks<'_> {

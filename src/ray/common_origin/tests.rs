@@ -4,7 +4,8 @@ use crate::ray::{EightRays, Ray};
 use glam::Vec3;
 use std::array::from_fn;
 
-/// A packet of rays from one point, except for `others`.
+/// Returns the common origin of a packet whose rays start at zero, except for `others`: group, lane
+/// and ray.
 fn packet(others: &[(usize, usize, Ray)]) -> Option<CommonOrigin<F32x8>> {
     let mut rays = [[Ray { origin: Vec3::ZERO, direction: Vec3::new(0.1, 0.1, 1.0) }; LANES]; LANES];
     for &(group, lane, ray) in others {
