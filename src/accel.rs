@@ -1,7 +1,7 @@
 //! The primitives of a scene: bounded ones in trees, unbounded ones in lists.
 //!
-//! An [`Accelerator`] is built once, from shapes alone, and shared by all copies of a scene: lights, materials and
-//! cameras change without it.
+//! An [`Accelerator`] is built once, from shapes alone, and shared by all copies of a scene, also by those with another
+//! camera and other lights or materials.
 
 use crate::bounds::Bounds;
 use crate::bvh::Bvh;
@@ -18,9 +18,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 #[cfg(all(test, unit_tests))]
 mod builds;
 
-/// A primitive of a scene.
+/// The id of a primitive of a scene.
 ///
-/// The order is that of the scene: of two hits at the same t, the smaller one counts.
+/// Ids are ordered as the primitives are in the scene: of two hits at the same t, the one with the smaller id counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct PrimitiveId {
     /// Index of the object in the scene.
@@ -29,8 +29,9 @@ pub(crate) struct PrimitiveId {
     pub(crate) index: u32,
 }
 
-/// The ids of eight primitives, as the bits of f32: they are gathered and selected as numbers are.
-// No arithmetic touches them, so that patterns of NaN survive.
+/// The ids of eight primitives, as the bits of f32, so that the operations on floats gather and
+/// select them.
+// There is no arithmetic with them, so ids whose bits are a NaN stay unchanged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PrimitiveIds<N> {
     object: N,
@@ -87,10 +88,10 @@ impl<N: Lanes> PrimitiveIds<N> {
     }
 }
 
-/// Expands by the group of a surface, `list` or `tree`.
+/// Expands by the group of a surface, which is `list` or `tree`.
 ///
-/// It gives the type that is kept, the type that collects primitives for the build, or the code that follows if the
-/// group matches.
+/// With `of`, it expands to the type that stores the surface's primitives; with `from`, to the type that collects them
+/// for the build; with `in`, to the code that follows, if the groups on both sides of `in` are the same.
 macro_rules! only {
     (list of $kept:ty) => { List<$kept> };
     (tree of $kept:ty) => { Tree<$kept> };
@@ -101,30 +102,30 @@ macro_rules! only {
     ($one:ident in $other:ident $($then:tt)*) => {};
 }
 
-/// Makes the accelerator from the table of [`surfaces`](crate::shape).
+/// Defines the accelerator from the table of [`surfaces`](crate::shape).
 macro_rules! accelerator {
     ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
-        /// The primitives of some shapes.
+        /// The primitives of all shapes of a scene.
         ///
-        /// Each has an index: first the lists', then those of the trees' leaves. A leaf takes eight indices from a
-        /// multiple of eight on, so that the lowest three bits are the lane of a gather.
+        /// They are numbered through, first in the lists, then in the leaves of the trees. A leaf takes eight indices
+        /// from a multiple of eight on, so that the lowest three bits of an index are the primitive's lane.
         #[derive(Clone, Default, PartialEq)]
         pub(crate) struct Accelerator {
             $($(#[$on])* $name: only!($group of $kept),)*
-            /// Whether any triangles stand for a smooth surface.
+            /// Whether any mesh has interpolated normals.
             pub(crate) has_smooth: bool,
             bounds: Option<Bounds>,
         }
 
         impl Accelerator {
-            /// Traverses all parts: lists first, then trees, each in the order of the table.
+            /// Visits all lists, then all trees, each in the order of the table.
             #[inline(always)]
             pub(crate) fn visit<'a>(&'a self, visitor: &mut impl Visitor<'a>) {
                 $($(#[$on])* { only! { list in $group visitor.list(&self.$name); } })*
                 $($(#[$on])* { only! { tree in $group visitor.tree(&self.$name); } })*
             }
 
-            /// Returns whether there is a tree with nodes.
+            /// Returns whether any tree has nodes.
             #[inline(always)]
             pub(crate) fn has_trees(&self) -> bool {
                 let mut has_trees = false;
@@ -141,7 +142,7 @@ macro_rules! accelerator {
             }
         }
 
-        /// The primitives of some shapes by kind, in the order of the scene.
+        /// The primitives of all shapes, by kind and in the order of the scene, before the build.
         #[derive(Default)]
         struct PrimitiveLists {
             $($(#[$on])* $name: only!($group from $surface),)*
@@ -172,7 +173,7 @@ macro_rules! accelerator {
                     built.$name = List { first: end, primitives: self.$name };
                     end = built.$name.end();
                 } })*
-                // A leaf's primitives start at a multiple of eight: index % 8 is the lane.
+                // The indices of a leaf start at a multiple of eight, so that index % 8 is the lane.
                 end = end.next_multiple_of(LANES as u32);
                 $($(#[$on])* { only! { tree in $group
                     built.$name = self.$name.build(end, report)?;
@@ -244,12 +245,12 @@ pub(crate) struct Tree<S> {
     /// The leaves, with up to eight primitives each.
     pub(crate) leaves: Vec<S>,
     /// The ids of the primitives of each leaf; unused lanes repeat the last one.
-    // Apart from the leaves, as only hits need them: a leaf of triangles has 288 bytes instead of 352, and incoherent
-    // rays are 1 to 5 % faster.
+    // Stored apart from the leaves, as only hits need them: a leaf of triangles has 288 bytes instead of 352, and
+    // incoherent rays are 1 to 5 % faster.
     ids: Vec<PrimitiveIds<F32x8>>,
     /// The index of the first primitive.
     pub(crate) first: u32,
-    /// Number of primitives if the tree is a single leaf, which culls nothing; else 0.
+    /// The number of primitives if the tree is a single leaf, which culls nothing; else 0.
     pub(crate) single_leaf_count: usize,
 }
 
@@ -260,13 +261,14 @@ impl<S> Default for Tree<S> {
 }
 
 impl Accelerator {
-    /// Builds the trees over these shapes.
+    /// Builds the trees over the primitives of some shapes.
     pub(crate) fn new<'s>(shapes: impl Iterator<Item = &'s Shape>) -> Self {
         let Ok(built) = Self::reporting(shapes, &|_| Ok::<_, Infallible>(()));
         built
     }
 
-    /// [`new`](Self::new), until the reporter cancels it.
+    /// Builds as [`new`](Self::new) does, reports progress, and stops if the reporter cancels the
+    /// build.
     pub(crate) fn new_or_cancel<'s>(
         shapes: impl Iterator<Item = &'s Shape>,
         reporter: &Reporter<'_>,
@@ -287,7 +289,7 @@ impl Accelerator {
                 lists.push(PrimitiveId { object, index }, shape.primitive(index));
             }
         }
-        // Counted over all trees, as the user sees one progress for the scene.
+        // Primitives are counted over all trees, as the user sees one progress for the scene.
         let (done, total) = (AtomicUsize::new(0), lists.boxes().count());
         let report_more = |more| {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
@@ -343,7 +345,7 @@ impl Accelerator {
     }
 }
 
-/// Shows bounds and size only: all primitives would take a line each.
+/// Shows the bounds and the size only, as the primitives could be millions of lines.
 impl fmt::Debug for Accelerator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Accelerator")
@@ -418,8 +420,8 @@ impl<S> Tree<S> {
     }
 }
 
-/// Number of leaves from which on they are filled on all threads.
-// For one leaf of four spheres rayon's pool was started: .15 ms of the first picture.
+/// The number of leaves from which on all threads fill them.
+// Below it the start of rayon's pool is not worth its time: 0.15 ms of the first picture, for one leaf of four spheres.
 const MIN_PARALLEL_LEAVES: usize = 1024;
 
 /// The bounded primitives of one kind, in the order of the scene, before the build.

@@ -1,7 +1,8 @@
 //! A bounding volume hierarchy with eight boxes in each node.
 //!
-//! It culls only what cannot be hit: a box contains the boxes below it, and [`Bounds::crossed`] preserves that bit for
-//! bit (`culling.md`, 2). So hits depend neither on the build nor on the order of traversal.
+//! Culling never loses a hit: a box contains the boxes below it, and the interval that [`Bounds::crossed`] computes for
+//! it contains theirs, bit for bit (`culling.md`, 2). So hits depend neither on the build nor on the order of
+//! traversal.
 
 use crate::bounds::Bounds;
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Mask, Number, Vector, set_bits};
@@ -19,7 +20,7 @@ mod packet;
 pub use build::MIN_TASK_ITEMS;
 pub use packet::{GROUPS, Packet, Visitor};
 
-/// A bounding volume hierarchy over boxes, each known by its index.
+/// A bounding volume hierarchy over boxes, which are identified by their indices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bvh {
     nodes: Vec<Node>,
@@ -50,7 +51,7 @@ impl Leaves {
 }
 
 /// Eight boxes in SoA layout, and their children.
-// The children share a cache line with the first bounds: they are loaded by the time the hit mask is known. Together
+// The children share a cache line with the first bounds, so they are loaded by the time the hit mask is known. Together
 // with the shortcut for a single hit child this makes single rays 4 to 6 % faster.
 #[derive(Clone, Debug, PartialEq)]
 #[repr(C, align(64))]
@@ -58,7 +59,7 @@ struct Node {
     children: [Child; LANES],
     /// The minima and maxima along each axis.
     ///
-    /// An unused lane has an inverted infinite box, which no ray meets.
+    /// An unused lane has an inverted infinite box, which no ray hits.
     bounds: [[F32x8; 2]; 3],
 }
 
@@ -86,13 +87,15 @@ impl Node {
         [Vector::splat(min), Vector::splat(max)]
     }
 
-    /// Intersects one ray with all boxes: the entries, and the hit mask.
+    /// Intersects one ray with all boxes.
+    ///
+    /// Returns the t at which it enters each box, and the hit mask.
     #[inline(always)]
     fn intersect<N: Lanes>(&self, slabs: &Slabs<N>, within: Interval) -> (N, u32) {
         let (mut start, mut end) = (N::splat(within.min), N::splat(within.max));
-        // The order does not change the mask: `max` and `min` of the same numbers, with NaN skipped.
+        // Any order of the axes gives the same mask: `max` and `min` of the same numbers, with NaN skipped.
         for axis in [2, 1, 0] {
-            // The near plane by an index, not by a select: the sign is the same in all lanes.
+            // An index chooses the near plane, not a select: the direction's sign is the same in all lanes.
             let (bounds, near) = (&self.bounds[axis], usize::from(slabs.is_backward[axis]));
             let origin = slabs.origin[axis];
             // In this order `max` and `min` skip NaN, as in `bounds::crossed`.
@@ -105,20 +108,21 @@ impl Node {
 
 /// A ray in all lanes, prepared for slab tests.
 ///
-/// For t >= 0 its interval in a box contains that of [`Bounds::crossed`] (`culling.md`, 4).
+/// For t >= 0 the interval computed with it contains that of [`Bounds::crossed`] (`culling.md`, 4).
 struct Slabs<N> {
     origin: [N; 3],
-    /// The negated inverses, widened for the near and for the far planes.
-    // Negated, because `origin - plane` lets the CPU subtract a memory operand: 1 to 5 % on incoherent rays, with the
-    // smaller leaves of the same change.
+    /// The negated inverse direction, widened for the planes where the ray enters; `far` is widened
+    /// for its exits.
+    // Negated, because `origin - plane` lets the CPU subtract a memory operand: incoherent rays are 1 to 5 % faster,
+    // together with smaller leaves.
     near: [N; 3],
     far: [N; 3],
     is_backward: [bool; 3],
 }
 
 /// Relative widening of both ends of a slab interval: 128 units of 2^-24 (`culling.md`, 4).
-// Multiplied into the inverse once per ray, it saves the widening in each test: a node takes 36 instructions instead of
-// 60.
+// The inverse is widened once per ray, which saves widening the ends in each test: a node takes 36 instructions instead
+// of 60.
 const SLAB_SLACK: f32 = 128.0 / 16_777_216.0;
 
 impl<N: Lanes> Slabs<N> {
@@ -126,7 +130,7 @@ impl<N: Lanes> Slabs<N> {
     fn of(rays: &Rays<N>) -> Self {
         let (origin, inverse) = (rays.origin, rays.inverse);
         let (less, more, zero) = (N::splat(SLAB_SLACK - 1.0), N::splat(-1.0 - SLAB_SLACK), N::splat(0.0));
-        // Written out: closures are compiled without the caller's target features.
+        // Written out for each axis, because closures are compiled without the caller's target features.
         Self {
             origin: [origin.x, origin.y, origin.z],
             near: [inverse.x * less, inverse.y * less, inverse.z * less],
@@ -141,7 +145,8 @@ impl<N: Lanes> Slabs<N> {
 pub struct Child(u32);
 
 impl Child {
-    // The highest bit: nodes and leaves are numbered apart, and `build` admits fewer than 2^31 boxes.
+    // The highest bit marks a leaf. It is free, as nodes and leaves are numbered separately, and `build` accepts fewer
+    // than 2^31 boxes.
     const LEAF: u32 = 1 << 31;
 
     const fn node(at: u32) -> Self {
@@ -162,9 +167,9 @@ impl Child {
 #[derive(Clone, Copy, Debug)]
 struct StackEntry {
     child: Child,
-    /// The slot of its box: eight times the index of the node, plus the lane.
+    /// The position of the child's box: eight times the index of its parent node, plus the lane.
     slot: u32,
-    /// Lower bound of t in its box.
+    /// A lower bound of the t at which the packet's rays enter the child's box.
     start: f32,
 }
 
@@ -184,8 +189,8 @@ impl Bvh {
 
     /// Builds as [`new`](Self::new) does, and stops when `report` returns an error.
     ///
-    /// It is called from any thread with the number of boxes that have reached their leaves since the last call, which
-    /// may be 0.
+    /// `report` is called from any thread, with the number of boxes that have been put into leaves since the last call.
+    /// The number may be 0.
     ///
     /// # Errors
     /// The error that `report` returned.
@@ -215,7 +220,7 @@ impl Bvh {
         self.root
     }
 
-    /// Visits the leaves below `from` that a single ray meets in the interval, nearer ones first.
+    /// Visits the leaves below `from` that a single ray hits in the interval, nearer ones first.
     ///
     /// The ray is repeated in all lanes. `within.min` is at least 0 (`culling.md`, 4).
     #[inline(always)]
@@ -241,7 +246,7 @@ impl Bvh {
                 visitor.node_tested();
                 let (starts, hit_mask) = node.intersect(&slabs, within);
                 if hit_mask != 0 {
-                    // A single child is visited at once: a prefetch there cost 2.5 %.
+                    // A single hit child is visited at once: prefetching it, too, made rays 2.5 % slower.
                     if hit_mask & hit_mask.wrapping_sub(1) != 0 {
                         for lane in set_bits(hit_mask) {
                             self.prefetch(node.children[lane], visitor);
@@ -251,8 +256,8 @@ impl Bvh {
                     continue;
                 }
             }
-            // A nearer hit may have been found since. At equal t the entry is visited: its primitive may come first in
-            // the scene, which decides ties.
+            // A nearer hit may have been found since the push. At equal t the child is visited: its primitive may come
+            // first in the scene, which decides ties.
             child = loop {
                 let Some(waiting) = stack.pop() else { return };
                 if waiting.start() <= within.max {
@@ -262,7 +267,7 @@ impl Bvh {
         }
     }
 
-    /// Prefetches a child that is hit.
+    /// Prefetches a child whose box is hit: a node or the primitives of a leaf.
     // On the dragon's 871 k triangles, whose tree exceeds the L2 cache, packets of eye rays are 10 % faster, and single
     // rays 5 %. Scenes that fit the cache do not change.
     #[inline(always)]
@@ -274,17 +279,17 @@ impl Bvh {
     }
 }
 
-/// A child that a single ray has yet to visit, below the bits of its entry t.
+/// A child that a single ray has yet to visit, ordered by the t at which the ray enters its box.
 ///
-/// The order of these numbers is that of the entries.
-// One comparison and one move per step of the sort, instead of two each.
+/// The high 32 bits are those of t, the low ones are the child.
+// Packed into one number, so that a step of the sort takes one comparison and one move instead of two each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct RayStackEntry(u64);
 
 impl RayStackEntry {
     #[inline(always)]
     fn new(Child(child): Child, start: f32) -> Self {
-        // The bits of numbers from 0 on are ordered as the numbers are.
+        // The bits of floats that are not negative are ordered as the floats are.
         Self(u64::from(start.to_bits()) << 32 | u64::from(child))
     }
 
@@ -303,19 +308,21 @@ impl RayStackEntry {
 #[derive(Clone, Debug, Default)]
 pub struct RayStack {
     entries: Vec<RayStackEntry>,
-    /// Number of entries in use; the rest is spare room, so that a push needs no check.
+    /// The number of entries in use.
+    ///
+    /// The rest of the vector is spare room, so that a push needs no check.
     len: usize,
 }
 
 impl RayStack {
     /// Returns the nearest hit child, and pushes the others, nearer ones above farther ones.
     ///
-    /// At least one is hit.
+    /// `hit_mask` is not 0, and `starts` has the t at which the ray enters each box.
     #[inline(always)]
     fn push_all_but_nearest<N: Lanes>(&mut self, node: &Node, mut hit_mask: u32, starts: N) -> Child {
         let lowest = |bits: u32| bits.trailing_zeros() as usize % LANES;
-        // Six of ten nodes have one hit child, which needs no entry t: it is not stored, and the ray goes on at once
-        // (incoherent rays 2 to 6 % faster).
+        // Six of ten nodes have a single hit child. It is visited next, so its t is not needed: incoherent rays are 2
+        // to 6 % faster.
         if hit_mask & hit_mask.wrapping_sub(1) == 0 {
             return node.children[lowest(hit_mask)];
         }
@@ -375,19 +382,20 @@ pub trait Prefetch {
 
 /// The visitor of a single ray's traversal.
 pub trait LeafVisitor: Prefetch {
-    /// Counts a test of a node's boxes.
+    /// Records that the ray was tested against the boxes of a node.
     #[inline(always)]
     fn node_tested(&mut self) {}
 
-    /// Tests the primitives of a leaf.
+    /// Tests the primitives of a leaf against the ray.
     ///
     /// Returns the new upper end of the ray's interval, or `Break` to end the traversal.
     fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32>;
 }
 
-/// Returns the nearest hit child, and pushes the others, nearer ones above farther ones.
+/// Returns the nearest hit child of a packet, and pushes the others, nearer ones above farther
+/// ones.
 #[inline(always)]
-fn nearest_first(
+fn push_all_but_nearest(
     node: &Node,
     parent: Child,
     mut hit_mask: u32,
@@ -418,9 +426,9 @@ fn nearest_first(
     Some(nearest)
 }
 
-/// Returns the last hit child, and pushes the others unsorted.
+/// Returns the last hit child of a packet, and pushes the others unsorted.
 #[inline(always)]
-fn in_any_order(
+fn push_all_but_last(
     node: &Node,
     parent: Child,
     hit_mask: u32,

@@ -1,6 +1,5 @@
-//! Counts builds of trees.
-//!
-//! Tests hold with it that a scene builds its trees once and no picture builds one.
+//! A counter of tree builds, and the tests that a scene builds its trees once and that no picture
+//! builds one.
 
 use crate::camera::Pose;
 use crate::color::LinearRgb;
@@ -24,7 +23,7 @@ thread_local! {
     static BUILDS: Cell<u32> = const { Cell::new(0) };
 }
 
-/// Counts a build on this thread.
+/// Counts the build of a scene's trees on the current thread.
 pub(super) fn count() {
     BUILDS.set(BUILDS.get() + 1);
 }
@@ -39,7 +38,7 @@ const SPHERES: &str = r#"(
     ],
 )"#;
 
-/// Returns how many trees the work builds on the threads of a pool of its own.
+/// Returns how many times `work` builds a scene's trees, on the threads of a separate pool.
 #[cfg(feature = "parallel")]
 fn builds(work: impl FnOnce() + Send) -> u32 {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads can be started");
@@ -47,7 +46,7 @@ fn builds(work: impl FnOnce() + Send) -> u32 {
     pool.broadcast(|_| BUILDS.get()).into_iter().sum()
 }
 
-/// Returns how many trees the work builds.
+/// Returns how many times `work` builds a scene's trees.
 #[cfg(not(feature = "parallel"))]
 fn builds(work: impl FnOnce() + Send) -> u32 {
     let before = BUILDS.get();

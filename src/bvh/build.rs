@@ -1,4 +1,5 @@
-//! The build of the tree: binary from the root down, then collapsed into nodes with eight children.
+//! The build of the tree: a binary tree from the root down, which is then collapsed into nodes with
+//! eight children.
 
 use super::cut::{Around, Halves, Item, cut, item};
 use super::wide::{BinaryNode, Wide};
@@ -22,12 +23,12 @@ pub(super) fn build<E: Send>(boxes: &[Bounds], report: Report<'_, E>) -> Result<
     let pairs = subtree(&mut items, &around, Place { first: 0, depth: 0 }, report)?;
     let mut wide = Wide::of(&pairs);
     let root = Some(wide.append(0));
-    // The items were partitioned in place: their order is that of the leaves.
+    // The items were partitioned in place, so they are in the order of the leaves.
     let order = items.iter().map(|item| item.min[3].to_bits()).collect();
     Ok((Bvh { nodes: wide.nodes, root }, Leaves { order, ranges: wide.leaves }))
 }
 
-/// The position of a node's items: its first index in the order, and the number of nodes above.
+/// The position of a binary node: the index of its first item, and the number of nodes above it.
 #[derive(Clone, Copy)]
 struct Place {
     first: usize,
@@ -35,16 +36,16 @@ struct Place {
 }
 
 impl Place {
-    /// Returns the positions of both sides of a cut.
+    /// Returns the positions of both children, of which the first has `cut` items.
     fn halves(self, cut: usize) -> [Self; 2] {
         let depth = self.depth + 1;
         [Self { depth, ..self }, Self { first: self.first + cut, depth }]
     }
 }
 
-/// Returns the binary tree over these items with these bounds.
-// Large halves are built in parallel; as nodes store the distance to their children, a subtree is the same wherever it
-// is placed.
+/// Returns the binary tree over `items`, whose bounds are `around`.
+// Large halves are built in parallel. They can be joined unchanged, as a node stores the distance to its second child,
+// not the child's index.
 fn subtree<E: Send>(
     items: &mut [Item],
     around: &Around,
@@ -56,7 +57,7 @@ fn subtree<E: Send>(
         append(items, around, at, &mut nodes);
         return report(items.len()).map(|()| nodes);
     }
-    // Reported without progress, so that a large build can be cancelled between subtrees.
+    // A report without progress, so that a large build can be cancelled between subtrees.
     report(0)?;
     let bounds = around.boxes.bounds();
     let Halves { cut, around } = cut(items, around, at.depth).unwrap_or_else(|| Halves::at(items.len() / 2, items));
@@ -72,7 +73,7 @@ fn subtree<E: Send>(
     Ok(nodes)
 }
 
-/// Appends the binary tree over these items to `nodes`, on one thread.
+/// Appends the binary tree over `items` to `nodes`, on one thread.
 fn append(items: &mut [Item], around: &Around, at: Place, nodes: &mut Vec<BinaryNode>) {
     let bounds = around.boxes.bounds();
     let Some(Halves { cut, around }) = cut(items, around, at.depth) else {

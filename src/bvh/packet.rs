@@ -3,17 +3,17 @@
 //! A packet keeps the ranges of its rays' origins and inverse directions, and computes with these intervals as
 //! [`Bounds::crossed`](crate::bounds::Bounds::crossed) does with one ray (Boulos, Wald and Shirley, Geometric and
 //! Arithmetic Culling Methods for Entire Ray Packets, 2006). No ray enters a box before its packet, or leaves it later
-//! (`culling.md`, 5). So a packet needs no common origin: shadow rays go from the surface to the light as single rays
-//! do.
+//! (`culling.md`, 5). The rays of a packet need no common origin: shadow rays start at surface points, as in
+//! single-ray traversal.
 
-use super::{Bvh, Child, PacketStack, Prefetch, StackEntry, in_any_order, nearest_first};
+use super::{Bvh, Child, PacketStack, Prefetch, StackEntry, push_all_but_last, push_all_but_nearest};
 use crate::lanes::{LANES, LaneMask, Lanes, Mask, Vector, set_bits};
 use crate::ray::Rays;
 
-/// Number of groups of eight rays in a packet.
+/// The number of groups of eight rays in a packet.
 pub const GROUPS: usize = LANES;
 
-/// The ranges of a packet's rays.
+/// The ranges of the origins and inverse directions of a packet's rays.
 #[derive(Clone, Copy, Debug)]
 pub struct Packet<N> {
     signs: [DirectionSign; 3],
@@ -43,25 +43,26 @@ struct AxisRanges<N> {
 }
 
 /// Relative widening of inverse directions at both ends: 128 units of 2^-24 (`culling.md`, 5).
-// Widened once per packet, which saves the widening in each test: 19 operations per box instead of 38.
+// The inverses are widened once per packet, which saves widening t in each test: 19 operations per box instead of 38.
 const PACKET_SLACK: f32 = 128.0 / 16_777_216.0;
 
 /// The least magnitude of an inverse that can be widened by a relative amount: 2^-124.
 ///
-/// Widening stays normal (`culling.md`, 5).
+/// From there on, the widened inverse is a normal number (`culling.md`, 5).
 const MIN_INVERSE: f32 = 4.0 * f32::MIN_POSITIVE;
 
-/// The largest ratio of inverses in a packet of one sign: 2^40.
-// It bounds how far a product that rounds to zero for a ray can lie below zero for its packet (`culling.md`, 5).
+/// The largest ratio between inverses of a packet whose directions have one sign: 2^40.
+// It limits how far the packet's product can lie below zero where a ray's product rounds to zero (`culling.md`, 5).
 const MAX_INVERSE_RATIO: f32 = 1_099_511_627_776.0;
 
-/// Added to a packet's exits: 2^-100.
-// A ray's product below 2^-150 rounds to zero, and its packet's is at most `MAX_INVERSE_RATIO` times as far below
-// zero (`culling.md`, 5).
+/// The absolute widening of a packet's exits: 2^-100.
+// A ray's product of magnitude below 2^-150 rounds to zero, and the packet's product is at most `MAX_INVERSE_RATIO`
+// times as far below zero (`culling.md`, 5).
 const EXIT_SLACK: f32 = 1.0 / (MAX_INVERSE_RATIO * MAX_INVERSE_RATIO * 1_048_576.0);
 
-/// Returns the minimum and the maximum of each group.
-// Three rounds of shuffles for eight registers: scalars from memory made a frame of 100,000 spheres 1.18 times as long.
+/// Returns the minimum and the maximum of each group, one group per lane.
+// Takes three rounds of shuffles over eight registers. With scalars from memory, a frame of 100,000 spheres took 1.18
+// times as long.
 #[inline(always)]
 fn group_ranges<N: Lanes>(groups: [N; GROUPS]) -> [N; 2] {
     [N::min_of_each(&groups), N::max_of_each(&groups)]
@@ -74,12 +75,12 @@ fn total_range<N: Lanes>([low, high]: [N; 2]) -> [N; 2] {
 }
 
 impl<N: Lanes> AxisRanges<N> {
-    /// Returns the ranges of each group and those of all.
+    /// Returns the sign of the directions, the ranges of each group, and the ranges of all rays.
     #[inline(always)]
     fn of(origin: [N; GROUPS], inverse: [N; GROUPS]) -> (DirectionSign, [Self; 2]) {
         let origin = group_ranges(origin);
         let [low, high] = group_ranges(inverse);
-        // The range of all follows from the groups' ranges, without another pass over the rays.
+        // The range of all rays follows from the groups' ranges, without another pass over the rays.
         let (all_origin, all_inverse) = (total_range(origin), total_range([low, high]));
         let sign = DirectionSign::of(all_inverse);
         if sign == DirectionSign::Mixed {
@@ -113,17 +114,18 @@ impl<N: Lanes> AxisRanges<N> {
     #[inline(always)]
     fn of_mixed_signs([first, last]: [N; 2], [above, below]: [N; 2]) -> Self {
         let (less, half) = (N::splat(1.0 - PACKET_SLACK), N::splat(0.5));
-        // A subnormal inverse has too few digits for the slack: halved instead. Not zero, as no inverse is below
-        // 2^-128.
+        // A subnormal inverse has too few digits for a relative widening, so it is halved. The half is not zero, as no
+        // inverse is below 2^-128.
         let above = N::select(above.lt(N::splat(MIN_INVERSE)), above * half, above * less);
         let below = N::select(N::splat(-MIN_INVERSE).lt(below), below * half, below * less);
         Self { origin: [last, first], inverse: [above, below] }
     }
 
     /// Returns a lower bound of the entries and an upper bound of the exits at t >= 0.
-    // With directions of one sign the entry is the product of the least distance and the least inverse, the exit that
-    // of the greatest. Behind the origin the distance is negative, and the sign of the product alone counts. So one
-    // product per side suffices; with both ends of the inverses it was two, and packets took up to 1.16 times as long.
+    // With directions of one sign the least entry is the least distance times the least inverse, and the greatest exit
+    // the product of the greatest ones. For planes behind the origin the distance is negative, and only the sign of the
+    // product counts. So one product per side suffices. With two, one for each end of the inverses, packets took up to
+    // 1.16 times as long.
     #[inline(always)]
     fn slab_range(&self, sign: DirectionSign, min: N, max: N) -> [N; 2] {
         let Self { origin, inverse } = *self;
@@ -131,7 +133,7 @@ impl<N: Lanes> AxisRanges<N> {
             DirectionSign::Forward => (min, max),
             DirectionSign::Backward => (max, min),
             // Forward rays enter at the minimum, backward rays at the maximum. The term of the other sign is at most 0
-            // for a ray that meets the box. Exits are unbounded.
+            // for a ray that hits the box at t >= 0. Exits are unbounded.
             DirectionSign::Mixed => {
                 let (forward, backward) = ((min - origin[0]) * inverse[0], (max - origin[1]) * inverse[1]);
                 return [forward.max(backward.max(N::splat(f32::NEG_INFINITY))), N::splat(f32::INFINITY)];
@@ -142,7 +144,7 @@ impl<N: Lanes> AxisRanges<N> {
 }
 
 impl DirectionSign {
-    /// Classifies a range of inverses.
+    /// Classifies the range of a packet's inverse directions along an axis.
     #[inline(always)]
     fn of<N: Lanes>([low, high]: [N; 2]) -> Self {
         let (least, ratio, greatest) = (N::splat(MIN_INVERSE), N::splat(MAX_INVERSE_RATIO), N::splat(f32::MAX / 2.0));
@@ -157,7 +159,7 @@ impl DirectionSign {
 }
 
 impl<N: Lanes> Packet<N> {
-    /// Computes the ranges of these rays.
+    /// Computes the ranges of the rays of all groups.
     #[inline(always)]
     pub fn of(groups: &[Rays<N>; GROUPS]) -> Self {
         let mut columns = [[N::splat(0.0); GROUPS]; 6];
@@ -175,7 +177,8 @@ impl<N: Lanes> Packet<N> {
     }
 
     /// Returns whether the directions have mixed signs along two axes or more.
-    // Such a packet culls hardly any box: incoherent rays are 1.2 to 1.5 times as fast as single rays from the root.
+    // Such a packet culls hardly any box: its rays are 1.2 to 1.5 times as fast when they are traced singly from the
+    // root.
     #[inline(always)]
     pub fn is_incoherent(&self) -> bool {
         self.signs.iter().filter(|&&sign| sign == DirectionSign::Mixed).count() > 1
@@ -183,7 +186,7 @@ impl<N: Lanes> Packet<N> {
 
     /// Returns the range of t in which the packet crosses each of eight boxes.
     ///
-    /// It is clipped to `within`, which starts at 0 or later.
+    /// The range is clipped to `within`, which starts at 0 or later.
     #[inline(always)]
     pub fn crossed(&self, boxes: [Vector<N>; 2], within: [N; 2]) -> [N; 2] {
         crossed(&self.all, self.signs, boxes, within)
@@ -217,39 +220,39 @@ pub trait Visitor<N>: Prefetch {
     // triangles.
     const NEAREST_FIRST: bool;
 
-    /// Number of hit children from which on [`split`](Self::split) is called.
+    /// The least number of hit children of a node for which [`split`](Self::split) is called.
     const MIN_CHILDREN_TO_SPLIT: u32;
 
     /// Returns the lower end of the rays' interval: 0 or more.
     fn t_min(&self) -> f32;
 
-    /// Returns the largest upper end of each group's rays.
+    /// Returns the largest upper end of the intervals of each group's rays.
     fn t_max(&self) -> N;
 
-    /// Returns the largest upper end of all rays.
+    /// Returns the largest upper end of the intervals of all rays, or more.
     fn max_t_max(&self) -> f32;
 
     /// Tests the primitives of a leaf.
     fn visit_leaf(&mut self, leaf: usize);
 
-    /// Returns the rays of each group that continue as single rays from a node.
+    /// Returns the mask of each group's rays that continue as single rays from a node.
     ///
-    /// `None` if the packet continues. `one` is the box of the node in all lanes, `groups` the mask of groups that may
-    /// meet it; not 0.
-    fn split(&self, one: [Vector<N>; 2], groups: u32) -> Option<[u32; GROUPS]>;
+    /// Returns `None` if the packet continues. `node_box` is the box of the node in all lanes, and `groups` the mask of
+    /// groups that may hit it, which is not 0.
+    fn split(&self, node_box: [Vector<N>; 2], groups: u32) -> Option<[u32; GROUPS]>;
 
-    /// Traces single rays of these groups from a node down.
+    /// Traces the masked rays of the masked groups singly, from a node down.
     fn trace_singles(&mut self, from: Child, rays: [u32; GROUPS], groups: u32);
 }
 
 impl Bvh {
-    /// Returns the box of a [`StackEntry`]'s slot in all lanes.
+    /// Returns the box at the `slot` of a [`StackEntry`], in all lanes.
     #[inline(always)]
     fn slot_box<N: Lanes>(&self, slot: u32) -> [Vector<N>; 2] {
         self.nodes[slot as usize / LANES].child_box(slot as usize % LANES)
     }
 
-    /// Visits the leaves that a packet meets.
+    /// Visits the leaves that rays of a packet may hit.
     #[inline(always)]
     pub fn visit_packet<N: Lanes, V: Visitor<N>>(
         &self,
@@ -262,7 +265,7 @@ impl Bvh {
         let min = N::splat(visitor.t_min());
         let mut next = Some(StackEntry { child: root, slot: u32::MAX, start: visitor.t_min() });
         while let Some(StackEntry { child, slot, start }) = next.take().or_else(|| waiting.pop()) {
-            // Hits since the push may have ended the rays before this box.
+            // Hits found since the push may all lie before this child's box.
             if start > visitor.max_t_max() {
                 continue;
             }
@@ -274,8 +277,8 @@ impl Bvh {
             let is_root = slot == u32::MAX;
             let mut groups = 0;
             if !is_root {
-                // The box group by group, exactly as narrow as each group: many boxes that the whole packet meets, no
-                // group does.
+                // The ranges of a group are narrower than those of the packet: many boxes that the packet may hit are
+                // hit by none of its groups.
                 let [starts, ends] = packet.crossed_by_groups(self.slot_box(slot), [min, visitor.t_max()]);
                 groups = starts.le(ends).bits();
                 if groups == 0 {
@@ -285,7 +288,8 @@ impl Bvh {
             let node = &self.nodes[child.0 as usize];
             let [starts, ends] = packet.crossed(node.boxes(), [min, N::splat(visitor.max_t_max())]);
             let hit_mask = starts.le(ends).bits();
-            // The box is loaded again: kept in registers during the node test, it makes shadow rays 5 % slower.
+            // Loads the box a second time: kept in registers during the test of the node, it made shadow rays 5 %
+            // slower.
             if !is_root
                 && hit_mask.count_ones() >= V::MIN_CHILDREN_TO_SPLIT
                 && let Some(rays) = visitor.split(self.slot_box(slot), groups)
@@ -293,14 +297,14 @@ impl Bvh {
                 visitor.trace_singles(child, rays, groups);
                 continue;
             }
-            // All hit children will be visited, most of them soon.
+            // Prefetches all hit children: they will be visited, most of them soon.
             for lane in set_bits(hit_mask) {
                 self.prefetch(node.children[lane], visitor);
             }
             next = if V::NEAREST_FIRST {
-                nearest_first(node, child, hit_mask, &starts.store(), waiting)
+                push_all_but_nearest(node, child, hit_mask, &starts.store(), waiting)
             } else {
-                in_any_order(node, child, hit_mask, &starts.store(), waiting)
+                push_all_but_last(node, child, hit_mask, &starts.store(), waiting)
             };
         }
     }

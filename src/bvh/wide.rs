@@ -11,12 +11,12 @@ pub(super) struct BinaryNode {
     pub(super) bounds: Bounds,
     /// Number of boxes of a leaf; 0 for an inner node.
     pub(super) count: u32,
-    /// The index of a leaf's first box in the order, or an inner node's distance to its second
-    /// child.
+    /// The index of a leaf's first box in the order of the leaves, or an inner node's distance to
+    /// its second child.
     pub(super) at: u32,
 }
 
-/// The wide tree in construction.
+/// The wide tree under construction.
 pub(super) struct Wide<'p> {
     pairs: &'p [BinaryNode],
     fillings: Vec<Filling>,
@@ -52,15 +52,15 @@ impl<'p> Wide<'p> {
         Child::node(number as u32)
     }
 
-    /// Adds the nodes that represent a node in at most `places` places.
-    fn gather(&self, at: usize, places: usize, children: &mut Children) {
-        let left = usize::from(self.fillings[at][places - 1]);
+    /// Adds the binary nodes that represent node `at` in at most `slots` slots of a wide node.
+    fn gather(&self, at: usize, slots: usize, children: &mut Children) {
+        let left = usize::from(self.fillings[at][slots - 1]);
         if left == WHOLE {
             children.pairs[children.count] = at;
             children.count += 1;
         } else {
             self.gather(at + 1, left, children);
-            self.gather(at + self.pairs[at].at as usize, places - left, children);
+            self.gather(at + self.pairs[at].at as usize, slots - left, children);
         }
     }
 }
@@ -72,29 +72,30 @@ struct Children {
     count: usize,
 }
 
-/// The distribution of the nodes below a binary node over 1 to 8 places of a wide node.
+/// The best ways to represent a binary node in 1 to 8 slots for children of a wide node.
 ///
-/// For each number of places it has how many of them go to the first child, or [`WHOLE`] where the node itself takes
-/// one place.
+/// For each number of slots: how many of them represent the node's first child, or [`WHOLE`] if the node itself takes
+/// one slot.
 type Filling = [u8; LANES];
 
-/// The node takes one place by itself.
+/// The entry of a [`Filling`] for a node that takes one slot by itself.
 const WHOLE: usize = 0;
 
-/// Chooses the wide nodes that a ray is expected to meet least often.
+/// Chooses the wide nodes for which a ray is expected to visit the fewest.
 ///
 /// By dynamic programming over the binary tree (Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal on GPUs
 /// Through Compressed Wide BVHs, 2017).
-// To open the largest box until there are eight left a third of the nodes with two children. This way the dragon's 871
-// k triangles have 28 % fewer nodes.
+// The simpler way, to replace the child with the largest box by its own children until there are eight, left a third of
+// the nodes with two children. Dynamic programming makes 28 % fewer nodes for the dragon's 871 k triangles.
 fn fillings(pairs: &[BinaryNode]) -> Vec<Filling> {
     let mut fillings = vec![[WHOLE as u8; LANES]; pairs.len()];
-    // From the last node to the first, both children come before their parent, the first child on top.
+    // A stack of costs. From the last node to the first, both children come before their parent, with the cost of the
+    // first child on top.
     let mut costs: Vec<[f32; LANES]> = Vec::new();
     for (pair, filling) in pairs.iter().zip(&mut fillings).rev() {
         let cost = match pair.count {
             0 => costs.pop().zip(costs.pop()).map(|(left, right)| fill(pair.bounds.half_area(), left, right, filling)),
-            // A leaf is tested wherever it stands: its cost is the same in all trees.
+            // A leaf costs the same in all wide trees, so it counts as 0.
             _ => None,
         };
         costs.push(cost.unwrap_or([0.0; LANES]));
@@ -102,25 +103,26 @@ fn fillings(pairs: &[BinaryNode]) -> Vec<Filling> {
     fillings
 }
 
-/// Returns the cost of the cheapest distribution for each number of places.
+/// Computes the cheapest filling of an inner node, and returns its cost for each number of slots.
 ///
-/// The cost is the half areas of the wide nodes in it.
+/// The cost is the sum of the half areas of all wide nodes. `area` is the half area of the node, `left` and `right` are
+/// the costs of its children.
 fn fill(area: f32, left: [f32; LANES], right: [f32; LANES], filling: &mut Filling) -> [f32; LANES] {
     let mut cost = [f32::INFINITY; LANES];
-    for places in 2..=LANES {
-        for of_left in 1..places {
-            let both = left[of_left - 1] + right[places - of_left - 1];
-            // Also the first of all, where areas are too great for f32.
-            if both < cost[places - 1] || of_left == 1 {
-                (cost[places - 1], filling[places - 1]) = (both, of_left as u8);
+    for slots in 2..=LANES {
+        for of_left in 1..slots {
+            let both = left[of_left - 1] + right[slots - of_left - 1];
+            // The first filling is taken in any case, also where both sums are infinite because areas overflow f32.
+            if both < cost[slots - 1] || of_left == 1 {
+                (cost[slots - 1], filling[slots - 1]) = (both, of_left as u8);
             }
         }
     }
-    // In one place it is a node of its own, with eight places below.
+    // In a single slot the node becomes a wide node, with eight slots of its own.
     cost[0] = area + cost[LANES - 1];
-    for places in 2..LANES {
-        if cost[0] < cost[places - 1] {
-            (cost[places - 1], filling[places - 1]) = (cost[0], WHOLE as u8);
+    for slots in 2..LANES {
+        if cost[0] < cost[slots - 1] {
+            (cost[slots - 1], filling[slots - 1]) = (cost[0], WHOLE as u8);
         }
     }
     cost

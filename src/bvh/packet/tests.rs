@@ -6,7 +6,7 @@ use crate::ray::{EightRays, Ray};
 use glam::Vec3;
 use std::array::from_fn;
 
-/// A fixed sequence of numbers from -1 to 1.
+/// A reproducible sequence of pseudo-random numbers from -1 to 1.
 struct Numbers(u64);
 
 impl Numbers {
@@ -24,13 +24,14 @@ fn two_to(power: i32) -> f32 {
     f32::from_bits(((127 + power) as u32) << 23)
 }
 
-/// The length of directions, and the distance of origins from zero.
+/// Returns the length of directions, and the distance of origins from zero, for a random case.
 fn sizes(seed: u64) -> (f32, f32) {
     let length = two_to([-120, -60, -8, 0, 0, 8, 60, 117, 123][seed as usize % 9]);
     (length, two_to([0, 0, -30, 30, -100, 100][seed as usize / 9 % 6]))
 }
 
-/// A packet and boxes: narrow or wide, of all sizes, ahead, behind, flat, touching an origin.
+/// Returns the rays of a packet, narrow or wide, and twice eight boxes: ahead of rays, behind,
+/// flat, or at an origin.
 fn random_case(seed: u64) -> ([EightRays; GROUPS], [[Vector<F32x8>; 2]; 2]) {
     let (mut numbers, (length, scale)) = (Numbers(seed), sizes(seed));
     let width = two_to(-((seed / 54 % 14) as i32));
@@ -57,15 +58,16 @@ fn random_case(seed: u64) -> ([EightRays; GROUPS], [[Vector<F32x8>; 2]; 2]) {
     (rays.map(|rays| EightRays::of(&rays)), boxes)
 }
 
-/// No box that a ray meets is culled for its packet or group; over a third of the others are.
+/// No box that a ray hits is culled for its packet or group; over a third of the other boxes are
+/// culled.
 #[test]
-fn a_packet_meets_what_its_rays_meet() {
+fn a_packet_hits_all_boxes_that_its_rays_hit() {
     let (mut met, mut missed, mut kept) = (0, 0, 0);
     for seed in 0..20_000 {
         let (rays, boxes) = random_case(seed);
         let groups: [Rays<F32x8>; GROUPS] = from_fn(|group| Rays::load(&rays[group], false));
         let packet = Packet::of(&groups);
-        // Excluded by `culling.md`, 5: the products of mixed packets that round to zero.
+        // `culling.md`, 5, does not cover packets of mixed signs whose products round to zero.
         let (length, scale) = sizes(seed);
         if scale / length < two_to(-60) && packet.signs.contains(&DirectionSign::Mixed) {
             continue;

@@ -2,8 +2,8 @@ use super::*;
 use crate::bvh::cut::{Around, Item, item};
 use glam::Vec3;
 
-/// A binary tree whose leaves have one box each, of arbitrary boxes.
-fn pairs(boxes: usize, seed: u32) -> Vec<BinaryNode> {
+/// Returns a binary tree over pseudo-random boxes, whose leaves have one box each.
+fn binary_tree(boxes: usize, seed: u32) -> Vec<BinaryNode> {
     let mut state = seed;
     let mut number = || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -16,12 +16,12 @@ fn pairs(boxes: usize, seed: u32) -> Vec<BinaryNode> {
         })
         .collect();
     let mut nodes = Vec::new();
-    one_by_one(&mut items, 0, &mut nodes);
+    append_single_boxes(&mut items, 0, &mut nodes);
     nodes
 }
 
-/// Appends a binary tree down to single boxes, as `build::append` does down to leaves.
-fn one_by_one(items: &mut [Item], first: usize, nodes: &mut Vec<BinaryNode>) {
+/// Appends a binary tree whose leaves have one box each; `build::append` stops at leaves of eight.
+fn append_single_boxes(items: &mut [Item], first: usize, nodes: &mut Vec<BinaryNode>) {
     let bounds = Around::of(items).boxes.bounds();
     let at = nodes.len();
     if items.len() == 1 {
@@ -30,12 +30,12 @@ fn one_by_one(items: &mut [Item], first: usize, nodes: &mut Vec<BinaryNode>) {
     nodes.push(BinaryNode { bounds, count: 0, at: 0 });
     let cut = 1 + (items.len() * 3 + first) % (items.len() - 1);
     let (left, right) = items.split_at_mut(cut);
-    one_by_one(left, first, nodes);
+    append_single_boxes(left, first, nodes);
     nodes[at].at = (nodes.len() - at) as u32;
-    one_by_one(right, first + cut, nodes);
+    append_single_boxes(right, first + cut, nodes);
 }
 
-/// The least sum of half areas of wide nodes, found by trying all distributions.
+/// Returns the least possible sum of half areas of wide nodes, found by trying all fillings.
 fn least_cost(pairs: &[BinaryNode], at: usize, places: usize) -> f64 {
     let pair = &pairs[at];
     if pair.count > 0 {
@@ -66,7 +66,7 @@ fn cost_and_boxes(wide: &Wide<'_>, at: usize) -> (f64, usize) {
 #[test]
 fn wide_nodes_are_the_cheapest_of_all_distributions() {
     for seed in 0..6 {
-        let pairs = pairs(14, seed);
+        let pairs = binary_tree(14, seed);
         let (cost, boxes) = cost_and_boxes(&Wide::of(&pairs), 0);
         let least = least_cost(&pairs, 0, 1);
         assert_eq!(boxes, 14, "seed {seed}");
