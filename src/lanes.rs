@@ -1,7 +1,7 @@
-//! Numbers and vectors of eight: a formula over [`Number`] computes one ray or eight.
+//! Numbers and vectors of eight numbers: a formula over [`Number`] computes one ray or eight.
 //!
-//! All operations are exactly defined by IEEE 754, so that a ray among eight gets the same bits as alone. [`F32x8`] is
-//! a plain array for any CPU; the types of [`simd`](crate::simd) are registers.
+//! All operations are exactly defined by IEEE 754, so that a ray gives the same bits alone and among eight. [`F32x8`]
+//! is a plain array for any CPU; the types of [`simd`](crate::simd) are registers.
 
 use std::array::from_fn;
 use std::fmt::Debug;
@@ -49,13 +49,13 @@ where
     /// Compares with `==`; false for NaN.
     #[inline(always)]
     fn eq(self, other: Self) -> Self::Mask {
-        // Two comparisons instead of a third primitive for each register type: only ties of hits and patterns use it.
+        // Two comparisons, not an instruction for each register type, as only ties of hits and patterns use it.
         self.le(other) & other.le(self)
     }
 
     /// Returns the larger number.
     ///
-    /// `other` if `self` is NaN or both are zero, as the instruction of SSE and AVX does.
+    /// Returns `other` if `self` is NaN or both are zero, as the instructions of SSE and AVX do.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::select(other.lt(self), self, other)
@@ -77,7 +77,7 @@ pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + No
     fn all(self) -> bool;
 }
 
-/// Code that is compiled once for each vector type.
+/// A computation that is compiled once for each vector type.
 pub trait SimdKernel {
     /// The result.
     type Output;
@@ -88,15 +88,15 @@ pub trait SimdKernel {
 
 /// A vector of eight numbers, in an array or in registers.
 pub trait Lanes: Number<Mask: LaneMask> {
-    /// Runs the kernel in a function of its own, compiled with the same target features.
-    // Inlined into the packets' function, a single ray's numbers lived in memory; a function of its own, with new slabs
-    // and stack entries, took 14 % fewer instructions.
+    /// Runs the kernel in a function that is not inlined, compiled with the same target features.
+    // Inlined into the function for packets, single-ray traversal kept its numbers in memory; as a separate function,
+    // with new slabs and stack entries, it took 14 % fewer instructions.
     fn call_no_inline<K: SimdKernel>(kernel: K) -> K::Output;
 
-    /// Loads from memory.
+    /// Loads the vector from memory.
     fn load(numbers: &F32x8) -> Self;
 
-    /// Stores to memory.
+    /// Stores the vector to memory.
     fn store(self) -> F32x8;
 
     /// Returns the number of `lane`, which is less than [`LANES`].
@@ -133,10 +133,11 @@ pub trait Lanes: Number<Mask: LaneMask> {
     /// Returns the mask with these [bits](LaneMask::bits).
     fn mask_from_bits(bits: u32) -> Self::Mask;
 
-    /// Compares the bits of each number with `bits`, for indices that are carried in lanes.
+    /// Compares the bits of each number with `bits`: for indices that are stored as the bits of
+    /// floats.
     fn has_bits(self, bits: u32) -> Self::Mask;
 
-    /// Returns the smallest number of each vector, one per lane. None is NaN.
+    /// Returns the smallest number of each of eight vectors, one per lane. No number is NaN.
     #[inline(always)]
     fn min_of_each(eights: &[Self; LANES]) -> Self {
         let mut min = F32x8([0.0; LANES]);
@@ -146,7 +147,7 @@ pub trait Lanes: Number<Mask: LaneMask> {
         Self::load(&min)
     }
 
-    /// Returns the largest number of each vector, one per lane. None is NaN.
+    /// Returns the largest number of each of eight vectors, one per lane. No number is NaN.
     #[inline(always)]
     fn max_of_each(eights: &[Self; LANES]) -> Self {
         let mut max = F32x8([0.0; LANES]);
@@ -224,7 +225,7 @@ impl Mask for bool {
     }
 }
 
-/// Number of lanes of a vector.
+/// The number of lanes in a vector.
 // Eight f32 fill a register of AVX2.
 pub const LANES: usize = 8;
 
@@ -235,7 +236,7 @@ pub const ALL: u32 = (1 << LANES) - 1;
 #[inline(always)]
 pub fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
-        // `% LANES` bounds the index without a branch: callers index arrays of eight without a check.
+        // `% LANES` shows the compiler that the index is below eight, so that callers index arrays without a check.
         let lowest = bits.trailing_zeros() as usize % LANES;
         let is_any = bits != 0;
         // Clears the lowest set bit: one instruction (BLSR) with BMI1.
@@ -247,7 +248,7 @@ pub fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
 /// A vector of eight numbers in an array, aligned for registers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
-// Aligned for loads and stores of a whole AVX register.
+// The alignment allows loads and stores of a whole AVX register.
 pub struct F32x8(pub [f32; LANES]);
 
 /// A mask of eight lanes in an array: all bits of a set lane are 1.
@@ -287,8 +288,8 @@ impl F32x8 {
     #[inline(always)]
     pub fn reduce_min(self) -> f32 {
         let Self([a, b, c, d, e, f, g, h]) = self;
-        // `Number::min` instead of `f32::min`, which leaves the order of zeros to the platform. A tree of depth three,
-        // as the registers reduce: with NaN or two zeros the order of operands decides the bits.
+        // `Number::min` instead of `f32::min`, which leaves the order of zeros to the platform. The operands are
+        // combined in the same order as in registers, because the order decides the bits for NaN and two zeros.
         let min = <f32 as Number>::min;
         min(min(min(a, b), min(c, d)), min(min(e, f), min(g, h)))
     }
@@ -342,12 +343,12 @@ impl Number for F32x8 {
 
     #[inline(always)]
     fn select(Mask32x8(mask): Mask32x8, Self(yes): Self, Self(no): Self) -> Self {
-        // By bits, not by branches: the compiler made scalar code of comparisons that chose among lanes.
+        // Selects by bits, because the compiler turned branches into scalar code.
         let bits = |lane: usize| (yes[lane].to_bits() & mask[lane]) | (no[lane].to_bits() & !mask[lane]);
         Self(from_fn(|lane| f32::from_bits(bits(lane))))
     }
 
-    // The one operation that need not be inlined: its formulas are rare and scalar.
+    // The only operation that need not be inlined, because its formulas are rare and scalar.
     fn map_lanes<const IN: usize, const OUT: usize>(
         numbers: [Self; IN],
         formula: impl Fn([f32; IN]) -> [f32; OUT],

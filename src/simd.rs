@@ -1,9 +1,9 @@
 //! Vectors of eight numbers in registers, chosen for the CPU at run time.
 //!
 //! A [`SimdKernel`] is compiled once for each instruction set, and [`dispatch`] selects one by the features of the CPU.
-//! Everything that a kernel calls must be `#[inline(always)]`: a function that is not inlined loses the target
-//! features, and closures do as well. All operations are exactly defined by IEEE 754; none is fused, as FMA rounds
-//! differently.
+//! Everything that a kernel calls must be `#[inline(always)]`: functions that are not inlined, and closures, are
+//! compiled without the kernel's target features. All operations are exactly defined by IEEE 754; none is fused, as FMA
+//! rounds differently.
 //!
 //! Only this module has unsafe code.
 
@@ -17,7 +17,7 @@ pub use prefetch::prefetch;
 /// Runs the kernel with the widest instruction set of this CPU.
 #[inline]
 pub fn dispatch<K: SimdKernel>(kernel: K) -> K::Output {
-    // The detection is cached by the standard library: a load and a bit test for each kernel.
+    // The standard library caches the detection: it costs a load and a bit test for each kernel.
     #[cfg(all(target_arch = "x86_64", compiler_has_avx512))]
     if has_avx512() {
         // SAFETY: `has_avx512` has checked the CPU.
@@ -42,8 +42,8 @@ pub fn run_scalar<K: SimdKernel>(kernel: K) -> K::Output {
 
 #[cfg(target_arch = "x86_64")]
 #[inline]
-// With BMI1, LZCNT and POPCNT, since loops over masks count and clear bits; every known CPU with
-// AVX2 has them, but no specification says so.
+// Also requires BMI1, LZCNT and POPCNT, since loops over masks count and clear bits. Every known CPU with AVX2 has
+// them, but no specification guarantees it.
 fn has_avx2() -> bool {
     is_x86_feature_detected!("avx2")
         && is_x86_feature_detected!("bmi1")
@@ -53,7 +53,7 @@ fn has_avx2() -> bool {
 
 #[cfg(all(target_arch = "x86_64", compiler_has_avx512))]
 #[inline]
-// VL for masks of registers of eight, DQ for moves of eight-bit masks.
+// Requires VL for masks over registers of eight floats, and DQ for moves of eight-bit masks.
 fn has_avx512() -> bool {
     has_avx2()
         && is_x86_feature_detected!("avx512f")
@@ -64,11 +64,11 @@ fn has_avx512() -> bool {
 }
 
 #[cfg(target_arch = "x86_64")]
-// `avx` holds what AVX2 and AVX-512 share; they differ in their masks only.
+// `avx` is the part that AVX2 and AVX-512 share; they differ in their masks only.
 mod avx;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
-// AVX-512 needs Rust 1.89; the build script checks the compiler, which clippy does not know.
+// AVX-512 needs Rust 1.89. The build script checks the compiler's version, and this attribute tells it to clippy.
 #[cfg(all(target_arch = "x86_64", compiler_has_avx512))]
 #[clippy::msrv = "1.89"]
 mod avx512;

@@ -1,4 +1,4 @@
-//! Vectors of three coordinates, for one point or for eight.
+//! Vectors of three coordinates, for one point or eight.
 
 use super::{F32x8, LANES, Lanes, Number};
 use glam::Vec3;
@@ -22,13 +22,13 @@ impl<N: Number> Vector<N> {
         Self { x: N::splat(v.x), y: N::splat(v.y), z: N::splat(v.z) }
     }
 
-    /// Returns the smaller of each coordinate.
+    /// Returns the smaller of both vectors' numbers for each coordinate.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
         Self { x: self.x.min(other.x), y: self.y.min(other.y), z: self.z.min(other.z) }
     }
 
-    /// Returns the larger of each coordinate.
+    /// Returns the larger of both vectors' numbers for each coordinate.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         Self { x: self.x.max(other.x), y: self.y.max(other.y), z: self.z.max(other.z) }

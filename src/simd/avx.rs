@@ -1,6 +1,6 @@
-//! Vectors of eight numbers in a register of AVX2.
+//! Vectors of eight numbers in a register of AVX2, also used with AVX-512.
 //!
-//! The type of their masks depends on whether the CPU has AVX-512.
+//! The two instruction sets differ in the type of masks, [`MaskOps`].
 
 #![allow(unsafe_code)]
 
@@ -21,7 +21,7 @@ pub(super) trait MaskOps: LaneMask {
     ///
     /// # Safety
     /// The CPU has the instruction set.
-    // Unsafe, since a register of this type may only exist where the CPU has the instructions.
+    // Unsafe, since the kernel's registers may exist only on a CPU that has the instructions.
     unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output;
 
     /// [`Number::lt`].
@@ -42,7 +42,7 @@ pub(super) trait MaskOps: LaneMask {
 
 /// Eight numbers in a register.
 ///
-/// Only [`MaskOps::run`] starts kernels with it: where one exists, the CPU has AVX2.
+/// Only kernels started by [`MaskOps::run`] use this type, so the CPU has AVX2 wherever a value of it exists.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Register<M>(__m256, PhantomData<M>);
 
@@ -53,21 +53,21 @@ impl<M> Register<M> {
     }
 }
 
-/// Runs an instruction of AVX2, or of AVX-512 in its mask type.
+/// Runs an instruction of AVX2, or of AVX-512 in the methods of its mask type.
 macro_rules! avx {
     ($instruction:expr) => {
-        // SAFETY: a `Register` or a mask exists only within `MaskOps::run`, whose caller has promised the instruction
-        // set; loads and stores are of a whole and aligned `F32x8`.
+        // SAFETY: a `Register` or a mask exists only within `MaskOps::run`, whose caller guarantees the instruction
+        // set. Loads and stores access a whole and aligned `F32x8`.
         unsafe { $instruction }
     };
 }
 
 pub(super) use avx;
 
-/// Reduces eight registers to one with the minimum or maximum of each.
+/// Reduces eight registers to one, whose lanes are the minimum or maximum of each register.
 ///
-/// Over neighbours, pairs, then halves.
-// A transposing reduction takes three rounds, where scalars from memory take eight loads per register.
+/// The reduction transposes: first neighbours are combined, then pairs, then halves.
+// It takes three rounds, where scalars from memory would take eight loads per register.
 macro_rules! of_each {
     ($choose:ident, $eights:expr) => {{
         let [a, b, c, d, e, f, g, h] = *$eights;
@@ -142,7 +142,7 @@ impl<M: MaskOps> Number for Register<M> {
         Self::of(mask.select(yes.0, no.0))
     }
 
-    // The instruction returns its second operand if one is NaN or both are zero, as `Number::max` is defined.
+    // The instruction returns its second operand if one is NaN or both are zero, as `Number::max` requires.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::of(avx!(_mm256_max_ps(self.0, other.0)))
@@ -165,7 +165,8 @@ impl<M: MaskOps> Number for Register<M> {
 impl<M: MaskOps> Lanes for Register<M> {
     #[inline(always)]
     fn call_no_inline<K: SimdKernel>(kernel: K) -> K::Output {
-        // SAFETY: outside this module the type is named only within `MaskOps::run`, whose caller has promised the same.
+        // SAFETY: values of this type exist only within `MaskOps::run`, whose caller guarantees the same instruction
+        // set.
         unsafe { M::run(kernel) }
     }
 
@@ -182,23 +183,23 @@ impl<M: MaskOps> Lanes for Register<M> {
     }
 
     #[inline(always)]
-    // One permutation instead of a store, a load and a broadcast.
+    // Takes one permutation, where the default method takes a store, a load and a broadcast.
     fn splat_lane(self, lane: usize) -> Self {
         let lane = avx!(_mm256_set1_epi32((lane as u32).cast_signed()));
         Self::of(avx!(_mm256_permutevar8x32_ps(self.0, lane)))
     }
 
     #[inline(always)]
-    // One permutation for eight lanes. Lane by lane in memory, each load waited for a store: surface points took a
-    // third longer.
+    // Takes one permutation for all eight lanes. Lane by lane in memory, each load waited for a store, and surface
+    // points took a third longer.
     fn gather(self, lanes: Self) -> Self {
         Self::of(avx!(_mm256_permutevar8x32_ps(self.0, _mm256_castps_si256(lanes.0))))
     }
 
     #[inline(always)]
     fn reduce_max(self) -> f32 {
-        // Three shuffles instead of eight loads: packets take a maximum at every node, leaf and hit (1.02 times as
-        // fast).
+        // Three shuffles instead of eight loads make packets, which take a maximum at every node, leaf and hit, 1.02
+        // times as fast.
         let fours = self.max(Self::of(avx!(_mm256_permute2f128_ps::<0x01>(self.0, self.0))));
         let twos = fours.max(Self::of(avx!(_mm256_shuffle_ps::<0b01_00_11_10>(fours.0, fours.0))));
         avx!(_mm256_cvtss_f32(twos.max(Self::of(_mm256_shuffle_ps::<0b10_11_00_01>(twos.0, twos.0))).0))
@@ -225,13 +226,14 @@ impl<M: MaskOps> Lanes for Register<M> {
     }
 }
 
-/// Interleaves the first and the last numbers of both registers.
+/// Interleaves the numbers of two registers: the first two and then the last two of each 128-bit
+/// half.
 #[inline(always)]
 fn neighbours<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     avx!([Register::of(_mm256_unpacklo_ps(a.0, b.0)), Register::of(_mm256_unpackhi_ps(a.0, b.0))])
 }
 
-/// Returns the first and the last pairs of both registers.
+/// Returns the first and the last pairs of numbers in each 128-bit half of two registers.
 #[inline(always)]
 fn pairs<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     avx!([
@@ -240,7 +242,7 @@ fn pairs<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     ])
 }
 
-/// Returns the first and the last halves of both registers.
+/// Returns the first halves and the last halves of two registers.
 #[inline(always)]
 fn halves<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     avx!([

@@ -1,4 +1,4 @@
-//! AVX2: masks are registers.
+//! The instruction set AVX2, whose masks are registers.
 
 #![allow(unsafe_code)]
 
@@ -16,7 +16,7 @@ use std::ops::{BitAnd, BitOr, Not};
 /// # Safety
 /// The CPU has AVX2, BMI1, LZCNT and POPCNT.
 pub(super) unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output {
-    // SAFETY: as the caller has promised.
+    // SAFETY: the caller guarantees the instruction set.
     unsafe { Mask256::run(kernel) }
 }
 
@@ -28,11 +28,11 @@ impl MaskOps for Mask256 {
     unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output {
         #[inline(never)]
         #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
-        // The one function that is compiled with these features; never inlined into a caller without them.
+        // The only function that is compiled with these features. It must not be inlined into a caller without them.
         fn compiled_for_avx2<K: SimdKernel>(kernel: K) -> K::Output {
             kernel.run::<Register<Mask256>>()
         }
-        // SAFETY: as the caller has promised.
+        // SAFETY: the caller guarantees the instruction set.
         unsafe { compiled_for_avx2(kernel) }
     }
 
@@ -53,7 +53,7 @@ impl MaskOps for Mask256 {
 
     #[inline(always)]
     fn from_bits(bits: u32) -> Self {
-        // Each lane keeps its own bit of the broadcast bits, and compares it with that bit.
+        // Lane n keeps bit n of `bits`, and is set if that bit is.
         let each = avx!(_mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128));
         let own = avx!(_mm256_and_si256(_mm256_set1_epi32(bits.cast_signed()), each));
         Self(avx!(_mm256_castsi256_ps(_mm256_cmpeq_epi32(own, each))))

@@ -18,13 +18,13 @@ pub(super) fn run<K: SimdKernel>(kernel: K) -> K::Output {
     kernel.run::<Registers>()
 }
 
-/// Implements [`Number::map_lanes`] for registers, through memory.
+/// Implements [`Number::map_lanes`] for vectors in registers, by storing them to memory.
 #[inline(always)]
 pub(super) fn map_lanes<N: Lanes, const IN: usize, const OUT: usize>(
     numbers: [N; IN],
     formula: impl Fn([f32; IN]) -> [f32; OUT],
 ) -> [N; OUT] {
-    // Through memory: the formula is scalar anyway.
+    // The formula is scalar, so registers would have no advantage.
     let mut stored = [F32x8::ZERO; IN];
     for (stored, numbers) in stored.iter_mut().zip(numbers) {
         *stored = numbers.store();
@@ -36,7 +36,7 @@ pub(super) fn map_lanes<N: Lanes, const IN: usize, const OUT: usize>(
     results
 }
 
-/// The first four and the last four numbers.
+/// A vector of eight numbers: the first four and the last four, in a register each.
 #[derive(Clone, Copy, Debug)]
 struct Registers([__m128; 2]);
 
@@ -44,13 +44,13 @@ struct Registers([__m128; 2]);
 #[derive(Clone, Copy, Debug)]
 struct Masks([__m128; 2]);
 
-/// 2^23: from here on all f32 are integers.
+/// The magnitude from which on all f32 are integers: 2^23.
 const INTEGERS_FROM: f32 = 8_388_608.0;
 
 /// Runs an instruction of SSE2.
 macro_rules! sse {
     ($instruction:expr) => {
-        // SAFETY: every x86-64 has SSE2; what is loaded and stored is four numbers of an `F32x8`, which is aligned.
+        // SAFETY: every x86-64 CPU has SSE2. Loads and stores access four numbers of an `F32x8`, which is aligned.
         unsafe { $instruction }
     };
 }
@@ -62,13 +62,13 @@ fn both(a: [__m128; 2], b: [__m128; 2], instruction: impl Fn(__m128, __m128) -> 
 
 #[inline(always)]
 fn select(mask: __m128, yes: __m128, no: __m128) -> __m128 {
-    // SSE2 has no blend (SSE4.1).
+    // The blend instruction came only with SSE4.1.
     sse!(_mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no)))
 }
 
-/// Rounds down: truncates, and subtracts 1 where that is above the number.
-// SSE2 has no `floor` (SSE4.1), and its conversion overflows from 2^31 on; from 2^23 on, and for NaN, the number is
-// returned as it is.
+/// Rounds down: truncates each number, and subtracts 1 where the result is above the number.
+// The instruction for it came only with SSE4.1. Numbers from 2^23 on, and NaN, are returned unchanged, as SSE2's
+// conversion to integers overflows at 2^31.
 #[inline(always)]
 fn floor(number: __m128) -> __m128 {
     sse!({
@@ -76,7 +76,7 @@ fn floor(number: __m128) -> __m128 {
         let is_less = _mm_cmplt_ps(_mm_andnot_ps(_mm_set1_ps(-0.0), number), _mm_set1_ps(INTEGERS_FROM));
         let truncated = _mm_cvtepi32_ps(_mm_cvttps_epi32(number));
         let one = _mm_and_ps(_mm_cmplt_ps(number, truncated), _mm_set1_ps(1.0));
-        // The sign is restored for -0 and for numbers that truncate to 0.
+        // Restores the sign of -0 and of negative numbers that truncate to 0.
         select(is_less, _mm_or_ps(_mm_sub_ps(truncated, one), sign), number)
     })
 }
@@ -162,7 +162,7 @@ impl Number for Registers {
         Self([select(mask[0], yes.0[0], no.0[0]), select(mask[1], yes.0[1], no.0[1])])
     }
 
-    // The instruction returns its second operand if one is NaN or both are zero, as `Number::max` is defined.
+    // The instruction returns its second operand if one is NaN or both are zero, as `Number::max` requires.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self(both(self.0, other.0, |a, b| sse!(_mm_max_ps(a, b))))
@@ -205,7 +205,7 @@ impl Lanes for Registers {
 
     #[inline(always)]
     fn mask_from_bits(bits: u32) -> Masks {
-        // Each lane keeps its own bit of the broadcast bits, and compares it with that bit.
+        // Lane n keeps bit n of `bits`, and is set if that bit is.
         let has = |each| {
             sse!(_mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(bits.cast_signed()), each), each)))
         };

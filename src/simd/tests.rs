@@ -1,11 +1,11 @@
-//! Every set of instructions computes the same bits.
+//! The test that all instruction sets compute the same bits.
 
 #![allow(unsafe_code)]
 
 use super::*;
 use crate::lanes::{LANES, LaneMask, Lanes};
 
-/// The results of each operation on pairs of vectors: the bits of numbers, and masks.
+/// A kernel that applies all operations to pairs of vectors, and returns the bits of all results.
 struct All<'w>(&'w [[F32x8; 2]]);
 
 impl SimdKernel for All<'_> {
@@ -24,7 +24,7 @@ impl SimdKernel for All<'_> {
             let spread = (0..LANES).flat_map(one).chain([N::splat(b.0[0])]);
             let all_numbers =
                 numbers.into_iter().chain(chosen).chain(mapped).chain(spread).chain([x.gather(y), y.gather(x)]);
-            // The payload of NaN differs between CPUs, and no NaN reaches a picture.
+            // The bits of a NaN differ between CPUs, which is harmless: no NaN reaches a picture.
             let bits = |number: f32| if number.is_nan() { f32::NAN.to_bits() } else { number.to_bits() };
             all.extend(all_numbers.map(|numbers| numbers.store().0.map(bits)));
             let from_bits = [N::mask_from_bits(0b1010_0110), x.has_bits(a.0[3].to_bits())];
@@ -38,9 +38,10 @@ impl SimdKernel for All<'_> {
     }
 }
 
-/// Every pair of numbers at the limits of f32 and of the conversions.
+/// Compares the instruction sets on all pairs of numbers at the limits of f32 and of conversions to
+/// integers.
 #[test]
-fn all_instructions_have_the_same_bits() {
+fn all_instruction_sets_compute_the_same_bits() {
     let mut edges = vec![0.0, 0.3, 0.5, 1.0, 1.5, 2.5, 3.0e-39, 1e-20, 7.0e9, 3.0e38, f32::INFINITY, f32::MIN_POSITIVE];
     edges.extend([8_388_607.5, 8_388_608.0, 8_388_609.0, 2_147_483_520.0, 2_147_483_648.0, 16_777_217.0]);
     edges.extend(edges.clone().iter().map(|edge| -edge));
