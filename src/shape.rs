@@ -1,9 +1,9 @@
 //! Surfaces: their crossings with rays, and the surface point at a crossing.
 //!
 //! As in the lecture, a surface is given implicitly by f(x) = 0, and inserting the ray x = p + t d leaves one equation
-//! in t. Each surface solves its equation in a file of its own under `shape/`. To add one, write that file, with an
-//! implementation of [`Surface`], and add a line to the table `surfaces` here. It is then tested as a [`ScalarLeaf`];
-//! if that is too slow, implement [`SoaLeaf`] for a type of its own.
+//! in t. Each surface solves its equation in a file of its own under `shape/`. To add a surface, write that file, with
+//! an implementation of [`Surface`], and add a line to the table `surfaces` here. Rays are then tested against it in a
+//! [`ScalarLeaf`]; if that is too slow, implement [`SoaLeaf`] for a leaf type of its own.
 //!
 //! This module does not depend on materials and light.
 
@@ -44,38 +44,39 @@ pub trait Surface {
 
     /// Returns the least t in the interval at which the ray crosses the surface.
     ///
-    /// It is a root of f(origin + t direction) = 0.
+    /// That t is a root of f(origin + t direction) = 0.
     ///
-    /// The crossing of a bounded surface is clamped to the [interval of its box](Bounds::crossed), however rounding has
-    /// moved it. So culling by boxes never drops a hit (`culling.md`, 2).
+    /// For a bounded surface it is clamped to the [interval of its box](Bounds::crossed), from which rounding may have
+    /// moved it, so that culling by boxes never drops a hit (`culling.md`, 2).
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32>;
 
-    /// Returns the surface point at a crossing `t`.
-    ///
-    /// [`closest_crossing`](Self::closest_crossing) found it for this ray.
+    /// Returns the surface point at the crossing `t` that
+    /// [`closest_crossing`](Self::closest_crossing) found for `ray`.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint;
 
-    /// Returns the footprint of a pixel in [`uv`](SurfacePoint::uv).
+    /// Returns the footprint of a pixel: its extent in each coordinate of [`uv`](SurfacePoint::uv).
     ///
-    /// It is the distance from the crossing at `t` to the crossings of the neighbouring rays, whose directions differ
-    /// by `steps`; zero if the surface has no coordinates.
+    /// It is measured from the crossing at `t` to the crossings of the neighbouring rays, whose directions differ by
+    /// `steps`. Zero if the surface has no coordinates.
     #[inline(always)]
     fn footprint<N: Number>(&self, _direction: Vector<N>, _t: N, _steps: [Vec3; 2]) -> [N; 2] {
         [N::splat(0.0); 2]
     }
 }
 
-/// The crossing formula of a surface, a lane for each pair of a ray and a surface.
+/// The crossing formula of a surface, with a lane for each pair of a ray and a surface.
 ///
-/// One ray and one surface, eight rays and one surface, or one ray and eight surfaces.
+/// The pairs are one ray and one surface, eight rays and one surface, or one ray and eight surfaces.
 pub trait Crossable<N: Number> {
-    /// Returns the hit mask and the first crossing at `min` or later of each pair, as
-    /// [`closest_crossing`](Surface::closest_crossing) does; `None` only if no lane hits.
+    /// Returns the hit mask, and the t of each pair's first crossing at `min` or later.
+    ///
+    /// The crossings are those of [`closest_crossing`](Surface::closest_crossing); `None` only if no lane hits.
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)>;
 
-    /// Computes [`first_crossing`](Self::first_crossing) for rays of a packet.
+    /// Computes [`first_crossing`](Self::first_crossing) for rays of a packet, which share an error
+    /// bound.
     ///
-    /// They share an error bound ([`EdgeFunctions::packet_error_bound`]); infinity if none is known.
+    /// That is [`EdgeFunctions::packet_error_bound`], or infinity if the packet has none.
     #[inline(always)]
     fn first_crossing_with_bound(&self, rays: &Rays<N>, min: N, _error_bound: N) -> Option<(N::Mask, N)> {
         self.first_crossing(rays, min)
@@ -107,9 +108,9 @@ pub struct Points<N: Number> {
 }
 
 impl<N: Number> Points<N> {
-    /// Returns the point at `position`, where the front has the normal `front`.
+    /// Returns the points at `position`, with the normal on the side that the rays come from.
     ///
-    /// `size` is the largest coordinate involved.
+    /// `front` is the normal of the front, and `size` the largest coordinate that the computation of `position` used.
     #[inline(always)]
     fn seen_by(rays: &Rays<N>, position: Vector<N>, front: Vector<N>, size: N, uv: [N; 2]) -> Self {
         let is_front = rays.direction.dot(front).lt(N::splat(0.0));
@@ -125,7 +126,7 @@ impl<N: Number> Points<N> {
         Self { position: zeros, geometric_normal: zeros, is_front: zero.lt(zero), clearance: zero, uv: [zero; 2] }
     }
 
-    /// Returns `yes` where the mask is set, else `no`.
+    /// Returns the points of `yes` where the mask is set, else those of `no`.
     #[inline(always)]
     pub fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
         let of_two = |yes: N, no: N| N::select(mask, yes, no);
@@ -153,12 +154,12 @@ impl Points<f32> {
     }
 }
 
-/// An unbounded surface, which is in no tree.
+/// An unbounded surface, which is in a list instead of a tree.
 pub trait Endless: Surface + Copy {
-    /// The type with the formula.
+    /// The type that implements the crossing formula.
     type Of<N: Lanes>: Crossable<N> + AtCrossing<N>;
 
-    /// Returns the surface in all lanes, for eight rays.
+    /// Returns the surface in all lanes, for tests against eight rays.
     fn splat<N: Lanes>(&self) -> Self::Of<N>;
 }
 
@@ -167,7 +168,7 @@ pub trait SoaLeaf: Copy {
     /// The type of one surface.
     type Shape: Surface + Copy + Sync;
 
-    /// The type with the formula.
+    /// The type that implements the crossing formula.
     type Of<N: Lanes>: Crossable<N> + AtCrossing<N>;
 
     /// Whether the formula needs the [shear](Rays::shear) of rays.
@@ -176,19 +177,20 @@ pub trait SoaLeaf: Copy {
     /// Packs up to eight surfaces.
     fn of(shapes: &[Self::Shape]) -> Self;
 
-    /// Returns all surfaces, for one ray in all lanes.
+    /// Loads the surface of each lane, for tests against one ray in all lanes.
     fn load<N: Lanes>(&self) -> Self::Of<N>;
 
-    /// Returns the surface of `lane` in all lanes, for eight rays.
+    /// Returns the surface of `lane` in all lanes, for tests against eight rays.
     fn splat<N: Lanes>(&self, lane: usize) -> Self::Of<N>;
 
-    /// Gathers a surface for each lane, for eight rays, as [`Lanes::gather`] does.
+    /// Returns in each lane the surface selected by the lowest three bits of `lanes`, as
+    /// [`Lanes::gather`] does.
     fn gather<N: Lanes>(&self, lanes: N) -> Self::Of<N>;
 
     /// Returns `yes` where the mask is set, else `no`.
     fn select<N: Lanes>(mask: N::Mask, yes: Self::Of<N>, no: Self::Of<N>) -> Self::Of<N>;
 
-    /// Whether [`edge_functions`](Self::edge_functions) returns any.
+    /// Whether [`edge_functions`](Self::edge_functions) may return `Some`.
     const HAVE_EDGE_FUNCTIONS: bool = false;
 
     /// Returns edge functions that cull groups of rays, if they cost less than the exact test.
@@ -211,10 +213,10 @@ pub struct SurfacePoint {
     pub geometric_normal: Vec3,
     /// The visible side of the surface.
     pub side: Side,
-    /// The distance along `geometric_normal` at which a ray may start.
+    /// The distance from the surface, along `geometric_normal`, at which a new ray may start
+    /// without hitting it again.
     ///
-    /// From there it does not hit the surface again. Proportional to the coordinates involved, not a constant of the
-    /// scene's size.
+    /// It is proportional to the coordinates from which the point was computed, not to the size of the scene.
     pub clearance: f32,
     /// Coordinates on the surface for patterns.
     ///
@@ -226,9 +228,8 @@ pub struct SurfacePoint {
 impl SurfacePoint {
     /// Returns the origin of a ray that leaves the surface without hitting it again.
     ///
-    /// It is `position`, moved by the clearance (after Waechter and Binder, Ray Tracing Gems, chapter 6, and pbrt's
-    /// `OffsetRayOrigin`). It lies outside the error box of the hit at any scale; a fixed epsilon fails in small and in
-    /// large scenes.
+    /// It is `position`, moved along the normal by the clearance (after Waechter and Binder, Ray Tracing Gems, chapter
+    /// 6, and pbrt's `OffsetRayOrigin`). A fixed epsilon would fail in small or in large scenes.
     pub fn ray_origin(&self) -> Vec3 {
         self.position + self.geometric_normal * self.clearance
     }
@@ -243,16 +244,16 @@ pub enum Side {
     Back,
 }
 
-/// The clearance relative to the coordinates: 32 units of 2^-24.
+/// The [clearance](SurfacePoint::clearance) relative to the coordinates: 32 units of 2^-24.
 ///
-/// A point is off by a few units, and so is the crossing of a second ray.
-// Not proved, but counted: at most 10 false shadows of 100,000 at each scale (`culling.md`, 15).
+/// A computed point is off by a few units, and so is the crossing of a second ray.
+// Not proved, but measured: at most 10 false shadows in 100,000 at each scale (`culling.md`, 15).
 const CLEARANCE: f32 = 32.0 / 16_777_216.0;
 
 /// Passes the table of all surfaces to a macro, one line each.
 ///
-/// `tree`, or `list` for unbounded ones; the field of the accelerator; the type; the type of a leaf, or of one
-/// unbounded surface; a description.
+/// A line has the group, which is `list` for unbounded surfaces and `tree` for all others; the name of the
+/// accelerator's field; the type; the type of a leaf, or of an unbounded surface in its list; a description.
 macro_rules! surfaces {
     ($with:ident) => {
         $with! {
@@ -271,7 +272,7 @@ macro_rules! surfaces {
 
 pub(crate) use surfaces;
 
-/// Makes [`Shape`] and [`Primitive`] from the table of surfaces.
+/// Defines [`Shape`] and [`Primitive`] from the table of surfaces.
 macro_rules! shapes {
     ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
         /// Any of the surfaces, or a mesh.
@@ -366,9 +367,10 @@ impl From<Mesh> for Shape {
 }
 
 impl Primitive<'_> {
-    /// Returns the diffuse reflectance of the surface itself at these coordinates.
+    /// Returns the diffuse reflectance from the file of a mesh, at the coordinates
+    /// [`uv`](SurfacePoint::uv).
     ///
-    /// For a mesh whose file has colours; by [`uv`](SurfacePoint::uv).
+    /// `None` if the file has no colours, and for other shapes.
     pub fn own_reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
         match self {
             Self::Facet(facet) => facet.reflectance(uv),

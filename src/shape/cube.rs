@@ -1,6 +1,6 @@
 //! Ray-cube intersection: a surface for tests.
 //!
-//! It shows that one file and one line of the table suffice.
+//! It shows that a new surface takes one file and one line in the table `surfaces`.
 
 use super::{CheckedShape, Described, Equation, Meshes, Points, Shape, Step, Surface, SurfacePoint};
 use crate::bounds::{Bounds, crossed};
@@ -10,7 +10,7 @@ use crate::text::number;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
 use glam::Vec3;
 
-/// All points x with max |x - c| - h = 0, the faces perpendicular to the axes.
+/// A cube: all points x with max |x - c| - h = 0, whose faces are perpendicular to the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cube {
     center: Vec3,
@@ -29,7 +29,7 @@ impl Surface for Cube {
         Some(Bounds { min: self.center - self.half_side, max: self.center + self.half_side })
     }
 
-    /// The cube is its own box.
+    /// Intersects the ray with the cube's bounding box, which is the cube itself.
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
         let Bounds { min, max } = self.bounds()?;
         let [enters, leaves] = crossed([Vector::splat(min), Vector::splat(max)], &probe.rays);
@@ -57,7 +57,7 @@ impl Described for Cube {
         format!("a {color} cube with sides of {}", number(2.0 * self.half_side))
     }
 
-    /// Solves for the planes of the faces between which the line is inside all others.
+    /// Solves for the t at which the line enters and leaves the cube.
     fn equation(&self, ray: &Ray) -> Equation {
         let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let (c, h) = (self.center.as_dvec3(), f64::from(self.half_side));
@@ -84,7 +84,7 @@ mod tests;
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrittenCube {
     center: Option<WrittenVector>,
-    /// 1 if none is given.
+    /// The length of a side; 1 if none is given.
     side: Option<WrittenNumber>,
 }
 

@@ -6,12 +6,12 @@ use crate::ray::Ray;
 use crate::text::number;
 use glam::Vec3;
 
-/// The text about a surface.
+/// A surface that can be described in words, with the equation for its crossings.
 pub trait Described {
     /// The name of its kind: "sphere".
     const KIND: &'static str;
 
-    /// Returns a noun phrase with the colour: "a red sphere of radius 1".
+    /// Returns a noun phrase for the surface in a colour: "a red sphere of radius 1".
     fn described(&self, color: &str) -> String;
 
     /// Returns the equation of the lecture whose roots are the crossings of the ray.
@@ -24,7 +24,8 @@ pub trait Described {
         false
     }
 
-    /// Returns centre and radius of the surface if its outline is always a circle: a sphere's.
+    /// Returns centre and radius of the surface if its outline is a circle from everywhere, as a
+    /// sphere's is.
     fn circle(&self) -> Option<(Vec3, f32)> {
         None
     }
@@ -43,13 +44,13 @@ macro_rules! described {
                 }
             }
 
-            /// Returns a noun phrase with the colour: "a red sphere of radius 1".
+            /// Returns a noun phrase for the shape in a colour: "a red sphere of radius 1".
             #[doc(hidden)]
             pub fn described(&self, color: &str) -> String {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.described(color),)*
                     Self::Mesh(mesh) => {
-                        format!("a {color} mesh of {} triangles, {}", mesh.triangle_count(), sides(&whole(mesh)))
+                        format!("a {color} mesh of {} triangles, {}", mesh.triangle_count(), sides(&bounds_of(mesh)))
                     }
                 }
             }
@@ -70,7 +71,7 @@ macro_rules! described {
             pub fn bounds(&self) -> Option<Bounds> {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.bounds(),)*
-                    Self::Mesh(mesh) => Some(whole(mesh)),
+                    Self::Mesh(mesh) => Some(bounds_of(mesh)),
                 }
             }
         }
@@ -84,7 +85,8 @@ macro_rules! described {
                 }
             }
 
-            /// Returns centre and radius of the primitive if its outline is always a circle.
+            /// Returns centre and radius of the primitive if its outline is a circle from
+            /// everywhere, as a sphere's is.
             pub fn circle(&self) -> Option<(Vec3, f32)> {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.circle(),)*
@@ -97,7 +99,7 @@ macro_rules! described {
 
 surfaces! { described }
 
-fn whole(mesh: &Mesh) -> Bounds {
+fn bounds_of(mesh: &Mesh) -> Bounds {
     Bounds::of(mesh.file().positions().iter().copied())
 }
 

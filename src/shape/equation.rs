@@ -1,18 +1,19 @@
 //! The lecture's equations for the crossing of a ray and a surface, with inputs and results.
 //!
-//! They are solved in the lecture's form, in f64. Pictures use forms that are stable in f32, so that the last digits
-//! may differ.
+//! For explanations they are solved in the lecture's form, in f64. Pictures use forms that are stable in f32, so the
+//! last digits may differ.
 
-/// The crossings of a ray's line and a surface, in front of the origin or behind it.
+/// A solved equation: the crossings of a ray's line and a surface, in front of the ray's origin or
+/// behind it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equation {
     /// The computation, line by line.
     pub steps: Vec<Step>,
     /// The values of t at which the line crosses the surface or its plane, ascending.
     pub roots: Vec<f64>,
-    /// The text if there is no root.
+    /// The text to show if there is no root.
     pub without_root: &'static str,
-    /// Whether the line crosses the plane outside the surface.
+    /// Whether the line crosses the surface's plane outside the surface.
     pub is_outside: bool,
 }
 
@@ -27,7 +28,7 @@ pub enum Step {
     Values(&'static str, &'static str, Vec<f64>),
 }
 
-/// Returns the quotient if it is finite.
+/// Returns `above / below` if it is finite.
 pub(super) fn quotient(above: f64, below: f64) -> Option<f64> {
     Some(above / below).filter(|quotient| quotient.is_finite())
 }

@@ -19,7 +19,7 @@ pub struct Mesh {
     file: MeshFile,
 }
 
-/// Shows the size only: a mesh may have millions of triangles.
+/// Shows only the number of triangles, of which there may be millions.
 impl fmt::Debug for Mesh {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Mesh").field("triangles", &self.triangle_count()).finish_non_exhaustive()
@@ -30,7 +30,7 @@ impl Mesh {
     /// Returns the mesh that was read from a file.
     ///
     /// # Errors
-    /// If it reaches beyond ±1e9.
+    /// If a coordinate lies outside ±1e9.
     #[doc(hidden)]
     pub fn new(file: MeshFile) -> Result<Self, SceneFault> {
         if !checks::are_near(file.positions()) {
@@ -41,7 +41,7 @@ impl Mesh {
 
     /// Returns the mesh of triangles given by the indices of their corners in `positions`.
     ///
-    /// They are counterclockwise seen from outside. A triangle may have no area; no ray hits it.
+    /// The corners of a triangle are counterclockwise when seen from outside. No ray hits a triangle without area.
     ///
     /// ```
     /// use glam::Vec3;
@@ -76,7 +76,8 @@ impl Mesh {
         Ok(Self { file })
     }
 
-    /// Returns the mesh of a file that was checked, or is made of one that was.
+    /// Returns the mesh of a file whose coordinates were checked, or that was made from such a
+    /// file.
     pub(crate) fn of_checked(file: MeshFile) -> Self {
         Self { file }
     }
@@ -141,14 +142,15 @@ impl Facet<'_> {
         &self.triangle
     }
 
-    /// Returns the position and the shading normal of the smooth surface.
+    /// Returns the position and the shading normal on the smooth surface that the triangle
+    /// approximates.
     ///
-    /// The triangle approximates it if its corners have normals. `geometric_normal` gives the visible side, as files
-    /// order corners either way.
+    /// `None` if the corners have no normals. `geometric_normal` is on the visible side; files order corners either
+    /// way.
     pub fn smooth(&self, position: Vec3, geometric_normal: Vec3, uv: Vec2) -> Option<(Vec3, Vec3)> {
         let normals = self.mesh.file.normals_of(self.index as usize)?;
-        // Opposite normals may cancel out: then the flat normal.
-        let smooth = between(normals, uv).normalize_or(geometric_normal);
+        // Falls back to the flat normal where opposite normals cancel out.
+        let smooth = interpolate(normals, uv).normalize_or(geometric_normal);
         // The interpolated normal may point away from the visible side, as files order corners either way.
         let sign = if smooth.dot(geometric_normal) < 0.0 { -1.0 } else { 1.0 };
         Some((position + self.lift(position, uv, normals.map(|normal| normal * sign)), smooth * sign))
@@ -157,21 +159,22 @@ impl Facet<'_> {
     /// Returns the offset from the triangle to the smooth surface.
     ///
     /// It is interpolated from the tangent planes of the corners (Hanika, Hacking the Shadow Terminator, Ray Tracing
-    /// Gems II, chapter 4). Shadow rays from there do not hit neighbouring triangles where the smooth surface is lit.
+    /// Gems II, chapter 4), so that shadow rays do not hit neighbouring triangles where the smooth surface is lit.
     fn lift(&self, position: Vec3, uv: Vec2, normals: [Vec3; 3]) -> Vec3 {
         let [a, b, c] = self.triangle.corners();
         let above = |corner: Vec3, normal: Vec3| normal * (corner - position).dot(normal).max(0.0);
-        between([above(a, normals[0]), above(b, normals[1]), above(c, normals[2])], uv)
+        interpolate([above(a, normals[0]), above(b, normals[1]), above(c, normals[2])], uv)
     }
 
-    /// Returns the product of the file's colours: of the material, the texture and the corners.
+    /// Returns the product of the colours that the file has for a point: of the material, the
+    /// texture and the corners.
     pub(super) fn reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
         let (file, index) = (&self.mesh.file, self.index as usize);
         let material = file.material_of(index).map(|index| &file.materials()[index]);
-        let colors = file.colors_of(index).map(|colors| between(colors, uv));
+        let colors = file.colors_of(index).map(|colors| interpolate(colors, uv));
         let textured = material.and_then(|material| {
             let texture = material.texture.as_ref()?;
-            let at = between(file.texture_coordinates_of(index)?, uv);
+            let at = interpolate(file.texture_coordinates_of(index)?, uv);
             Some(texture.texture.color_at(texture.at(at)))
         });
         let own = [material.map(|material| material.reflectance), textured, colors];
@@ -179,8 +182,9 @@ impl Facet<'_> {
     }
 }
 
-/// Interpolates the values of the corners by the barycentric weights of the second and the third.
-fn between<T: Add<Output = T> + Mul<f32, Output = T>>([a, b, c]: [T; 3], shares: Vec2) -> T {
+/// Interpolates the values of three corners; `shares` are the barycentric weights of the second and
+/// the third.
+fn interpolate<T: Add<Output = T> + Mul<f32, Output = T>>([a, b, c]: [T; 3], shares: Vec2) -> T {
     a * (1.0 - shares.x - shares.y) + b * shares.x + c * shares.y
 }
 
@@ -242,7 +246,7 @@ fn path(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Spanned<St
     Some(Spanned { value: path.to_string(), span: node.span })
 }
 
-/// Reads one factor for all axes, or three.
+/// Reads the scale: one factor for all axes, or three.
 fn scale(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenVector> {
     if matches!(node.value, Value::Number(_)) {
         let number = reader.number(node)?;
@@ -257,7 +261,7 @@ fn angles(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenV
     Some(WrittenVector { components, span: node.span })
 }
 
-/// Checks scale, rotation and translation of a mesh.
+/// Checks the scale, the rotation and the translation of a mesh, and returns them in this order.
 fn placement(
     validator: &mut Validator<'_>,
     &WrittenMesh { scale, rotate, translate, .. }: &WrittenMesh,
@@ -277,7 +281,7 @@ fn placement(
     Some((scale?, turn?, translation?))
 }
 
-/// Checks the scale: a factor may be negative, which mirrors the mesh, but not 0.
+/// Checks the factors of a scale, which may be negative, to mirror the mesh, but not 0.
 fn factors(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Vec3> {
     for factor in written.components {
         validator.accept(factor.span, checks::factor(factor.value))?;
@@ -285,7 +289,8 @@ fn factors(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Vec3
     Some(DVec3::from_array(written.components.map(|factor| factor.value)).as_vec3())
 }
 
-/// Returns the rotation about x, then y, then z; counterclockwise when looking against the axis.
+/// Checks the angles, and returns the rotation about x, then y, then z: counterclockwise seen from
+/// the axis's end.
 fn turn(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Mat3> {
     const MAX_ANGLE: f64 = 36_000.0;
     if let Some(angle) = written.components.iter().find(|angle| angle.value.abs() > MAX_ANGLE) {
@@ -300,7 +305,7 @@ fn turn(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Mat3> {
 
 /// Returns cosine and sine of an angle in degrees; exact for quarter turns.
 fn cosine_and_sine(degrees: f64) -> (f64, f64) {
-    // Reduced to a quarter turn in degrees, where multiples of 90 are exact, before the conversion to radians.
+    // The angle is reduced to a quarter turn before the conversion to radians, as multiples of 90 are exact in degrees.
     let quarters = libm::round(degrees / 90.0);
     let (sine, cosine) = libm::sincos((degrees - 90.0 * quarters).to_radians());
     match (quarters as i64).rem_euclid(4) {

@@ -12,12 +12,13 @@ use crate::ray::{Interval, Probe, Ray, Rays};
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
 use glam::Vec3;
 
-/// All points x with (x - a).n = 0. Unbounded, and visible from both sides.
+/// A plane: all points x with (x - a).n = 0. It is unbounded, and visible from both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     point: Vec3,
     normal: Vec3,
-    /// The axes of patterns on the plane: u, normal, v is a right-handed orthonormal basis.
+    /// The axes u and v of patterns on the plane. u, normal and v are a right-handed orthonormal
+    /// basis.
     u: Vec3,
     v: Vec3,
 }
@@ -34,15 +35,15 @@ impl Plane {
         Ok(Self::unchecked(point, checks::checked_direction("normal", normal)?))
     }
 
-    /// Returns the unchecked plane; `normal` has unit length.
+    /// Returns the plane without checking the arguments; `normal` must have unit length.
     #[doc(hidden)]
     pub fn unchecked(point: Vec3, normal: Vec3) -> Self {
         let u = pattern_axis(normal);
-        // On a floor (normal +y) u is +x and v is +z.
+        // On a floor, whose normal is +y, u is +x and v is +z.
         Self { point, normal, u, v: u.cross(normal) }
     }
 
-    /// Returns the point at which patterns start.
+    /// Returns the point of the plane that is the origin of patterns.
     #[doc(hidden)]
     pub fn point(&self) -> Vec3 {
         self.point
@@ -56,7 +57,7 @@ impl Plane {
 
     /// Solves (p + t d - a).n = 0: t = (a - p).n / d.n.
     ///
-    /// Infinite or NaN for a ray parallel to the plane.
+    /// The result is infinite or NaN for a ray parallel to the plane.
     #[inline(always)]
     fn crossing<N: Number>(&self, rays: &Rays<N>) -> N {
         let normal = Vector::splat(self.normal);
@@ -64,7 +65,8 @@ impl Plane {
     }
 }
 
-/// Returns the x axis projected into the plane, or the z axis if the normal is close to x.
+/// Returns the axis u of patterns: the x axis projected into the plane, or the z axis if the normal
+/// is close to x.
 fn pattern_axis(normal: Vec3) -> Vec3 {
     // 0.9 keeps the projection longer than 0.43, far from a division by zero.
     let axis = if normal.x.abs() < 0.9 { Vec3::X } else { Vec3::Z };
@@ -75,7 +77,7 @@ impl<N: Number> Crossable<N> for Plane {
     #[inline(always)]
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
         let t = self.crossing(rays);
-        // A parallel ray divides by zero: infinite or NaN, and both comparisons reject that.
+        // For a parallel ray t is infinite or NaN, because of a division by zero, and one of the comparisons is false.
         Some((min.le(t) & t.le(N::splat(f32::MAX)), t))
     }
 
@@ -100,7 +102,8 @@ impl Surface for Plane {
         AtCrossing::points_at(self, &Probe::new(*ray).rays, t).point()
     }
 
-    /// A neighbouring ray p + t (d + e) crosses the plane at t - t e.n / d.n, to first order.
+    /// Uses that a neighbouring ray p + t (d + e) crosses the plane at t - t e.n / d.n, to first
+    /// order.
     ///
     /// (Igehy, Tracing Ray Differentials, 1999.)
     #[inline(always)]
@@ -131,7 +134,7 @@ impl<N: Number> AtCrossing<N> for Plane {
     fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N> {
         let (point, normal) = (Vector::splat(self.point), Vector::splat(self.normal));
         let hit = rays.origin + rays.direction * t;
-        // Projected onto the plane: `hit` is off by units of t, the projection by units of the coordinates.
+        // The error of `hit` is proportional to t. Projected onto the plane, it is proportional to the coordinates.
         let position = hit - normal * (hit - point).dot(normal);
         let from_point = position - point;
         let uv = [from_point.dot(Vector::splat(self.u)), from_point.dot(Vector::splat(self.v))];

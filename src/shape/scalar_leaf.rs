@@ -6,7 +6,7 @@ use crate::ray::{Interval, Probe, Ray, Rays};
 use glam::Vec3;
 use std::array::from_fn;
 
-/// Up to eight surfaces of any kind, tested one after the other.
+/// A leaf with up to eight surfaces of any type, which are tested one after the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScalarLeaf<S>([Option<S>; LANES]);
 
@@ -46,8 +46,8 @@ impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
         let (min, mut crosses, mut t) = (min.store(), 0, F32x8::ZERO);
         for (lane, surface) in self.0.iter().enumerate() {
             let within = Interval { min: min.0[lane], max: f32::MAX };
-            // The shared values are computed again per surface: a simple path for new surfaces; fast ones implement
-            // `SoaLeaf`.
+            // Recomputes the ray's shared values for each surface, which is simple but slow. Surfaces that must be
+            // fast implement `SoaLeaf`.
             let probe = Probe::new(ray_of(rays, lane));
             if let Some(crossing) = surface.as_ref().and_then(|surface| surface.closest_crossing(&probe, within)) {
                 crosses |= 1 << lane;
@@ -59,7 +59,7 @@ impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
 
     fn boxes(&self) -> [Vector<N>; 2] {
         let bounds = |lane: usize| self.0[lane].as_ref().and_then(Surface::bounds);
-        // Unused lanes have an inverted infinite box, which no ray meets.
+        // Unused lanes have an inverted infinite box, which no ray hits.
         let min = from_fn(|lane| bounds(lane).map_or(Vec3::INFINITY, |bounds| bounds.min));
         let max = from_fn(|lane| bounds(lane).map_or(Vec3::NEG_INFINITY, |bounds| bounds.max));
         [Vector::of(min).load(), Vector::of(max).load()]

@@ -13,16 +13,17 @@ use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, 
 use glam::Vec3;
 use std::array::from_fn;
 
-/// Distance in radii from which on a crossing is refined by a Newton step.
-// At 200 radii it brings the crossing from 6e-5 to 5e-5 radii of the surface.
+/// The distance from a ray's origin to the center, in radii, from which on a Newton step refines
+/// the crossing.
+// At 200 radii the step reduces the crossing's distance from the surface from 6e-5 to 5e-5 radii.
 const NEWTON_MIN_RADII: f32 = 8.0;
 
-/// The squared cosine to the normal below which a ray is grazing.
+/// The squared cosine between ray and normal below which the ray is grazing.
 ///
-/// There the derivative is near zero, and a Newton step diverges.
+/// For a grazing ray the derivative of f is near zero, so that a Newton step would diverge.
 const GRAZING_COSINE_SQUARED: f32 = 1e-3;
 
-/// All points x with ||x - c||^2 - r^2 = 0.
+/// A sphere: all points x with ||x - c||^2 - r^2 = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     center: Vec3,
@@ -30,7 +31,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// Returns the sphere about `center` with that radius.
+    /// Returns the sphere about `center`.
     ///
     /// # Errors
     /// Unless the centre's coordinates lie within ±1e9, and the radius between 1e-9 and 1e9.
@@ -40,19 +41,19 @@ impl Sphere {
         Ok(Self { center, radius })
     }
 
-    /// Returns the unchecked sphere.
+    /// Returns the sphere without checking the arguments.
     #[doc(hidden)]
     pub fn unchecked(center: Vec3, radius: f32) -> Self {
         Self { center, radius }
     }
 
-    /// Returns the lecture's **c**.
+    /// Returns the center, the lecture's **c**.
     #[doc(hidden)]
     pub fn center(&self) -> Vec3 {
         self.center
     }
 
-    /// Returns the lecture's r, greater than 0.
+    /// Returns the radius, the lecture's r; greater than 0.
     #[doc(hidden)]
     pub fn radius(&self) -> f32 {
         self.radius
@@ -71,11 +72,10 @@ pub struct SphereN<N> {
 }
 
 impl<N: Number> SphereN<N> {
-    /// Returns t after one Newton step.
+    /// Improves the crossing `t` by one Newton step, except for grazing rays.
     ///
-    /// From afar, t is large and rounded by units of itself; the remaining distance to the surface is short and
-    /// computed more exactly.
-    // Grazing rays keep t.
+    /// `f` is the vector from the center to the ray's origin. From afar, t is large, and so is its rounding error; the
+    /// remaining distance to the surface is short, and computed more exactly.
     #[inline(always)]
     fn newton_step(&self, t: N, f: Vector<N>, rays: &Rays<N>) -> N {
         let squared_radius = self.radius * self.radius;
@@ -110,23 +110,23 @@ impl<N: Number> Crossable<N> for SphereN<N> {
         let half_b = -f.dot(d);
         let to_line = f + d * (half_b * rays.inverse_squared_length);
         let under_root = squared_radius - to_line.dot(to_line);
-        // Compared this way round, NaN is no crossing.
+        // Comparisons with NaN are false, so NaN counts as a miss.
         let crosses = zero.le(under_root);
-        // Before the square root and the division, which take longer than the rest.
+        // Returns before the square root and the division, which take longer than the rest.
         if !crosses.any() {
             return None;
         }
         let root = (rays.squared_length * under_root).sqrt();
-        // The sum of two terms of one sign: no cancellation.
+        // Adds two terms of the same sign, so that they do not cancel.
         let q = N::select(half_b.lt(zero), half_b - root, half_b + root);
         let ff = f.dot(f);
         let (t0, t1) = ((ff - squared_radius) / q, q * rays.inverse_squared_length);
-        // The direct root is the larger or the smaller one by the sign of f.d.
+        // The sign of f.d decides which of the two roots is the smaller one.
         let is_sorted = t0.le(t1);
         let (first, second) = (N::select(is_sorted, t0, t1), N::select(is_sorted, t1, t0));
         let t = N::select(min.le(first), first, second);
         let is_far = (N::splat(NEWTON_MIN_RADII * NEWTON_MIN_RADII) * squared_radius).lt(ff);
-        // Skipped where all spheres are near.
+        // The Newton step is skipped if no lane needs it.
         let t = if is_far.any() { N::select(is_far, self.newton_step(t, f, rays), t) } else { t };
         let [start, end] = crossed(self.boxes(), rays);
         let t = nearest_in(start, end, t);

@@ -1,6 +1,6 @@
 //! Watertight ray-triangle intersection: no ray passes between triangles that share an edge.
 //!
-//! Bounds of errors are numbered statements in `culling.md`.
+//! The numbered statements on error bounds are in `culling.md`.
 
 use super::described::sides;
 use super::equation::quotient;
@@ -21,9 +21,9 @@ mod edge_functions;
 
 pub use edge_functions::EdgeFunctions;
 
-/// All points of the plane through three corners that lie between them.
+/// A triangle: all points between three corners.
 ///
-/// It is seen from both sides; the front is the one from which the corners go round counterclockwise.
+/// It is visible from both sides; its front is the side from which the corners are in counterclockwise order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     corners: [Vec3; 3],
@@ -33,9 +33,9 @@ pub struct Triangle {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleN<N>([Vector<N>; 3]);
 
-/// The crossing of a line and a triangle's plane, scaled by the sum of the weights.
+/// The crossing of a ray's line and a triangle's plane, not yet divided by the sum of the weights.
 ///
-/// Rays that miss need no division.
+/// So rays that miss need no division.
 #[derive(Clone, Copy)]
 struct Crossing<N> {
     /// The unnormalized barycentric weights of the corners; all have one sign.
@@ -54,29 +54,31 @@ impl<N: Number> Crossing<N> {
 }
 
 impl<N: Number> TriangleN<N> {
-    /// Tests by the method of Woop, Benthin and Wald.
+    /// Returns the mask of rays whose lines hit, and their crossings, by the method of Woop,
+    /// Benthin and Wald.
     ///
     /// (Watertight Ray/Triangle Intersection, JCGT 2013.)
     ///
     /// In sheared coordinates the ray runs along z. It hits if the origin of the xy plane lies on the same side of all
-    /// three edges, or on them. Where the sign of a weight is within its error bound, f64 decides.
-    // (With the signs of f32 alone, one of a million rays hit a triangle of the dragon that it misses by 1.4e-6 of its
-    // size.)
+    /// three edges, or on them. If a weight is within its error bound, so that its sign is uncertain, f64 decides.
+    // With the signs of f32 alone, one of a million rays hit a triangle of the dragon that it misses by 1.4e-6 of the
+    // triangle's size.
     #[inline(always)]
     fn crossing(&self, rays: &Rays<N>) -> Option<(N::Mask, Crossing<N>)> {
         let corners = self.sheared(rays);
         self.crossing_of(corners, weights(corners), rays)
     }
 
-    /// Tests rays whose [`weight_error_bound`] is at most `error_bound`.
-    // If that decides all lanes, their own bounds, a third of the work of a test, are not computed: bunny took .95 of
-    // the time.
+    /// Computes [`crossing`](Self::crossing) for rays whose [`weight_error_bound`] is at most
+    /// `error_bound`.
+    // If `error_bound` decides all lanes, the bounds of the rays, a third of the work of a test, are not computed: the
+    // bunny takes 0.95 of the time.
     #[inline(always)]
     fn crossing_with_bound(&self, rays: &Rays<N>, error_bound: N) -> Option<(N::Mask, Crossing<N>)> {
         let corners = self.sheared(rays);
         let weights = weights(corners);
         let [agree, differ] = signs(weights, error_bound);
-        // One uncertain lane makes all compute their own bounds: lanes cannot branch apart.
+        // If any lane is uncertain, the bounds of all lanes are computed: a branch cannot be taken by one lane alone.
         if !(agree | differ).all() {
             return self.crossing_of(corners, weights, rays);
         }
@@ -90,6 +92,7 @@ impl<N: Number> TriangleN<N> {
         [shear.apply(a - *origin), shear.apply(b - *origin), shear.apply(c - *origin)]
     }
 
+    /// Computes the crossing from sheared corners and their weights.
     #[inline(always)]
     fn crossing_of(
         &self,
@@ -98,7 +101,7 @@ impl<N: Number> TriangleN<N> {
         rays: &Rays<N>,
     ) -> Option<(N::Mask, Crossing<N>)> {
         let [agree, differ] = signs(weights, weight_error_bound(corners, rays.shear.length));
-        // Unused lanes have infinite corners: f64 must not be asked for them.
+        // Unused lanes have infinite corners, and must not count as uncertain.
         let is_uncertain = !(agree | differ) & self.0[0].x.le(N::splat(f32::MAX));
         if !(agree | is_uncertain).any() {
             return None;
@@ -111,14 +114,15 @@ impl<N: Number> TriangleN<N> {
         }
     }
 
-    /// Clamps the crossing to the triangle's box and rejects t below `min`: the result of
-    /// [`first_crossing`](Crossable::first_crossing).
+    /// Divides the crossing, clamps its t to the triangle's box, and rejects t below `min`.
+    ///
+    /// Returns the result of [`first_crossing`](Crossable::first_crossing).
     #[inline(always)]
     fn first_from(&self, min: N, rays: &Rays<N>, (crosses, crossing): (N::Mask, Crossing<N>)) -> Option<(N::Mask, N)> {
-        // The first division of the test: most tests end before it.
+        // This is the first division of the test; most tests end before it.
         let t = crossing.t / crossing.sum;
-        // Rejected before the box test, as a shadow ray always crosses the line of the triangle that it starts on: 1.3
-        // to 1.9 % faster with shadows.
+        // Rejects before the box test, because a shadow ray always crosses the plane of the triangle that it starts on:
+        // pictures with shadows are 1.3 to 1.9 % faster.
         let crosses = crosses & min.le(t);
         if !crosses.any() {
             return None;
@@ -129,7 +133,8 @@ impl<N: Number> TriangleN<N> {
         Some((crosses & start.le(end) & min.le(t), t))
     }
 
-    /// Replaces the result of uncertain lanes by that of [`crossing_in_f64`].
+    /// Replaces the results of uncertain lanes by those of [`crossing_in_f64`]; `agree` is the mask
+    /// of certain hits.
     #[inline(always)]
     fn resolve_in_f64(
         &self,
@@ -152,10 +157,11 @@ impl<N: Number> TriangleN<N> {
 
 /// Tests one lane in f64.
 ///
-/// Returns 1 for a hit, the weights and t, divided by the sum so that f32 can hold them.
+/// Returns 1 for a hit, else 0, then the three weights and t, all divided by the sum of the weights to fit in f32.
 ///
-/// Each sign is that of the exact weight or zero, and neighbours agree on it: `culling.md`, 8.
-// Out of line, as one ray of thousands needs it.
+/// The sign of each weight is that of the exact weight or zero, and triangles that share an edge get the same sign for
+/// it (`culling.md`, 8).
+// Cold, as one ray of thousands needs it.
 #[cold]
 fn crossing_in_f64([is_active, ax, ay, az, bx, by, bz, cx, cy, cz, ox, oy, oz, dx, dy, dz]: [f32; 16]) -> [f32; 5] {
     if is_active == 0.0 {
@@ -170,7 +176,7 @@ fn crossing_in_f64([is_active, ax, ay, az, bx, by, bz, cx, cy, cz, ox, oy, oz, d
     let weights = DVec3::new(area(c, b), area(a, c), area(b, a));
     let differ = weights.min_element() < 0.0 && weights.max_element() > 0.0;
     let sum = weights.x + weights.y + weights.z;
-    // The sum is zero for triangles seen edge-on or without area: no hit.
+    // The sum is zero for triangles that are seen edge-on or have no area; these are not hit.
     if differ || sum == 0.0 {
         return [0.0; 5];
     }
@@ -178,15 +184,16 @@ fn crossing_in_f64([is_active, ax, ay, az, bx, by, bz, cx, cy, cz, ox, oy, oz, d
     [1.0, x, y, z, (weights.dot(DVec3::new(a.z, b.z, c.z)) / sum) as f32]
 }
 
-/// Returns the edge functions of the triangle.
+/// Returns the weight of each corner: the edge function of the opposite edge.
 ///
-/// For each corner twice the signed area between the other two and the origin of the xy plane. A neighbour computes the
-/// same number for a shared edge, negated.
+/// It is twice the signed area of the triangle of the other two corners and the origin of the xy plane. A neighbouring
+/// triangle computes the same number for a shared edge, negated.
 #[inline(always)]
 fn weights<N: Number>([a, b, c]: [Vector<N>; 3]) -> Vector<N> {
     Vector { x: area(c, b), y: area(a, c), z: area(b, a) }
 }
 
+/// Returns twice the signed area of the triangle of two points and the origin of the xy plane.
 #[inline(always)]
 fn area<N: Number>(from: Vector<N>, to: Vector<N>) -> N {
     from.x * to.y - from.y * to.x
@@ -194,8 +201,8 @@ fn area<N: Number>(from: Vector<N>, to: Vector<N>) -> N {
 
 /// Returns an upper bound of the error of the weights in f32 (`culling.md`, 7).
 ///
-/// 24 s (s + r) units of 2^-24, and the least normal number for underflow. s is the largest x or y, r the largest z in
-/// lengths of the direction.
+/// It is 24 s (s + r) units of 2^-24, plus the least normal number for underflow. s is the largest x or y, and r the
+/// largest z times `length`.
 #[inline(always)]
 fn weight_error_bound<N: Number>([a, b, c]: [Vector<N>; 3], length: N) -> N {
     let across = a.x.abs().max(a.y.abs()).max(b.x.abs().max(b.y.abs())).max(c.x.abs().max(c.y.abs()));
@@ -203,12 +210,13 @@ fn weight_error_bound<N: Number>([a, b, c]: [Vector<N>; 3], length: N) -> N {
     across * (across + along * length) * N::splat(24.0 / 16_777_216.0) + N::splat(f32::MIN_POSITIVE)
 }
 
-/// Returns the masks of lanes whose weights all have one sign, and of lanes where two differ.
+/// Returns the mask of lanes whose weights certainly have one sign, and that of lanes where two
+/// certainly differ.
 ///
-/// Both beyond the error bound.
+/// Only weights beyond the error bound have a certain sign.
 #[inline(always)]
 fn signs<N: Number>(Vector { x, y, z }: Vector<N>, error_bound: N) -> [N::Mask; 2] {
-    // Minimum and maximum serve both masks; sign bits alone could not be compared with the error bound.
+    // Both masks follow from the minimum and the maximum. Sign bits alone could not be compared with the error bound.
     let (least, greatest) = (x.min(y.min(z)), x.max(y.max(z)));
     let agree = error_bound.lt(least) | greatest.lt(-error_bound);
     [agree, least.lt(-error_bound) & error_bound.lt(greatest)]
@@ -246,7 +254,7 @@ impl SoaLeaf for TriangleN<F32x8> {
     }
 
     fn of(shapes: &[Triangle]) -> Self {
-        // Infinite corners: their weights are NaN, and `crossing_of` keeps them from f64.
+        // Unused lanes get infinite corners: their weights are NaN, and `crossing_of` excludes them from f64.
         let corners = |lane: usize| shapes.get(lane).map_or([Vec3::INFINITY; 3], Triangle::corners);
         Self(from_fn(|corner| Vector::of(from_fn(|lane| corners(lane)[corner]))))
     }
@@ -292,9 +300,9 @@ impl Triangle {
         Ok(Self { corners })
     }
 
-    /// Returns the unchecked triangle.
+    /// Returns the triangle without checking the corners.
     ///
-    /// If its corners lie on one line, as they may in a mesh, no ray hits it.
+    /// If they lie on one line, as they may in a mesh, no ray hits the triangle.
     #[doc(hidden)]
     #[inline]
     pub fn unchecked(corners: [Vec3; 3]) -> Self {
@@ -312,11 +320,13 @@ impl Triangle {
     }
 }
 
-/// Returns the unit normal of the front; any unit vector for a triangle without area.
+/// Returns the unit normal of the front, given the edges from corner a to b and c.
+///
+/// Any unit vector for a triangle without area.
 #[inline(always)]
 fn front_normal<N: Number>(to_b: Vector<N>, to_c: Vector<N>) -> Vector<N> {
-    // Scaled by the longest edge coordinate first: the squared length is a fourth power, which underflows for edges
-    // below 1e-9.
+    // The edges are first scaled by their largest coordinate, because the squared length of the normal is a fourth
+    // power of theirs, which underflows for edges below 1e-9.
     let scale = N::splat(1.0) / to_b.largest().max(to_c.largest());
     let normal = (to_b * scale).cross(to_c * scale);
     let factor = N::splat(1.0) / normal.dot(normal).sqrt();
@@ -330,7 +340,7 @@ impl<N: Number> AtCrossing<N> for TriangleN<N> {
         let [a, b, c] = self.0;
         let (to_b, to_c) = (b - a, c - a);
         let zero = N::splat(0.0);
-        // The test runs again, as hits store only t and the primitive.
+        // The crossing is computed again for its weights, as hits store only t and the primitive.
         let uv = match self.crossing(rays) {
             Some((crosses, Crossing { weights, sum, .. })) => {
                 [N::select(crosses, weights.y / sum, zero), N::select(crosses, weights.z / sum, zero)]
@@ -365,16 +375,16 @@ impl Described for Triangle {
         format!("a {color} triangle, {}", sides(&Bounds::of(self.corners)))
     }
 
-    /// Solves for the plane.
+    /// Solves for the crossing with the triangle's plane, and computes its barycentric shares.
     ///
-    /// The crossing has barycentric shares, one of which is negative if it lies outside the triangle.
+    /// A negative share means that the crossing lies outside the triangle.
     fn equation(&self, ray: &Ray) -> Equation {
         let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let [a, b, c] = self.corners.map(Vec3::as_dvec3);
         let n = (b - a).cross(c - a);
         let t = quotient((a - o).dot(n), d.dot(n));
         let p = o + d * t.unwrap_or(0.0);
-        // The area of the triangle of p and each edge, as a fraction of the whole.
+        // The share of a corner: the area of the triangle of p and the opposite edge, as a fraction of the whole.
         let share = |from: DVec3, to: DVec3| quotient((to - from).cross(p - from).dot(n), n.dot(n)).unwrap_or(0.0);
         let shares = vec![share(b, c), share(c, a), share(a, b)];
         Equation {

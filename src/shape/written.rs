@@ -9,26 +9,26 @@ use crate::written::{Fields, InSceneFile, NodeReader, Validator};
 
 /// A surface in a scene file, and its check.
 pub trait CheckedShape: InSceneFile {
-    /// Whether the surface has coordinates for patterns.
+    /// Whether the surface has coordinates, on which patterns are laid out.
     const HAS_COORDINATES: bool = false;
 
-    /// Whether the surface may have colours of its own.
+    /// Whether the surface may have its own colours, as meshes have from their files.
     const BRINGS_COLORS: bool = false;
 
     /// Returns the shape, or `None` after a fault has been reported to `validator`.
     fn check(written: &Self::Written, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape>;
 }
 
-/// The source of meshes.
+/// A source of meshes by their paths.
 pub trait Meshes {
-    /// Returns the mesh of a path in a scene file.
+    /// Returns the mesh whose path in a scene file is `path`.
     ///
     /// # Errors
     /// The message for the user, or a cancellation.
     fn mesh(&mut self, path: &str) -> Result<MeshFile, Unfinished<String>>;
 }
 
-/// Makes [`WrittenShape`] from the table of surfaces.
+/// Defines [`WrittenShape`] from the table of surfaces.
 macro_rules! written {
     ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
         written! { all $($(#[$on])* $surface,)* Mesh, }
@@ -48,7 +48,7 @@ macro_rules! written {
 
             /// Reads the fields of the shape called `name`.
             ///
-            /// Also returns the fields, for those of the object.
+            /// Also returns all fields of the node, among which are those of the object, such as its material.
             pub(crate) fn read<'n>(
                 name: &str,
                 reader: &mut NodeReader<'_>,
@@ -101,7 +101,7 @@ macro_rules! written {
 
 surfaces! { written }
 
-/// Makes the methods of a checked [`Shape`] that depend on its kind, from the table of surfaces.
+/// Defines the methods of [`Shape`] that return constants of its kind, from the table of surfaces.
 macro_rules! of_kind {
     ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
         impl Shape {
@@ -128,7 +128,7 @@ surfaces! { of_kind }
 
 /// Returns the message for a material with a pattern on a shape without coordinates.
 ///
-/// Each with an article; see [pattern](crate::material::Reflecting::PATTERN).
+/// All names have an article. For the pattern's see [`PATTERN`](crate::material::Reflecting::PATTERN).
 pub(crate) fn without_coordinates((material, pattern): (&str, &str), shape: &str) -> String {
     let wanted = text::any_of(&WrittenShape::with_coordinates());
     format!("{material} needs {wanted}, on which {pattern} are laid out; this is {shape}")

@@ -16,7 +16,7 @@ fn ray(y: f32) -> Ray {
     Ray { origin: Vec3::new(0.0, y, 10.0), direction: Vec3::new(0.0, 0.0, -1.0) }
 }
 
-/// A scene of `count` cubes of half side 1 along the x axis, three apart.
+/// Returns a scene with `count` cubes along the x axis, of side 2, with centers 3 apart.
 fn scene(count: u32) -> Scene {
     let pose = Pose { eye: Vec3::new(0.0, 0.0, 10.0), target: Vec3::ZERO, up: Vec3::Y };
     let camera = Camera::new(pose, ViewRectangle::from_vertical_fov(0.8).expect("an angle")).expect("a pose");
@@ -58,7 +58,7 @@ fn all_kernels_see_the_same() {
     assert_eq!(hits(Kernel::Auto), single);
 }
 
-/// 8 / 2^2 = 2 in the middle of the face, times the reflectance .8.
+/// Expects 8 / 2^2 = 2 of arriving light in the middle of the face, times the reflectance 0.8.
 #[test]
 fn its_light_is_that_of_the_closed_form() {
     let scene = scene(1);

@@ -6,7 +6,7 @@ use crate::shape::{Crossable, SoaLeaf};
 use glam::Vec3;
 use std::array::from_fn;
 
-/// A fixed sequence of numbers from -1 to 1.
+/// A reproducible sequence of pseudo-random numbers from -1 to 1.
 struct Numbers(u64);
 
 impl Numbers {
@@ -24,10 +24,10 @@ fn two_to(power: i32) -> f32 {
     f32::from_bits(((127 + power) as u32) << 23)
 }
 
-/// Eight triangles, and groups of rays aimed at or just beside a corner or an edge.
+/// Returns eight triangles, and groups of rays aimed at or just beside a corner or an edge.
 ///
-/// The rays start from one point or end in one. The triangles are small, large or without area; near, far or behind
-/// the rays.
+/// All rays start at a common point, or reach one at t = 1. The triangles are small, large or without area, and near,
+/// far or behind the rays.
 fn random_case(seed: u64) -> (Vec<Triangle>, [EightRays; LANES]) {
     let mut numbers = Numbers(seed);
     let scale = two_to((seed % 41) as i32 * 2 - 40);
@@ -47,7 +47,7 @@ fn random_case(seed: u64) -> (Vec<Triangle>, [EightRays; LANES]) {
     let mut aim = |group: usize| {
         let corners = triangles[(group + seed as usize) % LANES].corners();
         from_fn::<Ray, LANES, _>(|lane| {
-            // Every other group is as narrow as possible: all its rays aim at one edge.
+            // The rays of every other group all aim at the same edge, so that the group is narrow.
             let (at, is_beside) =
                 if group.is_multiple_of(2) { (lane, lane % 2 == 1) } else { (group / 2, group % 4 == 1) };
             let share = [0.0, 0.25, 0.5, 1.0][(at + seed as usize / 2) % 4];
@@ -67,18 +67,19 @@ fn random_case(seed: u64) -> (Vec<Triangle>, [EightRays; LANES]) {
     (triangles, rays)
 }
 
-/// Returns whether the rays have the common origin at t = 1.
+/// Returns whether the rays of a random case reach the common origin at t = 1, as shadow rays reach
+/// a light.
 fn is_backward(seed: u64) -> bool {
     seed % 2 == 1
 }
 
-/// The result of the test with a packet's bound: the bits of t, or of -1 for rays that miss.
+/// Tests rays with a packet's error bound. Returns the bits of t, or of -1 for rays that miss.
 fn found(shape: &TriangleN<F32x8>, rays: &Rays<F32x8>, packet_error_bound: f32) -> Option<[u32; LANES]> {
     let crossing = shape.first_crossing_with_bound(rays, F32x8::ZERO, F32x8::splat(packet_error_bound));
     crossing.map(|(crosses, t)| F32x8::select(crosses, t, F32x8::splat(-1.0)).0.map(f32::to_bits))
 }
 
-/// Directions of 2^-126 to 2^127 beside others, and infinite ones.
+/// Tests packets that mix directions of different lengths, from 2^-126 to 2^127 and infinite.
 #[test]
 fn unusual_lengths_are_not_decided_by_the_packet_bound() {
     let forward = Ray { origin: Vec3::ZERO, direction: Vec3::new(0.1, 0.1, 1.0) };
@@ -112,7 +113,7 @@ fn unusual_lengths_are_not_decided_by_the_packet_bound() {
     }
 }
 
-/// The packet's bound is also tight: most often less than 100 times a ray's own.
+/// The packet's bound is also tight: for most groups less than 100 times the rays' own bound.
 #[test]
 fn the_packet_bound_is_at_least_the_bound_of_each_ray() {
     let (mut near, mut all) = (0, 0);
@@ -139,7 +140,7 @@ fn the_packet_bound_is_at_least_the_bound_of_each_ray() {
     assert!(all > 100_000 && near > all / 2, "{near} of {all}");
 }
 
-/// Over a quarter of the groups that miss are culled, and none of those that hit.
+/// More than a quarter of the groups that miss a triangle are culled, and no group that hits it.
 #[test]
 fn culled_groups_do_not_cross_the_triangle() {
     let (mut passing, mut missing, mut packets) = (0, 0, [0; 2]);
