@@ -1,7 +1,7 @@
 //! Light sources.
 //!
 //! Each kind of light is a file under `light/`. To add one, write that file with implementations of [`LightSource`] and
-//! [`InSceneFile`], and add a line to the table here.
+//! [`InSceneFile`], and add a line to the table `lights` here.
 
 use crate::color::LinearRgb;
 use crate::lanes::{Number, Vector};
@@ -21,35 +21,37 @@ pub use sun::Sun;
 /// A kind of light source.
 pub trait LightSource: InSceneFile + Copy {
     /// The interval of a shadow ray's t in which an object blocks the light.
-    // Excludes t = 0: the ray's origin is offset in proportion to its coordinates, which vanishes at the origin of the
-    // world, where the ray starts exactly in its own surface.
+    // Excludes t = 0: a ray's origin is offset from its surface in proportion to the coordinates, so that at the origin
+    // of the world the ray starts exactly on the surface.
     const IN_THE_WAY: Interval = Interval { min: f32::MIN_POSITIVE, max: 1.0 };
 
-    /// Returns the vectors from points to the light; at infinity, the unit vector towards it.
+    /// Returns the vectors from points to the light; for a light at infinity, the unit vector
+    /// towards it.
     fn to_light<N: Number>(&self, point: Vector<N>) -> Vector<N>;
 
-    /// Returns the irradiance at surfaces times 1/pi, per channel.
+    /// Returns the irradiance at surface points times 1/pi, per channel.
     ///
     /// `l` is the unit vector to the light, `distance_squared` the squared length of [`to_light`](Self::to_light),
     /// `cosine` is n.l.
-    // The factor 1/pi of diffuse reflection is folded in, so that no step after this one needs pi.
+    // It includes the factor 1/pi of diffuse reflection, so that no later step needs pi.
     fn irradiance<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3];
 
-    /// Returns the colour with the intensity.
+    /// Returns the light's colour, multiplied by its intensity.
     fn color(&self) -> LinearRgb;
 
-    /// Returns the position in world space; `None` at infinity.
+    /// Returns the position in world space; `None` for a light at infinity.
     fn position(&self) -> Option<Vec3> {
         None
     }
 
-    /// Returns the light at another position; unchanged at infinity, or if the position is invalid.
+    /// Returns the light at another position; unchanged if it is at infinity or the position is
+    /// invalid.
     #[must_use]
     fn moved_to(self, _position: Vec3) -> Self {
         self
     }
 
-    /// Returns the checked light; `None` after a reported fault.
+    /// Returns the checked light, or `None` after a fault has been reported to `validator`.
     fn check(written: &Self::Written, validator: &mut Validator<'_>) -> Option<Self>;
 }
 
@@ -57,7 +59,7 @@ pub trait LightSource: InSceneFile + Copy {
 macro_rules! lights {
     ($($(#[$on:meta])* $name:ident: $light:ident, $of:literal;)*) => {
         /// A light source of any kind.
-        // An enum in the place of trait objects: its methods are generic over the lanes, and inlined into the kernels.
+        // An enum instead of trait objects, as its methods are generic over the lanes and inlined into the kernels.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Light {
@@ -131,10 +133,10 @@ macro_rules! lights {
 
         #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenLight {
-            /// The names of lights.
+            /// The names of all lights in scene files.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $light::NAME,)*];
 
-            /// Reads the light with this name.
+            /// Reads the light called `name`; `None` if there is none or a field is missing.
             pub(crate) fn read(name: &str, reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
                 $($(#[$on])* if name == $light::NAME {
                     return $light::read_node(reader, node).map(Self::$name);
@@ -142,7 +144,7 @@ macro_rules! lights {
                 None
             }
 
-            /// Returns the checked light; `None` after a reported fault.
+            /// Returns the checked light, or `None` after a fault has been reported to `validator`.
             pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Light> {
                 match self {
                     $($(#[$on])* Self::$name(written) => $light::check(written, validator).map(Light::from),)*

@@ -4,7 +4,7 @@
 //! the same colour from every viewpoint.
 //!
 //! Each material is a file under `material/`. To add one, write that file with implementations of [`Reflecting`] and
-//! [`InSceneFile`], and add a line to the table here.
+//! [`InSceneFile`], and add a line to the table `materials` here.
 
 use crate::checks::SceneFault;
 use crate::color::LinearRgb;
@@ -23,23 +23,24 @@ pub use diffuse::Diffuse;
 pub use stripes::Stripes;
 
 /// A diffuse material, plain or patterned. Reflectances are linear, each channel in 0..=1.
-// A trait with an enum in the place of trait objects: `reflectance` is generic over the lanes, and inlined into the
+// The enum `Material` is used instead of trait objects, as `reflectance` is generic over the lanes and inlined into the
 // kernels.
 pub trait Reflecting: InSceneFile + Copy {
-    /// The name of the pattern for messages, as in "its squares"; `None` for a plain material.
+    /// The name of the material's pattern for messages, such as "its squares"; `None` for a plain
+    /// material.
     ///
-    /// Patterns need a surface with coordinates.
+    /// A pattern can only be on a surface with coordinates.
     const PATTERN: Option<&'static str> = None;
 
     /// Returns the reflectances of red, green and blue at the surface coordinates `uv`.
     ///
-    /// They are means over `footprint`, the extent of a sample in these coordinates; 0 gives a point sample.
+    /// They are means over `footprint`, the extent of a sample in these coordinates. A footprint of 0 is a point.
     fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3];
 
-    /// Returns an adjective for descriptions, such as "red"; `name` names colours.
+    /// Returns an adjective for descriptions, such as "red". `name` returns the name of a colour.
     fn described(&self, name: fn(LinearRgb) -> &'static str) -> String;
 
-    /// Returns the checked material; `None` after a reported fault.
+    /// Returns the checked material, or `None` after a fault has been reported to `validator`.
     fn check(written: &Self::Written, validator: &mut Validator<'_>) -> Option<Self>;
 }
 
@@ -60,7 +61,8 @@ macro_rules! materials {
         #[non_exhaustive]
         pub enum Material {
             $(#[doc = $of] #[doc(hidden)] $(#[$on])* $material($material),)*
-            /// The colours and textures of a mesh's file; without any, [`DEFAULT`](Self::DEFAULT).
+            /// The colours and textures of a mesh's file, or [`DEFAULT`](Self::DEFAULT) if the file
+            /// has none.
             Own,
         }
 
@@ -106,10 +108,10 @@ macro_rules! materials {
 
         #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenMaterial {
-            /// The names of materials.
+            /// The names of all materials in scene files.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $material::NAME,)*];
 
-            /// Reads the material with this name.
+            /// Reads the material called `name`; `None` if there is none or a field is missing.
             pub(crate) fn read(name: &str, reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
                 $($(#[$on])* if name == $material::NAME {
                     return $material::read_node(reader, node).map(Self::$material);
@@ -117,7 +119,8 @@ macro_rules! materials {
                 None
             }
 
-            /// Returns the checked material; `None` after a reported fault.
+            /// Returns the checked material, or `None` after a fault has been reported to
+            /// `validator`.
             pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Material> {
                 match self {
                     $($(#[$on])* Self::$material(written) => $material::check(written, validator).map(Material::from),)*
@@ -154,7 +157,7 @@ impl Material {
     pub const DEFAULT: Self = Self::Diffuse(Diffuse::DEFAULT);
 
     /// The reflectance of [`DEFAULT`](Self::DEFAULT).
-    // Below 1, so that a shape stays visible in front of a white one; that of matt white paint.
+    // The reflectance of matt white paint. It is below 1, so that an object stays visible in front of a white one.
     pub(crate) const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
 
     /// Returns a material with the same linear reflectance everywhere.
@@ -176,7 +179,7 @@ impl Material {
     }
 }
 
-/// Returns the channels of a colour, each in all lanes.
+/// Returns the channels of a colour in all lanes.
 #[inline(always)]
 fn channels<N: Number>(LinearRgb { r, g, b }: LinearRgb) -> [N; 3] {
     [N::splat(r), N::splat(g), N::splat(b)]

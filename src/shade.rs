@@ -10,7 +10,7 @@
 //! visible side, l the unit vector to the light, d the distance to the light. The intensity I includes the 1/pi of
 //! diffuse reflection. The position of the eye matters only for the visible side.
 //!
-//! All steps work on groups of eight rays. Lanes without a hit compute along with values that no later step reads:
+//! All steps work on groups of eight rays. Lanes without a hit are computed as well, and no later step reads them:
 //! branches would cost more than they save.
 
 use crate::color::LinearRgb;
@@ -43,22 +43,23 @@ pub struct EightArriving {
     /// The sum ambient + sum over lights of V * I * max(0, n.l) / d^2.
     pub light: EightLights,
     /// The mask of lights that reach each point; light 32 shares its bit with light 0, and so on.
-    // For edges of shadows, which 32 bits find in all but contrived scenes.
+    // Adaptive sampling compares the masks to find edges of shadows. For that, 32 bits are enough in all but contrived
+    // scenes.
     pub lit_by: [u32; LANES],
 }
 
-/// The arrays of one light's shadow rays.
+/// The shadow rays to one light, as arrays with an entry for each group of eight points.
 #[derive(Default)]
 pub struct ShadowRays {
     pub(crate) rays: Vec<EightRays>,
     /// The light that arrives along each ray if it is not blocked.
     lights: Vec<EightLights>,
-    /// The masks of blocked rays: V = 0.
+    /// The masks of blocked rays, for which V = 0.
     pub(crate) blocked: Vec<u32>,
 }
 
 /// Computes the light that arrives at each point, and returns the number of traced shadow rays.
-// Light by light, not point by point: the shadow rays of one light have the light in common, and make good packets.
+// Loops over lights, not over points, because shadow rays that end at the same light make good packets.
 pub fn arriving_light(
     scene: &Scene,
     points: &[EightPoints],
@@ -78,7 +79,7 @@ pub fn arriving_light(
     shadow_rays
 }
 
-/// The kernel that makes the shadow rays of points that face a light.
+/// The SIMD kernel that makes the shadow rays of points that face a light.
 struct AimShadowRays<'w> {
     light: &'w Light,
     points: &'w [EightPoints],
@@ -121,7 +122,7 @@ pub fn count(rays: &[EightRays]) -> u64 {
     rays.iter().map(|rays| u64::from(rays.active.count_ones())).sum()
 }
 
-/// The kernel that adds a light's unblocked contributions to the arriving light.
+/// The SIMD kernel that adds a light's unblocked contributions to the arriving light.
 struct AddUnblocked<'w> {
     number: usize,
     shadows: &'w ShadowRays,
@@ -153,7 +154,7 @@ pub fn shadow_rays(light: &Light, points: &[EightPoints], rays: &mut Vec<EightRa
     simd::dispatch(Shadows { light, points, rays });
 }
 
-/// The kernel of [`shadow_rays`].
+/// The SIMD kernel of [`shadow_rays`].
 struct Shadows<'w> {
     light: &'w Light,
     points: &'w [EightPoints],
@@ -171,7 +172,7 @@ impl SimdKernel for Shadows<'_> {
     }
 }
 
-/// Returns the shadow rays of a mask of points, as [`shadow_ray`] makes them.
+/// Returns the shadow rays of the points in the mask `active`, as [`shadow_ray`] makes them.
 #[inline(always)]
 fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32) -> EightRays {
     let origin = points.position.load() + points.geometric_normal.load() * N::load(&points.clearance);
@@ -189,9 +190,10 @@ fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32)
     }
 }
 
-/// Computes the light towards the eye: reflected light, or the background without a hit.
+/// Computes the light that each ray carries to the eye: reflected light, or the background's
+/// without a hit.
 ///
-/// `steps` are the changes of direction to the neighbouring rays in the picture, from which footprints follow.
+/// `steps` are the changes of direction to the neighbouring rays in the picture, from which footprints are computed.
 pub fn reflect(
     scene: &Scene,
     rays: &[EightRays],
@@ -205,7 +207,7 @@ pub fn reflect(
     simd::dispatch(Reflect { scene, rays, steps, hits, points, arriving, lights });
 }
 
-/// The kernel of [`reflect`].
+/// The SIMD kernel of [`reflect`].
 struct Reflect<'w> {
     scene: &'w Scene,
     rays: &'w [EightRays],
@@ -226,7 +228,8 @@ impl SimdKernel for Reflect<'_> {
             if points.hit_mask != ALL {
                 light = backgrounds(self.scene, self.rays[at].direction.load());
             }
-            // Object by object: most groups of eight hit a single one, whose material is then evaluated in all lanes.
+            // Loops over the hit objects: most groups of eight hit one object, whose material is evaluated for all
+            // lanes.
             let mut remaining = points.hit_mask;
             while remaining != 0 {
                 let object = points.ids.id(remaining.trailing_zeros() as usize % LANES).object;
@@ -245,12 +248,13 @@ impl SimdKernel for Reflect<'_> {
 }
 
 impl Reflect<'_> {
-    /// Returns the reflectances of an object at a group's points; other lanes are unspecified.
+    /// Returns the reflectances of an object at the points of group `at`; lanes outside the mask
+    /// `own` are unspecified.
     #[inline(always)]
     fn reflectances<N: Lanes>(&self, object: &Object, at: usize, own: u32) -> [N; 3] {
         let points = &self.points[at];
         match (&object.material, &object.shape) {
-            // Colours of a mesh differ by triangle and come from textures: there is nothing to share between lanes.
+            // The colours of a mesh differ by triangle and come from textures, so they are computed lane by lane.
             (Material::Own, shape) => {
                 let mut channels = [F32x8::ZERO; 3];
                 for lane in set_bits(own) {
@@ -269,7 +273,7 @@ impl Reflect<'_> {
     }
 }
 
-/// The light from one source at a point, if it is not blocked.
+/// The light that arrives at a point from one light source, if it is not blocked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Incidence {
     /// The lecture's **l**: the direction to the light. Unit length.
@@ -312,16 +316,16 @@ fn incident_light<N: Number>(light: &Light, position: Vector<N>, normal: Vector<
     let l = Vector { x: to_light.x / distance, y: to_light.y / distance, z: to_light.z / distance };
     let cosine = normal.dot(l);
     let light = light.irradiance(l, distance_squared, cosine).map(|channel| channel.min(N::splat(MAX_IRRADIANCE)));
-    // False also for NaN, the cosine of a light at the point itself.
+    // The comparison is false also for NaN, which is the cosine if the light is at the point itself.
     (N::splat(0.0).lt(cosine), IncidentLight { l, distance, cosine, light })
 }
 
 /// The largest arriving light per channel and light source.
-// A light very near its surface overflows f32, and infinity times 0 is NaN, whose bits differ between CPUs. Below this
-// limit all sums and products that follow stay finite. (`min` of NaN and a number is the number.)
+// Light from a source very near the surface would overflow f32, and infinity times 0 is NaN, whose bits differ between
+// CPUs. Below this limit all later sums and products are finite. `min` of NaN and the limit is the limit.
 const MAX_IRRADIANCE: f32 = 1e30;
 
-/// Returns the shadow ray from a point to a light, which is at t = 1 or infinitely far.
+/// Returns the shadow ray from a point to a light. The light is at t = 1, or infinitely far away.
 pub fn shadow_ray(light: &Light, point: &SurfacePoint) -> Ray {
     let origin = point.ray_origin();
     Ray { origin, direction: light.to_light(Vector::<f32>::splat(origin)).into() }

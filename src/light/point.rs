@@ -23,7 +23,7 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLight {
     position: Vec3,
-    /// Not negative.
+    /// The [intensity](Self::new), not negative.
     intensity: LinearRgb,
     falloff: Falloff,
 }
@@ -85,7 +85,7 @@ impl LightSource for PointLight {
 
     #[inline(always)]
     fn irradiance<N: Number>(&self, _: Vector<N>, distance_squared: N, cosine: N) -> [N; 3] {
-        // One factor for all channels: a division per channel would be three in the place of one.
+        // One factor for all channels needs one division instead of three.
         let weakening = match self.falloff {
             Falloff::InverseSquare => cosine / distance_squared,
             Falloff::None => cosine,

@@ -1,4 +1,5 @@
-//! Directional light, for tests: a new light takes one file and one line in the table.
+//! A directional light for tests, which shows that a new light takes one file and one line in the
+//! table `lights`.
 
 use super::LightSource;
 use crate::color::LinearRgb;

@@ -1,4 +1,4 @@
-//! Squares of two reflectances.
+//! A checkered material: squares of two reflectances.
 
 use super::{Reflecting, channels};
 use crate::checks::{self, SceneFault};
@@ -17,7 +17,7 @@ pub struct Checker {
     size: f32,
 }
 
-/// The name of the side's length in messages.
+/// The name of the field `size` in messages.
 const SIZE: &str = "size of a square";
 
 impl Checker {
@@ -95,20 +95,20 @@ impl InSceneFile for Checker {
 /// Returns the mean over an interval of a square wave.
 ///
 /// The wave is 1 from each even integer to the next integer, and -1 otherwise.
-// A box filter. The checker's mean over a footprint is the product of both axes' means, so squares too small for their
-// pixels turn grey. Point samples turn into a moiré there, and supersampling would cost 64 rays.
+// This is a box filter. The checker's mean over a footprint is the product of both axes' means, so squares too small
+// for their pixels turn grey. Point samples would give a moiré pattern, and supersampling would take 64 rays.
 #[inline(always)]
 fn mean_sign<N: Number>(middle: N, width: N) -> N {
     let (zero, one, half) = (N::splat(0.0), N::splat(1.0), N::splat(0.5) * width);
     let (start, end) = (middle - half, middle + half);
     let (first, last) = (start.floor(), end.floor());
     let sign = N::select(is_even(first), one, -one);
-    // Across a single edge: the part before the edge less the part after.
+    // The mean across a single edge: the part before the edge minus the part after it.
     let over_one = sign * ((last - start) - (end - last)) / (end - start);
     let over_more = (integrated_sign(end) - integrated_sign(start)) / (end - start);
     let over_edges = N::select((last - first).eq(one), over_one, over_more);
     let mean = N::select(first.eq(last), sign, over_edges);
-    // From this width on the mean is below 1e-6; intervals there may be infinite or NaN.
+    // For widths from 1e6 on, whose intervals may be infinite or NaN, the mean is below 1e-6, and taken as 0.
     N::select(width.lt(N::splat(1e6)), mean, zero)
 }
 
@@ -120,7 +120,7 @@ fn integrated_sign<N: Number>(x: N) -> N {
     one - (in_period - one).abs()
 }
 
-/// Returns whether an integer is even; all above 2^24 are in f32.
+/// Returns whether an integer is even. In f32 all integers above 2^24 are.
 #[inline(always)]
 fn is_even<N: Number>(whole: N) -> N::Mask {
     let half = whole * N::splat(0.5);

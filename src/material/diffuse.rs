@@ -1,4 +1,4 @@
-//! The plain material.
+//! The plain material, which has the same reflectance everywhere.
 
 use super::{Reflecting, channels};
 use crate::checks::{self, SceneFault};
@@ -14,7 +14,7 @@ pub struct Diffuse {
 }
 
 impl Diffuse {
-    /// The material of [`Material::DEFAULT`](super::Material::DEFAULT).
+    /// The material in [`Material::DEFAULT`](super::Material::DEFAULT): a light grey.
     pub(super) const DEFAULT: Self = Self { reflectance: super::Material::DEFAULT_REFLECTANCE };
 
     /// Returns a material with this reflectance.
@@ -55,7 +55,7 @@ impl InSceneFile for Diffuse {
         reader.required(fields, "reflectance", NodeReader::color)
     }
 
-    /// `Diffuse(colour)` or `Diffuse(reflectance: colour)`.
+    /// Reads `Diffuse(colour)` or `Diffuse(reflectance: colour)`.
     fn read_node(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Option<WrittenColor>> {
         if let Value::Group(group) = &node.value
             && let Body::Values(values) = &group.body

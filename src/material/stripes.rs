@@ -1,4 +1,5 @@
-//! Stripes, for tests: a new material takes one file and one line in the table.
+//! A striped material for tests, which shows that a new material takes one file and one line in the
+//! table `materials`.
 
 use super::{Reflecting, channels};
 use crate::color::LinearRgb;

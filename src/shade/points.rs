@@ -1,7 +1,7 @@
 //! Surface points of hits, eight at a time.
 //!
-//! Traversal keeps only t and a primitive's index per ray. Normals and coordinates are computed here, once per ray and
-//! not once per test.
+//! Traversal keeps only t and a primitive's index per ray. Normals and coordinates are computed here, once per ray
+//! instead of once per test.
 
 use crate::accel::{Accelerator, List, PrimitiveId, PrimitiveIds, Tree, Visitor};
 use crate::hit::EightHits;
@@ -17,9 +17,9 @@ use glam::Vec2;
 pub struct EightPoints {
     /// The mask of rays with a hit. Other lanes are unspecified.
     pub hit_mask: u32,
-    /// The primitives.
+    /// The primitives that the points are on.
     pub(super) ids: PrimitiveIds<F32x8>,
-    // The fields of `SurfacePoint`.
+    // The remaining fields are those of `SurfacePoint`.
     pub(super) position: Vector<F32x8>,
     pub(super) shading_normal: Vector<F32x8>,
     pub(super) geometric_normal: Vector<F32x8>,
@@ -28,7 +28,7 @@ pub struct EightPoints {
 }
 
 impl EightPoints {
-    /// The value for rays without hits.
+    /// The points of eight rays without hits.
     const NONE: Self = Self {
         hit_mask: 0,
         ids: PrimitiveIds::ZERO,
@@ -45,7 +45,8 @@ impl EightPoints {
         Vec2::new(self.uv[0].0[lane], self.uv[1].0[lane])
     }
 
-    /// Returns the object's index in [`Scene::objects`] and the shading normal of a point.
+    /// Returns the object's index in [`Scene::objects`] and the shading normal at a point; `None`
+    /// without a hit.
     #[inline]
     pub fn object_and_normal(&self, lane: usize) -> Option<(u32, glam::Vec3)> {
         (self.hit_mask >> lane & 1 == 1).then(|| (self.ids.id(lane).object, self.shading_normal.of_lane(lane)))
@@ -58,7 +59,7 @@ pub fn surface_points(scene: &Scene, rays: &[EightRays], hits: &[EightHits], poi
     simd::dispatch(SurfacePoints { scene, rays, hits, points });
 }
 
-/// The kernel of [`surface_points`].
+/// The SIMD kernel of [`surface_points`].
 struct SurfacePoints<'w> {
     scene: &'w Scene,
     rays: &'w [EightRays],
@@ -84,7 +85,7 @@ impl SimdKernel for SurfacePoints<'_> {
     }
 }
 
-/// Computes the surface points of a group's hits, tree by tree.
+/// Computes the surface points of a group's hits, one list or tree at a time.
 #[inline(always)]
 fn gather_surfaces<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &EightHits, at: &mut EightPoints) {
     let mut points = Points::<N>::nowhere();
@@ -111,12 +112,14 @@ fn gather_surfaces<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &Eight
     at.uv = [points.uv[0].store(), points.uv[1].store()];
 }
 
-/// The visitor that computes the surface points of a primitive's hits, or of its whole tree's.
+/// The visitor that computes the surface points of all hits in the tree of a primitive.
+///
+/// For an unbounded primitive, those of its own hits.
 struct SurfacesOfPrimitive<'h, N: Lanes> {
     primitive: u32,
     rays: &'h EightRays,
     hits: &'h EightHits,
-    /// The mask of rays, their primitives, and their surface points.
+    /// The mask of rays with such a hit, their primitives, and their surface points.
     found: (u32, PrimitiveIds<N>, Points<N>),
 }
 
@@ -138,9 +141,11 @@ impl<'a, N: Lanes> Visitor<'a> for SurfacesOfPrimitive<'_, N> {
     }
 }
 
-/// Computes the surface points of the hits in a tree; returns their mask, primitives and points.
-// Each leaf gives all of its lanes in one permutation of a register. Gathered number by number through memory, surface
-// points took 6.1 instead of 4.6 % of the trace stage (bunny at 800x480).
+/// Computes the surface points of the rays in the mask `lanes`, which hit primitives of `tree`.
+///
+/// Returns the mask, the primitives and the points.
+// A permutation of a register gathers a number of a leaf for all lanes. Gathered number by number through memory,
+// surface points took 6.1 instead of 4.6 % of the trace stage (bunny at 800x480).
 #[inline(always)]
 fn surfaces_in_tree<N: Lanes, S: SoaLeaf>(
     tree: &Tree<S>,
@@ -150,8 +155,8 @@ fn surfaces_in_tree<N: Lanes, S: SoaLeaf>(
 ) -> (u32, PrimitiveIds<N>, Points<N>) {
     let (leaves, in_leaf) = (hits.leaf_indices::<N>(), hits.lanes_in_leaf::<N>());
     let first_primitive = |remaining: u32| hits.primitive(remaining.trailing_zeros() as usize % LANES);
-    // Most often all hits are in one leaf. Lanes without a hit in this tree gather unspecified values, and the caller
-    // masks them out.
+    // Usually all hits are in one leaf. Lanes without a hit in this tree get unspecified values, which the caller masks
+    // out.
     let first = first_primitive(lanes);
     let (leaf, ids) = tree.leaf(first);
     let (mut shapes, mut ids_found) = (leaf.gather(in_leaf), ids.gather(in_leaf));
@@ -166,8 +171,9 @@ fn surfaces_in_tree<N: Lanes, S: SoaLeaf>(
     (lanes, ids_found, shapes.points_at(&Rays::load(rays, S::NEED_SHEAR), N::load(&hits.t)))
 }
 
-/// Replaces positions and normals by those of the smooth surface that a mesh's facets approximate.
-// Lane by lane: few meshes have vertex normals, and these lie in memory by triangle.
+/// Replaces positions and shading normals by those of the smooth surface that a mesh's triangles
+/// approximate.
+// Works lane by lane, because few meshes have vertex normals, which are stored by triangle.
 fn interpolate_normals(scene: &Scene, at: &mut EightPoints) {
     for lane in set_bits(at.hit_mask) {
         let PrimitiveId { object, index } = at.ids.id(lane);

@@ -15,7 +15,7 @@ fn read(sun: &str, objects: &str) -> Scene {
     Scene::from_ron("sun.ron", &scene(sun, objects)).expect("a scene")
 }
 
-/// The floor's light is 0.5 times the cosine, 0.8, or 0 if an object blocks the sun.
+/// The floor's light is the reflectance 0.5 times the cosine 0.8, or 0 if an object blocks the sun.
 #[test]
 fn its_light_is_that_of_the_closed_form() {
     let resolution = Resolution::square(9, 9);

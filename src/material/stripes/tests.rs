@@ -22,8 +22,8 @@ fn they_are_read_drawn_and_described() {
     let in_turn = |seen: &[bool]| seen.windows(2).all(|pair| pair[0] != pair[1]);
     let alike = |seen: &[bool]| seen.windows(2).all(|pair| pair[0] == pair[1]);
     assert!(in_turn(&columns) && alike(&rows) || in_turn(&rows) && alike(&columns), "{columns:?} {rows:?}");
-    let told = describe("stripes.ron", &scene, scene.camera(), Resolution::square(40, 40));
-    assert!(told.contains("grey and red striped plane"), "{told}");
+    let text = describe("stripes.ron", &scene, scene.camera(), Resolution::square(40, 40));
+    assert!(text.contains("grey and red striped plane"), "{text}");
 }
 
 #[test]
