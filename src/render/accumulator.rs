@@ -1,9 +1,9 @@
-//! The samples of a pixel, and the criteria by which it gets more.
+//! The samples of a pixel, and the criteria by which the pixel gets more samples.
 
 use crate::color::LinearRgb;
 use glam::Vec3;
 
-/// The first sample of a pixel, with the G-buffer data that reveal edges between pixels.
+/// The first sample of a pixel, with the data of its hit by which edges between pixels are found.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FirstSample {
     pub(super) light: LinearRgb,
@@ -16,21 +16,20 @@ pub(super) struct FirstSample {
 }
 
 impl FirstSample {
-    /// Returns a sample of an object with its normal, or of the background.
+    /// Returns a sample of a surface, or of the background if `surface` is `None`.
     ///
-    /// `lit_by` is the mask of lights that reach the hit.
+    /// `surface` is the object's index and the shading normal, `lit_by` the mask of lights that reach the hit.
     pub(super) fn new(light: LinearRgb, surface: Option<(u32, Vec3)>, lit_by: u32) -> Self {
         let (object, normal) = surface.map_or((0, Vec3::ZERO), |(object, normal)| (object + 1, normal));
         Self { light, object, normal, lit_by }
     }
 
-    /// Returns whether an edge may run between two pixels.
-    ///
-    /// Edges are those of objects, shadows, patterns and curved surfaces.
+    /// Returns whether an edge of an object, shadow, pattern or curved surface may run between two
+    /// pixels.
     ///
     /// `white` is the light that is displayed as white.
     pub(super) fn is_edge_to(&self, other: &Self, white: f32) -> bool {
-        // 23 degrees. Normals reveal creases and strong curves whose light happens to be equal in both pixels.
+        // The cosine of 23 degrees. Normals reveal creases and strong curves whose light is equal in both pixels.
         const MIN_NORMAL_COSINE: f32 = 0.92;
         self.object != other.object
             || self.lit_by != other.lit_by
@@ -39,14 +38,14 @@ impl FirstSample {
     }
 }
 
-/// The accumulator of a pixel's samples, with their range as a measure of noise.
+/// The sum of a pixel's samples, and their range as a measure of noise.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Accumulator {
     /// The sum of the samples.
     light: LinearRgb,
     count: u32,
     /// The minimum and maximum light of the first [`RANGE_SAMPLES`] samples, per channel.
-    // A range instead of a variance: comparisons are exact, and the same in whichever order samples arrive.
+    // A range instead of a variance, because it is exact, and does not depend on the order of the samples.
     range: [LinearRgb; 2],
 }
 
@@ -58,11 +57,11 @@ impl Accumulator {
         Self { light: first.light, count: 1, range }
     }
 
-    /// Adds samples, given per channel.
+    /// Adds samples; each channel of their light is a slice.
     pub(super) fn add(&mut self, [r, g, b]: [&[f32]; 3]) {
         let lights = || r.iter().zip(g).zip(b).map(|((&r, &g), &b)| LinearRgb::new(r, g, b));
         lights().for_each(|light| self.light += light);
-        // Only the last pass reads the range, before its own samples.
+        // Only the last pass reads the range, before it adds its own samples.
         if self.count < RANGE_SAMPLES {
             lights().for_each(|light| widen(&mut self.range, light));
         }
@@ -85,8 +84,8 @@ impl Accumulator {
     }
 }
 
-/// Extends a range by a light, per channel.
-// Not `f32::min` and `max`: these also treat NaN, which light never is, and take twice the comparisons.
+/// Extends the range from `least` to `most` to include a light, per channel.
+// `f32::min` and `max` would take twice the comparisons, because they also handle NaN, which light never is.
 fn widen([least, most]: &mut [LinearRgb; 2], light: LinearRgb) {
     let join = |a: LinearRgb, b: LinearRgb, is_wanted: fn(f32, f32) -> bool| {
         let one = |a: f32, b: f32| if is_wanted(a, b) { a } else { b };
@@ -97,19 +96,21 @@ fn widen([least, most]: &mut [LinearRgb; 2], light: LinearRgb) {
 }
 
 /// The relative difference of two neighbours that is visible as an edge.
-// 5 % of linear light are three steps of 8-bit sRGB for a middle grey, and six near white.
+// 5 % of linear light are three steps of 8-bit sRGB at middle grey, and six near white.
 const EDGE_CONTRAST: f32 = 0.05;
 
-/// The number of samples that decide whether the last pass adds more.
+/// The number of samples whose range decides whether the last pass adds more.
 const RANGE_SAMPLES: u32 = 16;
 
-/// The relative difference among [`RANGE_SAMPLES`] samples at which their mean may be visibly off.
-// Four times the contrast of an edge: the mean of 16 samples varies by a quarter of what one sample does.
+/// The relative difference among [`RANGE_SAMPLES`] samples from which on their mean may be visibly
+/// wrong.
+// Four times the contrast of an edge, because the mean of 16 samples deviates a quarter as much as a single sample.
 const NOISE_CONTRAST: f32 = 0.2;
 
-/// Returns whether two lights differ in a channel by more than `share` of the greater one.
+/// Returns whether two lights differ in a channel by more than the fraction `share` of the greater
+/// one.
 fn differ(a: LinearRgb, b: LinearRgb, share: f32, white: f32) -> bool {
-    // Half a percent of white is allowed in addition: relative differences between dark lights are invisible.
+    // Half a percent of white is added to the limit, as relative differences between dark lights are invisible.
     const MIN_CONTRAST: f32 = 0.005;
     [(a.r, b.r), (a.g, b.g), (a.b, b.b)]
         .into_iter()

@@ -17,17 +17,18 @@ use std::ops::Range;
 
 /// A picture in progress, which gets more samples at edges.
 ///
-/// Its light has the same bits whatever the steps of refining.
-// Against 64 samples of every pixel of the scenes in `scenes/` at 80x48, the finished picture has a PSNR of 49 to 62 dB
-// for 0.11 to 0.78 of the rays; one sample per pixel has 23 to 34 dB.
+/// The finished picture has the same bits, whether it was refined in one call or in several.
+// Compared with 64 samples for every pixel of the scenes in `scenes/` at 80x48, the finished picture has a PSNR of 49
+// to 62 dB and takes 0.11 to 0.78 of the rays; with one sample per pixel the PSNR is 23 to 34 dB.
 #[derive(Clone, Debug)]
 pub struct ProgressiveRender {
     tiles: Tiles,
     /// The first sample of each pixel, tile by tile.
-    // Kept apart from the accumulators, so that a tile can read its neighbours' first samples while these are refined:
-    // no barrier between the passes. three_spheres at 80x48 on two threads: 1.27 instead of 1.34 ms.
+    // Kept apart from the accumulators, so that a tile can read the first samples of its neighbours while these are
+    // refined, without a barrier between the passes: three_spheres at 80x48 takes 1.27 instead of 1.34 ms on two
+    // threads.
     first: Vec<Vec<FirstSample>>,
-    /// The accumulators of each pixel; empty for tiles with one sample per pixel.
+    /// The accumulator of each pixel, tile by tile; empty for tiles with one sample per pixel.
     accumulators: Vec<Vec<Accumulator>>,
     /// The number of finished passes.
     passes: usize,
@@ -59,9 +60,9 @@ impl ProgressiveRender {
     pub(super) fn refine(&mut self, executor: Executor<'_>, scene: &Scene, samples: NonZeroU32) -> Cost {
         let passes = PASSES.iter().filter(|pass| pass.end <= samples.get()).count();
         let mut cost = Cost::default();
-        // Finding edges needs the first sample of all neighbours, hence the whole first pass. After it each pixel
-        // decides alone, so all other passes are one visit of each tile. One visit per pass, with a barrier between,
-        // took 2.10 instead of 1.43 ms (three_spheres at 80x48, two threads).
+        // Finding edges needs the first samples of all neighbours, so the first pass runs over the whole picture. The
+        // later passes of a pixel depend on no other pixel, so each tile runs all of them in one visit. One visit per
+        // pass, with a barrier between, took 2.10 instead of 1.43 ms (three_spheres at 80x48, two threads).
         if self.passes == 0 && passes > 0 {
             cost += self.trace_first(executor, scene);
             self.passes = 1;
@@ -84,7 +85,7 @@ impl ProgressiveRender {
 
     /// Traces all passes after the first.
     fn trace_refinement(&mut self, executor: Executor<'_>, scene: &Scene, passes: Range<usize>) -> Cost {
-        // Contrasts are judged as displayed: relative to the light that the exposure maps to white.
+        // Contrasts are relative to the light that the exposure maps to white, as they are on the screen.
         let white = 1.0 / scene.exposure();
         let batches: Vec<_> = passes.map(|pass| (pass, SampleBatches::of(PASSES[pass].clone()))).collect();
         let Self { tiles, first, accumulators, .. } = self;
@@ -126,7 +127,7 @@ impl ProgressiveRender {
 }
 
 /// The progress [units](ProgressUnit) of a tile in all passes after the first.
-// An estimate, as the number of samples is not known beforehand: for the scenes in `scenes/` these passes take 8 to 25
+// An estimate, as the number of samples is not known in advance: for the scenes in `scenes/` these passes take 8 to 25
 // times the instructions of the first.
 const REFINEMENT_UNITS: u64 = 16 * PIXELS as u64;
 
@@ -150,18 +151,19 @@ fn is_at_edge(tiles: &Tiles, first: &[Vec<FirstSample>], tile: usize, pixel: usi
     })
 }
 
-/// Records the hits and light of a batch with one ray per pixel.
+/// Records the hit and the light of each ray in a batch with one ray per pixel.
 fn record_first_samples(first: &mut [FirstSample], buffers: &Buffers) {
     for (ray, &pixel) in buffers.pixels.iter().enumerate() {
         let (group, lane) = (ray / LANES, ray % LANES);
-        // Added to zero, as in `Accumulator`: a sum is never -0, so both ways to one sample have the same bits.
+        // Added to zero as in `Accumulator`: a sum is never -0, so a pixel with one sample has the same bits in both.
         let light = LinearRgb::BLACK + shade::lane_light(&buffers.lights[group], lane);
         let lit_by = buffers.arriving[group].lit_by[lane];
         first[usize::from(pixel)] = FirstSample::new(light, buffers.points[group].object_and_normal(lane), lit_by);
     }
 }
 
-/// Adds a batch's samples, `per_pixel` for every pixel, to the tile's pixels.
+/// Adds the samples of a batch, which has `per_pixel` for each pixel, to the accumulators of its
+/// tile.
 fn add_samples(accumulators: &mut [Accumulator], buffers: &Buffers, per_pixel: usize) {
     let channels = buffers.channels();
     for (first, &pixel) in buffers.pixels.iter().enumerate().step_by(per_pixel) {

@@ -10,12 +10,13 @@ use crate::threads;
 use std::fmt;
 use std::ops::ControlFlow;
 
-/// A receiver of progress reports: the share of the work done, from 0 to 1.
+/// A callback for progress reports, which gets the fraction of the work that is done, from 0 to 1.
 type ProgressCallback<'a> = Box<dyn Fn(f32) -> ControlFlow<()> + Send + Sync + 'a>;
 
 /// A builder of a picture of a scene.
 ///
-/// By default: the scene's own camera, 1280x720 pixels, [`Sampling::BEST`], and the threads of the current rayon pool.
+/// The defaults are the scene's own camera, 1280x720 pixels, [`Sampling::BEST`], and the threads of the current rayon
+/// pool.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -100,7 +101,7 @@ impl<'a> Render<'a> {
         Self { threads: Some(count.clamp(1, Self::MAX_THREADS)), ..self }
     }
 
-    /// Sets a token that cancels the render, within the time of tracing 256 rays.
+    /// Sets a token that cancels the render, which then ends within the time of tracing 256 rays.
     #[doc(hidden)]
     pub fn cancelled_by(self, token: &Cancellation) -> Self {
         Self { token: token.clone(), ..self }

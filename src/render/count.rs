@@ -1,4 +1,4 @@
-//! The trace stage alone, for benchmarks: eye rays, closest hits, and a shadow ray from each.
+//! Tracing without shading, for benchmarks: eye rays, closest hits, and shadow rays from the hits.
 
 use super::sampling::SampleBatches;
 use super::steps::{Buffers, RenderJob, Stage};
@@ -20,12 +20,13 @@ pub struct Counts {
     pub rays: u64,
     /// The number of eye rays with a hit.
     pub hits: u64,
-    /// The number of pairs of a hit and a light without an occluder between them.
+    /// The number of pairs of a hit and a light without an object between them.
     ///
-    /// Lights on both sides of the surface count.
-    // Light from behind counts as well: only tracing is measured, and compared with tracers that know no normals.
+    /// Lights behind the surface count as well.
+    // Only tracing is measured, and compared with ray tracers that do not use normals.
     pub lit: u64,
-    /// The sum of the depths of all hits, in world units along the view direction: their t.
+    /// The sum of the depths of all hits, in world units along the view direction, which are their
+    /// t.
     pub depths: f64,
 }
 
@@ -54,7 +55,7 @@ pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolut
     Executor::Pool.trace(&job, counts.iter_mut().collect(), |tile, counts| {
         tile.trace(&batches, |buffers, _, _| *counts = *counts + count_batch(kernel, scene, buffers));
     });
-    // Summed in the order of tiles, not as they finish: a sum of floats depends on the order.
+    // Sums in the order of the tiles, not as they finish, because a sum of floats depends on the order.
     counts.into_iter().fold(Counts::default(), Add::add)
 }
 
@@ -64,7 +65,7 @@ fn count_batch(kernel: Kernel, scene: &Scene, buffers: &mut Buffers) -> Counts {
     let mut counts = Counts { rays: shade::count(rays), ..Counts::default() };
     for hits in hits.iter() {
         counts.hits += u64::from(hits.hit_mask.count_ones());
-        // Zero for rays without a hit, so that the sum has no branches.
+        // Replaces t by zero for rays without a hit, so that the sum needs no branches.
         let depths = F32x8::select(F32x8::mask_from_bits(hits.hit_mask), hits.t, F32x8::ZERO);
         counts.depths += depths.0.into_iter().map(f64::from).sum::<f64>();
     }

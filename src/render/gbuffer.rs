@@ -1,4 +1,4 @@
-//! G-buffers: the hits of the eye rays through a picture's pixels, for maps and descriptions.
+//! G-buffers: the hit of the eye ray through each pixel of a picture, for maps and descriptions.
 
 use super::sampling::SampleBatches;
 use super::steps::{Buffers, RenderJob, Stage};
@@ -13,7 +13,7 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shape::{Surface, SurfacePoint};
 
-/// The depth of tracing.
+/// Which rays are traced for a G-buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceDepth {
     /// Closest hits only.
@@ -47,13 +47,13 @@ impl GBufferSample {
 pub struct PixelValues<T> {
     /// One value per pixel, row by row from the top.
     pub pixels: Vec<T>,
-    /// The cost.
+    /// The cost of tracing them.
     pub cost: Cost,
 }
 
 /// Returns the values of `see` for the G-buffer sample of each pixel.
 ///
-/// Samples are those of the eye rays of [`render`](super::render): one per pixel, or one for two by two pixels if the
+/// The eye rays are the first ones of [`render`](super::render): one per pixel, or one for two by two pixels if the
 /// sampling is [`Coarse`](Sampling::Coarse).
 ///
 /// # Errors
@@ -70,8 +70,11 @@ pub fn trace_g_buffer<T: Copy + Default + Send>(
     executor.finish(trace_g_buffer_partial(executor, scene, camera, resolution, sampling, depth, see))
 }
 
-/// Traces as [`trace_g_buffer`] does; after a cancel, returns incomplete values.
-// `see` is called in the tile, while its hits are in the cache: no G-buffer of the whole picture is ever stored.
+/// Traces as [`trace_g_buffer`] does.
+///
+/// If `executor` is cancelled, the returned values are incomplete.
+// `see` is called after each batch, while its hits are in the cache, so the G-buffer of the whole picture is never
+// stored.
 pub(crate) fn trace_g_buffer_partial<T: Copy + Default + Send>(
     executor: Executor<'_>,
     scene: &Scene,

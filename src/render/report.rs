@@ -6,22 +6,23 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The time after which the next finished batch makes a report.
-// With it, a render of 1920x1080 with best samples made 198 reports, at most 27 ms apart.
+/// The time since the last report after which the next finished batch reports again.
+// A render of 1920x1080 with best samples made 198 reports, at most 27 ms apart.
 const MAX_REPORT_PERIOD: Duration = Duration::from_millis(10);
 
-/// The progress after which a report is made before that time, as a share of the whole.
-// Half a percent gives a render of a few milliseconds enough reports to draw a bar.
+/// The progress since the last report after which the next finished batch reports again, as a
+/// fraction of the work.
+// Half a percent gives even a render of a few milliseconds enough reports to draw a bar.
 const MIN_REPORT_STEP: f32 = 0.005;
 
 /// The progress of a render, and the callback that receives it.
 pub struct Report<'a> {
     callback: &'a (dyn Fn(f32) -> ControlFlow<()> + Sync),
     token: Cancellation,
-    /// The total number of units.
+    /// The total number of progress units.
     total: u64,
     /// The finished work.
-    // Locked during a report, so that reports come one at a time and in order, from whichever thread.
+    // It is locked during a report, so that reports from several threads come one at a time and in order.
     done: Mutex<Done>,
 }
 
@@ -39,9 +40,9 @@ struct Done {
 }
 
 impl<'a> Report<'a> {
-    /// Returns the progress at 0 of `total` units.
+    /// Returns the progress of a render that has finished none of `total` units.
     ///
-    /// `callback` gets the share done, and its `Break` cancels `token`.
+    /// `callback` gets the fraction done. If it returns `Break`, `token` is cancelled.
     pub(super) fn new(callback: &'a (dyn Fn(f32) -> ControlFlow<()> + Sync), token: Cancellation, total: u64) -> Self {
         Self { callback, token, total, done: Mutex::new(Done { units: 0, reported: 0.0, at: Instant::now() }) }
     }
@@ -50,11 +51,11 @@ impl<'a> Report<'a> {
         self.token.is_cancelled()
     }
 
-    /// Adds finished units, and reports if a report is due.
+    /// Adds finished units, and calls the callback if a report is due.
     ///
-    /// The end is not reported here: only the caller that gathers the results knows when all is done.
+    /// The end is not reported here, as only the caller that collects the results knows when all work is done.
     pub(super) fn add(&self, units: u64) {
-        // A callback that panics ends the render. Other threads may still get here before; they must not panic as well.
+        // If the callback panics, the render ends. Until then other threads may still lock, and must not panic as well.
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
         done.units += units;
         let part = done.units as f32 / self.total as f32;

@@ -5,27 +5,27 @@ use std::borrow::Cow;
 use std::num::NonZeroU32;
 use std::ops::Range;
 
-/// The number of samples of a picture's pixels: rays per pixel.
+/// How many samples each pixel of a picture gets. A sample is an eye ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Sampling {
-    /// One ray for every two by two pixels.
+    /// One ray for each block of two by two pixels.
     Coarse,
-    /// This many rays through each pixel, at most [`MAX_SAMPLES`](Self::MAX_SAMPLES).
+    /// The same number of rays through each pixel, at most [`MAX_SAMPLES`](Self::MAX_SAMPLES).
     Each(NonZeroU32),
-    /// One ray through each pixel, and 4, 16 or 64 at edges, limited to this many.
+    /// One ray through each pixel, and 4, 16 or 64 rays at edges, limited to the given number.
     ///
     /// Edges are those of objects, shadows and patterns, and places where normals differ.
     UpTo(NonZeroU32),
 }
 
 impl Sampling {
-    /// The largest number of samples at edges: 64.
+    /// Adaptive sampling with up to 64 samples at edges.
     pub const BEST: Self = Self::UpTo(NonZeroU32::new(64).expect("64 is not 0"));
 
     /// The largest number of rays through a pixel: 65,536.
     ///
-    /// More would not change any 8-bit colour; 2^32 - 1 would take minutes for a single pixel.
+    /// More rays would not change any 8-bit colour, and 2^32 - 1 would take minutes for a single pixel.
     #[doc(hidden)]
     pub const MAX_SAMPLES: NonZeroU32 = NonZeroU32::new(1 << 16).expect("65,536 is not 0");
 
@@ -44,34 +44,36 @@ impl From<NonZeroU32> for Sampling {
     }
 }
 
-/// The samples of each pass of adaptive sampling: each ends at four times those before.
-// Four times the samples about halve the error of a mean; less would hardly be worth another pass.
+/// The samples of each pass of adaptive sampling.
+///
+/// Each pass ends at four times the samples of those before.
+// Four times the samples about halve the error of a mean; fewer would hardly be worth another pass.
 pub(super) const PASSES: [Range<u32>; 4] = [0..1, 1..4, 4..16, 16..64];
 
 /// A batch of samples that are traced together, with equal [`footprint_share`].
-// Rays are ordered pixel by pixel: rays through one pixel hit the same primitives more often than rays through
-// neighbours. Sample by sample, the bunny at 200x120 took 53.1 instead of 27.0 ms with best samples, and 42.0 instead
-// of 28.5 ms with 16; only scenes of a few spheres were faster (10.9 instead of 11.3 ms).
+// Rays are ordered pixel by pixel, because rays through one pixel hit the same primitives more often than rays through
+// neighbouring pixels. Ordered sample by sample, the bunny at 200x120 took 53.1 instead of 27.0 ms with best samples,
+// and 42.0 instead of 28.5 ms with 16; only scenes of a few spheres were faster (10.9 instead of 11.3 ms).
 #[derive(Clone, Debug)]
 pub(super) struct SampleBatch {
     pub(super) samples: Range<u32>,
-    /// The positions of the samples in their pixels, in groups of eight.
+    /// The position of each ray's sample in its pixel, in groups of eight rays.
     pub(super) positions: [[F32x8; 2]; MAX_BATCH_RAYS / LANES],
 }
 
 /// The largest number of rays in a batch.
-// The arrays between the steps then take 43 kB, about a first-level cache.
+// With it the arrays between the steps take 43 kB, about the size of a first-level cache.
 pub(super) const MAX_BATCH_RAYS: usize = 256;
 
-/// The largest number of samples per pixel in a batch: those of one packet.
+/// The largest number of samples per pixel in a batch: as many as a packet has rays.
 const MAX_BATCH_SAMPLES: u32 = 64;
 
 /// A range of samples, divided into batches.
 pub(super) struct SampleBatches {
     samples: Range<u32>,
-    /// The first batches, one per pass at most.
-    // The others are computed again for each tile. That is cheap compared with tracing them, and all batches of
-    // MAX_SAMPLES would take 2 MB.
+    /// The first batches, as many as there are passes.
+    // The later batches are computed for each tile. That is cheap compared with tracing them, and storing all batches
+    // of MAX_SAMPLES would take 2 MB.
     kept: Vec<SampleBatch>,
 }
 
@@ -90,7 +92,7 @@ impl SampleBatches {
     }
 }
 
-/// Divides a range of samples at the ends of passes and by [`MAX_BATCH_SAMPLES`].
+/// Divides a range of samples at the ends of passes, and into at most [`MAX_BATCH_SAMPLES`].
 fn split(mut samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
     std::iter::from_fn(move || {
         let Range { start, end } = samples;
@@ -135,10 +137,10 @@ impl SampleBatch {
 
 /// Returns the position of a sample in its pixel, from (0, 0) at the top left corner to (1, 1).
 ///
-/// The first is the centre; the others follow Roberts' R2 sequence (multiples of the inverses of the plastic number and
-/// its square, modulo 1), every prefix of which covers the pixel evenly.
-// A low-discrepancy sequence instead of random or jittered positions: law 4 wants the same picture every time, and any
-// pass may be the last. Computed in integers modulo 2^32, so that it is exact on every CPU.
+/// The first sample is at the centre; the others follow Roberts' R2 sequence (multiples of the inverses of the plastic
+/// number and its square, modulo 1), every prefix of which covers the pixel evenly.
+// A low-discrepancy sequence instead of random or jittered positions, because the picture must be the same every time,
+// and any pass may be the last. It is computed in integers modulo 2^32, to be exact on every CPU.
 pub(super) fn sample_position(sample: u32) -> (f32, f32) {
     let part = |step: u32| {
         let position = 0x8000_0000_u32.wrapping_add(sample.wrapping_mul(step));
@@ -147,10 +149,10 @@ pub(super) fn sample_position(sample: u32) -> (f32, f32) {
     (part(3_242_174_889), part(2_447_445_414))
 }
 
-/// Returns the side of a sample's footprint as a share of the pixel's.
+/// Returns the side of a sample's footprint as a fraction of the pixel's side.
 ///
-/// It is 1 for a single sample, and a half for one of four.
-// The share follows the pass, not the final number of samples: a sample must not change when more are added.
+/// It is 1 for the first sample, and a half for those that are added up to four.
+// The fraction depends on the pass, not on the final number of samples, as adding samples must not change earlier ones.
 pub(super) fn footprint_share(sample: u32) -> f32 {
     match sample {
         0 => 1.0,

@@ -9,7 +9,7 @@ use crate::threads;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-/// The threads that trace.
+/// The threads that trace a picture, and what may cancel them.
 #[derive(Clone, Copy, Debug)]
 pub enum Executor<'a> {
     /// The calling thread alone.
@@ -23,8 +23,8 @@ pub enum Executor<'a> {
 }
 
 /// The predicted time of a picture up to which the calling thread traces alone.
-// Waking another thread takes 16 us, and 80 us after a pause. Two threads took 19 to 25 us for the 40x24 pixels of
-// three_spheres, which one traces in 15, and 44 to 46 us for the 41 of 80x48.
+// Waking another thread takes 16 us, and 80 us after a pause. For three_spheres at 40x24 two threads took 19 to 25 us
+// and one thread 15; at 80x48 two took 44 to 46 us and one 41.
 const SINGLE_THREAD_TIME: Duration = Duration::from_micros(300);
 
 impl Executor<'_> {
@@ -37,12 +37,13 @@ impl Executor<'_> {
     }
 
     /// Returns the result, unless the executor's token is cancelled.
-    // Asked once, at the end: tokens stay cancelled, so one that is not cancelled now has never skipped a tile.
+    // One check at the end is enough: tokens stay cancelled, so if the token is not cancelled now, no tile was skipped.
     pub(crate) fn finish<T>(self, traced: T) -> Result<T, Cancelled> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(traced) }
     }
 
-    /// Calls `trace` for each tile of a job with its part of the result, and returns the cost.
+    /// Calls `trace` with each tile of a job and the tile's part of the result, and returns the
+    /// cost.
     ///
     /// Each thread reuses one set of buffers for all of its tiles.
     pub(super) fn trace<T: Send>(
@@ -63,8 +64,8 @@ impl Executor<'_> {
             }
             tile.cost
         };
-        // The calling thread begins alone, and after each tile predicts the time of the whole picture from the tiles
-        // done. The clock decides only which thread traces a tile; the light is the same.
+        // The calling thread begins alone, and after each tile predicts the time of the whole picture from the finished
+        // tiles. The clock only decides which thread traces a tile, and has no effect on the light.
         let (start, count) = (Instant::now(), parts.len() as u32);
         let is_short = |done: u32| start.elapsed() * count < SINGLE_THREAD_TIME * done;
         let mut is_single_threaded = matches!(self, Self::CurrentThread);
@@ -73,7 +74,7 @@ impl Executor<'_> {
         for (done, tile) in (1..).zip(tiles.by_ref()) {
             costs.push(work(&mut buffers, tile));
             if !is_single_threaded && !is_short(done) {
-                // Asked only now, because the question starts rayon's global pool.
+                // The number of threads is queried only now, because the query starts rayon's global pool.
                 is_single_threaded = threads::count() == 1;
                 if !is_single_threaded {
                     break;
@@ -91,11 +92,11 @@ impl Executor<'_> {
     }
 }
 
-/// A tile of a job on the thread that traces it.
+/// A tile of a job, with the buffers of the thread that traces it.
 pub(super) struct Tile<'t> {
     executor: Executor<'t>,
     job: &'t RenderJob<'t>,
-    /// Its index.
+    /// The index of the tile.
     pub(super) number: usize,
     pub(super) buffers: &'t mut Buffers,
     cost: Cost,
@@ -114,8 +115,8 @@ impl Tile<'_> {
         let start = Instant::now();
         'batches: for batch in batches.iter() {
             for range in batch.pixel_ranges(buffers.active.len()) {
-                // Once per 256 rays, which take 50 us at 5 Mrays/s: a cancel is answered at once, and the load of the
-                // flag does not show in the time.
+                // Checked once per 256 rays, which take 50 us at 5 Mrays/s: that is soon enough for a cancel, and the
+                // cost of loading the flag is not measurable.
                 if executor.is_cancelled() {
                     break 'batches;
                 }

@@ -1,4 +1,4 @@
-//! The steps of rendering for a single pixel, with the values between them.
+//! Rendering of a single pixel, with the values between the steps.
 
 use super::sampling::{SampleBatch, sample_position};
 use super::steps::{Buffers, RenderJob, Stage};
@@ -16,13 +16,14 @@ use glam::Vec2;
 /// The values between the steps of [`render`](super::render) for the first sample of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelTrace {
-    /// The lecture's (qu, qv): the position from (0, 0) at the lower left corner to (1, 1).
+    /// The lecture's (qu, qv): the position in the picture, from (0, 0) at the lower left corner to
+    /// (1, 1).
     pub q: Vec2,
     /// The eye ray.
     pub ray: Ray,
     /// The closest hit.
     pub hit: Option<Hit>,
-    /// The light that arrives at the hit: the ambient light and that of all lights.
+    /// The light that arrives at the hit: the ambient light and the light of all sources.
     pub arriving: LinearRgb,
     /// The reflectance, each channel in 0..=1.
     pub reflectance: LinearRgb,
@@ -58,7 +59,7 @@ impl Scene {
 ///
 /// The pixel is given as column and row from the top left.
 ///
-/// The functions are those that render pictures, so the values are the picture's to the bit.
+/// The same functions render pictures, so the values are those of the picture, bit for bit.
 ///
 /// # Panics
 /// Outside the picture.
@@ -70,7 +71,7 @@ pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y
     let mut buffers = Buffers { active: vec![pixel as u8], ..Buffers::default() };
     buffers.trace(&job, tile, &batch, 0..1);
     let [arriving, light] = [&buffers.arriving[0].light, &buffers.lights[0]].map(|lights| shade::lane_light(lights, 0));
-    // Reflects a light of 1 to get the reflectance: the last step does not return it by itself.
+    // Reflects a light of 1 to get the reflectance, which the last step does not return separately.
     buffers.arriving[0].light = [F32x8([1.0; LANES]); 3];
     buffers.reflect(&job, &batch);
     PixelTrace {

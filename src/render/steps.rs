@@ -1,4 +1,4 @@
-//! The five steps for a batch of rays, and the arrays between them.
+//! The five steps of rendering for a batch of rays, and the arrays between them.
 //!
 //! The steps are eye rays, closest hits, surface points, arriving light, and reflected light.
 
@@ -10,7 +10,9 @@ use crate::scene::Scene;
 use crate::shade::{self, EightArriving, EightLights, EightPoints, ShadowRays};
 use std::ops::Range;
 
-/// The results of the steps, in their order; each includes those before it.
+/// A stage of rendering, named by its result.
+///
+/// The stages are in order, and each includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Stage {
     /// The closest hits.
@@ -28,11 +30,12 @@ pub(super) enum Stage {
 pub(super) enum ProgressUnit {
     /// One unit per eye ray.
     Ray,
-    /// A fixed number of units per tile, where the number of rays is not known beforehand.
+    /// A fixed number of units per tile, if the number of rays is not known in advance.
     Tile(u64),
 }
 
-/// The scene and tiles of a picture, and how far and in which way they are traced.
+/// A picture to be traced: its scene and tiles, the kernel, the last stage, and the unit of
+/// progress.
 #[derive(Clone, Copy)]
 pub(super) struct RenderJob<'a> {
     pub(super) scene: &'a Scene,
@@ -50,15 +53,15 @@ impl<'a> RenderJob<'a> {
 }
 
 /// The arrays between the steps, reused from tile to tile.
-// Arrays of groups of eight (structure of arrays): with an array of single rays, hits and points, each step took half
-// of its time to gather and scatter registers (three_spheres: 2.0 instead of 4.5 times Embree's rays per second).
+// An element is a group of eight in SoA layout. With arrays of single rays, hits and points, each step spent half of
+// its time on loading and storing lanes (three_spheres: 2.0 instead of 4.5 times Embree's rays per second).
 #[derive(Default)]
 pub(super) struct Buffers {
     /// The indices in the tile of the pixels to be traced.
     pub(super) active: Vec<u8>,
     /// The pixel of each ray.
     pub(super) pixels: Vec<u8>,
-    // From here on groups of eight rays. Arrays after the job's last stage stay empty.
+    // The remaining arrays have an element for each group of eight rays. Those after the job's last stage stay empty.
     pub(super) rays: Vec<EightRays>,
     pub(super) hits: Vec<EightHits>,
     pub(super) points: Vec<EightPoints>,
@@ -68,7 +71,8 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    /// Traces a batch's samples of a range of the active pixels, and returns the number of rays.
+    /// Traces the samples of a batch for a range of the active pixels, and returns the number of
+    /// traced rays.
     ///
     /// Runs the steps up to the job's last stage.
     pub(super) fn trace(&mut self, job: &RenderJob<'_>, tile: usize, batch: &SampleBatch, range: Range<usize>) -> u64 {

@@ -1,8 +1,8 @@
 //! The tiles of a picture: the order of pixels, and the eye rays through them.
 //!
-//! Pixels are stored tile by tile, within a tile in squares of 8 by 8, and within a square in groups of 4 by 2. A
-//! group's eye rays are the eight lanes of a vector, and a square's are a packet: of all shapes with 64 pixels, the
-//! rays of a square meet the fewest nodes. Multiple samples of a pixel are consecutive.
+//! Pixels are ordered tile by tile, within a tile in squares of 8 by 8, and within a square in groups of 4 by 2. The
+//! eye rays of a group are the eight lanes of a vector, and those of a square a packet: of all shapes with 64 pixels,
+//! the rays of a square hit the fewest nodes. The samples of a pixel are consecutive.
 
 use super::sampling::{SampleBatch, footprint_share};
 use crate::camera::{Camera, EyeRays};
@@ -14,11 +14,11 @@ use glam::Vec3;
 use std::ops::Range;
 
 /// The side of a tile in pixels.
-// Four packets of 8x8: the arrays between the steps stay in the first-level cache, an index of a pixel fits a byte, and
-// a picture of 80x48 has 15 tiles for the threads to share.
+// A tile is four packets of 8x8 pixels. The arrays between the steps fit the first-level cache, the index of a pixel
+// fits a byte, and a picture of 80x48 has 15 tiles for the threads to share.
 const SIDE: u32 = 16;
 
-/// The number of pixels in a tile, including those outside the picture in tiles at the border.
+/// The number of pixels in a tile. In tiles at the border, some of them are outside the picture.
 pub(super) const PIXELS: usize = (SIDE * SIDE) as usize;
 
 /// The tiles of a picture, at full or reduced resolution.
@@ -26,7 +26,7 @@ pub(super) const PIXELS: usize = (SIDE * SIDE) as usize;
 pub(super) struct Tiles {
     /// The resolution of the picture.
     pub(super) resolution: Resolution,
-    /// The side of a traced pixel in pixels of the picture.
+    /// The side of a traced pixel, in pixels of the picture: 1 or 2.
     pub(super) scale: u32,
     /// The number of traced pixels in a row.
     pub(super) columns: u32,
@@ -62,8 +62,8 @@ impl Tiles {
         [tile % self.tiles_per_row() * SIDE, tile / self.tiles_per_row() * SIDE]
     }
 
-    /// Splits a picture's pixels by tiles: each tile gets its part of the rows that it covers.
-    // So that threads write to the picture at once, without a copy and without unsafe code.
+    /// Splits a picture's pixels by tiles: each tile gets its parts of the rows that it covers.
+    // With it several threads write to the picture at the same time, without a copy and without unsafe code.
     pub(super) fn split<'p, T>(&self, pixels: &'p mut [T]) -> Vec<Vec<&'p mut [T]>> {
         let side = (SIDE * self.scale) as usize;
         let mut tiles: Vec<_> = (0..self.count()).map(|_| Vec::with_capacity(side)).collect();
@@ -76,18 +76,18 @@ impl Tiles {
         tiles
     }
 
-    /// Writes the values of a tile's pixels to a picture, and skips pixels outside.
+    /// Writes the values of a tile's pixels to the picture, and skips pixels outside it.
     ///
-    /// `value` gets the position in `pixels`.
+    /// `value` returns the value of the pixel at an index of `pixels`.
     pub(super) fn write_all<T: Copy>(&self, pixels: &[u8], value: impl Fn(usize) -> T, part: &mut [&mut [T]]) {
         if pixels.len() == PIXELS && self.scale == 1 {
-            // A whole tile is written row by row, four neighbours at a time, as they are consecutive in the tile: pixel
-            // by pixel took 4.9 instead of 3.1 % of a profile.
+            // A whole tile is written row by row, in runs of four neighbours, which are consecutive in the tile. Pixel
+            // by pixel it took 4.9 instead of 3.1 % of the total time.
             for (row, pixels) in part.iter_mut().zip(&PIXELS_BY_ROW) {
                 let (fours, rest) = row.as_chunks_mut::<4>();
                 let left = &pixels[4 * fours.len()..];
                 for (four, &[first, ..]) in fours.iter_mut().zip(pixels.as_chunks::<4>().0) {
-                    // `first` is a multiple of 4; the mask makes that known to the compiler.
+                    // `first` is a multiple of 4; the mask lets the compiler know.
                     *four = std::array::from_fn(|at| value(usize::from(first) & !3 | at));
                 }
                 rest.iter_mut().zip(left).for_each(|(pixel, &index)| *pixel = value(index.into()));
@@ -99,7 +99,7 @@ impl Tiles {
         }
     }
 
-    /// Writes the value of one traced pixel, to all pixels of the picture that it covers.
+    /// Writes the value of one traced pixel to all pixels of the picture that it covers.
     pub(super) fn write<T: Copy>(&self, pixel: u8, value: T, part: &mut [&mut [T]]) {
         let scale = self.scale as usize;
         let [x, y] = coordinates(pixel.into()).map(|at| at as usize * scale);
@@ -108,14 +108,15 @@ impl Tiles {
         }
     }
 
-    /// Returns the columns and rows of a pixel and its neighbours within the picture.
+    /// Returns the ranges of columns and rows of a pixel and its neighbours, clipped to the
+    /// picture.
     pub(super) fn neighbourhood(&self, tile: usize, pixel: usize) -> [Range<u32>; 2] {
         let ([left, top], [x, y]) = (self.corner(tile), coordinates(pixel));
         let beside = |at: u32, end: u32| at.saturating_sub(1)..(at + 2).min(end);
         [beside(left + x, self.columns), beside(top + y, self.rows)]
     }
 
-    /// Returns the tile of a pixel and the pixel's index in it.
+    /// Returns the index of the tile of a pixel, and the pixel's index in the tile.
     pub(super) fn locate(&self, [x, y]: [u32; 2]) -> (usize, usize) {
         let tile = y / SIDE * self.tiles_per_row() + x / SIDE;
         (tile as usize, PIXELS_BY_ROW[(y % SIDE) as usize][(x % SIDE) as usize].into())
@@ -154,7 +155,8 @@ impl Tiles {
         [(x + sx) * scale / width, (height - (y + sy) * scale) / height]
     }
 
-    /// Returns the change of direction over the footprint of a sample, to the right and upwards.
+    /// Returns the change of an eye ray's direction over the footprint of a sample, to the right
+    /// and upwards.
     pub(super) fn steps(&self, sample: u32) -> [Vec3; 2] {
         let share = self.scale as f32 * footprint_share(sample);
         self.eye_rays.steps(self.resolution.width(), self.resolution.height()).map(|step| step * share)
@@ -162,7 +164,7 @@ impl Tiles {
 }
 
 /// The indices of all pixels in a tile.
-// This and the next two are tables, so that no loop over pixels computes positions bit by bit.
+// A table, like `PIXEL_COORDINATES` and `PIXELS_BY_ROW`, so that no loop over pixels computes positions bit by bit.
 pub(super) static ALL_PIXELS: [u8; PIXELS] = {
     let mut all = [0; PIXELS];
     let mut pixel = 0;
@@ -174,7 +176,8 @@ pub(super) static ALL_PIXELS: [u8; PIXELS] = {
 };
 
 /// Returns the column and row of a pixel in its tile.
-// The bits of the index, from the lowest: x x y (a group of 4x2), x y y (a square of 8x8), x, y (the tile of 16x16).
+// The bits of the index are, from the lowest: x, x, y (in a group of 4x2), x, y, y (in a square of 8x8), x, y (in the
+// tile of 16x16).
 pub(super) const fn coordinates(pixel: usize) -> [u32; 2] {
     let at = pixel as u32;
     [at & 3 | (at >> 3 & 1) << 2 | (at >> 6 & 1) << 3, at >> 2 & 1 | (at >> 4 & 3) << 1 | (at >> 7 & 1) << 3]
@@ -228,7 +231,7 @@ impl SimdKernel for MakeEyeRays<'_> {
                 let pixel = usize::from(pixels[lane.min(last)]);
                 (x.0[lane], y.0[lane]) = (PIXEL_COORDINATES[0][pixel], PIXEL_COORDINATES[1][pixel]);
             }
-            // Inactive lanes repeat the last ray, so that they widen no bounds of the group: position and sample.
+            // Inactive lanes repeat the last ray's pixel and sample, so that they do not widen the bounds of the group.
             for lane in pixels.len()..LANES {
                 (sx.0[lane], sy.0[lane]) = (sx.0[last], sy.0[last]);
             }

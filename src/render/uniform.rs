@@ -15,8 +15,8 @@ pub(super) fn render(executor: Executor<'_>, scene: &Scene, tiles: &Tiles, sampl
     let mut framebuffer = Framebuffer::new(tiles.resolution);
     let parts = tiles.split(framebuffer.pixels_mut());
     let (batches, share) = (SampleBatches::of(0..samples), 1.0 / samples as f32);
-    // Sums are kept per tile and written to the picture once. A picture of sums took more memory than the framebuffer,
-    // and 262 instead of 225 instructions per pixel (three_spheres at 1024x1024).
+    // Sums are kept per tile, and written to the picture once. With sums for the whole picture, rendering took more
+    // memory than the framebuffer, and 262 instead of 225 instructions per pixel (three_spheres at 1024x1024).
     let cost = executor.trace(&RenderJob::new(scene, tiles, Stage::Reflected), parts, |tile, mut part| {
         let mut sums = [[F32x8::ZERO; 3]; PIXELS / LANES];
         tile.trace(&batches, |buffers, batch, pixels| add_lights(&mut sums, buffers, batch, pixels));
@@ -26,7 +26,7 @@ pub(super) fn render(executor: Executor<'_>, scene: &Scene, tiles: &Tiles, sampl
 }
 
 /// Adds the light of a batch to the sums of its pixels.
-// For each pixel in the order of its samples: the sum's bits depend on the order, but not on the size of batches.
+// Each pixel's samples are added in order, so that the bits of the sum do not depend on the size of batches.
 fn add_lights(sums: &mut [EightLights], buffers: &Buffers, batch: &SampleBatch, pixels: Range<usize>) {
     let per_pixel = batch.per_pixel();
     if per_pixel == 1 {

@@ -1,6 +1,7 @@
 use super::*;
 
-/// Each sample is traced once, in order, at its position, in batches of one footprint.
+/// Each sample is traced once, in order, at its position, and all samples of a batch have the same
+/// footprint.
 #[test]
 fn batches_cover_each_sample_once() {
     for samples in [0..1, 0..3, 0..16, 1..4, 4..16, 16..64, 0..64, 0..65, 0..300, 5..7] {
