@@ -1,6 +1,6 @@
 //! The camera: pose, intrinsic parameters, and the eye rays (lecture, "Generating eye rays").
 //!
-//! World space is right-handed. Angles are in radians here, and in degrees in scene files and in `with_fov_degrees`.
+//! World space is right-handed. Angles are in radians; only scene files and `with_fov_degrees` have degrees.
 
 use crate::checks::{self, TOO_FAR};
 use crate::lanes::{Number, Vector};
@@ -20,7 +20,7 @@ pub use on_screen::Grip;
 
 /// A camera: a checked pose and intrinsic parameters.
 ///
-/// Every camera gives a picture: its eye is not at its target, and its up vector is not along the view.
+/// Every camera can take a picture: its eye is not at its target, and its up vector is not along the view.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Camera {
     pose: Pose,
@@ -28,11 +28,11 @@ pub struct Camera {
     rectangle: ViewRectangle,
 }
 
-/// Formats the parameters without the basis, which follows from them.
+/// Formats the parameters without the basis, which is computed from the pose.
 impl fmt::Debug for Camera {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { pose: Pose { eye, target, up }, rectangle: ViewRectangle { width, height, shift }, .. } = self;
-        // One line for each vector, where glam's own output takes one for each coordinate.
+        // With `{:#?}` a vector is one line here, while glam's output would take a line for each coordinate.
         let mut camera = f.debug_struct("Camera");
         camera.field("eye", &format_args!("{eye:?}"));
         camera.field("target", &format_args!("{target:?}"));
@@ -65,15 +65,16 @@ pub struct Basis {
 }
 
 /// The view rectangle: the intrinsic parameters, on the plane at distance 1 in front of the eye.
-// The picture depends only on the ratios of the lecture's f, w and h, so the focal length is always made 1: equal views
-// have equal values.
+// The picture depends only on the ratios of the lecture's f, w and h, so the focal length is always scaled to 1. Equal
+// views then have equal values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewRectangle {
-    /// The width divided by the focal length; `None` if the picture's shape decides.
+    /// The width divided by the focal length; `None` if it follows from the picture's aspect ratio.
     width: Option<f32>,
     /// The height divided by the focal length.
     height: f32,
-    /// The offset of the middle from the w axis, to the right and upwards, in heights.
+    /// The offset of the rectangle's middle from the w axis, to the right and upwards, in heights
+    /// of the rectangle.
     shift: Vec2,
 }
 
@@ -148,8 +149,8 @@ impl Camera {
     /// ```
     ///
     /// # Errors
-    /// If both are the same point, a coordinate is not within ±1e9, or the camera would look straight up or down, for
-    /// which [`Camera::new`] takes another up vector.
+    /// If both are the same point, a coordinate is not within ±1e9, or the camera would look straight up or down. For
+    /// such a view call [`Camera::new`] with another up vector.
     pub fn look_at(eye: Vec3, target: Vec3) -> Result<Self, CameraError> {
         Self::new(Pose { eye, target, up: Vec3::Y }, ViewRectangle::from_vertical_fov(radians(DEFAULT_FOV_DEGREES))?)
     }
@@ -157,7 +158,7 @@ impl Camera {
     /// Returns the camera with another up vector, of any length from 1e-9 to 1e9.
     ///
     /// # Errors
-    /// If the up vector has no such length, or is parallel to the view.
+    /// If the length of the up vector is out of this range, or the vector is parallel to the view.
     pub fn with_up(self, up: Vec3) -> Result<Self, CameraError> {
         self.with_pose(Pose { up, ..self.pose })
     }
@@ -172,7 +173,7 @@ impl Camera {
         Ok(Self { rectangle: self.rectangle.with_vertical_fov(radians(degrees.into()))?, ..self })
     }
 
-    /// Returns the camera with this pose and view rectangle.
+    /// Returns the camera with the given pose and view rectangle.
     ///
     /// ```
     /// use glam::Vec3;
@@ -224,7 +225,7 @@ impl Camera {
         self.rectangle
     }
 
-    /// Returns the eye rays of a picture with this aspect ratio (width / height).
+    /// Returns the eye rays of a picture with the given aspect ratio (width / height).
     #[doc(hidden)]
     pub fn eye_rays(&self, aspect_ratio: f32) -> EyeRays {
         let Basis { u, v, w } = self.basis;
@@ -237,8 +238,9 @@ impl Camera {
 impl Basis {
     /// Returns the basis of a pose by the lecture's construction from two vectors.
     ///
-    /// From a = -(target - eye) and b = up follow w = a / |a|, u = b x w / |b x w|, v = w x u.
-    // In f64, rounded once at the end: a target far away, or an up vector nearly along the view, costs no digits.
+    /// With a = -(target - eye) and b = up it is w = a / |a|, u = b x w / |b x w|, v = w x u.
+    // Computed in f64 and rounded once at the end, so that a target far away, or an up vector nearly along the view,
+    // does not lose digits.
     fn from_pose(pose: &Pose) -> Result<Self, CameraError> {
         let [eye, target, up] = [pose.eye, pose.target, pose.up].map(Vec3::as_dvec3);
         if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
@@ -253,8 +255,8 @@ impl Basis {
         }
         let up = unit_vector(up).ok_or(CameraError::UpIsZero)?;
         let across = up.cross(w);
-        // The sine of the angle between up and the view. Vectors that are parallel as written are off by the rounding
-        // of f32, which this limit exceeds by a factor of ten.
+        // The length is the sine of the angle between up and the view. For vectors that are parallel as written,
+        // rounding to f32 makes it up to a tenth of this limit.
         if across.length() < 1e-6 {
             return Err(CameraError::UpAlongView);
         }
@@ -264,25 +266,26 @@ impl Basis {
 }
 
 /// Returns the unit vector in the direction of `v`, or `None` for the zero vector.
-// Scaled by the largest coordinate first, so that squares of very large or small ones neither overflow nor vanish.
+// Divides by the largest coordinate first, so that the squares of very large or small coordinates neither overflow nor
+// vanish.
 fn unit_vector(v: DVec3) -> Option<DVec3> {
     let largest = v.abs().max_element();
     (largest > 0.0).then(|| v / largest).map(|v| v / v.dot(v).sqrt())
 }
 
-/// Converts degrees to radians, rounded once.
+/// Converts degrees to radians in f64, and rounds the result to f32.
 pub(crate) fn radians(degrees: f64) -> f32 {
     degrees.to_radians() as f32
 }
 
 impl ViewRectangle {
     /// The largest [shift](Self::with_shift) along each axis, in heights of the rectangle.
-    // Far beyond any lens; f32 still resolves 6e-5 of a height there.
+    // This is far beyond any lens, and f32 still resolves 6e-5 of a height.
     pub(crate) const MAX_SHIFT: f32 = 1e3;
 
     /// Returns the rectangle with a vertical field of view in radians: h = 2 f tan(alpha / 2).
     ///
-    /// The picture's shape decides its width.
+    /// Its width follows from the picture's aspect ratio.
     ///
     /// # Errors
     /// If the angle is not between 0 and pi, both excluded.
@@ -311,7 +314,7 @@ impl ViewRectangle {
         Ok(Self { width: Some(width), height, shift: Vec2::ZERO })
     }
 
-    /// Returns the rectangle with these sides at focal length 1, without shift.
+    /// Returns the rectangle with the given sides at focal length 1, without shift.
     #[cfg(feature = "serde")]
     pub(crate) fn from_sides(width: Option<f32>, height: f32) -> Result<Self, CameraError> {
         if is_positive(height) && width.is_none_or(is_positive) {
@@ -323,7 +326,7 @@ impl ViewRectangle {
 
     /// Returns the rectangle with another vertical field of view, in radians.
     ///
-    /// The aspect ratio and the shift stay.
+    /// The aspect ratio and the shift do not change.
     ///
     /// # Errors
     /// As [`ViewRectangle::from_vertical_fov`].
@@ -347,7 +350,7 @@ impl ViewRectangle {
         if scaled.vertical_fov() < std::f32::consts::PI { Ok(scaled) } else { Err(CameraError::FieldOfView) }
     }
 
-    /// Returns the rectangle of the same height with an aspect ratio (width / height) of its own.
+    /// Returns the rectangle with the same height and a fixed aspect ratio (width / height).
     ///
     /// # Errors
     /// If the aspect ratio is not between 1e-6 and 1e6.
@@ -360,9 +363,9 @@ impl ViewRectangle {
         if is_positive(width) { Ok(Self { width: Some(width), ..self }) } else { Err(CameraError::ViewRectangle) }
     }
 
-    /// Returns the rectangle with its middle shifted from the w axis, in its heights.
+    /// Returns the rectangle with its middle shifted from the w axis, to the right and upwards.
     ///
-    /// The shift is to the right and upwards.
+    /// The shift is in heights of the rectangle.
     ///
     /// # Errors
     /// If the shift is not finite, or more than 1000 heights along an axis.
@@ -381,7 +384,8 @@ impl ViewRectangle {
         2.0 * libm::atanf(0.5 * self.height)
     }
 
-    /// Returns the width divided by the focal length; `None` if the picture's shape decides.
+    /// Returns the width divided by the focal length; `None` if it follows from the picture's
+    /// aspect ratio.
     #[doc(hidden)]
     pub fn width(&self) -> Option<f32> {
         self.width
@@ -393,21 +397,22 @@ impl ViewRectangle {
         self.height
     }
 
-    /// Returns the aspect ratio (width / height); `None` if the picture's shape decides.
+    /// Returns the aspect ratio (width / height); `None` if it is that of the picture.
     #[doc(hidden)]
     pub fn aspect_ratio(&self) -> Option<f32> {
         self.width.map(|width| width / self.height)
     }
 
-    /// Returns the offset of the middle from the w axis, to the right and upwards, in heights.
+    /// Returns the offset of the middle from the w axis, to the right and upwards, in heights of
+    /// the rectangle.
     #[doc(hidden)]
     pub fn shift(&self) -> Vec2 {
         self.shift
     }
 
-    /// Returns width, height and middle of the rectangle grown to a picture's aspect ratio.
-    // Grown instead of cropped or stretched: the whole rectangle stays in view in a terminal of any shape. It grows
-    // about its middle, to the sides in a wider picture, up and down in a narrower one.
+    /// Returns width, height and middle of the rectangle, extended to a picture's aspect ratio.
+    // It is extended instead of cropped or stretched, so that all of it is visible in a terminal of any shape: to the
+    // left and right in a wider picture, up and down in a narrower one.
     pub(crate) fn fitted_to(&self, aspect_ratio: f32) -> (f32, f32, Vec2) {
         let (width, height) = match self.width {
             Some(width) if width > self.height * aspect_ratio => (width, width / aspect_ratio),
@@ -427,7 +432,8 @@ fn is_positive(x: f32) -> bool {
 pub struct EyeRays {
     eye: Vec3,
     /// The vector from the eye to the lower left corner of the view rectangle.
-    // The lecture's q0 is eye + this. Without the eye, a camera far from the origin costs no digits.
+    // The lecture's q0 is the sum of the eye and this vector. Without the eye, a camera far from the origin loses no
+    // digits.
     q0: Vec3,
     /// The bottom edge of the view rectangle: w * u of the lecture.
     across: Vec3,
@@ -436,11 +442,12 @@ pub struct EyeRays {
 }
 
 impl EyeRays {
-    /// Returns the ray through a position, from (0, 0) at the lower left corner to (1, 1).
+    /// Returns the ray through a position in the picture, from (0, 0) at the lower left corner to
+    /// (1, 1).
     ///
-    /// The lecture's q = q0 + w qu u + h qv v. The direction is q - eye, whose component along -w is 1, so that t is
-    /// the depth.
-    // Not normalized: that would cost a square root and a division per ray, and make t something else than the depth.
+    /// It goes through the lecture's q = q0 + w qu u + h qv v. The direction is q - eye, whose component along -w is 1,
+    /// so that t is the depth.
+    // Normalizing the direction would cost a square root and a division per ray, and t would no longer be the depth.
     pub fn through(&self, qu: f32, qv: f32) -> Ray {
         Ray { origin: self.eye, direction: self.direction(qu, qv).into() }
     }
@@ -456,7 +463,10 @@ impl EyeRays {
         self.eye
     }
 
-    /// Returns the change of direction to the next pixel on the right and to the next above.
+    /// Returns the changes of direction from a pixel to the next one on the right and to the next
+    /// one above.
+    ///
+    /// `width` and `height` are those of the picture in pixels.
     pub fn steps(&self, width: u32, height: u32) -> [Vec3; 2] {
         [self.across / width as f32, self.upward / height as f32]
     }

@@ -73,22 +73,22 @@ impl CameraPath {
     ///
     /// Returns `None` if there are none, or their times do not increase.
     ///
-    /// Before the first and after the last keyframe the camera rests.
+    /// Before the first and after the last keyframe the camera does not move.
     ///
     /// Between two keyframes eye, target and up follow cubic Hermite curves. The velocity at a keyframe is the
     /// difference of its neighbours divided by that of their times (Catmull and Rom, "A class of local interpolating
     /// splines", 1974). A value that is equal in two consecutive keyframes stays exactly equal between them. The
-    /// logarithm of the view rectangle's height follows the same kind of curve. Its aspect ratio and shift are those of
-    /// the keyframe before.
-    // With the keyframes' own times, velocities are continuous, and overshoot is bounded by the distances between
-    // keyframes whatever their times. The logarithm makes zooming even, and keeps every angle in range.
+    /// logarithm of the view rectangle's height follows the same kind of curve. The rectangle's aspect ratio and shift
+    /// are those of the last keyframe before.
+    // Dividing by the times makes velocities continuous also for uneven times, and bounds the overshoot by the
+    // distances between keyframes. The logarithm makes zooming even, and keeps every angle in range.
     #[doc(hidden)]
     pub fn through(keyframes: Vec<Keyframe>) -> Option<Self> {
         let rise = keyframes.windows(2).all(|pair| pair[0].time < pair[1].time);
         (rise && !keyframes.is_empty()).then_some(Self(PathKind::Keyframes(keyframes)))
     }
 
-    /// Returns the duration in seconds: of one turn, or up to the last keyframe.
+    /// Returns the duration in seconds: that of one turn, or the time of the last keyframe.
     #[doc(hidden)]
     pub fn seconds(&self) -> f64 {
         match &self.0 {
@@ -111,7 +111,7 @@ impl CameraPath {
     /// Returns the cameras of a film: that of frame k is at `k / frames_per_second` seconds.
     ///
     /// # Errors
-    /// With the first time at which the camera is invalid.
+    /// If a camera is invalid. The error has the first such time.
     #[doc(hidden)]
     pub fn cameras(&self, frames: usize, frames_per_second: u32) -> Result<Vec<Camera>, PathError> {
         let camera = |frame: usize| {
@@ -122,8 +122,9 @@ impl CameraPath {
     }
 }
 
-/// Returns the camera turned about its target and up vector by an angle in radians.
-// Written as a difference from the eye, so that angle 0 gives the same bits.
+/// Returns the camera with its eye turned about the target and the up vector by an angle in
+/// radians.
+// The formula adds a difference to the eye, so that angle 0 gives the same bits.
 fn turned(camera: &Camera, angle: f64) -> Result<Camera, CameraError> {
     let pose = camera.pose();
     let [eye, target, up] = [pose.eye, pose.target, pose.up].map(Vec3::as_dvec3);
@@ -135,7 +136,7 @@ fn turned(camera: &Camera, angle: f64) -> Result<Camera, CameraError> {
     camera.with_pose(Pose { eye: eye.as_vec3(), ..pose })
 }
 
-/// Returns the camera of the keyframes' curves at a time.
+/// Returns the camera at a time on the curves through the keyframes.
 fn interpolate(keyframes: &[Keyframe], time: f64) -> Result<Camera, CameraError> {
     let passed = keyframes.partition_point(|keyframe| keyframe.time <= time);
     let before = &keyframes[passed.saturating_sub(1)];
@@ -146,7 +147,8 @@ fn interpolate(keyframes: &[Keyframe], time: f64) -> Result<Camera, CameraError>
     let pose = Pose {
         eye: interval.value(|camera| camera.pose().eye.as_dvec3()).as_vec3(),
         target: interval.value(|camera| camera.pose().target.as_dvec3()).as_vec3(),
-        // Normalized first, because only the direction of an up vector matters: a long one must not outweigh the other.
+        // Normalized first, because only the direction of an up vector matters: a long vector must not outweigh a short
+        // one.
         up: interval.value(|camera| camera.pose().up.as_dvec3().normalize()).as_vec3(),
     };
     let log_height = |camera: &Camera| libm::log(f64::from(camera.rectangle().height()));
@@ -157,13 +159,14 @@ fn interpolate(keyframes: &[Keyframe], time: f64) -> Result<Camera, CameraError>
 /// A time between two keyframes.
 struct KeyframeInterval<'a> {
     keyframes: &'a [Keyframe],
-    /// The index of the keyframe before the time.
+    /// The index of the last keyframe before `time`.
     before: usize,
     time: f64,
 }
 
 impl KeyframeInterval<'_> {
-    /// Returns a quantity of the camera by its cubic Hermite curve between both keyframes.
+    /// Returns the value of a quantity `of` the camera, on its cubic Hermite curve between both
+    /// keyframes.
     fn value<T: Interpolated>(&self, of: impl Fn(&Camera) -> T) -> T {
         let (start, end) = (self.before, self.before + 1);
         let seconds = self.keyframes[end].time - self.keyframes[start].time;
@@ -171,14 +174,16 @@ impl KeyframeInterval<'_> {
         let [from, to] = [start, end].map(|at| of(&self.keyframes[at].camera));
         let [leaving, arriving] = [start, end].map(|at| self.velocity(at, &of) * seconds);
         let back = 1.0 - t;
-        // In this form each term but the first is exactly 0 if nothing changes, so a resting camera keeps its bits.
+        // In this form all terms but the first are exactly 0 if nothing changes, so a resting camera keeps its bits.
         from + (to - from) * (t * t * (1.0 + 2.0 * back)) + leaving * (t * back * back) - arriving * (t * t * back)
     }
 
-    /// Returns the velocity of a quantity at a keyframe: from the keyframe before to the one after.
+    /// Returns the velocity of a quantity at a keyframe: the mean velocity from the keyframe before
+    /// to the one after.
     ///
-    /// Zero if one of them has the same value as this one. At either end the keyframe itself takes the missing place.
-    // The zero keeps a value that rests between two keyframes from overshooting.
+    /// At the ends of the path the keyframe itself replaces the missing one. The velocity is zero if a neighbouring
+    /// keyframe has the same value.
+    // The zero prevents a value that rests between two keyframes from overshooting.
     fn velocity<T: Interpolated>(&self, at: usize, of: impl Fn(&Camera) -> T) -> T {
         let value = |at: usize| of(&self.keyframes[at].camera);
         let (before, after) = (at.saturating_sub(1), (at + 1).min(self.keyframes.len() - 1));

@@ -1,8 +1,8 @@
 //! Colours: linear RGB, 8-bit sRGB and the transfer function between them; OKLab for differences.
 //!
-//! Colours have two types, because a picture in which they are confused looks plausible and is wrong: [`LinearRgb`] is
-//! an amount of light, which may be added and scaled; [`Srgb8`] is a code for a file or a terminal, which may not. The
-//! conversion from the first to the second is the last step of a picture (see [`tone`](crate::tone)).
+//! Colours have two types, because a picture that confuses them is wrong but looks plausible. [`LinearRgb`] is an
+//! amount of light, which may be added and scaled. [`Srgb8`] is a code for a file or a terminal, with which that is not
+//! allowed. The conversion to it is the last step of a picture (see [`tone`](crate::tone)).
 //!
 //! The primaries are those of sRGB (IEC 61966-2-1), the white is D65.
 
@@ -28,7 +28,7 @@ impl LinearRgb {
     #[doc(hidden)]
     pub const BLACK: Self = Self::new(0.0, 0.0, 0.0);
 
-    /// Returns light with these three linear channels.
+    /// Returns light with the given linear channels.
     ///
     /// ```
     /// use termtrace::LinearRgb;
@@ -39,7 +39,7 @@ impl LinearRgb {
         Self { r, g, b }
     }
 
-    /// Returns light with this amount in each channel.
+    /// Returns light with the same amount in each channel.
     pub const fn grey(amount: f32) -> Self {
         Self::new(amount, amount, amount)
     }
@@ -47,7 +47,7 @@ impl LinearRgb {
     /// Returns the light of an 8-bit sRGB colour, each channel in 0..=1.
     #[doc(hidden)]
     pub fn from_srgb8(color: Srgb8) -> Self {
-        // A table instead of three powers per pixel of a texture or a dithered picture.
+        // A table saves three powers per pixel of a texture or a dithered picture.
         let table = &TRANSFER.linear_from_srgb8;
         Self::new(table[usize::from(color.r)], table[usize::from(color.g)], table[usize::from(color.b)])
     }
@@ -73,7 +73,7 @@ impl LinearRgb {
     }
 }
 
-/// Takes the three channels, linear.
+/// Converts from red, green and blue, all linear.
 impl From<[f32; 3]> for LinearRgb {
     fn from([r, g, b]: [f32; 3]) -> Self {
         Self::new(r, g, b)
@@ -100,7 +100,7 @@ impl AddAssign for LinearRgb {
     }
 }
 
-/// Multiplies per channel: light through a filter, or off a surface with that reflectance.
+/// Multiplies per channel, as for light through a filter or reflected by a surface.
 impl Mul for LinearRgb {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
@@ -115,7 +115,8 @@ impl Mul<f32> for LinearRgb {
     }
 }
 
-/// A colour as files and terminals take it: sRGB, 8 bits per channel, transfer function applied.
+/// A colour for files and terminals: sRGB with 8 bits per channel, encoded by the transfer
+/// function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Srgb8 {
     /// Red, 0..=255.
@@ -127,7 +128,7 @@ pub struct Srgb8 {
 }
 
 impl Srgb8 {
-    /// Returns a colour with these three channels.
+    /// Returns a colour with the given channels.
     ///
     /// ```
     /// use termtrace::{LinearRgb, Srgb8};
@@ -153,14 +154,14 @@ impl Srgb8 {
     }
 }
 
-/// Takes the three channels.
+/// Converts from red, green and blue.
 impl From<[u8; 3]> for Srgb8 {
     fn from([r, g, b]: [u8; 3]) -> Self {
         Self::new(r, g, b)
     }
 }
 
-/// Returns the three channels.
+/// Returns red, green and blue.
 impl From<Srgb8> for [u8; 3] {
     fn from(Srgb8 { r, g, b }: Srgb8) -> Self {
         [r, g, b]
@@ -191,10 +192,11 @@ pub struct Oklab {
 }
 
 impl Oklab {
-    /// Returns the OKLab colour of a screen colour, by the matrices of the source.
+    /// Converts an sRGB colour to OKLab, with the matrices of the source.
     pub fn from_srgb8(color: Srgb8) -> Self {
         let LinearRgb { r, g, b } = LinearRgb::from_srgb8(color);
-        // `libm`, not the platform's `cbrt`: the encoder's choices, and so its bytes, are the same on every machine.
+        // `libm` instead of the platform's `cbrt`, so that the encoder's choices, and so its bytes, are the same on
+        // every machine.
         let l = libm::cbrtf(0.412_221_46 * r + 0.536_332_55 * g + 0.051_445_995 * b);
         let m = libm::cbrtf(0.211_903_5 * r + 0.680_699_5 * g + 0.107_396_96 * b);
         let s = libm::cbrtf(0.088_302_46 * r + 0.281_718_85 * g + 0.629_978_7 * b);
@@ -205,7 +207,8 @@ impl Oklab {
         }
     }
 
-    /// Returns the perceived difference of two colours: their distance, 1 for black and white.
+    /// Returns the perceived difference of two colours: their distance, which is 1 between black
+    /// and white.
     pub fn distance(self, other: Self) -> f32 {
         let (l, a, b) = (self.l - other.l, self.a - other.a, self.b - other.b);
         (l * l + a * a + b * b).sqrt()
@@ -222,25 +225,25 @@ pub fn linear_from_srgb(encoded: f64) -> f64 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
-/// Number of consecutive floats in a bucket.
+/// The number of consecutive floats in a bucket of the table of the transfer function.
 ///
 /// The floats of a bucket share the upper half of their bits: the sign, the exponent and the first 7 bits of the
 /// mantissa.
-// With longer buckets some contain more than one of the 255 steps, and one comparison does not suffice.
+// Some longer buckets would contain more than one of the 255 steps between codes, which need more than one comparison.
 const BUCKET_LEN: u32 = 1 << 16;
-/// Number of buckets: one for each upper half.
+/// The number of buckets: one for each upper half of a float's bits.
 const BUCKET_COUNT: usize = 1 << 16;
 
-/// The transfer function, tabulated.
+/// Tables of the transfer function.
 struct Transfer {
     /// The light of each 8-bit code.
     linear_from_srgb8: [f32; 256],
     /// The bits of the least light that rounds to code `k + 1`, at index `k`; `u32::MAX` at 255.
-    // Bits, because positive floats are ordered as their bits are, and the bits are needed for the bucket anyway.
+    // The bits of positive floats are ordered as the floats are, and the bucket is computed from the bits anyway.
     bits_at_step: [u32; 256],
     /// The code of the least light in each bucket.
-    // Also of buckets above 1 and below 0, so that light need not be clamped first. Without the clamp, conversion to 8
-    // bits took a frame of three spheres from 18.5 to 16.9 ms (1,024 x 1,024 pixels, one thread).
+    // There are also buckets above 1 and below 0, so that light need not be clamped first. Without the clamp a frame of
+    // three spheres takes 16.9 instead of 18.5 ms (1,024 x 1,024 pixels, one thread).
     first_code: [u8; BUCKET_COUNT],
 }
 
@@ -252,12 +255,13 @@ impl Transfer {
 
     /// Clamps, encodes and rounds a channel.
     ///
-    /// A channel has the code of the least light in its bucket, or the next code if it is above the step.
-    // `pow` for each channel of each pixel would cost more than tracing the pixel.
+    /// The result is the code of the least light in the bucket, or the next code if `linear` is at or above the step to
+    /// it.
+    // `pow` for each channel of each pixel would take longer than tracing the pixel.
     #[inline]
     fn srgb8(&self, linear: f32) -> u8 {
-        // The bits of negative floats are ordered downwards, so they become 0 first; NaN fails the comparison and does
-        // too.
+        // Negative floats become 0 first, because the order of their bits is reversed. NaN becomes 0 as well, as it
+        // fails the comparison.
         let bits = if linear > 0.0 { linear } else { 0.0 }.to_bits();
         let code = self.first_code[(bits / BUCKET_LEN) as usize];
         code + u8::from(bits >= self.bits_at_step[usize::from(code)])
@@ -265,8 +269,8 @@ impl Transfer {
 }
 
 /// The tables of the transfer function.
-// Evaluated at compile time: 512 powers and three passes over 64 kB took 0.1 ms of each start. `LazyLock` was refused
-// for that reason, and because each access would test whether the tables exist.
+// Computed at compile time: at run time, 512 powers and three passes over 64 kB took 0.1 ms of each start. `LazyLock`
+// was rejected for that reason, and because each access would test whether the tables exist.
 static TRANSFER: Transfer = Transfer::new();
 
 impl Transfer {
@@ -296,14 +300,14 @@ impl Transfer {
     }
 }
 
-/// [`linear_from_srgb`] as a `const fn`.
+/// Computes [`linear_from_srgb`] at compile time.
 const fn const_linear_from_srgb(encoded: f64) -> f64 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { pow_2_4((encoded + 0.055) / 1.055) }
 }
 
 /// Returns x^2.4 for x in (0, 1]: x squared times the fifth root of x squared.
-// `libm::pow` is not const. Newton's method for the root decreases monotonically from 1, so that it ends where a step
-// no longer decreases; a test compares the results with the formula bit by bit.
+// `libm::pow` is not const. Newton's method for the root decreases from 1, and ends at the first step that does not
+// decrease; a test compares the results with `libm::pow` bit by bit.
 const fn pow_2_4(number: f64) -> f64 {
     let square = number * number;
     let mut root = 1.0;
@@ -317,8 +321,8 @@ const fn pow_2_4(number: f64) -> f64 {
     }
 }
 
-/// Returns the least f32 that is not below the value.
-// A cast rounds to nearest, which may be below.
+/// Returns the least f32 that is not below `value`.
+// A cast rounds to the nearest f32, which may be below.
 const fn least_f32_at_or_above(value: f64) -> f32 {
     let nearest = value as f32;
     if (nearest as f64) < value { nearest.next_up() } else { nearest }

@@ -26,11 +26,11 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// The largest number of pixels of a picture: 33,554,432, more than 8K has.
+    /// The largest number of pixels of a picture: 33,554,432, more than an 8K picture has.
     ///
     /// Rendering such a picture takes some 900 MB at one sample per pixel.
-    // Checked by the constructors, before anything is allocated: unchecked, a large resolution ended in an abort for
-    // want of memory deep in a render.
+    // The constructors check it before anything is allocated. Without the check, a render with a large resolution
+    // aborted the process when memory ran out.
     #[doc(hidden)]
     pub const MAX_PIXELS: u32 = 1 << 25;
 
@@ -45,7 +45,7 @@ impl Resolution {
         Ok(Self { width, height, pixel_aspect: 1.0 })
     }
 
-    /// Returns the size of a picture of square pixels; for sizes known to be valid.
+    /// Returns the size of a picture of square pixels. For sizes that are known to be valid.
     ///
     /// # Panics
     /// If there are more than [`MAX_PIXELS`](Self::MAX_PIXELS).
@@ -59,7 +59,7 @@ impl Resolution {
 
     /// Returns the same size with another pixel aspect: a pixel's height divided by its width.
     ///
-    /// It is 1 for half cells of a terminal whose cells are twice as high as wide.
+    /// The aspect is 1 for half cells of a terminal whose cells are twice as high as wide.
     ///
     /// # Errors
     /// [`ResolutionError::PixelAspect`], if it is not greater than 0 and finite.
@@ -99,7 +99,8 @@ impl Resolution {
         self.width as usize * self.height as usize
     }
 
-    /// Returns the size of the picture's part with at most `width` columns.
+    /// Returns the size of a part of the picture: with at most `width` columns, and the same
+    /// height.
     #[cfg(feature = "live")]
     pub(crate) fn with_width(self, width: u32) -> Self {
         Self { width: width.min(self.width), ..self }
@@ -128,9 +129,9 @@ pub enum ResolutionError {
     PixelAspect(f32),
 }
 
-/// Largest number of cells of a grid, which take 700 MB.
-// A 4K screen has 100,000 cells of 8 by 10 pixels. Without a limit, 65,535 columns and rows abort the process for
-// memory.
+/// The largest number of cells of a grid, which takes 700 MB.
+// A 4K screen has 100,000 cells of 8 by 10 pixels. Without a limit, a grid of 65,535 columns and rows aborts the
+// process because memory runs out.
 pub(crate) const MAX_CELLS: usize = 1 << 24;
 
 impl fmt::Display for ResolutionError {
@@ -154,7 +155,7 @@ impl std::error::Error for ResolutionError {}
 
 /// A picture as linear light: one [`LinearRgb`] per pixel, row by row from the top left.
 ///
-/// Light is unbounded and not yet exposed; [`tone`](crate::tone()) makes 8-bit colours of it.
+/// The light is unbounded and not yet exposed; [`tone`](crate::tone()) converts it to 8-bit colours.
 ///
 /// ```
 /// use glam::Vec3;
@@ -210,8 +211,8 @@ impl Framebuffer {
     /// Returns a 64-bit FNV-1a hash of the size and of the bits of all pixels.
     ///
     /// Equal pictures have the same hash on every machine.
-    // For tests, and for the bench, which prints it beside each figure. FNV-1a is written here, because the result of
-    // std's default hasher may differ between versions of Rust.
+    // Tests compare it, and the benchmark prints it beside each result. FNV-1a is implemented here, because the result
+    // of std's default hasher may differ between versions of Rust.
     #[doc(hidden)]
     pub fn hash(&self) -> u64 {
         let size = [self.resolution.width, self.resolution.height];

@@ -1,6 +1,6 @@
 //! Tone mapping: exposure, tone curve, transfer function, rounding to 8 bits.
 //!
-//! All stages before this one compute with linear light, all after it with 8-bit sRGB.
+//! All stages before tone mapping compute with linear light, all stages after it with 8-bit sRGB.
 
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::Framebuffer;
@@ -17,7 +17,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Returns the picture with these pixels, row by row from the top.
+    /// Returns the picture with the given pixels, row by row from the top.
     ///
     /// Returns `None` unless there are `width * height` pixels.
     ///
@@ -87,8 +87,10 @@ pub fn tone(framebuffer: &Framebuffer, scene: &Scene) -> Picture {
     Picture { width, height, pixels }
 }
 
-/// The number of pixels up to which the calling thread works alone, and the size of a chunk beyond.
-// Waking another thread takes 16 to 80 us, which it does not save on fewer pixels.
+/// The number of pixels up to which the calling thread works alone.
+///
+/// Larger pictures are split into chunks of this size.
+// Waking another thread takes 16 to 80 us, more than it saves on fewer pixels.
 const MIN_PARALLEL_PIXELS: usize = 1 << 16;
 
 /// Returns light with the exposure and tone curve of `scene` applied. 1 and above is white.
@@ -96,21 +98,21 @@ pub fn tone_mapped(light: LinearRgb, scene: &Scene) -> LinearRgb {
     apply_curve(scene.tone_curve(), light * scene.exposure())
 }
 
-/// Returns light after the tone curve, still linear.
+/// Applies a tone curve to exposed light. The result is still linear.
 fn apply_curve(curve: ToneCurve, light: LinearRgb) -> LinearRgb {
     match curve {
         ToneCurve::None => light,
-        // Reinhard, Stark, Shirley and Ferwerda 2002, equation 3, applied to the luminance, which keeps hues. Per
-        // channel it would bleach bright colours.
+        // Reinhard, Stark, Shirley and Ferwerda 2002, equation 3. Applied to the luminance, it keeps hues; applied to
+        // each channel, it would bleach bright colours.
         ToneCurve::Reinhard => light * (1.0 / (1.0 + light.luminance())),
         ToneCurve::Filmic => LinearRgb::new(filmic(light.r), filmic(light.g), filmic(light.b)),
     }
 }
 
-/// Returns a channel after Krzysztof Narkowicz's fit (2015) to the ACES transforms.
+/// Applies Krzysztof Narkowicz's fit (2015) of the ACES transforms to a channel.
 fn filmic(x: f32) -> f32 {
-    // Clamped far beyond white: the square of a brighter light is infinite in f32, and the quotient NaN, which would
-    // be black.
+    // Clamped far beyond white, because the squares of much brighter light are infinite in f32, and their quotient NaN,
+    // which is displayed as black.
     let x = x.min(1e6);
     (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)
 }

@@ -7,23 +7,23 @@ use crate::bounds::Bounds;
 use glam::{BVec3, Vec2, Vec3};
 
 /// The smallest angle between the view and straight up or down, in radians.
-// At the pole no direction of the picture would be vertical. About one degree away, a turn about the up vector still
-// moves the picture sideways instead of rotating it on the spot.
+// In a view straight up or down no direction of the picture would be vertical. One degree away from it, a turn about
+// the up vector still moves the picture sideways instead of rotating it on the spot.
 const POLE_MARGIN: f32 = 0.02;
 
 /// The smallest distance from the eye to the target, as a multiple of the scene's size.
 pub(super) const MIN_TARGET_DISTANCE: f32 = 1e-3;
 /// The largest distance from the eye to the target, as a multiple of the scene's size.
-// From there a scene is smaller than a pixel. Both limits keep squares and differences of coordinates well within the
-// range and the precision of f32.
+// At this distance a scene is smaller than a pixel. Both limits keep squares and differences of coordinates well within
+// the range and the precision of f32.
 pub(super) const MAX_TARGET_DISTANCE: f32 = 1e4;
 
-/// The share of the picture's width or height that a framed box fills.
-// A margin of 2.5 % on each side: about a cell in a terminal of 80x24.
+/// The fraction of the picture's width or height that a framed box fills.
+// It leaves a margin of 2.5 % on each side: about a cell in a terminal of 80x24.
 pub(crate) const FRAMED_SHARE: f32 = 0.95;
 
 /// The range of the vertical field of view, in radians: 1 to 150 degrees.
-// Beyond 150 degrees, shapes at the border are stretched more than fourteenfold against those in the middle.
+// Beyond 150 degrees, shapes at the border are stretched more than 14 times as much as those in the middle.
 const FOV_RANGE: [f32; 2] = [0.017_453_3, 2.617_994];
 
 impl Camera {
@@ -48,7 +48,7 @@ impl Camera {
             return *self;
         }
         let pose = self.pose;
-        // An eye that moves to the right turns its view to the left.
+        // When the eye moves to the right around the target, its view turns to the left.
         self.with_valid_pose(Pose { eye: pose.target - self.turned_view(right, -up), ..pose })
     }
 
@@ -78,11 +78,11 @@ impl Camera {
 
     /// Returns the camera with the distance from the eye to the target multiplied by `factor`.
     ///
-    /// The target and the direction of view stay. A single call changes the distance by a factor from 0.001 to 10,000,
-    /// and the distance stays above 1e-15.
+    /// The target and the direction of view do not change. A single call changes the distance by a factor from 0.001 to
+    /// 10,000, and the distance stays above 1e-15.
     #[must_use]
     pub fn nearer(&self, factor: f32) -> Self {
-        // Clamped, as the square of a smaller or larger distance would be beyond f32.
+        // Clamped, because squares of smaller or larger distances are out of the range of f32.
         self.nearer_within(factor, self.target_distance().clamp(1e-12, 1e12))
     }
 
@@ -100,10 +100,9 @@ impl Camera {
 
     /// Returns the camera at the distance from which a box fills 95 % of a picture.
     ///
-    /// The direction of view stays.
+    /// The direction of view does not change, and the target becomes the box's centre.
     ///
-    /// `aspect_ratio` is the picture's width divided by its height. The target becomes the box's centre. A box of size
-    /// 0 changes nothing.
+    /// `aspect_ratio` is the picture's width divided by its height. A box of size 0 changes nothing.
     #[must_use]
     pub fn framing(&self, bounds: &Bounds, aspect_ratio: f32) -> Self {
         let (width, height, centre) = self.rectangle.fitted_to(aspect_ratio);
@@ -113,19 +112,20 @@ impl Camera {
         if distance <= 0.0 {
             return *self;
         }
-        // With a shifted view rectangle the picture's centre is not straight ahead; the box is put where it is.
+        // With a shifted view rectangle the picture's centre is not straight ahead, so the target is moved aside to
+        // put the box into the centre.
         let target = centre_of(bounds) - distance * (centre.x * u + centre.y * v);
         self.with_valid_pose(Pose { eye: target + distance * w, target, ..self.pose })
     }
 
     /// Returns the camera as [`nearer`](Self::nearer) does, within the limits of a scene of `size`.
     ///
-    /// The distance stays between [`MIN_TARGET_DISTANCE`] and [`MAX_TARGET_DISTANCE`] times the size. From beyond these
-    /// limits it only changes towards them.
+    /// The distance stays between [`MIN_TARGET_DISTANCE`] and [`MAX_TARGET_DISTANCE`] times the size. If it is outside
+    /// these limits, it only changes towards them.
     pub(crate) fn nearer_within(&self, factor: f32, size: f32) -> Self {
         let target = self.pose.target;
         let distance = self.target_distance();
-        // Far from the origin the spacing of f32 limits the distance: 1e-5 is 84 times the spacing near 1.
+        // Far from the origin the spacing of f32 limits the distance. 1e-5 is 84 times the relative spacing.
         let nearest = (MIN_TARGET_DISTANCE * size).max(1e-5 * target.abs().max_element()).min(distance);
         let wanted = (factor * distance).clamp(nearest, (MAX_TARGET_DISTANCE * size).max(distance));
         if factor == 1.0 || wanted == distance {
@@ -150,7 +150,8 @@ impl Camera {
         self.with_pose(pose).unwrap_or(*self)
     }
 
-    /// Returns the vector from eye to target after turns to the left and upwards, in radians.
+    /// Returns the vector from the eye to the target, turned to the left and upwards by angles in
+    /// radians.
     fn turned_view(&self, left: f32, upwards: f32) -> Vec3 {
         let Pose { eye, target, up } = self.pose;
         let upwards = self.up_to_the_pole(upwards);
@@ -159,9 +160,10 @@ impl Camera {
         rotated(rotated(target - eye, axis_up, left), u, upwards)
     }
 
-    /// Returns an upward turn limited by the poles.
+    /// Returns the angle of an upward turn, limited so that the view stays [`POLE_MARGIN`] away
+    /// from the poles.
     ///
-    /// A view beyond the limit may only turn away from its pole.
+    /// A view beyond this limit can only turn away from the pole.
     fn up_to_the_pole(&self, angle: f32) -> f32 {
         let limit = std::f32::consts::FRAC_PI_2 - POLE_MARGIN;
         let sine = -self.basis.w.dot(self.pose.up.normalize_or_zero());
@@ -175,9 +177,9 @@ fn is_no_turn(right: f32, up: f32) -> bool {
     (right, up) == (0.0, 0.0) || !(right.is_finite() && up.is_finite())
 }
 
-/// Returns the distance from a box's centre, along w, at which all of its corners are seen.
+/// Returns the distance from a box's centre, along w, at which an eye sees all corners of the box.
 ///
-/// Corners must be within `half` a width and height of `middle`, on the plane at distance 1.
+/// It sees corners whose projections to the plane at distance 1 are within `half` of `middle`, along u and v.
 pub(crate) fn framing_distance(bounds: &Bounds, [u, v, w]: [Vec3; 3], half: Vec2, middle: Vec2) -> f32 {
     let centre = centre_of(bounds);
     let distance = (0..8).map(|corner| {
@@ -196,8 +198,8 @@ fn centre_of(bounds: &Bounds) -> Vec3 {
 
 /// Returns `v` rotated about a unit axis by an angle in radians (Rodrigues' formula).
 ///
-/// The rotation is counterclockwise seen against the axis.
-// The length is restored, because rounding errors of many small turns would add up.
+/// The rotation is counterclockwise when seen from the end of the axis.
+// The length of `v` is restored, because the rounding errors of many small turns would add up.
 fn rotated(v: Vec3, axis: Vec3, angle: f32) -> Vec3 {
     let (sin, cos) = libm::sincosf(angle);
     let turned = v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));

@@ -1,7 +1,7 @@
 //! Camera motions by positions in the picture, for the mouse.
 //!
-//! Positions and distances are in parts of the picture's width and height, from the upper left corner to the right and
-//! down.
+//! Positions and distances (`by`) are fractions of the picture's width and height, to the right and down. Positions are
+//! relative to the upper left corner.
 
 use super::{Camera, Pose};
 use glam::{Vec2, Vec3};
@@ -16,15 +16,15 @@ pub enum Grip {
 }
 
 /// The angle of an orbit for a drag over the whole height of the picture, in radians.
-// Half a turn, so that one drag brings the back of an object to the front.
+// With half a turn one drag brings the back of an object to the front.
 const ORBIT_PER_HEIGHT: f32 = std::f32::consts::PI;
 
-/// The factor of the distance for one notch of the wheel.
-// Five or six notches halve the distance; a factor makes every notch the same change of size on the screen.
+/// The factor by which one notch of the wheel multiplies the distance.
+// Five or six notches halve the distance. With a factor, each notch changes the size on the screen by the same ratio.
 pub(super) const WHEEL_NOTCH_FACTOR: f32 = 0.88;
 
 impl Camera {
-    /// Returns the position of a point in a picture with this aspect ratio.
+    /// Returns the position of a point in a picture with the given aspect ratio (width / height).
     ///
     /// Returns `None` if the point is not in front of the eye.
     #[doc(hidden)]
@@ -38,7 +38,7 @@ impl Camera {
     }
 
     /// Returns the camera shifted with its target by a drag of the picture to the right and down.
-    // By the distance at the target's depth, so that the target stays under the pointer.
+    // The shift is the distance of the drag at the target's depth, so that the target stays under the pointer.
     pub(crate) fn panned(&self, by: Vec2, aspect_ratio: f32) -> Self {
         let across = self.across(by, aspect_ratio);
         self.shifted(self.target_distance() * (across.y * self.basis.v - across.x * self.basis.u))
@@ -57,7 +57,7 @@ impl Camera {
         self.turned(-turn.x, turn.y)
     }
 
-    /// Returns the camera moved towards a point by notches of the wheel, with its target.
+    /// Returns the camera with eye and target moved towards a point by notches of the wheel.
     ///
     /// The point keeps its position in the picture.
     #[cfg(feature = "live")]
@@ -66,11 +66,10 @@ impl Camera {
         self.shifted((1.0 - factor) * (point - self.pose.eye))
     }
 
-    /// Returns the camera with eye and target scaled towards a point by notches of the wheel.
+    /// Returns the camera with eye and target scaled about a point by notches of the wheel.
     ///
-    /// Limits are those of a scene of `size`.
-    ///
-    /// The point keeps its position in the picture.
+    /// The point keeps its position in the picture. The distance from eye to target stays within the limits of
+    /// [`nearer_within`](Self::nearer_within) for a scene of `size`.
     pub(crate) fn wheeled_around(&self, point: Vec3, notches: f32, size: f32) -> Self {
         let Pose { eye, target, up } = self.pose;
         let after = self.nearer_within(libm::powf(WHEEL_NOTCH_FACTOR, notches), size);
@@ -79,11 +78,11 @@ impl Camera {
         self.with_valid_pose(Pose { eye: moved + factor * (eye - target), target: moved, up })
     }
 
-    /// Returns a point after a drag to the right and down in the picture, at constant depth.
+    /// Returns a point moved by a drag to the right and down in the picture, at constant depth.
     #[doc(hidden)]
     pub fn point_dragged(&self, point: Vec3, by: Vec2, aspect_ratio: f32) -> Vec3 {
         let across = self.across(by, aspect_ratio);
-        // A point behind or beside the eye has no position in the picture: it moves as far as the target would.
+        // A point behind or beside the eye has no position in the picture. It moves as far as the target would.
         let depth = Some((self.pose.eye - point).dot(self.basis.w)).filter(|depth| *depth > 0.0);
         point + depth.unwrap_or(self.target_distance()) * (across.x * self.basis.u - across.y * self.basis.v)
     }
@@ -97,7 +96,7 @@ impl Camera {
         eye + libm::powf(WHEEL_NOTCH_FACTOR, -notches) * (point - eye)
     }
 
-    /// Converts a distance in the picture to one on the plane at distance 1.
+    /// Converts a distance in the picture to one on the plane at distance 1 from the eye.
     fn across(&self, by: Vec2, aspect_ratio: f32) -> Vec2 {
         let (width, height, _) = self.rectangle.fitted_to(aspect_ratio);
         by * Vec2::new(width, height)

@@ -1,4 +1,4 @@
-//! Motions of every size, from every side, in small and large scenes.
+//! Tests of camera motions of every size, from every side, in small and large scenes.
 
 #![cfg(feature = "ratatui")]
 
@@ -12,7 +12,7 @@ fn camera(eye: Vec3, target: Vec3) -> Camera {
     Camera::new(Pose { eye, target, up: Vec3::Y }, rectangle).expect("a pose")
 }
 
-/// Returns the position of a point, from -1 at the left and lower border to 1.
+/// Returns the position of a point in the picture, from -1 at the left and lower border to 1.
 fn place(camera: &Camera, point: Vec3, aspect_ratio: f32) -> Vec2 {
     let place = camera.project(point, aspect_ratio).expect("it is in front of the eye");
     (2.0 * place - 1.0) * Vec2::new(1.0, -1.0)
@@ -72,7 +72,7 @@ fn a_point_cannot_be_framed() {
     assert_eq!(before.framing(&Bounds { min: Vec3::X, max: Vec3::X }, 1.0), before);
 }
 
-/// However often, from wherever: the distance is kept, up is up, and the target is in the middle.
+/// Many orbits in small steps keep the distance, the up direction and the target.
 #[test]
 fn the_eye_never_turns_over_a_pole() {
     for scale in [1e-3, 1.0, 1e7] {
@@ -103,7 +103,7 @@ fn the_eye_never_goes_through_the_target_nor_to_infinity() {
             assert!((camera.pose().eye.z / distance - 1.0).abs() < 1e-3, "{:?}", camera.pose());
         }
     }
-    // Far from the origin numbers are coarse.
+    // Far from the origin the spacing of f32 limits how near the eye can come.
     let target = Vec3::splat(1e6);
     let mut camera = camera(target + Vec3::Z, target);
     for _ in 0..200 {
@@ -128,7 +128,7 @@ fn a_dragged_point_follows_the_pointer() {
     let aspect_ratio = 1.6;
     let by = Vec2::new(0.2, 0.1);
     let after = start.panned(by, aspect_ratio);
-    // Places count from the middle, in halves, upwards.
+    // `place` counts from the middle, in halves of the picture, upwards.
     let at = place(&after, Vec3::ZERO, aspect_ratio);
     assert!(at.abs_diff_eq(Vec2::new(0.4, -0.2), 1e-5), "{at}");
     assert!(after.basis().w.abs_diff_eq(Vec3::Z, 1e-6));
@@ -160,7 +160,7 @@ fn the_wheel_comes_nearer_to_a_point_which_stays_where_it_is() {
     assert!(near.pose().eye.z > 0.0, "never through the target");
 }
 
-/// Drags and notches in any order: the picture stays upright, and the eye away from the target.
+/// Drags and wheel notches in any order keep the picture upright, and the eye away from the target.
 #[test]
 fn any_mouse_motion_leaves_a_valid_camera() {
     for size in [1e-6, 1.0, 1e8] {

@@ -14,7 +14,8 @@ fn eye(path: &CameraPath, time: f64) -> Vec3 {
     path.camera_at(time).unwrap().pose().eye
 }
 
-/// Distance to the axis and height along it are constant over the whole circle, at a tilt.
+/// The eye's distance from the axis and its height along the axis are constant, also for a tilted
+/// axis.
 #[test]
 fn an_orbit_keeps_its_height_and_its_radius() {
     let tilted =
@@ -61,7 +62,7 @@ fn keyframes_are_passed_at_their_times_to_the_last_bit() {
     assert_eq!(path.seconds(), 4.0);
 }
 
-/// Position and velocity have no jump: second differences of small steps are small.
+/// Second differences of small steps are small, so neither position nor velocity jumps.
 #[test]
 fn a_path_is_smooth() {
     let path = CameraPath::through(vec![
@@ -79,7 +80,7 @@ fn a_path_is_smooth() {
     }
 }
 
-/// Target and up run as the eye does.
+/// Target and up vector are interpolated as the eye is.
 #[test]
 fn all_of_the_pose_moves() {
     let [from, to] = [camera([0.0, 0.0, 8.0], [0.0; 3], 0.7), camera([2.0, 0.0, 8.0], [0.0, 4.0, 0.0], 0.7)];

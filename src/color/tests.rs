@@ -1,6 +1,6 @@
 use super::*;
 
-/// Values of the standard's formula, computed with 40 digits.
+/// Compares with values of the standard's formula, computed with 40 digits.
 #[test]
 fn transfer_function_has_the_standards_values() {
     for (linear, encoded) in [
@@ -37,7 +37,8 @@ fn the_tables_equal_the_formula() {
     }
 }
 
-/// The table agrees with the formula in f64 beside each step, and over the whole range.
+/// The table agrees with the formula in f64 just beside each step between codes, and over the whole
+/// range.
 #[test]
 fn quantisation_equals_the_rounded_formula() {
     let by_formula = |x: f32| (srgb_from_linear(f64::from(x)) * 255.0).round() as u8;
@@ -58,7 +59,7 @@ fn light_outside_the_screens_range_is_clamped() {
     }
 }
 
-/// Values computed in f64 from the source's formulas.
+/// Compares with values computed in f64 from the formulas of OKLab's source.
 #[test]
 fn oklab_has_the_sources_values() {
     for (color, [l, a, b]) in [
