@@ -1,36 +1,39 @@
-//! The rules for the numbers of a scene, each with its message: the same for scene files and for
-//! code.
+//! The rules for the numbers of a scene and their messages, the same for scene files and for code.
 //!
-//! Numbers of a scene file come through [`Validator`](crate::written::Validator), which knows their spans; numbers from
-//! code come through the functions whose names begin with `checked`, which know the names of the parameters.
+//! [`Validator`](crate::written::Validator) applies them to numbers of a scene file and reports their spans. The
+//! functions whose names begin with `checked` apply them to parameters in code and report their names.
 
 use crate::color::LinearRgb;
 use glam::{DVec3, Vec3};
 use std::borrow::Cow;
 use std::fmt;
 
-/// Limit on coordinates. A ray's computation squares lengths twice: (1e9)^4 = 1e36 is within f32,
-/// whose largest value is 3.4e38, with a factor of 340 left for sums.
+/// The largest magnitude of a coordinate.
+// The computation of hits squares lengths twice. (1e9)^4 = 1e36 leaves a factor of 340 for sums below the largest f32,
+// 3.4e38.
 const MAX_COORDINATE: f64 = 1e9;
 
-/// Least length. Squared twice it is 1e-36, within f32, whose least normal value is 1.2e-38.
+/// The least length.
+// Squared twice it is 1e-36, above the least normal f32, 1.2e-38.
 const MIN_LENGTH: f64 = 1e-9;
 
-/// Limit on an amount of light. Sums over lights and the product with the exposure stay far below
-/// f32's 3.4e38.
+/// The largest amount of light.
+// Sums over lights and products with the exposure stay far below the largest f32, 3.4e38.
 const MAX_LIGHT: f64 = 1e12;
-/// Limit on the exposure, for the same reason.
+/// The largest exposure.
+// Products with light stay far below the largest f32, 3.4e38.
 const MAX_EXPOSURE: f64 = 1e6;
 
-/// Limit on the ratio of two lengths of a view rectangle.
+/// The largest ratio of two lengths of a view rectangle.
 const MAX_RATIO: f64 = 1e6;
 
-/// The message for a value, which says what would be right where possible: one line without a full
-/// stop.
+/// The message for an invalid value: one line without a full stop, which says what would be right
+/// where possible.
 pub(crate) type Message = Cow<'static, str>;
 
-/// The error of a value that no scene may have: its name, the value, and the message of a scene
-/// file's error.
+/// The error of a value that no scene may have, given in code.
+///
+/// Its message has the name of the value, the value, and the message of a scene file's error.
 ///
 /// ```
 /// use termtrace::{LinearRgb, PointLight};
@@ -45,12 +48,12 @@ pub struct SceneFault {
 }
 
 impl SceneFault {
-    /// Returns an error with a name, or a name and a value.
+    /// Returns the error of `subject`, which is the name of a value, or its name and the value.
     pub(crate) fn new(subject: impl Into<Message>, message: impl Into<Message>) -> Self {
         Self { subject: subject.into(), message: message.into() }
     }
 
-    /// Returns the message in the words of a scene file's error.
+    /// Returns the message without the name: that of the same error in a scene file.
     #[doc(hidden)]
     pub fn message(&self) -> &str {
         &self.message
@@ -65,8 +68,9 @@ impl fmt::Display for SceneFault {
 
 impl std::error::Error for SceneFault {}
 
-/// Returns whether a number, rounded as it will be stored, is within `least` and `most`, so that a
-/// value written back to a file is accepted again.
+/// Returns whether a number is within `least` and `most` after it is rounded to f32.
+///
+/// So a stored value that is written back to a file is accepted again.
 fn is_within(value: f64, least: f64, most: f64) -> bool {
     (least as f32..=most as f32).contains(&(value as f32))
 }
@@ -84,7 +88,7 @@ pub(crate) fn coordinate(value: f64) -> Result<f32, Message> {
 pub(crate) const TOO_FAR: &str =
     "coordinates must lie within ±1e9; light cannot be followed farther in single precision";
 
-/// Returns whether all these points are within the range that rays can be traced in.
+/// Returns whether all points are within the range that rays can be traced in.
 pub(crate) fn are_near(points: &[Vec3]) -> bool {
     points.iter().all(|point| f64::from(point.abs().max_element()) <= MAX_COORDINATE)
 }
@@ -92,7 +96,8 @@ pub(crate) fn are_near(points: &[Vec3]) -> bool {
 /// The message for a mesh that is not [near](are_near).
 pub(crate) const MESH_TOO_FAR: &str = "this mesh reaches beyond ±1e9; scale it down, or light cannot be followed";
 
-/// Checks that a length is positive and can be squared in f32.
+/// Checks that a length is positive and can be squared twice in f32; `what` is its name for
+/// messages.
 pub(crate) fn length(what: &str, value: f64) -> Result<f32, Message> {
     if value <= 0.0 {
         return Err(format!("the {what} must be greater than 0").into());
@@ -103,7 +108,7 @@ pub(crate) fn length(what: &str, value: f64) -> Result<f32, Message> {
     Ok(value as f32)
 }
 
-/// Checks a scale factor along an axis. A negative factor mirrors; 0 would leave nothing of a mesh.
+/// Checks a scale factor along an axis, which may be negative, to mirror a mesh, but not 0.
 pub(crate) fn factor(value: f64) -> Result<f32, Message> {
     if is_within(value.abs(), MIN_LENGTH, MAX_COORDINATE) {
         Ok(value as f32)
@@ -112,7 +117,7 @@ pub(crate) fn factor(value: f64) -> Result<f32, Message> {
     }
 }
 
-/// Checks an amount of light.
+/// Checks an amount of light; `what` is its name for messages.
 pub(crate) fn amount(what: &str, value: f64) -> Result<f32, Message> {
     if value < 0.0 {
         return Err(format!("{what} must not be negative").into());
@@ -128,7 +133,7 @@ pub(crate) fn light(channel: f64) -> Result<f32, Message> {
     amount("light", channel)
 }
 
-/// Checks a channel of a reflectance, at most 1.
+/// Checks a channel of a reflectance, which is from 0 to 1.
 pub(crate) fn reflectance(channel: f64) -> Result<f32, Message> {
     if (0.0..=1.0).contains(&channel) {
         Ok(channel as f32)
@@ -139,7 +144,7 @@ pub(crate) fn reflectance(channel: f64) -> Result<f32, Message> {
 
 /// Checks an exposure.
 pub(crate) fn exposure(value: f64) -> Result<f32, Message> {
-    // The second comparison refuses numbers that f32 rounds to 0, which would make the picture black.
+    // The second comparison rejects numbers that f32 rounds to 0, which would make the picture black.
     if value > 0.0 && value as f32 > 0.0 && value <= MAX_EXPOSURE {
         return Ok(value as f32);
     }
@@ -147,21 +152,22 @@ pub(crate) fn exposure(value: f64) -> Result<f32, Message> {
     Err(format!("the exposure must be {wanted}").into())
 }
 
-/// Returns the direction at unit length, computed in f64 so that only one rounding is left.
+/// Returns a vector scaled to unit length, in f64, so that the caller rounds only once; `what` is
+/// its name for messages.
 pub(crate) fn unit_vector(what: &str, vector: DVec3) -> Result<DVec3, Message> {
     let largest = vector.abs().max_element();
     if largest == 0.0 {
         return Err(format!("the {what} must have a length; (0, 0, 0) points nowhere").into());
     }
-    // Scaled first, so that the square of a tiny vector does not underflow.
+    // Divides by the largest coordinate first, so that the square of a tiny vector does not underflow.
     let vector = vector / largest;
     Ok(vector / vector.dot(vector).sqrt())
 }
 
-/// Checks that three corners span a triangle.
+/// Checks that three corners are not on one line.
 pub(crate) fn corners(corners: [Vec3; 3]) -> Result<[Vec3; 3], Message> {
     let [a, b, c] = corners.map(Vec3::as_dvec3);
-    // Both differences are exact in f64, or off by so little that the product is not 0.
+    // Both differences are exact in f64, or their errors are too small to make the product 0.
     if (b - a).cross(c - a) == DVec3::ZERO {
         return Err("the corners of a triangle must not lie on one line; no ray would meet it".into());
     }
@@ -173,7 +179,7 @@ pub(crate) fn is_ratio(value: f64) -> bool {
     is_within(value, 1.0 / MAX_RATIO, MAX_RATIO)
 }
 
-/// Returns whether an up vector has a length that can be squared in f32.
+/// Returns whether an up vector is long enough to be squared twice in f32.
 pub(crate) fn is_long(vector: Vec3) -> bool {
     vector.abs().max_element() >= MIN_LENGTH as f32
 }
@@ -186,7 +192,7 @@ pub(crate) fn is_near(vector: DVec3) -> bool {
 // Parameters of constructors
 // --------------------------------------------------------------------------------------------
 
-/// Checks a number given in code.
+/// Checks a number that is given in code, by a rule.
 pub(crate) fn checked_number(
     name: &'static str,
     value: f32,
@@ -196,7 +202,8 @@ pub(crate) fn checked_number(
     checked.map_err(|message| SceneFault::new(format!("{name} is {value}"), message))
 }
 
-/// Checks a vector given in code.
+/// Checks the coordinates of a vector that is given in code, and returns the result of a rule for
+/// it.
 fn checked_vector<T>(
     name: impl fmt::Display,
     vector: Vec3,
@@ -213,17 +220,18 @@ fn checked_vector<T>(
     })
 }
 
-/// Checks a point given in code.
+/// Checks a point that is given in code.
 pub(crate) fn checked_point(name: impl fmt::Display, point: Vec3) -> Result<Vec3, SceneFault> {
     checked_vector(name, point, |_| Ok(point))
 }
 
-/// Checks a direction given in code, of any length but 0. Returns it with unit length.
+/// Checks a direction that is given in code, with any length but 0, and returns it with unit
+/// length.
 pub(crate) fn checked_direction(name: &'static str, direction: Vec3) -> Result<Vec3, SceneFault> {
     checked_vector(name, direction, |numbers| unit_vector(name, numbers)).map(DVec3::as_vec3)
 }
 
-/// Checks each channel of a colour given in code.
+/// Checks each channel of a colour that is given in code, by a rule.
 pub(crate) fn checked_color(
     name: &'static str,
     color: LinearRgb,

@@ -1,8 +1,7 @@
-//! The checked scene with the trees over it. A [`Scene`] is always valid, and rays can be traced in
-//! it.
+//! The scene: checked values, and the trees over its primitives, in which rays are traced.
 //!
-//! All units are fixed here: world units, radians, linear light, unit vectors. [`Scene::load`], [`Scene::from_ron`] and
-//! [`Scene::builder`] are the only ways to a scene. A [`Draft`] is checked but has no trees yet.
+//! A [`Scene`] is always valid. Its units are world units, radians, linear light and unit vectors. Scenes are made only
+//! by [`Scene::load`], [`Scene::from_ron`] and [`Scene::builder`]. A [`Draft`] is checked but has no trees yet.
 
 mod builder;
 #[cfg(feature = "ron")]
@@ -37,8 +36,7 @@ use crate::shape::Shape;
 use std::fmt;
 use std::sync::Arc;
 
-/// A scene: everything that a picture depends on besides its size, and the trees that rays are
-/// traced in.
+/// A scene: everything that a picture depends on besides its size, and the trees for tracing rays.
 ///
 /// The checked values and the trees are built once, never change, and are shared by clones. A scene with other lights
 /// or another camera shares the trees.
@@ -65,7 +63,7 @@ impl fmt::Debug for Scene {
             &*self.checked;
         let mut scene = f.debug_struct("Scene");
         scene.field("camera", camera).field("views", views);
-        // Each colour on one line, also in the alternate form: three lines per colour make a scene hard to read.
+        // A colour takes one line also with `{:#?}`, as three lines per colour would make a scene hard to read.
         scene.field("background", &format_args!("{background:?}")).field("ambient", &format_args!("{ambient:?}"));
         scene.field("lights", lights).field("shadows", shadows);
         scene.field("exposure", exposure).field("tone_curve", tone_curve).field("objects", objects);
@@ -73,9 +71,12 @@ impl fmt::Debug for Scene {
     }
 }
 
-/// The checked values. Only the `with_` methods of [`Scene`] and [`Draft`] assign its fields.
+/// The checked values of a scene.
 ///
-/// Behind an `Arc`, because a renderer on another thread keeps a scene while the viewer changes lights and camera.
+/// Only the `with_` methods of [`Scene`] and [`Draft`] assign its fields.
+///
+/// Scenes share it by an `Arc`, because a renderer on another thread keeps its scene while the viewer changes lights
+/// and camera.
 #[derive(Clone, Debug, PartialEq)]
 struct Checked {
     camera: Camera,
@@ -86,12 +87,13 @@ struct Checked {
     shadows: bool,
     exposure: f32,
     tone_curve: ToneCurve,
-    /// Shared, so that a scene with other lights does not copy a million objects.
+    /// The objects, shared so that a scene with other lights does not copy a million of them.
     objects: Arc<[Object]>,
 }
 
 impl Checked {
-    /// Returns these objects seen by `camera`, with the defaults of [`Scene::builder`].
+    /// Returns the values of a scene with these objects, and the defaults of [`Scene::builder`] for
+    /// the rest.
     fn new(camera: Camera, objects: Vec<Object>) -> Self {
         Self {
             camera,
@@ -112,8 +114,9 @@ impl Checked {
 }
 
 impl Scene {
-    /// Returns a builder of a scene seen by `camera`, with no objects and no lights, a black
-    /// background, shadows, exposure 1 and no tone curve.
+    /// Returns a builder of a scene that is seen by `camera`.
+    ///
+    /// It starts with no objects and no lights, a black background, shadows, exposure 1 and no tone curve.
     ///
     /// ```
     /// use glam::Vec3;
@@ -134,8 +137,10 @@ impl Scene {
         SceneBuilder::new(camera)
     }
 
-    /// Returns a scene with these objects and the defaults of [`builder`](Self::builder), without
-    /// checking that their shapes can have their materials.
+    /// Returns a scene with the given objects, and the defaults of [`builder`](Self::builder) for
+    /// the rest.
+    ///
+    /// It is not checked that the shapes can have their materials.
     #[doc(hidden)]
     pub fn new(camera: Camera, objects: Vec<Object>) -> Self {
         Draft::new(Checked::new(camera, objects)).finish()
@@ -267,14 +272,14 @@ impl Scene {
         self.with(|checked| checked.tone_curve = tone_curve)
     }
 
-    /// Returns whether both are clones of one scene, unchanged since.
+    /// Returns whether both scenes are clones of the same scene, and neither was changed since.
     #[cfg(feature = "ratatui")]
     pub(crate) fn is_copy_of(&self, other: &Self) -> bool {
-        // Pointers, not values: comparing a million objects would take longer than drawing a frame.
+        // Compares pointers, because comparing the values of a million objects would take longer than drawing a frame.
         Arc::ptr_eq(&self.checked, &other.checked) && Arc::ptr_eq(&self.accelerator, &other.accelerator)
     }
 
-    /// Changes the checked values; clones of this scene keep theirs.
+    /// Returns the scene with changed values; its clones do not change.
     fn with(mut self, change: impl FnOnce(&mut Checked)) -> Self {
         // Copies the values only if a clone shares them.
         change(Arc::make_mut(&mut self.checked));
@@ -301,7 +306,7 @@ pub struct Object {
 }
 
 impl Object {
-    /// Returns an object of this shape and material.
+    /// Returns an object with the given shape and material.
     #[doc(hidden)]
     pub fn new(shape: impl Into<Shape>, material: impl Into<Material>) -> Self {
         Self { shape: shape.into(), material: material.into() }
@@ -334,7 +339,7 @@ pub enum Background {
 }
 
 impl Background {
-    /// Returns the background if its light is within range.
+    /// Returns the background if each channel of its light is within range.
     fn checked(self) -> Result<Self, SceneFault> {
         match self {
             Self::Color(color) => checks::checked_color("background", color, checks::light).map(Self::Color),
@@ -352,7 +357,7 @@ impl From<LinearRgb> for Background {
     }
 }
 
-/// A mapping of light beyond the screen's range into it.
+/// A mapping of light that is brighter than white into the range of the screen.
 ///
 /// ```
 /// use termtrace::glam::Vec3;
@@ -366,7 +371,7 @@ impl From<LinearRgb> for Background {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ToneCurve {
-    /// None: light brighter than white is clipped.
+    /// No curve: light brighter than white is clipped.
     #[default]
     None,
     /// Reinhard's curve x / (1 + x), applied to the luminance; it never reaches white.

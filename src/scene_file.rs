@@ -1,11 +1,11 @@
-//! Scene files as the author wrote them, typed, in the author's units: degrees, sRGB strings,
-//! normals of any length.
+//! Scene files as typed values in the author's units: degrees, sRGB strings, normals of any length.
 //!
-//! [`SceneFile::read`] knows the grammar of scenes, [`PathFile::read`] that of camera paths: the fields, their types,
-//! and which are required. They continue after a fault, so that one run reports all. Whether a radius is positive or a
-//! material exists is checked by [`scene`](crate::scene), for which each value keeps its position.
+//! [`SceneFile::read`] implements the grammar of scenes, [`PathFile::read`] that of camera paths: the fields, their
+//! types, and which are required. They continue after a fault, so that one run reports all faults. Whether a radius is
+//! positive or a material exists is checked later, by [`scene`](crate::scene), which needs the spans of the values.
 //!
-//! A missing or faulty value is `None`, and its fault has been reported; later stages do not report it again.
+//! A required value that is missing, or a value with a fault, is `None`. Its fault has been reported, and later stages
+//! do not report it again.
 
 mod camera;
 mod objects;
@@ -36,8 +36,9 @@ pub struct SceneFile {
     pub lights: Vec<WrittenLight>,
     /// The named materials, in the order of the file.
     pub materials: Vec<NamedMaterial>,
-    /// Whether all entries of `materials` could be read. If not, unknown names of materials are not
-    /// reported.
+    /// Whether the names of all entries of `materials` are known.
+    ///
+    /// If not, unknown names are not reported as faults.
     pub materials_complete: bool,
     /// The objects.
     pub objects: Vec<WrittenObject>,
@@ -49,12 +50,12 @@ pub struct SceneFile {
     pub tone_curve: Option<WrittenToneCurve>,
 }
 
-/// The background.
+/// A background as written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WrittenBackground {
-    /// One colour.
+    /// The same colour in all directions.
     Color(WrittenColor),
-    /// Two colours.
+    /// `Gradient(bottom: ..., top: ...)`
     Gradient {
         /// The colour straight down.
         bottom: Option<WrittenColor>,
@@ -63,7 +64,7 @@ pub enum WrittenBackground {
     },
 }
 
-/// A tone curve.
+/// A tone curve as written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WrittenToneCurve {
     /// `None`
@@ -92,24 +93,25 @@ pub enum MaterialUse {
     Named(Box<str>),
 }
 
-/// An object.
+/// An object as written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrittenObject {
     /// The surface.
     pub shape: WrittenShape,
-    /// The material and its position; light grey if not given.
+    /// The material and its span; if not given, light grey or the colours of a mesh's file.
     pub material: Option<Spanned<MaterialUse>>,
 }
 
 impl SceneFile {
-    /// Reads a scene from its syntax tree and adds every fault to `faults`. After a cancellation
-    /// the lists end early.
+    /// Reads a scene from its syntax tree and adds all faults to `faults`.
+    ///
+    /// If the reporter is cancelled, the lists end early.
     pub fn read(root: &SyntaxNode<'_>, reporter: &Reporter<'_>, faults: &mut Faults) -> Self {
         let mut reader = NodeReader::new(faults, reporter);
         let Some(fields) = reader.root(root) else {
             return Self::default();
         };
-        // Each field is read whatever became of the others, so that all faults are found.
+        // All fields are read, even after a fault in one, so that all faults are found.
         let mut scene = Self {
             camera: reader.required(&fields, "camera", NodeReader::camera),
             views: reader.optional(&fields, "views", NodeReader::views).unwrap_or_default(),
@@ -148,7 +150,7 @@ impl NodeReader<'_> {
     }
 
     fn background(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenBackground> {
-        // A colour is never a named group, so the form decides before any fault is reported.
+        // Only a gradient is a group with a name; everything else is read as a colour.
         if !matches!(node.value, Value::Group(ref group) if group.name.is_some()) {
             return self.color(node).map(WrittenBackground::Color);
         }

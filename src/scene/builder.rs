@@ -27,8 +27,10 @@ use crate::shape::{Shape, without_coordinates};
 #[must_use = "there is no scene before `build`"]
 pub struct SceneBuilder {
     objects: Vec<Object>,
-    /// All values but the objects. Background, ambient light and exposure are not checked yet:
-    /// [`build`](Self::build) checks them, so that the methods before it return no `Result`.
+    /// All values except the objects.
+    ///
+    /// [`build`](Self::build) checks background, ambient light and exposure, so that the other methods return no
+    /// `Result`.
     rest: Checked,
 }
 
@@ -37,13 +39,13 @@ impl SceneBuilder {
         Self { objects: Vec::new(), rest: Checked::new(camera, Vec::new()) }
     }
 
-    /// Adds an object of this shape and material.
+    /// Adds an object with the given shape and material.
     pub fn object(mut self, shape: impl Into<Shape>, material: impl Into<Material>) -> Self {
         self.objects.push(Object::new(shape, material));
         self
     }
 
-    /// Adds these objects.
+    /// Adds several objects.
     #[doc(hidden)]
     pub fn objects(mut self, objects: impl IntoIterator<Item = Object>) -> Self {
         self.objects.extend(objects);
@@ -56,7 +58,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Adds a view besides the camera's.
+    /// Adds a view, a camera besides the scene's own.
     #[doc(hidden)]
     pub fn view(mut self, camera: Camera) -> Self {
         self.rest.views.push(camera);

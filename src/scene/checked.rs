@@ -1,8 +1,7 @@
-//! The one conversion from written to checked values: every change of unit and colour space, and
-//! every check of a value beyond its type.
+//! The only conversion from written to checked values, which changes units and colour spaces.
 //!
-//! Checking continues after a fault, so that one run reports all. A value that is missing because of an earlier fault
-//! is skipped in silence.
+//! It makes all checks of values beyond their types. Checking continues after a fault, so that one run reports all
+//! faults. A value that is missing because of an earlier fault is skipped without a report.
 
 mod camera;
 pub(super) mod path;
@@ -19,8 +18,9 @@ use crate::text::{closest, listed};
 use crate::written::{Spanned, Validator};
 use std::collections::HashMap;
 
-/// Returns the checked scene; if `None`, every fault has been added. After a cancellation objects
-/// may be missing.
+/// Returns the checked scene, or `None` after all faults have been added to `faults`.
+///
+/// If the reporter is cancelled, objects may be missing.
 pub(super) fn check(
     file: &SceneFile,
     meshes: &mut dyn Meshes,
@@ -28,7 +28,7 @@ pub(super) fn check(
     faults: &mut Faults,
 ) -> Option<Draft> {
     let mut validator = Validator { faults };
-    // Every value is checked before the first fault ends anything; only the order of the messages is that of the file.
+    // All values are checked before a fault ends the function. Faults are sorted by their positions in the file later.
     let camera = file.camera.as_ref().and_then(|camera| validator.camera(camera));
     let views = file.views.iter().filter_map(|view| validator.view(view, camera.as_ref())).collect();
     let background = file.background.as_ref().and_then(|written| validator.background(written));
@@ -78,14 +78,15 @@ impl Validator<'_> {
         }
         let object = |written: &WrittenObject| {
             let (shape, material) = (written.shape.check(self, meshes), self.material_of(written, file, &materials));
-            // Both were checked before one of them may end this object.
+            // Both have been checked, so that the faults of both are reported.
             let (shape, material) = (shape?, material?);
             Some(Object { shape, material })
         };
         file.objects.iter().take_while(|_| !reporter.is_cancelled()).filter_map(object).collect()
     }
 
-    /// Returns the material of an object: written in place, by name, or the default of its shape.
+    /// Returns the material of an object: the one written in place or named, or the default of its
+    /// shape.
     fn material_of(
         &mut self,
         object: &WrittenObject,
@@ -99,7 +100,7 @@ impl Validator<'_> {
             MaterialUse::Inline(written) => CheckedMaterial { written, material: written.check(self) },
             MaterialUse::Named(name) => match materials.get(&**name) {
                 Some(&checked) => checked?,
-                // The name may be that of an entry with a fault: reporting it too would mislead.
+                // The name may belong to an entry with a fault, so reporting it as unknown might mislead.
                 None if !file.materials_complete => return None,
                 None => return self.fault(*span, || unknown_material(name, file)),
             },
@@ -117,12 +118,11 @@ impl Validator<'_> {
 #[derive(Clone, Copy)]
 struct CheckedMaterial<'f> {
     written: &'f WrittenMaterial,
-    /// `None` if it is faulty.
+    /// `None` if the material has a fault.
     material: Option<Material>,
 }
 
-/// Returns the message about an unknown material, with the material or colour that was probably
-/// meant.
+/// Returns the message about an unknown material, with the name or colour that was probably meant.
 fn unknown_material(name: &str, file: &SceneFile) -> String {
     let unknown = format!("unknown material {}", quoted(name));
     let names = || file.materials.iter().map(|named| &*named.name);
@@ -135,7 +135,7 @@ fn unknown_material(name: &str, file: &SceneFile) -> String {
         (None, true) => return format!("{unknown}; a colour is written Diffuse({})", quoted(name)),
         (None, false) => {}
     }
-    // Eight names fit on a line; a generated scene may have thousands.
+    // Shows the eight names that fit on a line; a generated scene may have thousands.
     let shown: Vec<_> = names().take(8).map(quoted).collect();
     match file.materials.len() {
         0 => format!("{unknown}; the scene has no named materials"),

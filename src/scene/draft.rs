@@ -1,4 +1,4 @@
-//! A scene that is read and checked but has no trees yet.
+//! Drafts: scenes that are read and checked but have no trees yet.
 
 use super::{Checked, Scene};
 use crate::accel::Accelerator;
@@ -9,7 +9,8 @@ use crate::shape::Shape;
 use std::sync::Arc;
 
 /// A scene whose trees are not built yet, so that no ray can be traced in it.
-/// [`build_or_cancel`](Self::build_or_cancel) builds them; meanwhile a [sketch](Self::sketch) can be shown.
+///
+/// [`build_or_cancel`](Self::build_or_cancel) builds the trees; meanwhile a [sketch](Self::sketch) can be shown.
 #[derive(Clone, Debug)]
 pub struct Draft {
     pub(super) checked: Arc<Checked>,
@@ -37,7 +38,8 @@ impl Draft {
         self.checked.shapes().map(primitives).sum::<usize>() >= MIN_TASK_ITEMS
     }
 
-    /// Builds the trees on all threads of the current rayon pool, until the reporter cancels it.
+    /// Builds the trees on all threads of the current rayon pool, unless the reporter cancels the
+    /// build.
     ///
     /// # Errors
     /// [`Cancelled`], if the reporter cancels.

@@ -3,23 +3,24 @@
 use super::{Checked, Draft, Object, Scene};
 use crate::shape::{Mesh, Shape};
 
-/// Least number of triangles for which a sketch is made. The trees of fewer are built in about the
-/// time of a sketch, a few hundredths of a second.
+/// The least number of triangles for which a sketch is made.
+// The trees of fewer triangles are built in about the time of a sketch, a few hundredths of a second.
 const MIN_SKETCHED_TRIANGLES: u32 = 1 << 17;
 
-/// Approximate number of cubes along a sketched mesh's longest side: as many as a small screen
-/// resolves. Several meshes share them, so that the time of a sketch stays the same.
+/// The approximate number of cubes along the longest side of a decimated mesh.
+// As many as a small screen resolves. Several meshes share them, so that a sketch of them takes no longer.
 const DETAILS: f32 = 64.0;
 
 impl Draft {
-    /// Returns the scene with decimated meshes, whose trees are built in a few hundredths of a
-    /// second; `None` if the trees of the scene itself are built as fast.
+    /// Returns the scene with decimated meshes, which takes a few hundredths of a second.
+    ///
+    /// Returns `None` if the trees of the scene itself are built as fast.
     pub fn sketch(&self) -> Option<Scene> {
         let meshes = || self.checked.objects.iter().filter_map(|object| mesh_of(&object.shape));
         if meshes().map(Mesh::triangle_count).fold(0, u32::saturating_add) < MIN_SKETCHED_TRIANGLES {
             return None;
         }
-        // The number of a mesh's triangles grows with the square of its cubes.
+        // The number of triangles grows with the square of the number of cubes along a side.
         let details = DETAILS / (meshes().count() as f32).sqrt();
         let sketched = |object: &Object| match mesh_of(&object.shape) {
             Some(mesh) => {

@@ -1,11 +1,12 @@
-//! Cameras written as text for a scene file.
+//! Formatting of cameras as text for a scene file.
 
 use crate::camera::{Camera, ViewRectangle, radians};
 use glam::Vec3;
 
 impl Camera {
-    /// Returns the camera as in a scene file: `camera: (eye: ..., target: ..., ...)`, each number
-    /// with the fewest digits that are read back with the same bits.
+    /// Returns the camera as text for a scene file: `camera: (eye: ..., target: ..., ...)`.
+    ///
+    /// Each number has the fewest digits that are read back with the same bits.
     ///
     /// ```
     /// use termtrace::Scene;
@@ -20,7 +21,7 @@ impl Camera {
         format!("camera: {}", self.value_to_ron())
     }
 
-    /// Returns the value of that field alone: `(eye: ..., target: ..., ...)`.
+    /// Returns the value of the field `camera` as text: `(eye: ..., target: ..., ...)`.
     pub(super) fn value_to_ron(&self) -> String {
         let pose = self.pose();
         let [eye, target, up] = [pose.eye, pose.target, pose.up].map(vector);
@@ -43,9 +44,9 @@ fn vector(v: Vec3) -> String {
 /// Returns the shortest decimal that is read back as `x`.
 fn number(x: f32) -> String {
     let plain = x.to_string();
-    // Rust never writes an exponent by itself: 1e-30 would have 31 digits.
+    // `to_string` never writes an exponent: 1e-30 would have 31 digits.
     let short = if plain.len() > 16 { format!("{x:e}") } else { plain };
-    // The reader rounds twice, to f64 and then to f32, which changes a few numbers: these are written with all digits.
+    // The reader rounds first to f64 and then to f32. The few numbers that this changes are written with all digits.
     if reads_as(&short, |value| value as f32 == x) { short } else { f64::from(x).to_string() }
 }
 
@@ -53,15 +54,15 @@ fn reads_as(text: &str, is_right: impl Fn(f64) -> bool) -> bool {
     text.parse().is_ok_and(is_right)
 }
 
-/// Returns the lens in degrees if that gives the same bits; otherwise as the lecture's f, w and h,
-/// with f = 1.
+/// Returns the fields of the lens: an angle in degrees if it gives the same bits, otherwise the
+/// lecture's f, w and h with f = 1.
 fn lens(rectangle: &ViewRectangle) -> String {
     let Some(width) = rectangle.width() else {
         let degrees = degrees(rectangle).unwrap_or_else(|| approximate_degrees(rectangle).to_string());
         return format!("vertical_fov: {degrees}");
     };
     match (degrees(rectangle), aspect_ratio(rectangle, width)) {
-        // An angle or ratio that needs more digits was not written as such by the author.
+        // If the angle or the ratio needs more digits, the author probably gave f, w and h.
         (Some(degrees), Some(ratio)) if degrees.len() <= 6 && ratio.len() <= 9 => {
             format!("vertical_fov: {degrees}, aspect_ratio: {ratio}")
         }
@@ -76,7 +77,7 @@ fn approximate_degrees(rectangle: &ViewRectangle) -> f64 {
     (2.0 * libm::atan(0.5 * f64::from(rectangle.height()))).to_degrees()
 }
 
-/// Returns the angle with the fewest digits that gives the same height.
+/// Returns the vertical field of view in degrees, with the fewest digits that give the same height.
 fn degrees(rectangle: &ViewRectangle) -> Option<String> {
     let gives_the_height = |value: f64| {
         ViewRectangle::from_vertical_fov(radians(value)).is_ok_and(|read| read.height() == rectangle.height())
@@ -84,16 +85,16 @@ fn degrees(rectangle: &ViewRectangle) -> Option<String> {
     shortest(approximate_degrees(rectangle), gives_the_height)
 }
 
-/// Returns the aspect ratio with the fewest digits that gives the same width.
+/// Returns the aspect ratio with the fewest digits that give the same width.
 fn aspect_ratio(rectangle: &ViewRectangle, width: f32) -> Option<String> {
     let gives_the_width = |value: f64| rectangle.height() * value as f32 == width;
     shortest(f64::from(width) / f64::from(rectangle.height()), gives_the_width)
 }
 
-/// Returns the decimal with the fewest digits after the point that passes the check.
+/// Returns `value` with the fewest digits after the point for which `is_right` is true.
 fn shortest(value: f64, is_right: impl Fn(f64) -> bool) -> Option<String> {
-    // Tried from the shortest on. Each try parses a number, but a camera is written only when a view is saved or
-    // copied.
+    // Tries all lengths from the shortest on. Each try parses a number, but a camera is formatted only when a view is
+    // saved or copied.
     let digits = (0..=15).map(|digits| format!("{value:.digits$}"));
     let exact = value.to_string();
     digits.chain([exact]).find(|text| reads_as(text, &is_right))

@@ -1,13 +1,15 @@
-//! Insertion of a view into a scene file's text, which keeps all other bytes, comments and blanks
-//! included.
+//! Insertion of a view into the text of a scene file.
+//!
+//! All other bytes stay, comments and blanks included.
 
 use crate::camera::Camera;
 use crate::progress::Reporter;
 use crate::scene_file::SceneFile;
 use crate::scene_text::{Body, Faults, Field, SyntaxNode, Value, parse};
 
-/// Returns the text of a scene file with `camera` added as the last of its `views`. `None` if the
-/// text is not a scene.
+/// Returns the text of a scene file with `camera` added as the last of its `views`.
+///
+/// Returns `None` if the text is not a scene.
 ///
 /// ```
 /// use termtrace::Scene;
@@ -35,15 +37,15 @@ pub fn with_view(text: &str, camera: &Camera) -> Option<String> {
         None => after(text, field("camera")?, &view),
     };
     let written = inserted(text, additions);
-    // The user's file is replaced by this text, so it is parsed again: better no view than a broken file.
+    // The text will replace the user's file, so it is parsed again, and dropped if the insertion broke it.
     (count(&written)? == count(text)? + 1).then_some(written)
 }
 
-/// A text to insert at a byte.
+/// A text to insert, and the index of the byte before which it is inserted.
 type Addition = (usize, String);
 
-/// Returns the insertion into an existing list of views, on a line of its own if the closing
-/// bracket has one.
+/// Returns the insertion into an existing list of views, on a separate line if the closing bracket
+/// is on one.
 fn to_list(text: &str, list: &SyntaxNode<'_>, view: &str) -> Option<Vec<Addition>> {
     let items = items(list)?;
     let close = list.span.end as usize - 1;
@@ -58,13 +60,13 @@ fn to_list(text: &str, list: &SyntaxNode<'_>, view: &str) -> Option<Vec<Addition
         None => format!("{}    ", indent_of(text, close)),
     };
     let missing = last.filter(|&end| !text[skip_blanks(text, end)..].starts_with(','));
-    // The comma goes directly after the value: a comment may follow on its line.
+    // The comma is inserted directly after the value, as a comment may follow on its line.
     let comma = missing.map(|end| (end, ",".to_owned()));
     Some(comma.into_iter().chain([(before, format!("{}{indent}{view},", line_end(text)))]).collect())
 }
 
-/// Returns the insertion of a new list after a field, on lines of its own if the field's line ends
-/// with it.
+/// Returns the insertion of a list of views after a field, on separate lines if nothing follows the
+/// field on its line.
 fn after(text: &str, field: &Field<'_>, view: &str) -> Vec<Addition> {
     let end = field.value.span.end as usize;
     let comma = Some(skip_blanks(text, end)).filter(|&at| text[at..].starts_with(','));
@@ -82,7 +84,7 @@ fn after(text: &str, field: &Field<'_>, view: &str) -> Vec<Addition> {
     missing.into_iter().chain([(next + line.trim_end().len(), list)]).collect()
 }
 
-/// Returns the text with all insertions, which are in order.
+/// Returns the text with all insertions, which are sorted by their positions.
 fn inserted(text: &str, additions: Vec<Addition>) -> String {
     let mut written = String::with_capacity(text.len() + 200);
     let mut from = 0;
@@ -95,7 +97,7 @@ fn inserted(text: &str, additions: Vec<Addition>) -> String {
     written
 }
 
-/// Returns the number of views in a text.
+/// Returns the number of views in the text of a scene file, or `None` if it does not parse.
 fn count(text: &str) -> Option<usize> {
     let root = parse(text).ok()?;
     Some(SceneFile::read(&root, &Reporter::silent(), &mut Faults::default()).views.len())
@@ -134,8 +136,9 @@ fn line_end(text: &str) -> &'static str {
     if text.contains("\r\n") { "\r\n" } else { "\n" }
 }
 
-/// Returns the first index from `at` on that is neither in a blank nor in a comment. The text has
-/// been parsed, so every comment ends.
+/// Returns the index of the first byte from `at` on that is neither white space nor in a comment.
+///
+/// The text has been parsed, so every comment ends.
 fn skip_blanks(text: &str, mut at: usize) -> usize {
     loop {
         let rest = &text[at..];
@@ -150,7 +153,7 @@ fn skip_blanks(text: &str, mut at: usize) -> usize {
     }
 }
 
-/// Returns the length of the comment at the start of the text, with nested ones.
+/// Returns the length of the block comment at the start of the text, including nested comments.
 fn block_comment(text: &str) -> usize {
     let (mut depth, mut at) = (0_usize, 0);
     while at < text.len() {

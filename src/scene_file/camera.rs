@@ -4,25 +4,25 @@ use crate::scene_text::{Span, SyntaxNode, quoted};
 use crate::text::listed;
 use crate::written::{Fields, NodeReader, WrittenNumber, WrittenVector};
 
-/// The camera or a view.
+/// The scene's camera or a view, as written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenCamera {
-    /// The span to point at when the camera is wrong as a whole.
+    /// The span at which faults of the whole camera are reported.
     pub span: Span,
     /// The eye point.
     pub eye: Option<WrittenVector>,
     /// The target point.
     pub target: Option<WrittenVector>,
-    /// The up vector; if not given, +y, or for a view the camera's.
+    /// The up vector. If not given, it is +y, or for a view the camera's.
     pub up: Option<WrittenVector>,
-    /// The intrinsic parameters; if not given for a view, the camera's.
+    /// The intrinsic parameters. If a view has none, they are the camera's.
     pub lens: WrittenLens,
-    /// The shift of the view rectangle off centre, to the right and up, in heights of the
+    /// The shift of the view rectangle from the centre, to the right and up, in heights of the
     /// rectangle.
     pub shift: Option<[WrittenNumber; 2]>,
 }
 
-/// The intrinsic parameters in either of the lecture's forms.
+/// The intrinsic parameters as written, in one of two forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WrittenLens {
     /// By field of view.
@@ -34,11 +34,11 @@ pub enum WrittenLens {
     },
     /// By the lecture's f, w and h.
     FocalLength {
-        /// f.
+        /// The focal length f.
         focal_length: Option<WrittenNumber>,
-        /// w.
+        /// The width w of the view rectangle.
         width: Option<WrittenNumber>,
-        /// h.
+        /// The height h of the view rectangle.
         height: Option<WrittenNumber>,
     },
 }
@@ -62,7 +62,7 @@ impl NodeReader<'_> {
         Some(self.each(items, |reader, item| reader.camera_called(item, "a view", "a view (eye: ..., target: ...)")))
     }
 
-    /// Reads a camera or a view. `owner` and `form` are its names in messages.
+    /// Reads a camera or a view. `owner` is its name and `form` its full form, for messages.
     fn camera_called(&mut self, node: &SyntaxNode<'_>, owner: &'static str, form: &str) -> Option<WrittenCamera> {
         const FIELDS: &[&str] =
             &["eye", "target", "up", "vertical_fov", "aspect_ratio", "focal_length", "width", "height", "shift"];
@@ -79,7 +79,7 @@ impl NodeReader<'_> {
 
     fn lens(&mut self, fields: &Fields<'_>) -> WrittenLens {
         const FOCAL: [&str; 3] = ["focal_length", "width", "height"];
-        // One field of the focal form is enough to tell which form was meant.
+        // One field of the focal form is enough to recognize it.
         if FOCAL.iter().all(|&name| fields.get(name).is_none()) {
             return WrittenLens::FieldOfView {
                 vertical_fov: self.optional(fields, "vertical_fov", NodeReader::number),
@@ -98,12 +98,12 @@ impl NodeReader<'_> {
         WrittenLens::FocalLength { focal_length, width, height }
     }
 
-    /// Reports which fields of the focal form are missing: all three go together.
+    /// Reports which fields of the focal form are missing, as all three are required.
     fn missing_of_focal_form(&mut self, fields: &Fields<'_>, names: &[&str]) {
         let missing = names.iter().filter(|name| !fields.is_given(name));
         let missing: Vec<_> = missing.map(|name| quoted(name)).collect();
         let given = names.iter().find_map(|name| fields.field(name));
-        // One fault for all missing fields, at the first one that is there.
+        // Reports one fault for all missing fields, at the first given one.
         if let (false, Some(given)) = (missing.is_empty(), given) {
             let s = if missing.len() > 1 { "s" } else { "" };
             self.fault(given.name.span, || {

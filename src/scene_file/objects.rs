@@ -1,4 +1,4 @@
-//! Objects and materials as written.
+//! Reading of objects and materials from the syntax tree.
 
 use super::{MaterialUse, NamedMaterial, WrittenObject};
 use crate::material::WrittenMaterial;
@@ -28,8 +28,9 @@ impl NodeReader<'_> {
         Some(Spanned { value, span: node.span })
     }
 
-    /// Reads the entries of `materials`. Returns `false` if a name may be missing because its entry
-    /// has a fault.
+    /// Reads the entries of the field `materials`.
+    ///
+    /// Returns `false` if a name may be missing because its entry has a fault.
     pub(super) fn materials(&mut self, node: &SyntaxNode<'_>, materials: &mut Vec<NamedMaterial>) -> bool {
         let Value::Map(entries) = &node.value else {
             // `materials: []` and `()` mean no materials, as an empty map does.
@@ -45,7 +46,7 @@ impl NodeReader<'_> {
         let mut complete = true;
         let mut names = HashSet::new();
         for (key, value) in entries {
-            // Read even if the name is a duplicate, so that its own faults are found.
+            // The material is read even if its name is a duplicate, so that its faults are found.
             let material = self.material(value);
             match self.material_name(key) {
                 Some(name) if names.insert(name) => materials.push(NamedMaterial { name: name.into(), material }),
@@ -56,7 +57,9 @@ impl NodeReader<'_> {
         complete
     }
 
-    /// Returns the name of a material. A word without quotes is a fault, but its name is known.
+    /// Returns the name of a material.
+    ///
+    /// A word without quotes is reported as a fault, and returned as well.
     fn material_name<'n>(&mut self, key: &'n SyntaxNode<'n>) -> Option<&'n str> {
         match &key.value {
             Value::String(name) => return Some(name),

@@ -1,20 +1,20 @@
-//! Camera paths as written.
+//! Camera paths as written, and their reading from the syntax tree.
 
 use crate::progress::Reporter;
 use crate::scene_text::{Faults, Span, SyntaxNode};
 use crate::written::{NodeReader, WrittenNumber, WrittenVector};
 
-/// A camera path file.
+/// A camera path file as written.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathFile {
     /// The keyframes, in the order of the file, and the span of their list.
     pub keyframes: Option<(Vec<WrittenKeyframe>, Span)>,
 }
 
-/// A keyframe.
+/// A keyframe as written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenKeyframe {
-    /// The span to point at when the keyframe is wrong as a whole.
+    /// The span at which faults of the whole keyframe are reported.
     pub span: Span,
     /// The time in seconds from the start of the film.
     pub time: Option<WrittenNumber>,

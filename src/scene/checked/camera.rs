@@ -1,4 +1,4 @@
-//! Checking of cameras: degrees become radians, and a pose without a basis u, v, w is a fault.
+//! Checking of cameras: converts degrees to radians, and reports poses without a basis u, v, w.
 
 use crate::camera::{Camera, CameraError, Pose, ViewRectangle, radians};
 use crate::checks;
@@ -13,8 +13,9 @@ impl Validator<'_> {
         self.camera_with(written, (Vec3::Y, "its up vector (0, 1, 0)"), rectangle)
     }
 
-    /// Checks a view. Parameters that it does not give are the camera's; if those are faulty, the
-    /// view is still checked.
+    /// Checks a view. Parameters that it does not give are those of the scene's camera.
+    ///
+    /// If the camera has a fault and is `None`, the view is still checked.
     pub(super) fn view(&mut self, written: &WrittenCamera, camera: Option<&Camera>) -> Option<Camera> {
         let rectangle = match camera {
             Some(camera) if written.is_without_lens() => Some(camera.rectangle()),
@@ -24,8 +25,9 @@ impl Validator<'_> {
         self.camera_with(written, (up, "the camera's up vector"), rectangle)
     }
 
-    /// Checks a camera with this view rectangle. `up_if_none` is the up vector if none is written,
-    /// with its name for messages.
+    /// Checks a camera with the given view rectangle.
+    ///
+    /// `up_if_none` is the up vector to use if none is written, and `name` its name in messages.
     fn camera_with(
         &mut self,
         written: &WrittenCamera,
@@ -45,7 +47,7 @@ impl Validator<'_> {
             up: written.up.map(|up| up.span),
             up_if_none: name,
         };
-        // If the lens is faulty the pose is checked with any lens, so that its faults are reported too.
+        // If the lens has a fault, the pose is checked with another lens, so that its faults are reported as well.
         let any = || ViewRectangle::from_vertical_fov(1.0).ok();
         let camera = self.camera_of(pose, rectangle.or_else(any)?, spans)?;
         rectangle.and(Some(camera))
@@ -60,14 +62,14 @@ impl Validator<'_> {
         rectangle?.with_shift(shift?).ok()
     }
 
-    /// Returns the camera, or reports a fault at the part of the pose that is wrong.
+    /// Returns the camera with a pose, or reports a fault at the part of the pose that is wrong.
     pub(super) fn camera_of(&mut self, pose: Pose, rectangle: ViewRectangle, spans: PoseSpans) -> Option<Camera> {
         let error = match Camera::new(pose, rectangle) {
             Ok(camera) => return Some(camera),
             Err(error) => error,
         };
         let span = match error {
-            // Without an up vector in the file it is the target that makes the default unusable.
+            // Without an up vector in the file, the target is wrong, as the default up vector is along the view.
             CameraError::UpIsZero | CameraError::UpAlongView => spans.up.or(spans.target),
             _ => spans.target,
         };
@@ -84,7 +86,7 @@ impl Validator<'_> {
     }
 
     pub(super) fn up(&mut self, written: WrittenVector) -> Option<Vec3> {
-        // For its message only: the camera keeps the vector as written, so that it is written back the same.
+        // Called for its message only. The camera keeps the vector as written, so that it is written back unchanged.
         self.unit_vector("up vector", written)?;
         let up = self.point(written)?;
         if !checks::is_long(up) {
@@ -114,7 +116,7 @@ impl Validator<'_> {
         }
     }
 
-    /// Returns the view rectangle of a field of view.
+    /// Returns the view rectangle that `from_radians` makes of a written angle in degrees.
     pub(super) fn rectangle_from_degrees(
         &mut self,
         written: WrittenNumber,
@@ -167,12 +169,12 @@ impl Validator<'_> {
     }
 }
 
-/// The spans of a pose's parts, to point at when one is wrong.
+/// The spans of the parts of a written pose, at which faults are reported.
 #[derive(Clone, Copy)]
 pub(super) struct PoseSpans {
     pub(super) whole: Span,
     pub(super) target: Option<Span>,
     pub(super) up: Option<Span>,
-    /// The name, in messages, of the up vector that is used if none is written.
+    /// The name, in messages, of the up vector that is used if the pose has none.
     pub(super) up_if_none: &'static str,
 }

@@ -7,12 +7,13 @@ use crate::scene_file::{PathFile, WrittenKeyframe};
 use crate::scene_text::Faults;
 use crate::written::{Spanned, Validator, WrittenNumber};
 
-/// Limit on times in seconds: more than eleven days. As f64 the time of each frame is still exact
-/// to a nanosecond.
+/// The largest time in seconds: more than eleven days.
+// Up to it, f64 represents the time of each frame to a nanosecond.
 const MAX_SECONDS: f64 = 1e6;
 
-/// Returns the path; if `None`, every fault has been added. Parameters that a keyframe does not
-/// give are those of `camera`.
+/// Returns the path, or `None` after all faults have been added to `faults`.
+///
+/// Parameters that a keyframe does not give are those of `camera`.
 pub(in crate::scene) fn check(file: &PathFile, camera: &Camera, faults: &mut Faults) -> Option<CameraPath> {
     let mut validator = Validator { faults };
     let (written, span) = file.keyframes.as_ref()?;
@@ -46,7 +47,8 @@ impl Validator<'_> {
             up: written.up.map(|up| up.span),
             up_if_none: "the scene's up vector",
         };
-        // If the angle is faulty, the pose is checked with the camera's, so that its faults are reported too.
+        // If the angle has a fault, the pose is checked with the camera's angle, so that its faults are reported as
+        // well.
         let camera = self.camera_of(pose, rectangle.unwrap_or(camera.rectangle()), spans)?;
         rectangle.and(Some(Keyframe { time: time?, camera }))
     }
@@ -59,7 +61,7 @@ impl Validator<'_> {
         self.fault(span, || "the time must lie between 0 and 1e6 seconds".to_owned())
     }
 
-    /// Reports each time that is not after the one before.
+    /// Reports each time that is not greater than that of the keyframe before.
     fn check_times(&mut self, written: &[WrittenKeyframe]) {
         let times: Vec<WrittenNumber> = written.iter().filter_map(|keyframe| keyframe.time).collect();
         for pair in times.windows(2).filter(|pair| pair[1].value <= pair[0].value) {

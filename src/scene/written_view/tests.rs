@@ -3,7 +3,8 @@ use crate::scene::Scene;
 
 const VIEW: &str = "(eye: (3, 1, 2), target: (0, 0, 0), up: (0, 1, 0), vertical_fov: 45)";
 
-/// Returns the result for `text`, with `+` for the new view's text.
+/// Adds a view to the scene `text`, in which `C` stands for a camera, `V` for a view, and `+` for
+/// the added view.
 fn added(text: &str) -> String {
     let camera = *Scene::from_ron("x", "(camera: (eye: (3, 1, 2), target: (0, 0, 0)))").expect("a scene").camera();
     let text = text
@@ -40,7 +41,7 @@ fn all_else_stays_as_it_is() {
         ("// \"é\" ☃\nScene(C, ambient: 1)", "// \"é\" ☃\nScene(C, views: [+], ambient: 1)"),
     ] {
         assert_eq!(added(text), wanted, "{text}");
-        // A second insertion into the result.
+        // Inserts a second view into the result.
         added(&wanted.replace('+', "V"));
     }
 }
