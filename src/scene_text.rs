@@ -1,20 +1,20 @@
 //! The reader of RON: text to a syntax tree with spans; faults with line, column and caret.
 //!
-//! Scenes are written in RON (Rusty Object Notation). The tree knows nothing of scenes: their grammar is that of
-//! [`scene_file`](crate::scene_file). It guarantees two things. Every [`SyntaxNode`] has its byte range, so that a
-//! later check can point at it, and a program can replace it without touching the comments around it. And no text,
-//! however large, deep or broken, causes more than a [`Fault`]: nesting is limited, memory is bounded by a small
-//! multiple of the text, time is linear.
+//! Scenes are written in RON (Rusty Object Notation). The grammar of scenes is in [`scene_file`](crate::scene_file);
+//! here any RON is parsed. Two things are guaranteed. Every [`SyntaxNode`] has its byte range, so that a later check
+//! can report it, and a program can replace it without changing the comments around it. No text, however large, deep or
+//! broken, causes more than a [`Fault`]: nesting is limited, memory is bounded by a small multiple of the text, and
+//! time is linear.
 //!
 //! # Crates that were tried
 //!
 //! - `ron2` 0.3 keeps names and positions, but a text of 2 KB (`a(a(a(...`) passes its depth limit and overflows the
 //!   stack, a map of bare names (`{a,a,a,...`) takes quadratic time (14.6 s for 320 KB), and 10 MB of spheres take 1.0
-//!   s and 1.4 GB instead of .15 s and 126 MB here. The tests use it as a judge (`tests/files/scene_syntax.rs`): both
-//!   readers must give the same trees.
-//! - `ron` 0.12.3 with serde fails at `background: Gradient(...)`, where a colour is allowed as well: for a type that
-//!   is chosen by its contents the name `Gradient` is not passed on. 6 of the 12 shipped scenes are refused. It also
-//!   stops at the first fault, where 31 of the 79 faulty scenes of the tests have several.
+//!   s and 1.4 GB instead of .15 s and 126 MB here. The tests use it as a reference (`tests/files/scene_syntax.rs`):
+//!   both readers must give the same trees.
+//! - `ron` 0.12.3 with serde fails at `background: Gradient(...)`, where a colour is allowed as well: it does not pass
+//!   the name `Gradient` to a type that is chosen by its contents. It rejects 6 of the 12 shipped scenes. It also stops
+//!   at the first fault, while 31 of the 79 faulty scenes of the tests have several.
 
 mod fault;
 #[cfg(feature = "ron")]
@@ -43,8 +43,8 @@ pub struct Span {
 }
 
 impl Span {
-    /// Returns the range from `start` up to, but not including, `end`. A text has at most 16 MiB,
-    /// so 32 bits hold every index.
+    /// Returns the range from `start` up to, but not including, `end`.
+    // A text has at most 16 MiB, so 32 bits are enough for every index.
     pub fn new(start: usize, end: usize) -> Self {
         Self { start: start as u32, end: end as u32 }
     }
@@ -55,17 +55,17 @@ impl Span {
     }
 }
 
-/// Limit on the size of a text: 16 MiB, which holds a scene of 200,000 spheres.
+/// The largest size of a text: 16 MiB, enough for a scene of 200,000 spheres.
 pub const MAX_TEXT_BYTES: usize = 16 << 20;
 
-/// Limit on the nesting of values: the parser is recursive, and a deeper text could overflow the
-/// stack. A scene needs 5.
+/// The deepest nesting of brackets. A scene needs 5.
+// The parser is recursive, and a deeper text could overflow the stack.
 pub const MAX_NESTING: usize = 128;
 
 /// A value and its span.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SyntaxNode<'a> {
-    /// The range of the whole value, brackets included.
+    /// The span of the whole value, including brackets.
     pub span: Span,
     /// The value.
     pub value: Value<'a>,
@@ -106,10 +106,10 @@ pub struct Name<'a> {
     pub span: Span,
 }
 
-/// The contents after a name.
+/// The part after the name of a group.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Body<'a> {
-    /// None: `InverseSquare`.
+    /// No parentheses: `InverseSquare`.
     Nothing,
     /// Values: `(1, 2, 3)`; also `()`.
     Values(Vec<SyntaxNode<'a>>),
@@ -122,12 +122,12 @@ pub enum Body<'a> {
 pub struct Field<'a> {
     /// The name before the colon.
     pub name: Name<'a>,
-    /// The value after it.
+    /// The value after the colon.
     pub value: SyntaxNode<'a>,
 }
 
 impl<'a> SyntaxNode<'a> {
-    /// Returns the fields of `(name: value, ...)`, a group without a name; none for `()`.
+    /// Returns the fields of a group without a name, `(name: value, ...)`; an empty slice for `()`.
     pub fn fields(&self) -> Option<&[Field<'a>]> {
         match &self.value {
             Value::Group(group) if group.name.is_none() => match &group.body {
@@ -147,8 +147,9 @@ impl<'a> SyntaxNode<'a> {
         }
     }
 
-    /// Returns the span to point at when something is missing in this value: its name, or its first
-    /// bracket. The whole value may be a thousand lines long.
+    /// Returns the span at which something missing in the value is reported: its name, or its first
+    /// bracket.
+    // The whole value may be a thousand lines long.
     pub fn head(&self) -> Span {
         match &self.value {
             Value::Group(group) => match group.name {

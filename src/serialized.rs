@@ -11,9 +11,10 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::convert::Infallible;
 use std::num::NonZeroU32;
 
-/// Implements both traits by a serialized form: a conversion to it, and a checked conversion back.
-// In one file, not derived at the types: derived impls would bypass the constructors' checks, and private fields would
-// become part of the format.
+/// Implements `Serialize` and `Deserialize` by a type for the format: a conversion to it, and a
+/// checked one back.
+// Not derived for the types themselves, because derived impls would bypass the constructors' checks, and private fields
+// would become part of the format.
 macro_rules! serialize_as {
     ($($Type:ty as $Form:ty: $to:expr, $from:expr;)*) => {
         $(impl Serialize for $Type {
@@ -37,7 +38,7 @@ serialize_as! {
     Srgb8 as [u8; 3]: |color| [color.r, color.g, color.b], |channels| Ok::<_, Infallible>(Self::from(channels));
     Size as SizeForm: |&Size { columns, rows }| SizeForm { columns, rows },
         |SizeForm { columns, rows }| Ok::<_, Infallible>(Self { columns, rows });
-    // By name, not by number, so that new maps do not change the meaning of old files.
+    // The name of a map, not its number, so that new maps do not change the meaning of old files.
     Map as String: |map| map.name().to_owned(), |name: String| name.parse::<Self>();
     Sampling as SamplingForm: |&sampling| sampling.into(), |form: SamplingForm| Ok::<_, Infallible>(form.into());
     Pose as PoseForm: |&Pose { eye, target, up }| PoseForm { eye: eye.into(), target: target.into(), up: up.into() },
@@ -48,7 +49,7 @@ serialize_as! {
     Camera as CameraForm: |camera| CameraForm { pose: camera.pose(), rectangle: camera.rectangle() },
         |CameraForm { pose, rectangle }| Self::new(pose, rectangle);
     Resolution as ResolutionForm: ResolutionForm::of, ResolutionForm::checked;
-    // The constants' bits are promised; unknown bits are an error instead of being dropped.
+    // The bits of the constants never change. Unknown bits are an error instead of being dropped.
     Attributes as u16: |attributes| attributes.bits(), attributes_of;
 }
 

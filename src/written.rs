@@ -1,8 +1,8 @@
-//! Values as written, each with its span: reading from the syntax tree, and checking.
+//! Values as written in a file, each with its span: reading from the syntax tree, and checking.
 //!
-//! A [`NodeReader`] continues after a fault, so that one run reports all. A missing or faulty value is `None`, and its
-//! fault has been reported. A [`Validator`] checks what types do not: that a radius is positive, or that a coordinate
-//! is small enough for rays to be traced.
+//! A [`NodeReader`] continues after a fault, so that one run reports all faults. A value that is missing or has a fault
+//! is `None`, and the fault has been reported. A [`Validator`] makes the checks that types cannot: that a radius is
+//! positive, or that a coordinate is small enough for rays to be traced.
 
 mod colors;
 mod node_reader;
@@ -37,10 +37,9 @@ pub struct WrittenVector {
     pub span: Span,
 }
 
-/// A value that a scene file writes as a name with fields, such as `Sphere(center: ..., radius:
-/// ...)`.
+/// A type whose values are a name with fields in a scene file: `Sphere(center: ..., radius: ...)`.
 pub trait InSceneFile {
-    /// The value as written.
+    /// The type of the value as written.
     type Written: Clone + Debug + PartialEq;
 
     /// The name before the fields: "Sphere".
@@ -49,16 +48,17 @@ pub trait InSceneFile {
     /// The name with an article, for messages.
     const OWNER: &'static str;
 
-    /// The full form: "Sphere(center: ..., radius: ...)".
+    /// The full form for messages: "Sphere(center: ..., radius: ...)".
     const FORM: &'static str;
 
-    /// The names of the fields; those of a surface end with `material`, which every object has.
+    /// The names of the fields. The last one of a surface is `material`, which belongs to the
+    /// object.
     const FIELDS: &'static [&'static str];
 
     /// Reads the value from its fields.
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> Self::Written;
 
-    /// Reads the value from its node: the group of fields after its name.
+    /// Reads the value from its node, which is its name with the group of fields.
     fn read_node(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self::Written> {
         let fields = reader.fields(node, Self::OWNER, Self::FORM, Self::FIELDS)?;
         Some(Self::read(reader, &fields))

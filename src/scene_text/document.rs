@@ -1,5 +1,6 @@
-//! Reading of a whole file: bytes to text to a syntax tree to a checked value, with a fault for
-//! bytes that are not text.
+//! Reading of a whole file: bytes to text to a syntax tree to a checked value.
+//!
+//! Bytes that are not text are a fault.
 
 use super::parser::parse_or_cancel;
 use super::{Fault, Faults, MAX_TEXT_BYTES, SceneError, Span, SyntaxNode};
@@ -7,7 +8,7 @@ use crate::progress::{Meter, Reporter, Unfinished};
 
 /// Parses a text and returns the value that `check` makes of its syntax tree.
 ///
-/// `smallest` is the example shown for an empty text, `name` the file's name for messages.
+/// `smallest` is the example that the message for an empty text shows, and `name` the file's name for messages.
 ///
 /// # Errors
 /// The first fault of the syntax; if there is none, all faults that `check` reports when it returns `None`.
@@ -21,10 +22,10 @@ pub fn read<T>(
     read_or_cancel(name, text, smallest, &Reporter::silent(), check).map_err(Unfinished::failure)
 }
 
-/// Reads as [`read`] does and reports progress to the reporter, which may cancel it.
+/// Reads as [`read`] does, reports progress, and stops if the reporter cancels it.
 ///
-/// `check` owns the tree, so that it can free it before it has finished: for a scene of 400,000 spheres the peak is 394
-/// MB instead of 462. After a cancellation its result is ignored.
+/// `check` owns the tree, so that it can free the tree early: the peak for a scene of 400,000 spheres is 394 MB instead
+/// of 462. After a cancellation the result of `check` is ignored.
 ///
 /// # Errors
 /// As [`read`], and if the reporter cancels.
@@ -49,13 +50,13 @@ pub(crate) fn read_or_cancel<'a, T>(
     checked.ok_or_else(|| Unfinished::Failed(SceneError::new(name, text, faults)))
 }
 
-/// Returns the bytes as text.
+/// Returns the bytes of the file `name` as text.
 ///
 /// # Errors
-/// If there are more than [`MAX_TEXT_BYTES`], they are not UTF-8, or they are evidently not text.
+/// If there are more than [`MAX_TEXT_BYTES`], or they are not UTF-8, or contain a NUL.
 pub fn text_from<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, SceneError> {
     decoded(bytes).map_err(|fault| {
-        // A file that is not text from its first byte on has no line worth showing.
+        // A file that is not text from its first byte on has no line that would help in a message.
         let shown = if fault.span.start == 0 { &[] } else { bytes };
         SceneError::new(name, &String::from_utf8_lossy(shown), fault)
     })
@@ -88,12 +89,13 @@ fn not_empty(text: &str, smallest: &str) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Refuses a NUL, which text never contains and nearly every binary format has near its start.
+/// Returns a fault for a NUL, which text never contains, and nearly every binary format has near
+/// its start.
 fn no_nul(bytes: &[u8]) -> Result<(), Fault> {
     let Some(offset) = bytes.iter().position(|&byte| byte == 0) else {
         return Ok(());
     };
-    // Positions in the text as shown agree with those in the file only as far as it is UTF-8.
+    // Up to the first byte that is not UTF-8, offsets in the shown text are those in the file.
     let is_text = std::str::from_utf8(&bytes[..offset]).is_ok();
     let message = format!("this is not a text file: byte {offset} is a NUL");
     Err(fault_at(if is_text { offset } else { 0 }, message))

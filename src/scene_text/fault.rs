@@ -1,4 +1,5 @@
-//! Faults and their display: all at once, in the order of the text, as compilers do.
+//! Faults of a text and their display: all faults at once, in the order of the text, as compilers
+//! do.
 
 use super::Span;
 use crate::progress::Unfinished;
@@ -11,7 +12,7 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 pub struct Fault {
     /// The message, which says what would be right where possible: one line without a full stop.
     pub message: String,
-    /// The range it refers to.
+    /// The span that the message refers to.
     pub span: Span,
 }
 
@@ -21,7 +22,7 @@ impl From<Fault> for Unfinished<Fault> {
     }
 }
 
-/// The faults found so far. The first thousand are kept, the others only counted.
+/// The faults found so far. The first thousand are stored, the others only counted.
 #[derive(Clone, Debug, Default)]
 pub struct Faults {
     kept: Vec<Fault>,
@@ -29,11 +30,11 @@ pub struct Faults {
 }
 
 impl Faults {
-    /// Limit on the faults that are kept: a generated file may have the same fault a million times,
-    /// and sorting and excerpts of all would take seconds.
+    /// The largest number of faults that are stored.
+    // A generated file may have the same fault a million times, and sorting and excerpts of all would take seconds.
     const MAX_KEPT: usize = 1000;
 
-    /// Adds a fault. `message` is called only if the fault is kept.
+    /// Adds a fault. `message` is called only if the fault is stored.
     pub fn add(&mut self, span: Span, message: impl FnOnce() -> String) {
         if self.kept.len() < Self::MAX_KEPT {
             let message = message();
@@ -55,8 +56,9 @@ impl From<Fault> for Faults {
     }
 }
 
-/// The error of a text that is not a scene or camera path, with every fault found in it. Its
-/// `Display` reads like a compiler's message:
+/// The error of a text that is not a valid scene or camera path, with all faults found in it.
+///
+/// It is displayed like a compiler's message:
 ///
 /// ```
 /// use termtrace::Scene;
@@ -76,7 +78,7 @@ pub struct SceneError {
     more: usize,
 }
 
-/// A fault prepared for display. None of its characters controls a terminal.
+/// A fault prepared for display, with all control characters replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Report {
     /// The line, counted from 1.
@@ -85,25 +87,25 @@ pub struct Report {
     pub column: usize,
     /// The message.
     pub message: String,
-    /// The range it refers to.
+    /// The span that the message refers to.
     pub span: Span,
     /// The line of the text, or the part of a long line around the fault.
     pub source: String,
-    /// Number of terminal columns before the fault in `source`.
+    /// The number of terminal columns before the fault in `source`.
     pub caret: usize,
-    /// Number of terminal columns of the fault in `source`, at least 1.
+    /// The number of terminal columns of the fault in `source`, at least 1.
     pub caret_width: usize,
 }
 
 impl Report {
-    /// Returns the message after the file's name and the position.
+    /// Returns the message, preceded by the file's name and the position.
     fn message_in(&self, name: &str) -> String {
         let Self { line, column, message, .. } = self;
         format!("{name}:{line}:{column}: {message}")
     }
 
-    /// Returns the line of the text with its number and carets below it; `None` if no line is worth
-    /// showing.
+    /// Returns the line of the text with its number, and a line of carets below it; `None` if there
+    /// is no source line.
     fn excerpt(&self) -> Option<[String; 2]> {
         let Self { line, source, caret, caret_width, .. } = self;
         let number = line.to_string();
@@ -114,15 +116,15 @@ impl Report {
 }
 
 impl SceneError {
-    /// Limit on the faults that are printed: more scroll the first ones, which often cause the
-    /// others, off the screen.
+    /// The largest number of faults that are printed.
+    // More faults would scroll the first ones, which often cause the others, off the screen.
     const MAX_PRINTED: usize = 50;
 
-    /// Returns the error with these faults of a text. `name` is the file's, for messages only.
+    /// Returns the error with the faults of a text. `name` is the file's name for messages.
     #[doc(hidden)]
     pub fn new(name: &str, text: &str, faults: impl Into<Faults>) -> Self {
         let Faults { mut kept, more } = faults.into();
-        // Faults of the syntax tree's fields and of checks come in two passes.
+        // Sorted, as faults of fields and faults of checks are found in two passes.
         kept.sort_by_key(|fault| (fault.span.start, fault.span.end));
         let mut counter = LineCounter::new(text);
         let reports = kept.iter().map(|fault| counter.report(fault)).collect();
@@ -159,7 +161,8 @@ impl SceneError {
         &self.reports
     }
 
-    /// Returns the first fault in parts.
+    /// Returns the first fault as a notice: its message, its excerpt, and whether there are more
+    /// faults.
     #[doc(hidden)]
     pub fn notice(&self) -> Notice {
         let has_more = self.count() > 1;
@@ -193,8 +196,8 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
-/// A position in the text that moves from fault to fault and counts lines and columns. A thousand
-/// faults in a file of 16 MiB take one pass; counting each from the start would take a thousand.
+/// A position in the text that moves from fault to fault and counts lines and columns.
+// A thousand faults in a file of 16 MiB take one pass; counting from the start for each would take a thousand.
 struct LineCounter<'a> {
     text: &'a str,
     at: usize,
@@ -238,21 +241,21 @@ impl<'a> LineCounter<'a> {
     }
 }
 
-/// Returns the start of the character that contains a byte.
+/// Returns the index of the first byte of the character that contains the byte at `offset`.
 fn character_at(text: &str, offset: usize) -> usize {
     // A fault may point after the last byte, or into a character that a lossy conversion replaced.
     let offset = offset.min(text.len());
     (0..=offset).rev().find(|&byte| text.is_char_boundary(byte)).unwrap_or(0)
 }
 
-/// Returns the line and column of a byte, counted from 1.
+/// Returns the line and column of the byte at `offset`, both counted from 1.
 pub fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     let mut counter = LineCounter::new(text);
     counter.advance_to(offset);
     (counter.line, counter.column)
 }
 
-/// The part of a line that is shown.
+/// The part of a line that is shown for a fault, with the position of its carets.
 struct Excerpt {
     source: String,
     caret: usize,
@@ -260,18 +263,19 @@ struct Excerpt {
 }
 
 impl Excerpt {
-    /// Limit on the columns shown: with the line number it fits on a screen of 120 columns.
+    /// The largest number of columns shown: with the line number they fit on a screen of 120
+    /// columns.
     const MAX_EXCERPT_WIDTH: usize = 100;
-    /// A fault within this many columns of the line's start is shown with the whole start of the
-    /// line.
+    /// The column up to which a fault is shown with the whole start of its line.
     const WHOLE_START: usize = 75;
-    /// Number of columns shown before any other fault: half of the excerpt.
+    /// The number of columns shown before a fault beyond [`WHOLE_START`](Self::WHOLE_START): half
+    /// of the excerpt.
     const CONTEXT_BEFORE: usize = 50;
 
-    /// Returns the part to show of `text`, which starts with the line; the fault is at bytes
-    /// `start` to `end`.
+    /// Returns the part to show of the first line of `text`, whose bytes `start` to `end` have the
+    /// fault.
     fn new(text: &str, start: usize, end: usize) -> Self {
-        // Only as many characters as needed are counted: a generated file may be one line of megabytes.
+        // Counts only as many characters as needed, because a generated file may be one line of megabytes.
         let is_long =
             text.chars().take(Self::MAX_EXCERPT_WIDTH + 1).take_while(|&c| c != '\n').count() > Self::MAX_EXCERPT_WIDTH;
         let is_far = is_long && back_by(text, start, Self::WHOLE_START) > 0;
@@ -282,8 +286,10 @@ impl Excerpt {
         excerpt
     }
 
-    /// Appends the text from `from` on, up to the line's end or the width limit, and finds the
+    /// Appends the text from byte `from` to the line's end or the width limit, and finds the
     /// columns of the carets.
+    ///
+    /// The fault is at bytes `start` to `end`.
     fn take(&mut self, text: &str, from: usize, start: usize, end: usize) {
         let (mut caret_end, mut budget) = (None, Self::MAX_EXCERPT_WIDTH);
         let mut caret = None;
@@ -295,11 +301,11 @@ impl Excerpt {
             if at >= end && caret_end.is_none() {
                 caret_end = Some(self.source.width());
             }
-            // A lone carriage return within the text is shown as a replacement character: it does not end a line.
+            // A lone carriage return does not end a line; it is shown as a replacement character.
             if c == '\n' || rest.starts_with("\r\n") || rest == "\r" {
                 break;
             }
-            // What is shown decides the width, not what was written: a control character would have none.
+            // The width is that of the shown character, as a control character itself would have none.
             let shown = visible_char(c);
             budget = budget.saturating_sub(shown.width().unwrap_or(1).max(1));
             if budget == 0 {
@@ -316,7 +322,7 @@ impl Excerpt {
     }
 }
 
-/// Returns the index of the character `columns` terminal columns before `offset`, at least 0.
+/// Returns the index of the character that is `columns` terminal columns before `offset`, or 0.
 fn back_by(text: &str, offset: usize, columns: usize) -> usize {
     let mut left = columns;
     for (i, c) in text[..offset].char_indices().rev() {
@@ -329,9 +335,9 @@ fn back_by(text: &str, offset: usize, columns: usize) -> usize {
     0
 }
 
-/// Returns a piece of the file for a message, truncated if long.
+/// Returns a part of the file's text for a message, truncated if it is long.
 pub(crate) fn clipped(text: &str) -> String {
-    // Long enough for any name in a real scene; the message should still fit on a line.
+    // Long enough for any name in a real scene, and short enough for a message on one line.
     const MAX_QUOTED_CHARS: usize = 40;
     let mut shown: String = text.chars().take(MAX_QUOTED_CHARS).map(visible_char).collect();
     if text.chars().nth(MAX_QUOTED_CHARS).is_some() {
@@ -340,7 +346,7 @@ pub(crate) fn clipped(text: &str) -> String {
     shown
 }
 
-/// Returns a piece of the file in quotes.
+/// Returns a part of the file's text for a message, [`clipped`] and in quotes.
 pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}\"", clipped(text))
 }

@@ -1,5 +1,6 @@
-//! The parser: tokens to a syntax tree. It stops at the first fault: after a missing bracket the
-//! meaning of the rest is unknown, and further faults would be noise.
+//! The parser: tokens to a syntax tree.
+//!
+//! It stops at the first fault, because after a missing bracket the meaning of the rest is unknown.
 
 use super::fault::{clipped, line_and_column, quoted};
 use super::tokens::{Token, Tokens};
@@ -14,7 +15,7 @@ pub fn parse(text: &str) -> Result<SyntaxNode<'_>, Fault> {
     parse_or_cancel(text, Meter::new(&Reporter::silent(), "", text.len())).map_err(Unfinished::failure)
 }
 
-/// Parses as [`parse`] does, until the meter's reporter cancels it.
+/// Parses as [`parse`] does, unless the meter's reporter cancels it.
 pub(super) fn parse_or_cancel<'a>(text: &'a str, meter: Meter<'_>) -> Parsed<SyntaxNode<'a>> {
     let mut tokens = Tokens::new(text);
     tokens.skip_attributes()?;
@@ -35,16 +36,17 @@ struct Parser<'a, 'm> {
     text: &'a str,
     meter: Meter<'m>,
     tokens: Tokens<'a>,
-    /// The next token and its range.
+    /// The next token; `span` is its range.
     next: Token<'a>,
     span: Span,
     previous_end: u32,
     /// The open brackets and their spans.
     open: Vec<(char, Span)>,
-    /// The first bracket whose closing bracket is the first on its line but indented differently
-    /// from the opening bracket's line. If a closing bracket is missing at the end of the text, it is most likely this
-    /// one's. The bracket that is left open tells nothing: each closing bracket has closed the next inner one, so the
-    /// outermost is left.
+    /// The first bracket whose closing bracket starts a line, with another indentation than the
+    /// opening bracket's line.
+    ///
+    /// If a closing bracket is missing at the end of the text, it is most likely that of this bracket. The bracket that
+    /// is still open gives no hint: each closing bracket closes the innermost open one, so the outermost is left.
     misaligned: Option<(char, Span)>,
 }
 
@@ -58,10 +60,9 @@ impl<'a> Parser<'a, '_> {
         Ok(std::mem::replace(&mut self.next, next))
     }
 
-    /// Returns whether the token after the next one is a colon, so that the next one is a field's
-    /// name.
+    /// Returns whether the token after `next` is a colon, so that `next` is a field's name.
     fn colon_follows(&self) -> bool {
-        // A copy of the lexer looks ahead, which costs nothing: the lexer is a position in the text.
+        // Looks ahead with a copy of the lexer, which is only a position in the text.
         let mut tokens = self.tokens;
         matches!(tokens.next(), Ok((Token::Colon, _)))
     }
@@ -123,14 +124,14 @@ impl<'a> Parser<'a, '_> {
         if let ("Some", Body::Values(values)) = (name.text, &body)
             && let [inner] = &values[..]
         {
-            // A copy, because the body is borrowed; `Some(...)` is rare in scenes.
+            // Copies the value, because the body is borrowed. `Some(...)` is rare in scenes.
             return Ok(inner.clone());
         }
         let group = Group { name: Some(name), body };
         Ok(self.node(name.span.start, Value::Group(Box::new(group))))
     }
 
-    /// Parses `(...)`: fields if it starts with one, otherwise values.
+    /// Parses `(...)`: fields if the first entry is a field, otherwise values.
     fn body(&mut self) -> Parsed<Body<'a>> {
         self.open()?;
         let body = if matches!(self.next, Token::Word(_)) && self.colon_follows() {
@@ -146,7 +147,7 @@ impl<'a> Parser<'a, '_> {
         let mut items = Vec::new();
         while !self.at_end() {
             items.push(self.value()?);
-            // The first item decided that there are no names. Without this message, a comma would be reported missing.
+            // The first item had no name. Without this check, the message would be that a comma is missing.
             if matches!(self.next, Token::Colon) {
                 return Err(
                     self.here("unexpected `:`; all values in these brackets have names, or none has".to_owned())
@@ -210,7 +211,7 @@ impl<'a> Parser<'a, '_> {
     }
 
     fn open(&mut self) -> Parsed<()> {
-        // Checked here, where brackets open, so that every path of the recursion is bounded.
+        // Checked where brackets open, so that every path of the recursion is bounded.
         if self.open.len() == MAX_NESTING {
             return Err(self.here(format!("brackets are nested more than {MAX_NESTING} deep")));
         }
@@ -237,12 +238,12 @@ impl<'a> Parser<'a, '_> {
         Ok(())
     }
 
-    /// Returns whether the next token is the first on its line and indented differently from the
-    /// bracket's line.
+    /// Returns whether the next token starts a line, with another indentation than the line of the
+    /// bracket `opened`.
     fn is_misaligned(&self, opened: Span) -> bool {
         let line_before = |at: u32| self.text[..at as usize].rsplit('\n').next().unwrap_or_default();
-        // More than 1000 bytes of white space are not indentation, and scanning them for every token would take
-        // quadratic time.
+        // More than 1000 bytes of white space are not taken as indentation, because scanning them for every token would
+        // take quadratic time.
         if self.span.start - opened.end < 2 || self.span.start - self.previous_end > 1000 {
             return false;
         }
@@ -284,8 +285,8 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    /// Returns the fault that no colon follows a field's name, or that a bracket before it is
-    /// missing.
+    /// Returns the fault that no colon follows a field's name, or that a closing bracket before the
+    /// name is missing.
     fn no_colon(&self, name: Name<'_>) -> Unfinished<Fault> {
         let word = quoted_word(name.text);
         match (&self.next, self.open.last()) {
@@ -302,8 +303,8 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    /// Returns the fault that another token was found where a comma or the closing bracket is
-    /// expected.
+    /// Returns the fault that the next token is neither a comma nor the closing bracket of
+    /// `bracket`.
     fn not_closed(&self, bracket: char, opened: Span) -> Unfinished<Fault> {
         let right = closing(bracket);
         match self.next {
@@ -338,7 +339,7 @@ fn closing(bracket: char) -> char {
     }
 }
 
-/// Returns a word of the file in backticks.
+/// Returns a word of the file's text for a message, [`clipped`] and in backticks.
 fn quoted_word(word: &str) -> String {
     format!("`{}`", clipped(word))
 }

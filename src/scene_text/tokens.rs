@@ -3,7 +3,7 @@
 use super::fault::quoted;
 use super::{Fault, Span};
 
-/// A token.
+/// A token of RON.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Token<'a> {
     /// `(`, `[` or `{`.
@@ -21,7 +21,7 @@ pub(super) enum Token<'a> {
     End,
 }
 
-/// The position of the next token. Copy it to look ahead.
+/// The lexer: a position in the text, which can be copied to look ahead.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tokens<'a> {
     text: &'a str,
@@ -42,7 +42,7 @@ impl<'a> Tokens<'a> {
     }
 
     /// Skips attributes of the whole text, such as `#![enable(implicit_some)]`, which have no
-    /// effect here.
+    /// effect.
     pub(super) fn skip_attributes(&mut self) -> Result<(), Fault> {
         if self.rest().starts_with(BYTE_ORDER_MARK) {
             self.at += BYTE_ORDER_MARK.len_utf8();
@@ -67,7 +67,7 @@ impl<'a> Tokens<'a> {
         let Some(first) = rest.chars().next() else {
             return Ok(Token::End);
         };
-        // Before words: a raw string starts with the letter r.
+        // Raw strings are recognized before words, because they start with the letter r.
         if let Some(hashes) = raw_string_hashes(rest) {
             return self.raw_string(hashes);
         }
@@ -104,8 +104,8 @@ impl<'a> Tokens<'a> {
         &rest[..end]
     }
 
-    /// Takes every character that may belong to a number, so that a malformed number is reported as
-    /// a whole.
+    /// Reads a number with all characters that may belong to it, so that a malformed number is
+    /// reported as a whole.
     fn number(&mut self) -> Result<Token<'a>, Fault> {
         let start = self.at;
         self.at += 1;
@@ -125,9 +125,9 @@ impl<'a> Tokens<'a> {
         })
     }
 
-    /// Takes a string in double quotes. A string that does not end on its line lacks its closing
-    /// quote, although RON allows line ends in strings: a scene's strings are names and colours, and the fault is at
-    /// the right line this way.
+    /// Reads a string in double quotes, which must end on its line.
+    // RON allows line ends in strings. But a scene's strings are names and colours, so at the end of the line a quote
+    // is missing, and reporting it there gives the right line.
     fn string(&mut self) -> Result<Token<'a>, Fault> {
         let start = self.at;
         let mut value = String::new();
@@ -200,12 +200,13 @@ fn is_space(c: char) -> bool {
     )
 }
 
-/// Returns the length of the block comment at the start of the text, with nested ones; `None` if it
-/// never ends.
+/// Returns the length of the block comment at the start of the text, including nested comments.
+///
+/// Returns `None` if the comment never ends.
 fn block_comment_length(text: &str) -> Option<usize> {
     let mut depth = 0_usize;
     let mut at = 0;
-    // Iterative, because comments may nest a million deep.
+    // A loop instead of recursion, because comments may nest a million deep.
     while let Some(step) = text[at..].find(['/', '*']) {
         at += step;
         if text[at..].starts_with("/*") {
@@ -224,14 +225,14 @@ fn block_comment_length(text: &str) -> Option<usize> {
     None
 }
 
-/// Returns the number of hashes of a raw string's start: `r"`, `r#"`, `r##"`...
+/// Returns the number of hashes if the text starts with a raw string: `r"`, `r#"`, `r##"`...
 fn raw_string_hashes(text: &str) -> Option<usize> {
     let after = text.strip_prefix('r')?;
     let unhashed = after.trim_start_matches('#');
     unhashed.starts_with('"').then(|| after.len() - unhashed.len())
 }
 
-/// Returns the character of an escape sequence whose backslash has been read.
+/// Reads the rest of an escape sequence after its backslash, and returns its character.
 fn unescaped(chars: &mut std::str::CharIndices<'_>) -> Option<char> {
     let (_, kind) = chars.next()?;
     Some(match kind {
@@ -241,7 +242,7 @@ fn unescaped(chars: &mut std::str::CharIndices<'_>) -> Option<char> {
         '0' => '\0',
         '\\' | '"' | '\'' => kind,
         'x' => {
-            // `from_str_radix` accepts a sign here too, which is not worth a message of its own.
+            // `from_str_radix` accepts a sign as well, which is harmless.
             let digits: String = chars.by_ref().take(2).map(|(_, c)| c).collect();
             char::from(u8::from_str_radix(&digits, 16).ok()?)
         }
@@ -260,7 +261,7 @@ fn is_prefixed(number: &str) -> bool {
     matches!(digits, [b'0', b'x' | b'X' | b'o' | b'O' | b'b' | b'B', ..])
 }
 
-/// Suffixes with which Rust and RON mark a number's type.
+/// The suffixes for a number's type in Rust and RON.
 const SUFFIXES: [&str; 12] = ["f32", "f64", "i8", "i16", "i32", "i64", "i128", "u8", "u16", "u32", "u64", "u128"];
 
 /// Parses a number: decimal or with a base prefix, with underscores and Rust's suffixes.

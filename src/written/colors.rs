@@ -1,4 +1,4 @@
-//! Colours as written.
+//! Colours as written in a file.
 
 use super::WrittenNumber;
 use super::node_reader::{NodeReader, values};
@@ -7,19 +7,19 @@ use crate::scene_text::{Body, Group, SyntaxNode, Value, quoted};
 use crate::text::{ParseError, closest};
 use std::str::FromStr;
 
-/// A colour.
+/// A colour as written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WrittenColor {
     /// `"#rgb"`, `"#rrggbb"`, or the name of a CSS colour.
     Srgb(Srgb8),
     /// `(r, g, b)`, linear light.
     Linear([WrittenNumber; 3]),
-    /// One number, the same for each channel, linear light.
+    /// One number for all channels, linear light.
     Grey(WrittenNumber),
 }
 
 impl WrittenColor {
-    /// Returns the numbers of the colour.
+    /// Returns the written numbers of the colour; none for a string.
     pub fn numbers(&self) -> &[WrittenNumber] {
         match self {
             Self::Srgb(_) => &[],
@@ -55,7 +55,7 @@ impl NodeReader<'_> {
     }
 }
 
-/// Parses `#rgb`, `#rrggbb`, or the name of a CSS colour, as scene files do.
+/// Parses `#rgb`, `#rrggbb`, or the name of a CSS colour, as in scene files.
 ///
 /// ```
 /// use termtrace::LinearRgb;
@@ -78,7 +78,7 @@ fn is_color_word(group: &Group<'_>) -> bool {
 }
 
 fn color_from(string: &str) -> Result<Srgb8, String> {
-    // Blanks around a name cannot mean anything else.
+    // Blanks around a name or a code are ignored.
     let name = string.trim();
     if let Some(digits) = name.strip_prefix('#') {
         return from_hex(digits).ok_or_else(|| bad_hex(string, digits));
@@ -87,7 +87,7 @@ fn color_from(string: &str) -> Result<Srgb8, String> {
 }
 
 fn from_hex(digits: &str) -> Option<Srgb8> {
-    // `from_str_radix` would accept a sign.
+    // Checks the digits, because `from_str_radix` would accept a sign.
     if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
         return None;
     }

@@ -17,19 +17,19 @@ pub struct Fields<'n> {
     entries: &'n [Field<'n>],
     /// The group's owner for messages: "a Sphere".
     owner: &'static str,
-    /// The span to point at when a field is missing.
+    /// The span at which missing fields are reported.
     head: Span,
-    /// Fields given under a misspelt name, which are not reported as missing as well.
+    /// The fields that are given under a misspelt name, and so are not reported as missing.
     misspelt: Vec<&'static str>,
 }
 
 impl<'n> Fields<'n> {
-    /// Returns the first field of this name in the group.
+    /// Returns the first field called `name` in the group.
     pub(crate) fn field(&self, name: &str) -> Option<&'n Field<'n>> {
         self.entries.iter().find(|field| field.name.text == name)
     }
 
-    /// Returns the value of the field of this name.
+    /// Returns the value of the field called `name`.
     pub(crate) fn get(&self, name: &str) -> Option<&'n SyntaxNode<'n>> {
         self.field(name).map(|field| &field.value)
     }
@@ -49,14 +49,16 @@ impl<'f> NodeReader<'f> {
         self.faults.add(span, message);
     }
 
-    /// Reports a value of a wrong type.
+    /// Reports a value of the wrong type; `wanted` describes the right one.
     pub(crate) fn mismatch(&mut self, node: &SyntaxNode<'_>, wanted: &str) {
         self.fault(node.span, || format!("expected {wanted}, found {}", description(node)));
     }
 
     // Groups ------------------------------------------------------------------------------------------------------
 
-    /// Returns the fields of a node, each known and given once. `form` shows the full form.
+    /// Returns the fields of a node, and reports those that are not in `known` or are given twice.
+    ///
+    /// `owner` is the name of the value with an article, and `form` its full form, for messages.
     pub(crate) fn fields<'n>(
         &mut self,
         node: &'n SyntaxNode<'n>,
@@ -80,14 +82,14 @@ impl<'f> NodeReader<'f> {
         Some(Fields { entries, owner, head: node.head(), misspelt: self.check_names(entries, owner, known) })
     }
 
-    /// Reports unknown and duplicate fields. Returns the fields that the unknown ones were probably
-    /// meant to be.
+    /// Reports unknown and duplicate fields, and returns the fields that the unknown ones were
+    /// probably meant to be.
     fn check_names(&mut self, entries: &[Field<'_>], owner: &str, known: &[&'static str]) -> Vec<&'static str> {
         let mut seen = vec![false; known.len()];
         let mut misspelt = Vec::new();
         for Field { name, .. } in entries {
             match known.iter().position(|&known| known == name.text) {
-                // The suggestion is also remembered: a misspelt required field is one mistake, not two.
+                // The suggestion is stored, so that a misspelt required field is not reported as missing as well.
                 None => self.fault(name.span, || {
                     let meant = meant_field(name.text, known);
                     misspelt.extend(meant);
@@ -100,7 +102,7 @@ impl<'f> NodeReader<'f> {
         misspelt
     }
 
-    /// Reads a required field.
+    /// Reads a required field, and reports it if it is missing.
     pub(crate) fn required<T>(
         &mut self,
         fields: &Fields<'_>,
@@ -125,14 +127,14 @@ impl<'f> NodeReader<'f> {
         read: impl FnOnce(&mut Self, &SyntaxNode<'_>) -> Option<T>,
     ) -> Option<T> {
         let node = fields.get(name)?;
-        // Files that serde wrote have `None` for absent values.
+        // Files written by serde have `None` for absent values.
         if is_word(node, "None") {
             return None;
         }
         read(self, node)
     }
 
-    /// Reads an optional field for which the word `None` is a value.
+    /// Reads an optional field, for which the word `None` is read as a value.
     pub(crate) fn optional_word<T>(
         &mut self,
         fields: &Fields<'_>,
@@ -142,7 +144,9 @@ impl<'f> NodeReader<'f> {
         read(self, fields.get(name)?)
     }
 
-    /// Reads the group's name, which must be one of `names`.
+    /// Reads the name of a group, which must be one of `known`.
+    ///
+    /// `kind` and `form` describe the value in messages.
     pub(crate) fn variant<'n>(
         &mut self,
         node: &'n SyntaxNode<'n>,
@@ -165,7 +169,9 @@ impl<'f> NodeReader<'f> {
         found
     }
 
-    /// Reads one of several words.
+    /// Reads one of the words in `all`, and returns its value.
+    ///
+    /// `kind` describes the words in messages.
     pub(crate) fn choice<T: Copy>(
         &mut self,
         node: &SyntaxNode<'_>,
@@ -182,7 +188,7 @@ impl<'f> NodeReader<'f> {
                 }
                 _ => self.mismatch(node, &wanted),
             },
-            // The most likely mistake gets a message of its own.
+            // Quotes are the most likely mistake, so they have a separate message.
             Value::String(string) if words.contains(&&**string) => {
                 self.fault(node.span, || format!("expected {wanted}; write {string} without quotes"));
             }
@@ -191,7 +197,7 @@ impl<'f> NodeReader<'f> {
         None
     }
 
-    /// Returns the values of all items that can be read; fewer after a cancellation.
+    /// Returns the values of all items that can be read; fewer if the reporter is cancelled.
     pub(crate) fn each<'n, T>(
         &mut self,
         items: &'n [SyntaxNode<'n>],
@@ -201,7 +207,7 @@ impl<'f> NodeReader<'f> {
         items.iter().take_while(|_| !reporter.is_cancelled()).filter_map(|item| read(self, item)).collect()
     }
 
-    /// Returns the items of `[...]`, or of `(...)` without names.
+    /// Returns the items of `[...]`, or of `(...)` without names; other values are reported.
     pub(crate) fn list<'n>(&mut self, node: &'n SyntaxNode<'n>, wanted: &str) -> Option<&'n [SyntaxNode<'n>]> {
         if let Some(items) = values(node) {
             return Some(items);
@@ -263,14 +269,14 @@ impl<'f> NodeReader<'f> {
             self.mismatch(node, wanted);
             return None;
         };
-        // Read all before one may fail: each faulty number is reported.
+        // Reads all numbers before a fault ends the function, so that each fault is reported.
         let read: Vec<_> = items.iter().map(|item| self.number(item)).collect();
         let numbers: Option<Vec<_>> = read.into_iter().collect();
         numbers?.try_into().ok()
     }
 }
 
-/// Returns the values of `[...]` or of `(...)` without names.
+/// Returns the values of `[...]` or of `(...)` without names, or `None` for other nodes.
 pub(crate) fn values<'n>(node: &'n SyntaxNode<'n>) -> Option<&'n [SyntaxNode<'n>]> {
     match &node.value {
         Value::List(items) => Some(items),
@@ -287,8 +293,9 @@ fn is_word(node: &SyntaxNode<'_>, word: &str) -> bool {
         if group.body == Body::Nothing && group.name.is_some_and(|name| name.text == word))
 }
 
-/// Returns the field that an unknown name was probably meant to be: one with a similar spelling, or
-/// one that other programs call by this name.
+/// Returns the field that an unknown name was probably meant to be.
+///
+/// Its name has a similar spelling, or is called `name` in other programs.
 fn meant_field(name: &str, known: &[&'static str]) -> Option<&'static str> {
     const ALSO_CALLED: [(&str, &str); 8] = [
         ("look_at", "target"),
@@ -324,7 +331,7 @@ fn unknown_variant(name: Name<'_>, kind: &str, known: &[&str]) -> String {
     }
 }
 
-/// Returns the description of a found value, for a message.
+/// Returns the description of a node for a message about a value of the wrong type.
 pub(crate) fn description(node: &SyntaxNode<'_>) -> String {
     match &node.value {
         Value::Bool(value) => value.to_string(),
@@ -341,7 +348,7 @@ pub(crate) fn description(node: &SyntaxNode<'_>) -> String {
     }
 }
 
-/// Returns the description of values in brackets, for a message.
+/// Returns the description of values in brackets for a message, such as "3 numbers".
 pub(crate) fn group_of_values(items: &[SyntaxNode<'_>], a_group_of: &str) -> String {
     let numbers = items.iter().all(|item| matches!(item.value, Value::Number(_)));
     match (items.len(), numbers) {

@@ -1,4 +1,4 @@
-//! The checks of values in scene files, with their spans. The rules are those of [`checks`].
+//! The checks of values in scene files by the rules of [`checks`], which report spans.
 
 use super::{WrittenColor, WrittenNumber, WrittenVector};
 use crate::checks::{self, Message};
@@ -17,7 +17,8 @@ impl Validator<'_> {
         None
     }
 
-    /// Returns a value that passes a rule of [`checks`]; otherwise reports the rule's message.
+    /// Returns the value of `checked`, the result of a rule of [`checks`], or reports its message
+    /// at `span`.
     pub(crate) fn accept<T>(&mut self, span: Span, checked: Result<T, Message>) -> Option<T> {
         match checked {
             Ok(value) => Some(value),
@@ -27,7 +28,7 @@ impl Validator<'_> {
 
     /// Checks that all three coordinates are within the range that rays can be traced in.
     pub(crate) fn coordinates(&mut self, written: WrittenVector) -> Option<DVec3> {
-        // All three are checked before one fails, so that each fault is reported.
+        // Checks all three before a fault ends the function, so that each fault is reported.
         let near =
             written.components.map(|number| self.accept(number.span, checks::coordinate(number.value)).is_some());
         (near == [true; 3]).then(|| DVec3::from_array(written.components.map(|component| component.value)))
@@ -37,12 +38,13 @@ impl Validator<'_> {
         Some(self.coordinates(written)?.as_vec3())
     }
 
-    /// Checks that a length is positive and can be squared in f32.
+    /// Checks that a length is positive and can be squared twice in f32; `what` is its name for
+    /// messages.
     pub(crate) fn length(&mut self, what: &str, written: WrittenNumber) -> Option<f32> {
         self.accept(written.span, checks::length(what, written.value))
     }
 
-    /// Checks an amount of light.
+    /// Checks an amount of light; `what` is its name for messages.
     pub(crate) fn amount(&mut self, what: &str, written: WrittenNumber) -> Option<f32> {
         self.accept(written.span, checks::amount(what, written.value))
     }
@@ -52,7 +54,7 @@ impl Validator<'_> {
         self.color(written, checks::light)
     }
 
-    /// Checks a reflectance, each channel of which is at most 1.
+    /// Checks a reflectance, whose channels are from 0 to 1.
     pub(crate) fn reflectance(&mut self, written: WrittenColor) -> Option<LinearRgb> {
         self.color(written, checks::reflectance)
     }
@@ -64,14 +66,15 @@ impl Validator<'_> {
         Some(linear(written))
     }
 
-    /// Returns the direction at unit length, computed in f64 so that only one rounding is left.
+    /// Returns a vector scaled to unit length, in f64, so that the caller rounds only once; `what`
+    /// is its name for messages.
     pub(crate) fn unit_vector(&mut self, what: &str, written: WrittenVector) -> Option<DVec3> {
         let vector = self.coordinates(written)?;
         self.accept(written.span, checks::unit_vector(what, vector))
     }
 }
 
-/// Returns a colour as linear light.
+/// Converts a colour as written to linear light.
 fn linear(written: WrittenColor) -> LinearRgb {
     match written {
         WrittenColor::Srgb(color) => LinearRgb::from_srgb8(color),
