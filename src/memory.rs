@@ -1,10 +1,11 @@
-//! Checks for memory whose amount depends on a window or a file, before it is used.
+//! Checks that there is enough memory for a window or a file of a given size, before the memory is
+//! used.
 //!
-//! The memory is then allocated piece by piece by stages that return no error: making each of them fallible would put a
+//! The memory is later allocated piece by piece in functions that return no error: fallible allocation would put a
 //! `Result` into every signature from the readers to the encoder. So the sum is reserved once before the work starts,
-//! and freed untouched. Where the address space or the committed memory is limited, this reservation fails as the
-//! pieces would, while an error can still be reported; it costs two system calls. (A failed allocation elsewhere aborts
-//! the process without restoring the terminal.)
+//! and freed unused. Where the address space or the committed memory is limited, this reservation fails as the pieces
+//! would, while an error can still be reported. It costs two system calls. (A failed allocation elsewhere aborts the
+//! process without restoring the terminal.)
 
 use std::{error, fmt, io};
 
@@ -16,7 +17,8 @@ pub struct OutOfMemory {
 }
 
 impl OutOfMemory {
-    /// Adds what the memory was needed for to the message.
+    /// Returns the error with the purpose of the memory in its message, such as "for a picture of
+    /// 80x24 cells".
     #[must_use]
     pub fn when(self, what_for: impl Into<String>) -> Self {
         Self { what_for: what_for.into() }
@@ -33,19 +35,19 @@ impl fmt::Display for OutOfMemory {
 impl error::Error for OutOfMemory {}
 
 impl From<OutOfMemory> for io::Error {
-    /// The kind is [`OutOfMemory`](io::ErrorKind::OutOfMemory).
+    /// Converts to an error of the kind [`OutOfMemory`](io::ErrorKind::OutOfMemory).
     fn from(error: OutOfMemory) -> Self {
         Self::new(io::ErrorKind::OutOfMemory, error.to_string())
     }
 }
 
-/// Allowance for everything else that is allocated meanwhile, and for the allocator's overhead.
+/// An allowance in bytes for other allocations during the work, and for the allocator's overhead.
 const HEADROOM: usize = 32 << 20;
 
-/// Checks that this many bytes can be allocated.
+/// Checks that `bytes` bytes can be allocated.
 ///
 /// # Errors
-/// If they cannot.
+/// If there is not enough memory.
 pub fn check(bytes: usize) -> Result<(), OutOfMemory> {
     let reserved = Vec::<u8>::new().try_reserve_exact(bytes.saturating_add(HEADROOM));
     reserved.map_err(|_| OutOfMemory { what_for: String::new() })

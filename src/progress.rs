@@ -13,7 +13,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A progress report of loading a scene.
+/// A progress report from loading a scene.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -40,7 +40,7 @@ pub struct Progress {
     pub total: usize,
 }
 
-/// An operation of loading a scene.
+/// A stage of loading a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Work {
@@ -62,13 +62,14 @@ pub struct Reporter<'w> {
 }
 
 impl<'w> Reporter<'w> {
-    /// Returns a reporter to `on_progress`, which cancels the work by returning `Break`.
+    /// Returns a reporter that calls `on_progress`, which cancels the work by returning `Break`.
     pub fn new(on_progress: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Self {
         Self { on_progress, on_dependency: None, cancellation: Cancellation::default() }
     }
 
-    /// Returns the reporter with a callback that gets each file before it is opened.
-    // Before, so that a live view also watches a file that is missing and may be made.
+    /// Returns the reporter with a callback that gets the path of each file before the file is
+    /// opened.
+    // It is called before, so that a live view also watches for a missing file to be created.
     pub fn with_dependencies(self, on_dependency: &'w (dyn Fn(&Path) + Sync)) -> Self {
         Self { on_dependency: Some(on_dependency), ..self }
     }
@@ -78,7 +79,7 @@ impl<'w> Reporter<'w> {
         Self { cancellation: cancellation.clone(), ..self }
     }
 
-    /// Returns a reporter without a receiver, which never cancels.
+    /// Returns a reporter that drops all reports and never cancels.
     pub fn silent() -> Reporter<'static> {
         Reporter::new(&|_| ControlFlow::Continue(()))
     }
@@ -101,14 +102,14 @@ impl<'w> Reporter<'w> {
         }
     }
 
-    /// Returns whether the work is cancelled.
+    /// Returns whether the work has been cancelled.
     pub fn is_cancelled(&self) -> bool {
         self.cancellation.is_cancelled()
     }
 }
 
 /// A cancellation token, shared by all its clones. Once cancelled, it stays cancelled.
-// Relaxed ordering is enough: the flag guards no other data, and a thread that sees it late only does more work.
+// Relaxed ordering is enough, as the flag guards no other data, and a thread that sees it late only does more work.
 #[derive(Clone, Debug, Default)]
 pub struct Cancellation(Arc<AtomicBool>);
 
@@ -146,7 +147,7 @@ pub enum Unfinished<E> {
 }
 
 impl<E> Unfinished<E> {
-    /// Converts the error of a failure.
+    /// Converts the error in [`Failed`](Self::Failed), and keeps [`Cancelled`](Self::Cancelled).
     #[doc(hidden)]
     pub fn map<F>(self, convert: impl FnOnce(E) -> F) -> Unfinished<F> {
         match self {
@@ -155,10 +156,10 @@ impl<E> Unfinished<E> {
         }
     }
 
-    /// Returns the error of an operation without a token.
+    /// Returns the error of an operation that could not be cancelled.
     ///
     /// # Panics
-    /// If it was cancelled.
+    /// If the operation was cancelled.
     #[cfg(feature = "ron")]
     pub(crate) fn failure(self) -> E {
         match self {

@@ -1,6 +1,6 @@
-//! Parallel work, on the current rayon pool.
+//! Parallel work on the current rayon pool.
 //!
-//! Without the feature `parallel` it runs on the calling thread. Results are the same and in the same order.
+//! Without the feature `parallel` the work runs on the calling thread, with the same results.
 
 #[cfg(not(feature = "parallel"))]
 mod alone;

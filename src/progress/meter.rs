@@ -1,4 +1,4 @@
-//! The progress of a parser.
+//! Progress reports of a parser.
 
 use super::{Cancelled, Progress, Reporter, Work};
 
@@ -8,12 +8,13 @@ pub(crate) struct Meter<'a> {
     name: &'a str,
     /// The size of the file in bytes.
     total: usize,
-    /// The next position to report.
+    /// The next position at which to report.
     next: usize,
 }
 
 /// The number of bytes between two reports.
-// One or two milliseconds of parsing: a cancel is answered in less than a frame, and reports cost nothing.
+// They take one or two milliseconds to parse, so that a cancel takes less than a frame, and reports cost hardly any
+// time.
 const REPORT_STRIDE: usize = 256 << 10;
 
 impl<'a> Meter<'a> {
@@ -40,7 +41,7 @@ impl<'a> Meter<'a> {
         self.report(0, 0)
     }
 
-    // Cold and out of line, so that the check in `advance_to` is one comparison in the parser's loop.
+    // Cold, so that only the comparison in `advance_to` is inlined into the parser's loop.
     #[cold]
     fn report(&mut self, done: usize, total: usize) -> Result<(), Cancelled> {
         self.next = done + REPORT_STRIDE;

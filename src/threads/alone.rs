@@ -1,8 +1,8 @@
-//! The calling thread only.
+//! Work on the calling thread only.
 //!
-//! The bounds on types are those of `pool`, so that all code compiles with both.
+//! The bounds on types are those in `pool`, so that all code compiles with either module.
 
-/// Returns 1.
+/// Returns the number of threads: 1.
 pub(crate) fn count() -> usize {
     1
 }
@@ -12,12 +12,14 @@ pub(crate) fn join<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: i
     (first(), second())
 }
 
-/// Returns both parts of the result of `make` for each number below `count`.
+/// Calls `make` for each number below `count`, and returns the first and the second parts of the
+/// results.
 pub(crate) fn unzip<A: Send, B: Send>(count: usize, make: impl Fn(usize) -> (A, B) + Send + Sync) -> (Vec<A>, Vec<B>) {
     (0..count).map(make).unzip()
 }
 
-/// Calls `work` with corresponding chunks of `length` values of both slices.
+/// Calls `work` with each chunk of `length` values of `written`, and the chunk of `read` at the
+/// same position.
 pub(crate) fn for_each_chunk<A: Send, B: Sync>(
     written: &mut [A],
     read: &[B],
@@ -27,7 +29,7 @@ pub(crate) fn for_each_chunk<A: Send, B: Sync>(
     written.chunks_mut(length).zip(read.chunks(length)).for_each(|(written, read)| work(written, read));
 }
 
-/// Returns the result of `work` for each item.
+/// Returns the results of `work` for all items. `state` makes the state that is passed to `work`.
 pub(crate) fn map_one_by_one<I, S, T>(
     items: I,
     state: impl Fn() -> S + Send + Sync,

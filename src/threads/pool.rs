@@ -1,4 +1,4 @@
-//! The threads of the current rayon pool.
+//! Work on the threads of the current rayon pool.
 
 use rayon::prelude::*;
 
@@ -12,14 +12,16 @@ pub(crate) fn join<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: i
     rayon::join(first, second)
 }
 
-/// Returns both parts of the result of `make` for each number below `count`.
+/// Calls `make` for each number below `count`, and returns the first and the second parts of the
+/// results.
 pub(crate) fn unzip<A: Send, B: Send>(count: usize, make: impl Fn(usize) -> (A, B) + Send + Sync) -> (Vec<A>, Vec<B>) {
     let (mut first, mut second) = (Vec::new(), Vec::new());
     (0..count).into_par_iter().map(make).unzip_into_vecs(&mut first, &mut second);
     (first, second)
 }
 
-/// Calls `work` with corresponding chunks of `length` values of both slices.
+/// Calls `work` with each chunk of `length` values of `written`, and the chunk of `read` at the
+/// same position.
 pub(crate) fn for_each_chunk<A: Send, B: Sync>(
     written: &mut [A],
     read: &[B],
@@ -29,9 +31,9 @@ pub(crate) fn for_each_chunk<A: Send, B: Sync>(
     written.par_chunks_mut(length).zip(read.par_chunks(length)).for_each(|(written, read)| work(written, read));
 }
 
-/// Returns the result of `work` for each item, in any order.
+/// Returns the results of `work` for all items, in any order.
 ///
-/// Threads take items one by one, which balances the load; each keeps a state of its own.
+/// Threads take items one by one, which balances the load. `state` makes a state for each thread.
 pub(crate) fn map_one_by_one<I, S, T>(
     items: I,
     state: impl Fn() -> S + Send + Sync,
@@ -44,9 +46,9 @@ where
     items.par_bridge().map_init(state, work).collect()
 }
 
-/// Runs `work` in a pool of that number of threads.
+/// Runs `work` in a pool with the given number of threads.
 ///
-/// It uses the current pool if they cannot be started.
+/// If the threads cannot be started, `work` runs in the current pool.
 pub(crate) fn in_pool_of<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool.install(work),
