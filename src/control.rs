@@ -1,6 +1,6 @@
 //! The keymap, the gestures of the mouse, and the motion of the camera by held keys.
 //!
-//! Pure: times are passed in, so that every motion can be tested without a clock.
+//! Functions take the time as a parameter, so that every motion can be tested without a clock.
 
 mod command;
 mod key;
@@ -10,7 +10,7 @@ mod camera_moves;
 mod motion;
 mod pointer;
 
-// Part of the signatures of `dragged` and `Gesture`.
+// Exported with `dragged` and `Gesture`, whose signatures contain it.
 pub use crate::camera::Grip;
 pub use camera_moves::{dragged, on_turntable, speed, wheeled};
 pub use command::{Command, Direction, Side, Toward};

@@ -42,7 +42,8 @@ use std::num::NonZeroU32;
 use std::str::FromStr;
 
 crate::table::table! {
-    /// The formats of files with a picture, in the order of the keys that ask for them.
+    /// The file formats that a picture can be exported to, in the order of their keys in the live
+    /// view.
     #[doc(hidden)]
     pub enum Format: FormatRow {
         /// The picture's pixels: [`png()`].
@@ -56,7 +57,7 @@ crate::table::table! {
         Svg = svg::KIND;
         /// Cells as a web page: [`html()`].
         Html = html::KIND;
-        /// The number of times each character occurs; exists in tests only.
+        /// The number of occurrences of each character. This format exists in tests only.
         #[cfg(all(test, unit_tests))]
         Tally = tally::KIND;
     }
@@ -75,7 +76,7 @@ impl Format {
         Self::ALL.iter().copied().find(|format| format.name() == name)
     }
 
-    /// Returns the description in the command line's help.
+    /// Returns the description of the format in the command line's help.
     #[doc(hidden)]
     pub const fn help(self) -> &'static str {
         self.row().help
@@ -87,7 +88,7 @@ impl Format {
         self.row().extensions[0]
     }
 
-    /// Returns the format of an extension, given in lower case without the dot.
+    /// Returns the format with this file name extension, given in lower case without the dot.
     #[doc(hidden)]
     pub fn from_extension(extension: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|format| format.row().extensions.contains(&extension))
@@ -106,13 +107,13 @@ impl Format {
         self.row().command
     }
 
-    /// Returns the description in the live view.
+    /// Returns the description of the format in the live view.
     #[doc(hidden)]
     pub const fn title(self) -> &'static str {
         self.row().title
     }
 
-    /// Returns the input of the format, and the function that makes the file.
+    /// Returns the function that makes a file of the format, from a grid or from a picture.
     #[doc(hidden)]
     pub const fn contents(self) -> Contents {
         self.row().contents
@@ -124,7 +125,7 @@ impl Format {
         matches!(self.contents(), Contents::Pixels(_))
     }
 
-    /// Returns the difference of a file from the golden one, in lines for a person.
+    /// Returns the difference of a file from the golden file, as lines of text for a person.
     #[doc(hidden)]
     pub fn difference(self, golden: &[u8], file: &[u8]) -> String {
         (self.row().difference)(golden, file)
@@ -154,7 +155,7 @@ impl FromStr for Format {
     }
 }
 
-/// Returns a scene's own view as plain text, for snapshot tests.
+/// Returns a scene, seen by its own camera, as plain text for snapshot tests.
 ///
 /// One ray is traced through each pixel's centre, and cells have the usual aspect of 2. Each row is a line with all its
 /// characters and a line feed.
@@ -186,7 +187,7 @@ pub fn text_frame(scene: &Scene, size: Size) -> String {
     text(&frame_grid(scene, CellMode::RAMP, size, USUAL_CELL_ASPECT))
 }
 
-/// Returns a scene's own view as the cells of a screen of this size and cell aspect.
+/// Returns a scene, seen by its own camera, as the cells of a screen of this size and cell aspect.
 ///
 /// One ray is traced through each pixel's centre.
 ///
@@ -203,7 +204,7 @@ pub fn text_frame(scene: &Scene, size: Size) -> String {
 /// If [`cell::resolution`] is an error: for a screen with more pixels than a picture may have, or an aspect that is not
 /// greater than 0 and finite.
 pub fn frame_grid(scene: &Scene, cell_mode: CellMode, size: Size, cell_aspect: f32) -> Grid {
-    // The same steps as the live view and `termtrace frame`, so that a snapshot shows what users see.
+    // These are the steps of the live view and of `termtrace frame`, so that a snapshot shows what users see.
     let resolution =
         cell::resolution(cell_mode, size, cell_aspect).expect("a size and an aspect that pictures can have");
     let picture = tone(&render(scene, scene.camera(), resolution, NonZeroU32::MIN), scene);

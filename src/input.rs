@@ -58,21 +58,22 @@ use state::{State, Text};
 use token::{Token, Tokeniser};
 
 /// Limit on the bytes of an OSC, DCS or APC string. A longer string is dropped as a whole.
-// A truncated reply would be a wrong one. The longest reply that is used has about 40 bytes; the limit bounds what a
-// hostile terminal can make the parser keep.
+// Truncated, a reply could have another meaning. The longest reply in use has about 40 bytes; the limit bounds the
+// memory that a hostile terminal can make the parser use.
 const MAX_STRING_BYTES: usize = 4096;
 
 /// Limit on the bytes of a CSI or SS3 sequence that are kept.
-// The longest useful ones, DA1 replies with all their parameters, have about 40 bytes.
+// The longest useful sequences, DA1 replies with all their parameters, have about 40 bytes.
 const MAX_SEQUENCE_BYTES: usize = 256;
 
-/// Limit on the bytes that are dropped as the late rest of an incomplete sequence.
-// Without it, a lone `ESC [` would swallow everything typed after it.
+/// Limit on the bytes that are dropped as the late rest of a sequence that was incomplete at a
+/// timeout.
+// Without this limit, a lone `ESC [` would swallow everything typed after it.
 const MAX_LATE_BYTES: usize = 256;
 
 const ESC: u8 = 0x1b;
 const BEL: u8 = 0x07;
-// These two abort a sequence or a string, as in the VT100.
+// Control characters that abort a sequence or a string, as in the VT100.
 const CAN: u8 = 0x18;
 const SUB: u8 = 0x1a;
 
@@ -93,28 +94,28 @@ impl From<KeyEvent> for Input {
 
 /// An incremental parser from bytes to [`Input`].
 ///
-/// The result does not depend on how the bytes are split.
+/// The inputs do not depend on how the bytes are split into calls of [`feed`](Self::feed).
 #[derive(Default)]
 pub struct Parser {
     tokeniser: Tokeniser,
     state: State,
-    /// Whether a second ESC precedes the current sequence.
+    /// Whether an additional ESC precedes the current sequence.
     ///
-    /// It stands for Alt, or for the Escape key if the sequence is not a key.
+    /// It means Alt if the sequence is a key, and otherwise is the Escape key.
     escaped: bool,
-    /// Whether ESC precedes the current character, so that Alt was held.
+    /// Whether an ESC precedes the current character, which means that Alt was held.
     alt: bool,
     /// The bytes of the current sequence or string, up to its limit.
     text: Vec<u8>,
     /// Whether the current string exceeds its limit.
     overflow: bool,
     paste: Paste,
-    /// Number of late bytes that may still be dropped, after a timeout within a sequence.
+    /// After a timeout within a sequence, the number of late bytes of it that may still be dropped.
     late: Option<usize>,
     key_encoding: KeyEncoding,
 }
 
-/// The encoding of keys.
+/// The encoding in which the terminal sends keys.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 enum KeyEncoding {
     /// Characters as themselves, Escape as `ESC`, other keys as sequences.
@@ -139,15 +140,15 @@ impl Parser {
 
     /// Parses the next bytes of the stream and appends the completed inputs to `out`.
     pub fn feed(&mut self, bytes: &[u8], out: &mut Vec<Input>) {
-        // Byte by byte, so that the result cannot depend on how the bytes are split. Input is rare and short.
+        // One byte at a time, so that the result cannot depend on how the bytes are split. Speed does not matter: input
+        // is rare and short.
         for &byte in bytes {
             self.take(byte, out);
         }
     }
 
-    /// Returns whether more bytes may complete an input.
-    ///
-    /// This is so after a lone `ESC`, in a sequence, a character or a paste.
+    /// Returns whether an input is incomplete: after a lone `ESC`, or within a sequence, character
+    /// or paste.
     ///
     /// The caller then waits a short time (some 50 ms) for more bytes, and calls [`Parser::give_up_waiting`] if none
     /// arrive.
@@ -160,7 +161,7 @@ impl Parser {
     ///
     /// Afterwards the parser no longer waits, except for a paste, which ends after [`MAX_PASTE_WAITS`] such calls.
     pub fn give_up_waiting(&mut self, out: &mut Vec<Input>) {
-        // Called too late by a driver, bytes may have completed the sequence in the meantime.
+        // If the caller was late, bytes may have completed the sequence in the meantime.
         if !self.is_waiting() {
             return;
         }
@@ -173,7 +174,7 @@ impl Parser {
             State::Escape | State::Ss3 | State::Csi | State::Text(_) | State::TextEscape(_) => {
                 self.late = Some(MAX_LATE_BYTES);
             }
-            // A paste is not ended by a single pause, as a sequence is.
+            // A paste ends only after several timeouts in a row, whereas a sequence ends at the first.
             State::Paste if self.paste.survives_timeout() => {}
             State::Paste => self.finish_paste(out),
             _ => self.reset(),
@@ -204,12 +205,13 @@ impl Parser {
         let Some(left @ 1..) = self.late else {
             return false;
         };
-        // Counted, so that a terminal cannot keep the parser in this state for ever.
+        // The bytes are counted, so that a terminal cannot keep the parser in this state for ever.
         self.late = Some(left - 1);
         match self.state {
-            // Any other byte after ESC would be Alt with a key, and is more likely a key typed later.
+            // Only bytes that begin a sequence: another byte after the late ESC is more likely a key typed later than
+            // Alt with it.
             State::Escape => matches!(byte, b'[' | b'O' | b']' | b'P' | b'_'),
-            // The first byte decides: typed letters do not begin a reply.
+            // The first byte of a string tells a reply from typed letters, with which no reply begins.
             State::Text(kind) if self.text.is_empty() => kind.begins_with(byte),
             State::Text(_) => byte >= 0x20 || byte == BEL || byte == ESC,
             State::TextEscape(_) => byte == b'\\',
@@ -217,7 +219,7 @@ impl Parser {
         }
     }
 
-    /// Returns to the ground state and drops everything incomplete.
+    /// Drops an incomplete character, sequence or string, and returns to the ground state.
     fn reset(&mut self) {
         self.tokeniser = Tokeniser::default();
         self.forget_sequence();
@@ -233,21 +235,21 @@ impl Parser {
         self.text.clear();
     }
 
-    /// Drops everything incomplete and parses `byte` in the ground state.
+    /// Drops an incomplete sequence or string, and parses `byte` in the ground state.
     fn drop_and_parse(&mut self, byte: u8, out: &mut Vec<Input>) {
         self.release_escape(out);
         self.reset();
         self.take_plain(byte, out);
     }
 
-    /// Reports the ESC before the current sequence as the Escape key, if it has been held back.
+    /// Reports an additional ESC before the current sequence, if there is one, as the Escape key.
     fn release_escape(&mut self, out: &mut Vec<Input>) {
         if std::mem::take(&mut self.escaped) {
             out.push(key::escape().into());
         }
     }
 
-    /// Appends a byte to the current sequence or string, unless it has reached `limit`.
+    /// Appends a byte to the current sequence or string, unless that has `limit` bytes already.
     fn keep(&mut self, byte: u8, limit: usize) {
         if self.text.len() < limit {
             self.text.push(byte);
@@ -257,15 +259,16 @@ impl Parser {
     }
 
     fn take_plain(&mut self, byte: u8, out: &mut Vec<Input>) {
-        // Kept from the tokeniser, which would continue over it.
+        // ESC is not passed to the tokeniser, which would continue the sequence after it.
         if byte == ESC {
-            // An incomplete character is dropped.
+            // Drops an incomplete UTF-8 character before the ESC.
             self.reset();
             self.state = State::Escape;
             return;
         }
         let tokens = self.tokeniser.take(byte, &[]);
-        // A leading byte never completes a character; a continuation byte does if the tokeniser returns a token.
+        // A leading byte of UTF-8 leaves the character unfinished; a continuation byte does unless the tokeniser
+        // returns a token.
         let unfinished = match byte {
             0xc2..=0xf4 => true,
             0x80..=0xbf => tokens.is_empty(),
@@ -280,7 +283,8 @@ impl Parser {
 
     fn take_after_escape(&mut self, byte: u8, out: &mut Vec<Input>) {
         match byte {
-            // Alt with a key in rxvt, PuTTY and Terminal.app. With keys as sequences no terminal sends it for a key.
+            // `ESC ESC` begins Alt with a key in rxvt, PuTTY and Terminal.app. If all keys are sequences, it never
+            // begins a key.
             ESC => {
                 self.release_escape(out);
                 self.escaped = self.key_encoding == KeyEncoding::Legacy;
@@ -293,7 +297,7 @@ impl Parser {
             b']' => self.state = State::Text(Text::Osc),
             b'P' => self.state = State::Text(Text::Dcs),
             b'_' => self.state = State::Text(Text::Apc),
-            // Never replies, but their text must not be taken for keys.
+            // These strings are never replies, but their contents must not be parsed as keys.
             b'X' | b'^' => self.state = State::Text(Text::Other),
             _ => {
                 self.release_escape(out);
@@ -329,7 +333,7 @@ impl Parser {
             }
         }
         if (0x40..=0x7e).contains(&byte) {
-            // The tokeniser returns no token for a malformed sequence, which must end nevertheless.
+            // The tokeniser returns no token for a malformed sequence, which ends here nevertheless.
             self.finish(meaning.unwrap_or(Meaning::Nothing), out);
         }
     }
@@ -360,10 +364,10 @@ impl Parser {
                 self.late = None;
                 self.state = State::TextEscape(kind);
             }
-            // xterm's own terminator of OSC, used by most terminals in replies to queries that were ended by it.
+            // BEL ends an OSC string in xterm, and in most terminals if the query ended with it too.
             BEL if kind == Text::Osc => self.finish_text(kind, out),
             CAN | SUB => self.drop_and_parse(byte, out),
-            // Strings from terminals contain no control characters.
+            // Control characters do not occur in strings from terminals, and are ignored.
             0..0x20 => {}
             _ => self.keep(byte, MAX_STRING_BYTES),
         }
@@ -373,7 +377,7 @@ impl Parser {
         if byte == b'\\' {
             return self.finish_text(kind, out);
         }
-        // The string was aborted; the ESC starts something else.
+        // An ESC without `\` aborts the string and starts another sequence.
         self.release_escape(out);
         self.reset();
         self.state = State::Escape;
@@ -383,7 +387,7 @@ impl Parser {
     fn finish_text(&mut self, kind: Text, out: &mut Vec<Input>) {
         let text = std::mem::take(&mut self.text);
         let meaning = match kind {
-            // Part of a reply may be wrong: a colour without its last digits is another colour.
+            // A truncated reply is not reported: a colour without its last digits is another colour.
             _ if self.overflow => Meaning::Nothing,
             Text::Osc => Meaning::Reply(Reply::Osc(text)),
             Text::Dcs => Meaning::Reply(Reply::Dcs(text)),
@@ -398,11 +402,12 @@ impl Parser {
         self.forget_sequence();
     }
 
-    /// Reports the meaning of a complete sequence and enters the state that follows it.
+    /// Reports the meaning of a complete sequence, and enters the next state: usually the ground
+    /// state.
     fn finish(&mut self, meaning: Meaning, out: &mut Vec<Input>) {
         let late = self.late.is_some();
         if let Meaning::Key(mut key) = meaning {
-            // Only keys can carry Alt. Before anything else the first ESC was the Escape key.
+            // An additional ESC before a key means Alt. Before any other sequence it was the Escape key.
             if self.escaped {
                 key.modifiers |= KeyModifiers::ALT;
             }
@@ -419,7 +424,7 @@ impl Parser {
         self.forget_sequence();
         match meaning {
             Meaning::Reply(reply) => out.push(Input::Reply(reply)),
-            // The rest of a mouse report that was given up may be of a click seconds ago.
+            // A mouse report that was completed after a timeout is dropped: its click may be seconds old.
             Meaning::Event(event) if !late => out.push(Input::Event(event)),
             Meaning::PasteStart => self.state = State::Paste,
             Meaning::OldMouse => self.state = State::OldMouse,
@@ -437,7 +442,7 @@ impl Parser {
             key.modifiers |= KeyModifiers::ALT;
         }
         out.push(key.into());
-        // Typed text has no release of its own: the key would be held for ever.
+        // No release follows a plain character, so one is reported at once; otherwise the key would be held for ever.
         if self.key_encoding == KeyEncoding::Sequences {
             key.kind = KeyEventKind::Release;
             out.push(key.into());
@@ -445,7 +450,7 @@ impl Parser {
     }
 }
 
-/// Returns the key of a character or control character, if there is one.
+/// Returns the key of a character or control character; `None` if no key types it.
 fn plain_key(token: &Token) -> Option<KeyEvent> {
     match *token {
         Token::Print(c) => key::from_char(c),

@@ -1,6 +1,6 @@
 //! The protocol with a terminal: modes that are on, queries, and outstanding replies.
 //!
-//! Pure: bytes and times in, bytes out.
+//! All functions are pure: they take bytes and times, and return bytes.
 //!
 //! ```
 //! use std::time::Duration;

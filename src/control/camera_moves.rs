@@ -1,17 +1,17 @@
-//! Camera motions for keys and the mouse.
+//! Camera motions that keys and the mouse cause.
 
 use super::KeyMode;
 use crate::camera::{Camera, Grip};
 use glam::{Vec2, Vec3};
 
 /// Returns the speed of flight in world units per second: half the distance to the target.
-// Relative to the target, because scenes differ in scale by orders of magnitude (a bunny is 0.15 high).
+// Proportional to that distance, because scenes differ in scale by orders of magnitude (a bunny is 0.15 high).
 pub fn speed(camera: &Camera) -> f32 {
     0.5 * camera.target_distance()
 }
 
-/// Returns the camera after a drag by `by`, to the right and down, in shares of the picture's width
-/// and height.
+/// Returns the camera after the mouse is dragged by `by`: to the right and down, as shares of the
+/// picture's width and height.
 ///
 /// [`Grip::Turn`] turns the view, or in orbit mode the eye about the target. [`Grip::Pan`] shifts eye and target so
 /// that the target follows the pointer.
@@ -25,8 +25,8 @@ pub fn dragged(camera: &Camera, mode: KeyMode, grip: Grip, by: Vec2, aspect_rati
 
 /// Returns the camera after the wheel has moved the eye towards `point` by `notches`.
 ///
-/// The point stays at its position in the picture. In orbit mode the target moves towards it as well; `size` is the
-/// scene's size, which bounds the motion.
+/// The point stays at its position in the picture. In orbit mode the target moves towards the point as well. `size` is
+/// the scene's size in world units, which bounds the motion.
 pub fn wheeled(camera: &Camera, mode: KeyMode, point: Vec3, notches: f32, size: f32) -> Camera {
     if mode == KeyMode::Orbit { camera.wheeled_around(point, notches, size) } else { camera.wheeled(point, notches) }
 }

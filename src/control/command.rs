@@ -1,8 +1,8 @@
-//! Commands of keys, with their names in the keymap and their descriptions in the help.
+//! The commands that keys run, with their names in the keymap and their descriptions in the help.
 
 use crate::export::Format;
 
-/// A command of a key.
+/// A command that a key runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
     /// Moves eye and target while the key is held.
@@ -15,9 +15,9 @@ pub enum Command {
     Nearer,
     /// Moves the eye away from the target while the key is held.
     Farther,
-    /// Switches between flight and orbit.
+    /// Switches between the modes in which keys fly the eye and orbit it about the target.
     ChangeMode,
-    /// Moves the eye back or forth until everything finite fills the picture.
+    /// Moves the eye back or forth until all objects except planes fill the picture.
     FrameAll,
     /// Narrows the field of view.
     Narrower,
@@ -25,9 +25,9 @@ pub enum Command {
     Wider,
     /// Starts or stops the turntable, which orbits the target without a key.
     Turntable,
-    /// Goes to view 1 to 9: one saved by the user, otherwise one of the scene file.
+    /// Moves the camera to view 1 to 9: one saved by the user, otherwise one of the scene file.
     View(u8),
-    /// Asks for a number and saves the view under it.
+    /// Asks for a number from 1 to 9 and saves the camera as that view.
     SaveView,
     /// Returns to the scene's own camera.
     Reset,
@@ -35,9 +35,10 @@ pub enum Command {
     NextMap,
     /// Shows the previous map.
     LastMap,
-    /// Switches from one map to two side by side, to a wipe, and back.
+    /// Switches from one map to two side by side, to a wipe (two maps with a movable line between),
+    /// and back.
     Compare,
-    /// Moves the line of a wipe.
+    /// Moves the line between the two maps of a wipe.
     Wipe(Side),
     /// Shows the next scene.
     NextScene,
@@ -51,21 +52,21 @@ pub enum Command {
     KeepView,
     /// Opens or closes the explanation of a pixel.
     Explain,
-    /// Takes hold of the light nearest to the pointer; if one is held, of the next one.
+    /// Selects the light nearest to the pointer for moving; if one is selected, the next one.
     Light,
-    /// Moves the held light in a direction of the screen, at constant depth.
+    /// Moves the selected light in a direction of the screen, at constant depth.
     MoveLight(Toward),
-    /// Moves the held light towards the eye.
+    /// Moves the selected light towards the eye.
     LightNearer,
-    /// Moves the held light away from the eye.
+    /// Moves the selected light away from the eye.
     LightFarther,
-    /// Returns the held light to its position in the scene.
+    /// Returns the selected light to its position in the scene.
     LightBack,
     /// Opens or closes the status line.
     Status,
     /// Opens the help, turns its page, or closes it.
     Help,
-    /// Closes the topmost panel or releases the held light.
+    /// Closes the topmost panel or deselects the selected light.
     Close,
     /// Redraws the whole screen, in case another program has written on it.
     Redraw,
@@ -73,7 +74,7 @@ pub enum Command {
     Suspend,
     /// Quits the program.
     Quit,
-    /// Moves the cursor of the explanation.
+    /// Moves the cursor that selects the pixel to explain.
     Point(Toward),
     /// Scrolls the explanation up.
     ScrollUp,
@@ -94,13 +95,13 @@ pub enum Direction {
     Forward,
     /// Against the view direction, along w.
     Back,
-    /// Against u.
+    /// Against the camera's u, to the left.
     Left,
-    /// Along u.
+    /// Along the camera's u, to the right.
     Right,
-    /// Along up.
+    /// Along the camera's up vector.
     Up,
-    /// Against up.
+    /// Against the camera's up vector.
     Down,
 }
 
@@ -126,11 +127,11 @@ pub enum Side {
     Right,
 }
 
-/// Expands the table below to the list of all commands and a `match` over them, so that a command
-/// without a row does not compile. Commands that export have the names of their [`Format`].
+/// Expands the table below to the list of commands and a `match` over them, so that a command
+/// without a row does not compile. Commands that write a [`Format`] are not rows: their names come from the format.
 macro_rules! commands {
     ($([$($command:tt)+] $name:literal, $does:expr;)*) => {
-        /// All commands except those that export a format.
+        /// All commands except `Write`, which exists once for each format.
         const COMMANDS: &[Command] = &[$($($command)+),*];
 
         /// Returns the command's name in the keymap and its description in the help.
@@ -138,14 +139,15 @@ macro_rules! commands {
             match command {
                 $($($command)+ => ($name, $does),)*
                 Command::Write(format) => (format.command(), format.title()),
-                // Unreachable by a key: the table has rows for 1 to 9, but the compiler counts to 255.
+                // Unreachable: the table has rows for views 1 to 9, but the compiler expects all values of a u8.
                 Command::View(_) => ("View", A_VIEW),
             }
         }
     };
 }
 
-// At most 24 characters, imperative or the thing that opens, as in other programs' help.
+// Descriptions have at most 24 characters. As in other programs' help, each is an imperative or names the panel that
+// opens.
 commands! {
     [Command::Move(Direction::Forward)] "MoveForward", "move forward";
     [Command::Move(Direction::Back)] "MoveBack", "move back";
@@ -223,7 +225,7 @@ impl Command {
         COMMANDS.iter().copied().chain(Format::ALL.iter().copied().map(Self::Write))
     }
 
-    /// Returns the command of this name.
+    /// Returns the command with this name in the keymap.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::all().find(|command| command.name() == name)
     }
@@ -237,7 +239,7 @@ impl Command {
 
     /// Returns a description for the help, of at most 24 characters.
     ///
-    /// Two columns then fit 80 columns.
+    /// With this limit, two lists of keys fit side by side on a screen of 80 columns.
     pub fn description(self) -> &'static str {
         words(self).1
     }
@@ -254,14 +256,14 @@ impl Command {
 
     /// Returns whether repeats of a held key execute the command again.
     pub fn repeats(self) -> bool {
-        // Not toggles: a key held too long would open and close a panel 25 times a second.
+        // Toggles do not repeat: a key held too long would open and close a panel 25 times a second.
         let of_panels = matches!(self, Self::Point(_) | Self::ScrollUp | Self::ScrollDown | Self::Wipe(_));
         of_panels || self.moves_light() || matches!(self, Self::Narrower | Self::Wider)
     }
 
     /// Returns whether Shift with the key makes the command faster.
     pub fn has_faster(self) -> bool {
-        // Not the wipe and the zoom: their steps are coarse already.
+        // The wipe and the zoom are left out, because their steps are already coarse.
         self.moves() || self.moves_light() || matches!(self, Self::Point(_))
     }
 

@@ -1,10 +1,10 @@
-//! Keys of the keymap and their names.
+//! The keys of the keymap, and their names.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use std::fmt;
 
-/// A key: its code, as the terminal's user types it (`?`, not Shift and `/`), and whether Ctrl is
-/// held.
+/// A key of the keymap: the character as typed (`?`, not Shift and `/`) or another key code, and
+/// whether Ctrl is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Key {
     /// The key code. A letter may be a capital, but not with Ctrl.
@@ -14,7 +14,7 @@ pub struct Key {
 }
 
 /// Names of the keys that type no character.
-// As keyboards and other programs spell them; case matters, so that there is one spelling in files and help.
+// Spelt as on keyboards and in other programs. Case matters, so that files and help have a single spelling.
 const NAMED: [(&str, KeyCode); 14] = [
     ("Left", KeyCode::Left),
     ("Right", KeyCode::Right),
@@ -36,12 +36,12 @@ const SPACE: &str = "Space";
 const CTRL: &str = "Ctrl-";
 
 impl Key {
-    /// Returns the key that types this character.
+    /// Returns the key that types the character `c`.
     pub const fn letter(c: char) -> Self {
         Self { code: KeyCode::Char(c), ctrl: false }
     }
 
-    /// Returns the key of this lower-case letter with Ctrl.
+    /// Returns the key of the lower-case letter `c` with Ctrl.
     pub const fn ctrl(c: char) -> Self {
         Self { code: KeyCode::Char(c), ctrl: true }
     }
@@ -87,7 +87,7 @@ impl Key {
     /// sequence for an arrow with and without Ctrl.
     pub fn is_plain(self) -> bool {
         match self.code {
-            // The same bytes as Backspace (H), Tab (I), and Enter (J, M).
+            // Ctrl with H, I, J or M sends the same byte as Backspace, Tab or Enter.
             KeyCode::Char(c) if self.ctrl => c.is_ascii_lowercase() && !matches!(c, 'h' | 'i' | 'j' | 'm'),
             KeyCode::Char(c) => !c.is_control(),
             // F13 and up have no common encoding.
@@ -101,13 +101,14 @@ impl Key {
         KeyEvent::new(self.code, if self.ctrl { KeyModifiers::CONTROL } else { KeyModifiers::NONE })
     }
 
-    /// Returns the key of an event, with Shift applied to its character.
+    /// Returns the key of an event, with Shift applied to its character: `/` with Shift is `?`.
     pub(super) fn typed(event: &KeyEvent) -> Self {
         let shift = event.modifiers.contains(KeyModifiers::SHIFT);
         let ctrl = event.modifiers.contains(KeyModifiers::CONTROL);
         let code = match event.code {
             KeyCode::Char(c) if ctrl => KeyCode::Char(c.to_ascii_lowercase()),
-            // For terminals that report the base key instead of the shifted character. Most layouts have `?` on `/`.
+            // Some terminals report the base key and Shift instead of the shifted character. Most layouts have `?` on
+            // `/`.
             KeyCode::Char('/') if shift => KeyCode::Char('?'),
             KeyCode::Char(c) if shift => KeyCode::Char(c.to_ascii_uppercase()),
             code => code,
@@ -115,13 +116,14 @@ impl Key {
         Self { code, ctrl }
     }
 
-    /// Returns the key with a capital replaced by its lower-case letter.
+    /// Returns the key with a capital letter replaced by the lower-case one.
     pub(super) fn without_shift(self) -> Self {
         Self { code: unshifted(self.code), ..self }
     }
 }
 
-/// Returns the code of the key without Shift: terminals send a capital for Shift and a letter.
+/// Returns the code with a capital letter, which terminals send for Shift and a letter, replaced by
+/// the lower-case one.
 pub(super) fn unshifted(code: KeyCode) -> KeyCode {
     match code {
         KeyCode::Char(c) => KeyCode::Char(c.to_ascii_lowercase()),

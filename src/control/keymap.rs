@@ -5,26 +5,26 @@ use super::key::Key;
 use crate::export::Format;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-/// A mode of the keys.
+/// A mode, in which keys have commands of their own.
 ///
-/// Several are active at a time; a key that the topmost does not bind is looked up in the next.
+/// Several modes are active at a time. A key that the topmost one does not bind is looked up in the next one below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KeyMode {
-    /// The eye flies.
+    /// Keys fly the eye.
     Fly,
-    /// The eye orbits the target.
+    /// Keys orbit the eye about the target.
     Orbit,
-    /// A pixel is explained. Above fly and orbit.
+    /// The explanation of a pixel is open. This mode is above `Fly` and `Orbit`.
     Explain,
-    /// A light is held. Above all of these.
+    /// A light is selected for moving. This mode is above `Fly`, `Orbit` and `Explain`.
     Light,
-    /// A dialog asks for the format of an export. Keys that do not answer dismiss it.
+    /// A dialog asks for the format of an export. Any key without an answer dismisses it.
     Export,
     /// A dialog asks whether to save the view to the scene file.
     ///
-    /// Keys that do not answer dismiss it.
+    /// Any key without an answer dismisses it.
     Keep,
-    /// Below fly and orbit.
+    /// Always active, below `Fly` and `Orbit`.
     Always,
 }
 
@@ -48,17 +48,17 @@ impl KeyMode {
 
     /// Returns whether a command can be bound in the mode.
     ///
-    /// Answers can be bound only where a dialog asks for them.
+    /// Commands that answer a dialog can be bound only in that dialog's mode, and no others there.
     pub fn takes(self, command: Command) -> bool {
         match self {
             Self::Export => matches!(command, Command::Write(_) | Command::No),
             Self::Keep => matches!(command, Command::Yes | Command::No),
-            // A mode without a question has nothing to answer.
+            // All other modes belong to no dialog and bind no answers.
             _ => !command.answers(),
         }
     }
 
-    /// Returns the mode of this name.
+    /// Returns the mode with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|mode| mode.name() == name)
     }
@@ -67,7 +67,7 @@ impl KeyMode {
 /// The keys of a command in a mode.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Binding {
-    /// The mode.
+    /// The mode in which the keys are bound.
     pub mode: KeyMode,
     /// The keys; empty if the user has unbound them all.
     pub keys: Vec<Key>,
@@ -76,7 +76,7 @@ pub struct Binding {
 }
 
 impl Binding {
-    /// Returns the keys as the help writes them.
+    /// Returns the names of the keys, separated by blanks, for the help.
     pub fn label(&self) -> String {
         self.keys.iter().map(Key::to_string).collect::<Vec<_>>().join(" ")
     }
@@ -97,7 +97,7 @@ impl Default for Keymap {
             keys: vec![letter(format.key())],
             command: Command::Write(format),
         };
-        // Formats first, so that the dialog lists them before the key that cancels it.
+        // The formats come first, so that the export dialog lists them before the key that cancels it.
         Self { bindings: Format::ALL.iter().map(write).chain(BUILT_IN.iter().map(row)).collect() }
     }
 }
@@ -115,11 +115,11 @@ const DOWN: &[Key] = &[Key::named(KeyCode::Down), letter('j')];
 const HIGHER: &[Key] = &[letter('e'), Key::named(KeyCode::PageUp)];
 const LOWER: &[Key] = &[letter('c'), Key::named(KeyCode::PageDown)];
 
-/// The built-in bindings in the order of the help, after those of the [`Format`]s, whose keys are
-/// in their files.
-// WASD moves on the left hand while the arrows turn with the right; hjkl stand in for the arrows on keyboards without
-// them. Explanation and light take the arrows only, so that hjkl and WASD go on moving the eye meanwhile. No key needs
-// Alt or a function key, which window managers and multiplexers take for themselves.
+/// The built-in bindings in the order of the help, except those of [`Format`]s, which are part of
+/// each format's row.
+// The left hand moves by WASD while the right hand turns by the arrows; hjkl replace the arrows on keyboards without
+// them. Explanation and light bind the arrows only, so that hjkl and WASD still move the eye. No binding needs Alt or a
+// function key, which window managers and multiplexers use themselves.
 const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Fly, &[letter('w')], Command::Move(Direction::Forward)),
     (KeyMode::Fly, &[letter('s')], Command::Move(Direction::Back)),
@@ -199,17 +199,18 @@ impl Keymap {
         &self.bindings
     }
 
-    /// Returns the bindings of a mode.
+    /// Returns the bindings of a mode, in the order of the help.
     pub fn of(&self, mode: KeyMode) -> impl Iterator<Item = &Binding> {
         self.bindings.iter().filter(move |row| row.mode == mode)
     }
 
-    /// Binds a key to a command in a mode, or unbinds it, and removes its previous binding.
+    /// Binds a key to a command in a mode instead of its previous one; with `None`, unbinds the
+    /// key.
     pub fn bind(&mut self, mode: KeyMode, key: Key, command: Option<Command>) {
         for row in self.bindings.iter_mut().filter(|row| row.mode == mode) {
             row.keys.retain(|bound| *bound != key);
         }
-        // The key is added to the command's row, so that the help lists all its keys in one line.
+        // The key is added to the command's binding, so that the help lists all keys of the command in one line.
         let Some(command) = command else { return };
         match self.bindings.iter_mut().find(|row| (row.mode, row.command) == (mode, command)) {
             Some(row) => row.keys.push(key),
@@ -217,32 +218,34 @@ impl Keymap {
         }
     }
 
-    /// Returns the command of a key in these modes, topmost first, and whether Shift makes it
-    /// faster.
+    /// Returns the command of a key event in `modes`, the topmost first, and whether Shift makes
+    /// the command faster.
     pub fn command(&self, modes: &[KeyMode], event: &KeyEvent) -> Option<(Command, bool)> {
-        // Shortcuts of the window manager, which the kitty keyboard protocol reports too.
+        // Keys with these modifiers are shortcuts of the window manager, which the kitty keyboard protocol also
+        // reports.
         if event.modifiers.intersects(KeyModifiers::SUPER | KeyModifiers::HYPER | KeyModifiers::META) {
             return None;
         }
         let typed = Key::typed(event);
         let has_character = matches!(typed.code, KeyCode::Char(_));
-        // Where the key types a character, Shift is in the character already.
+        // If the key types a character, Shift is already contained in it.
         let shift = event.modifiers.contains(KeyModifiers::SHIFT) && !has_character;
         modes.iter().find_map(|&mode| {
             let exactly = self.bound(mode, typed).map(|command| (command, shift && command.has_faster()));
-            // A capital without a binding of its own means its letter with Shift, if Shift makes that faster.
+            // A capital letter without a binding counts as the letter with Shift, if Shift makes that letter's command
+            // faster.
             let with_shift = || self.bound(mode, typed.without_shift()).filter(|command| command.has_faster());
             exactly.or_else(|| with_shift().map(|command| (command, true)))
         })
     }
 
-    /// Returns a key for a command in these modes.
+    /// Returns a key that runs a command in `modes`, for messages.
     ///
-    /// It is the first one that no higher mode hides, preferably without Ctrl.
+    /// It is the first key of the command that no higher mode binds to another one, preferably without Ctrl.
     pub fn key_of(&self, modes: &[KeyMode], command: Command) -> Option<Key> {
         let rows = modes.iter().flat_map(|&mode| self.of(mode)).filter(|row| row.command == command);
         let does = |key: &&Key| self.command(modes, &key.pressed()).is_some_and(|(meant, _)| meant == command);
-        // Without Ctrl, because a note is read faster with a single letter.
+        // A key without Ctrl is preferred because a single letter is read faster in a message.
         rows.flat_map(|row| &row.keys).filter(does).min_by_key(|key| key.ctrl).copied()
     }
 

@@ -7,20 +7,20 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyEventState, KeyModifi
 use glam::{Vec2, Vec3};
 use std::time::Duration;
 
-/// The keys that are held, and the motion that they cause.
+/// The keys that are held, and the motion of the camera that they cause.
 ///
-/// With the kitty keyboard protocol the terminal reports releases, and each of any number of keys is held from its
+/// With the kitty keyboard protocol the terminal reports releases, so any number of keys can be held, each from its
 /// press to its release.
 ///
 /// A plain terminal reports a press, then after about 660 ms repeats of the last key, some 25 a second, and no release.
-/// So a press moves for [`GLIDE_TIME`], which bridges the delay before the first repeat, and each repeat for
-/// [`COAST_TIME`], which bridges the interval between repeats. Another key ends the motion at once.
+/// So a press causes motion for [`GLIDE_TIME`], which bridges the delay before the first repeat, and each repeat for
+/// [`COAST_TIME`], which bridges the interval between repeats. A press of another key ends the motion at once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Motion {
     held: Vec<Held>,
-    /// Time at which the motion stops without further events.
+    /// Time at which the motion stops if no further key event arrives.
     ///
-    /// `Duration::MAX` where releases are reported.
+    /// `Duration::MAX` if the terminal reports releases.
     until: Duration,
     /// Whether Shift is held.
     fast: bool,
@@ -31,9 +31,9 @@ pub struct Motion {
 /// Factors of the default speeds of keys.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeySpeed {
-    /// Factor of moving, and of changing the distance to the target.
+    /// Factor of the speeds of moving and of changing the distance to the target.
     pub moving: f32,
-    /// Factor of turning the view and of orbiting the target.
+    /// Factor of the speeds of turning the view and of orbiting the target.
     pub turning: f32,
 }
 
@@ -58,21 +58,23 @@ fn physical_key(key: &KeyEvent) -> PhysicalKey {
     (unshifted(key.code), key.state.contains(KeyEventState::KEYPAD))
 }
 
-/// Duration of the motion by a press without repeats.
-// X11 repeats after 660 ms by default, the longest delay among common systems: with less, a held key stutters once.
-// The price is that a tap glides as long; only releases could shorten it.
+/// Duration of the motion after a press without repeats, if the terminal does not report releases.
+// X11 repeats keys after 660 ms by default, the longest delay among common systems: with a shorter duration the motion
+// by a held key stops once before the first repeat. The price is that a short press moves as long; only releases could
+// shorten it.
 pub const GLIDE_TIME: Duration = Duration::from_millis(700);
-/// Duration of the motion after the last repeat of a key.
-// Repeats are 33 to 40 ms apart; three may be lost or late on a slow link without a visible stop.
+/// Duration of the motion after the last repeat of a key, if the terminal does not report releases.
+// Repeats are 33 to 40 ms apart, so three may be lost or late on a slow link without a visible stop.
 pub const COAST_TIME: Duration = Duration::from_millis(150);
 
 impl Motion {
-    /// Returns a motion without held keys, at these speeds.
+    /// Returns a motion without held keys, with these factors of the default speeds.
     pub fn with_speed(key_speed: KeySpeed) -> Self {
         Self { key_speed, ..Self::default() }
     }
 
-    /// Sets whether the terminal reports releases. Held keys are released if it no longer does.
+    /// Sets whether the terminal reports releases. If it no longer does, all held keys are
+    /// released.
     pub fn set_reports_releases(&mut self, reports_releases: bool) {
         if self.reports_releases && !reports_releases {
             self.stop();
@@ -85,29 +87,32 @@ impl Motion {
         self.reports_releases
     }
 
-    /// Takes a key event at time `now`, with its command from the keymap and whether Shift makes
-    /// that faster.
+    /// Handles a key event at time `now`. `meant` is the key's command, and whether Shift makes it
+    /// faster.
     ///
-    /// Without reports of releases, any press ends the previous motion.
+    /// If the terminal does not report releases, any press ends the previous motion.
     pub fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) {
-        // Releases by the physical key, not by the command: the mode may have changed while it was held.
+        // A release is matched by the physical key, not by the command, because the mode may have changed since the
+        // press.
         match (key.kind, meant.filter(|(command, _)| command.moves())) {
             (KeyEventKind::Release, _) => self.held.retain(|held| held.key != physical_key(key)),
             (_, Some((command, fast))) => self.hold(Held { key: physical_key(key), command }, fast, key.kind, now),
             (_, None) if self.reports_releases => {}
-            // The terminal repeats only the newest key, so the previous one would glide on unnoticed.
+            // Without reports of releases, a press of any other key stops the motion: the terminal now repeats that key
+            // only.
             (_, None) => self.held.clear(),
         }
-        // Reported by the kitty keyboard protocol only: Shift pressed or released while a key is held.
+        // Presses and releases of Shift alone, which only the kitty keyboard protocol reports, change the speed of held
+        // keys.
         if let KeyCode::Modifier(ModifierKeyCode::LeftShift | ModifierKeyCode::RightShift) = key.code {
-            // Of the two Shift keys, one may still be held: the modifiers of the event tell.
+            // After the release of one Shift key the other may still be held, which the event's modifiers show.
             self.fast = key.kind != KeyEventKind::Release || key.modifiers.contains(KeyModifiers::SHIFT);
         }
     }
 
     fn hold(&mut self, key: Held, fast: bool, kind: KeyEventKind, now: Duration) {
         let glides = self.until < Duration::MAX;
-        // Plain terminals send repeats as presses; a press of the same key within the glide is taken for one.
+        // Plain terminals send repeats as presses, so a press of a key that still causes motion counts as a repeat.
         let again = now <= self.until && self.held.contains(&key) || kind == KeyEventKind::Repeat;
         // Without reports of releases it is unknown whether the previous key is still held; it is assumed not to be,
         // because terminals repeat only the key pressed last.
@@ -115,7 +120,7 @@ impl Motion {
         self.held.push(key);
         self.fast = fast;
         self.until = match again {
-            // A release will come, or the loss of the focus.
+            // The motion ends by a release or by the loss of focus, which the terminal reports.
             _ if self.reports_releases => Duration::MAX,
             true => now + COAST_TIME,
             false => now + GLIDE_TIME,
@@ -137,22 +142,22 @@ impl Motion {
     /// second.
     pub fn step(&self, camera: &Camera, speed: f32, from: Duration, to: Duration) -> Camera {
         let net = self.net_motion();
-        // A glide may have ended between two frames.
+        // The motion may have ended between `from` and `to`.
         let seconds = to.min(self.until).saturating_sub(from).as_secs_f32();
         let seconds = if self.fast { SHIFT_SPEED_FACTOR * seconds } else { seconds };
-        // Strang splitting: half of the turn before the translation and half after it. The error is of third order in
-        // the step, so that a curve hardly depends on the frame rate.
+        // Strang splitting: half of the rotation before the translation and half after it. The error per step is of
+        // third order in its duration, so that a curved path hardly depends on the frame rate.
         let half = 0.5 * TURN_SPEED * self.key_speed.turning * seconds;
         let (view, around) = (half * net.turn, half * net.around);
         let turn = |camera: Camera| camera.turned(-view.x, view.y).orbited(-around.x, around.y);
         let seconds = self.key_speed.moving * seconds;
         let way = speed * seconds * net.way;
         let camera = turn(*camera).moved(way.x, way.y, -way.z);
-        // `libm`, so that a motion has the same bits on every machine.
+        // By `libm`, so that a motion has the same bits on every machine.
         turn(camera.nearer_within(libm::expf(-NEARER_SPEED * seconds * net.nearer), speed))
     }
 
-    /// Returns the motion of all held keys together.
+    /// Returns the combined motion of all held keys.
     ///
     /// Opposite keys cancel, and two keys of one command count once.
     fn net_motion(&self) -> NetMotion {
@@ -176,16 +181,16 @@ impl Motion {
     }
 }
 
-/// The direction of the motion of all held keys; each component is -1, 0 or 1.
+/// The direction of the combined motion of all held keys; each component is -1, 0 or 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct NetMotion {
-    /// Translation along u, up and w.
+    /// Translation along the camera's u, up and w.
     way: Vec3,
-    /// Rotation of the view: to the left about up, and upwards about u.
+    /// Rotation of the view direction: to the left about the up vector, and upwards about u.
     turn: Vec2,
     /// Rotation of the eye about the target: to the left, and upwards.
     around: Vec2,
-    /// Approach of the eye to the target.
+    /// Change of the eye's distance to the target: 1 for nearer, -1 for farther.
     nearer: f32,
 }
 
@@ -194,7 +199,7 @@ const SHIFT_SPEED_FACTOR: f32 = 4.0;
 /// Angular speed of turning in radians per second: a full turn in 8 s.
 const TURN_SPEED: f32 = std::f32::consts::FRAC_PI_4;
 /// Rate of approach per second: the distance to the target falls to 1/e of itself in one second.
-// Exponential, so that the target is approached at every scale and never passed.
+// The distance changes exponentially, so that the speed fits every scale and the eye never passes the target.
 const NEARER_SPEED: f32 = 1.0;
 
 #[cfg(all(test, unit_tests))]

@@ -12,16 +12,16 @@ use std::time::Duration;
 pub enum Gesture {
     /// A button is pressed.
     Press {
-        /// The position.
+        /// The position of the pointer.
         at: Vec2,
         /// The motion that the button and Shift select.
         grip: Grip,
     },
     /// The pointer moves while a button is held.
     Drag {
-        /// The previous position.
+        /// The pointer's previous position.
         from: Vec2,
-        /// The new position.
+        /// The pointer's new position.
         to: Vec2,
         /// The motion that the button and Shift select.
         grip: Grip,
@@ -34,15 +34,16 @@ pub enum Gesture {
     Wheel {
         /// The position of the pointer.
         at: Vec2,
-        /// Number of notches, positive away from the user.
+        /// Number of notches, positive if turned away from the user.
         notches: f32,
     },
 }
 
-/// Longest time between the clicks of a double click. Desktops use 400 to 500 ms by default.
+/// Longest time between the two presses of a double click. Desktops use 400 to 500 ms by default.
 const DOUBLE_CLICK_TIME: Duration = Duration::from_millis(400);
-/// Greatest distance between the clicks of a double click, as a share of the screen in either
-/// direction: 1.6 columns of 80, because without pixel reports a tremor of the hand may cross a cell boundary.
+/// Largest distance between the two clicks of a double click, as a share of the screen's width and
+/// height.
+// It is 1.6 columns of 80: without pixel reports, a slight move of the hand may cross a cell boundary.
 const DOUBLE_CLICK_DISTANCE: f32 = 0.02;
 
 /// The state of the mouse: position, held button and last click.
@@ -54,7 +55,7 @@ pub struct Pointer {
 }
 
 impl Pointer {
-    /// Returns the last reported position.
+    /// Returns the pointer's last reported position.
     pub fn at(&self) -> Option<Vec2> {
         self.at
     }
@@ -64,43 +65,44 @@ impl Pointer {
         self.held.is_some()
     }
 
-    /// Releases the held button, because its release will not be reported.
+    /// Releases the held button, for cases in which the terminal will not report its release.
     pub fn release(&mut self) {
         self.held = None;
     }
 
-    /// Takes an event at a position and a time, and returns the gesture that it completes, if any.
+    /// Handles a mouse event at position `at` and time `now`. Returns the gesture that it
+    /// completes, if any.
     pub fn take(&mut self, event: &MouseEvent, at: Vec2, now: Duration) -> Option<Gesture> {
-        // The position of every event counts, so that a drag starts where the button was pressed.
+        // Every event updates the position, so that a drag starts where the button was pressed.
         let from = self.at.replace(at).unwrap_or(at);
         match event.kind {
             MouseEventKind::Down(button) => Some(self.press(button, event.modifiers, at, now)),
-            // Without a press before it, the button was pressed in another program, and the drag is not for this one.
+            // A drag without a press before it is ignored: the button was pressed in another program.
             MouseEventKind::Drag(_) => self.held.map(|grip| Gesture::Drag { from, to: at, grip }),
             MouseEventKind::Up(_) => self.held.take().map(|_| Gesture::Release),
             MouseEventKind::ScrollUp => Some(Gesture::Wheel { at, notches: 1.0 }),
             MouseEventKind::ScrollDown => Some(Gesture::Wheel { at, notches: -1.0 }),
-            // Motion without a button is not requested from the terminal, and has no meaning here.
+            // Motion without a button is not requested from the terminal, and no gesture uses it.
             MouseEventKind::Moved | MouseEventKind::ScrollLeft | MouseEventKind::ScrollRight => None,
         }
     }
 
     fn press(&mut self, button: MouseButton, modifiers: KeyModifiers, at: Vec2, now: Duration) -> Gesture {
-        // Any other button pans, and so does Shift: a touchpad has often only one button.
+        // All buttons but the left one pan. Shift with the left button pans too, because many touchpads have only one.
         let pans = button != MouseButton::Left || modifiers.contains(KeyModifiers::SHIFT);
         let grip = if pans { Grip::Pan } else { Grip::Turn };
         self.held = Some(grip);
         let is_same = |(then, there): (Duration, Vec2)| {
             now.saturating_sub(then) <= DOUBLE_CLICK_TIME && (at - there).abs().max_element() <= DOUBLE_CLICK_DISTANCE
         };
-        // A panning click neither completes nor starts a double click.
+        // `clicked` is the previous click. A panning click neither completes nor starts a double click.
         let clicked = self.clicked.replace((now, at)).filter(|_| !pans);
         if clicked.is_some_and(is_same) {
-            // So that a third click starts a new double click instead of completing a second one.
+            // Cleared, so that a third click starts a new double click instead of completing a second one.
             self.clicked = None;
             return Gesture::DoubleClick;
         }
-        // Panning is not part of a double click: its frame-all would undo the pan.
+        // A double click frames the whole scene, which would undo the pan, so a panning click is not remembered.
         if pans {
             self.clicked = None;
         }

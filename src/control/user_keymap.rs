@@ -1,4 +1,5 @@
-//! The user's keymap: changes of the built-in keymap, read from RON and written back.
+//! Reading the user's keymap from RON, as changes of the built-in keymap, and writing a keymap as
+//! RON.
 
 use super::{Command, Key, KeyMode, Keymap};
 use crate::scene_text::{self, Faults, Field, SceneError, Span, SyntaxNode, Value, clipped, quoted};
@@ -6,7 +7,7 @@ use crate::text::{closest, listed};
 use std::collections::HashSet;
 use std::fmt::Write;
 
-/// The key that always quits, so that no keymap can lock the user in.
+/// The key that always quits the program, so that no keymap can make quitting impossible.
 const ALWAYS_QUITS: Key = Key::ctrl('c');
 
 impl Keymap {
@@ -36,7 +37,7 @@ impl Keymap {
         scene_text::read(name, text, "file of keys is ()", |root, faults| {
             let entries = entries(root, faults);
             let mut keymap = Self::default();
-            // All entries are bound before any is checked: whether one is hidden depends on the others.
+            // All entries are bound before any is checked, because whether one is hidden depends on the others.
             for entry in &entries {
                 keymap.bind(entry.mode, entry.key, entry.command);
             }
@@ -52,7 +53,8 @@ impl Keymap {
         let mut text = "(\n".to_owned();
         for mode in KeyMode::ALL {
             let _ = writeln!(text, "    {}: {{", mode.name());
-            // Keys that are unbound follow as `None`: read back without them, the built-in binding would return.
+            // Unbound keys are written as `None` below: without these entries, reading would restore their built-in
+            // bindings.
             for row in self.of(mode).filter(|row| !row.keys.is_empty()) {
                 let entry = format!("{}: {},", keys_as_ron(&row.keys), row.command.name());
                 let _ = writeln!(text, "        {entry:<36}// {}", row.command.description());
@@ -72,7 +74,8 @@ impl Keymap {
         built_in.of(mode).flat_map(|row| row.keys.clone()).filter(|key| !bound.contains(key)).collect()
     }
 
-    /// Reports entries without effect, and a keymap without a key that quits.
+    /// Reports entries that have no effect, and a keymap in which no key but [`ALWAYS_QUITS`]
+    /// quits.
     fn check(&self, entries: &[Entry], faults: &mut Faults) {
         for (i, entry) in entries.iter().enumerate() {
             let Entry { mode, key, .. } = *entry;
@@ -89,7 +92,8 @@ impl Keymap {
             let takes_it = |entry: &&Entry| {
                 built_in.of(KeyMode::Always).any(|row| row.command == Command::Quit && row.keys.contains(&entry.key))
             };
-            // At the entry that took the last such key away, or at the start of the file if none did alone.
+            // Reported at the last entry that rebinds a built-in key of `Quit`, or at the start of the file if no entry
+            // does.
             let span = entries.iter().rev().find(takes_it).map(|entry| entry.span).unwrap_or_default();
             let message = "no key but Ctrl-C quits: bind one to Quit in always";
             faults.add(span, || message.to_owned());
@@ -97,10 +101,10 @@ impl Keymap {
     }
 
     /// Reports an entry of `always` that a binding of a higher mode hides, unless the file itself
-    /// contains that binding: then it is intended.
+    /// contains that binding and so intends it.
     fn check_is_reached(&self, entry: &Entry, entries: &[Entry], faults: &mut Faults) {
         let Entry { mode: KeyMode::Always, key, command: Some(command), span } = *entry else { return };
-        // Explanation, light and dialogs are meant to hide keys for as long as they are open.
+        // Explanation, light and dialogs are not checked: they hide keys on purpose while they are open.
         for above in [KeyMode::Fly, KeyMode::Orbit] {
             let hides = |other: &Entry| other.mode == above && [key, key.without_shift()].contains(&other.key);
             let meant = self.command(&[above, KeyMode::Always], &key.pressed()).map(|(meant, _)| meant);
@@ -112,7 +116,7 @@ impl Keymap {
         }
     }
 
-    /// Returns whether a key besides [`ALWAYS_QUITS`] quits both in flight and in orbit.
+    /// Returns whether, in flight and in orbit, some key besides [`ALWAYS_QUITS`] quits.
     fn can_be_left(&self) -> bool {
         let leaves =
             |above, key: Key| self.command(&[above, KeyMode::Always], &key.pressed()) == Some((Command::Quit, false));
@@ -122,7 +126,7 @@ impl Keymap {
     }
 }
 
-/// A key of the file and its command.
+/// An entry of the file: a key in a mode, and its command, or `None` to unbind it.
 struct Entry {
     mode: KeyMode,
     key: Key,
@@ -135,7 +139,7 @@ fn quoted_key(key: Key) -> String {
     format!("\"{key}\"")
 }
 
-/// Formats keys as RON: `"w"`, or `["Up", "k"]`.
+/// Formats keys as RON: one as `"w"`, several as `["Up", "k"]`.
 fn keys_as_ron(keys: &[Key]) -> String {
     let keys: Vec<_> = keys.iter().map(|key| format!("{:?}", key.to_string())).collect();
     if let [only] = &keys[..] { only.clone() } else { format!("[{}]", keys.join(", ")) }
@@ -154,13 +158,13 @@ fn entries(root: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<Entry> {
             faults.add(name.span, || format!("duplicate mode {}", quoted(name.text)));
         }
         match (KeyMode::from_name(name.text), &value.value) {
-            // One error for an unknown mode: those of its keys would only repeat it.
+            // The keys of an unknown mode are not checked: their errors would only follow from this one.
             (None, _) => faults.add(name.span, || unknown_mode(name.text)),
             (Some(mode), Value::Map(pairs)) => {
                 for (keys, command) in pairs {
                     let keys = keys_of(keys, faults);
                     let command = match command.word() {
-                        // RON's word for an absent value.
+                        // `None` unbinds the keys.
                         Some("None") => None,
                         _ => match command_of(mode, command, faults) {
                             None => continue,
@@ -193,7 +197,7 @@ fn keys_of(node: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<(Key, Span)> {
 }
 
 fn key_of(node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Key> {
-    // In quotes, because most keys are no words of RON.
+    // Keys are quoted in the file, because most of them are not identifiers in RON.
     let Value::String(name) = &node.value else {
         faults.add(node.head(), || "expected a key in quotes, as in \"w\", or a list of keys".to_owned());
         return None;
@@ -202,7 +206,7 @@ fn key_of(node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Key> {
     if key.is_none() {
         faults.add(node.span, || match closest(name, Key::names()) {
             Some(meant) => format!("there is no key {}; did you mean \"{meant}\"?", quoted(name)),
-            // Without a similar name the user may not know the forms of names, which this lists.
+            // Without a similar name, the message lists the forms of key names, which the user may not know.
             None => format!(
                 "{} is not a key that every terminal sends: a character, Ctrl- and a letter but H, I, J and M, or a \
                  name such as PageUp, Space or F1",
@@ -213,7 +217,7 @@ fn key_of(node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Key> {
     key
 }
 
-/// Reads a command that has a meaning in `mode`.
+/// Reads a command, which must be one that can be bound in `mode`.
 fn command_of(mode: KeyMode, node: &SyntaxNode<'_>, faults: &mut Faults) -> Option<Command> {
     let Some(word) = node.word() else {
         let expected = "expected a command without quotes, such as MoveForward, or None";

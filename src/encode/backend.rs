@@ -89,20 +89,20 @@ pub struct EncoderBackend<W> {
     window: WindowSize,
     ask_size: Option<Query<Size>>,
     ask_position: Option<Query<Position>>,
-    /// The last position of the cursor, wanted or shown.
+    /// The last position of the cursor that was requested or reported.
     position: Position,
     /// The wanted state of the cursor.
     cursor: Cursor,
-    /// The state of the terminal's cursor, as far as it is known.
+    /// The cursor's state in the terminal, as far as it is known.
     shown_cursor: Cursor,
     /// Whether a frame is open: between `draw` and `flush`.
-    // Changes of the cursor are then sent with the frame, in the same write.
+    // In between, changes of the cursor are not sent at once, but with the frame in the same write.
     is_frame_open: bool,
     /// Whether the last bytes sent were the program's own.
     wrote_foreign_bytes: bool,
 }
 
-/// A function that finds something out about the terminal.
+/// A function of the program that queries the terminal's size or cursor position.
 type Query<T> = Box<dyn Fn() -> io::Result<T> + Send + Sync>;
 
 /// Returns the error for a window with too many cells.
@@ -175,8 +175,9 @@ impl<W> EncoderBackend<W> {
 
     /// Limits the bytes per second of frames with [`Quality::Equal`] or [`Quality::Fast`].
     ///
-    /// Bytes that do not fit, for the least errors of pictures, wait for a later frame. Text never waits, nor cells
-    /// that replace text or an unknown screen. Without [`with_quality`](Self::with_quality) the limit has no effect.
+    /// Above the limit, the picture cells with the smallest errors wait for a later frame. Text never waits, nor do
+    /// cells
+    /// that replace text or unknown contents. Without [`with_quality`](Self::with_quality) the limit has no effect.
     ///
     /// ```
     /// use std::time::Instant;
@@ -221,7 +222,7 @@ impl<W> EncoderBackend<W> {
         self.forget_screen();
     }
 
-    /// Sets the size of the window in pixels, which is 0 by 0 before.
+    /// Sets the size of the window in pixels, which is initially 0 by 0.
     ///
     /// See [`window_size`](ratatui_core::backend::Backend::window_size).
     #[doc(hidden)]
@@ -231,7 +232,7 @@ impl<W> EncoderBackend<W> {
 
     /// Returns the time at which the next frame is due, if nothing else is drawn until then.
     ///
-    /// The time is that of the clock of [`with_quality`](Self::with_quality). `None` means that the screen shows
+    /// The time is on the clock passed to [`with_quality`](Self::with_quality). `None` means that the screen shows
     /// exactly the drawn cells.
     #[doc(hidden)]
     pub fn due(&self) -> Option<Duration> {
@@ -245,9 +246,9 @@ impl<W> EncoderBackend<W> {
         &self.writer
     }
 
-    /// Returns the writer, for bytes that change neither the screen nor colours nor cursor.
+    /// Returns the writer, for bytes that change neither the screen nor the colours nor the cursor.
     ///
-    /// Such bytes are those of a title or of the clipboard. All others have to be written to the backend itself.
+    /// Examples are bytes that set the title or the clipboard. All others have to be written to the backend itself.
     #[doc(hidden)]
     pub fn writer_mut(&mut self) -> &mut W {
         &mut self.writer
@@ -259,7 +260,8 @@ impl<W> EncoderBackend<W> {
         self.shown_cursor = Cursor::default();
     }
 
-    /// Forgets the screen, so that only cells drawn from here on are wanted on it.
+    /// Forgets the screen and all drawn cells, so that the next frame contains only cells drawn
+    /// after this call.
     fn forget_screen(&mut self) {
         let Size { width, height } = self.window.columns_rows;
         self.wanted = Grid::foreign(grid::Size::new(width, height));
@@ -268,7 +270,7 @@ impl<W> EncoderBackend<W> {
         self.forget();
     }
 
-    /// Returns the nearest position on the screen.
+    /// Returns the position on the screen that is nearest to the given one.
     fn clamped_to_screen(&self, Position { x, y }: Position) -> Position {
         let Size { width, height } = self.window.columns_rows;
         Position::new(x.min(width.saturating_sub(1)), y.min(height.saturating_sub(1)))
@@ -280,9 +282,9 @@ impl<W> EncoderBackend<W> {
         self.cursor.position = Some(self.position);
     }
 
-    /// Sets a wanted cell, and returns its width in columns.
-    // ratatui draws changed cells. If it draws one that is wanted already, something else was written there, so it is
-    // sent again.
+    /// Sets a cell of the wanted grid, and returns its width in columns.
+    // ratatui draws changed cells only. If it draws a cell that is already wanted, it assumes other contents on the
+    // screen, so the cell is sent again.
     fn draw_cell(&mut self, place: Position, cell: &ratatui_core::buffer::Cell) -> u16 {
         let before = self.wanted.cell(place.x, place.y).clone();
         let columns = overlay::put_cell(&mut self.wanted, place, cell, self.window.columns_rows.width - place.x);
@@ -297,7 +299,8 @@ impl<W> EncoderBackend<W> {
         self.is_frame_open = true;
     }
 
-    /// Sets cells to blanks that are sent whatever they show; counted row by row from the top.
+    /// Sets the cells at these indices, row by row, to blanks that the next frame sends even over
+    /// known blanks.
     fn blank(&mut self, cells: Range<usize>) {
         let columns = usize::from(self.window.columns_rows.width);
         for at in cells.start..cells.end.min(self.wanted.cells().len()) {
@@ -309,7 +312,7 @@ impl<W> EncoderBackend<W> {
 }
 
 impl<W: Write> EncoderBackend<W> {
-    /// Adopts the size of the window, if it has changed.
+    /// Queries the size of the window, and adopts it if it has changed.
     fn follow_window(&mut self) -> io::Result<()> {
         if let Some(ask) = &self.ask_size {
             let size = ask()?;
@@ -321,7 +324,7 @@ impl<W: Write> EncoderBackend<W> {
         Ok(())
     }
 
-    /// Returns the position of the cursor, wanted or shown; queries it if both are unknown.
+    /// Returns the cursor's wanted or shown position; if both are unknown, queries it.
     fn locate(&mut self) -> io::Result<Position> {
         if self.cursor.position.or(self.shown_cursor.position).is_none()
             && let Some(ask) = &self.ask_position
@@ -332,7 +335,8 @@ impl<W: Write> EncoderBackend<W> {
         Ok(self.position)
     }
 
-    /// Returns the bytes that make the terminal show the wanted grid and cursor, within the limits.
+    /// Returns the bytes that make the terminal show the wanted grid and cursor; exactly, if
+    /// `limits` is `None`.
     fn frame(&mut self, limits: Option<&mut Limits>) -> Vec<u8> {
         self.is_frame_open = false;
         let mut bytes = Vec::new();
@@ -344,7 +348,8 @@ impl<W: Write> EncoderBackend<W> {
             self.shown_cursor.switch_to(self.cursor, &mut bytes);
             return bytes;
         }
-        // Bytes that the program writes itself, and the shell's prompt after it, must not get the pen's colours.
+        // Reset, so that bytes that the program writes itself, and the shell's prompt later, do not get the pen's
+        // colours.
         self.encoder.reset_pen(&mut bytes);
         self.shown_cursor.position = end.map(|CellPosition { column, row }| Position::new(column, row));
         self.shown_cursor.switch_to(self.cursor, &mut bytes);
@@ -352,8 +357,9 @@ impl<W: Write> EncoderBackend<W> {
         bytes
     }
 
-    /// Returns the bytes of an open frame, with the pen reset.
-    // They precede bytes that act on the whole screen, such as scrolling, whose blanks would get the pen's colour.
+    /// Returns the bytes of the frame that is open, if one is. Afterwards the pen has the default
+    /// colours.
+    // To be sent before sequences such as scrolling, which fill blank rows with the pen's background.
     fn unsent_bytes(&mut self) -> Vec<u8> {
         if self.is_frame_open || !self.encoder.knows_screen() { self.frame(None) } else { Vec::new() }
     }
@@ -368,7 +374,7 @@ impl<W: Write> EncoderBackend<W> {
         self.send(&bytes)
     }
 
-    /// Sends everything that was drawn, exactly.
+    /// Sends all drawn cells that are not sent yet, with exact colours.
     fn send_exactly(&mut self) -> io::Result<()> {
         let bytes = self.frame(None);
         self.send(&bytes)
@@ -406,7 +412,7 @@ impl<W: Write> EncoderBackend<W> {
         self.send_cursor()
     }
 
-    /// Sends line feeds from the cursor's position.
+    /// Sends `lines` line feeds at the cursor's position.
     ///
     /// Rows that leave the screen at the top enter the scrollback.
     fn feed_lines(&mut self, lines: u16) -> io::Result<()> {
@@ -424,7 +430,8 @@ impl<W: Write> EncoderBackend<W> {
         self.send(&bytes)
     }
 
-    /// Records that a region has been scrolled, and that the cursor is at the top left.
+    /// Records that rows `region` have been scrolled by `by` rows, and that the cursor is at the
+    /// top left.
     #[cfg(feature = "scrolling-regions")]
     fn record_scrolled(&mut self, region: Range<u16>, by: u16, direction: regions::ScrollDirection) {
         match direction {
@@ -442,9 +449,10 @@ impl<W: Write> EncoderBackend<W> {
         self.shown_cursor.position = Some(Position::ORIGIN);
     }
 
-    /// Prepares for bytes of the program's own: sends everything drawn, and forgets the screen.
+    /// Prepares for bytes that the program writes itself: sends all drawn cells, and forgets the
+    /// screen.
     fn prepare_foreign_bytes(&mut self) -> io::Result<()> {
-        // Only before the first piece: a program may write an escape sequence in several.
+        // Done only before the first of several writes in a row: a program may write an escape sequence in pieces.
         if !self.wrote_foreign_bytes {
             if self.is_frame_open || self.encoder.is_inexact() {
                 self.send_exactly()?;
@@ -456,7 +464,7 @@ impl<W: Write> EncoderBackend<W> {
     }
 }
 
-/// Sends the program's own escape sequences (see [above](Self#other-bytes)).
+/// Sends bytes that the program writes itself (see [Other bytes](Self#other-bytes)).
 impl<W: Write> Write for EncoderBackend<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.prepare_foreign_bytes()?;

@@ -1,13 +1,13 @@
-//! The order by colour, in which the colours of one cell serve the next.
+//! The order of cells by colour, in which consecutive cells share colours.
 //!
-//! A cell of the picture has a pair of colours. All cells of a pair are written one after another, with only moves
-//! between them. Pairs that share a colour are neighbours, and a greedy tour goes from neighbour to neighbour, so that
-//! mostly one colour changes at a time. The next pair is the neighbour with the lowest cost; pairs with few unvisited
-//! neighbours are preferred, because they would be left over. If no neighbour is left, or the next pair in reading
-//! order costs less, the tour continues there.
+//! A picture cell has a pair of colours, glyph and background. All cells of a pair are written one after another, with
+//! only cursor moves between them. Pairs that share a colour are neighbours, and a greedy tour goes from neighbour to
+//! neighbour, so that mostly one colour changes at a time. The next pair is the neighbour with the lowest cost; pairs
+//! with few unvisited neighbours are preferred, because they would be left over. If no neighbour is left, or the next
+//! pair in reading order costs less, the tour continues there.
 //!
-//! With the pairs `ab`, `bc`, `ac` and `dd` in reading order and a pen of `ab`, the tour is `ab` (no change), `bc` or
-//! `ac` (one colour), the other of them (one colour), `dd`.
+//! With the pairs `ab`, `bc`, `ac` and `dd` in reading order and a pen of `ab`, the tour is `ab` (no change), then
+//! `bc` and `ac` in either order (one colour each), then `dd`.
 
 use super::moves::{CellPosition, cheapest_move};
 use super::pen::Pen;
@@ -15,7 +15,8 @@ use super::strokes::cursor_after;
 use crate::grid::{Attributes, Cell, Glyph, Grid, HalfBlocks, Ink};
 use std::ops::Range;
 
-/// Returns the changed cells in writing order: text row by row, then the tour of the picture.
+/// Returns the changed cells in the order of writing: text row by row, then picture cells by the
+/// tour.
 pub(super) fn order(wanted: &Grid, changed: &[CellPosition], half_blocks: HalfBlocks, pen: Pen) -> Vec<CellPosition> {
     let is_picture = |position: &&CellPosition| picture_inks(wanted.cell(position.column, position.row)).is_some();
     let picture: Vec<CellPosition> = changed.iter().filter(is_picture).copied().collect();
@@ -28,7 +29,7 @@ pub(super) fn order(wanted: &Grid, changed: &[CellPosition], half_blocks: HalfBl
     order
 }
 
-/// Returns the glyph's and the background's colour of a picture's cell; both are equal for a space.
+/// Returns the glyph and background colours of a picture cell, equal for a space; `None` for text.
 fn picture_inks(cell: &Cell) -> Option<(Ink, Ink)> {
     let is_rgb = |ink| matches!(ink, Ink::Rgb(_));
     match cell.glyph {
@@ -48,19 +49,19 @@ fn sort_key(ink: Ink) -> u32 {
     }
 }
 
-/// All cells of one pair of colours.
+/// A pair of colours, and all cells that have it.
 struct Pair {
     fg: Ink,
     bg: Ink,
-    /// The range of its cells in `Tour::positions`, in reading order.
+    /// The range of the pair's cells in `Tour::positions`, in reading order.
     positions: Range<usize>,
-    /// The indices of its colours in `Tour::colors`; both are equal for spaces.
+    /// The indices of the pair's colours in `Tour::colors`; both are equal for spaces.
     colors: [usize; 2],
     /// Whether the tour has visited the pair.
     visited: bool,
 }
 
-/// A greedy tour over the pairs.
+/// A greedy tour over the pairs of colours, with the pen and cursor where it has arrived.
 struct Tour<'a> {
     wanted: &'a Grid,
     half_blocks: HalfBlocks,
@@ -68,36 +69,37 @@ struct Tour<'a> {
     /// The indices in `colors` of the pen's glyph and background colours, if the picture has them.
     pen_colors: [Option<usize>; 2],
     cursor: Option<CellPosition>,
-    /// The number of neighbours that may still be looked up.
+    /// The number of neighbours whose costs may still be computed.
     lookups: usize,
     positions: Vec<CellPosition>,
     /// The pairs in reading order of their first cells.
     pairs: Vec<Pair>,
     /// The colours of the picture, sorted by key.
     colors: Vec<Color>,
-    /// For each colour, one after another, the indices of the pairs that contain it.
-    // One list instead of one per colour, without an allocation for each.
+    /// The indices of the pairs that contain each colour: a range for each (see [`Color::pairs`]).
+    // A single list, because one list per colour would take an allocation for each.
     pairs_by_color: Vec<usize>,
 }
 
-/// A colour of the picture and its pairs.
+/// A colour of the picture, and the pairs that contain it.
 struct Color {
     sort_key: u32,
-    /// The range of its pairs in `Tour::pairs_by_color`: a stack in reverse reading order.
-    // A visited pair is dropped when it is found on top, which is cheaper than finding it when it is visited.
+    /// The range of the colour's pairs in `Tour::pairs_by_color`, used as a stack with the first
+    /// pair in reading order on top.
+    // A visited pair is dropped once it is on top, which is cheaper than searching for it when it is visited.
     pairs: Range<usize>,
-    /// The number of its unvisited pairs.
+    /// The number of the colour's pairs that the tour has not visited.
     unvisited: usize,
 }
 
-/// Largest number of neighbours looked up by one colour.
-// With all of them, a frame in which thousands of pairs share a colour takes the square of their number. With 64,
-// 80,000 pairs over one colour took 15 times ratatui's time, and with the limit on the mean 3.9 times.
+/// Largest number of neighbours whose costs are compared, for each colour of the pen.
+// Without a limit, a frame in which thousands of pairs share a colour takes quadratic time. With a limit of 64, 80,000
+// pairs that share a colour took 15 times ratatui's time; with the limit on the mean as well, 3.9 times.
 const MAX_NEIGHBOURS_PER_COLOR: usize = 64;
 
-/// Mean number of neighbours looked up per pair, at most.
-// Few pairs have many neighbours, unless the picture is noise. The limit takes noise of 80,000 cells from 10 to 3.4
-// times ratatui's time and costs at most 0.0012 of ratatui's bytes (orbit, 200x60).
+/// Largest mean number of neighbours whose costs are compared, per pair of the tour.
+// Few pairs have many neighbours, unless the picture is noise. The limit reduces the time for noise of 80,000 cells
+// from 10 to 3.4 times ratatui's, and adds at most 0.0012 of ratatui's bytes (orbit, 200x60).
 const MEAN_LOOKUPS_PER_PAIR: usize = 8;
 
 impl<'a> Tour<'a> {
@@ -139,7 +141,7 @@ impl<'a> Tour<'a> {
         }
     }
 
-    /// Appends the positions in the order of the tour.
+    /// Visits all pairs, and appends the positions of their cells to `order`.
     fn walk(&mut self, order: &mut Vec<CellPosition>) {
         for next in 0..self.pairs.len() {
             while !self.pairs[next].visited {
@@ -149,7 +151,8 @@ impl<'a> Tour<'a> {
         }
     }
 
-    /// Returns the cheapest pair among `next` and the pairs that share a colour with the pen.
+    /// Returns the index of the cheapest pair among `next` and unvisited pairs that share a colour
+    /// with the pen.
     fn cheapest_pair(&mut self, next: usize) -> usize {
         let mut best = (self.cost(next), next);
         self.lookups += MEAN_LOOKUPS_PER_PAIR;
@@ -174,10 +177,11 @@ impl<'a> Tour<'a> {
         best.1
     }
 
-    /// Returns the cost in bytes of continuing with a pair of colours.
+    /// Returns the cost in bytes of continuing the tour with the pair at an index.
     ///
-    /// The cost is that of the change of pen and of the move to the first cell. Up to eight bytes are added for the
-    /// unvisited pairs that share a colour with this one: a pair that leads to few others is better visited early.
+    /// The cost consists of the change of pen and the move to the pair's first cell. Up to eight bytes are added for
+    /// unvisited pairs that share a colour with this one, because a pair with few such neighbours is better visited
+    /// early.
     fn cost(&self, pair: usize) -> usize {
         let pair = &self.pairs[pair];
         let change = self.pen.switch_cost(&self.pair_pen(pair));
@@ -186,7 +190,7 @@ impl<'a> Tour<'a> {
         change + move_len + unvisited[0].min(unvisited[1]).min(8)
     }
 
-    /// Returns the cheaper of the pens that can write the pair.
+    /// Returns the cheaper pen for a pair: its colours as they are or, where allowed, exchanged.
     fn pair_pen(&self, pair: &Pair) -> Pen {
         let pen = |fg, bg| Pen { fg, bg, ..self.pen.after_attributes(Attributes::empty()) };
         if pair.fg == pair.bg {
@@ -198,7 +202,8 @@ impl<'a> Tour<'a> {
         if flip { flipped } else { plain }
     }
 
-    /// Appends the cells of a pair, and moves pen and cursor behind them.
+    /// Appends the cells of the pair at index `at` to `order`, and updates pen and cursor to those
+    /// after writing them.
     fn visit(&mut self, at: usize, order: &mut Vec<CellPosition>) {
         self.pen = self.pair_pen(&self.pairs[at]);
         let pair = &mut self.pairs[at];
@@ -220,7 +225,7 @@ impl<'a> Tour<'a> {
     }
 }
 
-/// Returns the colours, and the pairs of each.
+/// Returns the colours, and for all of them the list of pairs that their ranges refer to.
 fn pairs_by_color(sort_keys: &[u32], pairs: &[Pair]) -> (Vec<Color>, Vec<usize>) {
     let mut colors: Vec<Color> =
         sort_keys.iter().map(|&sort_key| Color { sort_key, pairs: 0..0, unvisited: 0 }).collect();
@@ -243,12 +248,13 @@ fn pairs_by_color(sort_keys: &[u32], pairs: &[Pair]) -> (Vec<Color>, Vec<usize>)
     (colors, neighbours)
 }
 
-/// Returns both colours, or one if they are equal.
+/// Returns the two colours of a pair, or one if they are equal.
 fn distinct(colors: &[usize; 2]) -> &[usize] {
     if colors[0] == colors[1] { &colors[..1] } else { colors }
 }
 
-/// Returns a cell with the sort keys of its colours, the smaller first if the cell may be flipped.
+/// Returns the sort keys of a cell's two colours, the smaller first if the cell may be flipped, and
+/// its position.
 fn with_sort_keys(wanted: &Grid, position: CellPosition, half_blocks: HalfBlocks) -> (u32, u32, CellPosition) {
     let (fg, bg) = picture_inks(wanted.cell(position.column, position.row)).unwrap_or_default();
     let (a, b) = (sort_key(fg), sort_key(bg));

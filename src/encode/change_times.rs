@@ -1,10 +1,11 @@
-//! The time of each cell's last change, after which a cell is soon shown exactly.
+//! The time of each cell's last change, from which the time to make a lossy cell exact follows.
 
 use crate::grid::{Grid, Size};
 use std::time::Duration;
 
-/// Time after a cell's last change until it is shown exactly.
-// Long enough that a movement that only pauses is not sent twice, short enough that all is exact within a second.
+/// Time from a cell's last change until it is made exact.
+// Long enough that a short pause of a movement causes no exact frame, short enough that the picture is exact within a
+// second.
 const EXACT_AFTER: Duration = Duration::from_millis(500);
 
 /// The last wanted grid and the time of each cell's last change.
@@ -21,7 +22,8 @@ impl Default for ChangeTimes {
 }
 
 impl ChangeTimes {
-    /// Records a wanted grid.
+    /// Records a wanted grid, and `now` as the time of change for cells that differ from the last
+    /// one.
     pub(super) fn record(&mut self, wanted: &Grid, now: Duration) {
         if self.wanted.size() != wanted.size() {
             self.wanted = wanted.clone();
@@ -29,7 +31,7 @@ impl ChangeTimes {
             return;
         }
         for ((last, cell), since) in self.wanted.cells_mut().iter_mut().zip(wanted.cells()).zip(&mut self.since) {
-            // In place: cloning the whole grid for each frame would allocate.
+            // Updated in place, because cloning the whole grid for each frame would allocate.
             if last != cell {
                 last.clone_from(cell);
                 *since = now;
@@ -37,7 +39,7 @@ impl ChangeTimes {
         }
     }
 
-    /// Returns the time at which a cell is to be shown exactly.
+    /// Returns the time at which the cell at index `at` is to be made exact.
     pub(super) fn exact_at(&self, at: usize) -> Duration {
         self.since[at].saturating_add(EXACT_AFTER)
     }

@@ -1,4 +1,5 @@
-//! Changes of the screen that do not come from the encoder, as recorded by the backend.
+//! Updates of the encoder's state for output of the backend or the program that the encoder did not
+//! write.
 
 use super::Encoder;
 use super::moves::CellPosition;
@@ -7,14 +8,14 @@ use crate::grid::Cell;
 use std::ops::Range;
 
 impl Encoder {
-    /// Marks a cell as unknown.
+    /// Marks a shown cell as unknown, so that the next frame writes it.
     pub(super) fn forget_cell(&mut self, CellPosition { column, row }: CellPosition) {
         if let Some(known) = &mut self.known {
             *known.shown.cell_mut(column, row) = Cell::FOREIGN;
         }
     }
 
-    /// Returns whether the terminal's state is known.
+    /// Returns whether the terminal's state is known to the encoder.
     pub(super) fn knows_screen(&self) -> bool {
         self.known.is_some()
     }
@@ -24,7 +25,7 @@ impl Encoder {
         self.known.is_some() && self.due.is_some()
     }
 
-    /// Resets the pen, so that foreign output does not get its colours.
+    /// Appends a reset of the pen's colours, so that other output does not inherit them.
     pub(super) fn reset_pen(&mut self, bytes: &mut Vec<u8>) {
         if let Some(known) = &mut self.known {
             known.pen.switch_to(Pen::default(), bytes);
@@ -32,7 +33,7 @@ impl Encoder {
     }
 
     /// Records that the contents of `region` have moved up by `by` rows.
-    // The pen must have been reset: many terminals fill the new rows with its background.
+    // Requires a reset before scrolling: many terminals fill the new rows with the pen's background.
     pub(super) fn scroll_up(&mut self, region: Range<u16>, by: u16) {
         if let Some(known) = &mut self.known {
             known.shown.scroll_up(region, by);

@@ -1,22 +1,23 @@
-//! The two halves of a picture's cell, and their tolerance.
+//! The colours of the two halves of a picture cell, and the tolerance of their differences.
 
 use crate::color::{Oklab, Srgb8};
 use crate::grid::{Cell, Glyph, Ink};
 
-/// The largest difference of a half cell from the wanted one in a frame.
+/// The largest allowed difference between the shown and the wanted colour of a half cell.
 #[derive(Clone, Copy)]
 pub(super) struct Tolerance {
     /// The largest distance in OKLab.
     pub(super) distance: f32,
     /// The largest squared difference in 8-bit sRGB, summed over the channels.
-    // Two measures: OKLab bounds what is seen in one cell, sRGB the signal-to-noise ratio of the picture.
+    // There are two measures because OKLab bounds the visible difference in a cell, and sRGB the signal-to-noise ratio
+    // of the picture.
     pub(super) square: u32,
 }
 
 impl Tolerance {
-    /// Returns whether `shown` may stand for `wanted`.
+    /// Returns whether the colour `shown` is within the tolerance of `wanted`.
     pub(super) fn allows(self, shown: Srgb8, wanted: Srgb8) -> bool {
-        // The cheap measure first: OKLab takes six cube roots.
+        // The cheaper measure is tested first: OKLab takes six cube roots.
         shown == wanted
             || squared_difference(shown, wanted) <= self.square
                 && Oklab::from_srgb8(shown).distance(Oklab::from_srgb8(wanted)) <= self.distance
@@ -28,11 +29,11 @@ pub(super) fn squared_difference(a: Srgb8, b: Srgb8) -> u32 {
     [a.r.abs_diff(b.r), a.g.abs_diff(b.g), a.b.abs_diff(b.b)].map(|channel| u32::from(channel).pow(2)).iter().sum()
 }
 
-/// The colours of the upper and the lower half of a picture's cell.
+/// The colours of the upper and the lower half of a picture cell.
 pub(super) type Halves = [Srgb8; 2];
 
-/// Returns the halves of a half block or a space in truecolor; `None` for text.
-// A panel's blank has a colour for characters, a picture's has none: so blanks of text are neither delayed nor changed.
+/// Returns the colours of the halves of a truecolor half block or space; `None` for text.
+// A space counts as picture only without a glyph colour. Panels give their blanks one, so these are never lossy.
 pub(super) fn picture_halves(cell: &Cell) -> Option<Halves> {
     let (Ink::Rgb(bg), true) = (cell.bg, cell.attributes.is_empty()) else { return None };
     match (&cell.glyph, cell.fg) {
@@ -43,7 +44,7 @@ pub(super) fn picture_halves(cell: &Cell) -> Option<Halves> {
     }
 }
 
-/// Returns a cell with these halves, with the half block of the wanted cell.
+/// Returns a cell that shows these halves, with the half block of `wanted`.
 pub(super) fn half_block_cell([upper, lower]: Halves, wanted: &Cell) -> Cell {
     if upper == lower {
         Cell::new(' ', Ink::Default, Ink::Rgb(upper))

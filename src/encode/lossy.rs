@@ -178,7 +178,8 @@ impl<'a> Plan<'a> {
         self.count_from(if within_caps { Urgency::Differs(0) } else { Urgency::Appears })
     }
 
-    /// Returns the next grid: the wanted text, and the `writes` most urgent cells of the picture.
+    /// Returns the grid to show next: the shown one with the wanted text and the `writes` most
+    /// urgent picture cells.
     pub(super) fn grid(&self, writes: usize) -> Grid {
         let (written, left) = self.differences.split_at(writes);
         let left: u64 = left.iter().filter_map(|left| Some(sum(squares(left.shown?, left.wanted)))).sum();
@@ -192,8 +193,8 @@ impl<'a> Plan<'a> {
             if squares <= max_squares || tolerance.square == 0 {
                 break snapped;
             }
-            // Seldom all halves take far colours; then the tolerance shrinks in proportion, so that few tries are
-            // needed.
+            // Rarely, so many halves get distant colours that the sum exceeds its cap. The tolerance then shrinks in
+            // proportion, so that few tries are needed.
             tolerance.square = (f64::from(tolerance.square) * (max_squares / squares).clamp(0.0, 0.75)) as u32;
         };
         let mut grid = self.shown_with_text();
@@ -203,7 +204,8 @@ impl<'a> Plan<'a> {
         grid
     }
 
-    /// Returns the halves with which cells are written: exact ones for cells that are due.
+    /// Returns the halves to write for the cells in `written`: exact ones where a cell is due,
+    /// otherwise palette colours.
     fn snapped_halves(&self, written: &[Difference], tolerance: Tolerance) -> Vec<Halves> {
         let mut snapped: Vec<Halves> = written.iter().map(|write| write.wanted).collect();
         let inexact = written.iter().zip(&mut snapped).filter(|(write, _)| !(self.frame.has_waited)(write.at));
@@ -212,7 +214,7 @@ impl<'a> Plan<'a> {
         snapped
     }
 
-    /// Returns the shown grid with the wanted text.
+    /// Returns the shown grid with its text cells replaced by the wanted ones.
     fn shown_with_text(&self) -> Grid {
         let mut grid = self.frame.shown.clone();
         for &at in &self.text {
@@ -221,7 +223,7 @@ impl<'a> Plan<'a> {
         grid
     }
 
-    /// Returns the indices of the cells that the grid does not show exactly.
+    /// Returns the indices of the picture cells that differ between `grid` and the wanted grid.
     pub(super) fn inexact(&self, grid: &Grid) -> impl Iterator<Item = usize> {
         let is_inexact =
             |difference: &&Difference| picture_halves(&grid.cells()[difference.at]) != Some(difference.wanted);

@@ -1,8 +1,8 @@
 //! Decimal numbers in escape sequences.
 //!
-//! `write!` takes ten times as long, and numbers are most of the bytes that an encoder writes.
+//! Own code, because `write!` takes ten times as long and most of the encoder's bytes are numbers.
 
-/// Returns the number of decimal digits.
+/// Returns the number of decimal digits of `number`.
 pub(super) fn digit_count(number: u16) -> usize {
     match number {
         0..10 => 1,
@@ -24,8 +24,8 @@ pub(super) fn write_number(number: u16, bytes: &mut Vec<u8>) {
 
 /// Appends a semicolon and the decimal value of each channel of a colour.
 pub(super) fn write_channels(channels: [u8; 3], bytes: &mut Vec<u8>) {
-    // A copy of constant size per channel, truncated at the end, is faster than appending digit by digit: with this
-    // table and cheaper pens 120 frames at 200x60 went from 196 to 115 ms.
+    // Copying four bytes per channel and dropping the padding is faster than appending digit by digit: with this table
+    // and cheaper pens, 120 frames at 200x60 went from 196 to 115 ms.
     let mut text = [0; 12];
     let mut len = 0;
     for channel in channels {
@@ -36,8 +36,8 @@ pub(super) fn write_channels(channels: [u8; 3], bytes: &mut Vec<u8>) {
     bytes.truncate(bytes.len() + len - text.len());
 }
 
-/// Returns the number of decimal digits of a channel.
-// Without a branch, which would be mispredicted: the digits of a picture's channels are random.
+/// Returns the number of decimal digits of a channel value.
+// Without branches, which would be mispredicted because a picture's values vary.
 pub(super) fn channel_digit_count(channel: u8) -> usize {
     1 + usize::from(channel >= 10) + usize::from(channel >= 100)
 }

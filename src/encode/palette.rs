@@ -1,8 +1,8 @@
-//! Reduction of a frame's colours within the tolerance.
+//! Reduction of the number of colours in a lossy frame, within the tolerance.
 //!
-//! A palette is chosen by greedy set cover (Johnson 1974): the colour that the most halves can take, then the one that
-//! the most of the rest can take, and so on. Then pairs of its colours are chosen in the same way, because the cells of
-//! one pair are written without a change of the pen.
+//! A palette is chosen by greedy set cover (Johnson 1974): first the colour that most half cells can take, then the one
+//! that most of the remaining half cells can take, and so on. Pairs of palette colours are then chosen in the same way,
+//! because all cells of one pair are written without a change of the pen.
 
 use super::halves::{Halves, Tolerance, squared_difference};
 use crate::color::{Oklab, Srgb8};
@@ -11,10 +11,10 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::mem;
 
-/// Replaces the cells' colours by colours of a palette within the tolerance.
+/// Replaces the cells' colours by palette colours within the tolerance.
 ///
-/// With [`HalfBlocks::Either`] a pair of colours serves both ways round. The pen's colours are candidates for the
-/// palette.
+/// With [`HalfBlocks::Either`] a pair of colours counts as the same pair in either order. The pen's colours are also
+/// candidates for the palette.
 pub(super) fn snap_to_palette(cells: &mut [&mut Halves], pen: [Ink; 2], tolerance: Tolerance, half_blocks: HalfBlocks) {
     let table = ColorTable::of(cells, pen);
     let choices = table.choices(tolerance);
@@ -40,13 +40,13 @@ struct ColorTable {
     oklab: Vec<Oklab>,
 }
 
-/// Largest number of palette colours from which a half chooses; the most useful come first.
-// More would hardly save bytes, and each choice multiplies the possible pairs.
+/// Largest number of palette colours that are considered for a half cell.
+// More would hardly save bytes, and the number of possible pairs grows with the square.
 const MAX_CHOICES: usize = 4;
 
-/// Number of colours, next in lightness on either side, with which a colour is compared.
-// In pictures the exchangeable colours are among them. Noise, where they are not, took 192 times ratatui's time before
-// this limit and two others, and takes 21 times.
+/// Number of colours, nearest in lightness on either side, with which each colour is compared.
+// In pictures the colours within the tolerance are among them. In noise they are not: it took 192 times ratatui's time
+// before this limit and two others, and takes 21 times with them.
 const LIGHTNESS_NEIGHBOURS: usize = 24;
 
 impl ColorTable {
@@ -66,7 +66,8 @@ impl ColorTable {
         self.colors.binary_search(&color).expect("the cells' colours are all here")
     }
 
-    /// Returns for each colour the palette colours that may stand for it, the most useful first.
+    /// Returns for each colour the palette colours that may replace it, those that replace the most
+    /// half cells first.
     fn choices(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
         let exchangeable = self.exchangeable(tolerance);
         let mut choices: Vec<Vec<usize>> = vec![Vec::new(); self.colors.len()];
@@ -81,8 +82,7 @@ impl ColorTable {
     }
 
     /// Returns for each colour the colours within the tolerance, including itself.
-    // Sorted by lightness they lie in a window, of which the middle is compared: OKLab distance is at least the
-    // difference in lightness.
+    // OKLab distance is at least the difference in lightness, so only neighbours in an order by lightness are compared.
     fn exchangeable(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
         let mut order: Vec<usize> = (0..self.colors.len()).collect();
         order.sort_unstable_by(|&a, &b| self.oklab[a].l.total_cmp(&self.oklab[b].l));
@@ -102,7 +102,8 @@ impl ColorTable {
     }
 }
 
-/// Returns for each cell a pair of colours that it can show, such that there are few pairs.
+/// Returns for each cell a pair out of the `choices` for its two `wanted` colours, using few
+/// distinct pairs.
 fn pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], half_blocks: HalfBlocks) -> Vec<[usize; 2]> {
     let mut possible: Vec<([usize; 2], usize)> = Vec::new();
     for (cell, &[upper, lower]) in wanted.iter().enumerate() {
@@ -139,10 +140,12 @@ fn pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], half_blocks: HalfBlocks)
     chosen
 }
 
-/// Returns sets that cover all members: each next one adds the largest weight, until none is left.
+/// Returns indices of sets that together cover all members, chosen greedily by the weight of
+/// members not yet covered.
 fn greedy_cover(sets: &[impl AsRef<[usize]>], weights: &[usize]) -> Vec<usize> {
     let mut left = weights.to_vec();
-    // A set's gain only shrinks, so one whose gain is still that of its heap entry is the best of all (Minoux 1978).
+    // Lazy evaluation: gains only shrink, so a set whose gain still equals that of its heap entry is the best (Minoux
+    // 1978).
     let mut heap: BinaryHeap<(usize, Reverse<usize>)> =
         sets.iter().enumerate().map(|(at, set)| (gain(set.as_ref(), &left), Reverse(at))).collect();
     let mut chosen = Vec::new();

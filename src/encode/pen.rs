@@ -1,10 +1,10 @@
-//! The pen, and the bytes that it takes to switch to another pen.
+//! The pen (a terminal's current colours and attributes), and the SGR sequences that change it.
 
 use super::numbers::{channel_digit_count, digit_count, write_channels, write_number};
 use crate::grid::{Attributes, Cell, Glyph, Ink};
 use std::mem;
 
-/// The colours and attributes with which the terminal would write now.
+/// The colours and attributes with which the terminal would write the next character.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Pen {
     pub(super) fg: Ink,
@@ -14,14 +14,14 @@ pub(crate) struct Pen {
 }
 
 impl Pen {
-    /// Appends a reset to the default colours, even if the pen has them already.
+    /// Appends a reset to the default colours, even if the pen already has them.
     pub(crate) fn reset(&mut self, bytes: &mut Vec<u8>) {
         bytes.extend_from_slice(b"\x1b[0m");
         *self = Self::default();
     }
 
-    /// Appends a cell for a file: the changes of the pen, one colour at a time, and the glyph.
-    // Always in the long form: shorter bytes for a screen must not change users' files.
+    /// Appends a cell for an exported file: the sequences that change the pen, and the glyph.
+    // Colours are always in the long form, so that savings for the screen do not change the bytes of exported files.
     pub(crate) fn write_cell(&mut self, cell: &Cell, bytes: &mut Vec<u8>) {
         let wanted = self.plain_pen_for(cell);
         self.write_sgr(Self { fg: self.after_attributes(wanted.attributes).fg, ..wanted }, InkForm::Long, bytes);
@@ -29,34 +29,33 @@ impl Pen {
         write_glyph(&cell.glyph, bytes);
     }
 
-    /// Returns the pen with which to write a cell.
-    // A plain space in the pen's glyph colour is cheapest with the two colours exchanged: SGR 7 takes four bytes, the
-    // colour again as the background about nineteen. The result looks the same, pixel by pixel, in xterm, kitty,
-    // alacritty, st and foot.
+    /// Returns the cheapest pen with which to write a cell.
+    // A space whose background is the pen's glyph colour is cheapest in reverse video: SGR 7 takes four bytes, setting
+    // the background about nineteen. The result is the same, pixel by pixel, in xterm, kitty, alacritty, st and foot.
     #[inline]
     pub(super) fn pen_for(&self, cell: &Cell) -> Self {
-        // Nearly every cell of a picture: the likely question first.
+        // The common case first: nearly every cell of a picture is a block without attributes.
         if cell.glyph != ' ' && cell.attributes.is_empty() && self.attributes.is_empty() {
             return Self { fg: cell.fg, bg: cell.bg, ..*self };
         }
         self.pen_for_any(cell)
     }
 
-    /// Returns the pen for a cell of any kind.
-    // Apart from `pen_for`, so that only the test of the common case is inlined.
+    /// Returns the cheapest pen for any cell, with or without reverse video.
+    // Separate from `pen_for`, so that only the test of the common case is inlined.
     fn pen_for_any(&self, cell: &Cell) -> Self {
         if self.can_show_reversed(cell) { self.pen_for_space(cell) } else { self.plain_pen_for(cell) }
     }
 
-    /// Returns the pen for a space that may be written with exchanged colours, if that is cheaper.
+    /// Returns the cheaper of two pens for a space: plain, or in reverse video.
     fn pen_for_space(&self, cell: &Cell) -> Self {
         let plain = self.plain_pen_for(cell);
         let exchanged = Self { attributes: Attributes::REVERSED, ..*self };
         if self.switch_cost(&exchanged) < self.switch_cost(&plain) { exchanged } else { plain }
     }
 
-    /// Returns whether a space with the pen's two colours exchanged looks like the cell.
-    // The default glyph colour cannot be set as a background, so it cannot be exchanged.
+    /// Returns whether a space in reverse video, in the pen's colours, looks like the cell.
+    // The default glyph colour cannot be set as a background, so it cannot be reversed.
     fn can_show_reversed(&self, cell: &Cell) -> bool {
         is_plain_space(cell)
             && self.fg == cell.bg
@@ -64,8 +63,8 @@ impl Pen {
             && Attributes::REVERSED.contains(self.attributes)
     }
 
-    /// Returns the pen for a cell without exchanged colours.
-    // Colours that are not seen keep the pen's value: the glyph colour of a plain space, the colour of a missing
+    /// Returns the pen for a cell without reverse video.
+    // Invisible colours keep the pen's value, which costs nothing: the glyph colour of a space, the colour of a missing
     // underline.
     fn plain_pen_for(&self, cell: &Cell) -> Self {
         let mut pen = self.after_attributes(cell.attributes);
@@ -79,21 +78,22 @@ impl Pen {
         pen
     }
 
-    /// Returns the pen after a switch to these attributes, before its colours are changed.
-    // Adding attributes keeps the colours. Terminals disagree on how to switch single attributes off, so everything is
-    // reset first, colours too, which is understood everywhere; only for exchanged colours all know a code that ends
-    // them (27).
+    /// Returns the pen after its attributes are changed to `attributes`, before its colours are
+    /// changed.
+    // Adding attributes keeps the colours. Removing one resets everything first, colours included, because terminals
+    // disagree on the codes that switch single attributes off. Only the code that ends reverse video (27) is known to
+    // all.
     pub(super) fn after_attributes(self, attributes: Attributes) -> Self {
         let from = if self.needs_reset(attributes) { Self::default() } else { self };
         Self { attributes, ..from }
     }
 
-    /// Returns whether a switch to these attributes needs a reset.
+    /// Returns whether a switch from the pen's attributes to `attributes` needs a reset.
     ///
-    /// Losing an attribute does, and gaining one that would have another effect than after a reset.
-    // Bold makes one of the first eight colours bright in many terminals if the colour was set by its short code (see
-    // [`ink_len`]). Some terminals take bold and dim, or the two speeds of blinking, for one attribute, of which the
-    // last code counts.
+    /// It does if an attribute is removed, or if one is added that acts differently without a reset before it.
+    // In many terminals bold brightens one of the first eight colours if it was set by its short code (see
+    // [`ink_len`]). Some treat bold and dim, or the two speeds of blinking, as one attribute, for which the last code
+    // counts.
     fn needs_reset(&self, attributes: Attributes) -> bool {
         let (lost, gained) = (self.attributes.difference(attributes), attributes.difference(self.attributes));
         let comes_before = |first, second| gained.contains(first) && self.attributes.contains(second);
@@ -103,7 +103,7 @@ impl Pen {
             || comes_before(Attributes::SLOW_BLINK, Attributes::RAPID_BLINK)
     }
 
-    /// Returns the SGR parameters of a switch to these attributes.
+    /// Returns the SGR parameters of a switch from the pen's attributes to `attributes`.
     fn attribute_codes(&self, attributes: Attributes) -> impl Iterator<Item = &'static [u8]> {
         let needs_reset = self.needs_reset(attributes);
         let from = if needs_reset { Attributes::empty() } else { self.attributes };
@@ -120,12 +120,14 @@ impl Pen {
         self.switch_cost_with_lens(wanted, wanted.ink_lens())
     }
 
-    /// Returns the switch cost, given the [`ink_lens`](Self::ink_lens) of the wanted pen.
-    // The lengths were computed up to eight times per cell. Once per cell, a frame takes a quarter fewer instructions:
-    // 1.52 million for 80x24 cells that all change, before 2.00.
+    /// Returns the bytes of a switch to `wanted`, given the wanted pen's
+    /// [`ink_lens`](Self::ink_lens).
+    // Computing the lengths once per cell instead of up to eight times takes a quarter of a frame's instructions away:
+    // 1.52 million instead of 2.00 for 80x24 cells that all change.
     #[inline]
     pub(super) fn switch_cost_with_lens(&self, wanted: &Self, lens: [usize; 2]) -> usize {
-        // Only cells with the default background can want the default pen, and a picture has none.
+        // The background is compared first: it is never the default in a picture, which makes the whole comparison
+        // rare.
         if wanted.bg == Ink::Default && *wanted == Self::default() {
             return if self == wanted { 0 } else { SGR_RESET.len() };
         }
@@ -136,21 +138,23 @@ impl Pen {
         }
     }
 
-    /// Returns the number of bytes of each of the pen's two colours, with their separators.
+    /// Returns the number of bytes that set the pen's glyph and background colours, each with its
+    /// separator.
     pub(super) fn ink_lens(&self) -> [usize; 2] {
         let [fg, bg] = self.ink_forms(InkForm::Short);
         [1 + ink_len(self.fg, fg), 1 + ink_len(self.bg, bg)]
     }
 
-    /// Returns the switch cost if the attributes change.
+    /// Returns the bytes of a switch to `wanted` if the attributes change.
     fn cost_with_attributes(&self, wanted: &Self, lens: [usize; 2]) -> usize {
         let codes = self.attribute_codes(wanted.attributes).map(|code| 1 + code.len()).sum();
         let split = if self.is_split(wanted, InkForm::Short) { 2 } else { 0 };
         self.after_attributes(wanted.attributes).cost_of_colors(codes, wanted, lens) + split
     }
 
-    /// Returns the cost of the colours and of attributes that take `code` bytes.
-    // Inlined always: it is the innermost step of the choice of half blocks, two to four calls per cell.
+    /// Returns the bytes that set the colours of `wanted`, and attributes whose codes take `code`
+    /// bytes.
+    // Always inlined, as the innermost step of the choice of half blocks: two to four calls per cell.
     #[inline(always)]
     fn cost_of_colors(&self, code: usize, wanted: &Self, [fg, bg]: [usize; 2]) -> usize {
         let fg = if self.fg == wanted.fg { 0 } else { fg };
@@ -160,7 +164,8 @@ impl Pen {
         underline + if codes == 0 { 0 } else { 2 + codes }
     }
 
-    /// Switches to another pen: one sequence, and another for the underline's colour.
+    /// Switches to the pen `wanted`: appends one sequence, and another if the underline's colour
+    /// changes.
     pub(super) fn switch_to(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
         if *self != wanted && wanted == Self::default() {
             bytes.extend_from_slice(SGR_RESET);
@@ -170,7 +175,8 @@ impl Pen {
         }
     }
 
-    /// Appends the sequences of a switch, with colours in the given form.
+    /// Appends the sequences that switch to the pen `wanted`, with the first eight colours in
+    /// `form`.
     fn write_sgr(&mut self, wanted: Self, form: InkForm, bytes: &mut Vec<u8>) {
         let mut lead: &[u8] = b"\x1b[";
         for code in self.attribute_codes(wanted.attributes) {
@@ -198,7 +204,8 @@ impl Pen {
         *self = wanted;
     }
 
-    /// Returns whether attributes and colours have more parameters than one sequence may have.
+    /// Returns whether a switch to `wanted` needs a sequence for attributes and another for
+    /// colours, because one would have too many parameters.
     fn is_split(&self, wanted: &Self, form: InkForm) -> bool {
         let from = self.after_attributes(wanted.attributes);
         let [fg, bg] = wanted.ink_forms(form);
@@ -208,8 +215,8 @@ impl Pen {
         attributes > 0 && colors > 0 && attributes + colors > MAX_SGR_PARAMETERS
     }
 
-    /// Returns the forms of the glyph's and the background's colour.
-    // A bold glyph needs the long form: the short one would be shown bright in many terminals.
+    /// Returns the forms for the glyph's and the background's colour.
+    // A bold glyph's colour needs the long form: in the short one many terminals would show it brighter.
     fn ink_forms(&self, form: InkForm) -> [InkForm; 2] {
         let fg = if self.attributes.contains(Attributes::BOLD) { InkForm::Long } else { form };
         [fg, form]
@@ -219,11 +226,11 @@ impl Pen {
 /// The shortest reset of all attributes and colours.
 const SGR_RESET: &[u8] = b"\x1b[m";
 
-/// Largest number of parameters in a sequence.
-// Some terminals ignore those after the sixteenth.
+/// Largest number of parameters in an SGR sequence.
+// Some terminals ignore parameters after the sixteenth.
 const MAX_SGR_PARAMETERS: usize = 16;
 
-/// The form of the sequence for one of the first eight colours.
+/// The form of the SGR codes for one of the first eight indexed colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum InkForm {
     /// The short form: 30 to 37, or 40 to 47.
@@ -232,7 +239,7 @@ enum InkForm {
     Long,
 }
 
-/// Returns whether a colour is one of the first eight, which have a short form.
+/// Returns whether a colour is one of the first eight indexed colours, which have a short form.
 fn is_basic(ink: Ink) -> bool {
     matches!(ink, Ink::Indexed(..8))
 }
@@ -245,7 +252,7 @@ pub(super) fn look_alike(a: &Cell, b: &Cell) -> bool {
         && (a.underline == b.underline || !is_underlined(a))
 }
 
-/// Returns whether only the background of a cell is visible.
+/// Returns whether a cell is a space without attributes, so that only its background is visible.
 pub(super) fn is_plain_space(cell: &Cell) -> bool {
     cell.glyph == ' ' && cell.attributes.is_empty()
 }
@@ -255,7 +262,7 @@ fn is_underlined(cell: &Cell) -> bool {
     cell.attributes.contains(Attributes::UNDERLINED)
 }
 
-/// In UTF-8.
+/// Appends the glyph's characters in UTF-8.
 pub(super) fn write_glyph(glyph: &Glyph, bytes: &mut Vec<u8>) {
     match glyph {
         Glyph::Char(character) => write_char(*character, bytes),
@@ -265,13 +272,14 @@ pub(super) fn write_glyph(glyph: &Glyph, bytes: &mut Vec<u8>) {
     }
 }
 
-/// In UTF-8.
+/// Appends the character in UTF-8.
 pub(super) fn write_char(character: char, bytes: &mut Vec<u8>) {
     let mut utf8 = [0; 4];
     bytes.extend_from_slice(character.encode_utf8(&mut utf8).as_bytes());
 }
 
-/// Appends the SGR parameters of a colour; they begin with `tens`: 3 for glyphs, 4 for backgrounds.
+/// Appends the SGR parameters of a colour. Their first digit is `tens`: 3 for glyphs, 4 for
+/// backgrounds.
 fn write_ink(ink: Ink, tens: u8, form: InkForm, bytes: &mut Vec<u8>) {
     match ink {
         Ink::Default => bytes.extend_from_slice(&[tens, b'9']),
@@ -290,7 +298,7 @@ fn write_ink(ink: Ink, tens: u8, form: InkForm, bytes: &mut Vec<u8>) {
 }
 
 /// Returns the number of bytes that [`write_ink`] appends.
-// Colours 8 to 15 have no short form: not every terminal that knows `38;5` knows 90 to 97.
+// Colours 8 to 15 have no short form, because not every terminal that supports `38;5` supports 90 to 97.
 fn ink_len(ink: Ink, form: InkForm) -> usize {
     match ink {
         Ink::Default => 2,
@@ -310,9 +318,9 @@ fn ink_parameter_count(ink: Ink, form: InkForm) -> usize {
     }
 }
 
-/// Appends the colour of the underline.
-// In a sequence of its own and with colons: a terminal that does not know it ignores the sequence, but would take the
-// parameters of `58;2` for others, and the 2 for dim.
+/// Appends the sequence that sets the colour of the underline.
+// A separate sequence, with colons: a terminal without this colour ignores it, whereas it would read the parameters of
+// `58;2` as other codes, such as 2 as dim.
 fn write_underline(ink: Ink, bytes: &mut Vec<u8>) {
     match ink {
         Ink::Default => bytes.extend_from_slice(b"\x1b[59"),
@@ -321,7 +329,7 @@ fn write_underline(ink: Ink, bytes: &mut Vec<u8>) {
             write_number(index.into(), bytes);
         }
         Ink::Rgb(color) => {
-            // The empty parameter is the colour space.
+            // The empty parameter between the colons is the colour space.
             bytes.extend_from_slice(b"\x1b[58:2:");
             for channel in [color.r, color.g, color.b] {
                 bytes.push(b':');
@@ -341,7 +349,7 @@ fn underline_len(ink: Ink) -> usize {
     }
 }
 
-/// Returns the SGR codes of these attributes in rising order.
+/// Returns the SGR codes of the attributes in ascending order.
 fn codes_of(attributes: Attributes) -> impl Iterator<Item = &'static [u8]> {
     const CODES: [(Attributes, &[u8]); 9] = [
         (Attributes::BOLD, b"1"),

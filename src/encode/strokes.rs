@@ -1,8 +1,8 @@
 //! Encoding of cells in a given order: the choice of half blocks, and the moves of the cursor.
 //!
-//! A half-block cell can be written in two forms, the lower half on the upper half's colour or the other way round.
-//! Which one is cheaper depends on the pen, and so on the form of the cell before. The whole sequence is decided at
-//! once, by the cheapest path to each form of each cell (Viterbi 1967).
+//! A half-block cell can be written in two forms: with the lower half block, or with the upper one and the colours
+//! exchanged. Which one is cheaper depends on the pen, and so on the form of the cell before. The forms of all cells
+//! are chosen together, by the cheapest path to each form of each cell (Viterbi 1967).
 
 use super::moves::{CellPosition, Move, cheapest_move};
 use super::pen::{Pen, is_plain_space, write_char, write_glyph};
@@ -17,7 +17,8 @@ pub(super) struct Stroke {
     pen: Pen,
 }
 
-/// Returns the strokes that write the cells in this order with the fewest bytes for the pen.
+/// Returns the strokes that write the cells in `order` with the fewest bytes for changes of the
+/// pen.
 pub(super) fn choose(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, mut pen: Pen) -> Vec<Stroke> {
     let forms = choose_forms(wanted, order, half_blocks, pen);
     let stroke = |(&position, form): (&CellPosition, BlockForm)| {
@@ -27,9 +28,9 @@ pub(super) fn choose(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlo
     order.iter().zip(forms).map(stroke).collect()
 }
 
-/// Gives plain spaces the glyph colour of the next stroke, if that stroke changes nothing else.
-// A space's glyph colour is not seen, so one sequence can set both colours. Not with exchanged colours, where the glyph
-// colour is the one that is seen.
+/// Gives a plain space the pen of the next stroke if the two pens differ in the glyph colour only.
+// A space's glyph colour is invisible, so the space's sequence can set it for the next stroke. Not in reverse video,
+// where the glyph colour fills the cell.
 pub(super) fn share_next_fg(wanted: &Grid, strokes: &mut [Stroke]) {
     for at in (1..strokes.len()).rev() {
         let next = strokes[at].pen;
@@ -41,8 +42,9 @@ pub(super) fn share_next_fg(wanted: &Grid, strokes: &mut [Stroke]) {
     }
 }
 
-/// Appends the strokes, and returns the cursor's position after them, if that is certain.
-// The cursor's first position is not relied on: other output since the last frame may have moved it.
+/// Appends the strokes. Returns the cursor's position after them, or `None` where terminals differ
+/// about it.
+// The cursor's position is assumed unknown at first, because other output since the last frame may have moved it.
 pub(super) fn write(
     wanted: &Grid,
     strokes: &[Stroke],
@@ -61,7 +63,7 @@ pub(super) fn write(
 }
 
 /// Appends the glyph of a stroke.
-// A wide cluster takes one cell in some terminals, so blanks first clear the others.
+// Before a wide cluster, blanks clear its cells: some terminals draw it in the first one only.
 fn write_cell(wanted: &Grid, stroke: &Stroke, bytes: &mut Vec<u8>) {
     let CellPosition { column, row } = stroke.position;
     let glyph = &wanted.cell(column, row).glyph;
@@ -75,17 +77,17 @@ fn write_cell(wanted: &Grid, stroke: &Stroke, bytes: &mut Vec<u8>) {
     }
 }
 
-/// The form in which a cell is written.
+/// The form in which a half-block cell is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum BlockForm {
-    /// The glyph of the wanted grid.
+    /// With the glyph of the wanted grid.
     AsWanted,
-    /// The other half block, with the two colours exchanged.
+    /// With the other half block, and the two colours exchanged.
     Flipped,
 }
 
 impl BlockForm {
-    /// Returns the pen that writes a cell in this form after another pen.
+    /// Returns the pen that writes `cell` in this form, given the pen `before` it.
     fn pen(self, cell: &Cell, before: &Pen) -> Pen {
         let plain = before.pen_for(cell);
         match self {
@@ -95,7 +97,7 @@ impl BlockForm {
     }
 }
 
-/// Returns the pen for the other half block.
+/// Returns the pen with glyph and background colours exchanged, for the other half block.
 fn swapped_colors(pen: Pen) -> Pen {
     Pen { fg: pen.bg, bg: pen.fg, ..pen }
 }
@@ -109,7 +111,7 @@ fn other_half_block(glyph: &Glyph) -> Option<char> {
 }
 
 /// Returns whether a cell looks the same with the other half block and exchanged colours.
-// Default colours cannot be exchanged: each can only be set in its own role.
+// Default colours cannot be exchanged: the default background cannot be set as a glyph colour, nor the reverse.
 fn can_be_flipped(cell: &Cell) -> bool {
     other_half_block(&cell.glyph).is_some()
         && cell.attributes.is_empty()
@@ -117,7 +119,7 @@ fn can_be_flipped(cell: &Cell) -> bool {
         && cell.bg != Ink::Default
 }
 
-/// The cheapest path to one form of a cell: its pen, and its cost so far.
+/// The cheapest path to one form of a cell: the pen after it, and the cost so far.
 #[derive(Clone, Copy)]
 struct SurvivorPath {
     pen: Pen,
@@ -125,25 +127,26 @@ struct SurvivorPath {
 }
 
 /// The cost of a path: [`COST_PER_BYTE`] for each byte, plus one for each lower half block.
-// Which half block wins a tie hardly matters, but it has to be always the same one, or a compressor does not recognise
-// the frame before. With the upper one the colours are sent in the order of the pixels.
+// Ties go to the upper half block. Any fixed rule would do, so that a compressor finds the bytes of the previous frame
+// again; with this one the colours are sent in the order of the pixels.
 type PathCost = u64;
 
-/// The cost of a byte: more than a grid has cells, so that lower half blocks only break ties.
+/// The cost of a byte. It exceeds the number of cells in a grid, so that lower half blocks only
+/// break ties.
 const COST_PER_BYTE: PathCost = 1 << 32;
 
-/// Returns the form of each cell for which the switches of the pen take the fewest bytes.
+/// Returns a form for each cell in `order`, such that all changes of the pen take the fewest bytes.
 fn choose_forms(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, pen: Pen) -> Vec<BlockForm> {
     if half_blocks == HalfBlocks::Lower {
         return vec![BlockForm::AsWanted; order.len()];
     }
     let mut paths = [SurvivorPath { pen, cost: 0 }; 2];
-    // For each form of each cell, the form of the cell before it on the cheapest path.
+    // For each cell and each of its two forms, the form of the previous cell on the cheapest path.
     let mut predecessors = Vec::with_capacity(order.len());
     for position in order {
         let cell = wanted.cell(position.column, position.row);
-        // Element by element: `map` over arrays of pens moves them through memory in pieces, which took a third of an
-        // encoder's time.
+        // Written out for each element, because `map` over arrays of pens copies them in pieces, which took a third of
+        // the encoder's time.
         let pens = [paths[0].pen.pen_for(cell), paths[1].pen.pen_for(cell)];
         let is_lower = cell.glyph == '▄';
         if is_plain_space(cell) {
@@ -175,15 +178,16 @@ fn choose_forms(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, 
     forms
 }
 
-/// Returns the cheaper of two paths extended by a cell, and its index.
+/// Extends both paths by a cell, written with `pens`. Returns the cheaper one and its index, 0 or
+/// 1.
 fn cheaper(paths: &[SurvivorPath; 2], pens: [Pen; 2], lens: [usize; 2], is_lower: bool) -> (SurvivorPath, u8) {
     let [first, second] = [paths[0].step(pens[0], lens, is_lower), paths[1].step(pens[1], lens, is_lower)];
     if second.cost < first.cost { (second, 1) } else { (first, 0) }
 }
 
 impl SurvivorPath {
-    /// Returns the path extended by a cell that is written with this pen.
-    // Inlined always, with `cost_of_colors`: calls here move pens through memory.
+    /// Returns the path extended by a cell that is written with `pen`.
+    // Always inlined, as `cost_of_colors` is: a call would copy pens through memory.
     #[inline(always)]
     fn step(&self, pen: Pen, lens: [usize; 2], is_lower: bool) -> Self {
         Self {
@@ -195,9 +199,9 @@ impl SurvivorPath {
     }
 }
 
-/// Moves the cursor to a cell: by the cheapest move, or by writing the cells on the way again.
-// Writing again is possible if the pen is right for all of them, and chosen if it takes no more bytes. At equal length
-// it is better for a compressor, which finds a longer run of one glyph.
+/// Moves the cursor to a cell: by the cheapest sequence, or by writing the cells between again.
+// The latter is possible if the pen fits all these cells, and chosen if it takes no more bytes than the sequence. At
+// equal length it compresses better, as a longer run of one glyph.
 fn move_to(
     wanted: &Grid,
     cursor: Option<CellPosition>,
@@ -226,14 +230,16 @@ fn move_to(
     }
 }
 
-/// Returns the columns from the cursor to a cell further right in its row.
+/// Returns the columns from the cursor up to a cell further right in the same row; `None` for other
+/// cells.
 fn columns_between(cursor: Option<CellPosition>, position: CellPosition) -> Option<Range<u16>> {
     let cursor = cursor.filter(|cursor| cursor.row == position.row && cursor.column < position.column)?;
     Some(cursor.column..position.column)
 }
 
-/// Returns the character that shows a cell with exactly this pen, if there is one.
-// Only ASCII and half blocks: other glyphs take more bytes than a move, or more than one column.
+/// Returns the character that shows a cell if it is written with `pen` unchanged; `None` if there
+/// is none.
+// Only ASCII and half blocks are considered: other glyphs take more bytes than a move, or more than one column.
 fn char_shown_by_pen(cell: &Cell, half_blocks: HalfBlocks, pen: &Pen) -> Option<char> {
     let shows = |form: BlockForm| form.pen(cell, pen) == *pen;
     match (&cell.glyph, other_half_block(&cell.glyph)) {
@@ -245,9 +251,9 @@ fn char_shown_by_pen(cell: &Cell, half_blocks: HalfBlocks, pen: &Pen) -> Option<
     }
 }
 
-/// Returns the cursor's position after a cell, if that is certain.
-// In the last column it depends on the terminal. After a cluster too: terminals disagree on the width of flags,
-// families and letters with marks, so the next move has to be absolute.
+/// Returns the cursor's position after writing a cell; `None` if it depends on the terminal.
+// It does in the last column, and after a cluster: terminals disagree on the width of flags, families and letters with
+// marks. The next move then has to be absolute.
 pub(super) fn cursor_after(wanted: &Grid, position: CellPosition) -> Option<CellPosition> {
     if matches!(wanted.cell(position.column, position.row).glyph, Glyph::Cluster(_)) {
         return None;

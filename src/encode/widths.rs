@@ -3,15 +3,16 @@
 use crate::grid::{Cell, Glyph, Grid};
 use unicode_width::UnicodeWidthChar;
 
-/// Returns the width of the first of these cells: its own column and the covered ones after it.
+/// Returns the width of the first cell in columns: one, and one for each covered cell directly
+/// after it.
 pub(super) fn leading_width(cells: &[Cell]) -> usize {
     1 + cells.iter().skip(1).take_while(|cell| cell.glyph == Glyph::Covered).count()
 }
 
-/// Returns the largest width of a cluster in any terminal.
+/// Returns the largest number of columns that a grapheme cluster takes in any terminal.
 ///
-/// It is the sum of the widths of its characters, each at least one column.
-// Terminals without support for clusters show its characters one by one, some even combining marks.
+/// It is the sum of the widths of the characters, each at least one column.
+// Terminals without support for clusters show the characters one by one, some even combining marks.
 pub(super) fn max_cluster_width(text: &str) -> usize {
     text.chars().map(|c| c.width().unwrap_or(0).max(1)).sum()
 }

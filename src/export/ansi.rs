@@ -18,16 +18,16 @@ pub(super) const KIND: FormatRow = FormatRow {
     difference: difference::by_rows,
 };
 
-/// Returns the bytes that print the grid in these colours; plain text without colours.
+/// Returns the bytes that print the grid; plain text if `colors` is [`Colors::None`].
 pub fn ansi_or_text(grid: &Grid, colors: Colors) -> Vec<u8> {
     match colors {
-        // Not even a reset: without colours no sequence is sent, for terminals that would print it.
+        // No sequence at all, not even a reset, because some terminals without colours would print it.
         Colors::None => text(grid).into_bytes(),
         _ => ansi(grid),
     }
 }
 
-/// Returns the grid in colour, as lines that any program may print.
+/// Returns the grid as lines with colour sequences, which any program may print.
 ///
 /// The cursor is not moved, and the default colours are restored at the end of each line.
 ///
@@ -43,7 +43,8 @@ pub fn ansi(grid: &Grid) -> Vec<u8> {
         for cell in row.iter().filter(|cell| cell.glyph != Glyph::Covered) {
             pen.write_cell(cell, &mut bytes);
         }
-        // Before the line feed: some terminals fill the rest of a line, and new lines, with the background.
+        // Reset before the line feed, because some terminals fill the rest of the line, and new lines, with the
+        // background.
         pen.reset(&mut bytes);
         bytes.push(b'\n');
     }

@@ -26,17 +26,19 @@ const MAX_SHOWN_ROWS: usize = 60;
 /// assert_eq!(compare("equal\n", "equal\n"), None);
 /// # Ok::<(), &str>(())
 /// ```
-// By rows, not by a line diff: rows of screens correspond, so each differing cell can be marked, also where only
-// colours differ.
+// Rows are compared by position, not aligned as in a line diff: the rows of two screens correspond, so each differing
+// cell can be marked, even if only colours differ.
 pub fn compare(expected: &str, found: &str) -> Option<Difference> {
     if expected == found {
         return None;
     }
     let [expected_rows, found_rows] = [expected, found].map(rows);
     let same = expected_rows.iter().zip(&found_rows).take_while(|(a, b)| a == b).count();
-    // The equal rows at the end must not overlap those at the start, as in a screen of equal rows that became shorter.
+    // Equal rows at the end must not overlap equal rows at the start, which they would if all rows are equal and one
+    // text is shorter.
     let left = expected_rows.len().min(found_rows.len()) - same;
-    // With equally many rows, each is compared with the one in its place, as on a screen. Otherwise one block differs.
+    // Texts with equally many rows are compared row by row. Otherwise everything between the equal rows at the start
+    // and the end is reported as one block.
     let mut same_after = 0;
     if expected_rows.len() != found_rows.len() {
         let from_end = expected_rows.iter().rev().zip(found_rows.iter().rev());
@@ -73,12 +75,12 @@ pub struct Difference {
 type Row = Vec<(char, TextStyle)>;
 
 fn rows(text: &str) -> Vec<Row> {
-    // One line feed only: an empty last row counts as a row.
+    // Only one line feed is removed, because an empty last row counts as a row.
     let text = text.strip_suffix('\n').unwrap_or(text);
     text.split('\n').map(sgr::row).collect()
 }
 
-/// Returns the width of a character in columns.
+/// Returns the width of a character, as a message shows it, in columns.
 fn columns(character: char) -> usize {
     visible_char(character).width().unwrap_or(1)
 }
@@ -87,7 +89,7 @@ fn width(row: &[(char, TextStyle)]) -> usize {
     row.iter().map(|&(character, _)| columns(character)).sum()
 }
 
-/// Returns the marks below differing cells, and one behind the shorter row.
+/// Returns a line with a mark below each differing cell, and below the end of the shorter row.
 fn marks(a: &Row, b: &Row) -> String {
     let mut marks = String::new();
     for (a, b) in a.iter().zip(b) {
@@ -101,15 +103,15 @@ fn marks(a: &Row, b: &Row) -> String {
 }
 
 impl Difference {
-    /// Returns the first differing row, from 0.
+    /// Returns the index of the first differing row, from 0.
     ///
-    /// If one text has more rows, it may be the first that only this text has.
+    /// If one text has more rows, that row may exist in this text only.
     #[doc(hidden)]
     pub fn row(&self) -> usize {
         self.same
     }
 
-    /// Returns the first differing cell in that row, counted from 0.
+    /// Returns the column of the first differing cell in the first differing row, from 0.
     #[doc(hidden)]
     pub fn column(&self) -> usize {
         let (Some(a), Some(b)) = (self.expected.get(self.same), self.found.get(self.same)) else { return 0 };
@@ -117,12 +119,13 @@ impl Difference {
         width(&a[..same])
     }
 
-    /// Returns the end of each text's rows that are not equal at the top or the bottom.
+    /// Returns for each text the index of its first row that belongs to the equal rows at the
+    /// bottom.
     fn middle(&self) -> [usize; 2] {
         [&self.expected, &self.found].map(|rows| rows.len() - self.same_after)
     }
 
-    /// Returns the indices of the differing rows of texts with equally many rows.
+    /// Returns the indices of the differing rows, if both texts have equally many rows.
     fn differing(&self) -> impl Iterator<Item = usize> {
         let pairs = self.expected.iter().zip(&self.found).enumerate();
         pairs.filter(|(_, (a, b))| a != b).map(|(row, _)| row)
@@ -132,7 +135,7 @@ impl Difference {
     fn write_summary(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let size = |rows: &[Row]| (rows.iter().map(|row| width(row)).max().unwrap_or(0), rows.len());
         let (expected, found) = (size(&self.expected), size(&self.found));
-        // A wrong size is the likeliest cause of all other differences, so the report starts with it.
+        // The report starts with the sizes if they differ, because that usually causes all other differences.
         if expected != found {
             writeln!(f, "{}x{} characters were expected, {}x{} found", expected.0, expected.1, found.0, found.1)?;
         }
@@ -151,7 +154,7 @@ impl Difference {
         }
     }
 
-    /// Writes pairs of differing rows, with their neighbours.
+    /// Writes each pair of differing rows, and a row of context before and after it.
     fn write_pairs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let differing: Vec<usize> = self.differing().take(MAX_SHOWN_ROWS).collect();
         // One row of context on either side shows where in the picture a difference is.
@@ -178,7 +181,8 @@ impl Difference {
         }
     }
 
-    /// Writes a block of expected rows, and the block of more or fewer rows that replaces it.
+    /// Writes the block of expected rows, and the block of found rows that replaces it, for texts
+    /// with different numbers of rows.
     fn write_block(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [expected_end, found_end] = self.middle();
         if let Some(before) = self.same.checked_sub(1) {
@@ -206,7 +210,7 @@ impl Difference {
     fn write_row(&self, f: &mut fmt::Formatter<'_>, sign: char, row: usize, text: &Row) -> fmt::Result {
         let text: String = text.iter().map(|&(character, _)| visible_char(character)).collect();
         let (on, off) = match sign {
-            // The whole line is coloured, so that no sequence is inside the row's text.
+            // Sequences are put only around the whole line, so that none interrupts the row's text.
             '-' if f.alternate() => ("\x1b[31m", "\x1b[m"),
             '+' if f.alternate() => ("\x1b[32m", "\x1b[m"),
             _ => ("", ""),
@@ -214,11 +218,12 @@ impl Difference {
         writeln!(f, "{on}{sign} {:digits$} |{text}|{off}", row + 1, digits = self.digits())
     }
 
-    /// Writes the marks below a pair, and the first differing style if the glyphs are equal.
+    /// Writes the marks below a pair of differing rows; if only styles differ, also the first
+    /// differing style.
     fn write_marks(&self, f: &mut fmt::Formatter<'_>, a: &Row, b: &Row) -> fmt::Result {
         write!(f, "  {:digits$}  {}", "", marks(a, b), digits = self.digits())?;
         let glyphs = |row: &Row| row.iter().map(|&(character, _)| character).collect::<Vec<_>>();
-        // Equal glyphs leave a reader without a visible difference, so the styles are named.
+        // If all glyphs are equal, no difference is visible, so the first differing styles are described.
         if glyphs(a) == glyphs(b)
             && let Some(((_, was), (_, is))) = a.iter().zip(b).find(|(a, b)| a != b)
         {
@@ -235,10 +240,10 @@ impl fmt::Display for Difference {
     }
 }
 
-/// Returns the difference of a text file from the golden one, for a person.
+/// Returns the difference of a text file from the golden file, row by row, for a person.
 pub(super) fn by_rows(golden: &[u8], file: &[u8]) -> String {
     let [expected, found] = [golden, file].map(String::from_utf8_lossy);
-    // A golden file may contain any bytes.
+    // The texts may be equal although the bytes differ, because a golden file may contain invalid UTF-8.
     compare(&expected, &found)
         .map_or_else(|| "only bytes that are not text differ\n".to_owned(), |difference| difference.to_string())
 }

@@ -32,14 +32,14 @@ pub(super) const KIND: FormatRow = FormatRow {
 /// If the picture has no pixels, or more than a [`Resolution`] may have when it is scaled; and unless `pixel_aspect` is
 /// greater than 0 and finite.
 pub fn png(picture: &Picture, pixel_aspect: f32, scale: u32) -> Result<Vec<u8>, ExportError> {
-    // Checked before anything is allocated: the largest scale was a panic.
+    // The size is checked before anything is allocated, because an allocation for the largest scale panicked.
     let [width, height] = [picture.width, picture.height].map(|side| side.saturating_mul(scale));
     Resolution::new(width, height).and_then(|file| file.with_pixel_aspect(pixel_aspect))?;
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
-    // With the sRGB chunk viewers need not guess the transfer function.
+    // The sRGB chunk tells viewers the transfer function, which they would otherwise guess.
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     encoder.set_pixel_dims(pixel_dimensions(pixel_aspect));
     let written = encoder.write_header().and_then(|mut file| file.write_image_data(&scaled(picture, scale as usize)));
@@ -68,9 +68,10 @@ impl std::error::Error for ExportError {
     }
 }
 
-/// Returns the pixel's shape as the numbers of pixels per unit each way; `None` for squares.
+/// Returns the pixels per unit along x and y, which express the pixel aspect in PNG; `None` for
+/// square pixels.
 fn pixel_dimensions(pixel_aspect: f32) -> Option<png::PixelDimensions> {
-    // The format has whole numbers, so the aspect is kept to a thousandth.
+    // PNG stores whole numbers, so 1000 pixels per unit keep the aspect to a thousandth.
     let per_unit = 1000.0;
     (pixel_aspect != 1.0).then(|| png::PixelDimensions {
         xppu: (per_unit * pixel_aspect).round() as u32,
@@ -90,7 +91,8 @@ fn scaled(picture: &Picture, scale: usize) -> Vec<u8> {
     bytes
 }
 
-/// Returns the number of differing pixels, the largest difference, and the first of them.
+/// Returns a text with the number of differing pixels, the largest difference, and the first
+/// differing pixel.
 fn difference(golden: &[u8], frame: &[u8]) -> String {
     let (golden, frame) = match (decoded(golden), decoded(frame)) {
         (Ok(golden), Ok(frame)) => (golden, frame),

@@ -7,8 +7,8 @@ use std::fmt::Write;
 
 /// Returns the grid's characters in a frame, for snapshot tools that trim their input.
 ///
-/// [insta](https://docs.rs/insta) trims its input, so that a snapshot of [`text`](super::text()) does not contain the
-/// blank rows at the end, and so not the height.
+/// [insta](https://docs.rs/insta) does: a snapshot of [`text`](super::text()) loses the blank rows at its end, and with
+/// them the height.
 ///
 /// ```
 /// use termtrace::{CellMode, Scene, Size, export::framed, frame_grid};
@@ -45,9 +45,9 @@ pub fn framed(grid: &Grid) -> String {
 
 /// Returns the grid's characters in a frame, the codes of their styles in another, and a legend.
 ///
-/// All colours and attributes are contained, in a form that a person can review. A dot stands for the default colours.
-/// The codes are letters in the order in which the styles first occur; beyond 62 styles a code has two letters, or
-/// more.
+/// All colours and attributes are contained, in a form that a person can review. A dot is the code of the default
+/// style. Other codes are letters and digits in the order in which the styles first occur; with more than 62 styles,
+/// codes have two or more characters.
 ///
 /// ```
 /// use ratatui::{buffer::Buffer, layout::Rect, style::Stylize, text::Line, widgets::Widget};

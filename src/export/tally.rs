@@ -1,6 +1,6 @@
-//! Export of the number of times each character occurs: a format that exists in tests only.
+//! Export of the number of occurrences of each character: a format that exists in tests only.
 //!
-//! The format shows that a file and a row of the table suffice to add one.
+//! It shows that a file and a row of the table suffice to add a format.
 
 use super::difference;
 use super::format_row::{Contents, FormatRow};

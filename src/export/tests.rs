@@ -2,7 +2,8 @@ use super::*;
 use crate::capabilities::Colors;
 use std::collections::HashSet;
 
-/// The format consists of one file, its `mod` line and its row of the table.
+/// Checks that a format is complete with one file, its `mod` line and its row of the table, as
+/// `Tally` is.
 #[test]
 fn a_format_for_tests_is_found_and_written() {
     let format = Format::from_name("tally").expect("by its name");

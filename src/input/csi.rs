@@ -5,32 +5,32 @@ use vte::Params;
 
 use super::{Reply, key, mouse};
 
-/// The meaning of a sequence.
+/// The meaning of a CSI sequence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Meaning {
     /// A key.
     Key(KeyEvent),
-    /// An event of the mouse or the focus.
+    /// A mouse event or a change of focus.
     Event(Event),
     /// A reply of the terminal.
     Reply(Reply),
     /// The start of a paste.
     PasteStart,
-    /// The start of an X10 mouse report, of which three bytes follow.
+    /// The start of an X10 mouse report; three bytes of it follow.
     OldMouse,
-    /// The start of a function key of the Linux console, of which a letter follows.
+    /// The start of a function key of the Linux console; a letter of it follows.
     LinuxFunction,
-    /// Nothing that is reported.
+    /// A sequence that is valid but not reported.
     Nothing,
 }
 
-/// Returns the meaning of a sequence.
+/// Returns the meaning of a CSI sequence.
 ///
-/// `marks` are its private marker and intermediates, `text` is all of it after `ESC [`.
+/// `marks` are the private marker and intermediates, `last` is the final byte, and `text` is everything after `ESC [`.
 pub(super) fn meaning(params: &Params, marks: &[u8], ignored: bool, last: char, text: &[u8]) -> Meaning {
     let sequence = Sequence { params: params.iter().collect(), last, text };
     let meaning = match marks {
-        // More parameters or intermediates than `vte` keeps: the rest is unknown.
+        // There were more parameters or intermediates than `vte` stores, so the meaning is unknown.
         _ if ignored => None,
         b"" => sequence.plain(),
         b"?" => sequence.private().map(Meaning::Reply),
@@ -50,7 +50,7 @@ struct Sequence<'a> {
 }
 
 impl Sequence<'_> {
-    /// Returns whether the sequence consists of its final byte only.
+    /// Returns whether the sequence has a final byte only, without parameters.
     fn is_bare(&self) -> bool {
         self.text.len() == 1
     }
@@ -69,19 +69,19 @@ impl Sequence<'_> {
     fn plain(&self) -> Option<Meaning> {
         match self.last {
             '~' if self.params[0] == [200] => Some(Meaning::PasteStart),
-            // The end of a paste that was given up, or never begun.
+            // The end of a paste whose start is missing or that has timed out.
             '~' if self.params[0] == [201] => Some(Meaning::Nothing),
-            // With parameters `M` is rxvt's mouse report, below.
+            // `M` with parameters is rxvt's mouse report, handled below.
             'M' if self.is_bare() => Some(Meaning::OldMouse),
             '[' if self.is_bare() => Some(Meaning::LinuxFunction),
-            // Bare only: with parameters `CSI I` moves the cursor by tabs.
+            // Only without parameters: with them `CSI I` is an echoed cursor movement by tabs.
             'I' if self.is_bare() => Some(Meaning::Event(Event::FocusGained)),
             'O' if self.is_bare() => Some(Meaning::Event(Event::FocusLost)),
             'M' => {
                 let [code, column, row] = self.exactly()?;
                 mouse::from_rxvt(code, column, row).map(Meaning::Event)
             }
-            // With parameters; bare it is F3.
+            // `R` with parameters is a cursor report; without, it is F3.
             'R' if !self.is_bare() => self.cursor_position().map(Meaning::Reply),
             'n' => self.exactly().map(|[status]| Meaning::Reply(Reply::Status(status))),
             't' => Some(Meaning::Reply(self.window())),
@@ -91,12 +91,12 @@ impl Sequence<'_> {
 
     fn key(&self) -> Option<KeyEvent> {
         match self.last {
-            // rxvt's arrows with Shift.
+            // Arrow keys with Shift in rxvt.
             'a'..='d' if self.is_bare() => key::from_letter(self.last.to_ascii_uppercase(), KeyModifiers::SHIFT),
-            // Number 27 is no key of its own: xterm's modifyOtherKeys.
+            // The number 27 is not a key, but marks the encoding of xterm's modifyOtherKeys.
             '~' if self.params[0] == [27] => key::from_other_keys(&self.params),
             '~' => key::from_number(&self.params, KeyModifiers::NONE),
-            // rxvt's final bytes for Ctrl, and for Ctrl with Shift.
+            // rxvt's final bytes: `^` for Ctrl, `@` for Ctrl with Shift.
             '^' => key::from_number(&self.params, KeyModifiers::CONTROL),
             '@' => key::from_number(&self.params, KeyModifiers::CONTROL | KeyModifiers::SHIFT),
             'u' => key::from_kitty(&self.params),

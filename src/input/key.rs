@@ -1,4 +1,4 @@
-//! Decoders for the encodings of keys.
+//! Decoders for keys in their various encodings: legacy, rxvt, xterm and kitty.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyEventState, KeyModifiers, MediaKeyCode, ModifierKeyCode};
 
@@ -20,7 +20,7 @@ pub(super) fn from_char(c: char) -> Option<KeyEvent> {
         '\u{7f}' => Some(KeyCode::Backspace.into()),
         '\u{fffd}' => None,
         c if c.is_control() => None,
-        // As crossterm reports capitals.
+        // crossterm's own parser reports capitals with Shift as well.
         c if c.is_uppercase() => Some(KeyEvent::new(KeyCode::Char(c), KeyModifiers::SHIFT)),
         c => Some(KeyCode::Char(c).into()),
     }
@@ -34,17 +34,17 @@ pub(super) fn from_control(byte: u8) -> Option<KeyEvent> {
         0x08 => return Some(KeyCode::Backspace.into()),
         b'\t' => return Some(KeyCode::Tab.into()),
         b'\r' => return Some(KeyCode::Enter.into()),
-        // Ctrl with @ and with 2 send the same byte; Space is the one that people use.
+        // Ctrl with Space, @ or 2 sends the byte 0. It is reported as Space, the key that people use.
         0x00 => b' ',
         0x01..=0x1a => byte - 1 + b'a',
-        // Ctrl with \ ] ^ _, which crossterm reports as Ctrl with the digits that send the same bytes.
+        // Ctrl with \ ] ^ or _ sends the same byte as Ctrl with 4 to 7, and crossterm reports the digits.
         0x1c..=0x1f => byte - 0x1c + b'4',
         _ => return None,
     };
     Some(KeyEvent::new(KeyCode::Char(letter.into()), KeyModifiers::CONTROL))
 }
 
-/// Decodes `ESC O letter`, with `1 ; modifiers` or the modifiers alone before the letter.
+/// Decodes `ESC O numbers letter`. The optional `numbers` are `1 ; modifiers` or `modifiers`.
 pub(super) fn from_ss3(numbers: &[u8], letter: u8) -> Option<KeyEvent> {
     let last = numbers.rsplit(|&byte| byte == b';').next().unwrap_or_default();
     let modifiers = match std::str::from_utf8(last).ok()? {
@@ -52,21 +52,21 @@ pub(super) fn from_ss3(numbers: &[u8], letter: u8) -> Option<KeyEvent> {
         digits => modifiers_from_mask(digits.parse().ok()?),
     };
     match letter {
-        // rxvt's arrows with Ctrl.
+        // Arrow keys with Ctrl in rxvt.
         b'a'..=b'd' => {
             let letter = char::from(letter.to_ascii_uppercase());
             from_letter(letter, modifiers | KeyModifiers::CONTROL)
         }
-        // Unambiguous only here: `CSI R` with parameters is a cursor report.
+        // F3. Only after `ESC O` is `R` with parameters a key: after CSI it is a cursor report.
         b'R' => Some(KeyEvent::new(KeyCode::F(3), modifiers)),
         _ => from_letter(letter.into(), modifiers).or_else(|| from_keypad(letter, modifiers)),
     }
 }
 
-/// Returns the keypad key of a letter in application keypad mode.
+/// Returns the keypad key that sends `ESC O letter` in application keypad mode.
 fn from_keypad(letter: u8, modifiers: KeyModifiers) -> Option<KeyEvent> {
     let code = match letter {
-        // The letters stand for the ASCII characters 0x40 below them.
+        // Each letter is the ASCII code of the key's character plus 0x40.
         b'p'..=b'y' => KeyCode::Char((letter - b'p' + b'0').into()),
         b'j'..=b'o' => KeyCode::Char((letter - b'j' + b'*').into()),
         b'X' => KeyCode::Char('='),
@@ -79,14 +79,14 @@ fn from_keypad(letter: u8, modifiers: KeyModifiers) -> Option<KeyEvent> {
     Some(KeyEvent::new_with_kind_and_state(code, modifiers, KeyEventKind::Press, state))
 }
 
-/// Returns the key of the letter after `ESC [` or `ESC O`.
+/// Returns the key that sends `letter` after `ESC [` or `ESC O`.
 pub(super) fn from_letter(letter: char, modifiers: KeyModifiers) -> Option<KeyEvent> {
     let code = match letter {
         'A' => KeyCode::Up,
         'B' => KeyCode::Down,
         'C' => KeyCode::Right,
         'D' => KeyCode::Left,
-        // The 5 of the keypad without Num Lock.
+        // Key 5 of the keypad without Num Lock.
         'E' => KeyCode::KeypadBegin,
         'F' => KeyCode::End,
         'H' => KeyCode::Home,
@@ -98,31 +98,31 @@ pub(super) fn from_letter(letter: char, modifiers: KeyModifiers) -> Option<KeyEv
     Some(KeyEvent::new(code, modifiers))
 }
 
-/// Decodes `CSI 1 ; modifiers : kind letter`, or the letter alone.
+/// Decodes `CSI 1 ; modifiers : kind letter`, or `CSI letter`.
 pub(super) fn from_letter_with_modifiers(letter: char, params: &[&[u16]]) -> Option<KeyEvent> {
     let press = Press::from_params(params.get(1))?;
-    // An echo of a cursor movement (`CSI 5 A`) is not a key.
+    // Other first parameters, as in an echoed cursor movement (`CSI 5 A`), are not keys.
     if params.len() > 2 || !matches!(params[0], [0 | 1]) {
         return None;
     }
     match letter {
-        // Shift+Tab, whose Shift the legacy form leaves out.
+        // Shift+Tab. The legacy form has no parameter for Shift.
         'Z' => Some(press.press(KeyCode::BackTab, KeyModifiers::SHIFT)),
-        // `CSI R` without parameters; with them it is a cursor report, decoded elsewhere.
+        // F3, only without parameters: with them `CSI R` is a cursor report and is not passed to this function.
         'R' => Some(press.press(KeyCode::F(3), KeyModifiers::NONE)),
         _ => from_letter(letter, KeyModifiers::NONE).map(|key| press.press(key.code, KeyModifiers::NONE)),
     }
 }
 
-/// Decodes `CSI number ; modifiers : kind ~`, where rxvt has other final bytes than `~` for the
-/// modifiers in `more`.
+/// Decodes `CSI number ; modifiers : kind ~`. `more` are modifiers that rxvt encodes by another
+/// final byte than `~`.
 pub(super) fn from_number(params: &[&[u16]], more: KeyModifiers) -> Option<KeyEvent> {
     let press = Press::from_params(params.get(1))?;
     let [number] = *params[0] else {
         return None;
     };
     let code = match u8::try_from(number).ok()? {
-        // Gaps as on the VT220, whose function keys stood in groups: 16, 22, 27 and 30 do not exist.
+        // The numbers have gaps (16, 22, 27, 30) from the groups of function keys on the VT220.
         1 | 7 => KeyCode::Home,
         2 => KeyCode::Insert,
         3 => KeyCode::Delete,
@@ -136,7 +136,7 @@ pub(super) fn from_number(params: &[&[u16]], more: KeyModifiers) -> Option<KeyEv
         n @ 31..=34 => KeyCode::F(n - 14),
         _ => return None,
     };
-    // More parameters belong to a report of another kind, such as a window's.
+    // With more parameters the sequence is not a key, but another kind of report.
     (params.len() <= 2).then(|| press.press(code, more))
 }
 
@@ -151,8 +151,8 @@ pub(super) fn from_other_keys(params: &[&[u16]]) -> Option<KeyEvent> {
 
 /// Decodes `CSI code : shifted : base ; modifiers : kind ; text u`: the kitty keyboard protocol.
 ///
-/// A key of a non-Latin layout is reported as the key at the same position of a Latin one (`base`), if the terminal
-/// reports that: letters are commands here, not text.
+/// A key of a non-Latin layout is reported as the key at the same position of a Latin layout (`base`), if the terminal
+/// sends that, because letters are commands here, not text.
 ///
 /// Characters above U+FFFF are ignored: the tokeniser saturates parameters at 16 bits, so they cannot be told apart.
 pub(super) fn from_kitty(params: &[&[u16]]) -> Option<KeyEvent> {
@@ -162,7 +162,7 @@ pub(super) fn from_kitty(params: &[&[u16]]) -> Option<KeyEvent> {
         (LATIN_END.., Some(base @ 0x20..0x7f)) => (base, None),
         (code, _) => (code, alternate(1)),
     };
-    // Reserved for later versions of the protocol, which may give the others another meaning.
+    // Further parameters are reserved: later versions of the protocol may change the meaning of the first three.
     if params.len() > 3 {
         return None;
     }
@@ -177,16 +177,16 @@ pub(super) fn from_kitty(params: &[&[u16]]) -> Option<KeyEvent> {
     key_from_code(code, shifted, press)
 }
 
-/// The first code point after the Latin blocks: Greek.
+/// The first code point after the Unicode blocks of Latin letters: the start of Greek.
 const LATIN_END: u16 = 0x370;
 
-/// Returns the key of a code point.
+/// Returns the key of a key code of the kitty protocol.
 ///
-/// `shifted` is the code point with Shift, if the terminal reports it.
+/// `shifted` is the code of the same key with Shift, if the terminal reports it.
 fn key_from_code(code: u16, shifted: Option<u16>, press: Press) -> Option<KeyEvent> {
     let key = match code {
         0x08 | 0x7f => KeyCode::Backspace,
-        // As the legacy encoding has it, so that the keymap knows one Shift+Tab.
+        // `BackTab`, as in the legacy encoding, so that the keymap needs one name for Shift+Tab.
         0x09 if press.modifiers.contains(KeyModifiers::SHIFT) => KeyCode::BackTab,
         0x09 => KeyCode::Tab,
         0x0d => KeyCode::Enter,
@@ -196,7 +196,7 @@ fn key_from_code(code: u16, shifted: Option<u16>, press: Press) -> Option<KeyEve
     Some(press.press(key, KeyModifiers::NONE))
 }
 
-/// Returns the character of a code point that can be typed.
+/// Returns the character of a code point; `None` if it cannot be typed.
 ///
 /// Excluded are control characters, the private use area, where the kitty protocol has its functional keys, and
 /// U+FFFF, at which the tokeniser saturates.
@@ -204,7 +204,7 @@ fn char_from_code(code: u16) -> Option<char> {
     char::from_u32(code.into()).filter(|c| !c.is_control() && !matches!(code, 0xe000..=0xf8ff | 0xfffd..))
 }
 
-/// The modifiers, kind and locks of a key event.
+/// The modifiers, the kind (press, repeat or release) and the locks of a key event.
 #[derive(Clone, Copy)]
 struct Press {
     modifiers: KeyModifiers,
@@ -213,7 +213,7 @@ struct Press {
 }
 
 impl Press {
-    /// Decodes `modifiers : kind`; `None` for an unknown kind.
+    /// Decodes the parameter `modifiers : kind`; `None` for an unknown kind.
     fn from_params(param: Option<&&[u16]>) -> Option<Self> {
         let (mask, kind) = match param {
             None => (0, 1),
@@ -225,7 +225,7 @@ impl Press {
             0 | 1 => KeyEventKind::Press,
             2 => KeyEventKind::Repeat,
             3 => KeyEventKind::Release,
-            // A kind of a later version of the protocol.
+            // Other kinds may exist in later versions of the protocol.
             _ => return None,
         };
         Some(Self { modifiers: modifiers_from_mask(mask), kind, state: state_from_mask(mask) })
@@ -235,17 +235,17 @@ impl Press {
         KeyEvent::new_with_kind_and_state(code, self.modifiers | more, self.kind, self.state)
     }
 
-    /// Returns a character key as the legacy encoding would report it.
+    /// Returns the event of a character key, in the form that the legacy encoding would lead to.
     ///
-    /// Shift with `w` is `W` with Shift, and Shift with `/` is `?` without, if the terminal reports the shifted
-    /// character.
+    /// Shift and `w` become `W` with the modifier Shift. Shift and `/` become `?` without it, if the terminal reports
+    /// the shifted character.
     fn press_char(self, c: char, shifted: Option<char>) -> KeyEvent {
         if !self.modifiers.contains(KeyModifiers::SHIFT) {
             return self.press(KeyCode::Char(c), KeyModifiers::NONE);
         }
         let shown = shifted.unwrap_or_else(|| upper_case(c));
         let mut event = self.press(KeyCode::Char(shown), KeyModifiers::NONE);
-        // The character contains Shift already; capitals keep it, as crossterm reports them.
+        // A shifted character already contains Shift. Only capitals keep the modifier, as crossterm reports them.
         if shifted.is_some() && !shown.is_uppercase() {
             event.modifiers.remove(KeyModifiers::SHIFT);
         }
@@ -255,7 +255,7 @@ impl Press {
 
 /// Returns the upper case of a letter if it is a single character, otherwise the letter itself.
 fn upper_case(c: char) -> char {
-    // German sharp s becomes two letters, which are no key.
+    // The upper case of the German sharp s is two letters, which no key types.
     let mut upper = c.to_uppercase();
     match (upper.next(), upper.next()) {
         (Some(upper), None) => upper,
@@ -263,9 +263,9 @@ fn upper_case(c: char) -> char {
     }
 }
 
-/// Returns the modifiers of a parameter, which is the bit mask plus 1.
+/// Returns the modifiers encoded in a parameter `mask`, which is a bit mask plus 1.
 fn modifiers_from_mask(mask: u16) -> KeyModifiers {
-    // The bits have the same order in the protocol and in crossterm, which does not promise that.
+    // Converted bit by bit: crossterm has the protocol's order today, but does not guarantee it.
     let order = [
         KeyModifiers::SHIFT,
         KeyModifiers::ALT,
@@ -278,7 +278,8 @@ fn modifiers_from_mask(mask: u16) -> KeyModifiers {
     (0..).zip(order).filter(|(bit, _)| bits >> bit & 1 == 1).map(|(_, modifier)| modifier).collect()
 }
 
-/// Returns the locks of a parameter, which is the bit mask plus 1.
+/// Returns the locks (Caps Lock, Num Lock) encoded in a parameter `mask`, which is a bit mask plus
+/// 1.
 fn state_from_mask(mask: u16) -> KeyEventState {
     let bits = mask.saturating_sub(1);
     let mut state = KeyEventState::NONE;
@@ -287,7 +288,7 @@ fn state_from_mask(mask: u16) -> KeyEventState {
     state
 }
 
-/// Returns the keypad key of a functional key code of the kitty protocol.
+/// Returns the keypad key with a functional key code of the kitty protocol.
 fn keypad(code: u16) -> Option<KeyCode> {
     const NAMED: [KeyCode; 19] = [
         KeyCode::Char('.'),
@@ -317,9 +318,8 @@ fn keypad(code: u16) -> Option<KeyCode> {
     }
 }
 
-/// Returns the key of a functional key code of the kitty protocol.
-///
-/// These are locks, F13 and up, media and modifier keys.
+/// Returns the lock, function (F13 and up), media or modifier key with a functional key code of the
+/// kitty protocol.
 fn functional(code: u16) -> Option<KeyCode> {
     const LOCKS: [KeyCode; 6] =
         [KeyCode::CapsLock, KeyCode::ScrollLock, KeyCode::NumLock, KeyCode::PrintScreen, KeyCode::Pause, KeyCode::Menu];

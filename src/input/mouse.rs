@@ -1,4 +1,4 @@
-//! Mouse reports.
+//! Decoders for mouse reports, in the SGR, rxvt and X10 encodings.
 
 use crossterm::event::{Event, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 
@@ -6,29 +6,30 @@ const SHIFT: u16 = 4;
 const ALT: u16 = 8;
 const CONTROL: u16 = 16;
 const MOTION: u16 = 32;
-/// Offset that the older encodings add to each number, so that none is a control character.
+/// Offset that the X10 and rxvt encodings add to numbers, so that none is a control character.
 const OFFSET: u8 = 32;
 
-/// Decodes `CSI < code ; column ; row M`, or `m` for a release.
+/// Decodes the SGR encoding: `CSI < code ; column ; row M`, or `m` for a release.
 ///
-/// This is the SGR encoding, in cells or in pixels, from 1.
+/// Column and row are in cells or in pixels, counted from 1.
 pub(super) fn from_sgr(code: u16, column: u16, row: u16, released: bool) -> Option<Event> {
     let kind = match (kind_from_code(code)?, released) {
         (MouseEventKind::Down(button) | MouseEventKind::Drag(button), true) => MouseEventKind::Up(button),
-        // A wheel has no release, and code 3 is a release in the older encodings, which do not name the button.
+        // Releases are valid for buttons only, not for the wheel. Code 3, which means a release in the older encodings,
+        // is not valid in this one.
         (_, true) | (MouseEventKind::Up(_), false) => return None,
         (kind, false) => kind,
     };
     Some(event(kind, code, column, row))
 }
 
-/// Decodes `CSI code ; column ; row M`: the encoding of rxvt.
+/// Decodes the encoding of rxvt: `CSI code ; column ; row M`.
 pub(super) fn from_rxvt(code: u16, column: u16, row: u16) -> Option<Event> {
     let code = code.checked_sub(u16::from(OFFSET))?;
     Some(event(kind_from_code(code)?, code, column, row))
 }
 
-/// Decodes the three bytes after `CSI M`: the X10 encoding.
+/// Decodes the X10 encoding: the three bytes after `CSI M`.
 pub(super) fn from_bytes(code: u8, column: u8, row: u8) -> Option<Event> {
     let code = u16::from(code.checked_sub(OFFSET)?);
     let column = u16::from(column.checked_sub(OFFSET)?);
@@ -36,7 +37,7 @@ pub(super) fn from_bytes(code: u8, column: u8, row: u8) -> Option<Event> {
     Some(event(kind_from_code(code)?, code, column, row))
 }
 
-// Saturating, because a terminal may report 0 for a position outside the window.
+// Subtraction saturates, because a terminal may report 0 for a position outside the window.
 fn event(kind: MouseEventKind, code: u16, column: u16, row: u16) -> Event {
     Event::Mouse(MouseEvent {
         kind,
@@ -46,7 +47,7 @@ fn event(kind: MouseEventKind, code: u16, column: u16, row: u16) -> Event {
     })
 }
 
-/// Decodes the event kind: bits 0, 1, 6 and 7 are the button, bit 5 is set for motion.
+/// Decodes the kind of event: bits 0, 1, 6 and 7 of `code` are the button, bit 5 is set for motion.
 fn kind_from_code(code: u16) -> Option<MouseEventKind> {
     let button = (code & 0b11) | ((code & 0b1100_0000) >> 4);
     let moved = code & MOTION != 0;
@@ -65,7 +66,7 @@ fn kind_from_code(code: u16) -> Option<MouseEventKind> {
         (5, false) => MouseEventKind::ScrollDown,
         (6, false) => MouseEventKind::ScrollLeft,
         (7, false) => MouseEventKind::ScrollRight,
-        // crossterm has no name for the side buttons.
+        // The side buttons are ignored, because crossterm's `MouseButton` has no values for them.
         _ => return None,
     })
 }

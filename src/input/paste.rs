@@ -3,11 +3,13 @@
 use crossterm::event::Event;
 
 /// Limit on the bytes of a paste that are kept; the rest is dropped.
-// No paste has a meaning here; it is parsed only so that its text is not taken for keys.
+// Pastes are not used for anything; they are parsed only so that their text is not read as keys.
 pub const MAX_PASTE_BYTES: usize = 1 << 20;
 
-/// Number of timeouts in a row after which an unfinished paste ends: one second of 50 ms each.
-// A slow link delivers a paste in pieces, and a piece parsed as keys would run commands.
+/// Number of timeouts in a row after which an unfinished paste ends: one second, with timeouts of
+/// 50 ms.
+// More than one, because a slow link delivers a paste with pauses, and the part after a pause, parsed as keys, would
+// run commands.
 pub const MAX_PASTE_WAITS: u32 = 20;
 
 /// The sequence that ends a paste.
@@ -17,19 +19,20 @@ const END: &[u8] = b"\x1b[201~";
 #[derive(Default)]
 pub(super) struct Paste {
     text: Vec<u8>,
-    /// Number of bytes of [`END`] that have matched.
+    /// Number of bytes of [`END`] that the last bytes have matched.
     matched: usize,
     /// Number of timeouts since the last byte.
     waits: u32,
 }
 
 impl Paste {
-    /// Takes a byte and returns whether it completes the paste.
+    /// Appends a byte to the paste. Returns whether the byte completes [`END`], and so the paste.
     pub(super) fn ends_with(&mut self, byte: u8) -> bool {
-        // Only consecutive timeouts count: a slow paste makes progress.
+        // Reset by every byte, because only timeouts in a row end a paste.
         self.waits = 0;
         if byte != END[self.matched] {
-            // ESC occurs only as the first byte of END, so a new match can only begin with this byte.
+            // The partly matched bytes belong to the paste. A new match can begin only at this byte, because ESC occurs
+            // in END only at the start.
             self.keep(&END[..self.matched]);
             self.matched = 0;
         }
@@ -41,7 +44,7 @@ impl Paste {
         self.matched == END.len()
     }
 
-    /// Counts a timeout and returns whether to go on waiting for the end.
+    /// Counts a timeout, and returns whether to continue waiting for the end of the paste.
     pub(super) fn survives_timeout(&mut self) -> bool {
         self.waits += 1;
         self.waits < MAX_PASTE_WAITS

@@ -5,18 +5,18 @@
 pub enum Reply {
     /// `CSI ? n ; ... c`: the device attributes (DA1).
     ///
-    /// Every terminal sends this reply, which makes the query for it the fence behind a batch of queries.
+    /// Every terminal sends this reply, so its query is sent after all others and serves as the fence.
     DeviceAttributes(Vec<u16>),
     /// `CSI > n ; ... c`: the terminal's type and version (DA2).
     SecondaryAttributes(Vec<u16>),
-    /// `CSI row ; column R`, both from 1 (CPR; also the private form with `?`).
+    /// `CSI row ; column R`: the position of the cursor (CPR; also in the private form with `?`).
     CursorPosition {
         /// The row, from 1 at the top.
         row: u16,
         /// The column, from 1 at the left.
         column: u16,
     },
-    /// `CSI n n`: the device status (DSR); 0 for ready, 3 for a malfunction.
+    /// `CSI status n`: the device status (DSR); 0 for ready, 3 for a malfunction.
     Status(u16),
     /// `CSI ? mode ; state $ y`: the state of a private mode (DECRPM).
     Mode {
@@ -50,11 +50,11 @@ pub enum Reply {
     Window(Vec<u16>),
     /// `CSI ? flags u`: the flags of the kitty keyboard protocol that are set.
     KeyboardFlags(u16),
-    /// `ESC ] ... ST` (or BEL): the bytes between, such as `11;rgb:1e1e/1e1e/1e1e`.
+    /// `ESC ] ... ST` (or BEL): the contents of an OSC string, such as `11;rgb:1e1e/1e1e/1e1e`.
     Osc(Vec<u8>),
-    /// `ESC P ... ST`: the bytes between, such as `1$r48;2;1;2;3m`.
+    /// `ESC P ... ST`: the contents of a DCS string, such as `1$r48;2;1;2;3m`.
     Dcs(Vec<u8>),
-    /// `ESC _ ... ST`: the bytes between, such as `Gi=1;OK`.
+    /// `ESC _ ... ST`: the contents of an APC string, such as `Gi=1;OK`.
     Apc(Vec<u8>),
     /// Any other CSI sequence: the bytes after `ESC [`, at most 256.
     Unknown(Vec<u8>),

@@ -20,13 +20,13 @@ pub(super) enum State {
     OldMouse,
     /// Inside a string.
     Text(Text),
-    /// After an `ESC` inside a string, which a `\` ends.
+    /// After an `ESC` inside a string; a `\` then ends the string.
     TextEscape(Text),
     /// Inside a bracketed paste.
     Paste,
 }
 
-/// A kind of string that a terminal may send.
+/// A kind of control string that a terminal may send.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Text {
     /// Operating system command, `ESC ]`: colours, titles.
@@ -40,7 +40,7 @@ pub(super) enum Text {
 }
 
 impl Text {
-    /// Returns whether a reply of this kind may begin with `byte`.
+    /// Returns whether the contents of a reply of this kind may begin with `byte`.
     pub(super) fn begins_with(self, byte: u8) -> bool {
         match self {
             Self::Osc => byte.is_ascii_digit(),

@@ -1,6 +1,7 @@
-//! A table of byte sequences and their inputs, and properties.
+//! Tests of the parser: a table of byte sequences with the expected inputs, and properties with
+//! random bytes.
 //!
-//! Above all, the split of the bytes does not matter.
+//! The most important property is that the inputs do not depend on how the bytes are split.
 
 use super::{Input, MAX_PASTE_BYTES, MAX_PASTE_WAITS, Parser, Reply};
 use crossterm::event::{Event, KeyCode, KeyEventKind};
@@ -17,7 +18,7 @@ fn parse(pieces: &[&[u8]]) -> Vec<Input> {
     parse_with(Parser::new(), pieces)
 }
 
-/// Returns a parser for a terminal that sends every key as a sequence.
+/// Returns a parser for a terminal that sends every key as a sequence (kitty keyboard protocol).
 fn of_sequences() -> Parser {
     let mut parser = Parser::new();
     parser.set_keys_are_sequences(true);
@@ -71,7 +72,8 @@ fn a_reply_is_never_reported_as_a_key() {
     for (bytes, expected) in [replies(), replies_in_strings_and_others()].concat() {
         let wanted: Vec<&Input> = expected.iter().filter(|input| !is_key(input)).collect();
         let keys = expected.iter().filter(|input| is_key(input)).count();
-        // A timeout after the lone ESC of a reply reports the Escape key: callers wait longer while a reply is due.
+        // Splits after an ESC are excluded: a timeout there reports the Escape key, so callers wait longer while a
+        // reply is due.
         for at in (0..=bytes.len()).filter(|&at| at == 0 || !bytes[..at].ends_with(b"\x1b")) {
             let (mut parser, mut out) = (Parser::new(), Vec::new());
             parser.feed(&bytes[..at], &mut out);
@@ -93,7 +95,8 @@ fn a_string_whose_terminator_is_late_is_still_a_reply() {
     assert_eq!(out, [reply(Reply::Osc(b"11;?".to_vec())), letter('x', NONE)]);
 }
 
-/// Returns the inputs of `begun` up to a timeout, and those of `later` after it.
+/// Parses `begun`, then a timeout, then `later`. Returns the inputs up to the timeout and those
+/// after it.
 fn given_up(begun: &[u8], later: &[u8]) -> (Vec<Input>, Vec<Input>) {
     let (mut parser, mut at_once, mut out) = (Parser::new(), Vec::new(), Vec::new());
     parser.feed(begun, &mut at_once);
@@ -186,7 +189,8 @@ fn an_endless_string_or_sequence_takes_bounded_memory() {
 #[test]
 fn sequences_mean_the_same_with_the_kitty_protocol() {
     for (bytes, expected) in [kitty_keys(), keys_without_a_letter(), replies()].concat() {
-        // Except the last of the legacy keys, which a plain x follows.
+        // One legacy key of the table is followed by a plain x, which the kitty protocol reports as pressed and
+        // released.
         if !bytes.ends_with(b"x") {
             assert_eq!(parse_with(of_sequences(), &[bytes]), expected, "{}", bytes.escape_ascii());
         }
@@ -219,7 +223,7 @@ fn a_lone_escape_is_not_a_key_with_the_kitty_protocol() {
     for begun in [&b"\x1b"[..], b"\x1b\x1b"] {
         assert_eq!(given_up(begun, b"\x1b[27u"), [key(KeyCode::Esc, NONE)]);
     }
-    // A late key is dropped, unless it is a release.
+    // A key sequence completed after the timeout is dropped, unless it is a release.
     let released = || of_kind(KeyCode::Char('w'), NONE, KeyEventKind::Release);
     for at in 1..b"\x1b[119;1:3u".len() {
         let (begun, rest) = b"\x1b[119;1:3u".split_at(at);
@@ -230,7 +234,7 @@ fn a_lone_escape_is_not_a_key_with_the_kitty_protocol() {
     assert_eq!(given_up(b"\x1b", b"[?62c"), [reply(Reply::DeviceAttributes(vec![62]))]);
 }
 
-/// Random bytes in which escape sequences are frequent.
+/// Generates random bytes in which escape sequences are frequent.
 fn noise() -> impl Strategy<Value = Vec<u8>> {
     let byte = prop_oneof![
         4 => prop::sample::select(b"\x1b\x1b\x1b[[O]P_<>?;:0123456789~uMmtcRA$\\\x07\x18".to_vec()),
@@ -262,8 +266,8 @@ proptest! {
         prop_assert_eq!(out, vec![letter('c', CONTROL), letter('w', NONE)]);
     }
 
-    /// Of sequences with any final byte and parameters, only those with the final byte of a key are
-    /// keys.
+    /// Checks with random CSI sequences that only those with the final byte of a key are reported
+    /// as keys.
     #[test]
     fn unknown_sequences_are_not_keys(
         mark in prop::sample::select(vec!["", "?", ">", "<", "="]),
@@ -295,6 +299,6 @@ fn a_megabyte_of_random_bytes_is_parsed_without_hanging() {
     let whole = parse(&[&bytes]);
     let pieces: Vec<&[u8]> = bytes.chunks(7).collect();
     assert!(parse(&pieces) == whole, "split in sevens, seed {SEED:#x}");
-    // Half of all bytes are ASCII: most of these are keys, unless a string or paste has swallowed them.
+    // Half of the bytes are ASCII, and most of these are keys unless they are part of a string or paste.
     assert!(whole.len() > 10_000, "{} inputs, seed {SEED:#x}", whole.len());
 }

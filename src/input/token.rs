@@ -1,7 +1,7 @@
-//! The tokeniser: `vte`, fed one byte at a time.
+//! The tokeniser: the crate `vte`, which is passed one byte at a time.
 //!
-//! It splits UTF-8 into characters and CSI sequences into parameters. The parser keeps everything else from it:
-//! - a lone ESC, because `vte` continues a sequence over ESC and a control character, DEL or a non-ASCII character,
+//! It splits UTF-8 into characters and CSI sequences into parameters. The parser handles everything else itself:
+//! - a lone ESC, because `vte` continues a sequence after ESC and a control character, DEL or a non-ASCII character,
 //!   which are Alt and a key;
 //! - `ESC O`, which `vte` dispatches at once, so that the letter after it would be printed;
 //! - strings, which `vte` keeps without a limit.
@@ -21,21 +21,22 @@ pub(super) enum Token {
     Csi(Meaning),
 }
 
-/// `vte`'s parser. It has no reset: replace it to drop an incomplete sequence.
+/// The parser of `vte`. To drop an incomplete sequence, replace it: it has no reset.
 #[derive(Default)]
 pub(super) struct Tokeniser(vte::Parser);
 
 impl Tokeniser {
-    /// Enters the state after `ESC [`.
+    /// Puts the tokeniser into the state after `ESC [`.
     pub(super) fn begin_csi(&mut self) {
-        // The parser has kept the ESC back until this byte was known.
+        // The caller has not passed on the ESC before, because its meaning depends on this byte.
         self.0.advance(&mut Tokens { tokens: Vec::new(), text: &[] }, b"\x1b[");
     }
 
     /// Returns the tokens that `byte` completes.
     ///
-    /// There are at most two, where it also shows that the bytes before it are an invalid character. `text` holds the
-    /// bytes since `ESC [`, including this one.
+    /// There are two if the byte also shows that the bytes before it are an invalid character. `text` contains the
+    /// bytes
+    /// since `ESC [`, including this one.
     pub(super) fn take(&mut self, byte: u8, text: &[u8]) -> Vec<Token> {
         let mut performer = Tokens { tokens: Vec::new(), text };
         self.0.advance(&mut performer, &[byte]);
@@ -43,7 +44,7 @@ impl Tokeniser {
     }
 }
 
-/// The tokens that `vte` reports.
+/// Collects the tokens that `vte` reports.
 struct Tokens<'a> {
     tokens: Vec<Token>,
     text: &'a [u8],

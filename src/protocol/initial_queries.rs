@@ -8,18 +8,18 @@ use crate::input::Reply;
 
 use super::query::{FENCE, Tag};
 
-/// A batch of queries and the answers to it.
+/// A batch of queries, and the replies that have arrived.
 #[derive(Clone, Debug, Default)]
 pub struct InitialQueries {
     bytes: Vec<u8>,
     replies: Replies,
-    /// Whether replies may still arrive.
+    /// Whether replies to the batch may still arrive.
     open: bool,
 }
 
 impl InitialQueries {
-    /// Returns the queries for the facts that the picture depends on and the environment leaves
-    /// open.
+    /// Returns the queries for facts that affect the picture and do not follow from the
+    /// environment.
     pub fn needed(hints: &Hints) -> Self {
         let needed = [hints.needs_truecolor_reply(), hints.needs_palette_reply(), hints.needs_block_width_reply()];
         Self::of(hints.safe_queries(), needed)
@@ -35,8 +35,9 @@ impl InitialQueries {
         if safe_queries == SafeQueries::None {
             return Self::default();
         }
-        // The block first, while nothing else is on the screen; the fence last. Of GNU screen only the cursor position
-        // is requested, because it passes device control strings on to the outer terminal, which may print them.
+        // The half block is printed first, while nothing else is on the screen; the fence is last. GNU screen is only
+        // queried for the cursor position, because it passes device control strings on to the outer terminal, which may
+        // print them.
         if blocks {
             bytes.extend_from_slice(BLOCK_WIDTH.as_bytes());
         }
@@ -64,7 +65,7 @@ impl InitialQueries {
         &self.bytes
     }
 
-    /// Returns the answers so far.
+    /// Returns the replies that have arrived so far.
     pub fn replies(&self) -> &Replies {
         &self.replies
     }
@@ -76,21 +77,22 @@ impl InitialQueries {
 
     /// Closes the batch and returns whether it was open.
     ///
-    /// Called when a later query has been answered, which shows that the reply to the fence is lost.
+    /// To be called when a later query has been answered, which shows that the reply to the fence is lost.
     pub fn close(&mut self) -> bool {
         std::mem::take(&mut self.open)
     }
 
     /// Records a reply, and returns whether it ends the batch. Later replies are ignored.
     pub fn take(&mut self, reply: &Reply) -> bool {
-        // A reply after the fence belongs to a later query, or is forged.
+        // A reply after that of the fence belongs to a later query, or is forged.
         if !self.open {
             return false;
         }
         let replies = &mut self.replies;
         match reply {
             Reply::DeviceAttributes(_) => return self.close(),
-            // Only the block's query asks for the position; a user's Shift+F3 looks the same and is harmless here.
+            // The position is queried for the half block's width only. A user's Shift+F3 looks the same, and is
+            // harmless here.
             Reply::CursorPosition { column, .. } => replies.take_cursor(*column),
             &Reply::Mode { mode, state } => replies.take_mode(mode, state),
             &Reply::CellPixels { width, height } => replies.cell_pixels = Some((width, height)),
@@ -111,8 +113,8 @@ const SYNCHRONIZED: &[u8] = b"\x1b[?2026$p";
 const MOUSE_AND_KEYBOARD: &[u8] = b"\x1b[?1006$p\x1b[?1016$p\x1b[?u";
 const CELL_PIXELS: &[u8] = b"\x1b[16t";
 
-/// Returns the bytes that set a 24-bit background, query the current rendition (DECRQSS of SGR) and
-/// reset it.
+/// Returns the bytes that set a 24-bit background, query the current SGR attributes (DECRQSS), and
+/// reset them.
 fn truecolor_query() -> Vec<u8> {
     let crate::color::Srgb8 { r, g, b } = TEST_COLOR;
     format!("\x1b[48;2;{r};{g};{b}m\x1bP$qm\x1b\\\x1b[0m").into_bytes()

@@ -1,4 +1,4 @@
-//! The modes that are on, in order, and the bytes that switch each on and off.
+//! The terminal modes that are on, in order, and the bytes that switch each on and off.
 
 use crossterm::event::{self, KeyboardEnhancementFlags};
 use crossterm::{Command, cursor, style, terminal};
@@ -8,9 +8,9 @@ use crossterm::{Command, cursor, style, terminal};
 pub enum TerminalMode {
     /// The alternate screen (1049), whose contents are lost when it is switched off.
     AlternateScreen,
-    /// The pen's colours.
+    /// Colours of the pen that frames have set, and that the shell must not inherit.
     ///
-    /// No bytes switch this mode on: frames set colours, and the shell must not inherit them.
+    /// No bytes switch this mode on; switching it off resets the colours.
     Colors,
     /// A hidden cursor (25).
     HiddenCursor,
@@ -18,8 +18,8 @@ pub enum TerminalMode {
     BracketedPaste,
     /// Reports of focus changes (1004).
     FocusChange,
-    /// Reports of mouse buttons, wheel and drags (1002). crossterm's command also requests motion
-    /// without a button (1003), which would wake the loop for events without a meaning here.
+    /// Reports of mouse buttons, wheel and drags (1002). Motion without a button (1003), which
+    /// crossterm's command also requests, would wake the event loop for nothing.
     Mouse,
     /// Mouse reports in SGR form (1006): coordinates of any size, and the button of a release.
     MouseSgr,
@@ -36,13 +36,13 @@ const KEYBOARD: KeyboardEnhancementFlags = KeyboardEnhancementFlags::DISAMBIGUAT
     .union(KeyboardEnhancementFlags::REPORT_ALL_KEYS_AS_ESCAPE_CODES);
 
 /// The query for the flags of the kitty keyboard protocol that are set.
-// Its reply shows from which key on the terminal sends sequences: keys before it are in the legacy encoding.
+// Keys that arrive before its reply are in the legacy encoding, later ones are sequences.
 const KEYBOARD_QUERY: &str = "\x1b[?u";
 
 impl TerminalMode {
-    /// The live view's modes that every terminal supports or ignores, in the order in which they
-    /// are switched on.
-    // The alternate screen first: the cursor, for example, is hidden there and not on the shell's screen.
+    /// The modes of the live view that every terminal supports or ignores, in the order of
+    /// switching on.
+    // The alternate screen is first, so that the cursor, for example, is hidden there and not on the shell's screen.
     pub const ALL_TERMINALS: [Self; 7] = [
         Self::AlternateScreen,
         Self::Colors,
@@ -56,7 +56,7 @@ impl TerminalMode {
     fn on(self) -> String {
         match self {
             Self::AlternateScreen => ansi(terminal::EnterAlternateScreen),
-            // Frames set colours themselves; only the end needs bytes.
+            // Frames set colours themselves, so only switching off needs bytes.
             Self::Colors => String::new(),
             Self::HiddenCursor => ansi(cursor::Hide),
             Self::BracketedPaste => ansi(event::EnableBracketedPaste),
@@ -109,14 +109,14 @@ impl TerminalModes {
 
     /// Appends the bytes that switch all modes off, newest first.
     pub fn switch_all_off(&mut self, bytes: &mut Vec<u8>) {
-        // Newest first, so that each is undone in the state in which it was switched on.
+        // In reverse order, so that each mode is switched off in the state in which it was switched on.
         for mode in self.on.drain(..).rev() {
             bytes.extend_from_slice(mode.off().as_bytes());
         }
     }
 }
 
-/// Returns a command's escape sequence.
+/// Returns the escape sequence of a crossterm command.
 fn ansi(command: impl Command) -> String {
     let mut text = String::new();
     command.write_ansi(&mut text).expect("writing to memory does not fail");

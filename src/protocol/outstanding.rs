@@ -1,33 +1,33 @@
-//! Queries whose replies are outstanding.
+//! Tracking of queries whose replies have not arrived.
 
 use super::query::{FENCE, Tag};
 use crate::input::Reply;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Time after the last query at which a terminal counts as one that does not reply.
-// A lone ESC is held back for longer while replies are outstanding, and quitting waits for them; the longest round trip
-// that is expected of a link (a satellite) is below one second.
+/// Time after the last query at which the terminal is assumed not to reply.
+// While replies are outstanding, a lone ESC is reported later, and quitting waits for them. The longest round trip to
+// be expected of a link (a satellite) is below one second.
 const REPLY_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// Limit on the recorded queries.
+/// Limit on the number of recorded queries.
 ///
-/// Twice the number that [`REPLY_TIMEOUT`] holds at 60 frames a second.
+/// It is twice the number sent within [`REPLY_TIMEOUT`] at 60 frames a second, one per frame.
 const MAX_QUERIES: usize = 360;
 
-/// A query at the end of a message.
+/// A query at the end of the bytes sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Query {
     Fence,
     Tag(Tag),
 }
 
-/// The queries sent whose replies have not arrived.
+/// The queries whose replies have not arrived, for timeouts.
 ///
 /// Terminals reply in order: a reply shows that no reply to an older query will come.
 #[derive(Clone, Debug, Default)]
 pub struct Outstanding {
-    /// Oldest first.
+    /// The queries in the order in which they were sent.
     queries: VecDeque<Query>,
     /// The time at which the last query was sent.
     last_sent: Duration,
@@ -38,7 +38,7 @@ impl Outstanding {
     pub fn sent(&mut self, bytes: &[u8], now: Duration) {
         let fence = bytes.ends_with(FENCE).then_some(Query::Fence);
         if let Some(query) = fence.or_else(|| Tag::at_end_of(bytes).map(Query::Tag)) {
-            // The oldest is the least likely to be answered.
+            // At the limit the oldest query is dropped, because a reply to it is the least likely.
             if self.queries.len() == MAX_QUERIES {
                 self.queries.pop_front();
             }
@@ -49,7 +49,7 @@ impl Outstanding {
 
     /// Removes the query that `reply` answers and all older ones.
     ///
-    /// A reply to no outstanding query changes nothing.
+    /// A reply that matches no outstanding query changes nothing.
     pub fn take(&mut self, reply: &Reply) {
         let answered = match reply {
             Reply::DeviceAttributes(_) => Some(Query::Fence),
@@ -61,7 +61,7 @@ impl Outstanding {
         }
     }
 
-    /// Returns the time left until the timeout.
+    /// Returns the time left until outstanding replies time out.
     ///
     /// `None` if no reply is outstanding or the timeout has passed.
     pub fn time_left(&self, now: Duration) -> Option<Duration> {

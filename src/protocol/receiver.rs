@@ -5,27 +5,26 @@ use crate::input::{Input, Parser};
 use std::time::Duration;
 
 /// Timeout after which a lone `ESC` is the Escape key.
-// 50 ms is the usual choice of editors: longer than the gap within a sequence on most links, shorter than what is felt
-// as a delay.
+// 50 ms is usual in editors: longer than gaps within a sequence on most links, and too short to be noticed as a delay.
 const ESCAPE_TIMEOUT: Duration = Duration::from_millis(50);
-/// Timeout where a lone `ESC` is probably the first byte of a reply, or keys are sequences and it
-/// cannot be the key.
-// A reply cut in two by a slow link arrives within a round trip.
+/// Timeout if a lone `ESC` is probably the first byte of a reply, or cannot be the Escape key
+/// because all keys are sequences.
+// A slow link may deliver a reply in two parts, whose distance is below this longest plausible round trip.
 const SEQUENCE_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Parser of a terminal's bytes that also tracks outstanding replies.
+/// A parser of a terminal's bytes that also tracks outstanding replies and timeouts.
 #[derive(Default)]
 pub struct Receiver {
     parser: Parser,
     outstanding: Outstanding,
     /// Whether the terminal sends every key as a sequence.
     keys_are_sequences: bool,
-    /// Time of the last bytes or timeout.
+    /// Time at which the last bytes arrived or the last timeout was handled.
     last_event: Duration,
 }
 
 impl Receiver {
-    /// Records that `bytes` are sent at `now`, with the query at their end, if any.
+    /// Records that `bytes` are sent at `now`. If they end with a query, its reply is outstanding.
     pub fn sent(&mut self, bytes: &[u8], now: Duration) {
         self.outstanding.sent(bytes, now);
     }
@@ -65,9 +64,9 @@ impl Receiver {
         self.parser.set_keys_are_sequences(keys_are_sequences);
     }
 
-    /// Returns the time left for outstanding replies.
+    /// Returns the time left until outstanding replies time out.
     ///
-    /// `None` if none is outstanding or their timeout has passed.
+    /// `None` if no reply is outstanding or the timeout has passed.
     pub fn reply_time_left(&self, now: Duration) -> Option<Duration> {
         self.outstanding.time_left(now)
     }
@@ -81,7 +80,7 @@ impl Receiver {
     /// restored: the next bytes start a new stream.
     pub fn forget(&mut self) {
         self.forget_replies();
-        // A new parser, because the shell may have read the rest of a sequence.
+        // The parser is replaced, because the shell may have read the rest of an incomplete sequence.
         self.parser = Parser::new();
         self.keys_are_sequences = false;
     }

@@ -1,6 +1,6 @@
 use super::*;
 
-/// Each name is unique, and finds its command.
+/// Checks that each command's name is unique, and that the command is found by it.
 #[test]
 fn each_command_has_a_name() {
     for command in Command::all() {

@@ -11,7 +11,8 @@ fn meant(event: &KeyEvent) -> Option<(Command, bool)> {
     Keymap::default().command(FLY, event)
 }
 
-/// Returns the keys of modes that are active together and must not hide each other's keys.
+/// Returns all keys bound in `modes`, which are active together and must not hide each other's
+/// keys.
 fn keys_of(keymap: &Keymap, modes: &[KeyMode]) -> Vec<Key> {
     let rows = modes.iter().flat_map(|&mode| keymap.of(mode));
     rows.flat_map(|row| row.keys.iter().copied()).collect()
@@ -32,7 +33,7 @@ fn no_two_bindings_collide() {
         for key in keys_of(&keymap, modes) {
             assert!(seen.insert(key), "{key} is bound twice in {modes:?}");
         }
-        // Shift makes movement faster: no other command may be the capital of one of its letters.
+        // Shift with a letter makes its command faster, so no other command may be bound to the capital letter.
         let rows = modes.iter().flat_map(|&mode| keymap.of(mode)).filter(|row| row.command.has_faster());
         for key in rows.flat_map(|row| &row.keys) {
             if let KeyCode::Char(c) = key.code {

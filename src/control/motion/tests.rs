@@ -1,10 +1,10 @@
-//! Key events at given times, and the position of the eye afterwards.
+//! Tests of the camera's motion after key events at given times.
 
 use super::*;
 use crate::camera::{Pose, ViewRectangle};
 use crate::control::{KeyMode, Keymap};
 
-/// A motion that takes keys with their meaning in flight.
+/// Adds a method to [`Motion`] that handles a key with its command in `KeyMode::Fly`.
 trait Flown {
     fn key(&mut self, key: &KeyEvent, now: Duration);
 }
@@ -46,7 +46,7 @@ fn holding(keys: &str) -> Motion {
     motion
 }
 
-/// Returns the eye and the view direction after `time` at speed 1.
+/// Returns the eye and the view direction after `time` at a speed of 1 unit per second.
 fn after(motion: &Motion, time: Duration) -> (Vec3, Vec3) {
     let pose = motion.step(&camera(), 1.0, ms(0), time).pose();
     (pose.eye, (pose.target - pose.eye).normalize())
@@ -76,7 +76,7 @@ fn moving_and_turning_have_separate_speeds() {
     assert!(view.abs_diff_eq(Vec3::X, 1e-5), "{view}");
 }
 
-/// Checks eye and view direction after holding each key for a second at speed 1.
+/// Holds each key for a second at a speed of 1 unit per second, and checks eye and view direction.
 #[test]
 fn each_key_moves_the_camera_its_way() {
     let turn = std::f32::consts::FRAC_1_SQRT_2; // sine and cosine of the 45 degrees that a second turns
@@ -105,9 +105,9 @@ fn any_number_of_keys_move_together() {
     assert_after_a_second("wa", [-1.0, 0.0, 3.0], AHEAD);
     assert_after_a_second("wde", [1.0, 1.0, 3.0], AHEAD);
     assert_after_a_second("ah", [-0.923_88, 0.0, 4.0 + 0.382_68], [-turn, 0.0, -turn]);
-    // To the left and upwards: 45 degrees each.
+    // The view turns by 45 degrees to the left and by 45 degrees upwards.
     assert_after_a_second("hk", HERE, [-0.5, turn, -0.5]);
-    // Forward on a curve: half of the turn before the translation.
+    // Forward on a curve: the view turns by 22.5 degrees before the translation and by as much after it.
     assert_after_a_second("wh", [-0.382_68, 0.0, 4.0 - 0.923_88], [-turn, 0.0, -turn]);
 }
 
@@ -164,7 +164,7 @@ fn without_releases_a_press_glides_for_700_ms() {
 fn without_releases_a_repeat_coasts_for_150_ms() {
     let mut motion = Motion::default();
     motion.key(&press('w'), ms(0));
-    // The first repeat of a slow terminal comes in time; the others far faster.
+    // The first repeat arrives after 660 ms, before the glide of 700 ms ends; the others follow every 40 ms.
     for at in [660, 700, 740] {
         assert!(motion.is_moving(ms(at)));
         motion.key(&press('w'), ms(at));
@@ -237,7 +237,7 @@ fn a_release_without_a_press_is_ignored() {
 
 #[test]
 fn a_repeat_without_a_press_holds_the_key() {
-    // The press went to another window, which had the focus then.
+    // The press is missing because another window had the focus then.
     let mut motion = holding("");
     motion.key(&event('w', KeyEventKind::Repeat), ms(10));
     assert!(motion.is_moving(ms(10_000)));
@@ -280,7 +280,7 @@ fn a_glide_from_before_reports_of_releases_ends_as_a_glide() {
     let mut repeated = motion.clone();
     repeated.key(&event('w', KeyEventKind::Repeat), ms(660));
     assert!(repeated.is_moving(ms(5_000)), "it is held after all");
-    // Whether the key is still held is unknown.
+    // It is unknown whether the key pressed before is still held, so it is released.
     motion.key(&press('d'), ms(300));
     assert_eq!(motion, holding("d"));
 }
@@ -319,7 +319,7 @@ fn the_view_never_turns_over_the_pole() {
         let up = -camera.basis().w.y;
         assert!(up.abs() > 0.999 && up.abs() < 1.0, "{key}: {up}");
         assert!(camera.basis().v.y > 0.0, "up is still up");
-        // And back again.
+        // At the pole, the opposite key still turns the view back.
         let mut motion = Motion::default();
         motion.key(&press(if key == 'k' { 'j' } else { 'k' }), ms(0));
         assert_ne!(motion.step(&camera, 1.0, ms(0), ms(100)), camera);
@@ -339,7 +339,7 @@ fn the_view_turns_about_a_tilted_up() {
     assert!((eye - camera.pose().eye).abs_diff_eq(up.normalize() * 0.5, 1e-5));
 }
 
-/// Orbiting keeps the target and the distance to it.
+/// Checks that orbiting keeps the target and the eye's distance to it.
 #[test]
 fn the_eye_orbits_the_target() {
     let after = |key: KeyCode, shift: bool| {

@@ -9,7 +9,7 @@ fn event(kind: MouseEventKind, modifiers: KeyModifiers) -> MouseEvent {
     MouseEvent { kind, column: 0, row: 0, modifiers }
 }
 
-/// Returns the gestures of events 100 ms apart, without modifiers.
+/// Returns the gesture of each event, if any; the events are 100 ms apart and have no modifiers.
 fn gestures(events: &[(MouseEventKind, Vec2)]) -> Vec<Option<Gesture>> {
     let mut pointer = Pointer::default();
     let at = |number: usize| Duration::from_millis(100 * number as u64);

@@ -8,7 +8,7 @@ fn meant(keymap: &Keymap, mode: KeyMode, key: Key) -> Option<Command> {
     keymap.command(&[mode, KeyMode::Always], &key.pressed()).map(|(command, _)| command)
 }
 
-/// Returns the position and message of each error.
+/// Returns the position and message of each error in a faulty keymap.
 fn faults(text: &str) -> Vec<String> {
     let error = Keymap::from_ron("keys.ron", text).expect_err(text);
     error.reports().iter().map(|report| format!("{}:{} {}", report.line, report.column, report.message)).collect()
@@ -38,7 +38,8 @@ fn keys_are_added_replaced_and_freed() {
     assert_eq!(meant(&keymap, KeyMode::Export, Key::letter('g')).map(Command::name), Some("WritePng"));
 }
 
-/// A written keymap can serve as the start of a file, changed or not.
+/// Writes the built-in and a changed keymap as RON, and reads them back, so that users can start
+/// from such a file.
 #[test]
 fn a_written_keymap_is_read_back() {
     let changes = r#"(fly: { ["8", "\\", "\""]: MoveForward, "w": None }, always: { "x": None, "z": Explain })"#;
@@ -104,7 +105,7 @@ fn all_errors_are_reported_at_once() {
     assert_eq!(faults("[]"), ["1:1 expected modes with their keys, as in (fly: { \"8\": MoveForward })"]);
 }
 
-/// The capital of a movement key is that key with Shift, and cannot be bound in `always`.
+/// Checks that `always` cannot bind the capital of a movement key, which is that key with Shift.
 #[test]
 fn a_binding_that_a_higher_mode_hides_is_refused() {
     assert_eq!(
@@ -127,6 +128,6 @@ fn a_keymap_needs_a_key_that_quits() {
     assert_eq!(faults(r#"(always: { "q": Status })"#), [format!("1:12 {caught}")]);
     assert!(Keymap::from_ron("keys.ron", r#"(always: { "q": None, "Q": Quit })"#).is_ok());
     assert!(Keymap::from_ron("keys.ron", r#"(always: { ["q", "Ctrl-C"]: Quit })"#).is_ok());
-    // A binding hidden by another mode does not count there.
+    // A key bound to Quit in `always` does not quit in `fly` if `fly` binds it to another command.
     assert_eq!(faults(r#"(fly: { "q": Status })"#), [format!("1:9 {caught}")]);
 }

@@ -9,7 +9,7 @@ use std::io::{self, Write};
 impl<W: Write> Backend for EncoderBackend<W> {
     type Error = io::Error;
 
-    /// Records the cells, except those that a wide glyph covers; `flush` sends them.
+    /// Records the drawn cells, except those that a wide glyph covers. `flush` sends them.
     fn draw<'a, I>(&mut self, content: I) -> io::Result<()>
     where
         I: Iterator<Item = (u16, u16, &'a Cell)>,
@@ -34,23 +34,23 @@ impl<W: Write> Backend for EncoderBackend<W> {
         self.feed_lines(lines)
     }
 
-    /// Hides the cursor, with the next frame if one is open.
+    /// Hides the cursor: at once, or if a frame is open, with that frame.
     fn hide_cursor(&mut self) -> io::Result<()> {
         self.set_visible(false)
     }
 
-    /// Shows the cursor, with the next frame if one is open.
+    /// Shows the cursor: at once, or if a frame is open, with that frame.
     fn show_cursor(&mut self) -> io::Result<()> {
         self.set_visible(true)
     }
 
-    /// Returns the cursor's last position, or the one that the terminal reports.
+    /// Returns the cursor's last position; if it is unknown, the one that the terminal reports.
     fn get_cursor_position(&mut self) -> io::Result<Position> {
         self.follow_window()?;
         self.locate()
     }
 
-    /// Moves the cursor, with the next frame if one is open.
+    /// Moves the cursor: at once, or if a frame is open, with that frame.
     fn set_cursor_position<P: Into<Position>>(&mut self, position: P) -> io::Result<()> {
         self.set_position(position.into())
     }
@@ -65,7 +65,7 @@ impl<W: Write> Backend for EncoderBackend<W> {
         if clear_type == ClearType::All {
             self.forget();
         }
-        // Blanks are written over the region, so the cursor has to return to its position.
+        // Clearing writes blanks over the region, after which the cursor has to return to its position.
         self.put_cursor(Position::new(x, y));
         let columns = usize::from(self.window.columns_rows.width);
         let (line, next_line) = (usize::from(y) * columns, (usize::from(y) + 1) * columns);
@@ -91,7 +91,7 @@ impl<W: Write> Backend for EncoderBackend<W> {
 
     fn flush(&mut self) -> io::Result<()> {
         self.send_frame()?;
-        // The program may have written to the writer itself.
+        // Flushed even if the frame was empty, because the program may have written to the writer directly.
         self.writer.flush()
     }
 

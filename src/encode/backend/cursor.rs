@@ -3,7 +3,8 @@
 use crate::encode::moves::{CellPosition, Move};
 use ratatui_core::layout::Position;
 
-/// The position and visibility of the cursor; `None` if unknown, or not wanted in any way.
+/// The position and visibility of the cursor. `None` means unknown, or in a wanted state, no
+/// preference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Cursor {
     pub(super) position: Option<Position>,
@@ -11,7 +12,7 @@ pub(super) struct Cursor {
 }
 
 impl Cursor {
-    /// Appends the sequences that change the cursor to the wanted state.
+    /// Appends the sequences that change the cursor to the state `wanted`.
     pub(super) fn switch_to(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
         if let Some(Position { x, y }) = wanted.position
             && self.position != wanted.position

@@ -1,20 +1,19 @@
-//! The quality and the size of frames, by the clock and a rate.
+//! The limits on the backend's lossy frames: the quality, and the bytes that a rate allows.
 
 use crate::encode::{Allowance, Quality};
 use std::time::Duration;
 
 /// Time by which the bytes sent may be ahead of the rate.
-// A frame of a program that draws seldom waits for no longer, and one that draws 30 times a second has a third of it
-// per frame.
+// It bounds the delay of a frame. A program that draws 30 times a second may use a third of it per frame.
 const MAX_AHEAD: Duration = Duration::from_millis(100);
 
-/// A quality, a clock, and the use of a rate.
+/// The quality of frames, the program's clock, and the bandwidth cap with its use so far.
 pub(super) struct Limits {
     quality: Quality,
     clock: Box<dyn FnMut() -> Duration + Send + Sync>,
     bytes_per_second: Option<f64>,
     now: Duration,
-    /// The time at which everything sent has passed a link of this rate.
+    /// The time at which a link of the rate `bytes_per_second` has delivered everything sent.
     free_at: Duration,
 }
 
@@ -27,7 +26,7 @@ impl Limits {
         Self { bytes_per_second: Some(f64::from(bytes_per_second.max(1))), ..self }
     }
 
-    /// Returns the allowance of a frame that is sent now.
+    /// Returns the limits on a frame that is sent now.
     pub(super) fn allowance(&mut self) -> Allowance {
         self.now = (self.clock)();
         let left = (self.now + MAX_AHEAD).saturating_sub(self.free_at).min(MAX_AHEAD);
@@ -35,15 +34,15 @@ impl Limits {
         Allowance { quality: self.quality, now: self.now, max_bytes }
     }
 
-    /// Records the number of bytes of this frame.
+    /// Records the number of bytes of the frame that [`allowance`](Self::allowance) was for.
     pub(super) fn record_sent(&mut self, bytes: usize) {
         if let Some(rate) = self.bytes_per_second {
             self.free_at = self.free_at.max(self.now) + Duration::from_secs_f64(bytes as f64 / rate);
         }
     }
 
-    /// Returns the time at which cells that are due may be sent.
-    // Not before half of the time ahead is free again, so that a frame has room for more than a few cells.
+    /// Returns the earliest time at which cells that are due at `due` may be sent within the rate.
+    // Not before half of `MAX_AHEAD` is unused again, so that the frame has room for more than a few cells.
     pub(super) fn due(&self, due: Duration) -> Duration {
         due.max(self.free_at.saturating_sub(MAX_AHEAD / 2))
     }

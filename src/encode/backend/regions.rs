@@ -1,8 +1,8 @@
 //! Scrolling of a region of rows: DECSTBM, SU and SD.
 //!
-//! A region has at least two rows: many terminals ignore DECSTBM for one row, and the sequence after it would scroll
-//! the whole screen. ratatui requests such a region nevertheless, to move the first row of a full screen into the
-//! scrollback.
+//! A region has at least two rows: many terminals ignore DECSTBM for a single row, and the scrolling sequence after it
+//! would then scroll the whole screen. ratatui requests a single row nevertheless, to move the first row of a full
+//! screen into the scrollback, which is done without a region.
 
 use super::EncoderBackend;
 use crate::encode::moves::{CellPosition, Move};
@@ -11,7 +11,7 @@ use std::io::{self, Write};
 use std::iter;
 use std::ops::Range;
 
-/// The direction in which the content moves.
+/// The direction in which the contents of a region move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ScrollDirection {
     Up,
@@ -19,7 +19,7 @@ pub(super) enum ScrollDirection {
 }
 
 impl<W: Write> EncoderBackend<W> {
-    /// Scrolls the rows of a region; blank rows come in.
+    /// Scrolls the rows of a region by `by` rows; blank rows are inserted at the other end.
     ///
     /// Rows that leave the screen at its top enter the scrollback. Afterwards the cursor is at the top left.
     pub(super) fn scroll(&mut self, region: Range<u16>, by: u16, direction: ScrollDirection) -> io::Result<()> {
@@ -40,7 +40,7 @@ impl<W: Write> EncoderBackend<W> {
         if region == (0..height) {
             scroll_screen(height, by, direction, &mut bytes);
         } else if is_first_row_going_out {
-            // The first row enters the scrollback; the others move down again.
+            // Scrolling up moves the first row into the scrollback; scrolling down moves the other rows back.
             scroll_screen(height, 1, ScrollDirection::Up, &mut bytes);
             scroll_screen(height, 1, ScrollDirection::Down, &mut bytes);
         } else {
@@ -51,8 +51,9 @@ impl<W: Write> EncoderBackend<W> {
     }
 }
 
-/// Appends the scrolling of the whole screen; the cursor ends at the top left.
-// Upwards by line feeds, because every terminal keeps the rows that leave the screen so, but not by SU.
+/// Appends sequences that scroll the whole screen by `by` rows, and move the cursor to the top
+/// left.
+// Upwards by line feeds, not by SU: every terminal then moves the rows that leave the screen into the scrollback.
 fn scroll_screen(height: u16, by: u16, direction: ScrollDirection, bytes: &mut Vec<u8>) {
     match direction {
         ScrollDirection::Up => {
@@ -64,15 +65,15 @@ fn scroll_screen(height: u16, by: u16, direction: ScrollDirection, bytes: &mut V
     Move::To(CellPosition { column: 0, row: 0 }).write(bytes);
 }
 
-/// Appends the scrolling of a region.
-// Setting and resetting a region both move the cursor to the top left.
+/// Appends sequences that set a region, scroll it by `by` rows, and reset the region.
+// The cursor ends at the top left, because setting or resetting a region moves it there.
 fn scroll_rows(region: &Range<u16>, by: u16, direction: ScrollDirection, bytes: &mut Vec<u8>) {
     sequence(&[region.start + 1, region.end], b'r', bytes);
     sequence(&[by], if direction == ScrollDirection::Up { b'S' } else { b'T' }, bytes);
     bytes.extend_from_slice(b"\x1b[r");
 }
 
-/// Appends CSI with these parameters.
+/// Appends a CSI sequence with the parameters `numbers` and the final byte `last`.
 fn sequence(numbers: &[u16], last: u8, bytes: &mut Vec<u8>) {
     let mut lead: &[u8] = b"\x1b[";
     for &number in numbers {

@@ -1,7 +1,8 @@
 use super::*;
 use crate::color::Srgb8;
 
-/// The switch cost equals the number of bytes appended, from any pen to any other.
+/// Checks that the switch cost from any pen to any other equals the number of bytes that the switch
+/// appends.
 #[test]
 fn costs_are_true() {
     let inks = [Ink::Default, Ink::Indexed(7), Ink::Indexed(200), Ink::Rgb(Srgb8::new(0, 10, 100))];

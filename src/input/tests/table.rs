@@ -81,7 +81,7 @@ fn broken_characters() -> Vec<Case> {
     vec![
         (b"a\xffb\xc3c\x80\x9b\xe2\x82d", ['a', 'b', 'c', 'd'].map(|c| letter(c, NONE)).to_vec()),
         (b"\xe2\x82\x1b[A\xc3\xc3\xa9", vec![key(KeyCode::Up, NONE), letter('é', NONE)]),
-        // An encoded C1 control; a surrogate; U+FFFD, which stands for invalid bytes.
+        // A C1 control in UTF-8, a surrogate, and U+FFFD, which is indistinguishable from invalid bytes.
         (b"\xc2\x9b\xed\xa0\x80\xef\xbf\xbd", vec![]),
         (b"\x1b\xc3x\x1b\xffy", vec![letter('x', NONE), letter('y', NONE)]),
     ]
@@ -136,7 +136,7 @@ pub(super) fn kitty_keys() -> Vec<Case> {
         }),
         (b"\x1b[47:63;2u\x1b[47;2u", vec![letter('?', NONE), letter('/', SHIFT)]),
         (b"\x1b[1094::119;1u\x1b[1094:1062:119;2u\x1b[1089::99;5u", {
-            // Non-Latin keys by their position on a Latin keyboard, Latin ones by their letter.
+            // Non-Latin keys are reported by their position on a Latin keyboard, Latin keys by their letter.
             vec![letter('w', NONE), letter('W', SHIFT), letter('c', CONTROL)]
         }),
         (b"\x1b[1094;1u\x1b[122::119;1u\x1b[246::59;1u", ['ц', 'z', 'ö'].map(|c| letter(c, NONE)).to_vec()),
@@ -258,9 +258,9 @@ fn broken_sequences() -> Vec<Case> {
         // CAN and SUB abort a sequence, and are reported as Ctrl-X and Ctrl-Z.
         (b"\x1b[1;\x18A", vec![letter('x', CONTROL), letter('A', SHIFT)]),
         (b"\x1b]11;\x1aA", vec![letter('z', CONTROL), letter('A', SHIFT)]),
-        // A control character inside a sequence is reported as elsewhere.
+        // A control character inside a sequence is reported as a key, and the sequence goes on.
         (b"\x1b[1;\x035A", vec![letter('c', CONTROL), key(KeyCode::Up, CONTROL)]),
-        // Strings of kinds that carry no replies.
+        // Strings of kinds that are never replies (SOS and PM).
         (b"\x1bXnoise\x1b\\\x1b^noise\x1b\\", vec![]),
         // Sequences that no terminal sends.
         (b"\x1b[1?5Ax\x1b[ 1Ay", vec![letter('x', NONE), letter('y', NONE)]),

@@ -67,7 +67,7 @@ fn replies_count_up_to_the_fence() {
     assert_eq!((replies.block_width, replies.synchronized_output), (Some(1), Some(true)));
     assert_eq!((replies.kitty_keyboard, replies.cell_pixels), (Some(true), Some((10, 20))));
     assert_eq!((replies.truecolor, replies.light_background()), (Some(true), Some(true)));
-    // Forged, or a reply to another program.
+    // Replies after the fence's are forged or for another program, and are ignored.
     assert!(!queries.take(&Reply::CursorPosition { row: 1, column: 3 }));
     assert!(!queries.take(&Reply::DeviceAttributes(vec![62])));
     assert_eq!(queries.replies(), &replies);

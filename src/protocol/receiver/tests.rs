@@ -8,7 +8,8 @@ fn escape() -> [Input; 1] {
     [Input::Event(Event::Key(KeyCode::Esc.into()))]
 }
 
-/// The terminal may be restored more than once.
+/// Checks that after `forget_replies`, even twice, a late reply does not count as the reply to a
+/// newer query.
 #[test]
 fn replies_forgotten_at_a_restore_do_not_count_later() {
     let mut receiver = Receiver::default();
@@ -16,7 +17,7 @@ fn replies_forgotten_at_a_restore_do_not_count_later() {
     receiver.sent(b"frame\x1b[c", Duration::ZERO);
     receiver.forget();
     assert_eq!(receiver.reply_time_left(Duration::ZERO), None);
-    // A late reply matches no query, and a new query waits for its own reply.
+    // A late reply matches no query, and the reply to a new query is still outstanding.
     receiver.receive(b"\x1b[?62c", Duration::ZERO);
     receiver.sent(FENCE, Duration::ZERO);
     assert!(receiver.reply_time_left(Duration::ZERO).is_some());
