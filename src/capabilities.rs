@@ -1,6 +1,6 @@
 //! The capabilities of a terminal as plain values, and their detection.
 //!
-//! They are detected from the environment, the window and the terminal's replies.
+//! Capabilities are detected from the environment, the window and the terminal's replies.
 
 mod replies;
 mod detection;
@@ -19,10 +19,10 @@ pub use terminfo::terminfo_colors;
 
 use std::ops::RangeInclusive;
 
-/// The capabilities that cells depend on.
+/// The capabilities of a terminal that affect how a picture is drawn in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capabilities {
-    /// The mode in which pixels become cells.
+    /// The glyph kind and the colours in which pixels are drawn.
     pub cell_mode: CellMode,
     /// The cell aspect: a cell's height divided by its width, greater than 0.
     pub cell_aspect: f32,
@@ -43,7 +43,7 @@ pub const CELL_ASPECT_RANGE: RangeInclusive<f32> = 0.1..=10.0;
 /// The user's choice of colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorChoice {
-    /// The colours that detection finds.
+    /// The colours that are detected.
     #[default]
     Auto,
     /// At least sixteen colours, even if `NO_COLOR` is set.
@@ -54,7 +54,7 @@ pub enum ColorChoice {
     Exactly(Colors),
 }
 
-/// Returns a cell's height over its width, from the size of a window in cells and in pixels.
+/// Returns the cell aspect (height / width) from the size of a window in cells and in pixels.
 ///
 /// Returns `None` if the result is not between 0.25 and 8: many terminals leave the size in pixels at 0.
 ///
@@ -65,22 +65,24 @@ pub enum ColorChoice {
 /// assert_eq!(cell_aspect_of(80, 24, 0, 0), None);
 /// ```
 pub fn cell_aspect(columns: u16, rows: u16, width: u16, height: u16) -> Option<f32> {
-    // Cells have whole pixels, and a window may be a few pixels larger than its cells: so integer division.
+    // Integer division, because cells have whole pixels and a window may be a few pixels larger than its cells.
     let cell_width = width.checked_div(columns)?;
     let cell_height = height.checked_div(rows)?;
     let aspect = f32::from(cell_height) / f32::from(cell_width);
-    // Some terminals fill these fields with garbage; a wrong aspect is worse than the default.
+    // Some terminals report garbage as the size in pixels, and a wrong aspect is worse than the default.
     is_plausible_cell_aspect(aspect).then_some(aspect)
 }
 
-/// Returns whether a cell aspect is plausible: in 0.25..=8, beyond any terminal's font.
+/// Returns whether a cell aspect is plausible: in 0.25..=8, a range that includes every terminal's
+/// font.
 pub(crate) fn is_plausible_cell_aspect(aspect: f32) -> bool {
     (0.25..=8.0).contains(&aspect)
 }
 
-/// Returns the half blocks that cells may use, from a window's height in cells and in pixels.
+/// Returns the half blocks that cells may use, from the number of `rows` of a window and its
+/// `height` in pixels.
 pub fn half_blocks(rows: u16, height: u16) -> HalfBlocks {
-    // With a remainder (a border, or a size that is no multiple of cells) the cell's height is uncertain.
+    // If the height is not a multiple of the rows, because of a border or padding, the cell's height is uncertain.
     let cell_height = height.checked_div(rows).filter(|cell_height| cell_height * rows == height);
     cell_height.map_or(HalfBlocks::Lower, HalfBlocks::of_cell_height)
 }

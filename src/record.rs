@@ -1,7 +1,7 @@
 //! Films of frames over time: asciicast and GIF.
 //!
-//! Each frame is written as it comes; a film is never held in memory. A film is a pure function of its frames: it
-//! contains nothing from the clock or the environment.
+//! Each frame is written at once, so that a film is never in memory as a whole. A film is a pure function of its
+//! frames: its bytes do not depend on the clock or the environment.
 
 #[cfg(feature = "cast")]
 mod cast;

@@ -1,4 +1,4 @@
-//! Detection from the environment: pure functions, each answer with its source.
+//! Detection of colours and glyphs: pure functions that return each value with its source.
 
 use super::{ColorChoice, Colors, Glyphs};
 
@@ -24,7 +24,7 @@ pub enum Source {
     Reply,
     /// The terminfo database.
     Terminfo,
-    /// A default that holds nearly everywhere.
+    /// No source: a default that is right for nearly all terminals.
     Assumed,
 }
 
@@ -34,7 +34,7 @@ pub struct Clues<'a> {
     pub variable: &'a dyn Fn(&str) -> Option<String>,
     /// Whether the terminal kept a 24-bit colour, if it replied (DECRQSS of SGR).
     pub truecolor_reply: Option<bool>,
-    /// Returns the colours of a terminal name in terminfo, if known.
+    /// Returns the colours of a terminal name according to terminfo, if known.
     ///
     /// With the feature `live` this is `terminfo_colors`.
     pub terminfo: &'a dyn Fn(&str) -> Option<Colors>,
@@ -48,8 +48,8 @@ pub type GlyphChoice = Option<Glyphs>;
 /// The first source with a value decides: the flag; `NO_COLOR`; `COLORTERM`; the terminal's reply; terminfo's truecolor
 /// flags; the name in `TERM`, if it implies truecolor; terminfo's number; the name. `CLICOLOR_FORCE`, `FORCE_COLOR` and
 /// `--color=always` set a minimum.
-// `COLORTERM` before the reply, because it is known before the first frame; the reply before terminfo, because
-// terminals with truecolor share the entry `xterm-256color`.
+// `COLORTERM` precedes the reply, because it is known before the first frame. The reply precedes terminfo, because many
+// terminals with truecolor use the entry `xterm-256color`.
 pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {
     let least = match choice {
         ColorChoice::Never => return Detected { value: Colors::None, source: Source::User },
@@ -79,7 +79,7 @@ pub fn glyphs(choice: GlyphChoice, colors: Detected<Colors>, clues: &Clues<'_>) 
             let value = if is_utf8(&locale) { Glyphs::Half } else { Glyphs::Shape };
             Detected { value, source: Source::Variable(name) }
         }
-        // Without a locale (as in many containers and ssh sessions) UTF-8 is assumed: current terminals show it.
+        // Without a locale, as in many containers and ssh sessions, UTF-8 is assumed, which all current terminals show.
         None => Detected { value: Glyphs::Half, source: Source::Assumed },
     }
 }
@@ -94,14 +94,14 @@ pub(super) fn requested_by_variable(clues: &Clues<'_>) -> Option<Detected<Colors
     refused(clues).or_else(|| forced(clues))
 }
 
-/// Returns no colours if `NO_COLOR` is set and not empty, by the convention of no-color.org.
+/// Returns [`Colors::None`] if `NO_COLOR` is set and not empty, by the convention of no-color.org.
 fn refused(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     value(clues, "NO_COLOR").map(|_| Detected { value: Colors::None, source: Source::Variable("NO_COLOR") })
 }
 
 /// Returns the colours that `CLICOLOR_FORCE` or `FORCE_COLOR` requests.
 ///
-/// The conventions are those of bixense.com/clicolors, where any value but 0 requests colour, and of Node, with levels
+/// The first follows bixense.com/clicolors, where any value but 0 requests colour; the second follows Node, with levels
 /// 0 to 3.
 fn forced(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let found = |value, name| Some(Detected { value, source: Source::Variable(name) });
@@ -117,23 +117,23 @@ fn forced(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     found(value, "FORCE_COLOR")
 }
 
-/// Returns truecolor if `COLORTERM` announces it.
-// Other values than these two announce colour, but not how many.
+/// Returns truecolor if `COLORTERM` is `truecolor` or `24bit`.
+// Other values announce colours, but not their number.
 pub(super) fn colorterm(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let colorterm = value(clues, "COLORTERM")?.to_ascii_lowercase();
     let is_truecolor = colorterm == "truecolor" || colorterm == "24bit";
     is_truecolor.then_some(Detected { value: Colors::Truecolor, source: Source::Variable("COLORTERM") })
 }
 
-/// Returns truecolor if the terminal kept the test colour.
-// A terminal that did not may have any smaller number of colours, so the later sources decide.
+/// Returns truecolor if the terminal replied that it kept the test colour.
+// If it did not, it may have any smaller number of colours, so later sources decide.
 fn replied(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let kept = clues.truecolor_reply?;
     kept.then_some(Detected { value: Colors::Truecolor, source: Source::Reply })
 }
 
 /// Returns the colours by terminfo and the name in `TERM`.
-// terminfo's number is 256 for names of truecolor terminals (alacritty, st), so the name precedes the number.
+// A name that implies truecolor precedes terminfo's number, which is 256 for such terminals (alacritty, st).
 fn by_term(clues: &Clues<'_>) -> Detected<Colors> {
     let (terminfo, name) = (by_terminfo(clues), by_name(clues));
     match terminfo {
@@ -147,8 +147,8 @@ fn by_terminfo(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     Some(Detected { value, source: Source::Terminfo })
 }
 
-/// Returns the colours by the conventions of terminal names.
-// Unknown names get 256 colours, which every emulator of the last twenty years has.
+/// Returns the colours that the name in `TERM` implies.
+// Unknown names imply 256 colours, which every emulator of the last twenty years has.
 fn by_name(clues: &Clues<'_>) -> Detected<Colors> {
     let Some(term) = value(clues, "TERM") else {
         return Detected { value: Colors::Indexed256, source: Source::Assumed };
@@ -169,8 +169,8 @@ fn by_name(clues: &Clues<'_>) -> Detected<Colors> {
     Detected { value, source: Source::Variable("TERM") }
 }
 
-/// Returns the variable that names the locale's character set, and its value.
-// In POSIX's order: the first one that is set and not empty counts.
+/// Returns the environment variable that sets the locale's character set, and its value.
+// The first one that is set and not empty counts, in the order of POSIX.
 pub(super) fn locale(clues: &Clues<'_>) -> Option<(&'static str, String)> {
     ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(|name| Some((name, value(clues, name)?)))
 }

@@ -1,11 +1,12 @@
-//! The findings about a terminal from all sources: user, environment, window and replies.
+//! What is known about a terminal from all sources: user, environment, window and replies.
 
 use super::detection::{colorterm, locale, requested_by_variable};
 use super::{CELL_ASPECT_RANGE, USUAL_CELL_ASPECT, colors, glyphs};
 use super::{Capabilities, CellMode, Clues, ColorChoice, Colors, Detected, GlyphChoice, Glyphs, Replies, Source};
 use crate::grid::{CellShape, HalfBlocks};
 
-/// The user's choices and the environment, read once and evaluated again when replies arrive.
+/// The user's choices and environment variables, stored so that detection can be repeated when
+/// replies arrive.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Hints {
     /// The user's choice of colours.
@@ -22,7 +23,8 @@ pub struct Hints {
 pub const VARIABLES: [&str; 10] =
     ["TERM", "COLORTERM", "NO_COLOR", "CLICOLOR_FORCE", "FORCE_COLOR", "LC_ALL", "LC_CTYPE", "LANG", "TMUX", "STY"];
 
-/// The queries that a terminal tolerates: that neither print garbage nor confuse a multiplexer.
+/// The set of queries that a terminal tolerates: they neither print garbage nor confuse a
+/// multiplexer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SafeQueries {
     /// No queries: the terminal is dumb, or of a kind that may print unknown sequences.
@@ -30,28 +32,29 @@ pub enum SafeQueries {
     /// Queries of the cursor position, which the Linux console has always supported.
     Console,
     /// Queries that GNU screen answers itself.
-    // It passes device control strings on to the outer terminal, which would print them.
+    // GNU screen passes device control strings on to the outer terminal, which may print them.
     Screen,
-    /// Queries that tmux answers itself: not those about cell size and colours.
+    /// Queries that tmux answers itself: all except those about cell size and colours.
     Tmux,
     /// All queries.
     All,
 }
 
 impl Hints {
-    /// Returns hints from the environment alone.
+    /// Returns hints from the environment alone, without choices of the user. `variable` returns an
+    /// environment variable, `terminfo` the colours of a terminal name.
     pub fn gather(variable: &dyn Fn(&str) -> Option<String>, terminfo: &dyn Fn(&str) -> Option<Colors>) -> Self {
         let variables: Vec<_> = VARIABLES.into_iter().filter_map(|name| Some((name, variable(name)?))).collect();
         let mut hints = Self { variables, ..Self::default() };
-        // Where COLORTERM decides, terminfo is not read: its 650 system calls took 0.45 of the 3.4 ms from exec to the
-        // first query.
+        // If COLORTERM decides the colours, terminfo is not read: its 650 system calls took 0.45 of the 3.4 ms from
+        // exec to the first query.
         if hints.evaluate(None, colorterm).is_none() {
             hints.terminfo = hints.variable("TERM").and_then(terminfo);
         }
         hints
     }
 
-    /// Returns hints that choose exactly this mode, whatever the terminal is.
+    /// Returns hints in which the user has chosen exactly this mode, so that nothing is detected.
     pub fn exactly(mode: CellMode) -> Self {
         Self { color: ColorChoice::Exactly(mode.colors), glyphs: Some(mode.glyphs), ..Self::default() }
     }
@@ -61,7 +64,8 @@ impl Hints {
         self.raw(name).filter(|value| !value.is_empty())
     }
 
-    /// Returns the locale and the variable that names it, if one does.
+    /// Returns the environment variable that sets the locale, and the locale; `None` if none is
+    /// set.
     pub fn locale(&self) -> Option<(&'static str, String)> {
         self.evaluate(None, locale)
     }
@@ -80,7 +84,7 @@ impl Hints {
         self.variables.iter().find(|(known, _)| *known == name).map(|(_, value)| value.as_str())
     }
 
-    /// Returns the colours, given the reply about truecolor.
+    /// Returns the detected colours for a given reply about truecolor.
     fn colors(&self, truecolor_reply: Option<bool>) -> Detected<Colors> {
         self.evaluate(truecolor_reply, |clues| colors(self.color, clues))
     }
@@ -107,13 +111,13 @@ impl Hints {
         }
     }
 
-    /// Returns whether a reply about truecolor would change the colours.
-    // If no colours are wanted, no sequence about colour is sent, not even a query.
+    /// Returns whether a reply that confirms truecolor would change the detected colours.
+    // It is false if the user wants no colours: then no sequence about colours is sent, not even a query.
     pub fn needs_truecolor_reply(&self) -> bool {
         self.colors(Some(true)).value != self.colors(None).value
     }
 
-    /// Returns whether colours are possible with any reply.
+    /// Returns whether colours would be used if the terminal confirmed truecolor.
     pub fn allows_color(&self) -> bool {
         self.colors(Some(true)).value != Colors::None
     }
@@ -130,7 +134,7 @@ impl Hints {
     }
 }
 
-/// The findings about a terminal, each with its source.
+/// The detected properties of a terminal, each with its source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Findings {
     /// The colours.
@@ -170,7 +174,7 @@ impl Findings {
             cell_aspect: cell_aspect
                 .or(by_pixels)
                 .unwrap_or_else(|| found(replied_aspect(replies), Source::Reply, USUAL_CELL_ASPECT)),
-            // The window's size, if reported, is current; the reply is from the start.
+            // The window's size, if reported, is preferred because it is current, whereas the reply is from the start.
             half_blocks: if window.aspect.is_some() {
                 Detected { value: window.half_blocks, source: Source::Window }
             } else {
@@ -204,7 +208,7 @@ fn found<T>(answer: Option<T>, source: Source, otherwise: T) -> Detected<T> {
     }
 }
 
-/// Replaces the values of sixteen colours by those that the terminal reported.
+/// Replaces the assumed values of the sixteen colours by those that the terminal reported.
 fn with_replied_palette(mut found: Detected<Colors>, replies: &Replies) -> Detected<Colors> {
     if let Colors::Indexed16(values) = &mut found.value {
         for (value, answer) in values.iter_mut().zip(replies.sixteen) {
@@ -214,8 +218,9 @@ fn with_replied_palette(mut found: Detected<Colors>, replies: &Replies) -> Detec
     found
 }
 
-/// Replaces half blocks of another width than one column by ASCII, unless the user chose them.
-// In some East Asian locales blocks are two columns wide; a terminal without UTF-8 shows three characters.
+/// Replaces half blocks by ASCII if the terminal shows them wider than one column, unless the user
+/// chose them.
+// In some East Asian locales blocks are two columns wide; a terminal without UTF-8 shows three characters for one.
 fn with_replied_width(glyphs: Detected<Glyphs>, replies: &Replies) -> Detected<Glyphs> {
     let is_broken = glyphs.value == Glyphs::Half && replies.block_width.is_some_and(|width| width != 1);
     if is_broken && glyphs.source != Source::User {

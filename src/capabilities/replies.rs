@@ -2,7 +2,7 @@
 
 use crate::color::{LinearRgb, Srgb8};
 
-/// The replies received so far; a field is `None` without a reply.
+/// The replies received so far. A field is `None` until the terminal has replied.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Replies {
     /// Whether the terminal kept [`TEST_COLOR`] as the background colour (DECRQSS of SGR).
@@ -10,7 +10,7 @@ pub struct Replies {
     /// Whether the terminal supports synchronized output (DECRQM of mode 2026).
     pub synchronized_output: Option<bool>,
     /// Whether the terminal supports the kitty keyboard protocol.
-    // Never `Some(false)`: a terminal without it does not reply.
+    // Never `Some(false)`, because a terminal without the protocol does not reply.
     pub kitty_keyboard: Option<bool>,
     /// Whether the terminal supports SGR mouse reports (DECRQM of mode 1006).
     pub sgr_mouse: Option<bool>,
@@ -22,18 +22,19 @@ pub struct Replies {
     pub background: Option<Srgb8>,
     /// The values of the first sixteen colours (OSC 4).
     pub sixteen: [Option<Srgb8>; 16],
-    /// The number of columns of a half block, from a cursor position report after one.
+    /// The width of a half block in columns, from a report of the cursor's position after printing
+    /// one.
     pub block_width: Option<u16>,
 }
 
-/// The background colour that is set before the query of the current rendition.
-// None of the 256 palette colours: a terminal without truecolor replies with the nearest of them.
+/// The background colour that is set before the query of the current SGR attributes (DECRQSS).
+// It is not one of the 256 palette colours, so that a terminal without truecolor replies with another colour.
 pub const TEST_COLOR: Srgb8 = Srgb8::new(1, 2, 3);
 
 impl Replies {
     /// Records the state of a private mode as reported by DECRPM.
     pub fn take_mode(&mut self, mode: u16, state: u16) {
-        // 0 means not recognised, 4 permanently reset; 1 to 3 are set, reset and permanently set.
+        // The states 1 to 3 (set, reset, permanently set) mean support; 0 is not recognised, 4 permanently reset.
         let known = Some(matches!(state, 1..=3));
         match mode {
             2026 => self.synchronized_output = known,
@@ -55,29 +56,31 @@ impl Replies {
         }
     }
 
-    /// Records whether the current rendition, such as `1$r0;48:2::1:2:3m`, contains [`TEST_COLOR`].
+    /// Records whether the reported SGR attributes, such as `1$r0;48:2::1:2:3m`, contain
+    /// [`TEST_COLOR`].
     ///
-    /// A refusal (`0$r`) records nothing.
+    /// A reply that the query is invalid (`0$r`) records nothing.
     pub fn take_dcs(&mut self, text: &[u8]) {
         let rendition = std::str::from_utf8(text).ok().and_then(|text| text.strip_prefix("1$r")?.strip_suffix('m'));
         if let Some(rendition) = rendition {
             let Srgb8 { r, g, b } = TEST_COLOR;
-            // Terminals reply with semicolons or colons, and with or without the (empty) colour space, which is skipped
-            // here.
+            // Terminals separate numbers by semicolons or colons, and may insert an empty colour space, which is
+            // skipped here.
             let numbers: Vec<u8> = rendition.split([';', ':']).filter_map(|number| number.parse().ok()).collect();
             self.truecolor = Some(numbers.windows(5).any(|numbers| numbers == [48, 2, r, g, b]));
         }
     }
 
-    /// Records the width of a half block, from the cursor's column (from 1) after it.
+    /// Records the width of a half block, given the cursor's column (from 1) after one is printed
+    /// in the first column.
     pub fn take_cursor(&mut self, column: u16) {
-        // On a screen of one column the cursor cannot move past the block.
+        // A width of 0 is ignored: on a screen of one column the cursor cannot move past the block.
         self.block_width = column.checked_sub(1).filter(|&width| width > 0);
     }
 
-    /// Returns whether the background is light, if its colour is known.
+    /// Returns whether the background is light; `None` if its colour is unknown.
     pub fn light_background(&self) -> Option<bool> {
-        // The threshold is mid-grey, which reflects 18 % of the light: lightness L* = 50.
+        // The threshold is a luminance of 0.18: mid-grey, with a lightness L* of 50.
         self.background.map(|color| LinearRgb::from_srgb8(color).luminance() > 0.18)
     }
 }
@@ -85,7 +88,7 @@ impl Replies {
 /// Parses X11's `rgb:R/G/B` or `rgba:R/G/B/A` (one to four hexadecimal digits each), or `#rrggbb`.
 fn parse_color(text: &str) -> Option<Srgb8> {
     let [r, g, b] = if let Some(digits) = text.strip_prefix('#') {
-        // `get` returns `None` inside a character of several bytes, where an index would panic.
+        // `get`, because indexing would panic inside a character of several bytes.
         let pair = |at: usize| digits.get(at..at + 2).filter(|_| digits.len() == 6);
         [pair(0)?, pair(2)?, pair(4)?]
     } else {
@@ -96,7 +99,7 @@ fn parse_color(text: &str) -> Option<Srgb8> {
     Some(Srgb8::new(parse_channel(r)?, parse_channel(g)?, parse_channel(b)?))
 }
 
-/// Parses a channel of one to four hexadecimal digits, scaled from its largest value to 255.
+/// Parses a channel of one to four hexadecimal digits, and scales it to 0..=255.
 fn parse_channel(digits: &str) -> Option<u8> {
     let is_hex = matches!(digits.len(), 1..=4) && digits.bytes().all(|byte| byte.is_ascii_hexdigit());
     let value = u32::from_str_radix(digits, 16).ok().filter(|_| is_hex)?;

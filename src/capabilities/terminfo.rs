@@ -1,4 +1,4 @@
-//! The number of colours in the terminfo database.
+//! The colours of a terminal according to the terminfo database.
 
 use super::Colors;
 use termini::{NumberCapability, TermInfo};
@@ -8,7 +8,7 @@ use termini::{NumberCapability, TermInfo};
 /// The extended capabilities `RGB` and `Tc` mean truecolor; otherwise the number of colours decides. The database is
 /// searched in the folders of ncurses, which environment variables may set.
 pub fn terminfo_colors(term: &str) -> Option<Colors> {
-    // `TERM` comes from outside: only files of the database are read, no path.
+    // `TERM` may be any text, so a path is refused: only files of the database are read.
     if term.contains('/') {
         return None;
     }
@@ -20,7 +20,7 @@ fn entry_colors(entry: &TermInfo) -> Colors {
     match entry.number_cap(NumberCapability::MaxColors) {
         _ if has("RGB") || has("Tc") => Colors::Truecolor,
         Some(256..) => Colors::Indexed256,
-        // A terminal with eight colours has the bright ones as well, or shows them like the others.
+        // A terminal with eight colours also has the eight bright ones, or shows them as the normal ones.
         Some(8..) => Colors::SIXTEEN,
         _ => Colors::None,
     }

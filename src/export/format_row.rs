@@ -1,34 +1,35 @@
-//! The properties of a file format.
+//! The properties of an export format, which are a row of the table of formats.
 
 use crate::capabilities::Colors;
 use crate::grid::Grid;
 use crate::tone::Picture;
 use std::io;
 
-/// A row of the table of formats: everything that distinguishes one.
-// One constant per format: before, a new one took edits in eight files. Flags, completions, keys, commands and messages
-// follow from the rows. Films (`record`) are no rows: they are written frame by frame into an open sink.
+/// A row of the table of formats: all properties of one export format.
+// Flags, completions, keys, commands and messages follow from the rows; without the table, a new format took edits in
+// eight files. Films (`record`) are not in it, because they are written frame by frame.
 pub(super) struct FormatRow {
     pub(super) name: &'static str,
     pub(super) help: &'static str,
-    /// The extensions of file names; new files get the first.
+    /// The file name extensions of the format; new files get the first.
     pub(super) extensions: &'static [&'static str],
-    // Keys and commands are in users' keymaps, so they do not follow from the name.
+    // The key and the command's name do not follow from the format's name, because users' keymaps contain them.
     pub(super) key: char,
     pub(super) command: &'static str,
     pub(super) title: &'static str,
     pub(super) contents: Contents,
-    /// Returns the difference of the second file from the first, the golden one.
+    /// Describes the difference of the second file from the first, the golden file.
     pub(super) difference: fn(&[u8], &[u8]) -> String,
 }
 
-/// The input of a format, and the function that makes the file.
+/// The input of a format, pixels or cells, with the function that makes a file of it.
 #[derive(Clone, Copy)]
-// Function pointers, not a trait: rows are constants, and a format is no more than its function.
+// Function pointers instead of a trait, because rows are constants and a format has a single function.
 pub enum Contents {
-    /// The picture's pixels, their aspect (height / width), and the side of each in the file.
+    /// Makes the file from a picture, its pixel aspect (height / width), and the side of a pixel in
+    /// the file.
     Pixels(fn(&Picture, f32, u32) -> io::Result<Vec<u8>>),
-    /// The cells that show the picture.
+    /// The format contains the cells that show the picture.
     Cells {
         /// Whether the format has colours.
         has_colors: bool,

@@ -17,7 +17,7 @@ pub(super) const KIND: FormatRow = FormatRow {
     difference: difference::by_rows,
 };
 
-/// Returns the grid as a page without scripts that loads nothing.
+/// Returns the grid as an HTML page without scripts that loads no other files.
 ///
 /// The page has the right shape in any font: cells are as wide as the font's characters, and `cell_aspect` times as
 /// high. Characters are selectable text over an SVG of the backgrounds and half blocks, as in [`svg`](super::svg()).
@@ -33,9 +33,9 @@ pub(super) const KIND: FormatRow = FormatRow {
 /// ```
 pub fn html(grid: &Grid, cell_aspect: f32) -> String {
     let Size { columns, rows } = grid.size();
-    // Widths in `ch` and heights as multiples of it: the shape is right with any font, before and after zooming.
+    // All lengths are multiples of the font's `ch`, so that the shape is right with any font and zoom.
     let half_rows = 2 * u32::from(rows);
-    // `pre` ignores a line feed at its start, but a grid's first row is never empty.
+    // `pre` would ignore a line feed at its start, but the text starts with a grid's first row, which is never empty.
     let text = text(grid);
     let text = if text.trim().is_empty() { String::new() } else { format!("<pre>{text}</pre>\n") };
     format!(
@@ -58,7 +58,7 @@ svg,pre{{position:absolute;width:100%;height:100%;margin:0;font:inherit;line-hei
     )
 }
 
-/// Returns the text, row by row, without blanks at the ends of rows.
+/// Returns the grid's text as HTML, row by row, without blanks at the ends of rows.
 fn text(grid: &Grid) -> String {
     let mut text = String::new();
     for row in grid.rows() {

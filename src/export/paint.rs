@@ -1,4 +1,4 @@
-//! The appearance of a grid without a terminal: areas of one colour, and the text over them.
+//! The appearance of a grid in SVG and HTML: areas of one colour, and the text over them.
 
 use crate::cell::xterm_color;
 use crate::color::Srgb8;
@@ -22,7 +22,7 @@ struct ColorArea {
 /// A run of text of one style in a row.
 pub(super) struct TextRun {
     pub(super) column: usize,
-    /// The width in columns.
+    /// The width of the run in columns.
     pub(super) columns: usize,
     pub(super) text: String,
     color: Srgb8,
@@ -45,7 +45,7 @@ impl TextRun {
         css.join(";")
     }
 
-    /// Returns the text with the characters escaped that are special in SVG and HTML.
+    /// Returns the run's text with the special characters of SVG and HTML escaped.
     pub(super) fn escaped(&self) -> String {
         self.text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
     }
@@ -72,10 +72,12 @@ pub(super) fn paths(grid: &Grid) -> String {
     paths
 }
 
-/// Returns runs of equal colour, merged with equal runs in the half rows above them.
+/// Returns rectangles of equal colour: runs in each half row, merged with equal runs directly
+/// above.
 fn areas(grid: &Grid) -> Vec<ColorArea> {
     let mut areas: Vec<ColorArea> = Vec::new();
-    // By exact match only, in one pass: larger rectangles could be found, but pictures have few of them.
+    // Only runs with the same columns and colour are merged, in one pass. Other merges would find few more rectangles
+    // in pictures.
     let mut above: HashMap<(usize, usize, Srgb8), usize> = HashMap::new();
     let half_rows = grid.rows().flat_map(|row| [0, 1].map(|half| row.iter().map(move |cell| halves(cell)[half])));
     for (y, colors) in half_rows.enumerate() {
@@ -97,19 +99,19 @@ fn areas(grid: &Grid) -> Vec<ColorArea> {
     areas
 }
 
-/// Returns the colours of a cell's upper and lower half, without its text.
+/// Returns the colours of a cell's upper and lower half, with text left out.
 fn halves(cell: &Cell) -> [Srgb8; 2] {
     let [fg, bg] = colors(cell);
     match cell.glyph {
         Glyph::Char('▀') => [fg, bg],
         Glyph::Char('▄') => [bg, fg],
-        // Half blocks are areas, not text: fonts leave hairlines between block characters.
+        // Block characters are drawn as areas, not as text, because fonts leave hairlines between them.
         Glyph::Char('█') => [fg, fg],
         _ => [bg, bg],
     }
 }
 
-/// Returns the glyph's and the background's colour of a cell.
+/// Returns the colours of a cell's glyph and background.
 fn colors(cell: &Cell) -> [Srgb8; 2] {
     let (fg, bg) = (color(cell.fg, DEFAULT_TEXT), color(cell.bg, DEFAULT_BACKGROUND));
     if cell.attributes.contains(Attributes::REVERSED) { [bg, fg] } else { [fg, bg] }
@@ -123,7 +125,8 @@ fn color(ink: Ink, default: Srgb8) -> Srgb8 {
     }
 }
 
-/// Returns the text runs of a row. Blanks join runs of equal style, but are no runs by themselves.
+/// Returns the text runs of a row. Blanks between texts of equal style belong to one run; other
+/// blanks to none.
 pub(super) fn text_runs(row: &[Cell]) -> Vec<TextRun> {
     let mut runs: Vec<TextRun> = Vec::new();
     for (column, cell) in row.iter().enumerate() {
@@ -152,12 +155,12 @@ impl TextRun {
     }
 }
 
-/// Returns a cell's text, unless it belongs to the colour areas.
+/// Returns a cell's text; `None` for blanks and block characters, which are drawn as areas.
 fn text_of(cell: &Cell) -> Option<String> {
     let underlined = cell.attributes.contains(Attributes::UNDERLINED);
     match cell.glyph {
         Glyph::Covered | Glyph::Foreign | Glyph::Char('▀' | '▄' | '█') => None,
-        // An underlined blank is visible.
+        // An underlined blank is text, because its underline is visible.
         Glyph::Char(' ') if !underlined => None,
         _ => Some(cell.glyph.to_string()),
     }

@@ -6,15 +6,15 @@ use std::str::{Chars, Split};
 
 /// The colours and attributes of a character, as SGR parameters.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-// Strings, not typed colours: a parameter that this parser does not know is still compared and shown.
+// Strings instead of typed colours, so that unknown parameters are compared and shown too.
 pub(super) struct TextStyle {
     fg: String,
     bg: String,
     others: Vec<String>,
 }
 
-/// Returns the characters of a row and their styles.
-// Only SGR sequences are parsed; others stay characters, which a comparison makes visible.
+/// Returns the characters of a row of ANSI text, with the style of each.
+// Only SGR sequences are parsed; others stay characters, which the comparison shows.
 pub(super) fn row(text: &str) -> Vec<(char, TextStyle)> {
     let mut row = Vec::new();
     let mut style = TextStyle::default();
@@ -23,7 +23,7 @@ pub(super) fn row(text: &str) -> Vec<(char, TextStyle)> {
         if let Some(numbers) = take_sgr(&mut characters) {
             style.apply(numbers);
         } else if let Some(character) = characters.next() {
-            // An incomplete or another sequence is text here; `visible_char` keeps it from the terminal.
+            // The ESC of any other sequence counts as a character; `visible_char` replaces it in the output.
             row.push((character, style.clone()));
         } else {
             return row;
@@ -31,7 +31,7 @@ pub(super) fn row(text: &str) -> Vec<(char, TextStyle)> {
     }
 }
 
-/// Takes the parameters of an SGR sequence off the front, if there is one.
+/// If the characters start with an SGR sequence, skips it and returns its parameters.
 fn take_sgr<'a>(characters: &mut Chars<'a>) -> Option<&'a str> {
     let rest = characters.as_str().strip_prefix("\x1b[")?;
     let (numbers, after) = rest.split_at(rest.find(|c: char| !matches!(c, '0'..='9' | ';' | ':'))?);
@@ -49,7 +49,7 @@ impl TextStyle {
                 "48" => self.bg = color("48", &mut numbers),
                 "39" => self.fg.clear(),
                 "49" => self.bg.clear(),
-                // The only single attribute that the encoder switches off without a reset.
+                // Reverse video is the only attribute that the encoder switches off without a reset.
                 "27" => self.others.retain(|other| other != "7"),
                 _ if matches!(number.as_bytes(), [b'3' | b'9', b'0'..=b'7']) => number.clone_into(&mut self.fg),
                 _ if matches!(number.as_bytes(), [b'4', b'0'..=b'7'] | [b'1', b'0', b'0'..=b'7']) => {
@@ -61,7 +61,7 @@ impl TextStyle {
     }
 }
 
-/// Returns the parameters of a palette colour or a 24-bit colour.
+/// Returns the SGR parameters of a palette colour or a 24-bit colour, starting with `first`.
 fn color(first: &str, numbers: &mut Peekable<Split<'_, char>>) -> String {
     let count = match numbers.peek() {
         Some(&"5") => 2,
@@ -71,7 +71,7 @@ fn color(first: &str, numbers: &mut Peekable<Split<'_, char>>) -> String {
     numbers.take(count).fold(first.to_owned(), |color, number| color + ";" + number)
 }
 
-/// Writes the parameters, or `default`.
+/// Writes the SGR parameters of the style, or `default` if there are none.
 impl fmt::Display for TextStyle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let parts = [&self.fg, &self.bg].into_iter().chain(&self.others).filter(|part| !part.is_empty());

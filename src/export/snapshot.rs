@@ -150,14 +150,14 @@ fn ink(ink: Ink) -> String {
     }
 }
 
-/// The letters of codes: alphanumeric, so that no snapshot tool escapes them.
+/// The characters of style codes: letters and digits, which no snapshot tool escapes.
 const CODE_LETTERS: &[u8; 62] = b"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
 
-/// The styles of a grid and their codes.
+/// The distinct styles of a grid, and their codes.
 struct Legend {
     styles: Vec<CellStyle>,
     numbers: HashMap<CellStyle, usize>,
-    /// The number of letters of each code.
+    /// The number of characters of each code.
     code_len: usize,
 }
 
@@ -170,8 +170,8 @@ impl Legend {
                 styles.len() - 1
             });
         }
-        // All codes have the same length, so that columns stay aligned. Six letters suffice: a grid has fewer than 62^6
-        // cells.
+        // All codes have the same length, so that columns stay aligned. Six characters suffice: a grid has fewer than
+        // 62^6 cells.
         let code_len = (1..=6).find(|&code_len| CODE_LETTERS.len().pow(code_len) >= styles.len()).unwrap_or(6);
         Self { styles, numbers, code_len: code_len as usize }
     }

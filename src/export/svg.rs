@@ -17,7 +17,7 @@ pub(super) const KIND: FormatRow = FormatRow {
     difference: difference::by_rows,
 };
 
-/// The width of a cell in units of the drawing.
+/// The width of a cell in units of the SVG drawing.
 const CELL_WIDTH: f64 = 10.0;
 
 /// The width of a character divided by the font size, in most monospace fonts.
@@ -54,15 +54,16 @@ pub fn svg(grid: &Grid, cell_aspect: f32) -> String {
     svg
 }
 
-/// Returns the text elements; empty if there is no text.
+/// Returns the SVG elements of the grid's text; empty if there is no text.
 fn text(grid: &Grid, cell_height: f64) -> String {
-    // Limited by the cell's height, where cells are low, so that lines do not overlap.
+    // If cells are low, the font size is limited by their height, so that lines do not overlap.
     let font_size = (CELL_WIDTH / FONT_ADVANCE).min(0.85 * cell_height);
     let mut lines = String::new();
     for (row, cells) in grid.rows().enumerate() {
-        // The baseline a third of the font size below the middle: capital letters are about two thirds of it high.
+        // The baseline is a third of the font size below the cell's middle, because capital letters are about two
+        // thirds of the font size high.
         let y = rounded((row as f64 + 0.5) * cell_height + font_size / 3.0);
-        // `textLength` sets the width of each run, whatever monospace font the viewer has.
+        // `textLength` makes each run as wide as its cells, whatever font the viewer uses.
         for run in text_runs(cells) {
             let (x, length) = (CELL_WIDTH * run.column as f64, CELL_WIDTH * run.columns as f64);
             let style = Some(run.css("fill")).filter(|css| !css.is_empty());
@@ -79,8 +80,8 @@ fn text(grid: &Grid, cell_height: f64) -> String {
     )
 }
 
-/// Rounds to a thousandth of a unit.
-// Smaller differences are invisible; the numbers stay short and are the same on every machine.
+/// Rounds a length to a thousandth of a unit.
+// Smaller differences are invisible. Rounding keeps the numbers short, and the same on every machine.
 fn rounded(value: f64) -> f64 {
     (1000.0 * value).round() / 1000.0
 }

@@ -8,9 +8,10 @@ use std::time::Duration;
 
 /// An asciicast (version 2, the format of asciinema) of an encoder's bytes.
 ///
-/// Each frame is one output event, empty if nothing is to be sent, at the frame's number divided by the frame rate. The
-/// last frame, which stays on the screen, is exact with every quality. The cast contains frames only: it switches no
-/// modes, and sends no queries to the viewer's terminal.
+/// Each frame is one output event, empty if there is nothing to send. Its time is the frame's number divided by the
+/// frame rate. The last frame, which stays on the screen, is exact with every quality. The cast contains frames only:
+/// it
+/// switches no modes, and sends no queries to the viewer's terminal.
 ///
 /// ```
 /// use termtrace::{Cast, Encoder, Grid, Size};
@@ -26,14 +27,15 @@ pub struct Cast<W: Write> {
     out: W,
     encoder: Encoder,
     quality: Quality,
-    /// The limit on bytes per second.
+    /// The limit on the bytes per second of playback; `None` for no limit.
     max_rate: Option<u32>,
     frames_per_second: u32,
     frame: u64,
-    /// The time at which everything sent has arrived at this rate.
+    /// The time at which a link of `max_rate` has delivered everything sent.
     free_at: Duration,
-    /// The last frame and its bytes, which may not show the frame exactly.
-    // Written one frame late, because only `end` knows which frame is the last.
+    /// The last frame, and its encoded bytes, which may show the frame inexactly.
+    // It is written one frame late, because the film's last frame is encoded exactly, and only `end` knows which that
+    // is.
     last: Option<(Grid, Vec<u8>)>,
 }
 
@@ -73,7 +75,9 @@ impl<W: Write> Cast<W> {
 
     /// Sets the rate of the link in bytes per second.
     ///
-    /// While bytes are on their way, frames are dropped: their events are empty. The last frame is always sent.
+    /// Frames are dropped (their events are empty) until a link of this rate has delivered the bytes before them. The
+    /// last
+    /// frame is always sent.
     #[doc(hidden)]
     pub fn with_max_rate(self, max_rate: Option<u32>) -> Self {
         Self { max_rate, ..self }
@@ -87,7 +91,8 @@ impl<W: Write> Cast<W> {
         self.write_last()?;
         let mut bytes = Vec::new();
         let now = Duration::from_secs_f64(self.time());
-        // As in the live view, a late frame is dropped, not queued: queued frames would fall behind more and more.
+        // As in the live view, a frame for which the link is not free is dropped, not queued: queued frames would be
+        // later and later.
         if self.free_at <= now {
             let max_bytes = self.max_rate.map(|rate| (rate / self.frames_per_second) as usize);
             let allowance = Allowance { quality: self.quality, now, max_bytes };
@@ -113,7 +118,7 @@ impl<W: Write> Cast<W> {
         Ok(self.out)
     }
 
-    /// Returns the time of the next frame in seconds.
+    /// Returns the time of the current frame in seconds since the start of the film.
     fn time(&self) -> f64 {
         self.frame as f64 / f64::from(self.frames_per_second)
     }

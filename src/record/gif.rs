@@ -40,7 +40,8 @@ impl<W: Write> fmt::Debug for Gif<W> {
 }
 
 impl<W: Write> Gif<W> {
-    /// Starts a film of pictures of this resolution, with each pixel `scale` times as large.
+    /// Starts a film of pictures of this resolution, with each pixel enlarged `scale` times in both
+    /// directions.
     ///
     /// # Errors
     /// If writing fails, or a side of the GIF would exceed 65,535 pixels.
@@ -65,11 +66,11 @@ impl<W: Write> Gif<W> {
             return Err(invalid("all frames of a film have one size"));
         }
         let rgb = picture.to_bytes();
-        // Quantised before the enlargement, which would only repeat its work. No side exceeds the GIF's, which fits 16
-        // bits.
+        // Colours are quantised before the enlargement, because there are fewer pixels. The casts do not truncate: no
+        // side exceeds that of the GIF, which fits into 16 bits.
         let mut frame =
             gif::Frame::from_rgb_speed(width as u16, height as u16, &rgb, sampling_step(picture.pixels.len()));
-        // Enlarged here, because the format has no useful pixel aspect: viewers ignore it.
+        // Enlarged to square pixels here, because viewers ignore a GIF's pixel aspect.
         frame.buffer = self.enlarged(&frame.buffer).into();
         (frame.width, frame.height) = self.size;
         frame.delay = self.delay();
@@ -87,7 +88,7 @@ impl<W: Write> Gif<W> {
         Ok(out)
     }
 
-    /// Returns the picture's pixels repeated to fill the GIF.
+    /// Returns the pixels of a picture, each repeated across and down so that they fill the GIF.
     fn enlarged(&self, pixels: &[u8]) -> Vec<u8> {
         let (across, down) = (usize::from(self.size.0), usize::from(self.size.1));
         let (width, height) = (self.resolution.width() as usize, self.resolution.height() as usize);
@@ -99,17 +100,18 @@ impl<W: Write> Gif<W> {
         enlarged
     }
 
-    /// Returns the delay of a frame in hundredths of a second, up to the start of the next one.
+    /// Returns the time from the current frame to the next in hundredths of a second.
     fn delay(&self) -> u16 {
         let second = u64::from(self.frames_per_second.max(1));
-        // From the times of both frames, not from the frame rate, so that rounding errors do not add up.
+        // The difference of the rounded start times of both frames, so that rounding errors do not add up.
         let hundredths = |frame: u64| (100 * frame + second / 2) / second;
-        // At most 100, at one frame per second.
+        // The difference is at most 100, at one frame per second.
         (hundredths(self.frame + 1) - hundredths(self.frame)) as u16
     }
 }
 
-/// Returns the width and height of a GIF of this resolution with each pixel `scale` times as large.
+/// Returns the width and height in pixels of a GIF of this resolution, with each pixel enlarged
+/// `scale` times.
 pub fn gif_size(resolution: Resolution, scale: u32) -> (u64, u64) {
     let pixel_aspect = resolution.pixel_aspect();
     let [width, height] = [resolution.width(), resolution.height()].map(|side| u64::from(side) * u64::from(scale));
@@ -121,8 +123,8 @@ pub fn gif_size(resolution: Resolution, scale: u32) -> (u64, u64) {
     }
 }
 
-/// Returns the quantiser's sampling step, from 1 (every pixel) to 30.
-// For about 50,000 samples, which bounds the time per frame whatever the size.
+/// Returns the quantiser's sampling step for a number of pixels, from 1 (every pixel) to 30.
+// The quantiser then reads about 50,000 pixels, which bounds its time per frame.
 fn sampling_step(pixels: usize) -> i32 {
     i32::try_from(pixels / 50_000).map_or(30, |sampling_step| sampling_step.clamp(1, 30))
 }

@@ -4,7 +4,7 @@ use super::*;
 
 const SIXTEEN: Colors = Colors::SIXTEEN;
 
-/// A terminfo database that knows some terminals.
+/// Stands in for the terminfo database: returns the colours of a few terminal names.
 fn terminfo(term: &str) -> Option<Colors> {
     match term {
         "xterm-256color" | "alacritty" => Some(Indexed256),
@@ -26,15 +26,15 @@ fn the_first_source_with_a_value_decides_the_colours() {
     let truecolor = ("COLORTERM", "truecolor");
     let dumb = ("TERM", "dumb");
     for (choice, environment, reply, value, source) in [
-        // The flag.
+        // The user's flag decides.
         (Never, &[truecolor][..], Some(true), NoColors, Source::User),
         (Exactly(Indexed256), &[truecolor, ("NO_COLOR", "1")], None, Indexed256, Source::User),
         (Always, &[dumb, ("NO_COLOR", "1")], None, SIXTEEN, Source::User),
         (Always, &[xterm, ("NO_COLOR", "1")], None, Indexed256, Source::Terminfo),
-        // NO_COLOR.
+        // NO_COLOR decides.
         (Auto, &[truecolor, ("NO_COLOR", "1"), ("FORCE_COLOR", "3")], None, NoColors, variable("NO_COLOR")),
         (Auto, &[truecolor, ("NO_COLOR", "")], None, Truecolor, variable("COLORTERM")),
-        // A forced level is a minimum.
+        // CLICOLOR_FORCE and FORCE_COLOR set a minimum.
         (Auto, &[dumb, ("CLICOLOR_FORCE", "1")], None, SIXTEEN, variable("CLICOLOR_FORCE")),
         (Auto, &[dumb, ("CLICOLOR_FORCE", "0")], None, NoColors, Source::Terminfo),
         (Auto, &[xterm, ("CLICOLOR_FORCE", "1")], None, Indexed256, Source::Terminfo),
@@ -43,19 +43,19 @@ fn the_first_source_with_a_value_decides_the_colours() {
         (Auto, &[dumb, ("FORCE_COLOR", "")], None, SIXTEEN, variable("FORCE_COLOR")),
         (Auto, &[dumb, ("FORCE_COLOR", "true")], None, SIXTEEN, variable("FORCE_COLOR")),
         (Auto, &[truecolor, ("FORCE_COLOR", "0")], None, NoColors, variable("FORCE_COLOR")),
-        // COLORTERM.
+        // COLORTERM decides.
         (Auto, &[xterm, truecolor], None, Truecolor, variable("COLORTERM")),
         (Auto, &[xterm, ("COLORTERM", "24bit")], None, Truecolor, variable("COLORTERM")),
         (Auto, &[xterm, ("COLORTERM", "rxvt")], None, Indexed256, Source::Terminfo),
-        // The terminal's reply.
+        // The terminal's reply decides.
         (Auto, &[xterm], Some(true), Truecolor, Source::Reply),
         (Auto, &[xterm], Some(false), Indexed256, Source::Terminfo),
-        // terminfo.
+        // Terminfo decides.
         (Auto, &[("TERM", "xterm-direct")], None, Truecolor, Source::Terminfo),
         (Auto, &[("TERM", "vt100")], None, NoColors, Source::Terminfo),
-        // A name that implies more than terminfo's number.
+        // A name in TERM that implies more colours than terminfo's number decides.
         (Auto, &[("TERM", "alacritty")], None, Truecolor, variable("TERM")),
-        // The name.
+        // The name in TERM decides.
         (Auto, &[("TERM", "st-256color")], None, Truecolor, variable("TERM")),
         (Auto, &[("TERM", "vt220")], None, NoColors, variable("TERM")),
         (Auto, &[("TERM", "xterm-kitty")], None, Truecolor, variable("TERM")),

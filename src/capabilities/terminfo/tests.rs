@@ -1,6 +1,7 @@
 use super::*;
 
-/// Returns an entry as in term(5) with this number of colours, this extended flag and a string.
+/// Returns a compiled terminfo entry, as in term(5), with a number of colours, an extended flag and
+/// a string.
 fn entry(colors: Option<i16>, flag: &str) -> Vec<u8> {
     let len = |text: &str| i16::try_from(text.len()).expect("it is short");
     let shorts = |numbers: &[i16]| -> Vec<u8> { numbers.iter().flat_map(|number| number.to_le_bytes()).collect() };
@@ -32,7 +33,7 @@ fn the_flag_precedes_the_number() {
     }
 }
 
-/// Every truncated entry, and every entry with a changed byte, is parsed without a panic.
+/// Checks that truncated entries, and entries with any changed byte, are parsed without a panic.
 #[test]
 fn broken_entries_do_not_panic() {
     let whole = entry(Some(256), "Tc");

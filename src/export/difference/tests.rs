@@ -17,7 +17,7 @@ fn rows_far_apart_each_have_their_neighbours() {
     assert_eq!(shown(&text("2", "6"), &text("x", "66")), with_size);
 }
 
-/// Rows before and after an insertion are not reported as changed.
+/// Checks that rows before and after an insertion are not reported as changed.
 #[test]
 fn inserted_rows_are_found() {
     let expected = concat!(
@@ -35,7 +35,7 @@ fn blanks_and_line_feeds_at_the_end_count() {
     assert_eq!(shown("a", "a\n"), "only the text that was found ends with a line feed\n");
 }
 
-/// Marks are below their cells, also after wide characters.
+/// Checks that marks are below their cells, even after wide characters.
 #[test]
 fn wide_characters_take_two_columns() {
     let difference = compare("世界x\n", "世界y\n").expect("they differ");
@@ -54,7 +54,7 @@ fn colours_are_compared_and_named() {
     assert!(format!("{difference:#}").contains("\x1b[32m+ 1 |abcd|\x1b[m\n"));
 }
 
-/// Escape sequences of a golden file are not written to the terminal.
+/// Checks that escape sequences of a golden file are not written to the terminal.
 #[test]
 fn no_escape_sequence_is_passed_on() {
     for strange in ["\x1b[2J", "\x07\r", "\x1b", "\x1b[", "\x1b[38;5m\x1b[1;;m\x1b[99999999999m"] {

@@ -2,7 +2,7 @@ use super::*;
 use crate::color::Srgb8;
 use crate::grid::Size;
 
-/// A tool that trims its input loses neither the size nor a blank row.
+/// Checks that trimming a framed grid, as snapshot tools do, loses neither the size nor blank rows.
 #[test]
 fn blanks_are_within_the_frame() {
     for (size, expected) in [
@@ -16,7 +16,7 @@ fn blanks_are_within_the_frame() {
     }
 }
 
-/// Each style has its own code, however many styles there are.
+/// Checks that each style has a code of its own, for small and large numbers of styles.
 #[test]
 fn any_number_of_styles_has_distinct_codes() {
     for columns in [1, 62, 63, 300, 4000] {
