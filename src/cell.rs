@@ -29,7 +29,7 @@ pub use colors::Colors;
 pub(crate) use colors::xterm_color;
 pub use ramp::RAMP;
 
-/// The mode in which pixels become cells: a kind of glyphs and a set of colours.
+/// The mode in which pixels are drawn as cells: a glyph kind and a set of colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CellMode {
     /// The glyph kind.
@@ -43,11 +43,12 @@ crate::table::table! {
     pub enum Glyphs: GlyphKind {
         /// Half blocks: two pixels per cell, one above the other.
         Half = half::KIND;
-        /// The printable ASCII character whose ink is most like the light of eight pixels.
+        /// The printable ASCII character whose ink is distributed most like the light of a cell's
+        /// eight pixels.
         Shape = shape::KIND;
-        /// One of ten ASCII characters, by the lightness of two pixels.
+        /// One of ten ASCII characters, by the mean lightness of a cell's two pixels.
         Ramp = ramp::KIND;
-        /// A dot for a light pixel; exists in tests only.
+        /// A dot for each light pixel. This kind exists in tests only.
         #[cfg(all(test, unit_tests))]
         Dots = dots::KIND;
     }
@@ -137,7 +138,7 @@ impl CellMode {
         self.glyphs.row().pixels_per_cell
     }
 
-    /// Returns the mode without colours that shows the same pixels.
+    /// Returns the mode without colours that has the same number of pixels per cell.
     #[doc(hidden)]
     pub fn plain(self) -> Self {
         Self { glyphs: self.glyphs.row().plain.unwrap_or(self.glyphs), colors: Colors::None }
@@ -164,7 +165,7 @@ pub fn grid_from_picture(mode: CellMode, picture: &Picture) -> Grid {
     Painter::new(mode).grid(picture)
 }
 
-/// A converter of pictures into cells, which caches the mixes of palette colours between frames.
+/// A converter of pictures to cells, which caches mixes of palette colours from frame to frame.
 ///
 /// ```
 /// use termtrace::{CellMode, Painter, Picture, Size, Srgb8};
@@ -194,9 +195,9 @@ impl Painter {
         Self { mode, light_background: false, inks: InkConverter::of(mode.colors) }
     }
 
-    /// Sets whether the background is light.
+    /// Sets whether the terminal's background is light.
     ///
-    /// In the default colours light pixels are then left blank.
+    /// If it is, and only default colours are used, light pixels are left blank instead of dark ones.
     #[doc(hidden)]
     pub fn with_light_background(self, light_background: bool) -> Self {
         Self { light_background, ..self }
@@ -208,9 +209,9 @@ impl Painter {
         self.mode
     }
 
-    /// Returns the cells of a picture, whatever pictures were painted before.
+    /// Returns the cells of a picture, independently of pictures painted before.
     ///
-    /// Cells at the right and the lower edge may be filled only in part.
+    /// Cells at the right and the lower edge may extend beyond the picture.
     ///
     /// # Panics
     /// If the picture needs more than 65,535 columns or rows.
@@ -228,12 +229,12 @@ impl Painter {
     pub fn paint(&mut self, picture: &Picture, grid: &mut Grid) {
         let pixels_per_cell = self.mode.pixels_per_cell();
         grid.clear(size_in_cells(picture, pixels_per_cell));
-        // With colours the glyphs are written on black whatever the background is, so only default colours are
-        // inverted.
+        // Only default colours are inverted for a light background: with other colours, glyphs are drawn on black.
         let has_colors = self.mode.colors != Colors::None;
         let negative = (self.light_background && !has_colors).then(|| negative(picture));
         let picture = negative.as_ref().unwrap_or(picture);
-        // One dynamic call per frame: the loop over the cells is inside, so that it is compiled for its kind.
+        // One call by function pointer per frame. The loop over the cells is inside the function, so that it is
+        // compiled for the glyph kind.
         match self.mode.glyphs.row().fill {
             Fill::Colored(fill) => fill(grid, picture, &mut self.inks),
             Fill::Lightness(fill) if !has_colors => fill(grid, picture),
@@ -253,7 +254,7 @@ fn size_in_cells(picture: &Picture, (across, down): (u32, u32)) -> Size {
     Size::new(cells(picture.width, across), cells(picture.height, down))
 }
 
-/// Returns the picture with each channel inverted, so that light becomes dark.
+/// Returns the negative of a picture: each channel is inverted, so that light becomes dark.
 fn negative(picture: &Picture) -> Picture {
     let inverted = |pixel: &Srgb8| Srgb8::new(255 - pixel.r, 255 - pixel.g, 255 - pixel.b);
     Picture { pixels: picture.pixels.iter().map(inverted).collect(), ..*picture }

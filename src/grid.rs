@@ -1,6 +1,6 @@
 //! The cell grid: the contents of a terminal's screen, cell by cell.
 //!
-//! A grid stands between the picture and the bytes: [`cell`](crate::cell) makes it from pixels,
+//! A grid is the intermediate form between picture and bytes: [`cell`](crate::cell) makes it from pixels,
 //! [`overlay`](crate::overlay) lays text over it, [`encode`](crate::encode) and [`export`](crate::export) write it out.
 
 use crate::color::Srgb8;
@@ -23,7 +23,7 @@ pub struct Size {
     pub rows: u16,
 }
 
-/// Takes columns and rows, in this order.
+/// Converts a pair of columns and rows, in this order.
 impl From<(u16, u16)> for Size {
     fn from((columns, rows): (u16, u16)) -> Self {
         Self { columns, rows }
@@ -45,14 +45,14 @@ impl Size {
     /// Returns the number of cells.
     #[doc(hidden)]
     pub const fn cell_count(self) -> usize {
-        // At most 65,535 squared, which fits into 32 bits: no overflow on any target.
+        // The product is at most 65,535 squared, which fits into 32 bits, so that it overflows on no target.
         self.columns as usize * self.rows as usize
     }
 
-    /// Returns the number of cells, if a grid may have as many.
+    /// Returns the number of cells, if it is within the limit [`MAX_CELLS`] of grids.
     ///
     /// # Errors
-    /// [`ResolutionError::TooManyCells`], if there are more than [`MAX_CELLS`].
+    /// [`ResolutionError::TooManyCells`], if the number is above the limit.
     pub(crate) fn checked_cell_count(self) -> Result<usize, ResolutionError> {
         let Self { columns, rows } = self;
         let count = self.cell_count();
@@ -69,7 +69,7 @@ pub struct CellShape {
     pub half_blocks: HalfBlocks,
 }
 
-/// The half blocks with which cells show two pixels.
+/// The half blocks (`▄`, `▀`) that cells may use to show two pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum HalfBlocks {
     /// Lower half blocks only, which is right at every cell height.
@@ -77,20 +77,22 @@ pub enum HalfBlocks {
     Lower,
     /// Either half block, whichever saves a change of colour.
     ///
-    /// Both have to meet in the same line of pixels.
+    /// The terminal must divide the cell at the same line of pixels for both.
     Either,
 }
 
 impl HalfBlocks {
-    /// Returns the half blocks for cells of this height in pixels: either, if it is even.
-    // Compared pixel by pixel: xterm, st, kitty, alacritty and foot all split even cells in the same line. At odd
-    // heights some give the middle row to either half, others to the glyph, and a mix of both blocks is visible.
+    /// Returns the half blocks for cells of this height in pixels: either one if the height is
+    /// even.
+    // Compared pixel by pixel, xterm, st, kitty, alacritty and foot divide cells of even height at the same line for
+    // both. At odd heights some terminals draw the middle row in one half and some in the other, depending on the
+    // glyph, so a mix of both blocks is visible.
     pub(crate) fn of_cell_height(height: u16) -> Self {
         if height > 0 && height.is_multiple_of(2) { Self::Either } else { Self::Lower }
     }
 }
 
-/// The window of a terminal.
+/// The size of a terminal's window, and the shape of its cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// The size in cells.
@@ -122,11 +124,12 @@ pub enum Glyph {
     /// A character whose width, one or two cells, is the same in every terminal.
     Char(char),
     /// A grapheme cluster, on whose width terminals disagree: an accented letter, a family, a flag.
-    // Shared, because a grid is cloned for each frame, and clusters are rare.
+    // An `Arc`, so that cloning a grid, as is done for each frame, does not copy the text.
     Cluster(Arc<str>),
     /// No glyph: the wide glyph to the left also covers this cell.
     Covered,
-    /// Foreign content: left alone in a wanted grid, unknown in a shown grid.
+    /// Foreign contents. In a wanted grid such a cell is not written; in a shown grid its contents
+    /// are unknown.
     Foreign,
 }
 
@@ -175,7 +178,7 @@ impl Cell {
     #[doc(hidden)]
     pub const BLANK: Self = Self::new(' ', Ink::Default, Ink::Default);
 
-    /// A cell with foreign content.
+    /// A cell with foreign contents.
     pub(crate) const FOREIGN: Self = Self::with_glyph(Glyph::Foreign, Ink::Default, Ink::Default);
 
     /// Returns a cell with a character in these colours, without attributes.
@@ -199,7 +202,7 @@ impl Cell {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Grid {
     size: Size,
-    // One allocation for all rows: frames are compared, cloned and cleared as a whole.
+    // One vector for all rows, because frames are compared, cloned and cleared as a whole.
     cells: Vec<Cell>,
 }
 
@@ -233,7 +236,7 @@ impl Grid {
     /// ```
     ///
     /// # Panics
-    /// If it has more than 16,777,216 cells. For a size that comes from elsewhere there is `Grid::try_from(size)`.
+    /// If it has more than 16,777,216 cells. For a size that was not checked, use `Grid::try_from(size)`.
     pub fn new(size: Size) -> Self {
         Self { size, cells: vec![Cell::BLANK; Self::checked_cell_count(size)] }
     }
@@ -244,15 +247,15 @@ impl Grid {
     /// If it has more than 16,777,216 cells.
     #[doc(hidden)]
     pub fn clear(&mut self, size: Size) {
-        // The memory is reused: new grids per frame cost 571 page faults per key instead of 210 (with the frame's
-        // bytes).
+        // The memory is reused: with new grids for each frame, a key press caused 571 page faults instead of 210.
         let count = Self::checked_cell_count(size);
         self.size = size;
         self.cells.clear();
         self.cells.resize(count, Cell::BLANK);
     }
 
-    /// Returns a grid of foreign cells: an unknown screen, or one on which nothing is wanted.
+    /// Returns a grid of foreign cells: a shown grid of unknown contents, or a wanted grid without
+    /// any wanted cell.
     ///
     /// # Panics
     /// If it has more than 16,777,216 cells.
@@ -262,7 +265,7 @@ impl Grid {
     }
 
     /// Returns the number of cells, if it is within the limit.
-    // A panic, not an error: sizes come from terminals, which are checked where they are read.
+    // Panics instead of returning an error, because sizes of terminals are checked where they are read.
     fn checked_cell_count(size: Size) -> usize {
         size.checked_cell_count().unwrap_or_else(|error| panic!("{error}"))
     }
@@ -292,7 +295,7 @@ impl Grid {
     /// assert!(Grid::new(Size::new(80, 24)).rows().all(|row| row.len() == 80));
     /// ```
     pub fn rows(&self) -> impl Iterator<Item = &[Cell]> {
-        // A grid without columns has no cells, but chunks of length 0 panic.
+        // At least 1, because `chunks_exact` panics for 0, the width of a grid without columns.
         self.cells.chunks_exact(usize::from(self.size.columns).max(1))
     }
 
@@ -302,7 +305,7 @@ impl Grid {
         self.cells.chunks_exact_mut(usize::from(self.size.columns).max(1))
     }
 
-    /// Returns the cells of a row from this column on.
+    /// Returns the cells of a row from a column to the row's end.
     ///
     /// # Panics
     /// If the cell is outside the grid.
@@ -360,31 +363,32 @@ impl Grid {
         &mut self.cells[index]
     }
 
-    /// Puts a cell whose glyph is `columns` wide.
+    /// Writes a cell whose glyph is `columns` wide, and marks the cells that it covers.
     ///
-    /// A wide glyph that is overwritten in part becomes blanks.
+    /// A wide glyph that is partly overwritten becomes blanks.
     ///
     /// # Panics
     /// If the cells are outside the grid.
     #[doc(hidden)]
     pub fn put(&mut self, column: u16, row: u16, cell: &Cell, columns: u16) {
         let end = column.saturating_add(columns.max(1));
-        // Terminals do the same: half a wide character is never shown.
+        // As in terminals, a wide glyph at either end that is partly overwritten is replaced by blanks.
         self.split_wide_glyph(column, row);
         self.split_wide_glyph(end, row);
         for covered in column + 1..end {
-            // The colours too, so that a shown and a wanted grid compare equal only if the whole glyph does.
+            // Covered cells also have the glyph's colours, so that comparing them detects a change of any.
             *self.cell_mut(covered, row) = Cell { glyph: Glyph::Covered, ..cell.clone() };
         }
         self.cell_mut(column, row).clone_from(cell);
     }
 
-    /// Replaces a wide glyph that crosses the left edge of this column by blanks in its colours.
+    /// If a wide glyph extends from the left into this column, replaces it by blanks in its
+    /// colours.
     fn split_wide_glyph(&mut self, column: u16, row: u16) {
         if column >= self.size.columns || self.cell(column, row).glyph != Glyph::Covered {
             return;
         }
-        // A glyph may cover any number of columns, so both of its ends are searched.
+        // A glyph may cover any number of columns, so its first and last column are searched.
         let is_covered = |grid: &Self, column| grid.cell(column, row).glyph == Glyph::Covered;
         let start = (0..column).rev().find(|&column| !is_covered(self, column)).unwrap_or(0);
         let end = (column..self.size.columns).find(|&column| !is_covered(self, column)).unwrap_or(self.size.columns);
@@ -393,7 +397,8 @@ impl Grid {
         }
     }
 
-    /// Moves the content of these rows up by `by` rows; blank rows come in below.
+    /// Moves the contents of the rows `region` up by `by` rows; the rows at the bottom become
+    /// blank.
     ///
     /// Rows outside the grid are ignored.
     #[cfg(feature = "backend")]
@@ -404,7 +409,7 @@ impl Grid {
         cells[kept..].fill(Cell::BLANK);
     }
 
-    /// Moves the content of these rows down by `by` rows; blank rows come in above.
+    /// Moves the contents of the rows `region` down by `by` rows; the rows at the top become blank.
     ///
     /// Rows outside the grid are ignored.
     #[cfg(feature = "scrolling-regions")]
@@ -414,7 +419,8 @@ impl Grid {
         cells[..shift].fill(Cell::BLANK);
     }
 
-    /// Returns the cells of these rows, and how many cells `by` of the rows have.
+    /// Returns the cells of the rows `region`, and the number of cells in `by` rows, at most all of
+    /// them.
     #[cfg(feature = "backend")]
     fn region(&mut self, region: Range<u16>, by: u16) -> (&mut [Cell], usize) {
         let end = region.end.min(self.size.rows);

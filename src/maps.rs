@@ -1,7 +1,7 @@
-//! Maps: pictures of depths, normals, objects and other quantities in the place of light.
+//! Maps: pictures that show depths, normals, objects or other quantities instead of light.
 //!
 //! A map traces one ray through the centre of each pixel and has a fixed colour scale, which its legend gives: equal
-//! values have equal colours in every picture. Only the scale of depths depends on the camera, by the distance of its
+//! values have equal colours in every picture. Only the scale of depths depends on the camera, by the distance to its
 //! target. A *view*, in contrast, is a camera position, as in a scene's [`views`](Scene::views).
 
 use crate::camera::{Camera, Pose};
@@ -22,7 +22,7 @@ mod contrast;
 mod cost;
 mod shaded;
 
-/// The content of a picture: the scene's light, or a map of another quantity.
+/// The quantity that a picture shows: the scene's light, or another one.
 ///
 /// ```
 /// use std::num::NonZeroU32;
@@ -41,7 +41,8 @@ pub enum Map {
     /// The scene's light.
     #[default]
     Shaded,
-    /// The sum of n.l over all lights that the surface faces, clamped to 1.
+    /// The sum of n.l (normal times light direction) over all lights that the surface faces,
+    /// clamped to 1.
     ///
     /// Colours, distances and shadows have no influence.
     Lambert,
@@ -49,37 +50,35 @@ pub enum Map {
     ///
     /// d is the distance from the eye to the target.
     Depth,
-    /// The normal on the visible side, as (n + 1) / 2 in red, green and blue.
+    /// The surface normal n on the visible side, as (n + 1) / 2 in red, green and blue.
     Normal,
-    /// The object, as a colour for each index.
+    /// The object that is hit, as a distinct colour for each object index.
     Object,
     /// The number of lights that reach the surface, from dark grey for none to white for all.
     Shadow,
-    /// The number of intersection tests of the pixel's eye ray and shadow rays.
+    /// The number of surfaces and tree nodes that the pixel's eye ray and shadow rays are tested
+    /// against.
     ///
-    /// Each ray is traced singly.
-    ///
-    /// Counts surfaces and nodes of the tree. Colours go from blue over green to red and white, one for each power of
-    /// four.
+    /// Each ray is traced singly. Colours go from blue over green to red and white, one for each power of four.
     Cost,
     /// The visible side of the surface: front or back.
     Facing,
     /// The light in black and white, with lines between objects of the same colour.
     ///
-    /// For people who see outlines better than colours.
+    /// This map is for people who see outlines better than colours.
     Contrast,
 }
 
-/// The colour of rays without a hit, in all maps except costs and high contrast.
-// A dark blue: no value of the grey scales has it, and it is not mistaken for an object in the dark.
+/// The colour of pixels without a hit, in all maps except `Cost` and `Contrast`.
+// A dark blue, which differs from all greys and from an object in the dark.
 const NO_HIT: Srgb8 = Srgb8::new(16, 20, 56);
-/// The colour of front sides, to which the normal points.
-// Blue against orange-red, which red-green blindness leaves apart.
+/// The colour of front sides, the sides to which the normal points.
+// Blue and orange-red, which people with red-green blindness can tell apart.
 const FRONT: Srgb8 = Srgb8::new(70, 150, 230);
-/// The colour of back sides.
+/// The colour of back sides, the sides from which the normal points away.
 const BACK: Srgb8 = Srgb8::new(235, 80, 50);
 
-/// The picture of a map, and its cost.
+/// The picture of a map, and the cost of tracing it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TracedMap {
     /// The picture.
@@ -89,7 +88,7 @@ pub struct TracedMap {
 }
 
 impl Map {
-    /// All values, in the order in which the live view's keys go through them.
+    /// All maps, in the order in which keys of the live view select them.
     pub const ALL: [Self; 9] = [
         Self::Shaded,
         Self::Lambert,
@@ -116,7 +115,7 @@ impl Map {
         picture(self, scene, camera, resolution, sampling)
     }
 
-    /// Returns the name, a single word in lower case.
+    /// Returns the map's name, a single word in lower case.
     #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         match self {
@@ -156,15 +155,15 @@ impl Map {
         Self::ALL[(at + steps) % Self::ALL.len()]
     }
 
-    /// Returns whether more samples improve the picture.
-    // A mean of depths, normals or counts at an edge would be a value that no surface there has.
+    /// Returns whether more than one sample per pixel improves the picture.
+    // In other maps the mean of the depths, normals or counts at an edge would be a value that no surface has.
     #[doc(hidden)]
     pub const fn refines(self) -> bool {
         matches!(self, Self::Shaded)
     }
 
-    /// Returns the name and the meaning of the colours, in at most 38 ASCII characters.
-    // With its border, such a legend fits a terminal of 40 columns.
+    /// Returns the map's name and the meaning of its colours, in at most 38 ASCII characters.
+    // Together with a border, the legend then fits into a terminal of 40 columns.
     #[doc(hidden)]
     pub fn legend(self, scene: &Scene, camera: &Camera) -> String {
         let meaning = match self {
@@ -216,7 +215,7 @@ pub fn picture(
     trace_partial(map, Executor::Pool, scene, camera, resolution, sampling.into()).picture
 }
 
-/// Traces as [`picture`] does on the threads of `executor`.
+/// Traces the picture of a map on the threads of `executor`.
 ///
 /// # Errors
 /// [`Cancelled`], if the executor's token is cancelled.
@@ -231,7 +230,8 @@ pub fn trace(
     executor.finish(trace_partial(map, executor, scene, camera, resolution, sampling))
 }
 
-/// Traces as [`trace`] does; after a cancel, returns an incomplete picture.
+/// Traces the picture of a map; if the executor's token is cancelled, returns an incomplete
+/// picture.
 fn trace_partial(
     map: Map,
     executor: Executor<'_>,
@@ -271,7 +271,7 @@ fn trace_partial(
     }
 }
 
-/// Returns the colour of the sum of the lecture's n.l over all lights.
+/// Returns the colour of a sample in the map `Lambert`: the sum of n.l over all lights, as a grey.
 fn lambert(scene: &Scene, sample: &GBufferSample) -> Srgb8 {
     let Some(surface) = sample.surface(scene) else { return NO_HIT };
     let cosine = |light| shade::incidence(light, &surface).map_or(0.0, |incidence| incidence.cosine);

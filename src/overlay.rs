@@ -1,6 +1,6 @@
 //! Conversion between grids and ratatui's buffers.
 //!
-//! Panels are laid over a picture, and a grid becomes a buffer.
+//! Buffers with panels are laid over the grid of a picture, and a grid can be converted to a buffer.
 
 use crate::color::Srgb8;
 use crate::grid::{Attributes, Cell, Glyph, Grid, Ink};
@@ -9,7 +9,7 @@ use ratatui_core::layout::{Position, Rect};
 use ratatui_core::style::{Color, Modifier};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// Lays a buffer's cells over those of a grid, where both have cells.
+/// Copies a buffer's cells over those of a grid, where their areas overlap.
 ///
 /// ```
 /// use ratatui::{buffer::Buffer, layout::Rect, widgets::Widget};
@@ -34,14 +34,14 @@ pub fn lay_over(grid: &mut Grid, buffer: &Buffer) {
     }
 }
 
-/// Puts a ratatui cell into the grid, in at most `room` columns, and returns its width in columns.
-// A skipped cell leaves the grid's: ratatui programs skip the cells under a picture of the terminal's.
+/// Writes a ratatui cell into the grid, in at most `room` columns. Returns its width in columns.
+// A skipped cell leaves the grid unchanged: ratatui programs skip cells that an image of the terminal covers.
 pub(crate) fn put_cell(grid: &mut Grid, place: Position, cell: &ratatui_core::buffer::Cell, room: u16) -> u16 {
     if is_skipped(cell) {
         return 1;
     }
     let (glyph, columns) = glyph_from_ratatui(cell);
-    // A wide glyph that does not fit becomes a blank.
+    // A wide glyph that does not fit into `room` is replaced by a blank.
     let (glyph, columns) = if columns <= room { (glyph, columns) } else { (Glyph::Char(' '), 1) };
     let cell = Cell {
         glyph,
@@ -54,7 +54,7 @@ pub(crate) fn put_cell(grid: &mut Grid, place: Position, cell: &ratatui_core::bu
     columns
 }
 
-/// Returns whether ratatui skips a cell.
+/// Returns whether a ratatui cell is marked as one to skip.
 #[expect(deprecated, reason = "programs still set the older one of the two ways to say it")]
 fn is_skipped(cell: &ratatui_core::buffer::Cell) -> bool {
     match cell.diff_option {
@@ -65,8 +65,8 @@ fn is_skipped(cell: &ratatui_core::buffer::Cell) -> bool {
 }
 
 /// Returns the glyph of a ratatui cell, and its width in columns by ratatui's measure.
-// Control characters would have effects that the encoder does not track, and a glyph without width would be shown in
-// another cell: both become blanks.
+// Control characters, whose effects the encoder does not track, and glyphs without width, which would be shown in
+// another cell, become blanks.
 fn glyph_from_ratatui(cell: &ratatui_core::buffer::Cell) -> (Glyph, u16) {
     let symbol = cell.symbol();
     if symbol.contains(char::is_control) || symbol.width() == 0 {
@@ -75,20 +75,21 @@ fn glyph_from_ratatui(cell: &ratatui_core::buffer::Cell) -> (Glyph, u16) {
     let columns = cell.cell_width();
     let mut characters = symbol.chars();
     let glyph = match (characters.next(), characters.next()) {
-        // A character whose width both agree on needs no allocation: nearly every cell.
+        // The common case, without an allocation: one character, whose width is the same for ratatui and
+        // `unicode-width`.
         (Some(c), None) if c.width() == Some(columns.into()) && !is_regional_indicator(c) => Glyph::Char(c),
         _ => Glyph::Cluster(symbol.into()),
     };
     (glyph, columns)
 }
 
-/// Returns whether a character is a regional indicator, half of a flag.
-// Terminals disagree on the width of a single one, so it is treated as a cluster.
+/// Returns whether a character is a regional indicator, two of which form a flag.
+// Terminals disagree on the width of a single one, so it is stored as a cluster.
 fn is_regional_indicator(character: char) -> bool {
     matches!(character, '\u{1f1e6}'..='\u{1f1ff}')
 }
 
-/// Returns the colour of the underline, if ratatui's cells have one.
+/// Returns the colour of a ratatui cell's underline.
 #[cfg(feature = "underline-color")]
 fn underline(cell: &ratatui_core::buffer::Cell) -> Ink {
     ink_from_ratatui(cell.underline_color)
@@ -99,7 +100,7 @@ fn underline(_: &ratatui_core::buffer::Cell) -> Ink {
     Ink::Default
 }
 
-/// Each of ratatui's modifiers, with the attribute of a grid.
+/// ratatui's modifiers, each with the grid attribute of the same meaning.
 const ATTRIBUTES: [(Modifier, Attributes); 9] = [
     (Modifier::BOLD, Attributes::BOLD),
     (Modifier::DIM, Attributes::DIM),
@@ -113,7 +114,7 @@ const ATTRIBUTES: [(Modifier, Attributes); 9] = [
 ];
 
 fn attributes_from_ratatui(modifier: Modifier) -> Attributes {
-    // Most cells have no modifiers, so the nine tests are skipped.
+    // Most cells have no modifiers, and the nine tests below take time.
     if modifier.is_empty() {
         return Attributes::empty();
     }
@@ -121,8 +122,8 @@ fn attributes_from_ratatui(modifier: Modifier) -> Attributes {
     those.map(|(_, one)| one).collect()
 }
 
-/// Returns the ink of a ratatui colour.
-// ratatui's 16 named colours are the first palette colours, in the order of their SGR codes.
+/// Converts a ratatui colour to an ink.
+// ratatui's 16 named colours are the first 16 palette colours, in the order of their SGR codes.
 fn ink_from_ratatui(color: Color) -> Ink {
     match color {
         Color::Reset => Ink::Default,
@@ -147,7 +148,7 @@ fn ink_from_ratatui(color: Color) -> Ink {
     }
 }
 
-/// Returns a buffer with the grid's cells; a [`Glyph::Foreign`] becomes a skipped cell.
+/// Returns a buffer with the grid's cells. A cell with [`Glyph::Foreign`] becomes a skipped cell.
 ///
 /// ```
 /// use ratatui::buffer::Buffer;
@@ -175,7 +176,7 @@ fn ratatui_from_cell(cell: &Cell) -> ratatui_core::buffer::Cell {
         Glyph::Cluster(text) => {
             to.set_symbol(text);
         }
-        // ratatui has a blank cell behind a wide character.
+        // In ratatui the cell after a wide character is blank.
         Glyph::Covered => return to,
         Glyph::Foreign => {
             to.set_diff_option(CellDiffOption::Skip);
@@ -187,7 +188,7 @@ fn ratatui_from_cell(cell: &Cell) -> ratatui_core::buffer::Cell {
     to
 }
 
-/// Sets the colour of the underline, if ratatui's cells have one.
+/// Sets the colour of a ratatui cell's underline.
 #[cfg(feature = "underline-color")]
 fn set_underline(to: &mut ratatui_core::buffer::Cell, underline: Ink) {
     to.underline_color = underline.into();
@@ -204,7 +205,7 @@ fn modifier_from_attributes(attributes: Attributes) -> Modifier {
     those.map(|(one, _)| one).collect()
 }
 
-/// Converts to ratatui's type; the default ink becomes [`Color::Reset`].
+/// Converts an ink to a ratatui colour; the default ink becomes [`Color::Reset`].
 impl From<Ink> for Color {
     fn from(ink: Ink) -> Self {
         match ink {

@@ -2,16 +2,17 @@
 
 use crate::color::Srgb8;
 
-/// A set of colours. Smaller sets are less than larger ones.
+/// A set of colours, ordered by the number of colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Colors {
-    /// The terminal's two default colours: no colour is sent.
+    /// The terminal's two default colours; no colour sequence is sent.
     None,
-    /// The first sixteen palette colours, with the values that the terminal's theme gives them.
+    /// The first sixteen palette colours, with the sRGB values that the terminal's theme gives
+    /// them.
     Indexed16([Srgb8; 16]),
     /// The 240 palette colours that themes leave alone.
     ///
-    /// They are a cube of six levels per channel, and 24 greys.
+    /// These are a cube of six levels per channel and 24 greys, whose sRGB values are the same in all terminals.
     Indexed256,
     /// Every 8-bit sRGB colour.
     Truecolor,
@@ -23,8 +24,8 @@ impl Colors {
     pub const SIXTEEN: Self = Self::Indexed16(XTERM_16);
 }
 
-/// xterm's defaults of the sixteen colours.
-// They stand in until the terminal reports its own values (OSC 4).
+/// xterm's default values of the first sixteen palette colours.
+// They are assumed until the terminal reports its own values (OSC 4).
 const XTERM_16: [Srgb8; 16] = [
     Srgb8::new(0, 0, 0),
     Srgb8::new(205, 0, 0),
@@ -44,9 +45,9 @@ const XTERM_16: [Srgb8; 16] = [
     Srgb8::new(255, 255, 255),
 ];
 
-/// Returns xterm's default value of a palette colour.
+/// Returns xterm's default sRGB value of a palette colour.
 ///
-/// Colours 0..=15 are the theme's, 16..=231 a cube of six levels per channel, 232..=255 greys.
+/// Colours 0..=15 vary with the theme, 16..=231 are a cube of six levels per channel, and 232..=255 are greys.
 pub(crate) fn xterm_color(index: u8) -> Srgb8 {
     const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
     match index {

@@ -1,6 +1,6 @@
 //! A dot for each light pixel: a glyph kind that exists in tests only.
 //!
-//! The kind shows that a file and a row in the table suffice to add one.
+//! It shows that a file and a row of the table suffice to add a glyph kind.
 
 use super::glyph_kind::{Fill, GlyphKind};
 use crate::grid::{Cell, Grid, Ink};

@@ -14,15 +14,15 @@ pub(super) const KIND: GlyphKind = GlyphKind {
     title: "half blocks",
     pixels_per_cell: (1, 2),
     has_blocks: true,
-    // Without colours a half is either on or off, which shows less of a picture than ten characters do.
+    // Without colours a half is only on or off, so the ten characters of the ramp show more of a picture.
     plain: Some(Glyphs::Ramp),
     fill: Fill::Colored(fill),
 };
 
-/// Fills each cell with a lower half block in the lower pixel's colour on the upper pixel's.
-// The upper half block would do as well, but at odd cell heights some terminals split the two glyphs one row
-// of pixels apart, and a mix of them shows; one glyph everywhere keeps the split straight. The encoder mixes them where
-// the height is even and that saves bytes. Equal halves are a space: full blocks show hairlines in some fonts.
+/// Sets each cell to a lower half block, in the lower pixel's colour on the upper pixel's colour.
+// Always the same half block: at odd cell heights some terminals split the two a row of pixels apart, and a mix of them
+// is visible. At even heights the encoder mixes them to save bytes. If both halves are equal the glyph is a space,
+// because full blocks show hairlines in some fonts.
 fn fill(grid: &mut Grid, picture: &Picture, inks: &mut InkConverter) {
     if let InkConverter::Monochrome(palette) = inks {
         return fill_without_colors(grid, picture, palette);
@@ -36,14 +36,15 @@ fn fill(grid: &mut Grid, picture: &Picture, inks: &mut InkConverter) {
             *grid.cell_mut(column, row) = match lower {
                 Some(lower) if lower != upper => Cell::new('▄', lower, upper),
                 Some(_) => Cell::new(' ', Ink::Default, upper),
-                // Below the picture: the lower half keeps the default background.
+                // The lower half is below the picture and keeps the default background.
                 None => Cell::new('▀', upper, Ink::Default),
             };
         }
     }
 }
 
-/// Fills each cell with the block whose halves are on where the dithered pixels are light.
+/// Sets each cell to the space or block whose halves are filled where the dithered pixels are
+/// light.
 fn fill_without_colors(grid: &mut Grid, picture: &Picture, palette: &mut Palette) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {

@@ -5,13 +5,13 @@ use super::palette::Palette;
 use crate::color::Srgb8;
 use crate::grid::Ink;
 
-/// A converter to a set of colours.
+/// A converter of sRGB colours to the inks of a set of colours.
 pub(super) enum InkConverter {
-    /// The two default colours, dark and light, as indices 0 and 1 of a palette.
+    /// For the two default colours: a palette in which index 0 is dark and 1 is light.
     Monochrome(Palette),
-    /// Some of the 256 palette colours, and the index of black.
+    /// For palette colours: the palette, and the index of black in it.
     Indexed(Palette, u8),
-    /// All 24-bit colours.
+    /// For 24-bit colours, which need no conversion.
     Truecolor,
 }
 
@@ -20,13 +20,14 @@ impl InkConverter {
         match colors {
             Colors::None => Self::Monochrome(Palette::from_colors(&[Srgb8::new(0, 0, 0), Srgb8::new(255, 255, 255)])),
             Colors::Indexed16(values) => Self::Indexed(Palette::from_colors(&values), 0),
-            // Index 16 is the cube's black, which no theme changes; index 0 is the theme's.
+            // Black is index 16, in the cube, because a theme may change index 0.
             Colors::Indexed256 => Self::Indexed(Palette::cube(), 16),
             Colors::Truecolor => Self::Truecolor,
         }
     }
 
-    /// Returns the ink of a colour at a pixel of the screen, which selects the dither threshold.
+    /// Returns the ink for a colour; the pixel's column `x` and row `y` select the dither
+    /// threshold.
     pub(super) fn ink_at(&mut self, color: Srgb8, x: usize, y: usize) -> Ink {
         match self {
             Self::Monochrome(_) => Ink::Default,
@@ -35,7 +36,8 @@ impl InkConverter {
         }
     }
 
-    /// Returns the background of characters: black, or the default background without colours.
+    /// Returns the background on which characters are drawn: black, or the default background if
+    /// there are no colours.
     pub(super) fn background(&self) -> Ink {
         match self {
             Self::Monochrome(_) => Ink::Default,

@@ -1,6 +1,6 @@
 //! The ASCII ramp: one of ten characters by lightness.
 //!
-//! It serves terminals without colour, and golden text frames.
+//! The ramp is used on terminals without colours, and for golden text frames.
 
 use super::glyph_kind::{Fill, GlyphKind};
 use super::pair;
@@ -19,8 +19,8 @@ pub(super) const KIND: GlyphKind = GlyphKind {
     fill: Fill::Lightness(fill),
 };
 
-/// The characters from dark to light.
-// Users' snapshots contain them: a change would be a breaking change.
+/// The characters of the ramp, from dark to light.
+// They must not change, because users' snapshots contain them.
 pub const RAMP: &[u8; 10] = b" .:-=+*#%@";
 
 /// Fills each cell with the character of its pixels' mean luminance.
@@ -38,14 +38,15 @@ fn luminance(pixel: Srgb8) -> f32 {
     LinearRgb::from_srgb8(pixel).luminance()
 }
 
-/// Returns the character of a luminance.
-// Steps are equal in lightness L*, not in luminance, so that they look equal.
+/// Returns the ramp's character for a luminance.
+// The steps are equal in lightness L*, not in luminance, so that they look equal.
 fn glyph(luminance: f32) -> char {
     let step = LUMINANCE_AT_STEP.iter().take_while(|&&least| luminance >= least).count();
     char::from(RAMP[step])
 }
 
-/// The least luminance of each character but the first: that of lightness L* = 100 k / 10.
+/// The least luminance of each character but the first: the luminance of a lightness L* of 10, 20,
+/// ... 90.
 static LUMINANCE_AT_STEP: LazyLock<[f32; RAMP.len() - 1]> =
     LazyLock::new(|| std::array::from_fn(|k| luminance_from_lightness((k + 1) as f64 / RAMP.len() as f64) as f32));
 

@@ -5,7 +5,8 @@ use std::collections::HashSet;
 const BLACK: Srgb8 = Srgb8::new(0, 0, 0);
 const BLUE: Srgb8 = Srgb8::new(0, 0, 255);
 
-/// The kind consists of one file, its `mod` line and its row of the table.
+/// Checks that a glyph kind is complete with one file, its `mod` line and its row of the table, as
+/// `Dots` is.
 #[test]
 fn a_glyph_kind_for_tests_is_found_and_painted() {
     let glyphs = Glyphs::from_name("dots").expect("by its name");

@@ -1,4 +1,5 @@
-//! Colours of characters: the glyph shows the lightness of a cell, its colour the hue.
+//! Colours of characters: a cell's glyph shows its brightness, and the glyph's colour its hue and
+//! saturation.
 
 use super::ink_converter::InkConverter;
 use crate::color::{LinearRgb, Srgb8};
@@ -6,8 +7,8 @@ use crate::grid::Grid;
 use crate::tone::Picture;
 
 /// Returns the picture with each pixel replaced by the grey of its brightest channel.
-// The glyph's colour has one channel at the maximum, so the coverage has to supply the brightness of that channel; by
-// luminance, saturated blue would get hardly any ink.
+// The glyph's colour has its brightest channel at 255, so the glyph's ink has to supply that channel's brightness.
+// Chosen by luminance, glyphs for saturated blue would have hardly any ink.
 pub(super) fn brightness(picture: &Picture) -> Picture {
     let grey = |pixel: &Srgb8| {
         let brightest = pixel.r.max(pixel.g).max(pixel.b);
@@ -23,7 +24,7 @@ pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u3
             let color = at_full_brightness(mean(picture, pixels_per_cell, column, row));
             let cell = grid.cell_mut(column, row);
             cell.bg = inks.background();
-            // A blank shows no colour, and each change of colour takes bytes.
+            // Blanks keep their colour, because it is invisible and each change of colour takes bytes.
             if cell.glyph != ' ' {
                 cell.fg = inks.ink_at(color, column.into(), row.into());
             }

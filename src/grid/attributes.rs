@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::{BitAnd, BitOr, BitXor};
 
 /// A set of text attributes: bold, underlined and so on.
-// A type of our own, not ratatui's `Modifier`, so that grids and the encoder need no ratatui.
+// Its own type instead of ratatui's `Modifier`, so that grids and the encoder do not depend on ratatui.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Attributes(u16);
 
@@ -21,7 +21,7 @@ impl Attributes {
     pub const SLOW_BLINK: Self = Self(1 << 4);
     /// Blinking 150 times a minute or more (SGR 6).
     pub const RAPID_BLINK: Self = Self(1 << 5);
-    /// With the colours of glyph and background exchanged (SGR 7).
+    /// Reverse video: the colours of glyph and background are exchanged (SGR 7).
     pub const REVERSED: Self = Self(1 << 6);
     /// Hidden (SGR 8).
     pub const HIDDEN: Self = Self(1 << 7);
@@ -53,7 +53,7 @@ impl Attributes {
         Self((1 << Self::NAMES.len()) - 1)
     }
 
-    /// Returns the attributes of these bits, [`BOLD`](Self::BOLD) lowest.
+    /// Returns the set with these bits, of which the lowest is [`BOLD`](Self::BOLD).
     ///
     /// The highest seven bits are ignored.
     #[doc(hidden)]
@@ -61,7 +61,7 @@ impl Attributes {
         Self(bits & Self::all().0)
     }
 
-    /// Returns the bits of the set, [`BOLD`](Self::BOLD) lowest.
+    /// Returns the bits of the set, of which the lowest is [`BOLD`](Self::BOLD).
     #[doc(hidden)]
     pub const fn bits(self) -> u16 {
         self.0
@@ -73,7 +73,7 @@ impl Attributes {
         self.0 == 0
     }
 
-    /// Returns whether all of `other` are in this set.
+    /// Returns whether all attributes of `other` are in this set.
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
@@ -102,7 +102,8 @@ impl Attributes {
         *self = self.difference(other);
     }
 
-    /// Returns the attributes of the set as sets of one, in the order of their SGR codes.
+    /// Returns an iterator over the attributes, each as a set of its own, in the order of their SGR
+    /// codes.
     #[doc(hidden)]
     pub fn iter(self) -> impl Iterator<Item = Self> {
         Self::NAMES.into_iter().map(|(one, _)| one).filter(move |&one| self.contains(one))
@@ -139,7 +140,7 @@ impl FromIterator<Self> for Attributes {
     }
 }
 
-/// Writes the names of the attributes: `BOLD | ITALIC`.
+/// Writes the names of the attributes, such as `BOLD | ITALIC`.
 impl fmt::Debug for Attributes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let names = Self::NAMES.into_iter().filter(|&(one, _)| self.contains(one)).map(|(_, name)| name);

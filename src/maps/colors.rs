@@ -1,48 +1,49 @@
-//! The colour scales of maps, the same for every picture.
+//! The colour scales of maps, which are the same for every picture.
 
 use crate::color::Srgb8;
 use glam::Vec3;
 
-/// Converts a share from 0 to 1 to a channel of a colour.
+/// Converts a number from 0 to 1 to an 8-bit channel.
 fn channel(share: f32) -> u8 {
     (share * 255.0 + 0.5) as u8
 }
 
-/// Returns the grey of a share from 0 (black) to 1 (white), linear in sRGB.
+/// Returns the grey for a number from 0 (black) to 1 (white), linear in encoded sRGB.
 fn grey(share: f32) -> Srgb8 {
     let channel = channel(share);
     Srgb8::new(channel, channel, channel)
 }
 
-/// Returns the grey of a depth: white at 0, middle grey at `middle`, black at infinity.
-// The slope is greatest near `middle`, the target, where the eye is led; no depth needs a limit.
+/// Returns the grey for a depth `t`: white at 0, middle grey at `middle`, black at infinity.
+// The grey changes fastest near `middle`, the depth of the target, which matters most, and no depth needs a limit.
 pub(super) fn depth(t: f32, middle: f32) -> Srgb8 {
     let part = t / middle;
     grey(1.0 / (1.0 + part * part))
 }
 
-/// Returns the colour of a unit normal, whose coordinates from -1 to 1 become channels.
+/// Returns the colour for a unit normal: its coordinates from -1 to 1 become channels from 0 to
+/// 255.
 pub(super) fn normal(n: Vec3) -> Srgb8 {
     let [r, g, b] = n.to_array().map(|coordinate| channel(0.5 * coordinate + 0.5));
     Srgb8::new(r, g, b)
 }
 
-/// Returns the grey of `count` among `of`: dark for 0, white for all.
+/// Returns the grey for `count` out of `of`: dark grey for 0, white for all.
 pub(super) fn share(count: u32, of: u32) -> Srgb8 {
-    // Not black, so that shadows stay apart from the colour of rays without a hit.
+    // Not black, so that shadows differ from the colour of pixels without a hit.
     const MIN_GREY: f32 = 0.22;
     grey(MIN_GREY + (1.0 - MIN_GREY) * count.min(of) as f32 / of.max(1) as f32)
 }
 
-/// Returns the colour of an object.
-// Consecutive hues are a golden section of the circle apart, which keeps them distinct for any number of objects. Three
-// lightnesses in turn separate those whose hues come close: of the first 1,000 objects, three consecutive ones are more
-// than 0.1 apart in Oklab.
+/// Returns the colour for an object by its index.
+// The hues of consecutive objects differ by a golden section of the colour circle, which keeps hues distinct for any
+// number of objects. Three alternating lightnesses separate objects whose hues are close: among the first 1,000
+// objects, any three consecutive ones are more than 0.1 apart in OKLab.
 pub(super) fn object(number: u32) -> Srgb8 {
     const GOLDEN: u32 = 2_654_435_769; // 2^32 / 1.618...
     const MAX_CHANNELS: [f32; 3] = [1.0, 0.72, 0.86];
     const MIN_CHANNELS: [f32; 3] = [0.2, 0.08, 0.5];
-    // In integers, as a multiple in f32 would lose the hue of large numbers.
+    // Computed in integers, because for large numbers a product in f32 has too few digits.
     let hue = 6.0 * (number.wrapping_mul(GOLDEN) >> 8) as f32 / 16_777_216.0;
     let level = (number % 3) as usize;
     let channel_of = |middle: f32| {
@@ -53,18 +54,19 @@ pub(super) fn object(number: u32) -> Srgb8 {
     Srgb8::new(channel_of(0.0), channel_of(2.0), channel_of(4.0))
 }
 
-/// The colours of 1, 4, 16, 64, 256 and 1024 tests.
-// Powers of four, as tests per pixel range over three orders of magnitude: a linear scale would show a mesh only.
+/// The colours for 1, 4, 16, 64, 256 and 1024 tests.
+// A logarithmic scale, because tests per pixel range over three orders of magnitude: on a linear one, only meshes would
+// differ from blue.
 const HEAT: [[f32; 3]; 6] =
     [[0.1, 0.1, 0.5], [0.12, 0.5, 0.88], [0.2, 0.72, 0.3], [0.96, 0.86, 0.22], [0.87, 0.2, 0.16], [1.0, 1.0, 1.0]];
 
-/// Returns the colour of a number of tests, from blue up to 1 to white from 1024 on.
+/// Returns the colour for a number of tests, from blue for at most 1 to white for 1024 or more.
 ///
-/// Between the powers of four of [`HEAT`] colours are interpolated.
+/// Colours between those of [`HEAT`] are interpolated.
 pub(super) fn heat(count: u32) -> Srgb8 {
     let power = count.max(1).ilog2();
-    // The logarithm to base 2, interpolated linearly between powers of two: no platform's logarithm is on the path of
-    // a picture.
+    // The logarithm to base 2, interpolated linearly between powers of two. A library's logarithm might have other bits
+    // on another platform.
     let halves = power as f32 + (count.max(1) as f32 / (1_u64 << power) as f32 - 1.0);
     let place = (0.5 * halves).min((HEAT.len() - 1) as f32);
     let first = (place as usize).min(HEAT.len() - 2);
@@ -73,7 +75,7 @@ pub(super) fn heat(count: u32) -> Srgb8 {
     Srgb8::new(r, g, b)
 }
 
-/// Formats a length with two to four digits, and an exponent below 0.01 and from 10,000 on.
+/// Formats a length with two to four digits; below 0.01 and from 10,000 on, with an exponent.
 pub(super) fn short(length: f32) -> String {
     match length {
         l if !(0.01..1e4).contains(&l) => format!("{l:.1e}"),

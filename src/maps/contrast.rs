@@ -1,6 +1,6 @@
 //! The high-contrast map: black and white, with lines between objects.
 //!
-//! A threshold alone merges an object with one of the same colour behind it, so a line of the other colour separates
+//! After the threshold, an object may have the same colour as one behind it, so a line of the other colour separates
 //! them.
 
 use super::{TracedMap, shaded};
@@ -15,11 +15,12 @@ use std::num::NonZeroU32;
 const BLACK: Srgb8 = Srgb8::new(0, 0, 0);
 const WHITE: Srgb8 = Srgb8::new(255, 255, 255);
 
-/// The threshold of white, as a luminance.
-// CIE 1976 L* 50: half the lightness of white as perceived. Half the luminance would turn most pictures black.
+/// The luminance from which a pixel becomes white.
+// It has a lightness L* (CIE 1976) of 50, half that of white. With half the luminance of white instead, most pictures
+// would become black.
 const WHITE_THRESHOLD: f32 = 0.184;
 
-/// Traces the light and the objects, and returns the picture.
+/// Traces the light and the objects, and returns the high-contrast picture.
 pub(super) fn trace(
     executor: Executor<'_>,
     scene: &Scene,
@@ -27,10 +28,11 @@ pub(super) fn trace(
     resolution: Resolution,
     sampling: Sampling,
 ) -> TracedMap {
-    // One sample per pixel, as the objects have: the threshold of a mean would move the edges of the light only.
+    // One sample per pixel for the light, as for the objects: with more, edges of the light would move relative to
+    // those of the objects.
     let sampling = if sampling == Sampling::Coarse { sampling } else { Sampling::Each(NonZeroU32::MIN) };
     let light = shaded::trace(executor, scene, camera, resolution, sampling);
-    // The object's index plus 1; 0 without a hit.
+    // For each pixel, the object's index plus 1, or 0 without a hit.
     let objects =
         trace_g_buffer_partial(executor, scene, camera, resolution, sampling, TraceDepth::Surfaces, |sample| {
             sample.hit.map_or(0, |hit| hit.object + 1)
@@ -40,7 +42,8 @@ pub(super) fn trace(
     TracedMap { picture: outlined(&light.picture, &objects.pixels), cost }
 }
 
-/// Returns the picture in black and white, with lines where the element of `objects` changes.
+/// Returns the picture in black and white, with lines between pixels whose elements of `objects`
+/// differ.
 fn outlined(picture: &Picture, objects: &[u32]) -> Picture {
     let width = picture.width as usize;
     let is_white: Vec<_> =

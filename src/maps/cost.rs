@@ -1,14 +1,14 @@
 //! The cost map: the intersection tests of a pixel's rays, each traced singly.
 //!
-//! Packets share tests between pixels, so the rays that make the shaded picture have no number of tests of their own.
+//! Rays are traced singly because packets, with which the shaded picture is traced, share tests between pixels.
 
 use crate::hit::{Observer, PrimitiveTest, any_hit_observed, closest_hit_observed};
 use crate::render::GBufferSample;
 use crate::scene::Scene;
 use crate::shade;
 
-/// An observer that counts the tests of surfaces and of nodes of the tree.
-// A node counts once: its up to eight boxes are tested at once.
+/// An observer that counts the tests of surfaces and of tree nodes.
+// A node counts as one test, because its up to eight boxes are tested at once.
 #[derive(Default)]
 struct Count(u32);
 
@@ -22,7 +22,7 @@ impl Observer for Count {
     }
 }
 
-/// Returns the number of tests of a pixel's rays.
+/// Returns the number of tests of a pixel's eye ray and shadow rays.
 pub(super) fn tests(scene: &Scene, sample: &GBufferSample) -> u32 {
     let mut count = Count::default();
     closest_hit_observed(scene, &sample.ray, &mut count);

@@ -1,7 +1,7 @@
 use super::*;
 use crate::grid::Size;
 
-/// A grid converted to a buffer and laid over another grid gives the same grid again.
+/// Checks that converting a grid to a buffer, and laying that over a blank grid, restores the grid.
 #[test]
 fn a_grid_survives_conversion_to_a_buffer_and_back() {
     let mut grid = Grid::new(Size::new(6, 2));

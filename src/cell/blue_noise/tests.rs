@@ -7,7 +7,8 @@ fn thresholds_are_equally_frequent() {
     assert_eq!(counts, [TILE_PIXELS / 256; 256]);
 }
 
-/// The means of blocks of 16 pixels hardly vary; those of white noise deviate by 74 / 4 = 18.
+/// Checks that the means of blocks of 16 thresholds hardly vary. With white noise their deviation
+/// is 74 / 4 = 18.
 #[test]
 fn block_means_vary_less_than_those_of_white_noise() {
     let mean = |x: usize, y: usize| {

@@ -5,7 +5,8 @@ pub(super) const SAMPLE_COLUMNS: usize = 2;
 /// Rows of samples in a cell.
 pub(super) const SAMPLE_ROWS: usize = 4;
 
-/// Coverage of each sample by the characters from space on, row by row from the top; 255 is full.
+/// For each character from space on, the coverage by ink of a cell's eight samples, row by row; 255
+/// is full.
 #[rustfmt::skip]
 pub(super) const INK: [[u8; SAMPLE_COLUMNS * SAMPLE_ROWS]; 95] = [
     [  0,   0,   0,   0,   0,   0,   0,   0], // space

@@ -1,6 +1,7 @@
 use super::*;
 
-/// Returns the character for a cell of four rows of two letters, a (black) to z (white).
+/// Returns the character for a cell whose eight pixels are given as letters, row by row, from a
+/// (black) to z (white).
 fn character(pixels: &str) -> String {
     let grey = |letter: char| ((letter as u32 - 'a' as u32) * 255 / 25) as u8;
     let pixels = pixels.chars().map(|letter| Srgb8::new(grey(letter), grey(letter), grey(letter)));
@@ -10,7 +11,8 @@ fn character(pixels: &str) -> String {
     grid.cell(0, 0).glyph.to_string()
 }
 
-/// A cell lit like a glyph's ink gets this glyph, unless another has nearly equal ink.
+/// Checks that a cell whose light equals a glyph's ink gets this glyph, or one with nearly equal
+/// ink.
 #[test]
 fn a_glyph_is_nearest_to_its_own_ink() {
     let white = INK.iter().map(|ink| ink.iter().map(|&part| u32::from(part)).sum::<u32>()).max().expect("95");
@@ -26,7 +28,7 @@ fn a_glyph_is_nearest_to_its_own_ink() {
 fn the_ink_is_where_the_light_is() {
     assert_eq!(character("aaaaaaaa"), " ");
     assert_eq!(character("zzzzzzzz"), "Q");
-    // The first four samples are the upper half, every other one is on the left.
+    // Samples 0 to 3 are the upper half of the cell, and even ones its left half.
     for (pixels, lit) in
         [("zzzzaaaa", [0, 1, 2, 3]), ("aaaazzzz", [4, 5, 6, 7]), ("zazazaza", [0, 2, 4, 6]), ("azazazaz", [1, 3, 5, 7])]
     {

@@ -32,7 +32,8 @@ fn heat_has_a_colour_for_each_power_of_four() {
     assert!(heat(8) != heat(4) && heat(8) != heat(16) && heat(9) != heat(8), "and others between");
 }
 
-/// Neighbours in the file differ clearly, and a thousand objects have over 900 colours.
+/// Checks that consecutive objects have clearly different colours, and a thousand objects over 900
+/// colours.
 #[test]
 fn objects_have_colours_of_their_own() {
     let colors: Vec<_> = (0..1000).map(object).collect();
