@@ -1,6 +1,6 @@
 //! Descriptions of pictures in words, for people who cannot see them.
 //!
-//! Every statement comes from a [`Survey`] of traced pixels or from the scene's checked values; none is guessed.
+//! Every statement follows from a [`Survey`] of traced pixels or from the scene's checked values.
 
 use crate::camera::{Camera, Pose};
 use crate::color::LinearRgb;
@@ -21,7 +21,7 @@ mod survey;
 mod words;
 
 /// The largest number of objects, and of lights, that are described one by one.
-// A description is read aloud by a screen reader: ten lines take about a minute.
+// Descriptions are read aloud by screen readers, which takes about a minute for ten lines.
 const MAX_LISTED: usize = 10;
 
 /// Returns an English description of a picture, as lines of text.
@@ -57,7 +57,7 @@ pub fn describe(name: &str, scene: &Scene, camera: &Camera, resolution: Resoluti
     text
 }
 
-/// The parts of a description.
+/// The inputs of a description, with a method for each part of its text.
 struct Description<'s> {
     scene: &'s Scene,
     camera: &'s Camera,
@@ -65,7 +65,7 @@ struct Description<'s> {
 }
 
 impl Description<'_> {
-    /// Returns the sentence with the counts and the camera.
+    /// Returns the first sentence: the numbers of objects and lights, and the camera.
     fn introduction(&self, name: &str) -> String {
         let Pose { eye, target, .. } = self.camera.pose();
         let degrees = self.camera.rectangle().vertical_fov().to_degrees();
@@ -79,7 +79,7 @@ impl Description<'_> {
         )
     }
 
-    /// Describes the objects in the picture, largest first.
+    /// Describes the objects in the picture, those with the most pixels first.
     fn visible_objects(&self, resolution: Resolution) -> String {
         let covered = &self.survey.covered;
         let mut order: Vec<_> = covered.keys().copied().collect();
@@ -121,8 +121,8 @@ impl Description<'_> {
         object.shape.described(&color)
     }
 
-    /// Describes the objects in front of and behind an object.
-    // Not of unbounded objects, nor with them: that everything is in front of the floor says nothing.
+    /// Describes which objects are in front of an object, and which are behind it.
+    // Unbounded objects are left out: it is not informative that everything is in front of the floor.
     fn occlusions(&self, object: u32) -> String {
         let is_unbounded = |object: &u32| self.scene.objects()[*object as usize].shape.bounds().is_none();
         if is_unbounded(&object) {
@@ -138,13 +138,13 @@ impl Description<'_> {
         relations + self.enclosing(object)
     }
 
-    /// Returns a remark if the eye is inside the object, or an empty string.
+    /// Returns a remark if the eye is inside the object, otherwise an empty string.
     fn enclosing(&self, object: u32) -> &'static str {
         let shape = &self.scene.objects()[object as usize].shape;
         if shape.encloses(self.camera.pose().eye) { "; the eye is inside it" } else { "" }
     }
 
-    /// Describes the objects that are not in the picture, and why.
+    /// Describes the objects that are not seen in the picture, with the reason for each.
     fn hidden_objects(&self, resolution: Resolution) -> String {
         let count = self.scene.objects().len() as u32;
         let unseen: Vec<_> = (0..count).filter(|object| !self.survey.covered.contains_key(object)).collect();
@@ -178,8 +178,8 @@ impl Description<'_> {
         if along <= 0.0 {
             return "behind the eye".to_owned();
         }
-        // The position of its middle in the picture, from 0 to 1 inside: components along the sides of the view
-        // rectangle, which may be shifted.
+        // The position (qu, qv) of the object's middle in the picture, inside if both are in 0..=1: its components
+        // along the sides of the view rectangle, which may be shifted.
         let corner = eye_rays.through(0.0, 0.0).direction;
         let part = |qu, qv| {
             let side = eye_rays.through(qu, qv).direction - corner;
@@ -192,7 +192,7 @@ impl Description<'_> {
         position.unwrap_or("too small to be seen, or hidden").to_owned()
     }
 
-    /// Describes the background.
+    /// Describes the background's colours and its share of the picture.
     fn background(&self) -> String {
         let share = self.survey.background_pixels;
         if share == 0 {
@@ -208,7 +208,7 @@ impl Description<'_> {
         format!("The background, {}, is seen in {} of the picture.\n", colors, percent(share, self.survey.pixels))
     }
 
-    /// Describes the lights, strongest first.
+    /// Describes the lights, the strongest first.
     fn lights(&self) -> String {
         let target = self.camera.pose().target;
         let mut lights: Vec<_> = self.scene.lights().iter().collect();
@@ -246,11 +246,12 @@ impl Description<'_> {
         text
     }
 
-    /// Describes a direction from the target, as seen by the viewer.
+    /// Describes a direction from the target as seen from the eye, such as "from above and the
+    /// left".
     fn direction_of(&self, away: Vec3) -> String {
         let basis = self.camera.basis();
         let away = away.normalize_or_zero();
-        // A direction is mentioned from about 17 degrees on (a component of 0.3): most lights then have one or two.
+        // A side is mentioned if its component is above 0.3 (about 17 degrees): most lights then have one or two sides.
         let side = |along: Vec3, words: [&'static str; 2]| match away.dot(along) {
             part if part > 0.3 => Some(words[0]),
             part if part < -0.3 => Some(words[1]),
@@ -265,7 +266,7 @@ impl Description<'_> {
         if sides.is_empty() { "at the target".to_owned() } else { format!("from {}", listed(&sides)) }
     }
 
-    /// Returns the number of objects of each kind.
+    /// Returns a text with the number of objects of each kind.
     fn counts_by_kind(&self, objects: impl Iterator<Item = u32>) -> String {
         let mut counts = BTreeMap::new();
         for object in objects {
@@ -277,7 +278,7 @@ impl Description<'_> {
     }
 }
 
-/// Returns the object's middle; `None` for an unbounded one.
+/// Returns the middle of a shape's bounds; `None` for an unbounded shape.
 fn middle(shape: &Shape) -> Option<Vec3> {
     let bounds = shape.bounds()?;
     Some(0.5 * (bounds.min + bounds.max))
@@ -289,7 +290,8 @@ fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { many })
 }
 
-/// Lists objects by their numbers in the file, from 1, up to a limit.
+/// Lists objects by their numbers in the scene file, from 1. Those after the fourth are called
+/// "others".
 fn numbers(objects: &[u32]) -> String {
     const MAX_NUMBERS: usize = 4;
     let names: Vec<_> = objects.iter().take(MAX_NUMBERS).map(|object| format!("object {}", object + 1)).collect();

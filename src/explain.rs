@@ -1,7 +1,7 @@
-//! Explanations of one pixel in the lecture's symbols.
+//! Explanations of one pixel in the symbols of the lecture on ray tracing.
 //!
 //! All numbers come from the functions that render pictures: the ray, the tested surfaces, the hit, the lights, the
-//! sum. The lecture's formulas stand beside them, as [`Equation`]s.
+//! sum. The lecture's formulas are given with them, as [`Equation`]s.
 
 mod text;
 
@@ -21,7 +21,7 @@ use crate::shape::{Surface, SurfacePoint};
 use crate::tone::{tone, tone_mapped};
 use glam::{Vec2, Vec3};
 
-/// An explanation of a pixel's first sample, the one through its centre.
+/// An explanation of a pixel's first sample, whose ray passes through the pixel's centre.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Explanation {
@@ -31,19 +31,21 @@ pub struct Explanation {
     pub pixel: [u32; 2],
     /// The lecture's (qu, qv): the position from (0, 0) at the lower left corner to (1, 1).
     pub q: Vec2,
-    /// The eye ray, with the lecture's **o** and **d**; **q** is o + d.
+    /// The eye ray: the lecture's origin **o** and direction **d**. The point **q** of the view
+    /// rectangle is o + d.
     #[doc(hidden)]
     pub ray: Ray,
-    /// The number of tested nodes of the tree. A node has up to eight boxes.
+    /// The number of tree nodes that the ray was tested against. A node has up to eight boxes.
     #[doc(hidden)]
     pub nodes: u32,
-    /// The tested surfaces: first those with a crossing, in increasing t, then the others.
+    /// The surfaces that the ray was tested against: first those that it crosses, by increasing t,
+    /// then the others.
     #[doc(hidden)]
     pub tested: Vec<TestedSurface>,
-    /// The shaded hit; `None` if the light is the background's.
+    /// The closest hit and its shading; `None` if the pixel shows the background.
     #[doc(hidden)]
     pub hit: Option<ShadedHit>,
-    /// The linear light towards the eye.
+    /// The linear light that reaches the eye.
     pub light: LinearRgb,
     /// The scene's exposure, a factor of the light.
     pub exposure: f32,
@@ -60,7 +62,7 @@ pub struct Explanation {
 pub struct TestedSurface {
     /// The name of the surface.
     pub name: SurfaceName,
-    /// The t of the first crossing in front of the eye.
+    /// The t of the first crossing in front of the eye; `None` if there is none.
     pub t: Option<f32>,
     /// The lecture's equation for crossings, with its values.
     pub equation: Equation,
@@ -79,19 +81,20 @@ pub struct ShadedHit {
     pub ambient: LinearRgb,
     /// The contribution of each light.
     pub lights: Vec<LightContribution>,
-    /// The sum of the arriving light.
+    /// The sum of the ambient light and all contributions.
     pub arriving: LinearRgb,
-    /// The reflectance.
+    /// The reflectance of the surface, by which the arriving light is multiplied.
     pub reflectance: LinearRgb,
 }
 
 /// The contribution of one light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightContribution {
-    /// The lecture's **l** and n.l, the distance, and the light that arrives without a blocker.
+    /// The lecture's direction **l** to the light and n.l, the distance, and the light that arrives
+    /// if nothing blocks it.
     pub incidence: Incidence,
-    /// A surface that blocks the light, and the crossing's t from 0 at the hit to 1 at the light.
-    // Any blocker, not the closest, as for the picture.
+    /// A surface that blocks the light, with the t of the crossing: 0 at the hit, 1 at the light.
+    // As in the picture it may be any blocker, not the closest one.
     pub blocker: Option<(SurfaceName, f32)>,
 }
 
@@ -101,7 +104,7 @@ impl LightContribution {
         0.0 < self.incidence.cosine
     }
 
-    /// Returns the arriving light, or black if it is blocked or comes from behind.
+    /// Returns the arriving light, or black if it is blocked or the surface faces away from it.
     pub fn light(&self) -> LinearRgb {
         if self.faces() && self.blocker.is_none() { self.incidence.light } else { LinearRgb::BLACK }
     }
@@ -145,7 +148,7 @@ pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u
     }
 }
 
-/// Returns the hit of a traced pixel with its lights.
+/// Returns the hit of a traced pixel with its shading.
 fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit) -> ShadedHit {
     let point = hit.surface(scene).at_crossing(&trace.ray, hit.t);
     ShadedHit {
@@ -160,7 +163,7 @@ fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit) -> ShadedHit {
 }
 
 /// Returns the contribution of a light at a surface point.
-// The shadow ray is traced singly, with an observer: packets do not tell which surface blocks a ray.
+// The shadow ray is traced singly, with an observer, because packets do not return which surface blocks a ray.
 fn light_contribution(scene: &Scene, light: &Light, point: &SurfacePoint) -> LightContribution {
     let incidence = shade::incidence_on_either_side(light, point);
     let ray = shade::shadow_ray(light, point);
@@ -173,7 +176,7 @@ fn light_contribution(scene: &Scene, light: &Light, point: &SurfacePoint) -> Lig
     }
 }
 
-/// An observer that records the tests of a ray.
+/// An observer that records the surfaces and nodes that a ray is tested against.
 #[derive(Default)]
 struct TestRecorder {
     nodes: u32,

@@ -1,8 +1,8 @@
 //! Unstable: all modules, for this project's own program, tests, benches and fuzz targets. Anything
 //! here may change in any release.
 
-/// Re-exports the `pub` items of each module. A list, because a module with a feature needs the
-/// feature here too.
+/// Re-exports the `pub` items of each listed module. Modules that need a feature are listed with
+/// the feature below.
 macro_rules! modules {
     ($($module:ident)*) => {
         $(pub mod $module {

@@ -294,7 +294,7 @@
 //! - **refinement**: tracing the same shot with more samples while nothing moves.
 //! - **keymap**: which key runs which **command**, for each mode. **layer**: a panel over the picture.
 
-// Labels on docs.rs: which feature an item needs.
+// Makes docs.rs show which feature each item needs.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[cfg(all(feature = "live", not(any(target_os = "linux", target_os = "macos"))))]

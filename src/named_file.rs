@@ -1,8 +1,8 @@
 //! Reading of files that the user names, within limits on kind, size and time.
 //!
 //! A name on the command line, in the environment or in a scene may refer to anything: an endless device, a pipe
-//! without a writer, more bytes than there is memory. [`read`] is the only way to the bytes behind a name. Standard
-//! input has no name: the command line reads it, up to a size.
+//! without a writer, a file larger than memory. All such files are read by [`read`]. Standard input has no name, and is
+//! read by the command line, up to a size.
 
 use crate::progress::{Progress, Reporter, Work};
 use std::fs::File;
@@ -22,29 +22,28 @@ use posix::{open, wait_until_readable};
 pub use refusal::reason;
 use refusal::refused;
 
-/// The kinds of files that a read accepts.
+/// The kinds of files that [`read`] accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Accepted {
-    /// Plain files: for names given in a scene file, which may come from a stranger.
+    /// Plain files: for names in a scene file, which may come from an untrusted source.
     Files,
     /// Plain files, pipes (`<(...)` in a shell) and `/dev/null`: for names given by the user.
     FilesAndPipes,
 }
 
 /// Number of bytes between two progress reports: 1 MiB.
-// A disk delivers them in about a millisecond: short enough for a cancel, long enough that reports cost nothing.
+// A disk delivers 1 MiB in about a millisecond, so that a cancel takes effect quickly and reports cost little.
 const CHUNK_LEN: u64 = 1 << 20;
 
 /// Returns all bytes of the file at `path`, at most `max_len(bytes so far)`.
 ///
-/// The limit may depend on the file's first bytes, which tell its format. The number of bytes read is
-/// reported; after a cancel reading ends with [`ErrorKind::Interrupted`]. A pipe that
-/// delivers at least a byte a second is read to its end, as `cat` does: its size is limited, its time is not, because
-/// the user sees how far it is and can press Ctrl-C.
+/// The limit may depend on the file's first bytes, which show its format. Progress is reported; if that cancels,
+/// reading ends with [`ErrorKind::Interrupted`]. A pipe that delivers at least a byte a second is read to its end: only
+/// its size is limited, not its time, because the user sees the progress and can press Ctrl-C.
 ///
 /// # Errors
-/// The system's error; another kind of file than accepted; a pipe that delivers nothing for a second
-/// ([`ErrorKind::TimedOut`]); or too many bytes ([`ErrorKind::FileTooLarge`]). [`reason`] puts it into words.
+/// If the system reports an error, the kind of file is not accepted, a pipe delivers nothing for a second
+/// ([`ErrorKind::TimedOut`]), or the file is too large ([`ErrorKind::FileTooLarge`]). [`reason`] returns the message.
 pub fn read(
     path: &Path,
     accepted: Accepted,
@@ -55,7 +54,7 @@ pub fn read(
     let size = usize::try_from(size).unwrap_or(usize::MAX);
     let name = path.to_string_lossy();
     let mut bytes = Vec::new();
-    // Before these limits `/dev/zero` as a golden frame took 4 GB, and a pipe without a writer blocked for ever.
+    // Without the limits below, `/dev/zero` as a golden frame took 4 GB, and a pipe without a writer blocked for ever.
     loop {
         let work = Work::Reading(name.clone().into_owned());
         if reporter.report(Progress { work, done: bytes.len(), total: size }).is_err() {
@@ -64,7 +63,7 @@ pub fn read(
         if read_chunk(&mut file, &mut bytes)? {
             return Ok(bytes);
         }
-        // Checked before memory is reserved: virtual files claim up to 2^63 bytes.
+        // The size is checked before memory is reserved for it, because virtual files claim up to 2^63 bytes.
         let max_len = max_len(&bytes);
         if bytes.len().max(size) > max_len {
             return Err(too_large(max_len));
@@ -78,7 +77,7 @@ fn read_chunk(file: &mut File, bytes: &mut Vec<u8>) -> io::Result<bool> {
     wait_until_readable(file)?;
     match file.take(CHUNK_LEN).read_to_end(bytes) {
         Ok(count) => Ok(count == 0),
-        // `bytes` holds what the pipe has delivered so far.
+        // The pipe is empty for now; `bytes` contains everything delivered so far.
         Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(false),
         Err(error) => Err(error),
     }

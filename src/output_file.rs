@@ -1,8 +1,8 @@
 //! Output files that are replaced atomically.
 //!
 //! An [`OutputFile`] is written under a temporary name in the folder of its target. [`OutputFile::finish`] syncs it to
-//! disk (`sync_all`) and renames it; dropped before that, it is removed, and the target is unchanged. If two processes
-//! write one name, the result is the later one's file, whole.
+//! disk (`sync_all`) and renames it. If it is dropped before that, the temporary file is removed, and the target is
+//! unchanged. If two processes write the same target, the result is the complete file of the one that finishes last.
 //!
 //! - **Symbolic links** are followed, even if their target does not exist yet: the link stays a link.
 //! - **A new file** gets the mode that the umask gives; **an existing one** keeps its owner and mode, and is refused if
@@ -34,24 +34,26 @@ use std::path::{Path, PathBuf};
 pub use target::open_stream;
 use temporary::Temporary;
 
-/// A file that takes its name when it is finished.
+/// An output file that gets its final name when it is finished.
 #[derive(Debug)]
 pub struct OutputFile {
-    /// The path after following symbolic links.
+    /// The path of the file to write, after symbolic links are followed.
     target: PathBuf,
     destination: Destination,
 }
 
-/// The storage of the contents until the file is finished, and their way to the target.
+/// Where the contents are stored until the file is finished, and how they then become the target.
 #[derive(Debug)]
 enum Destination {
-    /// A temporary file that takes the name, even if another file has taken it meanwhile.
+    /// A temporary file that is renamed to the target, even if another file has got that name
+    /// meanwhile.
     New(Temporary),
-    /// A temporary file that takes the name if it is still unused.
+    /// A temporary file that is renamed to the target only if that name is still unused.
     NewOnly(Temporary),
-    /// A temporary file that takes the name, owner and mode of an existing file with this metadata.
+    /// A temporary file that replaces an existing file, and gets its owner and mode from this
+    /// metadata.
     Replace(Temporary, Metadata),
-    /// A buffer that overwrites the bytes of an existing file.
+    /// A buffer that is written over the bytes of an existing file.
     InPlace(Vec<u8>),
 }
 
@@ -100,10 +102,10 @@ impl OutputFile {
         }
     }
 
-    /// Gives the file its name.
+    /// Completes the file and gives it its final name.
     ///
     /// # Errors
-    /// If it cannot be written or renamed; the target is then unchanged.
+    /// If it cannot be written or renamed, in which case the target is unchanged.
     pub fn finish(self) -> io::Result<()> {
         let target = &self.target;
         match self.destination {
@@ -132,7 +134,7 @@ impl Write for OutputFile {
     }
 }
 
-/// Returns the destination of contents that replace an existing file.
+/// Returns the destination for contents that are to replace an existing file.
 fn destination_over(target: &Path, existing: Metadata) -> io::Result<Destination> {
     target::check_writable(target, &existing)?;
     match Temporary::private(target) {
@@ -143,8 +145,8 @@ fn destination_over(target: &Path, existing: Metadata) -> io::Result<Destination
 }
 
 /// Renames the temporary file to a name that must be unused.
-// An empty file reserves the name first: system calls that leave an existing file alone (`link`, `renameat2`) are not
-// supported by all file systems.
+// The name is reserved by an empty file first, because not all file systems support the system calls that fail if the
+// name exists (`link`, `renameat2`).
 fn rename_to_unused(temporary: &mut Temporary, target: &Path) -> io::Result<()> {
     File::create_new(target)?;
     temporary.rename(target).inspect_err(|_| {
@@ -152,10 +154,11 @@ fn rename_to_unused(temporary: &mut Temporary, target: &Path) -> io::Result<()> 
     })
 }
 
-/// Replaces a file by a rename, or in place if a rename would change more than its contents.
+/// Replaces a file by renaming, or overwrites it if renaming would change more than its contents.
 fn rename_or_overwrite(temporary: &mut Temporary, existing: &Metadata, target: &Path) -> io::Result<()> {
     if existing.nlink() == 1 && temporary.copy_owner_and_mode(existing).is_ok() {
-        // Before the rename: otherwise some file systems keep an empty file under the name after a power failure.
+        // Synced before the rename; otherwise, after a power failure, some file systems have an empty file under the
+        // name.
         temporary.sync()?;
         match temporary.rename(target) {
             Err(error) if is_replacement_refused(&error) => {}
@@ -165,8 +168,9 @@ fn rename_or_overwrite(temporary: &mut Temporary, existing: &Metadata, target: &
     in_place::write(target, &temporary.contents()?)
 }
 
-/// Returns whether the folder refuses a new file or a replaced name.
-// That is so for another user's file in a sticky folder, and for a mount point.
+/// Returns whether an error means that the folder does not allow a new file or a rename over the
+/// target.
+// Examples are another user's file in a sticky folder, and a mount point.
 fn is_replacement_refused(error: &io::Error) -> bool {
     use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem, ResourceBusy};
     matches!(error.kind(), PermissionDenied | ReadOnlyFilesystem | ResourceBusy)

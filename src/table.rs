@@ -1,9 +1,9 @@
-//! Tables: an enum of rows, and one constant with everything particular to a row.
+//! Tables: enums in which each value has a constant with its properties.
 
 /// Defines an enum whose variants are the rows of a table.
 ///
-/// With the list of them and the constant of each. Everything else about a row follows from its constant, so that a new
-/// row is one line here and one file with the constant.
+/// The macro also defines the list of all variants and a function that returns the constant of each. All code about a
+/// row uses its constant, so that a new row takes one line in the table and one file with the constant.
 macro_rules! table {
     (
         $(#[$about:meta])*
@@ -23,7 +23,7 @@ macro_rules! table {
             #[doc(hidden)]
             pub const ALL: &[Self] = &[$($(#[cfg($condition)])? Self::$Row,)*];
 
-            /// Returns the constant of the row.
+            /// Returns the constant with the row's properties.
             const fn row(self) -> &'static $Kind {
                 match self {
                     $($(#[cfg($condition)])? Self::$Row => const { &$kind },)*

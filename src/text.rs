@@ -1,5 +1,5 @@
-//! Text for messages: printable text from outside sources (names, arguments, files, environment
-//! variables), lists in prose, spelling suggestions, and errors in parts.
+//! Text for messages: making untrusted text (names, arguments, files, environment variables)
+//! printable, lists in prose, spelling suggestions, and errors in parts.
 
 mod notice;
 mod parse_error;
@@ -11,8 +11,8 @@ pub(crate) use parse_error::named;
 pub(crate) use words::number;
 pub use words::{any_of, closest, listed};
 
-/// Returns the replacement of a character in a message: itself, unless it moves the cursor, starts
-/// an escape sequence, changes the direction of writing, or is invisible.
+/// Returns the character to show in a message for `c`: a replacement if `c` moves the cursor,
+/// starts an escape sequence, changes the direction of writing, or is invisible; otherwise `c`.
 pub(crate) fn visible_char(c: char) -> char {
     match c {
         '\t' => ' ',
@@ -21,18 +21,18 @@ pub(crate) fn visible_char(c: char) -> char {
         '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{61c}' | '\u{feff}' => {
             char::REPLACEMENT_CHARACTER
         }
-        // C0, DEL and C1: terminals take U+009B for the start of an escape sequence as well.
+        // The control characters C0, DEL and C1. In C1, U+009B starts an escape sequence in some terminals.
         _ if c.is_control() => char::REPLACEMENT_CHARACTER,
         _ => c,
     }
 }
 
-/// Returns the text as one line without control characters.
+/// Returns the text as one line, with control characters replaced.
 pub fn visible(text: &str) -> String {
     text.chars().map(visible_char).collect()
 }
 
-/// Returns the text without control characters except its line feeds.
+/// Returns the text with all control characters but line feeds replaced.
 pub fn visible_lines(text: &str) -> String {
     text.chars().map(|c| if c == '\n' { c } else { visible_char(c) }).collect()
 }

@@ -11,18 +11,18 @@ use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::num::NonZeroU32;
 
-/// The content of a pixel with a hit.
+/// The object that a pixel shows, and the objects behind it.
 #[derive(Clone, Copy)]
 struct PixelContent {
     object: u32,
-    /// The distance from the eye, in world units.
+    /// The distance from the eye to the hit, in world units.
     distance: f32,
     reflectance: LinearRgb,
     /// The next objects behind the visible one, nearest first.
     behind: [Option<u32>; MAX_OCCLUDED],
 }
 
-/// The part of the picture that an object covers.
+/// The pixels of the picture that an object covers, in sums and extremes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Coverage {
     /// The number of pixels.
@@ -31,21 +31,21 @@ pub(super) struct Coverage {
     pub(super) nearest: f32,
     /// The distance from the eye to the farthest visible point, in world units.
     pub(super) farthest: f32,
-    /// The sums of the pixels' columns and rows.
+    /// The sum of the covered pixels' columns, and of their rows.
     sum: [u64; 2],
-    /// The first column, and the one after the last.
+    /// The first covered column, and the one after the last.
     columns: [u32; 2],
-    /// The first row, and the one after the last.
+    /// The first covered row, and the one after the last.
     rows: [u32; 2],
-    /// The sum of the pixels' reflectances.
+    /// The sum of the covered pixels' reflectances.
     reflectance: LinearRgb,
 }
 
-/// A rectangle in the picture, in parts of its width and height, from the upper left.
+/// A rectangle in the picture, in shares of the picture's width and height, from the upper left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PictureRect {
     /// The mean position of the covered pixels.
-    // Not the rectangle's own middle, which a thin part that sticks out moves far from most of the pixels.
+    // Not the rectangle's centre, which one thin part that sticks out moves far away from most pixels.
     pub(super) middle: [f32; 2],
     /// The width and height.
     pub(super) extent: [f32; 2],
@@ -66,7 +66,8 @@ impl Coverage {
         self.reflectance += content.reflectance;
     }
 
-    /// Returns the mean reflectance of the pixels; the default one without pixels.
+    /// Returns the mean reflectance of the covered pixels; the default reflectance if there are
+    /// none.
     pub(super) fn mean_reflectance(&self) -> LinearRgb {
         match self.pixels {
             0 => Material::DEFAULT_REFLECTANCE,
@@ -74,7 +75,7 @@ impl Coverage {
         }
     }
 
-    /// Returns the rectangle around the pixels, in a picture of this resolution.
+    /// Returns the rectangle around the covered pixels, in a picture of this resolution.
     pub(super) fn rect(&self, resolution: Resolution) -> PictureRect {
         let sides = [resolution.width(), resolution.height()].map(|side| side as f32);
         let middle = [0, 1].map(|axis| (self.sum[axis] as f32 / self.pixels as f32 + 0.5) / sides[axis]);
@@ -83,9 +84,9 @@ impl Coverage {
     }
 }
 
-/// The counts of a picture's pixels from which its description is made.
+/// Counts of a picture's pixels, from which its description is made.
 pub(super) struct Survey {
-    /// The part covered by each visible object.
+    /// The coverage of each visible object, by the object's index.
     pub(super) covered: BTreeMap<u32, Coverage>,
     /// The number of pixels in which the first object is in front of the second.
     hides: BTreeMap<(u32, u32), usize>,
@@ -117,7 +118,7 @@ impl Survey {
         survey
     }
 
-    /// Returns the objects that an object partly hides.
+    /// Returns the objects that `object` hides at least partly.
     pub(super) fn behind(&self, object: u32) -> Vec<u32> {
         let of_object = self.hides.range((object, 0)..=(object, u32::MAX));
         of_object
@@ -126,7 +127,7 @@ impl Survey {
             .collect()
     }
 
-    /// Returns the objects that partly hide an object.
+    /// Returns the objects that hide `object` at least partly.
     pub(super) fn before(&self, object: u32) -> Vec<u32> {
         let of_object = self
             .hides
@@ -135,8 +136,9 @@ impl Survey {
         of_object.map(|(&(before, _), _)| before).collect()
     }
 
-    /// Returns whether a number of hidden pixels is worth a mention.
-    // From a twentieth of the object's visible part on: less are single pixels at edges.
+    /// Returns whether `pixels`, the number of hidden pixels of an object, is enough to be
+    /// mentioned.
+    // At least a twentieth of the visible pixels is; fewer are usually single pixels at edges.
     fn is_significant(&self, object: u32, pixels: usize) -> bool {
         20 * pixels >= self.covered.get(&object).map_or(0, |covered| covered.pixels)
     }
@@ -153,20 +155,21 @@ fn content(scene: &Scene, sample: &GBufferSample) -> Option<PixelContent> {
     })
 }
 
-/// The largest number of objects that are found behind the visible one.
+/// The largest number of objects that are recorded behind the visible one, per pixel.
 const MAX_OCCLUDED: usize = 3;
-/// The largest number of surfaces that a ray passes on the way to them.
-// Each is a traced ray per pixel. A sphere has two; the limit bounds the time of meshes with many layers.
+/// The largest number of surfaces that are passed in search of objects behind the visible one, per
+/// pixel.
+// Each surface takes another traced ray, and a sphere has two. The limit bounds the time for meshes with many layers.
 const MAX_LAYERS: usize = 12;
 
-/// Returns the next objects behind the visible one on a sample's ray, nearest first.
+/// Returns the objects behind the visible one along a sample's ray, the nearest first.
 fn behind(scene: &Scene, mut sample: GBufferSample) -> [Option<u32>; MAX_OCCLUDED] {
     let seen = sample.hit.map(|hit| hit.object);
     let (mut found, mut count) = ([None; MAX_OCCLUDED], 0);
     for _ in 0..MAX_LAYERS {
         let Some(surface) = sample.surface(scene) else { break };
-        // The next ray starts behind the surface by the clearance of shadow rays in front of it: neither meets the
-        // surface again.
+        // The next ray starts behind the surface, at the distance by which shadow rays start in front of it, so that it
+        // does not hit the surface again.
         let origin = surface.position - surface.geometric_normal * surface.clearance;
         sample.ray = Ray { origin, ..sample.ray };
         sample.hit = closest_hit(scene, &sample.ray);

@@ -5,7 +5,7 @@ use crate::color::{LinearRgb, Oklab, Srgb8};
 use crate::text::number;
 use glam::Vec3;
 
-/// The colours with a common English name.
+/// Colours that have a common English name.
 const COLORS: [(&str, Srgb8); 32] = [
     ("black", Srgb8::new(0, 0, 0)),
     ("dark grey", Srgb8::new(72, 72, 72)),
@@ -41,11 +41,11 @@ const COLORS: [(&str, Srgb8); 32] = [
     ("light purple", Srgb8::new(190, 150, 235)),
 ];
 
-/// Returns the name of the nearest colour with a name.
+/// Returns the name of the named colour that is nearest to `light`.
 pub(super) fn color(light: LinearRgb) -> &'static str {
     let seen = Oklab::from_srgb8(Srgb8::from_linear(light));
-    // In Oklab, with hue and chroma weighted twice: a small change of them affects the name more than an equal change
-    // of lightness.
+    // The distance is taken in OKLab with a and b (hue and chroma) doubled, because they affect a colour's name more
+    // than lightness does.
     let away = |color: Srgb8| {
         let Oklab { l, a, b } = Oklab::from_srgb8(color);
         let (l, a, b) = (seen.l - l, 2.0 * (seen.a - a), 2.0 * (seen.b - b));
@@ -60,7 +60,8 @@ pub(super) fn points(point: Vec3) -> String {
     format!("({}, {}, {})", number(point.x), number(point.y), number(point.z))
 }
 
-/// Formats a range of distances: as a single number unless the far end is half as far again.
+/// Describes a range of distances: "from 2 away on" if the farthest is over 1.5 times as far,
+/// otherwise "2 away".
 pub(super) fn distance(nearest: f32, farthest: f32) -> String {
     if farthest > 1.5 * nearest {
         format!("from {} away on", number(nearest))
@@ -69,7 +70,7 @@ pub(super) fn distance(nearest: f32, farthest: f32) -> String {
     }
 }
 
-/// Formats a share as a percentage.
+/// Formats `part` out of `of` as a percentage.
 pub(super) fn percent(part: usize, of: usize) -> String {
     match 100 * part / of.max(1) {
         0 => "less than 1%".to_owned(),
@@ -77,11 +78,12 @@ pub(super) fn percent(part: usize, of: usize) -> String {
     }
 }
 
-/// Describes the position of a rectangle in the picture.
+/// Describes the position of a rectangle in the picture, such as "upper left".
 pub(super) fn position(rect: PictureRect) -> &'static str {
     const FULL_EXTENT: f32 = 0.8;
-    /// Returns 0 for left or top, 1 for the middle, 2 for right or bottom, 3 for the full extent.
-    // The middle is a sixth of the picture: a wider one would hide which side an object is on.
+    /// Returns the place along one axis: 0 for left or top, 1 for the middle, 2 for right or
+    /// bottom, 3 for the full extent.
+    // Only the middle sixth of the picture counts as the middle, so that the side of an object is mentioned more often.
     fn third(middle: f32, extent: f32) -> usize {
         match middle {
             _ if extent > FULL_EXTENT => 3,

@@ -9,10 +9,10 @@ use glam::Vec3;
 use std::fmt;
 
 /// The largest width of a line in columns, unless a number has unusually many digits.
-// The panel, with its border, then covers less than half of a terminal of 80 columns.
+// With this width, the panel and its border cover less than half of a terminal of 80 columns.
 pub const MAX_LINE_WIDTH: usize = 35;
 
-/// The name of a surface: the number and the kind of its object, and the face of a mesh.
+/// The name of a surface: the number and kind of its object and, in a mesh, the number of the face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SurfaceName {
     /// The number of the object in the scene file, from 1.
@@ -42,7 +42,7 @@ impl fmt::Display for SurfaceName {
     }
 }
 
-/// All lines, each with a line feed.
+/// Writes all lines, each with a line feed.
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.lines().iter().try_for_each(|line| writeln!(f, "{line}"))
@@ -71,7 +71,7 @@ impl Explanation {
         lines
     }
 
-    /// Adds the tested surfaces with their roots; the closest hit has a mark.
+    /// Adds lines with the tested surfaces and their roots. The closest hit is marked.
     fn add_tests(&self, lines: &mut Vec<String>) {
         let count = |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
         let nodes = count(self.nodes as usize, "node");
@@ -129,8 +129,9 @@ pub fn cell_of_pixel([x, y]: [u32; 2], mode: CellMode) -> String {
     format!("cell ({}, {}), {place}", x / across, y / down)
 }
 
-/// Formats the roots of a tested surface's equation, with the picture's t for its root.
-// The equation is solved in f64 here; the picture's t has the bits of the kernel.
+/// Formats the roots of a tested surface's equation. The root that is the crossing is replaced by
+/// the traced t.
+// The equation is solved in f64, so its root may differ slightly from the t of the tracer, which the picture shows.
 fn crossings(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
     let Equation { roots, without_root, is_outside, .. } = equation;
     if roots.is_empty() {
@@ -138,7 +139,7 @@ fn crossings(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
     }
     let mut shown: Vec<_> = roots.iter().map(|&root| root as f32).collect();
     if let Some(t) = *t {
-        // Seen from inside, the first root is behind the eye, and t is the second.
+        // The crossing is the first root in front of the eye: from inside a sphere, the second root.
         let own = roots.iter().position(|&root| root >= 0.0).unwrap_or(roots.len() - 1);
         shown[own] = t;
     }
@@ -182,7 +183,7 @@ fn light(name: &str, LinearRgb { r, g, b }: LinearRgb) -> String {
     format!("{name:<9}{r} {g} {b}")
 }
 
-/// Formats a number in nine columns.
+/// Formats a number, right-aligned in nine columns.
 fn number(x: f32) -> String {
     let size = x.abs();
     match size {

@@ -1,4 +1,4 @@
-//! Plain files on any system.
+//! Opening of plain files on any system; pipes are not supported.
 
 use super::Accepted;
 use super::refusal::refused;
@@ -6,8 +6,8 @@ use std::fs::{File, Metadata};
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
-/// Opens a plain file and returns its size.
-// Pipes are refused: waiting for them works differently on each system.
+/// Opens a plain file and returns its size in bytes.
+// Pipes are refused, because each system has another way to wait for them.
 pub(super) fn open(path: &Path, _: Accepted) -> io::Result<(File, u64)> {
     // Checked before it is opened, because opening a device may have an effect, and again afterwards, because the name
     // may have been replaced.
@@ -28,7 +28,7 @@ fn check(data: &Metadata) -> io::Result<()> {
     }
 }
 
-/// Returns at once: a plain file always has bytes to read, or its end.
+/// Returns at once, because reading a plain file never blocks.
 #[expect(clippy::unnecessary_wraps, reason = "a pipe may fail, where pipes are read")]
 pub(super) fn wait_until_readable(_: &File) -> io::Result<()> {
     Ok(())

@@ -1,4 +1,4 @@
-//! Files and pipes on POSIX systems.
+//! Opening of files and pipes on POSIX systems, without blocking.
 
 use super::Accepted;
 use super::refusal::refused;
@@ -10,11 +10,12 @@ use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Longest time without bytes from a pipe.
-// A program that writes into `<(...)` has started by then, and a longer wait looks like a hang.
+/// Longest time to wait for bytes from a pipe.
+// By then, a program in `<(...)` has usually started to write, and a longer wait would look like a hang.
 const PIPE_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Opens a file and returns its size, if known: a pipe has none, and a file may grow.
+/// Opens a file, and returns the size in bytes that the system reports: 0 for a pipe, and too small
+/// for a file that grows.
 pub(super) fn open(path: &Path, accepted: Accepted) -> io::Result<(File, u64)> {
     // Checked before it is opened, because opening a device may have an effect, and again afterwards, because the name
     // may have been replaced.
@@ -41,13 +42,13 @@ fn check(data: &Metadata, accepted: Accepted) -> io::Result<()> {
     Err(refused(ErrorKind::InvalidInput, format!("this is {what}, not {wanted}")))
 }
 
-/// Returns whether this is `/dev/null`, under any name.
+/// Returns whether the metadata is that of `/dev/null`, under any path.
 fn is_null(data: &Metadata) -> bool {
     let is_same = |null: Metadata| data.file_type().is_char_device() && data.rdev() == null.rdev();
     Path::new("/dev/null").metadata().is_ok_and(is_same)
 }
 
-/// Waits until there are bytes to read, or the end. A plain file is always ready.
+/// Waits until the file has bytes to read or is at its end. A plain file is always ready.
 pub(super) fn wait_until_readable(file: &File) -> io::Result<()> {
     let deadline = Instant::now() + PIPE_TIMEOUT;
     loop {

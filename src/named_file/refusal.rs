@@ -3,13 +3,13 @@
 use std::fmt;
 use std::io::{self, ErrorKind};
 
-/// Returns an error with a message of our own.
+/// Returns an I/O error with a message of this module, which [`reason`] returns unchanged.
 pub(super) fn refused(kind: ErrorKind, message: String) -> io::Error {
     io::Error::new(kind, Refusal(message))
 }
 
-/// The payload of our own errors.
-// A type of its own, so that `reason` recognises messages that need no prefix.
+/// The payload of errors that [`refused`] returns.
+// A distinct type, by which `reason` recognises messages that need no prefix.
 #[derive(Debug)]
 struct Refusal(String);
 
@@ -21,8 +21,8 @@ impl fmt::Display for Refusal {
 
 impl std::error::Error for Refusal {}
 
-/// Returns the message of an error, to follow a file's name and a colon.
-// The system's own messages end with "(os error 2)", which helps no user, so the common ones are replaced.
+/// Returns the message of an error, to be put after a file's name and a colon.
+// The system's messages end with "(os error 2)", which does not help users, so the common ones are replaced.
 pub fn reason(error: &io::Error) -> String {
     match error.kind() {
         _ if error.get_ref().and_then(|inner| inner.downcast_ref::<Refusal>()).is_some() => error.to_string(),

@@ -20,12 +20,12 @@ fn no_more_bytes_than_allowed_are_read() {
     let max_len = |bytes: &[u8]| if bytes.starts_with(&[7]) { 64 << 10 } else { usize::MAX };
     let error = read(&path, Accepted::Files, max_len, &Reporter::silent()).expect_err("too large");
     assert_eq!(Err(reason(&error)), too_large("64 KiB"));
-    // The claimed size alone is enough.
+    // The size that the system reports is enough for the error, before anything is read.
     File::create(&path).and_then(|file| file.set_len(1 << 42)).expect("a sparse file can be made");
     assert_eq!(read_up_to(1 << 30, &path, Accepted::Files), too_large("1 GiB"));
 }
 
-/// The reporter is called between two chunks.
+/// Cancels a read at a progress report, which happens between two chunks.
 #[test]
 fn a_cancelled_read_ends() {
     let folder = tempfile::tempdir().expect("a folder can be made");

@@ -1,4 +1,4 @@
-//! Writing over the old bytes of a file that cannot be replaced.
+//! Overwriting a file that cannot be replaced by renaming.
 
 use rustix::fs::{FlockOperation, fcntl_lock};
 use rustix::io::retry_on_intr;
@@ -7,13 +7,13 @@ use std::io::{self, Read, Seek, Write};
 use std::os::unix::fs::FileExt;
 use std::path::Path;
 
-/// Writes the whole contents over a file, and restores the old ones if that fails.
-// The old bytes are overwritten before the length changes: a file that does not grow needs no space, and if the space
-// for growing is missing, all old bytes can be written back. Truncating first would give their space away.
+/// Overwrites a file with the whole contents, and restores the old ones if that fails.
+// The file is not truncated first, so that its space on a full disk stays reserved: a file that does not grow needs no
+// more space, and if growing fails, the old bytes can be written back.
 pub(super) fn write(path: &Path, contents: &[u8]) -> io::Result<()> {
     let file = open(path)?;
-    // Closing the file unlocks it. `flock` is not used, because `flock FILE termtrace frame ... -o FILE` would wait for
-    // itself. An error is ignored: some file systems have no locks.
+    // The lock is released when the file is closed. It is not a `flock`, because `flock FILE termtrace frame ... -o
+    // FILE` would wait for itself. An error is ignored, because some file systems have no locks.
     let _ = retry_on_intr(|| fcntl_lock(&file, FlockOperation::LockExclusive));
     let old = OldContents::read(&file, contents.len())?;
     overwrite(&file, contents).map_err(|error| match old.restore(&file) {
@@ -22,8 +22,8 @@ pub(super) fn write(path: &Path, contents: &[u8]) -> io::Result<()> {
     })
 }
 
-/// Opens the file for reading and writing, or for writing alone if it may not be read.
-// The old bytes of a file that may not be read are lost if writing fails.
+/// Opens the file for reading and writing, or only for writing if it may not be read.
+// If a file may not be read, its old bytes cannot be restored after a failure.
 fn open(path: &Path) -> io::Result<File> {
     File::options().read(true).write(true).open(path).or_else(|_| File::options().write(true).open(path))
 }
@@ -37,7 +37,7 @@ fn overwrite(mut file: &File, contents: &[u8]) -> io::Result<()> {
 
 /// The old contents, to be restored if writing fails.
 struct OldContents {
-    /// The first bytes, which the new contents overwrite.
+    /// The bytes at the start of the file that the new contents overwrite.
     start: io::Result<Vec<u8>>,
     length: u64,
 }
@@ -50,7 +50,8 @@ impl OldContents {
     }
 
     /// Writes the overwritten bytes back and restores the length.
-    // Only the bytes before the failure: beyond it, writing would fail again.
+    // Only bytes up to the position of the failure are written: later ones are unchanged, and writing them would fail
+    // again.
     fn restore(self, mut file: &File) -> io::Result<()> {
         let written = file.stream_position()? as usize;
         let start = self.start?;

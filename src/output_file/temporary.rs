@@ -1,7 +1,7 @@
 //! Temporary files: their creation, renaming, and removal after their process was killed.
 //!
-//! Each is locked (`flock`) while its process lives. Creating and locking are two steps; if another process takes an
-//! unlocked file for a leftover in between, the creator notices that the file is gone and creates another.
+//! Each file is locked (`flock`) while its process lives. Creating and locking are two steps: if another process
+//! removes the file between them as a leftover, its creator notices that and creates another one.
 
 use super::target::folder_of;
 use rustix::fs::{FlockOperation, flock};
@@ -12,16 +12,16 @@ use std::io::{self, Read, Seek, Write};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt, fchown};
 use std::path::{Path, PathBuf};
 
-/// Start of a temporary file's name, which is `.termtrace-PROCESS-NUMBER.tmp`.
+/// Start of a temporary file's name, `.termtrace-PROCESS-NUMBER.tmp`.
 const NAME_PREFIX: &str = ".termtrace-";
 /// End of a temporary file's name.
 const NAME_SUFFIX: &str = ".tmp";
 
-/// Largest number of names tried.
-// More than a process writes at once, and than killed processes with the same number leave.
+/// Largest number of names that are tried for a temporary file.
+// More than the files that a process writes at once, or that killed processes with the same process number left.
 const MAX_NAME_ATTEMPTS: u32 = 1000;
 
-/// A locked temporary file, removed when dropped.
+/// A locked temporary file, which is removed when dropped.
 #[derive(Debug)]
 pub(super) struct Temporary {
     /// The path; `None` after a rename.
@@ -30,13 +30,13 @@ pub(super) struct Temporary {
 }
 
 impl Temporary {
-    /// Creates a temporary file for a new file, with the mode that the umask gives.
+    /// Creates a temporary file that will become a new file, with the mode that the umask gives.
     pub(super) fn new_file(target: &Path) -> io::Result<Self> {
         Self::create_beside(target, 0o666)
     }
 
-    /// Creates a temporary file for an existing one, readable by its owner only.
-    // The existing file may be secret, so its mode is copied only when the contents are complete.
+    /// Creates a temporary file that will replace an existing one, readable by the owner only.
+    // The existing file may be secret. Its mode is copied when the contents are complete.
     pub(super) fn private(target: &Path) -> io::Result<Self> {
         Self::create_beside(target, 0o600)
     }
@@ -51,7 +51,7 @@ impl Temporary {
                         return Ok(temporary);
                     }
                 }
-                // The name of a leftover, or of a process with the same number in another container.
+                // The name is used by a leftover, or by a process with the same number in another container.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
@@ -59,9 +59,9 @@ impl Temporary {
         Err(io::Error::other("its folder is full of temporary files"))
     }
 
-    /// Locks a file just created; returns `None` if another process removes it as a leftover.
+    /// Locks a file just created; returns `None` if another process is removing it as a leftover.
     fn lock_new(path: PathBuf, file: File) -> io::Result<Option<Self>> {
-        // On a file system without locks no other process gets one to remove the file either.
+        // Other errors of locking are ignored: without a lock, no other process removes the file either.
         let is_taken = try_lock(&file) == Err(Errno::WOULDBLOCK);
         if is_taken || !has_path(&file, &path)? {
             return Ok(None);
@@ -69,13 +69,13 @@ impl Temporary {
         Ok(Some(Self { path: Some(path), file }))
     }
 
-    /// Sets the owner and mode of another file.
+    /// Gives the temporary file the owner and mode of another file.
     pub(super) fn copy_owner_and_mode(&self, other: &Metadata) -> io::Result<()> {
         let own = self.file.metadata()?;
         if (own.uid(), own.gid()) != (other.uid(), other.gid()) {
             fchown(&self.file, Some(other.uid()), Some(other.gid()))?;
         }
-        // After the owner, because changing the owner clears the set-user-id bit.
+        // The mode is set after the owner, because changing the owner clears the set-user-id bit.
         if own.mode() != other.mode() {
             self.file.set_permissions(other.permissions())?;
         }
@@ -94,7 +94,7 @@ impl Temporary {
         Ok(())
     }
 
-    /// Returns everything written.
+    /// Returns all bytes written so far.
     pub(super) fn contents(&mut self) -> io::Result<Vec<u8>> {
         let mut contents = Vec::new();
         self.file.rewind()?;
@@ -102,7 +102,8 @@ impl Temporary {
         Ok(contents)
     }
 
-    /// Removes temporary files of the same owner in this folder whose processes have ended.
+    /// Removes temporary files in the same folder that belong to the same user and whose processes
+    /// have ended.
     pub(super) fn remove_stale(&self) {
         let Some((path, own)) = self.path.as_deref().zip(self.file.metadata().ok()) else { return };
         for entry in fs::read_dir(folder_of(path)).into_iter().flatten().flatten() {
@@ -132,13 +133,13 @@ impl Drop for Temporary {
     }
 }
 
-/// Removes a temporary file that no process has locked.
-// A living writer holds the lock. If we hold it, the file has no writer; and if the file still has the name, no other
-// process can take the name from it.
+/// Removes a temporary file of the user `owner`, if no process has locked it.
+// A file that this process can lock has no living writer. It is removed only if it still has the name, which may have
+// been given to a new file in between.
 fn remove_if_stale(path: &Path, owner: u32) -> io::Result<()> {
     let data = fs::symlink_metadata(path)?;
     if data.is_file() && data.uid() == owner {
-        // Opened for writing, because some network file systems lock only such files.
+        // Opened for writing, because some network file systems can lock a file only then.
         let file = File::options().write(true).open(path)?;
         if try_lock(&file).is_ok() && has_path(&file, path)? {
             fs::remove_file(path)?;
@@ -153,7 +154,7 @@ fn try_lock(file: &File) -> rustix::io::Result<()> {
     flock(file, FlockOperation::NonBlockingLockExclusive)
 }
 
-/// Returns whether the path refers to this file.
+/// Returns whether `path` refers to `file`.
 fn has_path(file: &File, path: &Path) -> io::Result<bool> {
     let own = file.metadata()?;
     match fs::symlink_metadata(path) {
@@ -163,7 +164,7 @@ fn has_path(file: &File, path: &Path) -> io::Result<bool> {
     }
 }
 
-/// Returns whether a name is exactly one of a temporary file.
+/// Returns whether a name has exactly the form of a temporary file's name.
 fn is_temporary_name(name: &OsStr) -> bool {
     let numbers =
         name.to_str().and_then(|name| name.strip_prefix(NAME_PREFIX)?.strip_suffix(NAME_SUFFIX)?.split_once('-'));

@@ -15,7 +15,7 @@ impl Folder {
         self.0.path().join(name)
     }
 
-    /// Creates a file with the old contents.
+    /// Creates a file with the contents [`OLD`], and returns its path.
     fn old(&self, name: &str) -> PathBuf {
         fs::write(self.path(name), OLD).expect("the file can be written");
         self.path(name)
@@ -86,7 +86,7 @@ fn a_new_file_has_the_mode_of_the_umask() {
 fn an_existing_file_keeps_owner_and_mode() {
     let folder = Folder::new();
     let file = folder.old("x");
-    // Only root can try it.
+    // Changing the owner succeeds only if the test runs as root.
     let other_owner = chown(&file, Some(1234), Some(2345)).is_ok();
     for expected in [0o640, 0o600, 0o755, 0o4664] {
         set_mode(&file, expected);
@@ -144,7 +144,8 @@ fn an_impossible_target_is_refused_at_once() {
     assert_eq!(folder.names(), ["folder", "loop", "nowhere", "x"]);
 }
 
-/// A name of 255 bytes has no room for an ending.
+/// Checks that a file name of 255 bytes works, to which no suffix for a temporary name could be
+/// added.
 #[test]
 fn a_name_may_have_255_bytes() {
     let folder = Folder::new();
@@ -177,7 +178,7 @@ fn streams_are_distinguished_from_files() {
         assert!(!is_stream(&folder.path(name)), "{name}");
     }
     assert_eq!(folder.read("x"), OLD);
-    // A descriptor of a plain file: the process that opened it would not see a file that takes the name.
+    // A descriptor of a plain file is a stream too: a process that has opened the file would not see a replacement.
     if cfg!(target_os = "linux") {
         use std::os::fd::AsRawFd;
         let open = File::options().append(true).open(&file).expect("it is there");
@@ -198,7 +199,7 @@ fn a_used_name_is_not_overwritten() {
     for name in ["x", "dangling"] {
         assert!(is_used(OutputFile::create_new(&folder.path(name)).map(drop)), "{name}");
     }
-    // The name may also be taken meanwhile.
+    // Another process may also use the name between `create_new` and `finish`.
     let file = OutputFile::create_new(&folder.path("y")).expect("it can be begun");
     folder.old("y");
     assert!(is_used(file.finish()));
@@ -218,7 +219,7 @@ fn only_leftovers_of_dead_writers_are_removed() {
     }
     fs::create_dir(folder.path(".termtrace-4194304-1.tmp")).expect("a folder can be made");
     symlink("x", folder.path(".termtrace-4194304-2.tmp")).expect("a link can be made");
-    // Only root can try it.
+    // Changing the owner succeeds only if the test runs as root.
     let others = folder.old(".termtrace-4194304-3.tmp");
     let is_others = chown(&others, Some(1234), None).is_ok();
     first.remove_stale();
@@ -245,7 +246,7 @@ fn the_later_of_two_writers_gets_the_name() {
     }
 }
 
-/// Without a folder that allows a new file, the file is overwritten.
+/// Checks overwriting, which is used if the folder does not allow a new file.
 #[test]
 fn writing_in_place_replaces_all_old_bytes() {
     let folder = Folder::new();

@@ -31,10 +31,10 @@ impl fmt::Display for ParseError {
 
 impl std::error::Error for ParseError {}
 
-/// Returns the value with this name.
+/// Returns the value among `all` whose name is `text`.
 ///
 /// # Errors
-/// If no value has it, with the name that was probably meant, or all names.
+/// If no value has this name. The message gives the name that was probably meant, or else all names.
 pub(crate) fn named<T: Copy>(kind: &str, text: &str, all: &[T], name: fn(T) -> &'static str) -> Result<T, ParseError> {
     all.iter().copied().find(|&value| name(value) == text).ok_or_else(|| {
         let names: Vec<_> = all.iter().map(|&value| name(value)).collect();

@@ -1,4 +1,4 @@
-//! Lists in prose and spelling suggestions.
+//! Lists in prose, spelling suggestions, and short numbers.
 
 /// Returns the words as a list in prose: `a`, `a and b`, `a, b and c`.
 pub fn listed(words: &[impl AsRef<str>]) -> String {
@@ -21,11 +21,11 @@ fn joined(words: &[impl AsRef<str>], conjunction: &str) -> String {
     }
 }
 
-/// Returns the word that was probably meant: one with few different letters, or one that contains
-/// the written word (`vertical_fov` for `fov`).
+/// Returns the name in `among` that was probably meant by `word`: one with few different letters,
+/// or one that contains the word as a part (`vertical_fov` for `fov`).
 pub fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
-    // The distance takes time proportional to the product of the lengths, and a longer word is not a misspelt name.
-    // Among more than a thousand names one is close by chance, so later ones are not compared.
+    // Limits on the time: the distance takes time proportional to the product of the lengths. Longer words are not
+    // misspelt names, and among more than a thousand names one would be close by chance.
     const MAX_WORD_BYTES: usize = 64;
     const MAX_CANDIDATES: usize = 1000;
     if word.len() > MAX_WORD_BYTES {
@@ -41,14 +41,14 @@ pub fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) -> Opti
         .map(|(_, known)| known)
 }
 
-/// Returns the edit distance if it is small enough for a misspelling, at most a third of the
-/// letters, or if the word is a part of the name.
+/// Returns the edit distance of `written` from `known`; `None` if it is above a third of the
+/// letters of `written`, unless that is a part of the name.
 fn misspelling_distance(written: &str, known: &str) -> Option<usize> {
     let distance = edit_distance(written, known);
-    // Parts of two letters are in too many names.
+    // Parts of one or two letters occur in too many names.
     let is_part = written.len() >= 3 && known.split('_').any(|part| part == written);
     let allowed = match written.chars().count() {
-        // In two letters one changed letter leaves nothing in common.
+        // No differences are allowed in words of one or two letters: they would have too little in common.
         ..3 => 0,
         length => (length / 3).max(1),
     };
@@ -57,12 +57,11 @@ fn misspelling_distance(written: &str, known: &str) -> Option<usize> {
 
 /// Returns the distance of two words by optimal string alignment: the least number of letters
 /// added, removed, changed, or exchanged with their neighbours, where no letter is changed twice (Damerau, A technique
-/// for computer detection and correction of spelling errors, 1964). Our own in 20 lines; the tests compare it with
-/// `strsim`.
+/// for computer detection and correction of spelling errors, 1964). The tests compare it with the crate `strsim`.
 fn edit_distance(written: &str, known: &str) -> usize {
     let known: Vec<_> = known.chars().collect();
-    // Three rows of the table of distances between prefixes: for the letter before the last, the last, and the current
-    // one.
+    // Three rows of the table of distances between prefixes, which dynamic programming fills: the current row, the one
+    // before it, and the one before that.
     let mut earlier = vec![0; known.len() + 1];
     let mut before: Vec<_> = (0..=known.len()).collect();
     let mut row = before.clone();
@@ -83,7 +82,7 @@ fn edit_distance(written: &str, known: &str) -> usize {
     before[known.len()]
 }
 
-/// Formats a number with three digits, without trailing zeros.
+/// Formats a number with up to three significant digits, without trailing zeros.
 pub(crate) fn number(value: f32) -> String {
     let digits = match value.abs() {
         v if v >= 100.0 => 0,

@@ -40,7 +40,7 @@ fn only_accepted_kinds_of_files_are_read() {
     }
 }
 
-/// The writer yields after each part, so that the reader finds the pipe empty, or is about to.
+/// Reads a pipe whose writer yields after each part, so that the reader often finds the pipe empty.
 #[test]
 fn a_slow_pipe_is_read_to_its_end() {
     let folder = tempfile::tempdir().expect("a folder can be made");

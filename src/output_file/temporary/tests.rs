@@ -19,7 +19,8 @@ fn only_exact_names_are_temporary() {
     }
 }
 
-/// Another process may look at the folder between the creation of a file and its lock.
+/// Simulates a process that locks or removes a new file, as a leftover, before its creator has
+/// locked it.
 #[test]
 fn a_file_claimed_as_a_leftover_is_not_written() {
     let folder = tempfile::tempdir().expect("a folder can be made");
