@@ -1,4 +1,4 @@
-//! What is known about a terminal from all sources: user, environment, window and replies.
+//! The properties of a terminal, combined from all sources: user, environment, window and replies.
 
 use super::detection::{colorterm, locale, requested_by_variable};
 use super::{CELL_ASPECT_RANGE, USUAL_CELL_ASPECT, colors, glyphs};

@@ -193,8 +193,8 @@ impl<'a> Plan<'a> {
             if squares <= max_squares || tolerance.square == 0 {
                 break snapped;
             }
-            // Rarely, so many halves get distant colours that the sum exceeds its cap. The tolerance then shrinks in
-            // proportion, so that few tries are needed.
+            // Rarely, the colours of most halves are at the tolerance, and the sum exceeds its cap. The tolerance then
+            // shrinks in proportion, so that few tries are needed.
             tolerance.square = (f64::from(tolerance.square) * (max_squares / squares).clamp(0.0, 0.75)) as u32;
         };
         let mut grid = self.shown_with_text();

@@ -33,7 +33,7 @@ fn read_body(header: &Header<'_>, mut rows: impl RowReader) -> Result<MeshFile, 
             ("vertex", _) => read_vertices(element, &mut rows, &mut mesh)?,
             ("face", Some(at)) => read_faces(element, at, vertex_count, &mut rows, &mut mesh)?,
             ("tristrips", Some(at)) => read_strips(element, at, vertex_count, &mut rows, &mut mesh)?,
-            // Rows without properties take no bytes, so the header may claim 4 billion of them; they are not looped over.
+            // Rows without properties take no bytes and are not looped over: the header may claim 4 billion of them.
             _ if element.properties.is_empty() => {}
             _ => each_row(element, &mut rows, |rows| skip(&element.properties, rows))?,
         }
