@@ -67,11 +67,11 @@ pub enum WrittenBackground {
 /// A tone curve as written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WrittenToneCurve {
-    /// `None`
+    /// The word `None`: no curve.
     None,
-    /// `Reinhard`
+    /// The word `Reinhard`.
     Reinhard,
-    /// `Filmic`
+    /// The word `Filmic`.
     Filmic,
 }
 
@@ -108,7 +108,7 @@ impl SceneFile {
     /// If the reporter is cancelled, the lists end early.
     pub fn read(root: &SyntaxNode<'_>, reporter: &Reporter<'_>, faults: &mut Faults) -> Self {
         let mut reader = NodeReader::new(faults, reporter);
-        let Some(fields) = reader.root(root) else {
+        let Some(fields) = reader.root_fields(root) else {
             return Self::default();
         };
         // All fields are read, even after a fault in one, so that all faults are found.
@@ -133,7 +133,7 @@ impl SceneFile {
 }
 
 impl NodeReader<'_> {
-    fn root<'n>(&mut self, root: &'n SyntaxNode<'n>) -> Option<Fields<'n>> {
+    fn root_fields<'n>(&mut self, root: &'n SyntaxNode<'n>) -> Option<Fields<'n>> {
         const FIELDS: &[&str] = &[
             "camera",
             "views",
@@ -154,7 +154,7 @@ impl NodeReader<'_> {
         if !matches!(node.value, Value::Group(ref group) if group.name.is_some()) {
             return self.color(node).map(WrittenBackground::Color);
         }
-        self.variant(node, "a background", "a colour or Gradient(bottom: ..., top: ...)", &["Gradient"])?;
+        self.group_name(node, "a background", "a colour or Gradient(bottom: ..., top: ...)", &["Gradient"])?;
         let fields = self.fields(node, "a Gradient", "Gradient(bottom: ..., top: ...)", &["bottom", "top"])?;
         Some(WrittenBackground::Gradient {
             bottom: self.required(&fields, "bottom", NodeReader::color),
@@ -164,11 +164,11 @@ impl NodeReader<'_> {
 
     fn lights(&mut self, node: &SyntaxNode<'_>) -> Option<Vec<WrittenLight>> {
         let items = self.list(node, "a list of lights [Point(...), ...]")?;
-        Some(self.each(items, Self::light))
+        Some(self.read_all(items, Self::light))
     }
 
     fn light(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenLight> {
-        let name = self.variant(node, "a light", "a light, such as Point(position: ...)", WrittenLight::NAMES)?;
+        let name = self.group_name(node, "a light", "a light, such as Point(position: ...)", WrittenLight::NAMES)?;
         WrittenLight::read(name, self, node)
     }
 

@@ -36,7 +36,7 @@ pub use parser::parse;
 /// A range of bytes in the text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Span {
-    /// Index of the first byte.
+    /// The index of the first byte.
     pub start: u32,
     /// Index after the last byte.
     pub end: u32,

@@ -59,7 +59,9 @@ impl NodeReader<'_> {
     /// Reads the views of a scene, each with the fields of a camera.
     pub(super) fn views(&mut self, node: &SyntaxNode<'_>) -> Option<Vec<WrittenCamera>> {
         let items = self.list(node, "a list of views [(eye: ..., target: ...), ...]")?;
-        Some(self.each(items, |reader, item| reader.camera_called(item, "a view", "a view (eye: ..., target: ...)")))
+        Some(
+            self.read_all(items, |reader, item| reader.camera_called(item, "a view", "a view (eye: ..., target: ...)")),
+        )
     }
 
     /// Reads a camera or a view. `owner` is its name and `form` its full form, for messages.

@@ -10,12 +10,12 @@ use std::collections::HashSet;
 impl NodeReader<'_> {
     pub(super) fn objects(&mut self, node: &SyntaxNode<'_>) -> Option<Vec<WrittenObject>> {
         let items = self.list(node, "a list of objects [Sphere(...), ...]")?;
-        Some(self.each(items, Self::object))
+        Some(self.read_all(items, Self::object))
     }
 
     fn object(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenObject> {
         const FORM: &str = "an object, such as Sphere(center: ..., radius: ...)";
-        let name = self.variant(node, "an object", FORM, WrittenShape::NAMES)?;
+        let name = self.group_name(node, "an object", FORM, WrittenShape::NAMES)?;
         let (shape, fields) = WrittenShape::read(name, self, node)?;
         Some(WrittenObject { shape, material: self.optional(&fields, "material", NodeReader::material_use) })
     }
@@ -75,7 +75,7 @@ impl NodeReader<'_> {
 
     fn material(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenMaterial> {
         const FORM: &str = "a material, such as Diffuse(\"red\"), or the name of one";
-        let name = self.variant(node, "a material", FORM, WrittenMaterial::NAMES)?;
+        let name = self.group_name(node, "a material", FORM, WrittenMaterial::NAMES)?;
         WrittenMaterial::read(name, self, node)
     }
 }

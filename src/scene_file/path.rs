@@ -42,7 +42,7 @@ impl PathFile {
 impl NodeReader<'_> {
     fn keyframes(&mut self, node: &SyntaxNode<'_>) -> Option<(Vec<WrittenKeyframe>, Span)> {
         let items = self.list(node, "a list of keyframes [(time: ..., eye: ..., target: ...), ...]")?;
-        Some((self.each(items, Self::keyframe), node.span))
+        Some((self.read_all(items, Self::keyframe), node.span))
     }
 
     fn keyframe(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenKeyframe> {

@@ -37,8 +37,8 @@ pub(crate) fn read_or_cancel<'a, T>(
     check: impl FnOnce(SyntaxNode<'a>, &mut Faults) -> Option<T>,
 ) -> Result<T, Unfinished<SceneError>> {
     let root = check_size(text.len())
-        .and_then(|()| not_empty(text, smallest))
-        .and_then(|()| no_nul(text.as_bytes()))
+        .and_then(|()| check_not_empty(text, smallest))
+        .and_then(|()| check_no_nul(text.as_bytes()))
         .map_err(Unfinished::Failed)
         .and_then(|()| parse_or_cancel(text, Meter::new(reporter, name, text.len())))
         .map_err(|unfinished| unfinished.map(|fault| SceneError::new(name, text, fault)))?;
@@ -55,19 +55,19 @@ pub(crate) fn read_or_cancel<'a, T>(
 /// # Errors
 /// If there are more than [`MAX_TEXT_BYTES`], or they are not UTF-8, or contain a NUL.
 pub fn text_from<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, SceneError> {
-    decoded(bytes).map_err(|fault| {
+    decode(bytes).map_err(|fault| {
         // A file that is not text from its first byte on has no line that would help in a message.
         let shown = if fault.span.start == 0 { &[] } else { bytes };
         SceneError::new(name, &String::from_utf8_lossy(shown), fault)
     })
 }
 
-fn decoded(bytes: &[u8]) -> Result<&str, Fault> {
+fn decode(bytes: &[u8]) -> Result<&str, Fault> {
     check_size(bytes.len())?;
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err(fault_at(0, "the file is UTF-16; save it as UTF-8".to_owned()));
     }
-    no_nul(bytes)?;
+    check_no_nul(bytes)?;
     std::str::from_utf8(bytes).map_err(|error| {
         let offset = error.valid_up_to();
         let byte = bytes.get(offset).copied().unwrap_or_default();
@@ -82,7 +82,7 @@ fn check_size(bytes: usize) -> Result<(), Fault> {
     Ok(())
 }
 
-fn not_empty(text: &str, smallest: &str) -> Result<(), Fault> {
+fn check_not_empty(text: &str, smallest: &str) -> Result<(), Fault> {
     if text.trim().is_empty() {
         return Err(fault_at(0, format!("the file is empty; the smallest {smallest}")));
     }
@@ -91,7 +91,7 @@ fn not_empty(text: &str, smallest: &str) -> Result<(), Fault> {
 
 /// Returns a fault for a NUL, which text never contains, and nearly every binary format has near
 /// its start.
-fn no_nul(bytes: &[u8]) -> Result<(), Fault> {
+fn check_no_nul(bytes: &[u8]) -> Result<(), Fault> {
     let Some(offset) = bytes.iter().position(|&byte| byte == 0) else {
         return Ok(());
     };

@@ -225,8 +225,8 @@ impl<'a> LineCounter<'a> {
     }
 
     fn report(&mut self, fault: &Fault) -> Report {
-        let start = character_at(self.text, fault.span.start as usize);
-        let end = character_at(self.text, fault.span.end as usize).max(start);
+        let start = character_start(self.text, fault.span.start as usize);
+        let end = character_start(self.text, fault.span.end as usize).max(start);
         self.advance_to(start);
         let excerpt = Excerpt::new(&self.text[self.line_start..], start - self.line_start, end - self.line_start);
         Report {
@@ -242,7 +242,7 @@ impl<'a> LineCounter<'a> {
 }
 
 /// Returns the index of the first byte of the character that contains the byte at `offset`.
-fn character_at(text: &str, offset: usize) -> usize {
+fn character_start(text: &str, offset: usize) -> usize {
     // A fault may point after the last byte, or into a character that a lossy conversion replaced.
     let offset = offset.min(text.len());
     (0..=offset).rev().find(|&byte| text.is_char_boundary(byte)).unwrap_or(0)
@@ -278,11 +278,11 @@ impl Excerpt {
         // Counts only as many characters as needed, because a generated file may be one line of megabytes.
         let is_long =
             text.chars().take(Self::MAX_EXCERPT_WIDTH + 1).take_while(|&c| c != '\n').count() > Self::MAX_EXCERPT_WIDTH;
-        let is_far = is_long && back_by(text, start, Self::WHOLE_START) > 0;
-        let from = if is_far { back_by(text, start, Self::CONTEXT_BEFORE) } else { 0 };
+        let is_far = is_long && columns_back(text, start, Self::WHOLE_START) > 0;
+        let from = if is_far { columns_back(text, start, Self::CONTEXT_BEFORE) } else { 0 };
         let mut excerpt =
             Self { source: if from > 0 { "...".to_owned() } else { String::new() }, caret: 0, caret_width: 0 };
-        excerpt.take(text, from, start, end);
+        excerpt.append_line(text, from, start, end);
         excerpt
     }
 
@@ -290,7 +290,7 @@ impl Excerpt {
     /// columns of the carets.
     ///
     /// The fault is at bytes `start` to `end`.
-    fn take(&mut self, text: &str, from: usize, start: usize, end: usize) {
+    fn append_line(&mut self, text: &str, from: usize, start: usize, end: usize) {
         let (mut caret_end, mut budget) = (None, Self::MAX_EXCERPT_WIDTH);
         let mut caret = None;
         for (i, c) in text[from..].char_indices() {
@@ -323,7 +323,7 @@ impl Excerpt {
 }
 
 /// Returns the index of the character that is `columns` terminal columns before `offset`, or 0.
-fn back_by(text: &str, offset: usize, columns: usize) -> usize {
+fn columns_back(text: &str, offset: usize, columns: usize) -> usize {
     let mut left = columns;
     for (i, c) in text[..offset].char_indices().rev() {
         let width = visible_char(c).width().unwrap_or(1).max(1);

@@ -25,10 +25,10 @@ pub(super) fn parse_or_cancel<'a>(text: &'a str, meter: Meter<'_>) -> Parsed<Syn
         let message = "there is nothing here but comments or white space".to_owned();
         return Err(Fault { message, span: Span::at(text.len()) }.into());
     }
-    let root = parser.value()?;
+    let root = parser.parse_value()?;
     match parser.next {
         Token::End => Ok(root),
-        _ => Err(parser.here(format!("unexpected {} where the file should end", parser.found()))),
+        _ => Err(parser.fault_here(format!("unexpected {} where the file should end", parser.describe_next()))),
     }
 }
 
@@ -67,22 +67,22 @@ impl<'a> Parser<'a, '_> {
         matches!(tokens.next(), Ok((Token::Colon, _)))
     }
 
-    fn value(&mut self) -> Parsed<SyntaxNode<'a>> {
+    fn parse_value(&mut self) -> Parsed<SyntaxNode<'a>> {
         let start = self.span.start;
         self.meter.advance_to(start as usize)?;
         let value = match self.next {
-            Token::Word(word) => return self.word(word),
-            Token::Open('(') => Value::Group(Box::new(Group { name: None, body: self.body()? })),
+            Token::Word(word) => return self.parse_word(word),
+            Token::Open('(') => Value::Group(Box::new(Group { name: None, body: self.parse_body()? })),
             Token::Open('[') => {
-                self.open()?;
-                let items = self.items()?;
-                self.close()?;
+                self.open_bracket()?;
+                let items = self.parse_items()?;
+                self.close_bracket()?;
                 Value::List(items)
             }
             Token::Open(_) => {
-                self.open()?;
-                let entries = self.entries()?;
-                self.close()?;
+                self.open_bracket()?;
+                let entries = self.parse_entries()?;
+                self.close_bracket()?;
                 Value::Map(entries)
             }
             Token::Number(number) => {
@@ -93,7 +93,7 @@ impl<'a> Parser<'a, '_> {
                 Token::String(string) => Value::String(string),
                 _ => Value::String(Box::default()),
             },
-            _ => return Err(self.here(self.no_value())),
+            _ => return Err(self.fault_here(self.no_value_message())),
         };
         Ok(self.node(start, value))
     }
@@ -103,24 +103,24 @@ impl<'a> Parser<'a, '_> {
         SyntaxNode { span, value }
     }
 
-    fn word(&mut self, word: &'a str) -> Parsed<SyntaxNode<'a>> {
+    fn parse_word(&mut self, word: &'a str) -> Parsed<SyntaxNode<'a>> {
         let span = self.span;
         self.advance()?;
         let value = match (word, &self.next) {
             ("true", _) => Value::Bool(true),
             ("false", _) => Value::Bool(false),
             (_, Token::Open('{')) => {
-                return Err(self.here(format!("expected `(` after {}, found `{{`", quoted_word(word))));
+                return Err(self.fault_here(format!("expected `(` after {}, found `{{`", quoted_word(word))));
             }
-            (_, Token::Open('(')) => return self.named_group(Name { text: word, span }),
+            (_, Token::Open('(')) => return self.parse_named_group(Name { text: word, span }),
             _ => Value::Group(Box::new(Group { name: Some(Name { text: word, span }), body: Body::Nothing })),
         };
         Ok(self.node(span.start, value))
     }
 
     /// Parses `Name(...)`. `Some(x)` becomes x, as with RON's extension `implicit_some`.
-    fn named_group(&mut self, name: Name<'a>) -> Parsed<SyntaxNode<'a>> {
-        let body = self.body()?;
+    fn parse_named_group(&mut self, name: Name<'a>) -> Parsed<SyntaxNode<'a>> {
+        let body = self.parse_body()?;
         if let ("Some", Body::Values(values)) = (name.text, &body)
             && let [inner] = &values[..]
         {
@@ -132,65 +132,67 @@ impl<'a> Parser<'a, '_> {
     }
 
     /// Parses `(...)`: fields if the first entry is a field, otherwise values.
-    fn body(&mut self) -> Parsed<Body<'a>> {
-        self.open()?;
+    fn parse_body(&mut self) -> Parsed<Body<'a>> {
+        self.open_bracket()?;
         let body = if matches!(self.next, Token::Word(_)) && self.colon_follows() {
-            Body::Fields(self.fields()?)
+            Body::Fields(self.parse_fields()?)
         } else {
-            Body::Values(self.items()?)
+            Body::Values(self.parse_items()?)
         };
-        self.close()?;
+        self.close_bracket()?;
         Ok(body)
     }
 
-    fn items(&mut self) -> Parsed<Vec<SyntaxNode<'a>>> {
+    fn parse_items(&mut self) -> Parsed<Vec<SyntaxNode<'a>>> {
         let mut items = Vec::new();
         while !self.at_end() {
-            items.push(self.value()?);
+            items.push(self.parse_value()?);
             // The first item had no name. Without this check, the message would be that a comma is missing.
             if matches!(self.next, Token::Colon) {
                 return Err(
-                    self.here("unexpected `:`; all values in these brackets have names, or none has".to_owned())
+                    self.fault_here("unexpected `:`; all values in these brackets have names, or none has".to_owned())
                 );
             }
-            if !self.comma()? {
+            if !self.skip_comma()? {
                 break;
             }
         }
         Ok(items)
     }
 
-    fn entries(&mut self) -> Parsed<Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>> {
+    fn parse_entries(&mut self) -> Parsed<Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>> {
         let mut entries = Vec::new();
         while !self.at_end() {
-            let key = self.value()?;
+            let key = self.parse_value()?;
             if self.next != Token::Colon {
-                return Err(self.here(format!("expected `:` and a value, found {}", self.found())));
+                return Err(self.fault_here(format!("expected `:` and a value, found {}", self.describe_next())));
             }
             self.advance()?;
-            entries.push((key, self.value()?));
-            if !self.comma()? {
+            entries.push((key, self.parse_value()?));
+            if !self.skip_comma()? {
                 break;
             }
         }
         Ok(entries)
     }
 
-    fn fields(&mut self) -> Parsed<Vec<Field<'a>>> {
+    fn parse_fields(&mut self) -> Parsed<Vec<Field<'a>>> {
         let mut fields = Vec::new();
         while !self.at_end() {
             let Token::Word(text) = self.next else {
                 let hint = if self.next == Token::Comma { "; is it one comma too many?" } else { "" };
-                return Err(self.here(format!("expected the name of a field, found {}{hint}", self.found())));
+                return Err(
+                    self.fault_here(format!("expected the name of a field, found {}{hint}", self.describe_next()))
+                );
             };
             let name = Name { text, span: self.span };
             self.advance()?;
             if self.next != Token::Colon {
-                return Err(self.no_colon(name));
+                return Err(self.no_colon_fault(name));
             }
             self.advance()?;
-            fields.push(Field { name, value: self.value()? });
-            if !self.comma()? {
+            fields.push(Field { name, value: self.parse_value()? });
+            if !self.skip_comma()? {
                 break;
             }
         }
@@ -202,7 +204,7 @@ impl<'a> Parser<'a, '_> {
     }
 
     /// Skips a comma and returns whether there was one.
-    fn comma(&mut self) -> Parsed<bool> {
+    fn skip_comma(&mut self) -> Parsed<bool> {
         let comma = self.next == Token::Comma;
         if comma {
             self.advance()?;
@@ -210,10 +212,10 @@ impl<'a> Parser<'a, '_> {
         Ok(comma)
     }
 
-    fn open(&mut self) -> Parsed<()> {
+    fn open_bracket(&mut self) -> Parsed<()> {
         // Checked where brackets open, so that every path of the recursion is bounded.
         if self.open.len() == MAX_NESTING {
-            return Err(self.here(format!("brackets are nested more than {MAX_NESTING} deep")));
+            return Err(self.fault_here(format!("brackets are nested more than {MAX_NESTING} deep")));
         }
         if let Token::Open(bracket) = self.next {
             self.open.push((bracket, self.span));
@@ -223,12 +225,12 @@ impl<'a> Parser<'a, '_> {
     }
 
     /// Moves past the bracket that closes the innermost open one.
-    fn close(&mut self) -> Parsed<()> {
+    fn close_bracket(&mut self) -> Parsed<()> {
         let Some(&(bracket, opened)) = self.open.last() else {
             return Ok(());
         };
-        if self.next != Token::Close(closing(bracket)) {
-            return Err(self.not_closed(bracket, opened));
+        if self.next != Token::Close(closing_bracket(bracket)) {
+            return Err(self.not_closed_fault(bracket, opened));
         }
         if self.misaligned.is_none() && self.is_misaligned(opened) {
             self.misaligned = Some((bracket, opened));
@@ -259,11 +261,11 @@ impl<'a> Parser<'a, '_> {
     // Messages --------------------------------------------------------------------------------------------------------
 
     /// Returns a fault at the next token.
-    fn here(&self, message: String) -> Unfinished<Fault> {
+    fn fault_here(&self, message: String) -> Unfinished<Fault> {
         Fault { message, span: self.span }.into()
     }
 
-    fn found(&self) -> String {
+    fn describe_next(&self) -> String {
         match &self.next {
             Token::Open(c) | Token::Close(c) | Token::Other(c) => format!("`{c}`"),
             Token::Comma => "`,`".to_owned(),
@@ -275,63 +277,65 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    fn no_value(&self) -> String {
+    fn no_value_message(&self) -> String {
         match self.next {
             Token::Other('#') => "unexpected `#`; a colour is written in quotes, as in \"#ff8800\"".to_owned(),
             Token::Comma if !self.text[..self.previous_end as usize].ends_with(':') => {
                 "expected a value, found `,`; is it one comma too many?".to_owned()
             }
-            _ => format!("expected a value, found {}", self.found()),
+            _ => format!("expected a value, found {}", self.describe_next()),
         }
     }
 
     /// Returns the fault that no colon follows a field's name, or that a closing bracket before the
     /// name is missing.
-    fn no_colon(&self, name: Name<'_>) -> Unfinished<Fault> {
+    fn no_colon_fault(&self, name: Name<'_>) -> Unfinished<Fault> {
         let word = quoted_word(name.text);
         match (&self.next, self.open.last()) {
-            (Token::Other('='), _) => self.here(format!("expected `:` after {word}, found `=`")),
+            (Token::Other('='), _) => self.fault_here(format!("expected `:` after {word}, found `=`")),
             (Token::Open(_), Some(&(bracket, opened))) => {
                 let message = format!(
                     "expected a field, found {word}; is a `{}` missing before it, for the `{bracket}` at {}?",
-                    closing(bracket),
-                    self.place(opened),
+                    closing_bracket(bracket),
+                    self.line_and_column_text(opened),
                 );
                 Fault { message, span: name.span }.into()
             }
-            _ => self.here(format!("expected `:` after {word}, found {}", self.found())),
+            _ => self.fault_here(format!("expected `:` after {word}, found {}", self.describe_next())),
         }
     }
 
     /// Returns the fault that the next token is neither a comma nor the closing bracket of
     /// `bracket`.
-    fn not_closed(&self, bracket: char, opened: Span) -> Unfinished<Fault> {
-        let right = closing(bracket);
+    fn not_closed_fault(&self, bracket: char, opened: Span) -> Unfinished<Fault> {
+        let right = closing_bracket(bracket);
         match self.next {
             Token::End => {
                 let (bracket, span) = self.misaligned.unwrap_or((bracket, opened));
-                let message = format!("this `{bracket}` is never closed by a `{}`", closing(bracket));
+                let message = format!("this `{bracket}` is never closed by a `{}`", closing_bracket(bracket));
                 Fault { message, span }.into()
             }
             Token::Close(wrong) => {
-                let opened = self.place(opened);
-                self.here(format!("expected `{right}`, found `{wrong}`; the `{bracket}` at {opened} is still open"))
+                let opened = self.line_and_column_text(opened);
+                self.fault_here(format!(
+                    "expected `{right}`, found `{wrong}`; the `{bracket}` at {opened} is still open"
+                ))
             }
-            Token::Other(other) => self.here(format!("expected `,` or `{right}`, found `{other}`")),
+            Token::Other(other) => self.fault_here(format!("expected `,` or `{right}`, found `{other}`")),
             _ => {
-                let message = format!("expected `,` or `{right}` before {}", self.found());
+                let message = format!("expected `,` or `{right}` before {}", self.describe_next());
                 Fault { message, span: Span::at(self.previous_end as usize) }.into()
             }
         }
     }
 
-    fn place(&self, span: Span) -> String {
+    fn line_and_column_text(&self, span: Span) -> String {
         let (line, column) = line_and_column(self.text, span.start as usize);
         format!("{line}:{column}")
     }
 }
 
-fn closing(bracket: char) -> char {
+fn closing_bracket(bracket: char) -> char {
     match bracket {
         '(' => ')',
         '[' => ']',

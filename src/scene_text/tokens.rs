@@ -37,7 +37,7 @@ impl<'a> Tokens<'a> {
     pub(super) fn next(&mut self) -> Result<(Token<'a>, Span), Fault> {
         self.skip_space()?;
         let start = self.at;
-        let token = self.token()?;
+        let token = self.read_token()?;
         Ok((token, Span::new(start, self.at)))
     }
 
@@ -62,20 +62,20 @@ impl<'a> Tokens<'a> {
         &self.text[self.at..]
     }
 
-    fn token(&mut self) -> Result<Token<'a>, Fault> {
+    fn read_token(&mut self) -> Result<Token<'a>, Fault> {
         let rest = self.rest();
         let Some(first) = rest.chars().next() else {
             return Ok(Token::End);
         };
         // Raw strings are recognized before words, because they start with the letter r.
         if let Some(hashes) = raw_string_hashes(rest) {
-            return self.raw_string(hashes);
+            return self.read_raw_string(hashes);
         }
         match first {
-            '"' => return self.string(),
-            '\'' => return Err(self.single_quote()),
-            '0'..='9' | '+' | '-' | '.' => return self.number(),
-            _ if first == '_' || first.is_alphabetic() => return Ok(self.word()),
+            '"' => return self.read_string(),
+            '\'' => return Err(self.single_quote_fault()),
+            '0'..='9' | '+' | '-' | '.' => return self.read_number(),
+            _ if first == '_' || first.is_alphabetic() => return Ok(self.read_word()),
             _ => {}
         }
         self.at += first.len_utf8();
@@ -88,7 +88,7 @@ impl<'a> Tokens<'a> {
         })
     }
 
-    fn word(&mut self) -> Token<'a> {
+    fn read_word(&mut self) -> Token<'a> {
         let word = self.take_while(|c| c == '_' || c.is_alphanumeric());
         match word {
             "inf" => Token::Number(f64::INFINITY),
@@ -106,7 +106,7 @@ impl<'a> Tokens<'a> {
 
     /// Reads a number with all characters that may belong to it, so that a malformed number is
     /// reported as a whole.
-    fn number(&mut self) -> Result<Token<'a>, Fault> {
+    fn read_number(&mut self) -> Result<Token<'a>, Fault> {
         let start = self.at;
         self.at += 1;
         loop {
@@ -128,7 +128,7 @@ impl<'a> Tokens<'a> {
     /// Reads a string in double quotes, which must end on its line.
     // RON allows line ends in strings. But a scene's strings are names and colours, so at the end of the line a quote
     // is missing, and reporting it there gives the right line.
-    fn string(&mut self) -> Result<Token<'a>, Fault> {
+    fn read_string(&mut self) -> Result<Token<'a>, Fault> {
         let start = self.at;
         let mut value = String::new();
         let mut chars = self.text[start + 1..].char_indices();
@@ -139,7 +139,7 @@ impl<'a> Tokens<'a> {
                     return Ok(Token::String(value.into()));
                 }
                 '\n' => break,
-                '\\' => value.push(unescaped(&mut chars).ok_or_else(|| Fault {
+                '\\' => value.push(read_escape(&mut chars).ok_or_else(|| Fault {
                     message: "unknown escape in this string; a backslash itself is written \\\\".to_owned(),
                     span: Span::new(start + 1 + i, start + 2 + i),
                 })?),
@@ -152,7 +152,7 @@ impl<'a> Tokens<'a> {
         })
     }
 
-    fn raw_string(&mut self, hashes: usize) -> Result<Token<'a>, Fault> {
+    fn read_raw_string(&mut self, hashes: usize) -> Result<Token<'a>, Fault> {
         let start = self.at;
         let begin = start + 2 + hashes;
         let closing = format!("\"{}", "#".repeat(hashes));
@@ -163,7 +163,7 @@ impl<'a> Tokens<'a> {
         Ok(Token::String(self.text[begin..begin + length].into()))
     }
 
-    fn single_quote(&self) -> Fault {
+    fn single_quote_fault(&self) -> Fault {
         Fault {
             message: "a string is written in double quotes: \"...\"".to_owned(),
             span: Span::new(self.at, self.at + 1),
@@ -233,7 +233,7 @@ fn raw_string_hashes(text: &str) -> Option<usize> {
 }
 
 /// Reads the rest of an escape sequence after its backslash, and returns its character.
-fn unescaped(chars: &mut std::str::CharIndices<'_>) -> Option<char> {
+fn read_escape(chars: &mut std::str::CharIndices<'_>) -> Option<char> {
     let (_, kind) = chars.next()?;
     Some(match kind {
         'n' => '\n',

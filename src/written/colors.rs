@@ -81,12 +81,12 @@ fn color_from(string: &str) -> Result<Srgb8, String> {
     // Blanks around a name or a code are ignored.
     let name = string.trim();
     if let Some(digits) = name.strip_prefix('#') {
-        return from_hex(digits).ok_or_else(|| bad_hex(string, digits));
+        return color_from_hex(digits).ok_or_else(|| bad_hex_message(string, digits));
     }
-    Srgb8::from_name(name).ok_or_else(|| unknown_name(string, name))
+    Srgb8::from_name(name).ok_or_else(|| unknown_name_message(string, name))
 }
 
-fn from_hex(digits: &str) -> Option<Srgb8> {
+fn color_from_hex(digits: &str) -> Option<Srgb8> {
     // Checks the digits, because `from_str_radix` would accept a sign.
     if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
         return None;
@@ -104,7 +104,7 @@ fn from_hex(digits: &str) -> Option<Srgb8> {
     }
 }
 
-fn bad_hex(string: &str, digits: &str) -> String {
+fn bad_hex_message(string: &str, digits: &str) -> String {
     let quoted = quoted(string);
     match digits.chars().find(|c| !c.is_ascii_hexdigit()) {
         Some(_) => format!("{quoted} is not a colour; after `#` come hexadecimal digits, 0 to 9 and a to f"),
@@ -115,10 +115,10 @@ fn bad_hex(string: &str, digits: &str) -> String {
     }
 }
 
-fn unknown_name(string: &str, name: &str) -> String {
+fn unknown_name_message(string: &str, name: &str) -> String {
     let quoted = quoted(string);
     if let 3 | 6 = name.len()
-        && from_hex(name).is_some()
+        && color_from_hex(name).is_some()
     {
         return format!("{quoted} is not a colour; did you mean \"#{name}\"?");
     }

@@ -93,7 +93,7 @@ impl<'f> NodeReader<'f> {
                 None => self.fault(name.span, || {
                     let meant = meant_field(name.text, known);
                     misspelt.extend(meant);
-                    unknown_field(name.text, meant, owner, known)
+                    unknown_field_message(name.text, meant, owner, known)
                 }),
                 Some(i) if seen[i] => self.fault(name.span, || format!("duplicate field \"{}\"", name.text)),
                 Some(i) => seen[i] = true,
@@ -147,7 +147,7 @@ impl<'f> NodeReader<'f> {
     /// Reads the name of a group, which must be one of `known`.
     ///
     /// `kind` and `form` describe the value in messages.
-    pub(crate) fn variant<'n>(
+    pub(crate) fn group_name<'n>(
         &mut self,
         node: &'n SyntaxNode<'n>,
         kind: &str,
@@ -164,7 +164,7 @@ impl<'f> NodeReader<'f> {
         };
         let found = known.iter().copied().find(|&known| known == name.text);
         if found.is_none() {
-            self.fault(name.span, || unknown_variant(name, kind, known));
+            self.fault(name.span, || unknown_variant_message(name, kind, known));
         }
         found
     }
@@ -183,7 +183,7 @@ impl<'f> NodeReader<'f> {
         match &node.value {
             Value::Group(group) => match (&**group, group.name) {
                 (Group { body: Body::Nothing, .. }, Some(_)) => {
-                    let word = self.variant(node, kind, &wanted, &words)?;
+                    let word = self.group_name(node, kind, &wanted, &words)?;
                     return all.iter().find(|(known, _)| *known == word).map(|&(_, value)| value);
                 }
                 _ => self.mismatch(node, &wanted),
@@ -198,7 +198,7 @@ impl<'f> NodeReader<'f> {
     }
 
     /// Returns the values of all items that can be read; fewer if the reporter is cancelled.
-    pub(crate) fn each<'n, T>(
+    pub(crate) fn read_all<'n, T>(
         &mut self,
         items: &'n [SyntaxNode<'n>],
         read: impl Fn(&mut Self, &'n SyntaxNode<'n>) -> Option<T>,
@@ -313,7 +313,7 @@ fn meant_field(name: &str, known: &[&'static str]) -> Option<&'static str> {
     })
 }
 
-fn unknown_field(name: &str, meant: Option<&str>, owner: &str, known: &[&str]) -> String {
+fn unknown_field_message(name: &str, meant: Option<&str>, owner: &str, known: &[&str]) -> String {
     let unknown = format!("unknown field {}", quoted(name));
     match meant {
         Some(meant) => format!("{unknown}; did you mean \"{meant}\"?"),
@@ -322,7 +322,7 @@ fn unknown_field(name: &str, meant: Option<&str>, owner: &str, known: &[&str]) -
     }
 }
 
-fn unknown_variant(name: Name<'_>, kind: &str, known: &[&str]) -> String {
+fn unknown_variant_message(name: Name<'_>, kind: &str, known: &[&str]) -> String {
     let unknown = format!("{} is not {kind}", clipped(name.text));
     match (closest(name.text, known.iter().copied()), known) {
         (Some(meant), _) => format!("{unknown}; did you mean {meant}?"),

@@ -63,7 +63,7 @@ impl Validator<'_> {
         for channel in written.numbers() {
             self.accept(channel.span, rule(channel.value))?;
         }
-        Some(linear(written))
+        Some(to_linear(written))
     }
 
     /// Returns a vector scaled to unit length, in f64, so that the caller rounds only once; `what`
@@ -75,7 +75,7 @@ impl Validator<'_> {
 }
 
 /// Converts a colour as written to linear light.
-fn linear(written: WrittenColor) -> LinearRgb {
+fn to_linear(written: WrittenColor) -> LinearRgb {
     match written {
         WrittenColor::Srgb(color) => LinearRgb::from_srgb8(color),
         WrittenColor::Linear([r, g, b]) => LinearRgb::new(r.value as f32, g.value as f32, b.value as f32),
