@@ -67,7 +67,7 @@ macro_rules! lights {
         }
 
         impl Light {
-            /// See [`LightSource::IN_THE_WAY`].
+            /// Returns [`LightSource::IN_THE_WAY`] of the light's kind.
             #[doc(hidden)]
             pub fn in_the_way(&self) -> Interval {
                 match self {
@@ -75,7 +75,7 @@ macro_rules! lights {
                 }
             }
 
-            /// See [`LightSource::to_light`].
+            /// Returns the vectors from points to the light, by [`LightSource::to_light`].
             #[doc(hidden)]
             #[inline(always)]
             pub fn to_light<N: Number>(&self, point: Vector<N>) -> Vector<N> {
@@ -84,7 +84,7 @@ macro_rules! lights {
                 }
             }
 
-            /// See [`LightSource::irradiance`].
+            /// Returns the irradiance at surface points, by [`LightSource::irradiance`].
             #[doc(hidden)]
             #[inline(always)]
             pub fn irradiance<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3] {
@@ -93,7 +93,7 @@ macro_rules! lights {
                 }
             }
 
-            /// See [`LightSource::color`].
+            /// Returns the light's colour with its intensity, by [`LightSource::color`].
             #[doc(hidden)]
             pub fn color(&self) -> LinearRgb {
                 match self {
@@ -101,7 +101,7 @@ macro_rules! lights {
                 }
             }
 
-            /// See [`LightSource::position`].
+            /// Returns the position, or `None` at infinity, by [`LightSource::position`].
             #[doc(hidden)]
             pub fn position(&self) -> Option<Vec3> {
                 match self {
@@ -109,7 +109,7 @@ macro_rules! lights {
                 }
             }
 
-            /// See [`LightSource::moved_to`].
+            /// Returns the light at another position, by [`LightSource::moved_to`].
             #[doc(hidden)]
             #[must_use]
             pub fn moved_to(self, position: Vec3) -> Self {

@@ -67,7 +67,8 @@ macro_rules! materials {
         }
 
         impl Material {
-            /// See [`Reflecting::reflectance`]; for [`Own`](Self::Own), the default reflectance.
+            /// Returns [`Reflecting::reflectance`], or the default reflectance for
+            /// [`Own`](Self::Own).
             #[doc(hidden)]
             #[inline(always)]
             pub fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3] {
@@ -85,7 +86,7 @@ macro_rules! materials {
                 }
             }
 
-            /// See [`Reflecting::described`]; `None` for [`Own`](Self::Own).
+            /// Returns the adjective of [`Reflecting::described`]; `None` for [`Own`](Self::Own).
             pub(crate) fn described(&self, name: fn(LinearRgb) -> &'static str) -> Option<String> {
                 match self {
                     $($(#[$on])* Self::$material(material) => Some(material.described(name)),)*

@@ -95,15 +95,15 @@ pub trait AtCrossing<N: Number> {
 /// One surface point, or eight in SoA layout: the fields that all surfaces have.
 #[derive(Clone, Copy, Debug)]
 pub struct Points<N: Number> {
-    /// [`SurfacePoint::position`].
+    /// The positions, see [`SurfacePoint::position`].
     pub position: Vector<N>,
-    /// [`SurfacePoint::geometric_normal`].
+    /// The normals on the visible side, see [`SurfacePoint::geometric_normal`].
     pub geometric_normal: Vector<N>,
     /// The mask of points seen from the [front](SurfacePoint::side).
     is_front: N::Mask,
-    /// [`SurfacePoint::clearance`].
+    /// The clearances, see [`SurfacePoint::clearance`].
     pub clearance: N,
-    /// [`SurfacePoint::uv`].
+    /// The coordinates on the surface, see [`SurfacePoint::uv`].
     pub uv: [N; 2],
 }
 

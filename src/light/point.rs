@@ -121,7 +121,7 @@ impl LightSource for PointLight {
     }
 }
 
-/// `Point(position: ...)`
+/// A point light as written: `Point(position: ...)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenPointLight {
     /// The position.
@@ -147,12 +147,12 @@ impl InSceneFile for PointLight {
             position: reader.required(fields, "position", NodeReader::point),
             color: reader.optional(fields, "color", NodeReader::color),
             intensity: reader.optional(fields, "intensity", NodeReader::number),
-            falloff: reader.optional_word(fields, "falloff", falloff),
+            falloff: reader.optional_word(fields, "falloff", read_falloff),
         }
     }
 }
 
-fn falloff(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Falloff> {
+fn read_falloff(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Falloff> {
     let all = [("InverseSquare", Falloff::InverseSquare), ("None", Falloff::None)];
     reader.choice(node, "a falloff", &all)
 }

@@ -42,7 +42,8 @@ impl Reflecting for Checker {
     #[inline(always)]
     fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3] {
         let size = N::splat(self.size);
-        let balance = mean_sign(uv[0] / size, footprint[0] / size) * mean_sign(uv[1] / size, footprint[1] / size);
+        let balance = mean_of_square_wave(uv[0] / size, footprint[0] / size)
+            * mean_of_square_wave(uv[1] / size, footprint[1] / size);
         let half = N::splat(0.5);
         let [of_a, of_b] = [half + half * balance, half - half * balance];
         let ([r0, g0, b0], [r1, g1, b1]) = (channels::<N>(self.a), channels::<N>(self.b));
@@ -64,7 +65,7 @@ impl Reflecting for Checker {
     }
 }
 
-/// `Checker(a: ..., b: ..., size: ...)`
+/// A checkered material as written: `Checker(a: ..., b: ..., size: ...)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenChecker {
     /// The reflectance of the first square; `"#dddddd"` if not given.
@@ -98,14 +99,14 @@ impl InSceneFile for Checker {
 // This is a box filter. The checker's mean over a footprint is the product of both axes' means, so squares too small
 // for their pixels turn grey. Point samples would give a moiré pattern, and supersampling would take 64 rays.
 #[inline(always)]
-fn mean_sign<N: Number>(middle: N, width: N) -> N {
+fn mean_of_square_wave<N: Number>(middle: N, width: N) -> N {
     let (zero, one, half) = (N::splat(0.0), N::splat(1.0), N::splat(0.5) * width);
     let (start, end) = (middle - half, middle + half);
     let (first, last) = (start.floor(), end.floor());
     let sign = N::select(is_even(first), one, -one);
     // The mean across a single edge: the part before the edge minus the part after it.
     let over_one = sign * ((last - start) - (end - last)) / (end - start);
-    let over_more = (integrated_sign(end) - integrated_sign(start)) / (end - start);
+    let over_more = (triangle_wave(end) - triangle_wave(start)) / (end - start);
     let over_edges = N::select((last - first).eq(one), over_one, over_more);
     let mean = N::select(first.eq(last), sign, over_edges);
     // For widths from 1e6 on, whose intervals may be infinite or NaN, the mean is below 1e-6, and taken as 0.
@@ -114,7 +115,7 @@ fn mean_sign<N: Number>(middle: N, width: N) -> N {
 
 /// Returns the integral of the square wave from 0: a triangle wave.
 #[inline(always)]
-fn integrated_sign<N: Number>(x: N) -> N {
+fn triangle_wave<N: Number>(x: N) -> N {
     let (one, two) = (N::splat(1.0), N::splat(2.0));
     let in_period = x - two * (N::splat(0.5) * x).floor();
     one - (in_period - one).abs()

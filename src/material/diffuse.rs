@@ -43,7 +43,7 @@ impl Reflecting for Diffuse {
 }
 
 impl InSceneFile for Diffuse {
-    /// The reflectance.
+    /// The reflectance as written.
     type Written = Option<WrittenColor>;
 
     const NAME: &'static str = "Diffuse";

@@ -80,7 +80,7 @@ impl Described for Cube {
 #[cfg(all(test, unit_tests))]
 mod tests;
 
-/// `Cube(center: ..., side: ...)`
+/// A cube as written: `Cube(center: ..., side: ...)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrittenCube {
     center: Option<WrittenVector>,

@@ -50,7 +50,8 @@ macro_rules! described {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.described(color),)*
                     Self::Mesh(mesh) => {
-                        format!("a {color} mesh of {} triangles, {}", mesh.triangle_count(), sides(&bounds_of(mesh)))
+                        let size = size_in_words(&bounds_of(mesh));
+                        format!("a {color} mesh of {} triangles, {size}", mesh.triangle_count())
                     }
                 }
             }
@@ -104,7 +105,7 @@ fn bounds_of(mesh: &Mesh) -> Bounds {
 }
 
 /// Returns the size of a box along each axis, in words.
-pub(super) fn sides(bounds: &Bounds) -> String {
+pub(super) fn size_in_words(bounds: &Bounds) -> String {
     let Vec3 { x, y, z } = bounds.extent();
     format!("{} by {} by {} in x, y and z", number(x), number(y), number(z))
 }

@@ -29,6 +29,6 @@ pub enum Step {
 }
 
 /// Returns `above / below` if it is finite.
-pub(super) fn quotient(above: f64, below: f64) -> Option<f64> {
+pub(super) fn finite_quotient(above: f64, below: f64) -> Option<f64> {
     Some(above / below).filter(|quotient| quotient.is_finite())
 }

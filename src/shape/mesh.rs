@@ -153,14 +153,14 @@ impl Facet<'_> {
         let smooth = interpolate(normals, uv).normalize_or(geometric_normal);
         // The interpolated normal may point away from the visible side, as files order corners either way.
         let sign = if smooth.dot(geometric_normal) < 0.0 { -1.0 } else { 1.0 };
-        Some((position + self.lift(position, uv, normals.map(|normal| normal * sign)), smooth * sign))
+        Some((position + self.offset_to_smooth(position, uv, normals.map(|normal| normal * sign)), smooth * sign))
     }
 
     /// Returns the offset from the triangle to the smooth surface.
     ///
     /// It is interpolated from the tangent planes of the corners (Hanika, Hacking the Shadow Terminator, Ray Tracing
     /// Gems II, chapter 4), so that shadow rays do not hit neighbouring triangles where the smooth surface is lit.
-    fn lift(&self, position: Vec3, uv: Vec2, normals: [Vec3; 3]) -> Vec3 {
+    fn offset_to_smooth(&self, position: Vec3, uv: Vec2, normals: [Vec3; 3]) -> Vec3 {
         let [a, b, c] = self.triangle.corners();
         let above = |corner: Vec3, normal: Vec3| normal * (corner - position).dot(normal).max(0.0);
         interpolate([above(a, normals[0]), above(b, normals[1]), above(c, normals[2])], uv)
@@ -188,7 +188,7 @@ fn interpolate<T: Add<Output = T> + Mul<f32, Output = T>>([a, b, c]: [T; 3], sha
     a * (1.0 - shares.x - shares.y) + b * shares.x + c * shares.y
 }
 
-/// `Mesh(path: ..., scale: ..., rotate: ..., translate: ...)`
+/// A mesh as written: `Mesh(path: ..., scale: ..., rotate: ..., translate: ...)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrittenMesh {
     /// The path of the mesh's file, relative to the scene's file.
@@ -211,9 +211,9 @@ impl InSceneFile for Mesh {
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenMesh {
         WrittenMesh {
-            path: reader.required(fields, "path", path),
-            scale: reader.optional(fields, "scale", scale),
-            rotate: reader.optional(fields, "rotate", angles),
+            path: reader.required(fields, "path", read_path),
+            scale: reader.optional(fields, "scale", read_scale),
+            rotate: reader.optional(fields, "rotate", read_angles),
             translate: reader.optional(fields, "translate", NodeReader::point),
         }
     }
@@ -223,7 +223,7 @@ impl CheckedShape for Mesh {
     const BRINGS_COLORS: bool = true;
 
     fn check(written: &WrittenMesh, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
-        let placed = placement(validator, written);
+        let placed = checked_placement(validator, written);
         let path = written.path.as_ref()?;
         let mesh = match meshes.mesh(&path.value) {
             Ok(mesh) => mesh,
@@ -238,7 +238,7 @@ impl CheckedShape for Mesh {
     }
 }
 
-fn path(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Spanned<String>> {
+fn read_path(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Spanned<String>> {
     let Value::String(path) = &node.value else {
         reader.mismatch(node, "the path of a mesh in quotes");
         return None;
@@ -247,7 +247,7 @@ fn path(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Spanned<St
 }
 
 /// Reads the scale: one factor for all axes, or three.
-fn scale(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenVector> {
+fn read_scale(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenVector> {
     if matches!(node.value, Value::Number(_)) {
         let number = reader.number(node)?;
         return Some(WrittenVector { components: [number; 3], span: node.span });
@@ -256,22 +256,22 @@ fn scale(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenVe
     Some(WrittenVector { components, span: node.span })
 }
 
-fn angles(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenVector> {
+fn read_angles(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenVector> {
     let components = reader.numbers(node, "angles in degrees about the axes (x, y, z)")?;
     Some(WrittenVector { components, span: node.span })
 }
 
 /// Checks the scale, the rotation and the translation of a mesh, and returns them in this order.
-fn placement(
+fn checked_placement(
     validator: &mut Validator<'_>,
     &WrittenMesh { scale, rotate, translate, .. }: &WrittenMesh,
 ) -> Option<(Vec3, Mat3, Vec3)> {
     let scale = match scale {
-        Some(scale) => factors(validator, scale),
+        Some(scale) => checked_factors(validator, scale),
         None => Some(Vec3::ONE),
     };
     let turn = match rotate {
-        Some(angles) => turn(validator, angles),
+        Some(angles) => checked_rotation(validator, angles),
         None => Some(Mat3::IDENTITY),
     };
     let translation = match translate {
@@ -282,7 +282,7 @@ fn placement(
 }
 
 /// Checks the factors of a scale, which may be negative, to mirror the mesh, but not 0.
-fn factors(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Vec3> {
+fn checked_factors(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Vec3> {
     for factor in written.components {
         validator.accept(factor.span, checks::factor(factor.value))?;
     }
@@ -291,7 +291,7 @@ fn factors(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Vec3
 
 /// Checks the angles, and returns the rotation about x, then y, then z: counterclockwise seen from
 /// the axis's end.
-fn turn(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Mat3> {
+fn checked_rotation(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Mat3> {
     const MAX_ANGLE: f64 = 36_000.0;
     if let Some(angle) = written.components.iter().find(|angle| angle.value.abs() > MAX_ANGLE) {
         return validator.fault(angle.span, || "an angle must lie within ±36000 degrees".to_owned());

@@ -1,6 +1,6 @@
 //! Ray-plane intersection (lecture, "Ray intersection").
 
-use super::equation::quotient;
+use super::equation::finite_quotient;
 use super::{
     AtCrossing, CheckedShape, Crossable, Described, Endless, Equation, Meshes, Points, Shape, Step, Surface,
     SurfacePoint,
@@ -154,7 +154,7 @@ impl Described for Plane {
         let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let (a, n) = (self.point.as_dvec3(), self.normal.as_dvec3());
         let (above, below) = ((a - o).dot(n), d.dot(n));
-        let t = quotient(above, below);
+        let t = finite_quotient(above, below);
         let steps = vec![
             Step::Value("(a-o).n", above),
             Step::Value("d.n", below),
@@ -164,7 +164,7 @@ impl Described for Plane {
     }
 }
 
-/// `Plane(point: ..., normal: ...)`
+/// A plane as written: `Plane(point: ..., normal: ...)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrittenPlane {
     /// Any point of the plane.

@@ -237,7 +237,7 @@ impl Described for Sphere {
     }
 }
 
-/// `Sphere(center: ..., radius: ...)`
+/// A sphere as written: `Sphere(center: ..., radius: ...)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrittenSphere {
     /// The centre.

@@ -2,8 +2,8 @@
 //!
 //! The numbered statements on error bounds are in `culling.md`.
 
-use super::described::sides;
-use super::equation::quotient;
+use super::described::size_in_words;
+use super::equation::finite_quotient;
 use super::{
     AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SoaLeaf, Step, Surface,
     SurfacePoint,
@@ -65,8 +65,8 @@ impl<N: Number> TriangleN<N> {
     // triangle's size.
     #[inline(always)]
     fn crossing(&self, rays: &Rays<N>) -> Option<(N::Mask, Crossing<N>)> {
-        let corners = self.sheared(rays);
-        self.crossing_of(corners, weights(corners), rays)
+        let corners = self.sheared_corners(rays);
+        self.crossing_from_weights(corners, weights(corners), rays)
     }
 
     /// Computes [`crossing`](Self::crossing) for rays whose [`weight_error_bound`] is at most
@@ -75,32 +75,32 @@ impl<N: Number> TriangleN<N> {
     // bunny takes 0.95 of the time.
     #[inline(always)]
     fn crossing_with_bound(&self, rays: &Rays<N>, error_bound: N) -> Option<(N::Mask, Crossing<N>)> {
-        let corners = self.sheared(rays);
+        let corners = self.sheared_corners(rays);
         let weights = weights(corners);
-        let [agree, differ] = signs(weights, error_bound);
+        let [agree, differ] = certain_signs(weights, error_bound);
         // If any lane is uncertain, the bounds of all lanes are computed: a branch cannot be taken by one lane alone.
         if !(agree | differ).all() {
-            return self.crossing_of(corners, weights, rays);
+            return self.crossing_from_weights(corners, weights, rays);
         }
         agree.any().then(|| (agree, Crossing::of(corners, weights)))
     }
 
     /// Returns the corners in the rays' sheared coordinates.
     #[inline(always)]
-    fn sheared(&self, Rays { origin, shear, .. }: &Rays<N>) -> [Vector<N>; 3] {
+    fn sheared_corners(&self, Rays { origin, shear, .. }: &Rays<N>) -> [Vector<N>; 3] {
         let [a, b, c] = self.0;
         [shear.apply(a - *origin), shear.apply(b - *origin), shear.apply(c - *origin)]
     }
 
     /// Computes the crossing from sheared corners and their weights.
     #[inline(always)]
-    fn crossing_of(
+    fn crossing_from_weights(
         &self,
         corners: [Vector<N>; 3],
         weights: Vector<N>,
         rays: &Rays<N>,
     ) -> Option<(N::Mask, Crossing<N>)> {
-        let [agree, differ] = signs(weights, weight_error_bound(corners, rays.shear.length));
+        let [agree, differ] = certain_signs(weights, weight_error_bound(corners, rays.shear.length));
         // Unused lanes have infinite corners, and must not count as uncertain.
         let is_uncertain = !(agree | differ) & self.0[0].x.le(N::splat(f32::MAX));
         if !(agree | is_uncertain).any() {
@@ -118,7 +118,12 @@ impl<N: Number> TriangleN<N> {
     ///
     /// Returns the result of [`first_crossing`](Crossable::first_crossing).
     #[inline(always)]
-    fn first_from(&self, min: N, rays: &Rays<N>, (crosses, crossing): (N::Mask, Crossing<N>)) -> Option<(N::Mask, N)> {
+    fn clamped_crossing(
+        &self,
+        min: N,
+        rays: &Rays<N>,
+        (crosses, crossing): (N::Mask, Crossing<N>),
+    ) -> Option<(N::Mask, N)> {
         // This is the first division of the test; most tests end before it.
         let t = crossing.t / crossing.sum;
         // Rejects before the box test, because a shadow ray always crosses the plane of the triangle that it starts on:
@@ -215,7 +220,7 @@ fn weight_error_bound<N: Number>([a, b, c]: [Vector<N>; 3], length: N) -> N {
 ///
 /// Only weights beyond the error bound have a certain sign.
 #[inline(always)]
-fn signs<N: Number>(Vector { x, y, z }: Vector<N>, error_bound: N) -> [N::Mask; 2] {
+fn certain_signs<N: Number>(Vector { x, y, z }: Vector<N>, error_bound: N) -> [N::Mask; 2] {
     // Both masks follow from the minimum and the maximum. Sign bits alone could not be compared with the error bound.
     let (least, greatest) = (x.min(y.min(z)), x.max(y.max(z)));
     let agree = error_bound.lt(least) | greatest.lt(-error_bound);
@@ -225,12 +230,12 @@ fn signs<N: Number>(Vector { x, y, z }: Vector<N>, error_bound: N) -> [N::Mask; 
 impl<N: Number> Crossable<N> for TriangleN<N> {
     #[inline(always)]
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
-        self.first_from(min, rays, self.crossing(rays)?)
+        self.clamped_crossing(min, rays, self.crossing(rays)?)
     }
 
     #[inline(always)]
     fn first_crossing_with_bound(&self, rays: &Rays<N>, min: N, error_bound: N) -> Option<(N::Mask, N)> {
-        self.first_from(min, rays, self.crossing_with_bound(rays, error_bound)?)
+        self.clamped_crossing(min, rays, self.crossing_with_bound(rays, error_bound)?)
     }
 
     #[inline(always)]
@@ -254,7 +259,7 @@ impl SoaLeaf for TriangleN<F32x8> {
     }
 
     fn of(shapes: &[Triangle]) -> Self {
-        // Unused lanes get infinite corners: their weights are NaN, and `crossing_of` excludes them from f64.
+        // Unused lanes get infinite corners: their weights are NaN, and `crossing_from_weights` excludes them from f64.
         let corners = |lane: usize| shapes.get(lane).map_or([Vec3::INFINITY; 3], Triangle::corners);
         Self(from_fn(|corner| Vector::of(from_fn(|lane| corners(lane)[corner]))))
     }
@@ -322,7 +327,7 @@ impl Triangle {
 
 /// Returns the unit normal of the front, given the edges from corner a to b and c.
 ///
-/// Any unit vector for a triangle without area.
+/// For a triangle without area it is any unit vector.
 #[inline(always)]
 fn front_normal<N: Number>(to_b: Vector<N>, to_c: Vector<N>) -> Vector<N> {
     // The edges are first scaled by their largest coordinate, because the squared length of the normal is a fourth
@@ -372,7 +377,7 @@ impl Described for Triangle {
     const KIND: &'static str = "triangle";
 
     fn described(&self, color: &str) -> String {
-        format!("a {color} triangle, {}", sides(&Bounds::of(self.corners)))
+        format!("a {color} triangle, {}", size_in_words(&Bounds::of(self.corners)))
     }
 
     /// Solves for the crossing with the triangle's plane, and computes its barycentric shares.
@@ -382,10 +387,11 @@ impl Described for Triangle {
         let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let [a, b, c] = self.corners.map(Vec3::as_dvec3);
         let n = (b - a).cross(c - a);
-        let t = quotient((a - o).dot(n), d.dot(n));
+        let t = finite_quotient((a - o).dot(n), d.dot(n));
         let p = o + d * t.unwrap_or(0.0);
         // The share of a corner: the area of the triangle of p and the opposite edge, as a fraction of the whole.
-        let share = |from: DVec3, to: DVec3| quotient((to - from).cross(p - from).dot(n), n.dot(n)).unwrap_or(0.0);
+        let share =
+            |from: DVec3, to: DVec3| finite_quotient((to - from).cross(p - from).dot(n), n.dot(n)).unwrap_or(0.0);
         let shares = vec![share(b, c), share(c, a), share(a, b)];
         Equation {
             is_outside: shares.iter().any(|&share| share < 0.0),
@@ -400,7 +406,7 @@ impl Described for Triangle {
     }
 }
 
-/// `Triangle(corners: [..., ..., ...])`
+/// A triangle as written: `Triangle(corners: [..., ..., ...])`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrittenTriangle {
     /// The three corners.
@@ -416,7 +422,7 @@ impl InSceneFile for Triangle {
     const FIELDS: &'static [&'static str] = &["corners", "material"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenTriangle {
-        WrittenTriangle { corners: reader.required(fields, "corners", corners) }
+        WrittenTriangle { corners: reader.required(fields, "corners", read_corners) }
     }
 }
 
@@ -430,7 +436,7 @@ impl CheckedShape for Triangle {
     }
 }
 
-fn corners(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<[WrittenVector; 3]> {
+fn read_corners(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<[WrittenVector; 3]> {
     const FORM: &str = "three corners [(x, y, z), (x, y, z), (x, y, z)]";
     let [a, b, c] = reader.list(node, FORM)? else {
         reader.mismatch(node, FORM);

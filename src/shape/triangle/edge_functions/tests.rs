@@ -74,7 +74,7 @@ fn is_backward(seed: u64) -> bool {
 }
 
 /// Tests rays with a packet's error bound. Returns the bits of t, or of -1 for rays that miss.
-fn found(shape: &TriangleN<F32x8>, rays: &Rays<F32x8>, packet_error_bound: f32) -> Option<[u32; LANES]> {
+fn t_bits(shape: &TriangleN<F32x8>, rays: &Rays<F32x8>, packet_error_bound: f32) -> Option<[u32; LANES]> {
     let crossing = shape.first_crossing_with_bound(rays, F32x8::ZERO, F32x8::splat(packet_error_bound));
     crossing.map(|(crosses, t)| F32x8::select(crosses, t, F32x8::splat(-1.0)).0.map(f32::to_bits))
 }
@@ -104,8 +104,8 @@ fn unusual_lengths_are_not_decided_by_the_packet_bound() {
             let (shape, packet_error_bound) = (shapes.splat::<F32x8>(lane), edges.packet_error_bound.0[lane]);
             for rays in &groups {
                 assert_eq!(
-                    found(&shape, rays, packet_error_bound),
-                    found(&shape, rays, f32::INFINITY),
+                    t_bits(&shape, rays, packet_error_bound),
+                    t_bits(&shape, rays, f32::INFINITY),
                     "{one:?} {lane}"
                 );
             }
@@ -126,12 +126,16 @@ fn the_packet_bound_is_at_least_the_bound_of_each_ray() {
         for lane in 0..LANES {
             let (shape, packet_error_bound) = (shapes.splat::<F32x8>(lane), edges.packet_error_bound.0[lane]);
             for (group, rays) in groups.iter().enumerate() {
-                let own = weight_error_bound(shape.sheared(rays), rays.shear.length).reduce_max();
+                let own = weight_error_bound(shape.sheared_corners(rays), rays.shear.length).reduce_max();
                 assert!(
                     own <= packet_error_bound,
                     "seed {seed}: triangle {lane}, group {group}: {own} and {packet_error_bound}"
                 );
-                assert_eq!(found(&shape, rays, packet_error_bound), found(&shape, rays, f32::INFINITY), "seed {seed}");
+                assert_eq!(
+                    t_bits(&shape, rays, packet_error_bound),
+                    t_bits(&shape, rays, f32::INFINITY),
+                    "seed {seed}"
+                );
                 all += usize::from(packet_error_bound.is_finite());
                 near += usize::from(own * 100.0 > packet_error_bound);
             }
