@@ -145,14 +145,14 @@ fn interpolate(keyframes: &[Keyframe], time: f64) -> Result<Camera, CameraError>
     }
     let interval = KeyframeInterval { keyframes, before: passed - 1, time };
     let pose = Pose {
-        eye: interval.value(|camera| camera.pose().eye.as_dvec3()).as_vec3(),
-        target: interval.value(|camera| camera.pose().target.as_dvec3()).as_vec3(),
+        eye: interval.interpolated(|camera| camera.pose().eye.as_dvec3()).as_vec3(),
+        target: interval.interpolated(|camera| camera.pose().target.as_dvec3()).as_vec3(),
         // Normalized first, because only the direction of an up vector matters: a long vector must not outweigh a short
         // one.
-        up: interval.value(|camera| camera.pose().up.as_dvec3().normalize()).as_vec3(),
+        up: interval.interpolated(|camera| camera.pose().up.as_dvec3().normalize()).as_vec3(),
     };
     let log_height = |camera: &Camera| libm::log(f64::from(camera.rectangle().height()));
-    let zoom = libm::exp(interval.value(log_height) - log_height(&before.camera));
+    let zoom = libm::exp(interval.interpolated(log_height) - log_height(&before.camera));
     Camera::new(pose, before.camera.rectangle().scaled(zoom as f32)?)
 }
 
@@ -165,14 +165,14 @@ struct KeyframeInterval<'a> {
 }
 
 impl KeyframeInterval<'_> {
-    /// Returns the value of a quantity `of` the camera, on its cubic Hermite curve between both
+    /// Returns the value of a `quantity` of the camera, on its cubic Hermite curve between both
     /// keyframes.
-    fn value<T: Interpolated>(&self, of: impl Fn(&Camera) -> T) -> T {
+    fn interpolated<T: Interpolated>(&self, quantity: impl Fn(&Camera) -> T) -> T {
         let (start, end) = (self.before, self.before + 1);
         let seconds = self.keyframes[end].time - self.keyframes[start].time;
         let t = (self.time - self.keyframes[start].time) / seconds;
-        let [from, to] = [start, end].map(|at| of(&self.keyframes[at].camera));
-        let [leaving, arriving] = [start, end].map(|at| self.velocity(at, &of) * seconds);
+        let [from, to] = [start, end].map(|at| quantity(&self.keyframes[at].camera));
+        let [leaving, arriving] = [start, end].map(|at| self.velocity(at, &quantity) * seconds);
         let back = 1.0 - t;
         // In this form all terms but the first are exactly 0 if nothing changes, so a resting camera keeps its bits.
         from + (to - from) * (t * t * (1.0 + 2.0 * back)) + leaving * (t * back * back) - arriving * (t * t * back)
@@ -184,8 +184,8 @@ impl KeyframeInterval<'_> {
     /// At the ends of the path the keyframe itself replaces the missing one. The velocity is zero if a neighbouring
     /// keyframe has the same value.
     // The zero prevents a value that rests between two keyframes from overshooting.
-    fn velocity<T: Interpolated>(&self, at: usize, of: impl Fn(&Camera) -> T) -> T {
-        let value = |at: usize| of(&self.keyframes[at].camera);
+    fn velocity<T: Interpolated>(&self, at: usize, quantity: impl Fn(&Camera) -> T) -> T {
+        let value = |at: usize| quantity(&self.keyframes[at].camera);
         let (before, after) = (at.saturating_sub(1), (at + 1).min(self.keyframes.len() - 1));
         let rests = [before, after].into_iter().any(|other| other != at && value(other) == value(at));
         let way = value(after) - value(before);

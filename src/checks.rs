@@ -192,7 +192,7 @@ pub(crate) fn is_near(vector: DVec3) -> bool {
 // Parameters of constructors
 // --------------------------------------------------------------------------------------------
 
-/// Checks a number that is given in code, by a rule.
+/// Checks a number that is given in code, by `rule`.
 pub(crate) fn checked_number(
     name: &'static str,
     value: f32,
@@ -231,7 +231,7 @@ pub(crate) fn checked_direction(name: &'static str, direction: Vec3) -> Result<V
     checked_vector(name, direction, |numbers| unit_vector(name, numbers)).map(DVec3::as_vec3)
 }
 
-/// Checks each channel of a colour that is given in code, by a rule.
+/// Checks each channel of a colour that is given in code, by `rule`.
 pub(crate) fn checked_color(
     name: &'static str,
     color: LinearRgb,

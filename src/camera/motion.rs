@@ -154,7 +154,7 @@ impl Camera {
     /// radians.
     fn turned_view(&self, left: f32, upwards: f32) -> Vec3 {
         let Pose { eye, target, up } = self.pose;
-        let upwards = self.up_to_the_pole(upwards);
+        let upwards = self.limited_upward_turn(upwards);
         let axis_up = up.normalize_or_zero();
         let u = rotated(self.basis.u, axis_up, left);
         rotated(rotated(target - eye, axis_up, left), u, upwards)
@@ -164,7 +164,7 @@ impl Camera {
     /// from the poles.
     ///
     /// A view beyond this limit can only turn away from the pole.
-    fn up_to_the_pole(&self, angle: f32) -> f32 {
+    fn limited_upward_turn(&self, angle: f32) -> f32 {
         let limit = std::f32::consts::FRAC_PI_2 - POLE_MARGIN;
         let sine = -self.basis.w.dot(self.pose.up.normalize_or_zero());
         let elevation = libm::asinf(sine.clamp(-1.0, 1.0));

@@ -40,7 +40,7 @@ impl Camera {
     /// Returns the camera shifted with its target by a drag of the picture to the right and down.
     // The shift is the distance of the drag at the target's depth, so that the target stays under the pointer.
     pub(crate) fn panned(&self, by: Vec2, aspect_ratio: f32) -> Self {
-        let across = self.across(by, aspect_ratio);
+        let across = self.on_view_plane(by, aspect_ratio);
         self.shifted(self.target_distance() * (across.y * self.basis.v - across.x * self.basis.u))
     }
 
@@ -53,7 +53,7 @@ impl Camera {
     /// Returns the camera turned about its eye by a drag of the scene to the right and down.
     #[cfg(feature = "live")]
     pub(crate) fn dragged_view(&self, by: Vec2, aspect_ratio: f32) -> Self {
-        let turn = self.across(by, aspect_ratio);
+        let turn = self.on_view_plane(by, aspect_ratio);
         self.turned(-turn.x, turn.y)
     }
 
@@ -81,7 +81,7 @@ impl Camera {
     /// Returns a point moved by a drag to the right and down in the picture, at constant depth.
     #[doc(hidden)]
     pub fn point_dragged(&self, point: Vec3, by: Vec2, aspect_ratio: f32) -> Vec3 {
-        let across = self.across(by, aspect_ratio);
+        let across = self.on_view_plane(by, aspect_ratio);
         // A point behind or beside the eye has no position in the picture. It moves as far as the target would.
         let depth = Some((self.pose.eye - point).dot(self.basis.w)).filter(|depth| *depth > 0.0);
         point + depth.unwrap_or(self.target_distance()) * (across.x * self.basis.u - across.y * self.basis.v)
@@ -97,7 +97,7 @@ impl Camera {
     }
 
     /// Converts a distance in the picture to one on the plane at distance 1 from the eye.
-    fn across(&self, by: Vec2, aspect_ratio: f32) -> Vec2 {
+    fn on_view_plane(&self, by: Vec2, aspect_ratio: f32) -> Vec2 {
         let (width, height, _) = self.rectangle.fitted_to(aspect_ratio);
         by * Vec2::new(width, height)
     }

@@ -102,7 +102,7 @@ impl Validator<'_> {
                 Some(&checked) => checked?,
                 // The name may belong to an entry with a fault, so reporting it as unknown might mislead.
                 None if !file.materials_complete => return None,
-                None => return self.fault(*span, || unknown_material(name, file)),
+                None => return self.fault(*span, || unknown_material_message(name, file)),
             },
         };
         if let Some(pattern) = written.pattern()
@@ -123,7 +123,7 @@ struct CheckedMaterial<'f> {
 }
 
 /// Returns the message about an unknown material, with the name or colour that was probably meant.
-fn unknown_material(name: &str, file: &SceneFile) -> String {
+fn unknown_material_message(name: &str, file: &SceneFile) -> String {
     let unknown = format!("unknown material {}", quoted(name));
     let names = || file.materials.iter().map(|named| &*named.name);
     let is_color = name.starts_with('#') || Srgb8::from_name(name).is_some();

@@ -42,7 +42,7 @@ impl Scene {
     /// The first fault of the syntax; if there is none, all others: unknown and missing fields, wrong types, and values
     /// out of range.
     pub fn from_ron(name: &str, text: &str) -> Result<Self, SceneError> {
-        draft(name, text, &[], &Reporter::silent()).map(Draft::finish).map_err(Unfinished::failure)
+        parse_draft(name, text, &[], &Reporter::silent()).map(Draft::finish).map_err(Unfinished::failure)
     }
 
     /// Parses a scene from a file's bytes, which should be UTF-8 text.
@@ -125,7 +125,7 @@ impl Draft {
         meshes: &[(&str, &[u8])],
         reporter: &Reporter<'_>,
     ) -> Result<Self, Unfinished<SceneError>> {
-        draft(name, text_from(name, bytes).map_err(Unfinished::Failed)?, meshes, reporter)
+        parse_draft(name, text_from(name, bytes).map_err(Unfinished::Failed)?, meshes, reporter)
     }
 
     /// Reads as [`Scene::load`] does, without building trees, unless the reporter cancels it.
@@ -145,25 +145,25 @@ fn load(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, Unfinished<LoadEr
     reporter.report_dependency(path);
     let is_mesh = |bytes: &[u8]| mesh_file::is_mesh(&name, bytes);
     // The limit depends on the kind of file, which is known after the first bytes.
-    let most = |bytes: &[u8]| if is_mesh(bytes) { mesh_file::MAX_MESH_BYTES } else { MAX_TEXT_BYTES };
-    let bytes = bytes_of(path, most, reporter)?;
+    let max_bytes = |bytes: &[u8]| if is_mesh(bytes) { mesh_file::MAX_MESH_BYTES } else { MAX_TEXT_BYTES };
+    let bytes = read_bytes(path, max_bytes, reporter)?;
     if is_mesh(&bytes) {
-        return around_mesh(path, &bytes, reporter);
+        return draft_around_mesh(path, &bytes, reporter);
     }
     // Without this check, a failed allocation would abort the process and leave the terminal in raw mode.
     memory::check(bytes.len() * PEAK_PER_TEXT_BYTE)
         .map_err(|error| LoadError::CannotRead { path: path.to_owned(), error: error.into() })?;
     let text = text_from(&name, &bytes).map_err(LoadError::Scene)?;
-    draft(&name, text, &[], reporter).map_err(|unfinished| unfinished.map(LoadError::Scene))
+    parse_draft(&name, text, &[], reporter).map_err(|unfinished| unfinished.map(LoadError::Scene))
 }
 
-fn draft(
+fn parse_draft(
     name: &str,
     text: &str,
     embedded: &[(&str, &[u8])],
     reporter: &Reporter<'_>,
 ) -> Result<Draft, Unfinished<SceneError>> {
-    let mut meshes = Meshes::beside(Path::new(name), embedded, reporter);
+    let mut meshes = Meshes::in_folder_of(Path::new(name), embedded, reporter);
     read_or_cancel(name, text, "scene is (camera: (eye: (0, 0, 5), target: (0, 0, 0)))", reporter, |root, faults| {
         let file = SceneFile::read(&root, reporter, faults);
         // Freeing the tree before the checks lowers the peak for 400,000 spheres from 462 to 394 MB.
@@ -224,7 +224,7 @@ impl CameraPath {
     /// # Errors
     /// If the file cannot be read, or as [`CameraPath::from_bytes`].
     pub fn load(path: &Path, camera: &Camera) -> Result<Self, LoadError> {
-        let bytes = bytes_of(path, |_| MAX_TEXT_BYTES, &Reporter::silent())?;
+        let bytes = read_bytes(path, |_| MAX_TEXT_BYTES, &Reporter::silent())?;
         Ok(Self::from_bytes(&path.to_string_lossy(), &bytes, camera)?)
     }
 }
@@ -244,9 +244,9 @@ impl CameraPath {
 pub enum LoadError {
     /// The file could not be read.
     CannotRead {
-        /// Its path.
+        /// The path of the file.
         path: PathBuf,
-        /// The system's error.
+        /// The error of the system.
         error: io::Error,
     },
     /// The text is not a scene or camera path.
@@ -255,7 +255,7 @@ pub enum LoadError {
     Mesh(MeshError),
     /// The mesh is too small or too far away to be shown.
     Unseen {
-        /// Its path.
+        /// The path of the file.
         path: PathBuf,
     },
 }
@@ -317,7 +317,7 @@ impl From<SceneError> for LoadError {
 }
 
 /// Returns the default scene with the mesh of a mesh file, whose contents are `bytes`.
-fn around_mesh(path: &Path, bytes: &[u8], reporter: &Reporter<'_>) -> Result<Draft, Unfinished<LoadError>> {
+fn draft_around_mesh(path: &Path, bytes: &[u8], reporter: &Reporter<'_>) -> Result<Draft, Unfinished<LoadError>> {
     let mesh = MeshFile::of_file(path, bytes, reporter).map_err(|unfinished| unfinished.map(LoadError::Mesh))?;
     Draft::of_mesh(mesh).ok_or_else(|| LoadError::Unseen { path: path.to_owned() }.into())
 }
@@ -334,7 +334,7 @@ struct Meshes<'w> {
 }
 
 impl<'w> Meshes<'w> {
-    fn beside(scene: &Path, embedded: &'w [(&'w str, &'w [u8])], reporter: &'w Reporter<'w>) -> Self {
+    fn in_folder_of(scene: &Path, embedded: &'w [(&'w str, &'w [u8])], reporter: &'w Reporter<'w>) -> Self {
         Self { folder: scene.parent().unwrap_or(Path::new("")).to_owned(), embedded, read: HashMap::new(), reporter }
     }
 }
@@ -364,7 +364,7 @@ impl shape::Meshes for Meshes<'_> {
 const PEAK_PER_TEXT_BYTE: usize = 32;
 
 /// Reads the bytes of a file named by the user.
-fn bytes_of(path: &Path, most: impl Fn(&[u8]) -> usize, reporter: &Reporter<'_>) -> Result<Vec<u8>, LoadError> {
-    named_file::read(path, Accepted::FilesAndPipes, most, reporter)
+fn read_bytes(path: &Path, max_bytes: impl Fn(&[u8]) -> usize, reporter: &Reporter<'_>) -> Result<Vec<u8>, LoadError> {
+    named_file::read(path, Accepted::FilesAndPipes, max_bytes, reporter)
         .map_err(|error| LoadError::CannotRead { path: path.to_owned(), error })
 }

@@ -7,8 +7,8 @@ use crate::shape::{Mesh, Shape};
 // The trees of fewer triangles are built in about the time of a sketch, a few hundredths of a second.
 const MIN_SKETCHED_TRIANGLES: u32 = 1 << 17;
 
-/// The approximate number of cubes along the longest side of a decimated mesh.
-// As many as a small screen resolves. Several meshes share them, so that a sketch of them takes no longer.
+/// The approximate number of cubes into which decimation divides the longest side of a mesh.
+// As many as a small screen resolves. Several meshes share the number, so that their sketch takes no longer.
 const DETAILS: f32 = 64.0;
 
 impl Draft {

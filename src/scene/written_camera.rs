@@ -24,25 +24,25 @@ impl Camera {
     /// Returns the value of the field `camera` as text: `(eye: ..., target: ..., ...)`.
     pub(super) fn value_to_ron(&self) -> String {
         let pose = self.pose();
-        let [eye, target, up] = [pose.eye, pose.target, pose.up].map(vector);
+        let [eye, target, up] = [pose.eye, pose.target, pose.up].map(vector_text);
         let rectangle = self.rectangle();
-        let lens = lens(&rectangle);
+        let lens = lens_fields(&rectangle);
         let shift = rectangle.shift();
         let shift = if shift == glam::Vec2::ZERO {
             String::new()
         } else {
-            format!(", shift: ({}, {})", number(shift.x), number(shift.y))
+            format!(", shift: ({}, {})", number_text(shift.x), number_text(shift.y))
         };
         format!("(eye: {eye}, target: {target}, up: {up}, {lens}{shift})")
     }
 }
 
-fn vector(v: Vec3) -> String {
-    format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
+fn vector_text(v: Vec3) -> String {
+    format!("({}, {}, {})", number_text(v.x), number_text(v.y), number_text(v.z))
 }
 
 /// Returns the shortest decimal that is read back as `x`.
-fn number(x: f32) -> String {
+fn number_text(x: f32) -> String {
     let plain = x.to_string();
     // `to_string` never writes an exponent: 1e-30 would have 31 digits.
     let short = if plain.len() > 16 { format!("{x:e}") } else { plain };
@@ -56,7 +56,7 @@ fn reads_as(text: &str, is_right: impl Fn(f64) -> bool) -> bool {
 
 /// Returns the fields of the lens: an angle in degrees if it gives the same bits, otherwise the
 /// lecture's f, w and h with f = 1.
-fn lens(rectangle: &ViewRectangle) -> String {
+fn lens_fields(rectangle: &ViewRectangle) -> String {
     let Some(width) = rectangle.width() else {
         let degrees = degrees(rectangle).unwrap_or_else(|| approximate_degrees(rectangle).to_string());
         return format!("vertical_fov: {degrees}");
@@ -67,7 +67,7 @@ fn lens(rectangle: &ViewRectangle) -> String {
             format!("vertical_fov: {degrees}, aspect_ratio: {ratio}")
         }
         _ => {
-            let (width, height) = (number(width), number(rectangle.height()));
+            let (width, height) = (number_text(width), number_text(rectangle.height()));
             format!("focal_length: 1, width: {width}, height: {height}")
         }
     }
@@ -82,17 +82,17 @@ fn degrees(rectangle: &ViewRectangle) -> Option<String> {
     let gives_the_height = |value: f64| {
         ViewRectangle::from_vertical_fov(radians(value)).is_ok_and(|read| read.height() == rectangle.height())
     };
-    shortest(approximate_degrees(rectangle), gives_the_height)
+    shortest_decimal(approximate_degrees(rectangle), gives_the_height)
 }
 
 /// Returns the aspect ratio with the fewest digits that give the same width.
 fn aspect_ratio(rectangle: &ViewRectangle, width: f32) -> Option<String> {
     let gives_the_width = |value: f64| rectangle.height() * value as f32 == width;
-    shortest(f64::from(width) / f64::from(rectangle.height()), gives_the_width)
+    shortest_decimal(f64::from(width) / f64::from(rectangle.height()), gives_the_width)
 }
 
 /// Returns `value` with the fewest digits after the point for which `is_right` is true.
-fn shortest(value: f64, is_right: impl Fn(f64) -> bool) -> Option<String> {
+fn shortest_decimal(value: f64, is_right: impl Fn(f64) -> bool) -> Option<String> {
     // Tries all lengths from the shortest on. Each try parses a number, but a camera is formatted only when a view is
     // saved or copied.
     let digits = (0..=15).map(|digits| format!("{value:.digits$}"));

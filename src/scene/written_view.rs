@@ -33,12 +33,12 @@ pub fn with_view(text: &str, camera: &Camera) -> Option<String> {
     let fields = fields(&root)?;
     let field = |name| fields.iter().find(|field: &&Field<'_>| field.name.text == name);
     let additions = match field("views") {
-        Some(views) => to_list(text, &views.value, &view)?,
-        None => after(text, field("camera")?, &view),
+        Some(views) => insertion_into_list(text, &views.value, &view)?,
+        None => insertion_after(text, field("camera")?, &view),
     };
-    let written = inserted(text, additions);
+    let written = with_insertions(text, additions);
     // The text will replace the user's file, so it is parsed again, and dropped if the insertion broke it.
-    (count(&written)? == count(text)? + 1).then_some(written)
+    (count_views(&written)? == count_views(text)? + 1).then_some(written)
 }
 
 /// A text to insert, and the index of the byte before which it is inserted.
@@ -46,7 +46,7 @@ type Addition = (usize, String);
 
 /// Returns the insertion into an existing list of views, on a separate line if the closing bracket
 /// is on one.
-fn to_list(text: &str, list: &SyntaxNode<'_>, view: &str) -> Option<Vec<Addition>> {
+fn insertion_into_list(text: &str, list: &SyntaxNode<'_>, view: &str) -> Option<Vec<Addition>> {
     let items = items(list)?;
     let close = list.span.end as usize - 1;
     let last = items.last().map(|item| item.span.end as usize);
@@ -67,7 +67,7 @@ fn to_list(text: &str, list: &SyntaxNode<'_>, view: &str) -> Option<Vec<Addition
 
 /// Returns the insertion of a list of views after a field, on separate lines if nothing follows the
 /// field on its line.
-fn after(text: &str, field: &Field<'_>, view: &str) -> Vec<Addition> {
+fn insertion_after(text: &str, field: &Field<'_>, view: &str) -> Vec<Addition> {
     let end = field.value.span.end as usize;
     let comma = Some(skip_blanks(text, end)).filter(|&at| text[at..].starts_with(','));
     let next = comma.map_or(end, |at| at + 1);
@@ -85,7 +85,7 @@ fn after(text: &str, field: &Field<'_>, view: &str) -> Vec<Addition> {
 }
 
 /// Returns the text with all insertions, which are sorted by their positions.
-fn inserted(text: &str, additions: Vec<Addition>) -> String {
+fn with_insertions(text: &str, additions: Vec<Addition>) -> String {
     let mut written = String::with_capacity(text.len() + 200);
     let mut from = 0;
     for (at, addition) in additions {
@@ -98,7 +98,7 @@ fn inserted(text: &str, additions: Vec<Addition>) -> String {
 }
 
 /// Returns the number of views in the text of a scene file, or `None` if it does not parse.
-fn count(text: &str) -> Option<usize> {
+fn count_views(text: &str) -> Option<usize> {
     let root = parse(text).ok()?;
     Some(SceneFile::read(&root, &Reporter::silent(), &mut Faults::default()).views.len())
 }
@@ -146,7 +146,7 @@ fn skip_blanks(text: &str, mut at: usize) -> usize {
         let rest = &rest[blanks..];
         let comment = match rest.get(..2) {
             Some("//") => rest.find('\n').unwrap_or(rest.len()),
-            Some("/*") => block_comment(rest),
+            Some("/*") => block_comment_length(rest),
             _ => return at + blanks,
         };
         at += blanks + comment;
@@ -154,7 +154,7 @@ fn skip_blanks(text: &str, mut at: usize) -> usize {
 }
 
 /// Returns the length of the block comment at the start of the text, including nested comments.
-fn block_comment(text: &str) -> usize {
+fn block_comment_length(text: &str) -> usize {
     let (mut depth, mut at) = (0_usize, 0);
     while at < text.len() {
         match text.as_bytes().get(at..at + 2) {
