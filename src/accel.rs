@@ -23,9 +23,9 @@ mod builds;
 /// Ids are ordered as the primitives are in the scene: of two hits at the same t, the one with the smaller id counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct PrimitiveId {
-    /// Index of the object in the scene.
+    /// The index of the object in the scene.
     pub(crate) object: u32,
-    /// Index of the primitive in the object's shape.
+    /// The index of the primitive in the object's shape.
     pub(crate) index: u32,
 }
 
@@ -263,7 +263,7 @@ impl<S> Default for Tree<S> {
 impl Accelerator {
     /// Builds the trees over the primitives of some shapes.
     pub(crate) fn new<'s>(shapes: impl Iterator<Item = &'s Shape>) -> Self {
-        let Ok(built) = Self::reporting(shapes, &|_| Ok::<_, Infallible>(()));
+        let Ok(built) = Self::build_reporting(shapes, &|_| Ok::<_, Infallible>(()));
         built
     }
 
@@ -273,10 +273,10 @@ impl Accelerator {
         shapes: impl Iterator<Item = &'s Shape>,
         reporter: &Reporter<'_>,
     ) -> Result<Self, Cancelled> {
-        Self::reporting(shapes, &|progress| reporter.report(progress))
+        Self::build_reporting(shapes, &|progress| reporter.report(progress))
     }
 
-    fn reporting<'s, E: Send>(
+    fn build_reporting<'s, E: Send>(
         shapes: impl Iterator<Item = &'s Shape>,
         report: &(dyn Fn(Progress) -> Result<(), E> + Sync),
     ) -> Result<Self, E> {

@@ -107,7 +107,7 @@ impl EightHits {
         (0..LANES).fold(0, |lanes, lane| lanes | u32::from((start..end).contains(&self.primitive(lane))) << lane)
     }
 
-    /// Returns the hit of a ray.
+    /// Returns the hit of the ray of `lane`.
     ///
     /// # Panics
     /// If `lane` is not below 8. May panic if `scene` is not the scene that was traced.
@@ -189,7 +189,7 @@ impl<W: Observer, const ANY: bool> SimdKernel for Observed<'_, W, ANY> {
         let rays = Rays::load(&EightRays::of(std::slice::from_ref(ray)), scene.accelerator().needs_shear());
         let mut ray = SingleRay::<N, ANY, _>::observed(scene.accelerator(), &rays, 0, within, observer);
         ray.trace(&mut RayStack::default());
-        ray.found()
+        ray.t_and_primitive()
     }
 }
 
@@ -253,7 +253,7 @@ fn closest_single<N: Lanes>(accel: &Accelerator, rays: &[EightRays], stack: &mut
         for lane in set_bits(rays.active) {
             let mut ray = SingleRay::<N, CLOSEST>::new(accel, &eight, lane, Interval::IN_FRONT);
             ray.trace(stack);
-            if let (t, Some(primitive)) = ray.found() {
+            if let (t, Some(primitive)) = ray.t_and_primitive() {
                 hit.hit_mask |= 1 << lane;
                 (hit.t.0[lane], hit.primitives.0[lane]) = (t, f32::from_bits(primitive));
             }
@@ -308,7 +308,7 @@ fn any_single<N: Lanes>(
         for lane in set_bits(rays.active) {
             let mut ray = SingleRay::<N, ANY>::new(accel, &eight, lane, within);
             ray.trace(stack);
-            hit_mask |= u32::from(ray.found().1.is_some()) << lane;
+            hit_mask |= u32::from(ray.t_and_primitive().1.is_some()) << lane;
         }
         hit_masks.push(hit_mask);
     }

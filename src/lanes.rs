@@ -124,7 +124,7 @@ pub trait Lanes: Number<Mask: LaneMask> {
         Self::load(&picked)
     }
 
-    /// Returns the largest of the eight numbers. None is NaN.
+    /// Returns the largest of the eight numbers, which must not be NaN.
     #[inline(always)]
     fn reduce_max(self) -> f32 {
         self.store().reduce_max()
@@ -137,7 +137,7 @@ pub trait Lanes: Number<Mask: LaneMask> {
     /// floats.
     fn has_bits(self, bits: u32) -> Self::Mask;
 
-    /// Returns the smallest number of each of eight vectors, one per lane. No number is NaN.
+    /// Returns the smallest number of each of eight vectors, one per lane. Numbers must not be NaN.
     #[inline(always)]
     fn min_of_each(eights: &[Self; LANES]) -> Self {
         let mut min = F32x8([0.0; LANES]);
@@ -147,7 +147,7 @@ pub trait Lanes: Number<Mask: LaneMask> {
         Self::load(&min)
     }
 
-    /// Returns the largest number of each of eight vectors, one per lane. No number is NaN.
+    /// Returns the largest number of each of eight vectors, one per lane. Numbers must not be NaN.
     #[inline(always)]
     fn max_of_each(eights: &[Self; LANES]) -> Self {
         let mut max = F32x8([0.0; LANES]);
@@ -284,7 +284,7 @@ impl F32x8 {
     /// Zero in all lanes.
     pub const ZERO: Self = Self([0.0; LANES]);
 
-    /// Returns the smallest of the eight numbers. None is NaN.
+    /// Returns the smallest of the eight numbers, which must not be NaN.
     #[inline(always)]
     pub fn reduce_min(self) -> f32 {
         let Self([a, b, c, d, e, f, g, h]) = self;
@@ -294,7 +294,7 @@ impl F32x8 {
         min(min(min(a, b), min(c, d)), min(min(e, f), min(g, h)))
     }
 
-    /// Returns the largest of the eight numbers. None is NaN.
+    /// Returns the largest of the eight numbers, which must not be NaN.
     #[inline(always)]
     pub fn reduce_max(self) -> f32 {
         let Self([a, b, c, d, e, f, g, h]) = self;

@@ -227,7 +227,7 @@ pub fn trace(
     resolution: Resolution,
     sampling: Sampling,
 ) -> Result<TracedMap, Cancelled> {
-    executor.finish(trace_partial(map, executor, scene, camera, resolution, sampling))
+    executor.unless_cancelled(trace_partial(map, executor, scene, camera, resolution, sampling))
 }
 
 /// Traces the picture of a map; if the executor's token is cancelled, returns an incomplete

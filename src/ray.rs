@@ -145,7 +145,7 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// Precomputes the shared values of a ray.
+    /// Computes the values of a ray that tests against all shapes share.
     #[inline]
     pub fn new(ray: Ray) -> Self {
         Self { ray, rays: Rays::new(Vector::splat(ray.origin), Vector::splat(ray.direction)) }
@@ -240,7 +240,7 @@ impl<M: Mask> DominantAxis<M> {
 
     /// Rotates the coordinates so that the dominant one is z.
     ///
-    /// Keeps a right-handed basis right-handed.
+    /// The rotation keeps a right-handed basis right-handed.
     #[inline(always)]
     fn rotate_to_z<N: Number<Mask = M>>(self, Vector { x, y, z }: Vector<N>) -> Vector<N> {
         match self {

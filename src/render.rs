@@ -94,7 +94,7 @@ pub fn render_by(
     resolution: Resolution,
     sampling: impl Into<Sampling>,
 ) -> Result<Rendered, Cancelled> {
-    executor.finish(render_partial(executor, scene, camera, resolution, sampling.into()))
+    executor.unless_cancelled(render_partial(executor, scene, camera, resolution, sampling.into()))
 }
 
 /// Returns the total number of [progress units](steps::ProgressUnit) of a picture.

@@ -7,7 +7,7 @@ use super::{Bvh, Leaves};
 use crate::bounds::Bounds;
 use crate::threads;
 
-/// Number of items below which a subtree is built on one thread.
+/// The number of items below which a subtree is built on one thread.
 // The dragon's 871 k triangles still make over 100 tasks, enough to balance the threads.
 pub const MIN_TASK_ITEMS: usize = 8192;
 
@@ -20,9 +20,9 @@ pub(super) fn build<E: Send>(boxes: &[Bounds], report: Report<'_, E>) -> Result<
     }
     let mut items: Vec<Item> = (0..).zip(boxes).map(item).collect();
     let around = Around::of(&items);
-    let pairs = subtree(&mut items, &around, Place { first: 0, depth: 0 }, report)?;
+    let pairs = build_subtree(&mut items, &around, Place { first: 0, depth: 0 }, report)?;
     let mut wide = Wide::of(&pairs);
-    let root = Some(wide.append(0));
+    let root = Some(wide.append_node(0));
     // The items were partitioned in place, so they are in the order of the leaves.
     let order = items.iter().map(|item| item.min[3].to_bits()).collect();
     Ok((Bvh { nodes: wide.nodes, root }, Leaves { order, ranges: wide.leaves }))
@@ -46,7 +46,7 @@ impl Place {
 /// Returns the binary tree over `items`, whose bounds are `around`.
 // Large halves are built in parallel. They can be joined unchanged, as a node stores the distance to its second child,
 // not the child's index.
-fn subtree<E: Send>(
+fn build_subtree<E: Send>(
     items: &mut [Item],
     around: &Around,
     at: Place,
@@ -54,7 +54,7 @@ fn subtree<E: Send>(
 ) -> Result<Vec<BinaryNode>, E> {
     if items.len() < MIN_TASK_ITEMS {
         let mut nodes = Vec::with_capacity(items.len());
-        append(items, around, at, &mut nodes);
+        append_subtree(items, around, at, &mut nodes);
         return report(items.len()).map(|()| nodes);
     }
     // A report without progress, so that a large build can be cancelled between subtrees.
@@ -63,8 +63,10 @@ fn subtree<E: Send>(
     let Halves { cut, around } = cut(items, around, at.depth).unwrap_or_else(|| Halves::at(items.len() / 2, items));
     let (left, right) = items.split_at_mut(cut);
     let [at_left, at_right] = at.halves(cut);
-    let (left, right) =
-        threads::join(|| subtree(left, &around[0], at_left, report), || subtree(right, &around[1], at_right, report));
+    let (left, right) = threads::join(
+        || build_subtree(left, &around[0], at_left, report),
+        || build_subtree(right, &around[1], at_right, report),
+    );
     let (left, right) = (left?, right?);
     let mut nodes = Vec::with_capacity(1 + left.len() + right.len());
     nodes.push(BinaryNode { bounds, count: 0, at: 1 + left.len() as u32 });
@@ -74,7 +76,7 @@ fn subtree<E: Send>(
 }
 
 /// Appends the binary tree over `items` to `nodes`, on one thread.
-fn append(items: &mut [Item], around: &Around, at: Place, nodes: &mut Vec<BinaryNode>) {
+fn append_subtree(items: &mut [Item], around: &Around, at: Place, nodes: &mut Vec<BinaryNode>) {
     let bounds = around.boxes.bounds();
     let Some(Halves { cut, around }) = cut(items, around, at.depth) else {
         nodes.push(BinaryNode { bounds, count: items.len() as u32, at: at.first as u32 });
@@ -84,9 +86,9 @@ fn append(items: &mut [Item], around: &Around, at: Place, nodes: &mut Vec<Binary
     nodes.push(BinaryNode { bounds, count: 0, at: 0 });
     let (left, right) = items.split_at_mut(cut);
     let [at_left, at_right] = at.halves(cut);
-    append(left, &around[0], at_left, nodes);
+    append_subtree(left, &around[0], at_left, nodes);
     nodes[number].at = (nodes.len() - number) as u32;
-    append(right, &around[1], at_right, nodes);
+    append_subtree(right, &around[1], at_right, nodes);
 }
 
 #[cfg(all(test, unit_tests))]

@@ -33,7 +33,7 @@ impl Rows {
 
     /// Returns the center of the box, times two.
     #[inline(always)]
-    fn middle(&self) -> [f32; 4] {
+    fn doubled_center(&self) -> [f32; 4] {
         from_fn(|at| self.min[at] + self.max[at])
     }
 
@@ -86,7 +86,7 @@ impl Around {
 
     #[inline(always)]
     fn grow(&mut self, item: &Item) {
-        let middle = item.middle();
+        let middle = item.doubled_center();
         self.boxes.grow(item);
         self.middles.grow(&Rows { min: middle, max: middle });
     }
@@ -112,7 +112,7 @@ pub(super) fn cut(items: &mut [Item], around: &Around, depth: usize) -> Option<H
     let plane = if depth < FREE_DEPTH { Cut::cheapest(items, &around.middles) } else { None };
     // There is no plane if all centers coincide or the node is too deep. Any half of the items will do then.
     let Some(Cut { bin, before, .. }) = plane else { return Some(Halves::at(items.len() / 2, items)) };
-    Some(partition(items, |item| bin.of(item) < before))
+    Some(partition(items, |item| bin.index_of(item) < before))
 }
 
 /// Moves the items for which `is_first` is true before the others.
@@ -162,7 +162,7 @@ impl Bin {
     }
 
     #[inline(always)]
-    fn of(&self, item: &Item) -> usize {
+    fn index_of(&self, item: &Item) -> usize {
         let middle = item.min[self.axis] + item.max[self.axis];
         (((middle - self.start) * self.scale) as usize).min(self.last)
     }
@@ -185,17 +185,17 @@ impl Cut {
         for item in items {
             for (bin, bins) in axes.iter().zip(&mut bins) {
                 let Some(bin) = bin else { continue };
-                let (rows, count) = &mut bins[bin.of(item)];
+                let (rows, count) = &mut bins[bin.index_of(item)];
                 rows.grow(item);
                 *count += 1;
             }
         }
-        let planes = axes.into_iter().zip(&bins).filter_map(|(bin, bins)| Self::between(bin?, &bins[..count]));
+        let planes = axes.into_iter().zip(&bins).filter_map(|(bin, bins)| Self::cheapest_between(bin?, &bins[..count]));
         // Of equal costs the first is taken, so that the tree is the same on every machine.
         planes.min_by(|a, b| a.cost.total_cmp(&b.cost))
     }
 
-    fn between(bin: Bin, bins: &[(Rows, u32)]) -> Option<Self> {
+    fn cheapest_between(bin: Bin, bins: &[(Rows, u32)]) -> Option<Self> {
         let mut behind = [(0.0, 0); MAX_BINS];
         let mut sum = (Rows::EMPTY, 0);
         for at in (1..bins.len()).rev() {

@@ -9,7 +9,7 @@ use std::ops::Range;
 #[derive(Clone, Copy)]
 pub(super) struct BinaryNode {
     pub(super) bounds: Bounds,
-    /// Number of boxes of a leaf; 0 for an inner node.
+    /// The number of boxes of a leaf; 0 for an inner node.
     pub(super) count: u32,
     /// The index of a leaf's first box in the order of the leaves, or an inner node's distance to
     /// its second child.
@@ -29,7 +29,7 @@ impl<'p> Wide<'p> {
         Self { pairs, fillings: fillings(pairs), nodes: Vec::new(), leaves: Vec::new() }
     }
 
-    pub(super) fn append(&mut self, at: usize) -> Child {
+    pub(super) fn append_node(&mut self, at: usize) -> Child {
         let BinaryNode { count, at: first, .. } = self.pairs[at];
         if count > 0 {
             self.leaves.push(first..first + count);
@@ -38,9 +38,9 @@ impl<'p> Wide<'p> {
         let number = self.nodes.len();
         self.nodes.push(Node::EMPTY);
         let mut children = Children::default();
-        self.gather(at, LANES, &mut children);
+        self.gather_children(at, LANES, &mut children);
         for (lane, &pair) in children.pairs[..children.count].iter().enumerate() {
-            let child = self.append(pair);
+            let child = self.append_node(pair);
             let bounds = &self.pairs[pair].bounds;
             let node = &mut self.nodes[number];
             node.children[lane] = child;
@@ -53,14 +53,14 @@ impl<'p> Wide<'p> {
     }
 
     /// Adds the binary nodes that represent node `at` in at most `slots` slots of a wide node.
-    fn gather(&self, at: usize, slots: usize, children: &mut Children) {
+    fn gather_children(&self, at: usize, slots: usize, children: &mut Children) {
         let left = usize::from(self.fillings[at][slots - 1]);
         if left == WHOLE {
             children.pairs[children.count] = at;
             children.count += 1;
         } else {
-            self.gather(at + 1, left, children);
-            self.gather(at + self.pairs[at].at as usize, slots - left, children);
+            self.gather_children(at + 1, left, children);
+            self.gather_children(at + self.pairs[at].at as usize, slots - left, children);
         }
     }
 }
@@ -81,7 +81,7 @@ type Filling = [u8; LANES];
 /// The entry of a [`Filling`] for a node that takes one slot by itself.
 const WHOLE: usize = 0;
 
-/// Chooses the wide nodes for which a ray is expected to visit the fewest.
+/// Chooses the wide nodes so that a ray is expected to visit as few as possible.
 ///
 /// By dynamic programming over the binary tree (Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal on GPUs
 /// Through Compressed Wide BVHs, 2017).
@@ -94,7 +94,10 @@ fn fillings(pairs: &[BinaryNode]) -> Vec<Filling> {
     let mut costs: Vec<[f32; LANES]> = Vec::new();
     for (pair, filling) in pairs.iter().zip(&mut fillings).rev() {
         let cost = match pair.count {
-            0 => costs.pop().zip(costs.pop()).map(|(left, right)| fill(pair.bounds.half_area(), left, right, filling)),
+            0 => costs
+                .pop()
+                .zip(costs.pop())
+                .map(|(left, right)| cheapest_filling(pair.bounds.half_area(), left, right, filling)),
             // A leaf costs the same in all wide trees, so it counts as 0.
             _ => None,
         };
@@ -107,7 +110,7 @@ fn fillings(pairs: &[BinaryNode]) -> Vec<Filling> {
 ///
 /// The cost is the sum of the half areas of all wide nodes. `area` is the half area of the node, `left` and `right` are
 /// the costs of its children.
-fn fill(area: f32, left: [f32; LANES], right: [f32; LANES], filling: &mut Filling) -> [f32; LANES] {
+fn cheapest_filling(area: f32, left: [f32; LANES], right: [f32; LANES], filling: &mut Filling) -> [f32; LANES] {
     let mut cost = [f32::INFINITY; LANES];
     for slots in 2..=LANES {
         for of_left in 1..slots {

@@ -177,11 +177,11 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
 
     /// Tests a group against a primitive of a leaf.
     #[inline(always)]
-    fn test<C: Crossable<N>>(&mut self, group: usize, shape: &C, primitive: u32, error_bound: N) {
+    fn test_primitive<C: Crossable<N>>(&mut self, group: usize, shape: &C, primitive: u32, error_bound: N) {
         let mut hits = GroupHits::<N, ANY> { t: self.t[group], primitive: self.primitive[group] };
         let (rays, min) = (&self.groups[group], N::splat(self.within.min));
-        if hits.update(primitive, shape.first_crossing_with_bound(rays, min, error_bound), self.accel) {
-            self.set(group, hits);
+        if hits.record_closest(primitive, shape.first_crossing_with_bound(rays, min, error_bound), self.accel) {
+            self.store_hits(group, hits);
         }
     }
 
@@ -193,7 +193,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
 
     /// Stores the hits of a group.
     #[inline(always)]
-    fn set(&mut self, group: usize, GroupHits { t, primitive }: GroupHits<N, ANY>) {
+    fn store_hits(&mut self, group: usize, GroupHits { t, primitive }: GroupHits<N, ANY>) {
         self.t[group] = t;
         self.primitive[group] = primitive;
         self.group_t_max.0[group] = t.reduce_max();
@@ -213,7 +213,7 @@ impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
         let Some(leaf) = tree.leaves.first() else { return };
         for lane in 0..tree.single_leaf_count {
             let shape = leaf.splat(lane);
-            self.update(tree.primitive(0, lane), shape.first_crossing(rays, min), accel);
+            self.record_closest(tree.primitive(0, lane), shape.first_crossing(rays, min), accel);
         }
     }
 
@@ -221,7 +221,7 @@ impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
     ///
     /// Returns whether there are such rays.
     #[inline(always)]
-    fn update(&mut self, primitive: u32, crossing: Option<(N::Mask, N)>, accel: &Accelerator) -> bool {
+    fn record_closest(&mut self, primitive: u32, crossing: Option<(N::Mask, N)>, accel: &Accelerator) -> bool {
         let Some((crosses, t)) = crossing else { return false };
         if ANY {
             return self.record(crosses & t.le(self.t), N::splat(TERMINATED), primitive);
@@ -278,7 +278,7 @@ impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Unculled<'_, N, ANY> 
     #[inline(always)]
     fn list<S: Endless>(&mut self, list: &'p List<S>) {
         for (primitive, (_, surface)) in list.iter() {
-            self.hits.update(primitive, surface.splat().first_crossing(self.rays, self.min), self.accel);
+            self.hits.record_closest(primitive, surface.splat().first_crossing(self.rays, self.min), self.accel);
         }
     }
 
@@ -385,7 +385,12 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, 
             let (lane, group) =
                 (pairs.trailing_zeros() as usize / GROUPS % LANES, pairs.trailing_zeros() as usize % GROUPS);
             pairs &= pairs.wrapping_sub(1);
-            self.rays.test(group, &shapes.splat(lane), self.tree.primitive(leaf, lane), N::splat(error_bounds.0[lane]));
+            self.rays.test_primitive(
+                group,
+                &shapes.splat(lane),
+                self.tree.primitive(leaf, lane),
+                N::splat(error_bounds.0[lane]),
+            );
         }
         self.rays.update_packet_t_max();
     }
@@ -449,7 +454,7 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool> InTree<'_, '_, N, S, ANY> {
             let ray = SingleRay::<N, ANY>::new(self.rays.accel, &self.rays.groups[group], lane, within);
             let mut ray = ray.with_known_hit((known != NO_PRIMITIVE).then_some(known));
             ray.trace_from(from, self.tree, self.ray_stack);
-            if let (hit_t, Some(found)) = ray.found() {
+            if let (hit_t, Some(found)) = ray.t_and_primitive() {
                 t.0[lane] = if ANY { TERMINATED } else { hit_t };
                 primitive.0[lane] = index_as_lane(found);
             }

@@ -53,7 +53,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
 
     /// Returns the t and the primitive of the hit.
     #[inline(always)]
-    pub(super) fn found(&self) -> (f32, Option<u32>) {
+    pub(super) fn t_and_primitive(&self) -> (f32, Option<u32>) {
         (self.within.max, self.primitive)
     }
 
@@ -89,7 +89,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
             Some(root) if tree.has_tree() => self.trace_from(root, tree, stack),
             // A single leaf is tested without a traversal, whose set-up would take most of the time: single rays of
             // three_spheres are a third faster.
-            Some(_) if !(ANY && self.primitive.is_some()) => self.test(&self.rays.splat_lane(self.lane), 0, tree),
+            Some(_) if !(ANY && self.primitive.is_some()) => self.test_leaf(&self.rays.splat_lane(self.lane), 0, tree),
             _ => {}
         }
     }
@@ -107,7 +107,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
 
     /// Tests the primitives of a leaf.
     #[inline(always)]
-    fn test<S: SoaLeaf>(&mut self, rays: &Rays<N>, leaf: usize, tree: &Tree<S>) {
+    fn test_leaf<S: SoaLeaf>(&mut self, rays: &Rays<N>, leaf: usize, tree: &Tree<S>) {
         let shapes = tree.leaves[leaf].load::<N>();
         let crossing = shapes.first_crossing(rays, N::splat(self.within.min));
         if W::ENABLED {
@@ -214,7 +214,7 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> LeafVisitor for InTree<
 
     #[inline(always)]
     fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32> {
-        self.ray.test(self.rays, leaf, self.tree);
+        self.ray.test_leaf(self.rays, leaf, self.tree);
         if ANY && self.ray.primitive.is_some() {
             ControlFlow::Break(())
         } else {

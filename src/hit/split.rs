@@ -11,22 +11,22 @@
 use crate::bvh::GROUPS;
 use crate::lanes::set_bits;
 
-/// The number of rays hitting a node up to which they leave the packet and go on as single rays.
+/// The largest number of rays at a node that leave the packet to go on as single rays.
 // With 8 instead of 6, and all groups counted, 1,000 spheres took 1.14 times as long.
 const MAX_SINGLE_RAYS: u32 = 6;
 
-/// The limit [`MAX_SINGLE_RAYS`] per group that may hit the node; the larger of both limits
-/// applies.
+/// The same limit as [`MAX_SINGLE_RAYS`], per group that may hit the node.
+///
+/// The larger limit applies.
 const MAX_SINGLE_RAYS_PER_GROUP: u32 = 2;
 
-/// The number of groups that may hit a node up to which the rays of all of them are counted.
+/// The largest number of groups at a node for which the rays of all groups are counted.
 // Counting more groups takes longer than the test of the node. With more, only one group of shadow rays is counted, as
 // a sample, and eye rays are not counted at all: at such nodes they were never found to be few, as their groups are as
 // narrow as their pixels. Not counting eye rays makes the bunny 1.10 times as fast (51.7 to 56.8 Mrays/s).
 const MAX_COUNTED_GROUPS: u32 = 5;
 
-/// The number of rays hitting a node in the sampled group up to which all groups are counted after
-/// all.
+/// The largest number of hits in the sampled group for which the rays of all groups are counted.
 // With 2 instead of 1, shadow rays of 100,000 spheres took 1.03 times as long.
 const MAX_SAMPLED_RAYS: u32 = 1;
 
@@ -38,7 +38,7 @@ pub(super) const fn min_boxes_to_split(any: bool) -> u32 {
     if any { 2 } else { 4 }
 }
 
-/// The number of visited leaves up to which a packet that its rays have left counts as inefficient.
+/// The largest number of visited leaves with which a packet that its rays left is inefficient.
 // Such a packet did the work of a packet and of single rays. With the rest of its tile traced singly, dragon 871k at
 // 100x60 takes 0.91 instead of 1.10 ms.
 const MAX_INEFFICIENT_LEAVES: u32 = 6;

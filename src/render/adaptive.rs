@@ -54,7 +54,7 @@ impl ProgressiveRender {
         samples: NonZeroU32,
     ) -> Result<Cost, Cancelled> {
         let executor = Executor::Cancellable(token);
-        executor.finish(self.refine(executor, scene, samples))
+        executor.unless_cancelled(self.refine(executor, scene, samples))
     }
 
     pub(super) fn refine(&mut self, executor: Executor<'_>, scene: &Scene, samples: NonZeroU32) -> Cost {
@@ -145,7 +145,7 @@ fn is_at_edge(tiles: &Tiles, first: &[Vec<FirstSample>], tile: usize, pixel: usi
     let [columns, rows] = tiles.neighbourhood(tile, pixel);
     rows.into_iter().any(|y| {
         columns.clone().any(|x| {
-            let (tile, pixel) = tiles.locate([x, y]);
+            let (tile, pixel) = tiles.tile_and_index([x, y]);
             own.is_edge_to(&first[tile][pixel], white)
         })
     })

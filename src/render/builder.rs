@@ -130,7 +130,7 @@ impl<'a> Render<'a> {
     fn trace(self) -> Result<Framebuffer, Cancelled> {
         let Self { scene, camera, resolution, sampling, threads: _, token, callback } = self;
         let render = |executor: Executor<'_>| {
-            executor.finish(render_partial(executor, scene, &camera, resolution, sampling).framebuffer)
+            executor.unless_cancelled(render_partial(executor, scene, &camera, resolution, sampling).framebuffer)
         };
         let Some(callback) = callback else {
             return render(Executor::Cancellable(&token));

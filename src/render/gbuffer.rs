@@ -67,7 +67,7 @@ pub fn trace_g_buffer<T: Copy + Default + Send>(
     depth: TraceDepth,
     see: impl Fn(&GBufferSample) -> T + Sync,
 ) -> Result<PixelValues<T>, Cancelled> {
-    executor.finish(trace_g_buffer_partial(executor, scene, camera, resolution, sampling, depth, see))
+    executor.unless_cancelled(trace_g_buffer_partial(executor, scene, camera, resolution, sampling, depth, see))
 }
 
 /// Traces as [`trace_g_buffer`] does.

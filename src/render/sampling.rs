@@ -62,7 +62,7 @@ pub(super) struct SampleBatch {
 }
 
 /// The largest number of rays in a batch.
-// With it the arrays between the steps take 43 kB, about the size of a first-level cache.
+// The arrays between the steps then take 43 kB, about the size of a first-level cache.
 pub(super) const MAX_BATCH_RAYS: usize = 256;
 
 /// The largest number of samples per pixel in a batch: as many as a packet has rays.
@@ -79,13 +79,13 @@ pub(super) struct SampleBatches {
 
 impl SampleBatches {
     pub(super) fn of(samples: Range<u32>) -> Self {
-        let kept = split(samples.clone()).take(PASSES.len()).map(SampleBatch::of).collect();
+        let kept = batch_ranges(samples.clone()).take(PASSES.len()).map(SampleBatch::of).collect();
         Self { samples, kept }
     }
 
     /// Returns the batches in the order of their samples.
     pub(super) fn iter(&self) -> impl Iterator<Item = Cow<'_, SampleBatch>> {
-        split(self.samples.clone()).enumerate().map(|(at, samples)| match self.kept.get(at) {
+        batch_ranges(self.samples.clone()).enumerate().map(|(at, samples)| match self.kept.get(at) {
             Some(batch) => Cow::Borrowed(batch),
             None => Cow::Owned(SampleBatch::of(samples)),
         })
@@ -93,7 +93,7 @@ impl SampleBatches {
 }
 
 /// Divides a range of samples at the ends of passes, and into at most [`MAX_BATCH_SAMPLES`].
-fn split(mut samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
+fn batch_ranges(mut samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
     std::iter::from_fn(move || {
         let Range { start, end } = samples;
         let of_pass = PASSES.iter().map(|pass| pass.end).find(|&end| start < end);

@@ -66,7 +66,7 @@ impl Scene {
 pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y]: [u32; 2]) -> PixelTrace {
     assert!(x < resolution.width() && y < resolution.height(), "pixel ({x}, {y}) is outside the picture");
     let tiles = Tiles::new(camera, resolution, 1);
-    let (tile, pixel) = tiles.locate([x, y]);
+    let (tile, pixel) = tiles.tile_and_index([x, y]);
     let (job, batch) = (RenderJob::new(scene, &tiles, Stage::Reflected), SampleBatch::of(0..1));
     let mut buffers = Buffers { active: vec![pixel as u8], ..Buffers::default() };
     buffers.trace(&job, tile, &batch, 0..1);

@@ -59,7 +59,7 @@ impl<'a> RenderJob<'a> {
 pub(super) struct Buffers {
     /// The indices in the tile of the pixels to be traced.
     pub(super) active: Vec<u8>,
-    /// The pixel of each ray.
+    /// The index in the tile of each ray's pixel.
     pub(super) pixels: Vec<u8>,
     // The remaining arrays have an element for each group of eight rays. Those after the job's last stage stay empty.
     pub(super) rays: Vec<EightRays>,

@@ -117,7 +117,7 @@ impl Tiles {
     }
 
     /// Returns the index of the tile of a pixel, and the pixel's index in the tile.
-    pub(super) fn locate(&self, [x, y]: [u32; 2]) -> (usize, usize) {
+    pub(super) fn tile_and_index(&self, [x, y]: [u32; 2]) -> (usize, usize) {
         let tile = y / SIDE * self.tiles_per_row() + x / SIDE;
         (tile as usize, PIXELS_BY_ROW[(y % SIDE) as usize][(x % SIDE) as usize].into())
     }

@@ -24,19 +24,19 @@ pub(super) trait MaskOps: LaneMask {
     // Unsafe, since the kernel's registers may exist only on a CPU that has the instructions.
     unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output;
 
-    /// [`Number::lt`].
+    /// Compares lane by lane with `<`, as [`Number::lt`] does.
     fn lt(a: __m256, b: __m256) -> Self;
 
-    /// [`Number::le`].
+    /// Compares lane by lane with `<=`, as [`Number::le`] does.
     fn le(a: __m256, b: __m256) -> Self;
 
-    /// [`Number::select`].
+    /// Returns `yes` where the mask is set, else `no`.
     fn select(self, yes: __m256, no: __m256) -> __m256;
 
-    /// [`Lanes::mask_from_bits`].
+    /// Returns the mask whose lane n is bit n of `bits`.
     fn from_bits(bits: u32) -> Self;
 
-    /// [`Lanes::has_bits`].
+    /// Compares the bits of each number with `bits`, as [`Lanes::has_bits`] does.
     fn has_bits(numbers: __m256, bits: u32) -> Self;
 }
 

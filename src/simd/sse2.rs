@@ -56,7 +56,7 @@ macro_rules! sse {
 }
 
 #[inline(always)]
-fn both(a: [__m128; 2], b: [__m128; 2], instruction: impl Fn(__m128, __m128) -> __m128) -> [__m128; 2] {
+fn apply_to_halves(a: [__m128; 2], b: [__m128; 2], instruction: impl Fn(__m128, __m128) -> __m128) -> [__m128; 2] {
     [instruction(a[0], b[0]), instruction(a[1], b[1])]
 }
 
@@ -88,7 +88,7 @@ macro_rules! operators {
 
             #[inline(always)]
             fn $function(self, other: Self) -> Self {
-                Self(both(self.0, other.0, |a, b| sse!($instruction(a, b))))
+                Self(apply_to_halves(self.0, other.0, |a, b| sse!($instruction(a, b))))
             }
         })*
     };
@@ -108,7 +108,7 @@ impl Neg for Registers {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(both(self.0, Self::splat(-0.0).0, |a, b| sse!(_mm_xor_ps(a, b))))
+        Self(apply_to_halves(self.0, Self::splat(-0.0).0, |a, b| sse!(_mm_xor_ps(a, b))))
     }
 }
 
@@ -118,7 +118,7 @@ impl Not for Masks {
     #[inline(always)]
     fn not(self) -> Self {
         let all = sse!(_mm_castsi128_ps(_mm_set1_epi32(-1)));
-        Self(both(self.0, [all; 2], |a, b| sse!(_mm_xor_ps(a, b))))
+        Self(apply_to_halves(self.0, [all; 2], |a, b| sse!(_mm_xor_ps(a, b))))
     }
 }
 
@@ -138,7 +138,7 @@ impl Number for Registers {
 
     #[inline(always)]
     fn abs(self) -> Self {
-        Self(both(Self::splat(-0.0).0, self.0, |a, b| sse!(_mm_andnot_ps(a, b))))
+        Self(apply_to_halves(Self::splat(-0.0).0, self.0, |a, b| sse!(_mm_andnot_ps(a, b))))
     }
 
     #[inline(always)]
@@ -149,12 +149,12 @@ impl Number for Registers {
 
     #[inline(always)]
     fn lt(self, other: Self) -> Masks {
-        Masks(both(self.0, other.0, |a, b| sse!(_mm_cmplt_ps(a, b))))
+        Masks(apply_to_halves(self.0, other.0, |a, b| sse!(_mm_cmplt_ps(a, b))))
     }
 
     #[inline(always)]
     fn le(self, other: Self) -> Masks {
-        Masks(both(self.0, other.0, |a, b| sse!(_mm_cmple_ps(a, b))))
+        Masks(apply_to_halves(self.0, other.0, |a, b| sse!(_mm_cmple_ps(a, b))))
     }
 
     #[inline(always)]
@@ -165,12 +165,12 @@ impl Number for Registers {
     // The instruction returns its second operand if one is NaN or both are zero, as `Number::max` requires.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Self(both(self.0, other.0, |a, b| sse!(_mm_max_ps(a, b))))
+        Self(apply_to_halves(self.0, other.0, |a, b| sse!(_mm_max_ps(a, b))))
     }
 
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        Self(both(self.0, other.0, |a, b| sse!(_mm_min_ps(a, b))))
+        Self(apply_to_halves(self.0, other.0, |a, b| sse!(_mm_min_ps(a, b))))
     }
 
     #[inline(always)]

@@ -25,7 +25,7 @@ fn two_to(power: i32) -> f32 {
 }
 
 /// Returns the length of directions, and the distance of origins from zero, for a random case.
-fn sizes(seed: u64) -> (f32, f32) {
+fn length_and_distance(seed: u64) -> (f32, f32) {
     let length = two_to([-120, -60, -8, 0, 0, 8, 60, 117, 123][seed as usize % 9]);
     (length, two_to([0, 0, -30, 30, -100, 100][seed as usize / 9 % 6]))
 }
@@ -33,7 +33,7 @@ fn sizes(seed: u64) -> (f32, f32) {
 /// Returns the rays of a packet, narrow or wide, and twice eight boxes: ahead of rays, behind,
 /// flat, or at an origin.
 fn random_case(seed: u64) -> ([EightRays; GROUPS], [[Vector<F32x8>; 2]; 2]) {
-    let (mut numbers, (length, scale)) = (Numbers(seed), sizes(seed));
+    let (mut numbers, (length, scale)) = (Numbers(seed), length_and_distance(seed));
     let width = two_to(-((seed / 54 % 14) as i32));
     let (origin, direction) = (numbers.vector(), numbers.vector());
     let mut ray = || {
@@ -68,7 +68,7 @@ fn a_packet_hits_all_boxes_that_its_rays_hit() {
         let groups: [Rays<F32x8>; GROUPS] = from_fn(|group| Rays::load(&rays[group], false));
         let packet = Packet::of(&groups);
         // `culling.md`, 5, does not cover packets of mixed signs whose products round to zero.
-        let (length, scale) = sizes(seed);
+        let (length, scale) = length_and_distance(seed);
         if scale / length < two_to(-60) && packet.signs.contains(&DirectionSign::Mixed) {
             continue;
         }

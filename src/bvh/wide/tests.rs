@@ -20,7 +20,8 @@ fn binary_tree(boxes: usize, seed: u32) -> Vec<BinaryNode> {
     nodes
 }
 
-/// Appends a binary tree whose leaves have one box each; `build::append` stops at leaves of eight.
+/// Appends a binary tree whose leaves have one box each; `build::append_subtree` stops at leaves of
+/// eight.
 fn append_single_boxes(items: &mut [Item], first: usize, nodes: &mut Vec<BinaryNode>) {
     let bounds = Around::of(items).boxes.bounds();
     let at = nodes.len();
@@ -36,19 +37,19 @@ fn append_single_boxes(items: &mut [Item], first: usize, nodes: &mut Vec<BinaryN
 }
 
 /// Returns the least possible sum of half areas of wide nodes, found by trying all fillings.
-fn least_cost(pairs: &[BinaryNode], at: usize, places: usize) -> f64 {
+fn least_cost(pairs: &[BinaryNode], at: usize, slots: usize) -> f64 {
     let pair = &pairs[at];
     if pair.count > 0 {
         return 0.0;
     }
     let right = at + pair.at as usize;
-    let split = |places: usize| {
-        let of_left = 1..places;
-        let both = of_left.map(|left| least_cost(pairs, at + 1, left) + least_cost(pairs, right, places - left));
+    let split = |slots: usize| {
+        let of_left = 1..slots;
+        let both = of_left.map(|left| least_cost(pairs, at + 1, left) + least_cost(pairs, right, slots - left));
         both.fold(f64::INFINITY, f64::min)
     };
     let whole = || f64::from(pair.bounds.half_area()) + split(LANES);
-    if places == 1 { whole() } else { split(places).min(whole()) }
+    if slots == 1 { whole() } else { split(slots).min(whole()) }
 }
 
 /// Returns the sum of the half areas of all wide nodes, and the number of leaves below them.
@@ -57,7 +58,7 @@ fn cost_and_boxes(wide: &Wide<'_>, at: usize) -> (f64, usize) {
         return (0.0, 1);
     }
     let mut children = Children::default();
-    wide.gather(at, LANES, &mut children);
+    wide.gather_children(at, LANES, &mut children);
     let below = children.pairs[..children.count].iter().map(|&child| cost_and_boxes(wide, child));
     let own = f64::from(wide.pairs[at].bounds.half_area());
     below.fold((own, 0), |(cost, boxes), (more, others)| (cost + more, boxes + others))

@@ -6,7 +6,7 @@ use std::array::from_fn;
 
 /// Returns the common origin of a packet whose rays start at zero, except for `others`: group, lane
 /// and ray.
-fn packet(others: &[(usize, usize, Ray)]) -> Option<CommonOrigin<F32x8>> {
+fn common_origin_with(others: &[(usize, usize, Ray)]) -> Option<CommonOrigin<F32x8>> {
     let mut rays = [[Ray { origin: Vec3::ZERO, direction: Vec3::new(0.1, 0.1, 1.0) }; LANES]; LANES];
     for &(group, lane, ray) in others {
         rays[group][lane] = ray;
@@ -20,8 +20,8 @@ fn a_ray_beside_the_origin_is_noticed() {
     let beside = Ray { origin: Vec3::X * 5.0, direction: Vec3::new(0.1, 0.1, 1.0) };
     let endless = Ray { origin: Vec3::ZERO, direction: Vec3::new(0.1, 0.1, f32::INFINITY) };
     let across = Ray { origin: Vec3::ZERO, direction: Vec3::new(1.0, 0.0, 0.0) };
-    assert!(packet(&[]).is_some());
+    assert!(common_origin_with(&[]).is_some());
     for others in [vec![(1, 3, beside)], vec![(1, 3, beside), (2, 3, endless)], vec![(7, 0, across)]] {
-        assert!(packet(&others).is_none(), "{others:?}");
+        assert!(common_origin_with(&others).is_none(), "{others:?}");
     }
 }
