@@ -13,7 +13,7 @@ pub struct Bounds {
     pub max: Vec3,
 }
 
-/// Relative widening of a ray's interval in a box at both ends: 16 units of 2^-24.
+/// The relative widening of a ray's interval in a box at both ends: 16 units of 2^-24.
 // `culling.md`, 3: three units for the rounding of an end, one for this product, twelve for a surface's own t.
 const CROSSING_SLACK: f32 = 16.0 / 16_777_216.0;
 

@@ -120,7 +120,7 @@ struct Slabs<N> {
     is_backward: [bool; 3],
 }
 
-/// Relative widening of both ends of a slab interval: 128 units of 2^-24 (`culling.md`, 4).
+/// The relative widening of both ends of a slab interval: 128 units of 2^-24 (`culling.md`, 4).
 // The inverse is widened once per ray, which saves widening the ends in each test: a node takes 36 instructions instead
 // of 60.
 const SLAB_SLACK: f32 = 128.0 / 16_777_216.0;

@@ -72,7 +72,7 @@ impl EightHits {
     /// The primitive index of rays without a hit.
     pub(crate) const NO_PRIMITIVE: u32 = u32::MAX;
 
-    /// Returns the index of the primitive that a ray hits.
+    /// Returns the index of the primitive that the ray of `lane` hits.
     #[inline(always)]
     pub(crate) fn primitive(&self, lane: usize) -> u32 {
         self.primitives.0[lane].to_bits()

@@ -61,7 +61,7 @@ impl<N: Number> Rays<N> {
             inverse: Vector { x: one / x, y: one / y, z: one / z },
             squared_length,
             inverse_squared_length: one / squared_length,
-            // Set by the callers, as scenes without triangles do not need its division.
+            // The callers set the shear, whose division is not needed in scenes without triangles.
             shear: Shear::none(),
         }
     }

@@ -80,11 +80,11 @@ pub enum Value<'a> {
     Number(f64),
     /// A string with its escapes resolved.
     String(Box<str>),
-    /// `[a, b]`.
+    /// A list: `[a, b]`.
     List(Vec<SyntaxNode<'a>>),
-    /// `{a: b}`.
+    /// A map: `{a: b}`.
     Map(Vec<(SyntaxNode<'a>, SyntaxNode<'a>)>),
-    /// `Name`, `Name(...)` or `(...)`.
+    /// A name, parentheses or both: `Name`, `(...)` or `Name(...)`.
     Group(Box<Group<'a>>),
 }
 

@@ -42,7 +42,7 @@ struct AxisRanges<N> {
     inverse: [N; 2],
 }
 
-/// Relative widening of inverse directions at both ends: 128 units of 2^-24 (`culling.md`, 5).
+/// The relative widening of inverse directions at both ends: 128 units of 2^-24 (`culling.md`, 5).
 // The inverses are widened once per packet, which saves widening t in each test: 19 operations per box instead of 38.
 const PACKET_SLACK: f32 = 128.0 / 16_777_216.0;
 

@@ -62,7 +62,7 @@ pub(super) struct SampleBatch {
 }
 
 /// The largest number of rays in a batch.
-// The arrays between the steps then take 43 kB, about the size of a first-level cache.
+// With 256 rays the arrays between the steps take 43 kB, about the size of a first-level cache.
 pub(super) const MAX_BATCH_RAYS: usize = 256;
 
 /// The largest number of samples per pixel in a batch: as many as a packet has rays.
@@ -124,7 +124,7 @@ impl SampleBatch {
         (0..pixels).step_by(pixels_at_once).map(move |first| first..pixels.min(first + pixels_at_once))
     }
 
-    /// Writes the pixel of each ray to `of_rays`.
+    /// Writes the index of each ray's pixel to `of_rays`.
     pub(super) fn assign_pixels(&self, pixels: &[u8], of_rays: &mut Vec<u8>) {
         of_rays.clear();
         if self.per_pixel() == 1 {

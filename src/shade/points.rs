@@ -119,7 +119,8 @@ struct SurfacesOfPrimitive<'h, N: Lanes> {
     primitive: u32,
     rays: &'h EightRays,
     hits: &'h EightHits,
-    /// The mask of rays with such a hit, their primitives, and their surface points.
+    /// The mask of rays with hits in the list or tree of `primitive`, their primitives, and their
+    /// surface points.
     found: (u32, PrimitiveIds<N>, Points<N>),
 }
 

@@ -24,7 +24,7 @@ pub enum Step {
     Value(&'static str, f64),
     /// A formula or words without a value.
     Text(&'static str),
-    /// Values, with a prefix and a separator.
+    /// Several values: a prefix, a separator, and the values.
     Values(&'static str, &'static str, Vec<f64>),
 }
 
