@@ -74,16 +74,17 @@ use progress::ProgressPanel;
 #[cfg(feature = "test-hooks")]
 pub use scenario::run_scenario;
 use scene_history::SceneHistory;
-use schedule::{Action, Facts, Picture, decide};
+use schedule::{Action, Facts, PictureState, decide};
 pub(crate) use schedule::{DriverState, Tracing};
 use screen::Screen;
 pub(crate) use view_layout::{INITIAL_WIPE, ViewLayout};
 
-/// Time for which the first picture is held back to be refined.
+/// Greatest time for which the first picture is held back, so that it is shown only once, already
+/// refined.
 ///
-/// Up to this long it is shown once, complete.
-// A longer wait is felt: with 16.7 ms, three spheres at 200x60 cells were shown after 15 ms, 9 of which went into
-// refinement. Without it small pictures would be sent twice.
+/// A picture whose refinement takes longer is shown first and refined afterwards.
+// Users notice a longer wait: with 16.7 ms, three spheres at 200x60 cells were shown after 15 ms, 9 of which went into
+// refinement. Without any wait, small pictures would be sent twice: as traced first, and refined.
 const FIRST_REFINEMENT: Duration = Duration::from_millis(4);
 
 /// A request to the driver.
@@ -93,15 +94,16 @@ pub(crate) enum Request {
     Leave,
     /// Stop the job, as Ctrl-Z does.
     Suspend,
-    /// Switch to the scene that many further on.
+    /// Switch to the scene this many places further on in the list of scenes; negative numbers go
+    /// back.
     SwitchScene(isize),
     /// Copy this text to the user's clipboard.
     Copy(String),
-    /// Write the picture into a file.
+    /// Write the shown picture into a file of this format.
     Export(crate::export::Format),
     /// Ask the user whether to write this camera into the scene's file, if it has one.
     ProposeView(Camera),
-    /// Write the camera that was proposed last.
+    /// Write the camera of the last [`Self::ProposeView`] into the scene's file.
     SaveView,
 }
 
@@ -113,7 +115,7 @@ pub(crate) enum Step {
     Trace(Vec<u8>, Job),
     /// Cancel the refinement in progress.
     GiveUp,
-    /// Wait for an event, until this time if given.
+    /// Wait for an event, at most until this time if given.
     Wait(Option<Duration>),
 }
 
@@ -124,18 +126,18 @@ pub(crate) struct Viewer {
     receiver: Receiver,
     scenes: SceneHistory,
     eye: Eye,
-    /// The maps that are wanted.
+    /// Which maps the picture shows, and how they are arranged.
     layout: ViewLayout,
     pointer: PointerState,
     screen: Screen,
     pacing: Pacing,
     requests: VecDeque<Request>,
-    /// The time of the last call.
+    /// The time that the driver passed with its last call.
     now: Duration,
 }
 
 impl Viewer {
-    /// Returns a view without a scene.
+    /// Returns a viewer that shows no scene yet.
     ///
     /// # Errors
     /// If there is not enough memory for the window.
@@ -166,7 +168,8 @@ impl Viewer {
         self.now = now;
     }
 
-    /// Returns the queries to send at the start, and whenever another program has had the terminal.
+    /// Returns the bytes of the initial queries, to send at the start and after another program had
+    /// the terminal.
     pub(crate) fn queries(&mut self, now: Duration) -> Vec<u8> {
         let queries = self.display.queries();
         let bytes = if queries.is_open() { queries.bytes().to_vec() } else { Vec::new() };
@@ -174,7 +177,8 @@ impl Viewer {
         bytes
     }
 
-    /// Sets the window's size. Call this too when the terminal may have moved its contents.
+    /// Sets the window's size. Call this too when the terminal may have moved or changed what it
+    /// shows.
     ///
     /// # Errors
     /// If there is not enough memory for the window.
@@ -182,14 +186,14 @@ impl Viewer {
         let before = *self.display.capabilities();
         self.display.set_window(window);
         // The cell shape may have changed with the font, and with it the half blocks that join.
-        self.heed_capabilities(&before)?;
+        self.apply_changed_capabilities(&before)?;
         self.display.check_memory()?;
         self.redraw();
         Ok(())
     }
 
-    /// Adopts new findings about the terminal.
-    fn heed_capabilities(&mut self, before: &Capabilities) -> Result<(), OutOfMemory> {
+    /// Passes the terminal's capabilities to the screen if they differ from `before`.
+    fn apply_changed_capabilities(&mut self, before: &Capabilities) -> Result<(), OutOfMemory> {
         if self.display.capabilities() != before {
             self.screen.set_capabilities(self.display.capabilities());
             self.display.check_memory()?;
@@ -202,8 +206,8 @@ impl Viewer {
     /// Everything is drawn anew, and the part outside the picture is cleared.
     fn redraw(&mut self) {
         let (size, window) = (self.display.size(), self.display.window_size());
-        // Erased only where the picture leaves a part free: otherwise the frame itself covers the window, and erasing
-        // first would flash.
+        // The window is erased only if the picture leaves a part of it free: otherwise the next frame covers all of it,
+        // and erasing first would flash.
         self.screen.redraw(self.display.capabilities().half_blocks, size != window);
         if size != window {
             let [size, window] = [size, window].map(|Size { columns, rows }| format!("{columns}x{rows}"));
@@ -211,45 +215,46 @@ impl Viewer {
         }
     }
 
-    /// Shows the progress of a load.
+    /// Opens or updates the panel with the progress of loading a scene.
     pub(crate) fn show_progress(&mut self, progress: Progress) {
         self.screen.open(ProgressPanel(progress));
     }
 
-    /// Shows a coarse scene until the complete one is loaded.
+    /// Shows a sketch of scene number `index` until [`show`](Self::show) shows the complete scene.
     ///
-    /// It replaces a picture of another scene, but not a good picture of the same scene before its file changed.
-    pub(crate) fn show_sketch(&mut self, sketch: Scene, of: usize, orbits: bool) {
-        if self.scenes.shown() != Some(of) {
+    /// Does nothing if that scene is shown already, from before its file changed: a complete picture is better.
+    pub(crate) fn show_sketch(&mut self, sketch: Scene, index: usize, orbits: bool) {
+        if self.scenes.shown() != Some(index) {
             self.screen.close::<ErrorPanel>();
-            self.open(sketch, of, orbits);
+            self.open(sketch, index, orbits);
         }
     }
 
-    /// Shows scene number `of`, from its own camera.
+    /// Shows scene number `index`, which has been loaded completely.
     ///
-    /// Starts from where the user left it, if its own camera is the same as then.
-    pub(crate) fn show(&mut self, scene: Scene, of: usize, orbits: bool) {
+    /// The camera is where the user left it when the scene was shown last, unless the scene's own camera has changed
+    /// since then; otherwise it is the scene's own camera.
+    pub(crate) fn show(&mut self, scene: Scene, index: usize, orbits: bool) {
         // The progress panel goes with the first frame of the scene: drawing the screen once more without it would
         // delay that frame.
         self.screen.close_quietly::<ProgressPanel>();
         self.screen.close::<ErrorPanel>();
-        self.open(scene, of, orbits);
+        self.open(scene, index, orbits);
     }
 
-    fn open(&mut self, scene: Scene, of: usize, orbits: bool) {
+    fn open(&mut self, scene: Scene, index: usize, orbits: bool) {
         let (before, written) = (self.scenes.shown(), scene.views().to_vec());
-        if let Some(view) = self.scenes.show(scene, of, orbits) {
+        if let Some(view) = self.scenes.show(scene, index, orbits) {
             let left = self.eye.open(view);
-            if let Some((before, left)) = before.zip(left).filter(|(before, _)| *before != of) {
+            if let Some((before, left)) = before.zip(left).filter(|(before, _)| *before != index) {
                 self.scenes.leave(before, left);
             }
         }
-        // Also for a scene whose view is kept: its file may have got other views.
+        // Also if the user's camera is kept, because the views in the scene's file may have changed.
         self.eye.set_written(written);
     }
 
-    /// Shows the error of a load.
+    /// Opens the panel with the error that ended the loading of a scene.
     pub(crate) fn show_error(&mut self, fault: Notice) {
         self.screen.close_quietly::<ProgressPanel>();
         self.screen.open(ErrorPanel(fault));
@@ -260,10 +265,10 @@ impl Viewer {
         self.screen.open(Note(text.into()));
     }
 
-    /// Takes a finished frame.
+    /// Accepts a finished frame as the next picture to show.
     pub(crate) fn take_frame(&mut self, frame: Frame) {
         self.pacing.record_frame(&frame);
-        // Refinements at rest would make the frame rate of a motion seem higher.
+        // Only frames in motion count for the frame rate: refinements at rest would raise it.
         let moving = self.is_in_motion().then_some(self.now);
         self.screen.take_frame(frame, moving);
     }
@@ -271,7 +276,7 @@ impl Viewer {
     /// Returns the driver's next action.
     pub(crate) fn step(&mut self, busy: DriverState, now: Duration) -> Step {
         self.set_time(now);
-        // The eye moves first, so that the decision is made about the view of now and not of the last wake-up.
+        // The eye moves first, so that the decision is about the view at `now` and not at the last wake-up.
         self.eye.advance(now);
         self.screen.set_moving(self.eye.mode());
         self.mark_light();
@@ -280,7 +285,7 @@ impl Viewer {
             Action::Draw => Step::Draw,
             Action::Trace => self.trace(),
             Action::Refine => self.refine(),
-            // An incomplete escape sequence needs a wake-up of its own: no bytes may follow.
+            // An incomplete escape sequence needs a wake-up of its own: it may be a lone Esc, which no bytes follow.
             Action::Wait(until) => Step::Wait(until.into_iter().chain(self.receiver.escape_due(now)).min()),
         }
     }
@@ -289,7 +294,7 @@ impl Viewer {
         let size = self.display.size();
         Facts {
             busy,
-            picture: self.picture(),
+            picture: self.picture_state(),
             holds_first_back: !self.screen.has_shown() && self.pacing.ends_within(FIRST_REFINEMENT),
             begun: self.pacing.begun_at(),
             moved_until: self.eye.moved_until(),
@@ -300,21 +305,21 @@ impl Viewer {
         }
     }
 
-    fn picture(&self) -> Picture {
-        if self.wanted().is_some_and(|wanted| !self.pacing.has_begun(&wanted)) {
-            Picture::Stale
+    fn picture_state(&self) -> PictureState {
+        if self.wanted_shot().is_some_and(|wanted| !self.pacing.has_begun(&wanted)) {
+            PictureState::Stale
         } else if self.next_refinement().is_some() {
-            Picture::Refinable
+            PictureState::Refinable
         } else {
-            Picture::Finished
+            PictureState::Finished
         }
     }
 
-    /// Begins a frame of a new view.
+    /// Begins a frame of a shot that no frame has been begun for.
     ///
-    /// A query before it measures the link's round trip without a frame's bytes.
+    /// The returned step sends a query first, which measures the link's round trip without a frame's bytes.
     fn trace(&mut self) -> Step {
-        let Some((scene, shot)) = self.scene().zip(self.wanted()) else { return Step::Wait(None) };
+        let Some((scene, shot)) = self.scene().zip(self.wanted_shot()) else { return Step::Wait(None) };
         let probe = self.pacing.probe(self.now);
         self.receiver.sent(&probe, self.now);
         let sampling = self.pacing.begin(shot, self.is_in_motion(), self.now);
@@ -323,7 +328,7 @@ impl Viewer {
 
     /// Begins the next refinement of the last frame.
     fn refine(&self) -> Step {
-        let wanted = self.scene().zip(self.wanted()).zip(self.next_refinement());
+        let wanted = self.scene().zip(self.wanted_shot()).zip(self.next_refinement());
         let Some(((scene, shot), sampling)) = wanted else { return Step::Wait(None) };
         Step::Trace(Vec::new(), Job { scene, shot, sampling, refines: true })
     }
@@ -334,13 +339,13 @@ impl Viewer {
     }
 
     /// Returns the shot that the picture is to show, or `None` without a scene.
-    fn wanted(&self) -> Option<Shot> {
+    fn wanted_shot(&self) -> Option<Shot> {
         let (lights, camera) = (self.scenes.lights()?, self.eye.camera()?);
         let (scene, resolution) = (self.scenes.count(), self.display.resolution());
         Some(Shot { scene, lights: lights.moves(), camera, resolution, layout: self.layout })
     }
 
-    /// Returns the sampling of the next refinement of the shown frame, or `None` if it cannot be
+    /// Returns the sampling of the shown frame's next refinement, or `None` if it cannot be
     /// refined.
     fn next_refinement(&self) -> Option<Sampling> {
         // Refining a sketch would take time from building the scene.
@@ -349,14 +354,15 @@ impl Viewer {
         (next != frame.sampling).then_some(next)
     }
 
-    /// Returns whether the next frame will probably be of another view, too.
+    /// Returns whether the view is being changed by keys, the turntable or a drag, so that the next
+    /// frame will differ.
     fn is_in_motion(&self) -> bool {
         self.eye.is_moving() || self.pointer.holds()
     }
 
     /// Appends the bytes that bring the screen up to date.
     ///
-    /// Call [`end_frame`](Self::end_frame) with them afterwards.
+    /// Call [`end_frame`](Self::end_frame) with these bytes afterwards.
     pub(crate) fn draw(&mut self, now: Duration, bytes: &mut Vec<u8>) {
         self.set_time(now);
         let size = self.display.size();
@@ -366,15 +372,16 @@ impl Viewer {
 
     /// Appends the query that ends a frame; does nothing if `bytes` is empty.
     ///
-    /// `now` is later than at [`draw`](Self::draw): the time for cells and bytes must not count as the link's.
+    /// `now` is the time after [`draw`](Self::draw), so that making the cells and bytes is not counted as part of the
+    /// round trip.
     pub(crate) fn end_frame(&mut self, bytes: &mut Vec<u8>, now: Duration) {
         self.screen.record_encode_time(now.saturating_sub(self.now));
         if bytes.is_empty() {
             return;
         }
-        // Also at rest: a frame's round trip is longer than the link's own, from which the rate is derived. On a link
-        // of 50 KB/s and 200 ms, a refinement without a query before it had a round trip of 267 ms, which was taken for
-        // the link's own, and the rate then seemed 562 KB/s.
+        // A query goes before refinements at rest too: a frame's round trip includes the transmission of its bytes, but
+        // the rate is derived from the link's own. On a link of 50 KB/s and 200 ms, a refinement without such a query
+        // had a round trip of 267 ms, which was taken for the link's own, and the rate then seemed 562 KB/s.
         let probe = self.pacing.probe(now);
         self.receiver.sent(&probe, now);
         self.pacing.send(bytes, now);
@@ -388,17 +395,17 @@ impl Viewer {
         self.requests.pop_front()
     }
 
-    /// Returns the modes to switch on besides those that every terminal supports.
+    /// Returns the terminal modes to switch on in addition to those that every terminal supports.
     pub(crate) fn modes(&self) -> impl Iterator<Item = TerminalMode> {
         self.display.modes()
     }
 
-    /// Returns whether a frame has been shown.
+    /// Returns whether a frame has been drawn since the start.
     pub(crate) fn has_shown(&self) -> bool {
         self.screen.has_shown()
     }
 
-    /// Returns the number of the shown scene.
+    /// Returns the index of the shown scene in the list of scenes.
     pub(crate) fn shown_scene(&self) -> Option<usize> {
         self.scenes.shown()
     }
@@ -417,7 +424,7 @@ impl Viewer {
         self.eye.moved()
     }
 
-    /// Returns the receiver, which knows the outstanding replies when the terminal is restored.
+    /// Returns the receiver of the terminal's bytes, which knows which replies are outstanding.
     pub(crate) fn receiver(&mut self) -> &mut Receiver {
         &mut self.receiver
     }

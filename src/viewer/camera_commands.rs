@@ -1,4 +1,4 @@
-//! Commands that move the camera at once. Motion by held keys is the eye's.
+//! Commands that move the camera at once. Held keys move it continuously, in `eye`.
 
 use super::Viewer;
 use crate::control::Command;
@@ -8,55 +8,55 @@ use crate::ray::Ray;
 use glam::Vec3;
 
 /// Factor by which a key press scales the view rectangle.
-// A repeated key zooms by a factor of two in seven repeats, a quarter of a second.
+// 1.1^7 is about 2, so that a held key doubles the zoom in seven repeats, a quarter of a second.
 pub(super) const ZOOM_FACTOR: f32 = 1.1;
 
 impl Viewer {
     /// Switches between flight and orbit about the point in the middle of the picture.
     pub(super) fn change_mode(&mut self) {
-        // Of the frame that the user sees, which may be older than the camera.
-        let in_the_middle = self.in_the_middle();
+        // Computed from the shown frame, which may be older than the camera.
+        let in_the_middle = self.point_in_the_middle();
         self.eye.change_mode(in_the_middle);
         self.screen.set_moving(self.eye.mode());
         self.show_note(format!("{}{}", self.eye.mode().name(), self.hint(Command::Help, "shows its keys")));
     }
 
-    /// Returns the end of a note: a key for `command` and what it does.
+    /// Returns the end of a note that names the key of `command`, such as `; ? shows its keys`.
     ///
-    /// Empty if no key is bound to it.
+    /// Empty if no key is bound to `command`.
     pub(super) fn hint(&self, command: Command, does: &str) -> String {
         let key = self.keymap().key_of(&self.screen.modes(self.size()), command);
         key.map_or_else(String::new, |key| format!("; {key} {does}"))
     }
 
-    /// Returns the point of the scene in the middle of the picture.
-    fn in_the_middle(&self) -> Option<Vec3> {
+    /// Returns the surface point that is seen in the middle of the picture, or `None` if nothing is
+    /// hit there.
+    fn point_in_the_middle(&self) -> Option<Vec3> {
         let (scene, camera) = (&self.screen.frame()?.scene, self.eye.camera()?);
         let ray = Ray { origin: camera.pose().eye, direction: -camera.basis().w };
         closest_hit(scene, &ray).map(|hit| ray.at(hit.t))
     }
 
-    /// Moves the eye along the view direction until everything finite fills the picture.
-    ///
-    /// (Planes are infinite.)
+    /// Moves the eye so that all finite objects, which excludes planes, fill the picture.
     pub(super) fn frame_everything(&mut self) {
         let Some(bounds) = self.screen.frame().and_then(|frame| frame.scene.bounds()) else {
             self.show_note("nothing finite to fit in view");
             return;
         };
-        let aspect_ratio = self.part().aspect_ratio();
+        let aspect_ratio = self.map_resolution().aspect_ratio();
         self.eye.change(self.now, |camera, _| camera.framing(&bounds, aspect_ratio));
     }
 
-    /// Returns the size of a picture: of two maps side by side, that of the left one.
-    pub(super) fn part(&self) -> Resolution {
+    /// Returns the size in pixels of one map: the whole picture, or the left one of two maps side
+    /// by side.
+    pub(super) fn map_resolution(&self) -> Resolution {
         let whole = self.resolution();
         self.layout.parts(whole).first().map_or(whole, |(_, part)| *part)
     }
 
     /// Scales the view rectangle by `factor`, and shows the field of view in a note.
     pub(super) fn zoom(&mut self, factor: f32) {
-        // The view rectangle changes and not the eye, so that the perspective stays.
+        // Scaling the view rectangle keeps the perspective, which moving the eye would change.
         self.eye.change(self.now, |camera, _| camera.zoomed(factor));
         if let Some(camera) = self.eye.camera() {
             let degrees = camera.rectangle().vertical_fov().to_degrees();
@@ -73,7 +73,7 @@ impl Viewer {
         self.eye.toggle_turntable(self.now);
     }
 
-    /// Goes to a view saved by the user, or to one of the scene file.
+    /// Moves the camera to view `number`: the one saved by the user, or the one in the scene file.
     pub(super) fn go_to_view(&mut self, number: u8) {
         if self.eye.go_to(number, self.now).is_none() {
             let hint = self.hint(Command::SaveView, "saves this one");

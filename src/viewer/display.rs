@@ -1,4 +1,5 @@
-//! The terminal's window and capabilities, from which the picture's size and cells follow.
+//! The terminal's window and capabilities, which determine the picture's size and its kind of
+//! cells.
 
 use super::extent;
 use crate::capabilities::{Capabilities, Findings, Hints};
@@ -9,7 +10,8 @@ use crate::input::Reply;
 use crate::memory::OutOfMemory;
 use crate::protocol::{InitialQueries, TerminalMode};
 
-/// A terminal's window, and the findings about it.
+/// The size of the terminal's window, its replies to the initial queries, and the capabilities
+/// concluded from them.
 pub(super) struct Display {
     hints: Hints,
     window: Window,
@@ -18,9 +20,9 @@ pub(super) struct Display {
 }
 
 impl Display {
-    /// Returns a display with the findings from the environment alone.
+    /// Returns a display whose capabilities are concluded from `hints` alone, without replies.
     pub(super) fn new(hints: Hints, window: Window) -> Self {
-        // Without a reply so far the environment alone decides: the first picture does not wait.
+        // The first picture does not wait for replies, so capabilities are first concluded without them.
         let queries = InitialQueries::needed(&hints);
         let capabilities = Findings::new(&hints, window.cell, queries.replies()).capabilities();
         Self { hints, window, queries, capabilities }
@@ -57,7 +59,7 @@ impl Display {
 
     /// Records a reply to the initial queries.
     ///
-    /// They take effect together: returns whether this was the last.
+    /// All replies take effect together, with the last one. Returns whether `reply` was the last.
     pub(super) fn take_reply(&mut self, reply: &Reply) -> bool {
         let was_last = self.queries.take(reply);
         if was_last {
@@ -66,7 +68,7 @@ impl Display {
         was_last
     }
 
-    /// Closes the initial queries, as no more replies will come. Returns whether they were open.
+    /// Stops waiting for replies to the initial queries. Returns whether any were outstanding.
     pub(super) fn close_queries(&mut self) -> bool {
         let was_open = self.queries.close();
         if was_open {
@@ -80,7 +82,7 @@ impl Display {
         self.capabilities = findings.capabilities();
     }
 
-    /// Checks that there is memory for pictures of this size.
+    /// Checks that there is memory for pictures of the current size.
     ///
     /// # Errors
     /// If there is not enough.
@@ -98,14 +100,15 @@ impl Display {
         let replies = self.queries.replies();
         let knows = !self.queries.is_open() && replies.pixel_mouse == Some(true);
         let is_cell = |&(width, height): &(u16, u16)| width > 0 && height > 0;
-        // The window size of the kernel first: it follows a change of the font, the reply is of the start.
+        // The kernel's cell size comes first: it follows a change of the font, while the terminal's reply is from the
+        // start.
         self.window.cell_pixels.or(replies.cell_pixels).filter(is_cell).filter(|_| knows)
     }
 
-    /// Returns the modes to switch on besides those that every terminal supports.
+    /// Returns the terminal modes to switch on in addition to those that every terminal supports.
     pub(super) fn modes(&self) -> impl Iterator<Item = TerminalMode> {
         let keyboard = self.knows_keyboard().then_some(TerminalMode::Keyboard);
-        // After the replies, because a terminal without these modes might print their sequences.
+        // Only if the replies report support, because a terminal without these modes might print their sequences.
         keyboard.into_iter().chain(self.mouse_pixels().map(|_| TerminalMode::MousePixels))
     }
 }

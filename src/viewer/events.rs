@@ -14,12 +14,15 @@ use crate::memory::OutOfMemory;
 use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
 use std::time::Duration;
 
-/// Flags of the kitty keyboard protocol that are required before keys are treated as sequences:
-/// disambiguation (1), releases (2) and every key as a sequence (8).
+/// Flags of the kitty keyboard protocol that a terminal must confirm before its keys are read as
+/// sequences.
+///
+/// Disambiguation (1), releases (2) and every key as an escape sequence (8).
 const KEYBOARD: u16 = 1 | 2 | 8;
 
 impl Viewer {
-    /// Takes the bytes that have arrived; without any, the passing of time.
+    /// Handles bytes that have arrived from the terminal; empty `bytes` report only that time has
+    /// passed.
     ///
     /// # Errors
     /// If there is not enough memory for pictures of the size that the replies imply.
@@ -28,9 +31,8 @@ impl Viewer {
         self.take_inputs(&inputs, now)
     }
 
-    /// Prepares for another program having the terminal.
-    ///
-    /// Releases all keys and forgets the outstanding queries.
+    /// Releases all keys and buttons and forgets the outstanding queries, before another program
+    /// gets the terminal.
     pub(crate) fn lose_terminal(&mut self, now: Duration) {
         self.set_time(now);
         self.eye.stop(now);
@@ -39,20 +41,20 @@ impl Viewer {
         self.pacing.forget_replies();
     }
 
-    /// Takes the input that was typed while another program had the terminal.
+    /// Handles the input that was typed while another program had the terminal.
     ///
     /// Replies among it are dropped, because the queries are sent again.
     ///
     /// # Errors
     /// As for [`receive`](Self::receive).
     pub(crate) fn receive_typed(&mut self, mut typed: Vec<Input>, now: Duration) -> Result<(), OutOfMemory> {
-        // The other program has popped the keyboard flags; the reply to the new query sets them again.
+        // The other program may have reset the keyboard flags; the reply to the new query sets them again.
         self.receiver.set_keys_are_sequences(false);
         typed.retain(|input| !matches!(input, Input::Reply(_)));
         self.take_inputs(&typed, now)
     }
 
-    /// Input after a request to leave or to stop is dropped.
+    /// Handles inputs in order. Those after a request to leave or to suspend are dropped.
     fn take_inputs(&mut self, inputs: &[Input], now: Duration) -> Result<(), OutOfMemory> {
         self.set_time(now);
         for (at, input) in inputs.iter().enumerate() {
@@ -60,7 +62,7 @@ impl Viewer {
                 input if mouse_actions::is_superseded(input, inputs.get(at + 1)) => {}
                 Input::Event(Event::Mouse(event)) => self.take_mouse(*event),
                 Input::Event(Event::Key(key)) => self.take_key(key),
-                // No event will report the release of keys held now.
+                // Without the focus, the terminal will not report the release of keys that are held now.
                 Input::Event(Event::FocusLost) => {
                     self.pointer.release();
                     self.eye.release(now);
@@ -68,7 +70,7 @@ impl Viewer {
                 Input::Reply(reply) => self.take_reply(reply)?,
                 Input::Event(_) => {}
             }
-            // Keys typed after Ctrl-Z belong to the shell, and after `q` to nothing.
+            // Keys typed after Ctrl-Z are meant for the shell.
             if matches!(self.requests.back(), Some(Request::Leave | Request::Suspend)) {
                 break;
             }
@@ -76,21 +78,23 @@ impl Viewer {
         Ok(())
     }
 
-    /// Replies to the initial queries take effect together, with the last one.
+    /// Handles a reply. Those to the initial queries take effect together, with the last one.
     fn take_reply(&mut self, reply: &Reply) -> Result<(), OutOfMemory> {
         if let &Reply::KeyboardFlags(flags) = reply {
             self.take_keyboard(flags);
         }
         let (size, capabilities) = (self.size(), *self.display.capabilities());
         match reply {
-            // Terminals reply in order: first to the initial queries, then to those at the end of frames.
+            // Terminals reply in order, so once the initial queries are answered this is a reply to a frame's query.
             Reply::DeviceAttributes(_) if !self.display.queries().is_open() => self.pacing.take_reply(self.now),
-            // A reply to a frame shows that the fence of the initial queries is lost: they were sent before it.
+            // The initial queries were sent before any frame, so a reply to a frame shows that their fence's reply is
+            // lost.
             &Reply::Mode { mode, .. } if self.pacing.take_mode(mode, self.now) => drop(self.display.close_queries()),
             reply => drop(self.display.take_reply(reply)),
         }
-        self.heed_capabilities(&capabilities)?;
-        // Other glyphs have other pixels per cell, and the limit is one of pixels.
+        self.apply_changed_capabilities(&capabilities)?;
+        // The picture's size in cells may have changed, because its limit is in pixels and the pixels per cell depend
+        // on the glyphs.
         if self.size() != size {
             self.redraw();
         }
@@ -106,18 +110,18 @@ impl Viewer {
 
     fn take_key(&mut self, key: &KeyEvent) {
         let is_press = key.kind == KeyEventKind::Press;
-        // Not for releases: the release of the key that caused a note would close it at once.
+        // Only a press closes a note: otherwise the release of the key that opened the note would close it at once.
         if is_press {
             self.screen.close::<Note>();
         }
         let meant = self.keymap().command(&self.screen.modes(self.size()), key);
-        // An open question takes all keys, except unrelated ones with Ctrl, which may leave.
+        // An open question takes all keys, except keys with Ctrl that do not answer it, such as Ctrl-C.
         let is_for_all = key.modifiers.contains(KeyModifiers::CONTROL);
         let answer = meant.map(|(command, _)| command).filter(|command| command.answers() || !is_for_all);
         if is_press && (answer.is_some() || !is_for_all) && self.take_answer(answer) {
             return;
         }
-        // Before the command, so that the motion up to now happens with the camera as it was.
+        // The eye comes first, so that the motion up to now happens before the command changes the camera.
         self.eye.take_key(key, meant, self.now);
         if let Some((command, more)) = meant
             && (is_press || key.kind == KeyEventKind::Repeat && command.repeats())
@@ -126,16 +130,16 @@ impl Viewer {
         }
     }
 
-    /// Carries out a command that takes effect at once; `faster` (Shift) makes it larger.
+    /// Carries out a command that takes effect at once; `more` (Shift) makes its step larger.
     ///
-    /// Continuous motion is the eye's.
+    /// Commands of continuous motion do nothing here, because `Eye::take_key` handles them.
     pub(super) fn execute(&mut self, command: Command, more: bool) {
         match command {
             Command::Quit => self.requests.push_back(Request::Leave),
             Command::Suspend => self.requests.push_back(Request::Suspend),
             Command::ChangeMode => self.change_mode(),
             Command::FrameAll => self.frame_everything(),
-            // Not continuous as motion is: a field of view is set once and then left alone.
+            // Zooming works in steps, not continuously as motion does: a field of view is set once and then left alone.
             Command::Narrower => self.zoom(1.0 / ZOOM_FACTOR),
             Command::Wider => self.zoom(ZOOM_FACTOR),
             Command::Turntable => self.toggle_turntable(),
@@ -164,7 +168,7 @@ impl Viewer {
             Command::ScrollUp => self.scroll(-1),
             Command::ScrollDown => self.scroll(1),
             Command::Redraw => self.redraw(),
-            // Motion has been passed to the eye; an answer without a question means nothing.
+            // Keys of motion have been passed to the eye, and answers do nothing without an open question.
             Command::Move(_)
             | Command::Look(_)
             | Command::Around(_)
@@ -182,10 +186,11 @@ impl Viewer {
         }
     }
 
-    /// Closes the help; without it, releases a light; without one, closes the explanation.
+    /// Closes the help if it is open; otherwise releases the held light, if any; otherwise closes
+    /// the explanation.
     fn close_topmost(&mut self) {
-        // In the order of the layers: the help lies over everything.
-        if self.screen.close::<HelpPanel>().is_none() && !self.leave_light() {
+        // This is the order of the layers, from the topmost.
+        if self.screen.close::<HelpPanel>().is_none() && !self.release_light() {
             self.screen.close::<ExplainPanel>();
         }
     }

@@ -4,12 +4,13 @@ use crate::capabilities::CellMode;
 use crate::grid::Size;
 use crate::memory::{self, OutOfMemory};
 
-/// Limit on the pixels of a live picture: 1,048,576 cells of half blocks or of the ramp, 262,144 of
-/// shapes. In a larger window the picture covers the upper left part, in the window's shape, and the rest stays empty.
+/// Greatest number of pixels of a live picture.
 ///
-/// Windows of real terminals have less than a tenth of it: a 4K screen has 100,000 cells of 8 by 10 pixels.
-// The limit is a memory of 600 MB: a picture of this size takes 490 MB at the peak, one of twice the size 770 MB (in
-// truecolor, with a wipe or on a slow link). Without a limit, a window that claimed 65535x65535 cells took 4.6 GB.
+/// This is 1,048,576 cells of half blocks or of the ramp, or 262,144 cells of shapes. Windows of real terminals have
+/// less than a tenth of it: a 4K screen has 100,000 cells of 8 by 10 pixels. In a larger window the picture covers the
+/// upper left part, in the window's shape, and the rest stays empty.
+// Chosen to stay below 600 MB of memory: a picture of this size takes 490 MB at the peak, one of twice the size 770 MB
+// (in truecolor, with a wipe or on a slow link). Without a limit, a window that claimed 65535x65535 cells took 4.6 GB.
 pub const MAX_PIXELS: u32 = 1 << 21;
 
 /// Returns the size that the picture covers, from the window's upper left corner.
@@ -24,8 +25,8 @@ pub(super) fn covered(window: Size, mode: CellMode) -> Size {
     Size::new(scaled(window.columns), scaled(window.rows))
 }
 
-/// Peak memory of a picture, its cells and its bytes, per pixel.
-// 232 bytes were measured, rounded up to leave a margin.
+/// Peak memory for a picture, its cells and its encoded bytes, in bytes per pixel.
+// 232 bytes were measured and rounded up, to leave a margin.
 const BYTES_PER_PIXEL: usize = 256;
 
 /// Checks that there is memory to show pictures of this size.

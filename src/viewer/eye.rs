@@ -1,4 +1,4 @@
-//! The camera of the shown scene, and its motion by keys.
+//! The camera of the shown scene, and its motion by keys and by the turntable.
 
 use crate::camera::{Camera, Pose};
 use crate::control::{self, Command, KeyMode, KeySpeed, Motion};
@@ -7,12 +7,12 @@ use crossterm::event::{KeyEvent, KeyEventKind};
 use glam::Vec3;
 use std::time::Duration;
 
-/// Duration of the motion in the first frame after a key press, as if the key had been held for the
-/// time of a frame.
-// Without it the first frame would be the old picture, and a press would be visible one frame later.
+/// Time for which a movement key counts as held in the first frame after its press: a frame at 60
+/// per second.
+// Without this time the first frame would show the old picture, and a press would be visible one frame later.
 pub(crate) const FIRST_FRAME_MOTION: Duration = Duration::from_micros(16_667);
 
-/// The camera and the motion of it.
+/// The camera on the shown scene, and its current motion.
 #[derive(Default)]
 pub(super) struct Eye {
     /// `None` without a scene.
@@ -26,15 +26,18 @@ pub(super) struct Eye {
     reduced_motion: bool,
 }
 
-/// The state of looking at a scene.
+/// The user's view of one scene: its camera, saved views and way of moving.
 #[derive(Clone)]
 pub(super) struct ViewState {
+    /// The scene's own camera.
     home: Camera,
+    /// The current camera.
     camera: Camera,
+    /// The speed of flight in world units per second, derived from `home`.
     speed: f32,
     /// Whether the eye orbits its target instead of flying.
     orbits: bool,
-    /// The views of the scene file.
+    /// The views that the scene file stores.
     written: Vec<Camera>,
     /// The views saved by the user, by number.
     saved: [Option<Camera>; 9],
@@ -54,14 +57,15 @@ impl ViewState {
         }
     }
 
-    /// The scene's own camera.
+    /// Returns the scene's own camera.
     pub(super) fn home(&self) -> Camera {
         self.home
     }
 }
 
-/// The size of a step with reduced motion, as the time for which a held key would move the eye.
-// A tenth of the distance to the target, or nine degrees: large enough to see a change between two still pictures.
+/// Time for which a key counts as held at each press with reduced motion, which moves in steps.
+// A step is then a tenth of the distance to the target, or nine degrees: large enough to see a change between two still
+// pictures.
 const REDUCED_MOTION_STEP: Duration = Duration::from_millis(200);
 
 impl Eye {
@@ -72,14 +76,14 @@ impl Eye {
         Self { motion: Motion::with_speed(key_speed), reduced_motion, ..Self::default() }
     }
 
-    /// Looks at another scene. Returns the view of the previous one.
+    /// Replaces the view by that of another scene, and returns the view of the previous scene.
     pub(super) fn open(&mut self, view: ViewState) -> Option<ViewState> {
-        // A turntable that went on in the new scene would move it before the user has seen where it starts.
+        // A turntable that went on in the new scene would turn it before the user has seen its first view.
         self.turntable = false;
         self.view.replace(view)
     }
 
-    /// Replaces the views of the scene file.
+    /// Replaces the views that the scene file stores.
     pub(super) fn set_written(&mut self, views: Vec<Camera>) {
         if let Some(view) = &mut self.view {
             view.written = views;
@@ -109,7 +113,7 @@ impl Eye {
     /// Carries out the motion up to `now`.
     pub(super) fn advance(&mut self, now: Duration) {
         let Some(since) = self.moved_until else { return };
-        // Asked before the step, which may end the motion: the rest of it is carried out below.
+        // Determined before the step, which may end the motion: the last part of the motion still happens below.
         self.moved_until = (self.turntable || self.motion.is_moving(now)).then_some(now);
         let Some(view) = &mut self.view else { return };
         view.camera = self.motion.step(&view.camera, view.speed, since, now);
@@ -118,7 +122,9 @@ impl Eye {
         }
     }
 
-    /// Changes the camera by `change`, which gets the scene's size, and stops the turntable.
+    /// Replaces the camera by the result of `change` and stops the turntable.
+    ///
+    /// `change` gets the camera and the speed of flight that suits the scene's size.
     pub(super) fn change(&mut self, now: Duration, change: impl FnOnce(&Camera, f32) -> Camera) {
         self.advance(now);
         self.turntable = false;
@@ -134,19 +140,20 @@ impl Eye {
         self.start_motion(now);
     }
 
-    /// Starts the motion. The first frame already shows the motion of a frame's time.
+    /// Starts the clock of the motion, if anything moves, [`FIRST_FRAME_MOTION`] before `now`.
     fn start_motion(&mut self, now: Duration) {
         let moves = self.turntable || self.motion.is_moving(now);
         self.moved_until = moves.then(|| self.moved_until.unwrap_or(now.saturating_sub(FIRST_FRAME_MOTION)));
     }
 
-    /// Goes to the view saved as `number`, from 1, or that view of the scene file.
+    /// Moves the camera to view `number`, from 1: the one saved by the user, or the one in the
+    /// scene file.
     ///
-    /// `None` if there is none.
+    /// Returns `None` if there is no such view.
     pub(super) fn go_to(&mut self, number: u8, now: Duration) -> Option<()> {
         let view = self.view.as_ref()?;
         let at = usize::from(number).checked_sub(1)?;
-        // A view saved by the user hides the one of the file with its number.
+        // A view saved by the user takes precedence over the view of the scene file with the same number.
         let saved = view.saved.get(at).copied().flatten().or_else(|| view.written.get(at).copied())?;
         self.change(now, |_, _| saved);
         Some(())
@@ -166,20 +173,22 @@ impl Eye {
         if self.view.as_ref().is_some_and(|view| view.orbits) { KeyMode::Orbit } else { KeyMode::Fly }
     }
 
-    /// Switches between flight and orbit.
+    /// Switches between flight and orbit; `in_the_middle` is the point seen in the middle of the
+    /// picture.
     ///
-    /// Orbit starts around the point seen in the middle of the picture, which leaves the picture as it is.
+    /// The eye orbits that point, so that the switch leaves the picture as it is.
     pub(super) fn change_mode(&mut self, in_the_middle: Option<Vec3>) {
         let Some(view) = &mut self.view else { return };
         view.orbits = !view.orbits;
         if let (true, Some(target)) = (view.orbits, in_the_middle) {
-            // Only the target changes, along the view direction: the picture stays as it is. A target in the eye is
-            // refused.
+            // Only the target changes, along the view direction, which does not change the picture. A target equal to
+            // the eye is refused, and the camera then stays.
             view.camera = view.camera.with_pose(Pose { target, ..view.camera.pose() }).unwrap_or(view.camera);
         }
     }
 
-    /// Carries out the motion so far, then passes the key to it.
+    /// Advances the motion to `now`, then passes it the key, whose command `meant` may start or end
+    /// motion.
     pub(super) fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) {
         if self.reduced_motion {
             self.take_step(key, meant);
@@ -192,32 +201,32 @@ impl Eye {
         self.start_motion(now);
     }
 
-    /// Moves by one step, for a press or a repeat.
+    /// Moves the camera by one step if the key was pressed or repeats; used with reduced motion.
     fn take_step(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>) {
         let Some(view) = self.view.as_mut().filter(|_| key.kind != KeyEventKind::Release) else { return };
-        // With reduced motion no key is held: steps are the only motion.
+        // A copy of the motion takes the press, because no key is to stay held after the step.
         let mut motion = self.motion.clone();
         motion.take_key(&KeyEvent { kind: KeyEventKind::Press, ..*key }, meant, Duration::ZERO);
         view.camera = motion.step(&view.camera, view.speed, Duration::ZERO, REDUCED_MOTION_STEP);
     }
 
-    /// Releases all keys.
+    /// Ends the motion by keys, as if all keys were released.
     pub(super) fn release(&mut self, now: Duration) {
         self.advance(now);
         self.motion.stop();
         self.moved_until = self.moved_until.filter(|_| self.turntable);
     }
 
-    /// Stops all motion.
+    /// Stops all motion: that by keys, and the turntable.
     pub(super) fn stop(&mut self, now: Duration) {
         self.release(now);
         self.turntable = false;
         self.moved_until = None;
     }
 
-    /// Sets whether the terminal reports releases. Held keys are released if it no longer does.
+    /// Sets whether the terminal reports key releases. Held keys are released if it no longer does.
     pub(super) fn set_reports_releases(&mut self, reports_releases: bool, now: Duration) {
-        // Their releases would never be reported, and they would move the eye for ever.
+        // The release of a held key would never be reported, and the key would move the eye for ever.
         if self.reports_releases() && !reports_releases {
             self.release(now);
         }

@@ -1,4 +1,4 @@
-//! A requested frame and a finished one.
+//! A frame to trace (`Job`), a traced frame (`Frame`), and what both show (`Shot`).
 
 use super::view_layout::ViewLayout;
 use crate::camera::Camera;
@@ -8,12 +8,12 @@ use crate::scene::Scene;
 use crate::tone::Picture;
 use std::time::Duration;
 
-/// The content of a frame. Equal shots have equal pictures.
+/// Everything that determines what a frame shows. Equal shots have equal pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shot {
     /// Serial number of the scene: a scene that is loaded again gets another one.
     pub(crate) scene: u32,
-    /// Number of times that its lights have been moved.
+    /// Number of times that the scene's lights have been moved.
     pub(crate) lights: u32,
     pub(crate) camera: Camera,
     pub(crate) resolution: Resolution,
@@ -21,11 +21,11 @@ pub(crate) struct Shot {
 }
 
 impl Shot {
-    /// Returns whether tracing takes about as long as for `other`.
+    /// Returns whether tracing this shot probably takes about as long as tracing `other`.
     ///
-    /// Only the camera or the lights may differ.
+    /// This holds if the shots differ only in the camera or the lights.
     pub(super) fn takes_as_long_as(&self, other: &Self) -> bool {
-        // The cost of a view changes gradually with the camera, that of another scene or size at once.
+        // The cost changes gradually with the camera, but abruptly with the scene, the size or the maps.
         let about = |shot: &Self| (shot.scene, shot.resolution, shot.layout);
         about(self) == about(other)
     }
@@ -37,9 +37,9 @@ pub(crate) struct Job {
     pub(crate) scene: Scene,
     pub(crate) shot: Shot,
     pub(crate) sampling: Sampling,
-    /// Whether to refine the last frame, which has the same shot, if that is possible.
+    /// Whether to add samples to the last frame, which has the same shot, instead of tracing anew.
     ///
-    /// Such a job may be cancelled.
+    /// Only such a job may be cancelled.
     pub(crate) refines: bool,
 }
 
@@ -48,17 +48,18 @@ pub(crate) struct Frame {
     pub(crate) scene: Scene,
     pub(crate) shot: Shot,
     pub(crate) picture: Picture,
-    /// The pictures that it was combined from, if they can be combined in another way.
-    // Empty for one map and for two side by side, to save their memory.
+    /// The two maps that `picture` is combined from in a wipe, so that moving the line traces
+    /// nothing.
+    // Empty for one map and for two side by side, to save memory.
     pub(crate) parts: Vec<Picture>,
     pub(crate) sampling: Sampling,
     /// The legends of the maps, from left to right; empty where the picture shows light.
     pub(crate) legends: Vec<String>,
-    /// Whether it shows the same as the frame before, with more samples.
+    /// Whether this frame has the same shot as the frame before, with more samples.
     pub(crate) refines: bool,
-    /// The cost of tracing, without that of the frame that it refines.
+    /// The cost of tracing, without the cost of the frame that this frame refines.
     pub(crate) cost: Cost,
-    /// The time that tracing took on the clock.
+    /// The wall-clock time that tracing took.
     pub(crate) trace: Duration,
 }
 
@@ -73,10 +74,11 @@ impl Frame {
         self.shot.resolution
     }
 
-    /// Returns the size of the picture that contains a pixel, and the pixel's coordinates there.
+    /// Returns the size of the map that contains pixel `[x, y]` of the picture, and the pixel's
+    /// coordinates in it.
     ///
-    /// Of two maps side by side, each is a picture of its own. (A pixel of the line between them counts as the last one
-    /// of the left map.)
+    /// Two maps side by side have a size each. (A pixel of the line between them counts as the last one in its row of
+    /// the left map.)
     pub(super) fn part_at(&self, [x, y]: [u32; 2]) -> (Resolution, [u32; 2]) {
         let resolution = self.resolution();
         match *self.shot.layout.parts(resolution) {
@@ -88,9 +90,9 @@ impl Frame {
         }
     }
 
-    /// Moves the line between two maps, if there is one, to this share of the width.
+    /// Moves the line between two maps of a wipe, if there is one, to this share of the width.
     pub(super) fn wipe(&mut self, share: f32) {
-        // From the parts, which are kept for this: nothing is traced.
+        // The picture is combined from the kept maps again, and nothing is traced.
         if let Some(picture) = self.shot.layout.combined(&self.parts, share) {
             self.picture = picture;
         }

@@ -1,4 +1,4 @@
-//! Commands for the held light.
+//! Commands that take hold of a light, move it and release it.
 
 use super::Viewer;
 use super::light_marker::LightMarker;
@@ -9,23 +9,22 @@ use crate::light::Light;
 use glam::{Vec2, Vec3};
 
 /// Distance that a key press moves the light, as a share of the picture's height.
-// 32 presses cross the picture, or 8 with Shift.
+// 32 presses move the light across the picture, or 8 with Shift.
 const LIGHT_STEP: f32 = 1.0 / 32.0;
-/// Factor of that distance with Shift.
+/// Factor by which Shift multiplies [`LIGHT_STEP`].
 const LIGHT_SHIFT_FACTOR: f32 = 4.0;
 
 impl Viewer {
-    /// Takes hold of the light nearest to the pointer on the screen.
-    ///
-    /// If one is held, takes the next one.
+    /// Takes hold of the light nearest to the pointer on the screen, or of the next one if a light
+    /// is held.
     pub(super) fn take_light(&mut self) {
-        let (camera, aspect_ratio) = (self.eye.camera(), self.part().aspect_ratio());
-        // Without a mouse event so far, the middle of the screen.
+        let (camera, aspect_ratio) = (self.eye.camera(), self.map_resolution().aspect_ratio());
+        // Before the first mouse event, the middle of the screen counts as the pointer.
         let pointer = self.pointer.at().unwrap_or(Vec2::splat(0.5));
-        let nearest = |lights: &[Light]| nearest(lights, &camera?, pointer, aspect_ratio);
+        let nearest = |lights: &[Light]| nearest_light(lights, &camera?, pointer, aspect_ratio);
         let taken = self.scenes.lights_mut().and_then(|lights| {
             let light = lights.take_next(nearest)?;
-            Some((light, lights.all().len(), lights.held()))
+            Some((light, lights.all().len(), lights.held_position()))
         });
         let Some((light, count, at)) = taken else {
             self.show_note("this scene has no movable light");
@@ -44,11 +43,11 @@ impl Viewer {
     }
 
     fn held_light(&self) -> Option<Vec3> {
-        self.scenes.lights()?.held()
+        self.scenes.lights()?.held_position()
     }
 
-    /// Releases the held light. Returns whether there was one.
-    pub(super) fn leave_light(&mut self) -> bool {
+    /// Releases the held light. Returns whether a light was held.
+    pub(super) fn release_light(&mut self) -> bool {
         let was_held = self.scenes.lights_mut().is_some_and(Lights::release);
         self.mark_light();
         was_held
@@ -58,7 +57,7 @@ impl Viewer {
         self.held_light().is_some()
     }
 
-    /// Moves the light by one step in a direction of the screen.
+    /// Moves the held light by one step in a direction of the screen.
     pub(super) fn step_light(&mut self, toward: Toward, faster: bool) {
         let (across, down) = match toward {
             Toward::Left => (-1.0, 0.0),
@@ -67,26 +66,27 @@ impl Viewer {
             Toward::Down => (0.0, 1.0),
         };
         let step = if faster { LIGHT_SHIFT_FACTOR * LIGHT_STEP } else { LIGHT_STEP };
-        // The step is a share of the height; the width counts in its own shares.
-        self.drag_light(step * Vec2::new(across / self.part().aspect_ratio(), down));
+        // The step is a share of the picture's height, but `drag_light` counts horizontally in shares of its width.
+        self.drag_light(step * Vec2::new(across / self.map_resolution().aspect_ratio(), down));
     }
 
-    /// Moves the light to the right and down by shares of the picture's width and height, at
-    /// constant depth.
+    /// Moves the held light right and down by shares of the picture's width and height, at constant
+    /// depth.
     pub(super) fn drag_light(&mut self, by: Vec2) {
-        let aspect_ratio = self.part().aspect_ratio();
+        let aspect_ratio = self.map_resolution().aspect_ratio();
         self.move_light(|camera, from| camera.point_dragged(from, by, aspect_ratio));
     }
 
-    /// Moves the light away from the eye by notches of the wheel.
+    /// Moves the held light away from the eye by notches of the mouse wheel; negative notches move
+    /// it nearer.
     pub(super) fn wheel_light(&mut self, notches: f32) {
         self.move_light(|camera, from| camera.point_wheeled(from, notches));
     }
 
-    /// Returns the light to its position in the scene file.
+    /// Moves the held light back to its position in the scene file.
     pub(super) fn put_light_back(&mut self) {
         if let Some(lights) = self.scenes.lights_mut()
-            && let Some(home) = lights.home()
+            && let Some(home) = lights.written_position()
         {
             lights.move_held(home);
         }
@@ -95,17 +95,17 @@ impl Viewer {
     fn move_light(&mut self, to: impl FnOnce(&Camera, Vec3) -> Vec3) {
         if let Some(camera) = self.eye.camera()
             && let Some(lights) = self.scenes.lights_mut()
-            && let Some(from) = lights.held()
+            && let Some(from) = lights.held_position()
         {
             lights.move_held(to(&camera, from));
         }
     }
 }
 
-/// Returns the light in front of the eye nearest to the pointer on the screen.
+/// Returns the index of the light that is nearest to the pointer on the screen.
 ///
-/// Without one in front, returns the first light.
-fn nearest(lights: &[Light], camera: &Camera, pointer: Vec2, aspect_ratio: f32) -> Option<usize> {
+/// Lights behind the eye count as infinitely far from it, and lights at infinity are left out.
+fn nearest_light(lights: &[Light], camera: &Camera, pointer: Vec2, aspect_ratio: f32) -> Option<usize> {
     let away = |position: Vec3| {
         let place = camera.project(position, aspect_ratio);
         place.map_or(f32::INFINITY, |place| ((place - pointer) * Vec2::new(aspect_ratio, 1.0)).length())

@@ -1,4 +1,4 @@
-//! A marker over the picture at the position of the held light, which itself is invisible.
+//! A marker over the picture at the position of the held light, since point lights are invisible.
 
 use super::frame::Frame;
 use super::layers::{Canvas, Layer, Level};
@@ -8,7 +8,7 @@ use glam::Vec3;
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
 
-/// The marker of a light at this position in the scene.
+/// The marker of a light at this position in world space.
 #[derive(PartialEq)]
 pub(super) struct LightMarker(pub(super) Vec3);
 
@@ -29,23 +29,23 @@ impl Layer for LightMarker {
     }
 }
 
-/// Returns the cells of a light's marker on the screen, or `None` if the light is behind the eye.
+/// Returns the area of a light's marker on the screen, or `None` if the light is behind the eye.
 ///
-/// Of two pictures side by side, the left one has it.
+/// With two maps side by side, the marker is on the left one.
 fn marker_area(light: Vec3, frame: &Frame, screen: Rect) -> Option<Rect> {
     let (part, _) = frame.part_at([0, 0]);
     let place = frame.camera().project(light, part.aspect_ratio())?;
     let columns = f32::from(screen.width) * part.width() as f32 / frame.resolution().width() as f32;
-    Some(area(screen, place.x * columns, place.y * f32::from(screen.height)))
+    Some(centred_area(screen, place.x * columns, place.y * f32::from(screen.height)))
 }
 
-// ASCII, so that every terminal can show it.
+// The marker is ASCII, so that every terminal can show it.
 const MARKER: &str = "(*)";
 const MARKER_WIDTH: u16 = MARKER.len() as u16;
 
-/// Returns the cells of a marker centred at a column and row, moved to the screen's edge if they
-/// are outside.
-fn area(screen: Rect, column: f32, row: f32) -> Rect {
+/// Returns the area of a marker centred at a column and row, moved onto the screen if it would be
+/// outside.
+fn centred_area(screen: Rect, column: f32, row: f32) -> Rect {
     let within = |at: f32, size: u16, of: u16| at.clamp(0.0, f32::from(of.saturating_sub(size))) as u16;
     let x = within(column.floor() - f32::from(MARKER_WIDTH / 2), MARKER_WIDTH, screen.width);
     Rect { x, y: within(row, 1, screen.height), width: MARKER_WIDTH, height: 1 }.intersection(screen)

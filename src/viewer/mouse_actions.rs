@@ -9,14 +9,15 @@ use crate::input::Input;
 use crossterm::event::{Event, MouseEvent, MouseEventKind};
 use glam::{Vec2, Vec3};
 
-/// Distance in columns within which a press takes hold of the line between two maps.
-// The line is one column wide, which is hard to hit with a pointer that moves by whole cells.
+/// Greatest distance in columns from the line between two maps at which a press takes hold of the
+/// line.
+// The line itself is one column wide, which is hard to hit with a pointer that moves by whole cells.
 const WIPE_GRAB_COLUMNS: f32 = 2.0;
 
-/// Returns whether `next` supersedes `input`.
+/// Returns whether `input` need not be handled because `next` continues the same drag.
 ///
-/// Of consecutive motions of one drag that arrive together, only the last position matters.
-// Each motion would otherwise trace a frame, and on a slow link the picture would lag behind the pointer.
+/// Of consecutive motions of a drag that arrive together, only the last position matters.
+// Otherwise each motion would trace a frame, and on a slow link the picture would lag behind the pointer.
 pub(super) fn is_superseded(input: &Input, next: Option<&Input>) -> bool {
     let way = |input: &Input| match input {
         Input::Event(Event::Mouse(MouseEvent { kind: kind @ MouseEventKind::Drag(_), .. })) => Some(*kind),
@@ -44,29 +45,28 @@ impl Viewer {
             Gesture::DoubleClick if self.pointer.drag_target() == DragTarget::View => {
                 self.execute(Command::FrameAll, false);
             }
-            // A second click on a thing is a click on it, not a command for the view.
+            // A double click on the line, a light or the cursor counts as two clicks, and does not change the view.
             Gesture::DoubleClick => self.drag(at, at, Grip::Turn),
             Gesture::Wheel { at, notches } => self.wheel(at, notches),
         }
     }
 
-    /// Returns the event's position as shares of the screen's width and height.
-    ///
-    /// This is the middle of its cell or pixel.
+    /// Returns the event's position as shares of the screen's width and height, from the upper
+    /// left.
     fn screen_position(&self, event: MouseEvent) -> Vec2 {
         let (width, height) = self.display.mouse_pixels().unwrap_or((1, 1));
         let size = self.size();
         let screen = Vec2::new(f32::from(width) * f32::from(size.columns), f32::from(height) * f32::from(size.rows));
-        // The middle of the cell or pixel, as no position within it is known.
+        // The position within the cell or pixel is unknown, so its middle is used.
         let at = Vec2::new(f32::from(event.column), f32::from(event.row)) + 0.5;
         (at / screen).clamp(Vec2::ZERO, Vec2::ONE)
     }
 
-    /// Returns the thing under the pointer.
+    /// Returns what a drag that starts at this position with this grip moves.
     fn drag_target_at(&self, at: Vec2, grip: Grip, modes: &[KeyMode]) -> DragTarget {
         let beside = (at.x - self.screen.wipe()).abs() * f32::from(self.size().columns);
-        // The line first: it is the smallest target, and cannot be reached otherwise. Panning never hits a thing, so
-        // that the view can be shifted whatever is under the pointer.
+        // The line comes first, because it is the smallest target and no other way of dragging reaches it. A pan always
+        // moves the view, so that the view can be shifted whatever is under the pointer.
         match grip {
             Grip::Turn if self.layout.is_wipe() && beside <= WIPE_GRAB_COLUMNS => DragTarget::Line,
             Grip::Turn if modes.contains(&KeyMode::Light) => DragTarget::Light,
@@ -79,13 +79,13 @@ impl Viewer {
         match self.pointer.drag_target() {
             DragTarget::Line => self.wipe_to(to.x),
             DragTarget::Cursor => {
-                let pixel = self.pixel(to);
+                let pixel = self.pixel_at(to);
                 self.screen.explain(|panel, frame| panel.move_to(frame, pixel));
             }
-            DragTarget::Light => self.drag_light(self.to_part(to - from)),
+            DragTarget::Light => self.drag_light(self.to_map_shares(to - from)),
             DragTarget::View if from == to => {}
             DragTarget::View => {
-                let (by, aspect_ratio) = (self.to_part(to - from), self.part().aspect_ratio());
+                let (by, aspect_ratio) = (self.to_map_shares(to - from), self.map_resolution().aspect_ratio());
                 let mode = self.eye.mode();
                 let drag = |camera: &_, _| control::dragged(camera, mode, grip, by, aspect_ratio);
                 self.eye.change(self.now, drag);
@@ -94,7 +94,7 @@ impl Viewer {
     }
 
     fn wheel(&mut self, at: Vec2, notches: f32) {
-        // The wheel then moves the light in depth, which a drag cannot.
+        // While a light is held, the wheel moves the light in depth, which a drag cannot do.
         if self.holds_light() {
             self.wheel_light(notches);
             return;
@@ -105,28 +105,29 @@ impl Viewer {
         self.eye.change(self.now, wheel);
     }
 
-    /// Converts a way on the screen to parts of one picture's width and height.
-    fn to_part(&self, way: Vec2) -> Vec2 {
-        way * Vec2::new(self.resolution().width() as f32 / self.part().width() as f32, 1.0)
+    /// Converts a displacement in shares of the screen to shares of one map's width and height.
+    fn to_map_shares(&self, displacement: Vec2) -> Vec2 {
+        displacement * Vec2::new(self.resolution().width() as f32 / self.map_resolution().width() as f32, 1.0)
     }
 
-    /// Returns the pixel of the picture at a position.
-    fn pixel(&self, at: Vec2) -> [u32; 2] {
+    /// Returns the pixel of the picture at a position in shares of the screen.
+    fn pixel_at(&self, at: Vec2) -> [u32; 2] {
         let resolution = self.resolution();
         [(at.x * resolution.width() as f32) as u32, (at.y * resolution.height() as f32) as u32]
     }
 
-    /// Returns the point of the scene seen at a position.
+    /// Returns the surface point that is seen at a position in shares of the screen, or `None`
+    /// without a frame.
     ///
-    /// Where nothing is hit, returns a point as far away as the target.
+    /// If nothing is hit there, returns a point as far away as the target.
     fn scene_point_at(&self, at: Vec2) -> Option<Vec3> {
         let (frame, camera) = (self.screen.frame()?, self.eye.camera()?);
-        let (part, [x, y]) = frame.part_at(self.pixel(at));
+        let (part, [x, y]) = frame.part_at(self.pixel_at(at));
         let share = |at: u32, of: u32| (at as f32 + 0.5) / of.max(1) as f32;
         let rays = camera.eye_rays(part.aspect_ratio());
         let ray = rays.through(share(x, part.width()), 1.0 - share(y, part.height()));
         let pose = camera.pose();
-        // Along -w, t is the depth.
+        // The ray's direction has the component 1 along -w, so t is the depth.
         let t = closest_hit(&frame.scene, &ray).map_or(pose.eye.distance(pose.target), |hit| hit.t);
         Some(ray.at(t))
     }

@@ -11,25 +11,25 @@ use std::path::PathBuf;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Options {
-    /// The user's choices for the terminal, and what the environment says about it.
+    /// The user's choices for the terminal, and the environment variables about it.
     #[doc(hidden)]
     pub hints: Hints,
     /// The order in which changed cells are sent.
     ///
-    /// `None` chooses raster order, which takes the least time, and order by colour, which takes the fewest bytes,
-    /// while the link is slow.
+    /// `None`: raster order, which takes the least time, or while the link is slow order by colour, which takes the
+    /// fewest bytes.
     pub order: Option<Order>,
-    /// The fidelity of a moving picture.
+    /// How exactly the colours of a moving picture are sent.
     ///
-    /// `None` chooses `Exact`, and `Equal` while the link is slow.
+    /// `None`: `Exact`, or while the link is slow `Equal`.
     pub quality: Option<Quality>,
-    /// Limit on the average number of bytes per second. `None`: as many as the link takes.
+    /// Limit on the average number of bytes sent per second. `None`: as many as the link takes.
     pub max_rate: Option<u32>,
     /// Limit on the frames per second, greater than 0. `None`: 60.
     pub max_frames: Option<f32>,
-    /// The sampling.
+    /// The sampling of all pictures.
     ///
-    /// `None`: in motion as many samples as time allows, at rest up to [`Sampling::BEST`].
+    /// `None`: in motion as many samples as fit the time of a frame, at rest up to [`Sampling::BEST`].
     pub sampling: Option<Sampling>,
     /// The number of tracing threads. `None`: one per core.
     pub threads: Option<usize>,
@@ -39,18 +39,18 @@ pub struct Options {
     /// Whether motion is reduced: each key press moves one step at once, and nothing glides or
     /// moves by itself.
     pub reduced_motion: bool,
-    /// The folder for exports. `None`: the user may not export.
+    /// The folder that exported pictures are written to. `None`: the user may not export.
     pub exports: Option<PathBuf>,
-    /// A note in the lowest row until the first key.
+    /// A note that is shown in the lowest row until the first key press.
     pub welcome: Option<String>,
     /// The first map to show.
     pub map: Map,
-    /// The key keymap.
+    /// The commands that keys are bound to.
     #[doc(hidden)]
     pub keymap: Keymap,
 }
 
-/// Returns the defaults for this terminal and machine.
+/// The defaults, without any hints about the terminal.
 impl Default for Options {
     fn default() -> Self {
         Self::new(Hints::default())
@@ -58,7 +58,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Returns options for a terminal described by `hints`, on a link without compression.
+    /// Returns the default options for a terminal described by `hints`.
     #[doc(hidden)]
     pub fn new(hints: Hints) -> Self {
         Self {

@@ -1,23 +1,23 @@
-//! The mouse pointer and the thing that it drags.
+//! The mouse pointer, and what it drags.
 
 use crate::control::{Gesture, Pointer};
 use crossterm::event::MouseEvent;
 use glam::Vec2;
 use std::time::Duration;
 
-/// The pointer, and the thing under it while a button is held.
+/// The mouse pointer, and what the current or last drag moves.
 #[derive(Default)]
 pub(super) struct PointerState {
     pointer: Pointer,
     target: DragTarget,
 }
 
-/// The thing that is dragged.
+/// The thing that a drag moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum DragTarget {
     #[default]
     View,
-    /// The line between two maps.
+    /// The line between the two maps of a wipe.
     Line,
     /// The cursor of the explanation.
     Cursor,
@@ -25,13 +25,14 @@ pub(super) enum DragTarget {
 }
 
 impl PointerState {
-    /// Returns the meaning of an event at this position of the screen.
+    /// Returns the gesture that a mouse event completes, if any; `at` is in shares of the screen's
+    /// width and height.
     pub(super) fn take(&mut self, event: MouseEvent, at: Vec2, now: Duration) -> Option<Gesture> {
         self.pointer.take(&event, at, now)
     }
 
-    pub(super) fn start_drag(&mut self, thing: DragTarget) {
-        self.target = thing;
+    pub(super) fn start_drag(&mut self, target: DragTarget) {
+        self.target = target;
     }
 
     pub(super) fn drag_target(&self) -> DragTarget {

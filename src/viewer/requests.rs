@@ -1,13 +1,12 @@
-//! Requests that leave the view.
-//!
-//! These are the camera as text, the picture as a file, and a view for the scene's file. The driver writes them.
+//! Commands that the driver has to carry out: copying the camera, exporting the picture, and saving
+//! a view to the file.
 
 use super::dialog::{Answer, Dialog};
 use super::{Request, Viewer};
 use crate::control::Command;
 
 impl Viewer {
-    /// Requests to copy the camera as a line of a scene file.
+    /// Requests that the camera is copied to the clipboard, as a line of a scene file.
     pub(super) fn copy_camera(&mut self) {
         if let Some(camera) = self.eye.camera() {
             self.requests.push_back(Request::Copy(format!("{},", camera.to_ron())));
@@ -15,19 +14,21 @@ impl Viewer {
         }
     }
 
-    /// Asks for the format of an export, if there is a folder for it.
+    /// Opens the question in which format to export the picture, if there are a picture and a
+    /// folder for exports.
     pub(super) fn ask_export(&mut self) {
         if self.options.exports.is_some() && self.screen.frame().is_some() {
             self.screen.open(Dialog::Export);
         }
     }
 
-    /// Asks whether to write the proposed camera into the scene file of this name.
+    /// Opens the question whether to write the proposed camera into the scene file of this name.
     pub(crate) fn ask_to_save_view(&mut self, file: String) {
         self.screen.open(Dialog::SaveToFile(file));
     }
 
-    /// Treats `command` as the answer to an open question. Returns whether there was one.
+    /// Closes the open question and carries out the answer `meant`. Returns whether a question was
+    /// open.
     pub(super) fn take_answer(&mut self, meant: Option<Command>) -> bool {
         let Some(dialog) = self.screen.close::<Dialog>() else { return false };
         match dialog.answer(meant) {

@@ -1,4 +1,4 @@
-//! The shown scene, and the views in which other scenes were left.
+//! The shown scene, and the views in which the user left other scenes.
 
 use super::eye::ViewState;
 use super::lights::Lights;
@@ -6,53 +6,53 @@ use crate::camera::Camera;
 use crate::scene::Scene;
 use std::collections::HashMap;
 
-/// The shown scene and the saved views of the others.
+/// The shown scene, and the view in which the user left each of the other scenes.
 #[derive(Default)]
 pub(super) struct SceneHistory {
     /// `None` without a scene.
     current: Option<Current>,
-    /// The view in which each scene was left, by the scene's number.
+    /// The view in which each scene was left, by the scene's index in the driver's list.
     left: HashMap<usize, ViewState>,
-    /// Number of scenes shown so far.
+    /// Number of scenes shown so far; a scene that is loaded again counts again.
     count: u32,
 }
 
 struct Current {
-    /// The scene's number in the driver's list.
-    of: usize,
+    /// The scene's index in the driver's list.
+    index: usize,
     /// The scene's own camera.
     home: Camera,
     lights: Lights,
 }
 
 impl SceneHistory {
-    /// Shows a scene.
+    /// Makes `scene` the shown one and returns the view that it starts from.
     ///
-    /// Returns the view to start from, or `None` to keep the current one because it is of a scene with the same camera.
-    /// A scene with the same camera as when it was left starts from where it was left.
-    pub(super) fn show(&mut self, scene: Scene, of: usize, orbits: bool) -> Option<ViewState> {
+    /// That is the view in which it was left, if its own camera has not changed since then, and otherwise its initial
+    /// view. `None` keeps the current view: the scene was shown already and is loaded again with the same own camera.
+    pub(super) fn show(&mut self, scene: Scene, index: usize, orbits: bool) -> Option<ViewState> {
         let home = *scene.camera();
-        let before = self.current.as_ref().map(|current| (current.of, current.home));
-        // A reload with the same camera keeps the user's view: only something else in the file was edited. If the
-        // camera was edited, the user wants to see the new one.
-        let view = (before != Some((of, home))).then(|| {
-            // Only if the file's camera is still the same: an edited camera is meant to be seen.
-            let left = self.left.remove(&of).filter(|left| left.home() == home);
+        let before = self.current.as_ref().map(|current| (current.index, current.home));
+        // If a scene is loaded again with the same own camera, something else in its file was edited, and the user's
+        // view is kept. If the camera was edited, the user wants to see the new one.
+        let view = (before != Some((index, home))).then(|| {
+            // A view that was left counts only if the scene's own camera is unchanged, for the same reason.
+            let left = self.left.remove(&index).filter(|left| left.home() == home);
             left.unwrap_or_else(|| ViewState::of(&scene, orbits))
         });
-        self.current = Some(Current { of, home, lights: Lights::of(scene) });
+        self.current = Some(Current { index, home, lights: Lights::of(scene) });
         self.count += 1;
         view
     }
 
     /// Records the view in which a scene is left.
-    pub(super) fn leave(&mut self, of: usize, view: ViewState) {
-        self.left.insert(of, view);
+    pub(super) fn leave(&mut self, index: usize, view: ViewState) {
+        self.left.insert(index, view);
     }
 
-    /// Returns the number of the shown scene in the driver's list.
+    /// Returns the index of the shown scene in the driver's list.
     pub(super) fn shown(&self) -> Option<usize> {
-        self.current.as_ref().map(|current| current.of)
+        self.current.as_ref().map(|current| current.index)
     }
 
     /// Returns the number of scenes shown so far.
@@ -65,7 +65,7 @@ impl SceneHistory {
         self.current.as_ref().map(|current| &current.lights)
     }
 
-    /// Returns the lights of the shown scene, to move them.
+    /// Returns the lights of the shown scene, for moving them.
     pub(super) fn lights_mut(&mut self) -> Option<&mut Lights> {
         self.current.as_mut().map(|current| &mut current.lights)
     }

@@ -1,12 +1,13 @@
-//! The decision when to draw, trace, refine and wait, made in one function from one snapshot of
+//! The decision whether to draw, trace, refine or wait, made by one function from one snapshot of
 //! facts.
 //!
-//! The newest picture wins. A frame of a new view is begun when the last one can be sent; a refinement is cancelled
-//! when its view changes; the shown picture is improved only while it stays. When nothing changes, there is no timer.
+//! The newest picture wins. A frame of a new view is begun only when the frame before can be sent; a refinement is
+//! cancelled when its view changes; the shown picture is improved only while no newer view is traced. When nothing
+//! changes, there is no timer.
 
 use std::time::Duration;
 
-/// The frame in progress.
+/// The kind of frame that is being traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tracing {
     /// A frame of a new view.
@@ -15,23 +16,23 @@ pub(crate) enum Tracing {
     Refinement,
 }
 
-/// The state of the driver's two outputs.
+/// Whether the driver is busy sending bytes or tracing a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct DriverState {
     /// Whether bytes wait for the terminal to accept them.
     pub(crate) sending: bool,
-    /// The frame being traced, if any.
+    /// The kind of frame that is being traced, if any.
     pub(crate) tracing: Option<Tracing>,
 }
 
-/// The relation of the last picture begun to the wanted one.
+/// Whether the last frame begun shows the wanted shot, and whether it can be refined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Picture {
-    /// The wanted picture shows something else.
+pub(super) enum PictureState {
+    /// The wanted shot is another one than that of the last frame begun.
     Stale,
-    /// Both show the same, and the picture can be refined.
+    /// The last frame has the wanted shot and can be refined.
     Refinable,
-    /// The picture is the wanted one and final, or there is nothing to show.
+    /// The last frame has the wanted shot and is final, or there is nothing to show.
     Finished,
 }
 
@@ -39,8 +40,9 @@ pub(super) enum Picture {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Facts {
     pub(super) busy: DriverState,
-    pub(super) picture: Picture,
-    /// Whether nothing has been shown yet and the first picture is expected to be final soon.
+    pub(super) picture: PictureState,
+    /// Whether nothing has been shown yet and the first picture will probably be refined completely
+    /// soon.
     pub(super) holds_first_back: bool,
     /// Time at which the last frame of a new view was begun.
     pub(super) begun: Option<Duration>,
@@ -50,18 +52,19 @@ pub(super) struct Facts {
     pub(super) frame_time: Duration,
     /// Time at which the link takes the next bytes.
     pub(super) link_free_at: Duration,
-    /// Whether the screen differs from the wanted grid.
+    /// Whether the content of the screen has changed since it was drawn last.
     pub(super) is_changed: bool,
-    /// Time at which the shown colours can be made exact, if they are not.
+    /// Time from which a frame may replace approximate colours on the screen by exact ones; `None`
+    /// if all are exact.
     pub(super) improvable_at: Option<Duration>,
 }
 
-/// The next action.
+/// The action to take next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Action {
     /// Cancel the refinement of a view that has changed.
     GiveUp,
-    /// Bring the screen up to date.
+    /// Draw the content of the screen.
     Draw,
     /// Begin a frame of the new view.
     Trace,
@@ -71,38 +74,38 @@ pub(super) enum Action {
     Wait(Option<Duration>),
 }
 
-/// Decides what to do at `now`, up to which a moving eye has been moved.
+/// Returns the action to take at `now`, up to which the motion of the eye has been carried out.
 ///
-/// Never returns a time that has passed: the driver would spin.
+/// Never waits until a time that has passed, because the driver would spin.
 pub(super) fn decide(facts: &Facts, now: Duration) -> Action {
     let Facts { busy, picture, .. } = *facts;
-    // First of all, because the tracing thread stays busy with the old view until the job is cancelled. A frame of a
-    // new view is never cancelled: while the view keeps changing, no frame would ever be finished.
-    if picture == Picture::Stale && busy.tracing == Some(Tracing::Refinement) {
+    // Cancelling comes first, because the tracing thread stays busy with the old view until its job is cancelled. A
+    // frame of a new view is never cancelled: while the view keeps changing, no frame would ever be finished.
+    if picture == PictureState::Stale && busy.tracing == Some(Tracing::Refinement) {
         return Action::GiveUp;
     }
     let (draw_at, frame_at) = (facts.draw_at(), facts.frame_at());
-    // A finished frame goes before the next one, so that its bytes travel while that is traced.
+    // A finished frame is drawn before the next one is begun, so that its bytes are sent while the next one is traced.
     if !busy.sending && draw_at.is_some_and(|at| at <= now) {
         return Action::Draw;
     }
-    // Nothing is traced that cannot be sent: by the time it could, a newer view would be wanted.
+    // No frame is begun while the last one is being sent: by the time it could be sent, a newer view would be wanted.
     if !busy.sending && busy.tracing.is_none() && frame_at <= now {
         match picture {
-            Picture::Stale => return Action::Trace,
-            Picture::Refinable => return Action::Refine,
-            Picture::Finished => {}
+            PictureState::Stale => return Action::Trace,
+            PictureState::Refinable => return Action::Refine,
+            PictureState::Finished => {}
         }
     }
     Action::Wait(facts.wake_at(draw_at, frame_at))
 }
 
 impl Facts {
-    /// Returns whether to hold back the first picture because it is nearly final.
+    /// Returns whether to hold back the first picture until it is refined.
     ///
-    /// To draw a first version and then the final one would take longer than to draw the final one at once.
+    /// Drawing the picture twice would take longer than drawing the final one at once.
     fn perfects_first(&self) -> bool {
-        self.holds_first_back && self.picture == Picture::Refinable && self.moved_until.is_none()
+        self.holds_first_back && self.picture == PictureState::Refinable && self.moved_until.is_none()
     }
 
     /// Returns the earliest time to draw if no event occurs before.
@@ -112,9 +115,10 @@ impl Facts {
         if self.perfects_first() {
             return None;
         }
-        // On a link of 50 KB/s and 200 ms, improvements that did not wait for newer frames took every other frame's
-        // place: a key was visible after 330 ms instead of 291 ms in the median.
-        let lasts = self.picture != Picture::Stale && self.busy.tracing != Some(Tracing::NewView);
+        // The shown picture lasts if no newer view is wanted or being traced. On a link of 50 KB/s and 200 ms,
+        // improvements that did not wait for that took the place of every other frame: the effect of a key was visible
+        // after 330 ms instead of 291 ms in the median.
+        let lasts = self.picture != PictureState::Stale && self.busy.tracing != Some(Tracing::NewView);
         let at = if self.is_changed { Some(Duration::ZERO) } else { self.improvable_at.filter(|_| lasts) };
         at.map(|at| at.max(self.link_free_at))
     }
@@ -125,9 +129,9 @@ impl Facts {
             return Duration::ZERO;
         }
         let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + self.frame_time);
-        // A view that changed by a key or the mouse is due a frame time after the last one was begun. One that moves by
-        // itself also waits until it has moved for a frame time, or the loop would spin.
-        let at = if self.picture == Picture::Stale {
+        // If the view has changed, its frame is due a frame time after the last one was begun. If the eye is moving,
+        // its next step also waits for a further frame time of motion, or the loop would spin.
+        let at = if self.picture == PictureState::Stale {
             next(self.begun)
         } else {
             next(self.moved_until).max(next(self.begun))
@@ -135,15 +139,15 @@ impl Facts {
         at.max(self.link_free_at)
     }
 
-    /// Returns the time until which there is nothing to do.
+    /// Returns the time until which there is nothing to do, for the driver's timer.
     ///
-    /// `None` when nothing moves and the picture is final, or while the terminal accepts bytes, whose end the driver
-    /// notices.
+    /// `None` if nothing moves and the picture is final, or while bytes are being sent, because the driver notices when
+    /// all are sent.
     fn wake_at(&self, draw_at: Option<Duration>, frame_at: Duration) -> Option<Duration> {
         let DriverState { sending, tracing } = self.busy;
-        let moves = self.picture == Picture::Stale || self.moved_until.is_some();
-        let can_refine = self.picture == Picture::Refinable;
-        // A new view in progress ends by itself and wakes the driver; nothing needs a timer until then.
+        let moves = self.picture == PictureState::Stale || self.moved_until.is_some();
+        let can_refine = self.picture == PictureState::Refinable;
+        // While a frame of a new view is traced no timer is needed, because its end wakes the driver.
         let lacks_frame = moves && tracing != Some(Tracing::NewView) || tracing.is_none() && can_refine;
         [lacks_frame.then_some(frame_at), draw_at].into_iter().flatten().filter(|_| !sending).min()
     }

@@ -1,20 +1,21 @@
-//! Commands that move the dividing line between two pictures side by side.
+//! Commands that move the line between the two maps of a wipe.
 
 use super::Viewer;
 use crate::control::Side;
 
 /// Distance that a key press moves the line, as a share of the width.
-// A repeated key crosses the picture in about a second.
+// A held key, which repeats, moves the line across the picture in about a second.
 const WIPE_STEP: f32 = 1.0 / 32.0;
 
 impl Viewer {
-    /// Moves the line between two maps, if there is one. Nothing is traced for it.
+    /// Moves the line of a wipe by a step to this side.
     pub(super) fn move_wipe(&mut self, side: Side) {
         let step = if side == Side::Left { -WIPE_STEP } else { WIPE_STEP };
         self.wipe_to(self.screen.wipe() + step);
     }
 
-    /// Moves that line to a share of the width.
+    /// Moves the line of a wipe to this share of the picture's width; does nothing in other
+    /// layouts.
     pub(super) fn wipe_to(&mut self, share: f32) {
         if self.layout.is_wipe() {
             self.screen.wipe_to(share);

@@ -6,10 +6,10 @@ const NOW: Duration = Duration::from_secs(10);
 const LATER: Duration = Duration::from_secs(11);
 const FRAME: Duration = Duration::from_millis(16);
 
-/// Returns the facts at rest: nothing moves, and the screen is up to date.
+/// Facts at rest: nothing moves, and the screen is up to date.
 const AT_REST: Facts = Facts {
     busy: DriverState { sending: false, tracing: None },
-    picture: Picture::Finished,
+    picture: PictureState::Finished,
     holds_first_back: false,
     begun: Some(Duration::from_secs(1)),
     moved_until: None,
@@ -30,11 +30,11 @@ fn at_rest_nothing_is_waited_for() {
 
 #[test]
 fn the_newest_picture_wins() {
-    let stale = Facts { picture: Picture::Stale, ..AT_REST };
+    let stale = Facts { picture: PictureState::Stale, ..AT_REST };
     assert_eq!(decide(&stale, NOW), Action::Trace);
     let refining = Facts { busy: tracing(Tracing::Refinement), ..stale };
     assert_eq!(decide(&refining, NOW), Action::GiveUp);
-    // A frame in progress is shown first, however old it is by then.
+    // A frame of a view that is no longer wanted is nevertheless finished and drawn before the next one is begun.
     let behind = Facts { busy: tracing(Tracing::NewView), ..stale };
     assert_eq!(decide(&behind, NOW), Action::Wait(None));
     assert_eq!(decide(&Facts { is_changed: true, ..behind }, NOW), Action::Draw);
@@ -42,7 +42,7 @@ fn the_newest_picture_wins() {
 
 #[test]
 fn frames_keep_their_distance() {
-    let stale = Facts { picture: Picture::Stale, begun: Some(NOW), ..AT_REST };
+    let stale = Facts { picture: PictureState::Stale, begun: Some(NOW), ..AT_REST };
     assert_eq!(decide(&stale, NOW), Action::Wait(Some(NOW + FRAME)));
     let moving = Facts { moved_until: Some(NOW), ..AT_REST };
     assert_eq!(decide(&moving, NOW), Action::Wait(Some(NOW + FRAME)));
@@ -53,7 +53,7 @@ fn frames_keep_their_distance() {
 
 #[test]
 fn nothing_is_drawn_or_begun_that_cannot_be_sent() {
-    for picture in [Picture::Stale, Picture::Refinable] {
+    for picture in [PictureState::Stale, PictureState::Refinable] {
         let busy = DriverState { sending: true, tracing: None };
         let facts = Facts { busy, picture, is_changed: true, improvable_at: Some(Duration::ZERO), ..AT_REST };
         assert_eq!(decide(&facts, NOW), Action::Wait(None), "the driver knows when all is sent");
@@ -73,12 +73,12 @@ fn what_is_shown_is_made_better_only_while_it_lasts() {
 
 #[test]
 fn the_first_picture_is_held_back_only_for_a_refinement_that_soon_ends() {
-    let first = Facts { picture: Picture::Refinable, holds_first_back: true, is_changed: true, ..AT_REST };
+    let first = Facts { picture: PictureState::Refinable, holds_first_back: true, is_changed: true, ..AT_REST };
     assert_eq!(decide(&first, NOW), Action::Refine);
     let refining = Facts { busy: tracing(Tracing::Refinement), ..first };
     assert_eq!(decide(&refining, NOW), Action::Wait(None));
     assert_eq!(decide(&Facts { holds_first_back: false, ..first }, NOW), Action::Draw);
-    assert_eq!(decide(&Facts { picture: Picture::Finished, ..first }, NOW), Action::Draw);
+    assert_eq!(decide(&Facts { picture: PictureState::Finished, ..first }, NOW), Action::Draw);
 }
 
 fn time() -> impl Strategy<Value = Duration> {
@@ -90,8 +90,8 @@ fn busy() -> impl Strategy<Value = DriverState> {
     (any::<bool>(), tracing).prop_map(|(sending, tracing)| DriverState { sending, tracing })
 }
 
-fn picture() -> impl Strategy<Value = Picture> {
-    prop_oneof![Just(Picture::Stale), Just(Picture::Refinable), Just(Picture::Finished)]
+fn picture() -> impl Strategy<Value = PictureState> {
+    prop_oneof![Just(PictureState::Stale), Just(PictureState::Refinable), Just(PictureState::Finished)]
 }
 
 prop_compose! {
@@ -129,11 +129,12 @@ proptest! {
         }
     }
 
-    /// The final picture is reached by the ends of frames and sends alone.
+    /// Unless frames or bytes are in progress, whose ends wake the driver, a timer runs while work
+    /// is left.
     #[test]
     fn no_work_is_forgotten(facts in facts()) {
         let is_idle = facts.busy == DriverState::default();
-        let has_work = facts.is_changed || facts.picture != Picture::Finished || facts.moved_until.is_some();
+        let has_work = facts.is_changed || facts.picture != PictureState::Finished || facts.moved_until.is_some();
         if is_idle && has_work {
             prop_assert_ne!(decide(&facts, NOW), Action::Wait(None));
         }
