@@ -1,4 +1,5 @@
-//! Bookkeeping of the frames begun and bytes sent, from which sampling and byte limits follow.
+//! Record of the frames begun and bytes sent, which determines the next frame's sampling and byte
+//! limit.
 
 use super::frame::{Frame, Shot};
 use super::options::Options;
@@ -7,19 +8,19 @@ use crate::pace::{Limit, Link};
 use crate::render::Sampling;
 use std::time::Duration;
 
-/// The link, and the use of a frame's time.
+/// The congestion control of the link, the quality control of the sampling, and the last frame
+/// begun.
 pub(super) struct Pacing {
     link: Link,
     quality: QualityControl,
-    /// The last frame of a new view.
+    /// The last frame that was begun for a new view, as opposed to a refinement.
     begun: Option<Begun>,
 }
 
 struct Begun {
     shot: Shot,
     at: Duration,
-    /// Whether the view was in motion at that time, so that the next frame was expected to be of
-    /// another view.
+    /// Whether the view was in motion when the frame was begun.
     in_motion: bool,
 }
 
@@ -42,31 +43,30 @@ impl Pacing {
     /// Records that a frame of a new view is begun, and returns its sampling.
     pub(super) fn begin(&mut self, shot: Shot, in_motion: bool, now: Duration) -> Sampling {
         let before = self.begun.replace(Begun { shot, at: now, in_motion });
-        // A ratio of times is learnt from two consecutive pictures, which must differ in their level alone.
+        // The quality control compares the times of consecutive frames, which is valid only if their shots cost alike.
         if before.as_ref().is_some_and(|before| !shot.takes_as_long_as(&before.shot)) {
             self.quality.forget_last();
         }
-        // On a slow link the next frame begins when a reply arrives, so that tracing takes time from the link: of 50
-        // KB/s, 81 to 84 % were used with as many samples as time allows, and 84.5 to 85.2 % with one.
+        // On a slow link a frame begins when a reply arrives, and the link is idle while it is traced, so it gets few
+        // samples: of 50 KB/s, 81 to 84 % were used with as many samples as time allows, and 84.5 to 85.2 % with one.
         self.quality.for_new_view(before.is_some_and(|before| before.in_motion) && !self.link.is_slow())
     }
 
-    /// Returns the sampling of the next refinement of a picture with this sampling.
-    ///
-    /// `None` at the end.
+    /// Returns the sampling of the next refinement of a picture with this sampling, or `None` if it
+    /// is final.
     pub(super) fn next_refinement(&self, sampling: Sampling) -> Option<Sampling> {
         self.quality.next_refinement(sampling)
     }
 
-    /// Returns whether all further refinements of the last picture are expected to take at most
-    /// this long together.
+    /// Returns whether the refinements of the last picture are expected to take at most `time` in
+    /// total.
     pub(super) fn ends_within(&self, time: Duration) -> bool {
         self.quality.ends_within(time)
     }
 
     /// Records a finished frame.
     pub(super) fn record_frame(&mut self, frame: &Frame) {
-        // A refinement continues from the samples that are there; its time says little about a new picture.
+        // A refinement reuses the samples of the frame before, so its time says little about that of a new picture.
         if !frame.refines {
             self.quality.record_time(frame.sampling, frame.trace, self.link.frame_time());
         }
@@ -82,12 +82,13 @@ impl Pacing {
         self.link.free_at(now)
     }
 
-    /// Returns the limits for a frame sent now; `None` without limits.
+    /// Returns the limits for a frame sent now, or `None` if there are none; `usual_bytes` are
+    /// those of a whole screen.
     pub(super) fn limit(&mut self, usual_bytes: usize, now: Duration) -> Option<Limit> {
         self.link.limit(usual_bytes, now)
     }
 
-    /// Returns a query without a frame if one is due; otherwise no bytes.
+    /// Returns the bytes of a query without a frame if such a query is due; otherwise no bytes.
     pub(super) fn probe(&mut self, now: Duration) -> Vec<u8> {
         self.link.probe(now)
     }
@@ -97,12 +98,13 @@ impl Pacing {
         self.link.send(frame, now);
     }
 
-    /// Records a reply to the query that every terminal answers.
+    /// Records a reply to DA1, the query that every terminal answers.
     pub(super) fn take_reply(&mut self, now: Duration) {
         self.link.receive_attributes(now);
     }
 
-    /// Records a report of a private mode, and returns whether it answers a frame's query.
+    /// Records a reply to DECRQM, the query of a mode, and returns whether it answers a frame's
+    /// query.
     pub(super) fn take_mode(&mut self, mode: u16, now: Duration) -> bool {
         self.link.receive_mode(mode, now)
     }

@@ -1,16 +1,15 @@
-//! Control of the sampling by the time that frames take.
+//! The choice of the sampling by the time that frames take.
 //!
-//! In motion there are as many samples as fit the time of a frame; at rest a few refinements lead to the final picture.
+//! In motion a frame gets as many samples as fit its time; at rest a few refinements lead to the final picture.
 //!
-//! Pure: the times of frames are passed in.
+//! Pure: it reads no clock, and the times that frames took are passed in.
 
 use crate::render::Sampling;
 use std::num::NonZeroU32;
 use std::time::Duration;
 
 /// The levels of sampling, from the coarsest to the final one.
-// Factors of four, because the error of a mean falls with the square root of the number of samples: each level halves
-// it.
+// Each level has four times the samples of the one before, which halves the error of their mean.
 const LEVELS: [Sampling; 5] = [Sampling::Coarse, up_to(1), up_to(4), up_to(16), Sampling::BEST];
 
 const fn up_to(samples: u32) -> Sampling {
@@ -20,34 +19,38 @@ const fn up_to(samples: u32) -> Sampling {
 /// Index of the level of one sample per pixel.
 const ONE_SAMPLE_LEVEL: usize = 1;
 /// Index of the highest level in motion.
-// The final level, of up to 64 samples, takes several times as long, and is reached at rest in one step anyway.
+// The final level, of up to 64 samples, takes several times as long, and a picture at rest is refined to it in one step
+// anyway.
 const MAX_MOTION_LEVEL: usize = 3;
 /// Initial ratios of each level's time to that of the level before it, until they are measured.
-// A coarse pixel stands for four. The higher levels trace only pixels with edges again, about a third of them.
+// A coarse frame has one ray for four pixels. The levels above one sample trace only pixels with edges again, about a
+// third of all.
 const INITIAL_COST_RATIOS: [f64; MAX_MOTION_LEVEL + 1] = [1.0, 4.0, 2.0, 3.0];
 /// Share of a frame's time that tracing may take.
-// The rest is for cells, bytes and the terminal, which draws on the same cores.
+// The rest is for making cells and bytes, and for the terminal, which draws on the same cores.
 const TRACING_SHARE: f64 = 0.75;
-/// Share of the time for tracing up to which a finer level is tried.
-// Between this and the whole the level stays, so that it does not oscillate: `no_level_flickers` tries all frame times
-// up to 40 ms with a noise of a tenth.
+/// Share of the time for tracing that a finer level may be predicted to take and still be tried.
+// Less than 1, so that the level does not oscillate: a level that takes more is kept but not tried. The test
+// `no_level_flickers` covers all frame times up to 40 ms with a noise of a tenth.
 const FINER_LEVEL_SHARE: f64 = 0.8;
 /// Number of frames in a row that must have room for a finer level before it is tried.
-// An eighth of a second at 60 frames: a wrong attempt costs one late frame, a late attempt goes unnoticed.
+// An eighth of a second at 60 frames per second: a finer level this much later goes unnoticed, but an attempt that
+// fails costs a late frame.
 const FRAMES_BEFORE_FINER: u32 = 8;
 /// Number of late frames in a row before a coarser level is chosen.
 // A single frame may be late because another process had the core, unless it is very late.
 const LATE_FRAMES_BEFORE_COARSER: u32 = 2;
 
-/// The level of sampling of the next picture.
+/// The choice of the next picture's level of sampling, from the times of the pictures before.
 pub(super) struct QualityControl {
-    /// A fixed level.
+    /// The sampling that the user has fixed, if any.
     forced: Option<Sampling>,
-    /// The level of pictures in motion.
+    /// Index of the level of pictures in motion.
     level: usize,
-    /// The level of the last picture, and its time in seconds.
+    /// The level of the last picture, and the seconds that it took.
     last: Option<(usize, f64)>,
-    /// Measured ratio of each level's time to that of the level before it.
+    /// Ratio of each level's time to that of the level before it: initial values, updated by
+    /// measurements.
     cost_ratios: [f64; MAX_MOTION_LEVEL + 1],
     /// Number of pictures in a row with room for a finer level.
     frames_with_room: u32,
@@ -56,7 +59,7 @@ pub(super) struct QualityControl {
 }
 
 impl QualityControl {
-    /// Returns a control by time, or a fixed level if `forced` is given.
+    /// Returns a control that chooses the sampling by time, or always `forced` if given.
     pub(super) fn new(forced: Option<Sampling>) -> Self {
         Self {
             forced,
@@ -68,32 +71,36 @@ impl QualityControl {
         }
     }
 
-    /// Returns the sampling of a new view.
+    /// Returns the sampling of the first picture of a new view.
     ///
-    /// After a rest it is coarser than within a motion, because the user waits for the picture.
+    /// Not `in_motion`, that is after a rest, there is at most one sample per pixel.
     pub(super) fn for_new_view(&self, in_motion: bool) -> Sampling {
-        // After a rest the user waits for this one frame, and it is refined anyway if the view stays.
+        // The user waits for the first frame after a rest, which is refined anyway if the view then stays.
         let level = if in_motion { self.level } else { self.level.min(ONE_SAMPLE_LEVEL) };
         self.forced.unwrap_or(LEVELS[level])
     }
 
-    /// Returns the sampling of the next refinement, or `None` if the picture is final.
+    /// Returns the sampling of the refinement after `shown`, or `None` if the picture is final.
     ///
-    /// A picture and its refinements are at most three frames, and two and a half times the bytes of a whole one: a
-    /// coarse frame takes less than half.
+    /// A picture has at most two refinements. The three frames have at most two and a half times the bytes of one,
+    /// because the first one is then coarse and takes less than half.
     pub(super) fn next_refinement(&self, shown: Sampling) -> Option<Sampling> {
-        // From a coarse picture one step in between: the final level alone would leave it on the screen for long.
+        // A coarse picture gets a refinement in between, because it would stay on the screen for a noticeable time if
+        // the final level, which takes long, came next.
         let next = if shown == Sampling::Coarse { LEVELS[ONE_SAMPLE_LEVEL + 1] } else { Sampling::BEST };
         (self.forced.is_none() && shown != next).then_some(next)
     }
 
-    /// Returns whether all further refinements of the last picture are expected to take at most
-    /// this long together.
+    /// Returns whether the refinements of the last picture are expected to take at most `time` in
+    /// total.
     pub(super) fn ends_within(&self, time: Duration) -> bool {
         self.last.is_some_and(|last| self.predicted(last, MAX_MOTION_LEVEL) <= time.as_secs_f64())
     }
 
-    /// Records the time that a picture of a new view took, as a share of a frame's time.
+    /// Records the time that tracing a picture of a new view took, and updates the level of the
+    /// next ones.
+    ///
+    /// `frame` is the time between two frames, of which tracing may take [`TRACING_SHARE`].
     pub(super) fn record_time(&mut self, sampling: Sampling, time: Duration, frame: Duration) {
         let Some(level) = LEVELS.iter().position(|&level| level == sampling).filter(|&level| level <= MAX_MOTION_LEVEL)
         else {
@@ -110,32 +117,33 @@ impl QualityControl {
         self.late_frames = if fits < self.level { self.late_frames + 1 } else { 0 };
         self.frames_with_room = if has_room > self.level { self.frames_with_room + 1 } else { 0 };
         if self.late_frames >= LATE_FRAMES_BEFORE_COARSER || is_very_late {
-            // At once to the level that fits, which may be several lower: each late frame is visible.
+            // The level may fall by several at once, because each late frame is visible.
             self.level = fits;
         } else if self.frames_with_room >= FRAMES_BEFORE_FINER {
-            // One level at a time, because the time of a level never tried is a guess.
+            // The level rises by one at a time, because the predicted time of a level that was not tried is a guess.
             self.level += 1;
             self.frames_with_room = 0;
         }
     }
 
-    /// Forgets the measured times, because pictures of another scene or size are not comparable.
+    /// Forgets the last picture's time, because that of another scene or size is not comparable.
     pub(super) fn forget_last(&mut self) {
         self.last = None;
     }
 
-    /// Updates the ratio of two neighbouring levels from two consecutive pictures.
+    /// Updates the cost ratio of two neighbouring levels if the last two pictures had these levels.
     fn update_cost_ratio(&mut self, at_last: (usize, f64)) {
         let Some(before) = self.last.replace(at_last) else { return };
         let (coarse, fine) = if before.0 < at_last.0 { (before, at_last) } else { (at_last, before) };
         if fine.0 == coarse.0 + 1 && coarse.1 > 0.0 {
             let growth = &mut self.cost_ratios[fine.0];
-            // Averaged with the previous ratio, because either picture may have been delayed.
+            // Averaged with the previous ratio, because either picture may have been delayed by another process.
             *growth = (0.5 * (*growth + fine.1 / coarse.1)).clamp(1.0, 8.0);
         }
     }
 
-    /// Returns the predicted time of a picture at another level.
+    /// Returns the predicted seconds that a picture takes at `level`, if one at level `last` took
+    /// `time` seconds.
     fn predicted(&self, (last, time): (usize, f64), level: usize) -> f64 {
         let growth = |levels: std::ops::Range<usize>| levels.map(|level| self.cost_ratios[level + 1]).product::<f64>();
         if level >= last { time * growth(last..level) } else { time / growth(level..last) }

@@ -1,6 +1,7 @@
-//! A viewer driven by an arbitrary sequence of events, with the rules that hold after each.
+//! A test driver that feeds a viewer an arbitrary sequence of events and checks rules after each of
+//! them.
 //!
-//! Used by the tests below and by the fuzz target.
+//! Used by property tests and by a fuzz target.
 
 use super::{DriverState, Frame, INITIAL_WIPE, Job, Options, Step, Tracing, Viewer};
 use crate::capabilities::{CellShape, Hints};
@@ -16,29 +17,30 @@ use crate::tone::Picture;
 use std::sync::LazyLock;
 use std::time::Duration;
 
-/// Limit on the actions at one time.
+/// Greatest number of actions that a viewer may ask for at the same time before it waits.
 ///
-/// They are: cancel a refinement, draw, begin a frame, handle the timeout of a lone Escape, and draw the result.
+/// They are: cancel a refinement, draw, begin a frame, handle the timeout of a lone Escape, and draw its result.
 const MAX_ACTIONS: usize = 5;
 
-/// Limit on the wake-ups between the last event and rest.
+/// Greatest number of wake-ups between the last event and rest.
 ///
-/// A lossy picture becomes exact in a few frames, and a glide of 60 frames a second ends within a second.
+/// Generous: a lossy picture becomes exact in a few frames, and a glide of 60 frames a second ends within a second.
 const MAX_WAKE_UPS: usize = 400;
 
-/// Limits on the bytes of a frame, per cell and in addition.
+/// Limits on the bytes of a frame: per cell, and in addition per frame.
 ///
-/// A cell takes all attributes, both colours and a cursor move.
+/// A cell may need all attributes, both colours and a cursor move.
 const MAX_FRAME_BYTES: [usize; 2] = [120, 4096];
 
-/// Drives a viewer by events decoded from `bytes`, the last of which choose its options, and checks
-/// the rules:
+/// Drives a viewer by the events that the bytes of `scenario` encode, and checks these rules:
 ///
 /// - no frame is drawn or begun while bytes are being sent, and none is begun while another is traced;
-/// - after every event, there is soon nothing to do at that time, and the next wake-up is later;
+/// - after every event the viewer soon waits, for a time that has not passed;
 /// - the size of a frame is bounded;
-/// - after the last event, there is soon no wake-up;
-/// - all modes that are on are in one list, and are switched off.
+/// - soon after the last event, the viewer waits without a wake-up time;
+/// - all terminal modes that were switched on are switched off at the end.
+///
+/// The last byte chooses the viewer's options.
 ///
 /// # Panics
 /// If a rule is broken.
@@ -52,7 +54,7 @@ pub fn run_scenario(scenario: &[u8]) {
         driver.act();
     }
     driver.come_to_rest();
-    driver.give_back();
+    driver.check_modes_end();
 }
 
 static SCENES: LazyLock<[Scene; 2]> = LazyLock::new(|| {
@@ -103,12 +105,12 @@ impl Driver {
                 let bytes: Vec<u8> = (0..next() % 24).map(|_| next()).collect();
                 self.receive(&bytes);
             }
-            // From a single cell to a little more than 64x24, so that panels have and lack room.
+            // The window has 1x1 to 70x30 cells, so that panels sometimes have room and sometimes not.
             1 => {
                 let size = Size::new(u16::from(next() % 70) + 1, u16::from(next() % 30) + 1);
                 self.viewer.resize(window(size)).expect("this takes little memory");
             }
-            // Up to a quarter of a second: within timeouts and beyond them.
+            // A quarter of a second at most, which is shorter than some timeouts and longer than others.
             2 => self.now += Duration::from_millis(u64::from(next())),
             3 => self.finish_job(next()),
             4 => self.is_sending = false,
@@ -143,21 +145,21 @@ impl Driver {
 
     fn receive(&mut self, bytes: &[u8]) {
         self.viewer.receive(bytes, self.now).expect("this takes little memory");
-        // The rules are about the viewer alone: what a driver does with its requests is tested with `app`.
+        // Requests are dropped: how a driver carries them out is tested with `app`.
         while self.viewer.next_request().is_some() {}
         for mode in self.viewer.modes() {
             self.modes.switch_on(mode, &mut self.sent);
         }
     }
 
-    /// The terminal replies to all outstanding queries.
+    /// Passes the viewer the terminal's replies to all outstanding queries.
     fn reply(&mut self) {
         let mut replies = Vec::new();
         for (at, _) in self.sent.iter().enumerate().filter(|(_, byte)| **byte == 0x1b) {
             let rest = &self.sent[at..];
             if rest.starts_with(FENCE) {
                 replies.extend_from_slice(b"\x1b[?62c");
-            } else if let Some(number) = rest.strip_prefix(b"\x1b[?").and_then(mode_asked_for) {
+            } else if let Some(number) = rest.strip_prefix(b"\x1b[?").and_then(queried_mode) {
                 replies.extend([b"\x1b[?", number, b";0$y"].concat());
             } else if rest.starts_with(b"\x1b[?u") {
                 replies.extend_from_slice(b"\x1b[?15u");
@@ -178,15 +180,16 @@ impl Driver {
         self.viewer.take_frame(Frame { scene, shot, picture, parts, sampling, legends, refines, cost, trace });
     }
 
-    /// Returns a picture that differs from the previous one.
+    /// Returns a picture whose pixels differ from those of the previous frame.
     fn flat(&self, resolution: Resolution) -> Picture {
         let [width, height] = [resolution.width(), resolution.height()];
-        // So that drawing a new frame always sends bytes.
+        // The frame's number is part of the colour, so that drawing a new frame always sends bytes.
         let pixel = |at: u32| Srgb8::new(self.frames, at as u8, 7);
         Picture { width, height, pixels: (0..width * height).map(pixel).collect() }
     }
 
-    /// Carries out the viewer's actions at this time. Returns the next wake-up.
+    /// Carries out the viewer's actions until it waits. Returns the time until which it waits, if
+    /// any.
     fn act(&mut self) -> Option<Duration> {
         for _ in 0..=MAX_ACTIONS {
             let tracing = self.job.as_ref().map(|job| if job.refines { Tracing::Refinement } else { Tracing::NewView });
@@ -233,10 +236,10 @@ impl Driver {
         self.is_sending = !bytes.is_empty();
     }
 
-    /// Lets the terminal accept and answer everything without further events, and checks that the
+    /// Finishes all frames and replies to all queries without further events, and checks that the
     /// viewer comes to rest.
     fn come_to_rest(&mut self) {
-        // Keys that are held would move the eye for ever.
+        // Releases all keys, because a held key would move the eye for ever.
         self.viewer.lose_terminal(self.now);
         for _ in 0..MAX_WAKE_UPS {
             self.finish_job(1);
@@ -254,8 +257,8 @@ impl Driver {
         panic!("it does not come to rest: next at {:?}, now {:?}", self.act(), self.now);
     }
 
-    /// Checks that every mode that is on is switched off.
-    fn give_back(mut self) {
+    /// Checks that every terminal mode that was switched on is switched off at the end.
+    fn check_modes_end(mut self) {
         let mut off = Vec::new();
         self.modes.switch_all_off(&mut off);
         for mode in self.viewer.modes() {
@@ -267,8 +270,9 @@ impl Driver {
     }
 }
 
-/// Returns the digits of a mode query (DECRQM) at the start of `bytes`.
-fn mode_asked_for(query: &[u8]) -> Option<&[u8]> {
+/// Returns the digits at the start of `query` if they are those of a mode query (DECRQM), that is,
+/// `$p` follows.
+fn queried_mode(query: &[u8]) -> Option<&[u8]> {
     let (digits, rest) = query.split_at(query.iter().position(|byte| !byte.is_ascii_digit())?);
     rest.starts_with(b"$p").then_some(digits)
 }

@@ -1,6 +1,5 @@
-//! The layout of maps on the screen: one map, or two to compare.
-//!
-//! The shaded picture counts as a map here.
+//! The layout of maps on the screen: one map, or two to compare. The shaded picture counts as a
+//! map.
 
 use crate::camera::Camera;
 use crate::color::Srgb8;
@@ -11,15 +10,16 @@ use crate::scene::Scene;
 use crate::tone::Picture;
 use std::num::NonZeroU32;
 
-/// Initial position of the line between two maps.
+/// Initial position of the line between the two maps of a wipe, as a share of the picture's width.
 pub(crate) const INITIAL_WIPE: f32 = 0.5;
 
-/// The layout of the screen: one map (shaded picture, depth, normals, ...), or two side by side.
+/// The layout of the screen: one map (shaded picture, depth, normals, ...), two side by side, or
+/// two in a wipe.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ViewLayout {
     /// The map shown, or the left one of two.
     map: Map,
-    /// The map compared with it.
+    /// The map on the right, if there are two.
     right: Option<RightMap>,
 }
 
@@ -33,24 +33,27 @@ struct RightMap {
 /// The way in which two maps share the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Split {
-    /// Side by side, each as a picture of its own.
+    /// Side by side: each map shows the whole view, in half of the columns.
     Beside,
-    /// As one picture with a movable line between them.
+    /// One view with a movable line: the left map on one side of the line, the right map on the
+    /// other.
     Wipe,
 }
 
 impl ViewLayout {
-    /// Shows a single map.
+    /// Returns the layout with a single map.
     pub(super) fn one(map: Map) -> Self {
         Self { map, right: None }
     }
 
-    /// Switches to the next map; of two, the right one, never to the map on the left.
+    /// Replaces the single map, or the right one of two, by the map that `step` returns for it.
+    ///
+    /// With two maps, the left one is skipped.
     pub(super) fn change_map(&mut self, step: fn(Map) -> Map) {
         match &mut self.right {
             None => self.map = step(self.map),
             Some(right) => {
-                // Comparing a map with itself shows nothing.
+                // A map compared with itself would show no difference.
                 let next = step(right.map);
                 right.map = if next == self.map { step(next) } else { next };
             }
@@ -66,7 +69,7 @@ impl ViewLayout {
         };
     }
 
-    /// Returns whether there is a line to move.
+    /// Returns whether the layout is a wipe, whose line can be moved.
     pub(crate) fn is_wipe(self) -> bool {
         matches!(self.right, Some(RightMap { split: Split::Wipe, .. }))
     }
@@ -76,36 +79,38 @@ impl ViewLayout {
         [Some(self.map), self.right.map(|right| right.map)].into_iter().flatten()
     }
 
-    /// Returns the maps and the sizes of the pictures that make up one of this resolution.
+    /// Returns the maps to trace for a picture of size `whole`, each with its own size in pixels.
     pub(crate) fn parts(self, whole: Resolution) -> Vec<(Map, Resolution)> {
         match self.right {
             Some(RightMap { split: Split::Beside, .. }) => self.maps().zip(halves(whole)).collect(),
-            // Both in full for a wipe, so that moving its line traces nothing.
+            // Both maps of a wipe have the full size, so that moving the line traces nothing.
             _ => self.maps().map(|map| (map, whole)).collect(),
         }
     }
 
-    /// Returns the legends, from left to right; empty where the picture shows light.
+    /// Returns the legends of the maps, from left to right; empty for the shaded picture alone.
     pub(crate) fn legends(self, scene: &Scene, camera: &Camera) -> Vec<String> {
-        // The shaded picture alone needs no legend, and would lose a row to it.
+        // The shaded picture needs no legend, which would hide a part of a row.
         if self == Self::default() {
             return Vec::new();
         }
         self.maps().map(|map| map.legend(scene, camera)).collect()
     }
 
-    /// Returns the sampling for these maps if `wanted` is requested.
-    ///
-    /// That is one ray per pixel, unless a map refines.
+    /// Returns the sampling to use for these maps: `wanted` if one of them can be refined, else at
+    /// most one ray per pixel.
     pub(super) fn sampling(self, wanted: Sampling) -> Sampling {
-        // Depths, normals and costs of several samples have no meaningful mean at an edge.
+        // Maps such as depths and normals are not refined: the mean of several samples at an edge is meaningless.
         if wanted == Sampling::Coarse || self.maps().any(Map::refines) {
             return wanted;
         }
         Sampling::UpTo(NonZeroU32::MIN)
     }
 
-    /// Combines two pictures into one, with the line of a wipe at this share of the width.
+    /// Combines the pictures of two maps into one, with the line of a wipe at this share of the
+    /// width.
+    ///
+    /// `None` for a single map.
     pub(crate) fn combined(self, parts: &[Picture], wipe: f32) -> Option<Picture> {
         match (self.right?.split, parts) {
             (Split::Beside, [left, right]) => Some(beside(left, right)),
@@ -115,14 +120,14 @@ impl ViewLayout {
     }
 }
 
-/// The colour of the line between two pictures.
+/// The colour of the line between two maps.
 const LINE: Srgb8 = Srgb8::new(255, 208, 64);
 
-/// Splits a picture's columns between the two sides of a line.
+/// Returns the sizes of two maps side by side, with a line of one column between them.
 ///
-/// A picture too narrow for both has no line and no right side.
+/// In a picture too narrow for two maps, the left one has all columns and the right one none.
 fn halves(whole: Resolution) -> [Resolution; 2] {
-    // One column for each picture and one for the line.
+    // At least one column for each map and one for the line.
     let left = if whole.width() < 3 { whole.width() } else { (whole.width() - 1) / 2 };
     [left, whole.width().saturating_sub(left + 1)].map(|width| whole.with_width(width))
 }

@@ -7,9 +7,9 @@ fn ms(milliseconds: f64) -> Duration {
     Duration::from_secs_f64(milliseconds / 1000.0)
 }
 
-/// Returns the levels of `frames` frames in motion, the first after a rest.
+/// Simulates `frames` frames of a motion that starts from rest, and returns the level of each.
 ///
-/// `time` gives the milliseconds that a frame takes at a level.
+/// `time` returns the milliseconds that the frame with this number takes at this level.
 fn fly(control: &mut QualityControl, frames: u32, mut time: impl FnMut(u32, usize) -> f64) -> Vec<usize> {
     let levels = (0..frames).map(|frame| {
         let sampling = control.for_new_view(frame > 0);
@@ -20,9 +20,10 @@ fn fly(control: &mut QualityControl, frames: u32, mut time: impl FnMut(u32, usiz
     levels.collect()
 }
 
-/// Returns the time of each level in a scene where a third of the pixels has edges.
+/// Returns a function from a level to its milliseconds per frame, for a scene where a third of the
+/// pixels has edges.
 ///
-/// One sample takes `one` milliseconds.
+/// A frame with one sample per pixel takes `one` milliseconds.
 fn machine(one: f64) -> impl Fn(usize) -> f64 {
     move |level| one * [0.25, 1.0, 2.0, 6.0][level]
 }
@@ -39,7 +40,7 @@ fn as_many_samples_as_fit_the_time() {
         let mut control = QualityControl::new(None);
         let levels = fly(&mut control, 300, |_, level| time(level));
         assert!(levels[60..].iter().all(|&it| it == level), "{one} ms: {levels:?}");
-        // One level after the other, and at most one of them tried in vain.
+        // At most two steps up from the first level, and one failed attempt, which counts up and down.
         assert!(changes(&levels) <= 4, "{one} ms: {levels:?}");
     }
 }
@@ -50,7 +51,7 @@ fn the_first_frame_after_a_rest_is_no_finer_than_one_sample() {
     assert_eq!(control.for_new_view(false), LEVELS[1], "nothing is known");
     fly(&mut control, 100, |_, level| machine(0.5)(level));
     assert_eq!((control.for_new_view(false), control.for_new_view(true)), (LEVELS[1], LEVELS[3]));
-    // On a slow machine it is coarser.
+    // On a slow machine even one sample per pixel is too much.
     fly(&mut control, 100, |_, level| machine(50.0)(level));
     assert_eq!((control.for_new_view(false), control.for_new_view(true)), (LEVELS[0], LEVELS[0]));
 }
@@ -59,7 +60,7 @@ fn the_first_frame_after_a_rest_is_no_finer_than_one_sample() {
 fn a_scene_that_becomes_slow_is_soon_kept_up_with() {
     let mut control = QualityControl::new(None);
     fly(&mut control, 100, |_, level| machine(0.5)(level));
-    // Far too late: at once. A little: at the second frame.
+    // The level falls at once after a frame that is far too late, and after two frames that are a little late.
     let levels = fly(&mut control, 20, |_, level| machine(5.0)(level));
     assert!(levels[1..].iter().all(|&level| level == 2), "{levels:?}");
     let mut control = QualityControl::new(None);
@@ -75,14 +76,14 @@ fn no_level_flickers() {
         let time = machine(f64::from(tenth) / 10.0);
         let mut control = QualityControl::new(None);
         fly(&mut control, 200, |_, level| time(level));
-        // A tenth more or less.
+        // Pseudorandom noise of up to a tenth.
         let noise = |frame: u32| 0.9 + 0.2 * f64::from(frame.wrapping_mul(2_654_435_769) >> 16) / 65_536.0;
         let levels = fly(&mut control, 600, |frame, level| time(level) * noise(frame));
         assert!(changes(&levels[1..]) <= 6, "{tenth} tenths of a millisecond: {levels:?}");
     }
 }
 
-/// Another process may delay a single frame.
+/// A single late frame may have been delayed by another process, so it does not change the level.
 #[test]
 fn one_late_frame_changes_nothing() {
     let mut control = QualityControl::new(None);
@@ -99,9 +100,9 @@ fn room_now_and_then_is_no_room() {
     assert_eq!(changes(&levels), 0, "{levels:?}");
 }
 
-/// Where there are edges everywhere, a level takes four times as long as the one before.
+/// A level that has been too slow is not tried again and again.
 ///
-/// The control learns this, and does not try the level again and again.
+/// In a scene with edges everywhere each level takes four times as long as the one before, not twice as predicted.
 #[test]
 fn the_cost_ratio_of_a_level_is_learnt() {
     let mut control = QualityControl::new(None);
@@ -109,7 +110,7 @@ fn the_cost_ratio_of_a_level_is_learnt() {
     assert!(levels.contains(&2) && changes(&levels) <= 6, "{levels:?}");
 }
 
-/// With fewer frames a second, each may take longer and gets more samples.
+/// With fewer frames a second, each frame may take longer and gets more samples.
 #[test]
 fn the_time_of_a_frame_is_what_counts() {
     let mut control = QualityControl::new(None);
@@ -121,7 +122,7 @@ fn the_time_of_a_frame_is_what_counts() {
     assert_eq!(control.for_new_view(true), LEVELS[3]);
 }
 
-/// From any level a picture is refined to the final one in at most two steps.
+/// At rest a picture of any level is refined to the final level in at most two steps.
 #[test]
 fn a_picture_that_stands_still_is_refined_to_the_end() {
     let control = QualityControl::new(None);

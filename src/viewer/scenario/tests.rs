@@ -3,7 +3,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::select;
 
-/// Keys with a meaning in some mode.
+/// Bytes of keys that are bound to a command in some mode.
 const KEYS: &[u8] = b"wasdqezxhjklfogtvVcnNpPimLr?1[]<>\t\x1b 5";
 
 proptest! {
@@ -14,7 +14,7 @@ proptest! {
         run_scenario(&scenario);
     }
 
-    /// Keys with a meaning, in a loaded scene.
+    /// The rules of `run_scenario` hold if bound keys are pressed while a scene is shown.
     #[test]
     fn the_rules_hold_whatever_keys_are_pressed(
         keys in vec((select(KEYS), 0_u8..9, any::<u8>()), 0..60),
@@ -25,7 +25,7 @@ proptest! {
     }
 }
 
-/// A scene is drawn once its frame is finished, and again when it moves.
+/// A scene is drawn when its first frame is finished, and a movement key begins another frame.
 #[test]
 fn a_scene_is_drawn_and_moves() {
     let mut driver = Driver::new(0);

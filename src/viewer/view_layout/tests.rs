@@ -29,7 +29,8 @@ fn two_maps_are_beside_each_other_then_wiped_then_one() {
     assert_eq!(seen, ViewLayout::one(Map::Depth));
 }
 
-/// Side by side, two maps have no more pixels than one; a wipe traces both in full.
+/// Two maps side by side share the pixels of one picture, whereas a wipe traces both maps at full
+/// size.
 #[test]
 fn two_maps_side_by_side_cost_one_picture_and_a_wipe_two() {
     let whole = Resolution::square(80, 4).with_pixel_aspect(0.5).expect("a shape of pixels");
@@ -41,7 +42,7 @@ fn two_maps_side_by_side_cost_one_picture_and_a_wipe_two() {
     assert_eq!(parts, [(Map::Shaded, whole), (Map::Depth, whole)]);
 }
 
-/// Maps other than the shaded one get one ray per pixel.
+/// Only the shaded picture gets several rays per pixel; other maps get one.
 #[test]
 fn only_the_shaded_map_is_refined() {
     let one = Sampling::UpTo(NonZeroU32::MIN);
@@ -56,8 +57,8 @@ fn flat(width: u32, band: u8) -> Picture {
     Picture { width, height: 2, pixels: vec![Srgb8::new(band, band, band); 2 * width as usize] }
 }
 
-/// Returns the rows as text: a digit for each pixel, which identifies its picture, and a bar
-/// for the line.
+/// Returns the picture's rows as text: a digit for each pixel, its red channel, and a bar for the
+/// line.
 fn rows(picture: &Picture) -> Vec<String> {
     let text = |pixel: &Srgb8| if *pixel == LINE { '|' } else { char::from(b'0' + pixel.r) };
     picture.pixels.chunks(picture.width as usize).map(|row| row.iter().map(text).collect()).collect()
