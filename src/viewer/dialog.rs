@@ -16,11 +16,11 @@ use unicode_width::UnicodeWidthStr;
 
 /// An open question. Keys answer it until it is closed.
 pub(super) enum Dialog {
-    /// The format of an export.
+    /// In which format to export the picture.
     Export,
     /// Whether to write a view into the scene file of this name.
     SaveToFile(String),
-    /// The number under which to save the view.
+    /// Under which number to save the view.
     Save,
 }
 
@@ -29,7 +29,7 @@ pub(super) enum Answer {
     Save(u8),
     Export(Format),
     SaveToFile,
-    /// The question is dismissed.
+    /// Nothing is to be done: the question was dismissed.
     Nothing,
 }
 
@@ -48,7 +48,7 @@ impl Layer for Dialog {
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         let keymap = canvas.keymap;
-        // Unlike other panels a question is asked on every screen: its keys are in force.
+        // Unlike other panels, a question is shown even on the smallest screen, because it takes all keys.
         if canvas.has_room() {
             let area = self.area(keymap, canvas.screen());
             canvas.lay(area, |theme, area, buffer| self.paint(keymap, theme, area, buffer));
@@ -59,25 +59,25 @@ impl Layer for Dialog {
 }
 
 impl Dialog {
-    /// Returns the mode that keys have while the question is open.
+    /// Returns the mode whose bindings the keys have while the question is open.
     fn key_mode(&self) -> KeyMode {
         match self {
             Self::Export => KeyMode::Export,
             Self::SaveToFile(_) => KeyMode::Keep,
-            // The mode with the digits, so that the key that saves a view is the one that returns to it.
+            // `Always` binds the digits to views, so that the key that saves a view is the one that returns to it.
             Self::Save => KeyMode::Always,
         }
     }
 
-    /// Returns the answer that a command stands for.
+    /// Returns the answer that the command of the pressed key gives to the question.
     ///
-    /// A command that is not offered dismisses the question.
+    /// A key without a command, or with one that is no answer, dismisses the question.
     pub(super) fn answer(self, meant: Option<Command>) -> Answer {
         match (self, meant) {
             (Self::Export, Some(Command::Write(format))) => Answer::Export(format),
             (Self::SaveToFile(_), Some(Command::Yes)) => Answer::SaveToFile,
             (Self::Save, Some(Command::View(number))) => Answer::Save(number),
-            // Any other key dismisses the question: users who opened it by mistake need not know a key for that.
+            // Users who opened the question by mistake can press any other key, and need not know a key for that.
             _ => Answer::Nothing,
         }
     }
@@ -90,7 +90,7 @@ impl Dialog {
         }
     }
 
-    /// Returns the keys that answer the question, with their meanings.
+    /// Returns the bindings of the keys that answer the question.
     fn answers<'b>(&self, keymap: &'b Keymap) -> impl Iterator<Item = &'b Binding> {
         let saves = matches!(self, Self::Save);
         keymap.of(self.key_mode()).filter(move |row| !saves || matches!(row.command, Command::View(_)))
@@ -112,7 +112,7 @@ impl Dialog {
         self.answers(keymap).map(Binding::label).collect::<Vec<_>>().join(" ")
     }
 
-    /// Returns the question in one line, for small screens: its keys and as few words as possible.
+    /// Returns the question as one line for small screens: a word and the keys that answer it.
     fn line(&self, keymap: &Keymap) -> String {
         let word = match self {
             Self::Export => "save:",
@@ -122,8 +122,8 @@ impl Dialog {
         format!("{word} {}", self.keys(keymap))
     }
 
-    /// Draws the panel in the lower left corner above the lowest row, where it hides little of the
-    /// picture.
+    /// Returns the panel's area: the lower left corner, above the lowest row, where it hides little
+    /// of the picture.
     fn area(&self, keymap: &Keymap, screen: Rect) -> Rect {
         let lines = self.lines(keymap);
         let text = lines.iter().map(|line| line.width() + 4).max().unwrap_or(0);

@@ -11,9 +11,9 @@ use ratatui_widgets::clear::Clear;
 use ratatui_widgets::paragraph::Paragraph;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// Limit on the panel's rows, besides a third of the screen.
-// Five for the message, two for the excerpt and one for the hint at more errors. The last good picture above them
-// should stay recognisable.
+/// Greatest height of the panel in rows; it also takes at most a third of the screen.
+// Five rows for the message, two for the excerpt and one for the hint at more errors. The last good picture above the
+// panel should stay recognisable.
 const MAX_ERROR_ROWS: u16 = 8;
 
 /// The first error of a scene, with its source line and a caret.
@@ -34,14 +34,15 @@ impl Layer for ErrorPanel {
 }
 
 impl ErrorPanel {
-    /// Returns the lines that fit into `columns`.
+    /// Returns the error's message, excerpt and hint as lines of at most `width` columns.
     fn lines(&self, width: usize) -> Vec<String> {
         let mut lines = wrapped(&self.0.message, width);
         if let Some(excerpt) = &self.0.excerpt {
             let [_, caret] = excerpt;
-            // Scrolled so far that the caret is visible: the line may be long, and its start says nothing of the error.
+            // Both lines of the excerpt lose as many columns on the left as bring the caret into view: the source line
+            // may be long, and its start says nothing about the error.
             let cut = caret.width().saturating_sub(width).min(caret.find('^').unwrap_or(0));
-            lines.extend(excerpt.iter().map(|line| part(line, cut, width)));
+            lines.extend(excerpt.iter().map(|line| columns_of(line, cut, width)));
         }
         if self.0.has_more {
             lines.push("more errors: termtrace check lists them all".chars().take(width).collect());
@@ -49,9 +50,9 @@ impl ErrorPanel {
         lines
     }
 
-    /// Returns the panel's area, above the lowest `taken` rows.
+    /// Returns the panel's area, above the lowest `below` rows of the screen.
     fn area(&self, screen: Rect, below: u16) -> Rect {
-        let lines = self.lines(inner(screen.width)).len() as u16;
+        let lines = self.lines(text_width(screen.width)).len() as u16;
         let height = lines.min(MAX_ERROR_ROWS).min(screen.height / 3);
         Rect { y: (screen.bottom() - height).saturating_sub(below), height, ..screen }
     }
@@ -59,27 +60,27 @@ impl ErrorPanel {
     fn paint(&self, theme: Theme, area: Rect, buffer: &mut Buffer) {
         Clear.render(area, buffer);
         let lines: Vec<_> =
-            self.lines(inner(area.width)).into_iter().map(|line| Line::from(format!(" {line}"))).collect();
+            self.lines(text_width(area.width)).into_iter().map(|line| Line::from(format!(" {line}"))).collect();
         Paragraph::new(lines).style(theme.style()).render(area, buffer);
     }
 }
 
-/// Returns the text with a blank on both sides.
-fn inner(width: u16) -> usize {
+/// Returns the columns for text in a panel of this width, which leaves one blank on each side.
+fn text_width(width: u16) -> usize {
     usize::from(width.saturating_sub(2)).max(1)
 }
 
-/// Wraps the text at `columns`, between words where possible.
+/// Wraps the text to lines of at most `width` columns, between words where possible.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
-    // Also after slashes, because paths are the longest words of messages.
+    // Lines break after slashes too, because paths are the longest words of messages.
     for word in text.split_inclusive([' ', '/']) {
         let mut word = word.to_owned();
         if lines.last().is_some_and(|line| !line.is_empty() && line.width() + word.trim_end().width() > width) {
             lines.push(String::new());
         }
         while word.trim_end().width() > width {
-            let head = part(&word, 0, width);
+            let head = columns_of(&word, 0, width);
             word = word[head.len()..].to_owned();
             lines.last_mut().unwrap_or(&mut String::new()).push_str(&head);
             lines.push(String::new());
@@ -92,8 +93,8 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// Returns at most `columns` columns of the text, starting at column `from`.
-fn part(text: &str, from: usize, width: usize) -> String {
+/// Returns at most `width` columns of the text, starting at column `from`.
+fn columns_of(text: &str, from: usize, width: usize) -> String {
     let mut column = 0;
     let within = text.chars().filter(|c| {
         let start = column;

@@ -1,6 +1,6 @@
 //! The explanation of a pixel: a cursor on the picture and a panel beside it.
 //!
-//! The text is computed when a frame arrives or the cursor moves, and drawn whenever the screen is.
+//! The text is computed when a frame arrives or the cursor moves, and drawn with every frame.
 
 mod inset;
 mod placement;
@@ -28,13 +28,14 @@ use placement::{marks, panel_area};
 
 /// The explained pixel and its explanation.
 pub(super) struct ExplainPanel {
-    /// The pixel's coordinates on the screen.
+    /// The pixel's coordinates in the picture, from the upper left.
     pixel: [u32; 2],
-    /// The size of the screen in pixels.
+    /// The size of the picture in pixels.
     resolution: Resolution,
     explanation: Explanation,
     inset: Inset,
-    /// The difference between the frame's pixel and the explained ray: more rays.
+    /// Lines on how the shown pixel's colour differs from that of the explained ray, because it is
+    /// a mean of more rays.
     notes: Vec<String>,
     /// Index of the first visible line.
     scrolled: usize,
@@ -52,7 +53,7 @@ impl Layer for ExplainPanel {
     /// Updates the explanation for a frame, which may be of another view or size.
     fn take_frame(&mut self, frame: &Frame) {
         let (old, new) = (self.resolution, frame.resolution());
-        // The explained ray is the same; only the mean of its neighbours has changed.
+        // A refinement leaves the explained ray as it is and changes only the pixel's mean, of more rays.
         if frame.refines && old == new {
             self.notes = notes(frame, self.pixel, &self.explanation);
             return;
@@ -69,7 +70,7 @@ impl Layer for ExplainPanel {
         let (screen, mode) = (canvas.screen(), canvas.cell_mode);
         // The panel leaves the lowest row and the rows of the status line free.
         let above = Rect { height: screen.height - canvas.status_rows.saturating_sub(1), ..screen };
-        let scroll = help::keys(canvas.keymap, canvas.modes, &[Command::ScrollUp, Command::ScrollDown]);
+        let scroll = help::key_names(canvas.keymap, canvas.modes, &[Command::ScrollUp, Command::ScrollDown]);
         let scroll = scroll.unwrap_or_default();
         canvas.lay(panel_area(above, self.cell(mode)), |theme, panel, buffer| {
             self.paint(&scroll, theme, mode, panel, buffer);
@@ -81,13 +82,13 @@ impl Layer for ExplainPanel {
 }
 
 impl ExplainPanel {
-    /// Returns the pixel in the middle of the frame; `None` for an empty frame.
+    /// Returns an explanation of the pixel in the middle of the frame; `None` for an empty frame.
     pub(super) fn new(frame: &Frame) -> Option<Self> {
         let [width, height] = [frame.resolution().width(), frame.resolution().height()];
-        (width > 0 && height > 0).then(|| Self::of(frame, [width / 2, height / 2], 0))
+        (width > 0 && height > 0).then(|| Self::at_pixel(frame, [width / 2, height / 2], 0))
     }
 
-    fn of(frame: &Frame, pixel: [u32; 2], scrolled: usize) -> Self {
+    fn at_pixel(frame: &Frame, pixel: [u32; 2], scrolled: usize) -> Self {
         let (resolution, part) = frame.part_at(pixel);
         let explanation = explain(&frame.scene, frame.camera(), resolution, part);
         let inset = Inset::of(&frame.scene, frame.camera(), &explanation);
@@ -111,7 +112,7 @@ impl ExplainPanel {
     pub(super) fn move_to(&mut self, frame: &Frame, [x, y]: [u32; 2]) {
         let [width, height] = [frame.resolution().width(), frame.resolution().height()];
         if width > 0 && height > 0 {
-            *self = Self::of(frame, [x.min(width - 1), y.min(height - 1)], self.scrolled);
+            *self = Self::at_pixel(frame, [x.min(width - 1), y.min(height - 1)], self.scrolled);
         }
     }
 
@@ -120,7 +121,7 @@ impl ExplainPanel {
         self.scrolled = self.scrolled.saturating_add_signed(by);
     }
 
-    /// Returns the cell that contains the pixel.
+    /// Returns the column and row of the cell that contains the pixel.
     fn cell(&self, mode: CellMode) -> [u16; 2] {
         let ((across, down), [x, y]) = (mode.pixels_per_cell(), self.pixel);
         [(x / across) as u16, (y / down) as u16]
@@ -139,17 +140,18 @@ impl ExplainPanel {
         lines
     }
 
-    /// Draws the panel: the text, with the keys that scroll it, and below it the view from the
-    /// side.
+    /// Draws the panel: the text, with the keys `scroll` that scroll it, and below it the side
+    /// view.
     fn paint(&mut self, scroll: &str, theme: Theme, mode: CellMode, area: Rect, buffer: &mut Buffer) {
         let lines = self.lines(mode);
         let inside = area.inner(Margin::new(2, 1));
         let [text, inset] = placement::split(inside, lines.len() as u16);
-        // Clamped here and not on the key, because the number of lines depends on the pixel and the panel's height.
+        // The scroll position is clamped here and not on the key press, because its limit depends on the pixel and the
+        // panel's height.
         self.scrolled = self.scrolled.min(lines.len().saturating_sub(text.height.into()));
         let last = lines.len().min(self.scrolled + usize::from(text.height));
         Clear.render(area, buffer);
-        // The keys stand in the lower border, because a line of their own would take one from the text.
+        // The keys are shown in the lower border, because a line of their own would take one from the text.
         let mut block = Block::bordered().border_set(theme.border()).style(theme.style()).title(" explain ");
         if usize::from(text.height) < lines.len() {
             let first = self.scrolled + 1;
@@ -162,9 +164,10 @@ impl ExplainPanel {
     }
 }
 
-/// Returns a line about the frame's colour at the pixel, if it differs from the explanation's.
+/// Returns lines on why the frame's colour at pixel `[x, y]` differs from the explained ray's;
+/// empty if it does not.
 fn notes(frame: &Frame, [x, y]: [u32; 2], explanation: &Explanation) -> Vec<String> {
-    // Maps show the same single ray, and have a legend.
+    // Frames of maps have legends, and show the explained ray's value rather than a mean.
     if !frame.legends.is_empty() {
         return Vec::new();
     }

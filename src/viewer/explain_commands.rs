@@ -4,15 +4,15 @@ use super::Viewer;
 use crate::control::Toward;
 
 /// Pixels that the cursor moves per key press with Shift.
-// Ten presses then cross a picture of 80 columns.
+// Ten presses cross a picture of 80 columns.
 const SHIFT_CURSOR_PIXELS: i32 = 8;
 
 /// Lines that the panel scrolls per page.
-// Less than the 13 lines visible at 80x24, so that some of them stay in view.
+// Less than the 13 lines visible at 80x24, so that some lines stay in view.
 const PAGE_LINES: isize = 10;
 
 impl Viewer {
-    /// Moves the cursor by one pixel, or by several if `faster`.
+    /// Moves the cursor by one pixel, or by [`SHIFT_CURSOR_PIXELS`] if `faster`.
     pub(super) fn point(&mut self, toward: Toward, faster: bool) {
         let pixels = if faster { SHIFT_CURSOR_PIXELS } else { 1 };
         let step = match toward {

@@ -1,4 +1,4 @@
-//! The help and the short list of keys in the status line. Both are made from the keymap in force.
+//! The help panel and the keys in the status line, both generated from the keymap.
 
 use super::layers::{Canvas, Layer, Level};
 use super::theme::{self, Theme};
@@ -16,10 +16,11 @@ use unicode_width::UnicodeWidthStr;
 /// Blank columns between two columns of the help.
 const COLUMN_GAP: usize = 2;
 
-/// Columns and rows beside the text: the border, and a blank on the left and right.
+/// Columns and rows of a help panel that are not text: the border, and a blank on the left and
+/// right.
 const PANEL_BORDER: (u16, u16) = (4, 2);
 
-/// Keys and their meaning.
+/// A row of the help: keys, and the description of their command.
 type KeyRow = (String, &'static str);
 
 /// The open page of the help.
@@ -35,7 +36,7 @@ impl HelpPanel {
     pub(super) fn next(&self, keymap: &Keymap, modes: &[KeyMode], screen: Rect) -> Option<Self> {
         let pages = Help::new(keymap, modes, screen).pages();
         let page = self.page + 1;
-        // Without room for a page, the message closes at the next press.
+        // On a screen without room for the help, the next press closes the message about that.
         (page < pages && theme::has_room(screen)).then_some(Self { page })
     }
 }
@@ -51,27 +52,28 @@ impl Layer for HelpPanel {
             let area = help.area(self.page, canvas.screen());
             canvas.lay(area, |theme, area, buffer| help.draw(self.page, theme, area, buffer));
         } else {
-            canvas.write_line(&no_room(), canvas.foot(0));
+            canvas.write_line(&no_room_message(), canvas.foot(0));
         }
     }
 }
 
-/// The help laid out for a screen size: in as few columns as hold it all, otherwise in pages.
+/// The help laid out for a screen size: on one page with as few columns as possible, or on several
+/// pages.
 struct Help {
     title: String,
-    /// Pages of columns of lines.
+    /// The lines of each column of each page.
     pages: Vec<Vec<Vec<String>>>,
 }
 
 impl Help {
-    /// Lays out the keys of these modes, topmost first.
+    /// Lays out the help on the keys of these modes, of which the topmost comes first.
     fn new(keymap: &Keymap, modes: &[KeyMode], screen: Rect) -> Self {
         let room = [screen.width.saturating_sub(PANEL_BORDER.0), screen.height.saturating_sub(PANEL_BORDER.1)]
             .map(usize::from);
-        // `always` is in every list, and tells nothing.
+        // The mode `Always` is left out of the title, because it is always in force.
         let modes_said: Vec<_> =
             modes.iter().filter(|mode| **mode != KeyMode::Always).map(|mode| mode.name()).collect();
-        Self { title: modes_said.join(", "), pages: pages(&rows(keymap, modes), room) }
+        Self { title: modes_said.join(", "), pages: break_into_pages(&key_rows(keymap, modes), room) }
     }
 
     /// Returns the number of pages.
@@ -79,9 +81,9 @@ impl Help {
         self.pages.len()
     }
 
-    /// Returns a page, or the last one if there are fewer.
+    /// Returns the columns of a page, or of the last page if there are fewer.
     fn page(&self, page: usize) -> &[Vec<String>] {
-        // The last one, because a larger window or fewer modes may have left fewer pages.
+        // A larger window or fewer modes may have left fewer pages since this page was opened.
         self.pages.get(page).or(self.pages.last()).map_or(&[], Vec::as_slice)
     }
 
@@ -92,7 +94,8 @@ impl Help {
         }
     }
 
-    /// Returns the panel's area: in the middle, as large as its text, at most the screen.
+    /// Returns the area of the panel with this page: centred, as large as its text, clipped to the
+    /// screen.
     fn area(&self, page: usize, screen: Rect) -> Rect {
         let columns = self.page(page);
         let text =
@@ -115,18 +118,18 @@ impl Help {
     }
 }
 
-/// The message where the screen has no room for the help.
-fn no_room() -> String {
+/// Returns the message for screens that are too small for the help.
+fn no_room_message() -> String {
     let (columns, rows) = theme::MIN_PANEL_SCREEN;
     format!("help needs {columns}x{rows}")
 }
 
-/// Returns the keys in force and their meaning.
+/// Returns the rows of the help: the keys in force in these modes, topmost first, and what they do.
 ///
-/// A key that a higher mode binds is left out below. Of several keys for one command, such as digits, the first and the
-/// last are listed.
-fn rows(keymap: &Keymap, modes: &[KeyMode]) -> Vec<KeyRow> {
-    // Modes are topmost first, so that the first binding of a key is the one in force.
+/// A key that several modes bind is listed only for the topmost of them. Of several bindings with the same description,
+/// such as the digits, only the first and last key are listed.
+fn key_rows(keymap: &Keymap, modes: &[KeyMode]) -> Vec<KeyRow> {
+    // Keys seen so far. Modes are topmost first, so the first binding of a key is the one in force.
     let mut taken = HashSet::new();
     let mut rows = Vec::new();
     for row in modes.iter().flat_map(|&mode| keymap.of(mode)) {
@@ -135,40 +138,41 @@ fn rows(keymap: &Keymap, modes: &[KeyMode]) -> Vec<KeyRow> {
             rows.push((keys.join(" "), row.command.description()));
         }
     }
-    // Shift is no key of the keymap, but part of the meaning of movement keys.
+    // Shift is not in the keymap, because it modifies the movement keys.
     rows.push(("Shift".to_owned(), "hold: moves 4x faster"));
     let alike = rows.chunk_by(|(_, description), (_, next)| description == next);
-    alike.map(|rows| (joined(rows), rows[0].1)).collect()
+    alike.map(|rows| (joined_keys(rows), rows[0].1)).collect()
 }
 
-fn joined(rows: &[KeyRow]) -> String {
+fn joined_keys(rows: &[KeyRow]) -> String {
     match rows {
         [(first, _), .., (last, _)] => format!("{first}..{last}"),
         _ => rows.iter().map(|(label, _)| label.as_str()).collect(),
     }
 }
 
-/// Breaks the rows into as few columns as fit on one page.
+/// Breaks the rows into pages of columns of lines, for a room of this many columns and lines of
+/// text.
 ///
-/// If these are too wide together, there are fewer columns, and several pages.
-fn pages(rows: &[KeyRow], [columns, lines]: [usize; 2]) -> Vec<Vec<Vec<String>>> {
-    // A screen of three rows has none left beside the border.
+/// All rows are on one page if its columns fit beside each other; otherwise there are fewer columns and several pages.
+fn break_into_pages(rows: &[KeyRow], [columns, lines]: [usize; 2]) -> Vec<Vec<Vec<String>>> {
+    // The screen may be so small that the border leaves no line.
     let lines = lines.max(1);
     let needed = rows.len().div_ceil(lines).max(1);
     let laid_out = |count: usize| {
         let lines = if count == needed { rows.len().div_ceil(count) } else { lines };
-        let pages = rows.chunks(lines * count).map(|page| page.chunks(lines).map(column).collect::<Vec<_>>());
+        let pages = rows.chunks(lines * count).map(|page| page.chunks(lines).map(aligned_lines).collect::<Vec<_>>());
         pages.collect::<Vec<_>>()
     };
     let fits = |page: &Vec<Vec<String>>| {
         page.iter().map(|column| width(column) + COLUMN_GAP).sum::<usize>() <= columns + COLUMN_GAP
     };
-    // As many columns as needed for a single page first: turning pages is worse than short columns.
+    // As many columns as a single page needs are tried first, because turning pages is worse than short columns.
     (2..=needed).rev().map(laid_out).find(|pages| pages.iter().all(fits)).unwrap_or_else(|| laid_out(1))
 }
 
-/// Returns a line for each row.
-fn column(rows: &[KeyRow]) -> Vec<String> {
+/// Returns the rows as lines of text, with the descriptions aligned in one column.
+fn aligned_lines(rows: &[KeyRow]) -> Vec<String> {
     let labels = rows.iter().map(|(label, _)| label.width()).max().unwrap_or(0);
     rows.iter().map(|(label, description)| format!("{label}{:1$}  {description}", "", labels - label.width())).collect()
 }
@@ -177,15 +181,16 @@ fn width(lines: &[String]) -> usize {
     lines.iter().map(|line| line.width()).max().unwrap_or(0)
 }
 
-/// Returns the mode's name and as many of its important keys as fit.
+/// Returns the keys of the status line: the topmost mode's name, and as many important keys as fit
+/// into `room` columns.
 pub(super) fn status_line(keymap: &Keymap, modes: &[KeyMode], room: usize) -> String {
     let Some(&mode) = modes.first() else { return String::new() };
     let always = [(&[Command::Help][..], "help"), (&[Command::Quit], "quit")];
     let mut line = format!(" {}", mode.name());
     for (commands, description) in always.into_iter().chain(status_line_keys(mode).iter().copied()) {
-        if let Some(keys) = keys(keymap, modes, commands) {
+        if let Some(keys) = key_names(keymap, modes, commands) {
             let item = format!("   {keys} {description}");
-            // An item that does not fit is left out, and a shorter one after it may still fit.
+            // An item that does not fit is left out, but a shorter one after it may still fit.
             if line.width() + item.width() < room {
                 line += &item;
             }
@@ -194,9 +199,9 @@ pub(super) fn status_line(keymap: &Keymap, modes: &[KeyMode], room: usize) -> St
     line
 }
 
-/// Returns the important commands of a mode, with a word for each.
+/// Returns the commands that the status line lists for a mode, in groups with a description each.
 fn status_line_keys(mode: KeyMode) -> &'static [(&'static [Command], &'static str)] {
-    // In the order in which their keys are read: W A S D, and the arrows.
+    // Commands are in the order in which their keys are usually named: W A S D, and the arrows.
     const MOVE: &[Command] = &[
         Command::Move(Direction::Forward),
         Command::Move(Direction::Left),
@@ -252,14 +257,15 @@ fn status_line_keys(mode: KeyMode) -> &'static [(&'static [Command], &'static st
     }
 }
 
-/// Returns a key for each command, if all have one; for the four arrows, the word "arrows".
-pub(super) fn keys(keymap: &Keymap, modes: &[KeyMode], commands: &[Command]) -> Option<String> {
+/// Returns a key for each command as one text, or `None` if a command has no key; the four arrows
+/// become "arrows".
+pub(super) fn key_names(keymap: &Keymap, modes: &[KeyMode], commands: &[Command]) -> Option<String> {
     let keys: Option<Vec<Key>> = commands.iter().map(|&command| keymap.key_of(modes, command)).collect();
     let keys = keys?;
     let arrows = [KeyCode::Left, KeyCode::Right, KeyCode::Up, KeyCode::Down].map(Key::named);
     let names: Vec<_> = keys.iter().map(Key::to_string).collect();
     let is_short = names.iter().all(|name| name.width() == 1);
-    // "arrows" is shorter than four names, and says as much.
+    // The word "arrows" is shorter than the names of the four keys.
     Some(if keys == arrows { "arrows".to_owned() } else { names.join(if is_short { "" } else { " " }) })
 }
 

@@ -1,4 +1,5 @@
-//! The stack of layers over the picture, each drawn from its own state.
+//! The stack of layers over the picture: panels and marks, each of which draws itself from its own
+//! state.
 //!
 //! A new panel is one file with a type that implements [`Layer`], and the line that opens it.
 
@@ -13,21 +14,20 @@ use ratatui_core::layout::Rect;
 use std::any::Any;
 use std::time::Duration;
 
-/// The height of a layer in the stack, from the lowest to the topmost.
+/// The position of a layer in the stack, from the lowest level to the topmost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Level {
-    // Marks lie lowest, so that they hide no text.
-    /// On a thing in the picture.
+    /// A mark on something in the picture. Marks lie lowest, so that they hide no text.
     Mark,
-    /// Beside the thing that it describes.
+    /// A panel beside the thing in the picture that it describes.
     Side,
-    /// In the middle of the lower half.
+    /// A panel in the middle of the screen's lower half.
     Middle,
-    /// In the lowest rows, upwards.
+    /// The status line in the lowest rows.
     Status,
     Legend,
     Error,
-    /// In the lowest row until the next key.
+    /// A note in the lowest row until the next key.
     Note,
     /// A question that has to be answered.
     Question,
@@ -40,12 +40,14 @@ pub(super) trait Layer: Any {
 
     fn draw(&mut self, canvas: &mut Canvas<'_>);
 
-    /// Returns the mode that keys have while the layer is open on a screen of this size.
+    /// Returns the mode whose bindings keys have while the layer is open on a screen of this size,
+    /// if it has one.
     fn mode(&self, _screen: Rect) -> Option<KeyMode> {
         None
     }
 
-    /// Returns whether the layer takes all keys.
+    /// Returns whether keys work only for this layer while it is open, and not for the layers below
+    /// it.
     fn takes_all_keys(&self) -> bool {
         false
     }
@@ -64,14 +66,14 @@ impl Layers {
     /// Opens a layer and replaces the open one of its type.
     pub(super) fn open<L: Layer>(&mut self, layer: L) {
         self.close::<L>();
-        // Above others of its level: what was opened last is seen.
+        // On top of the layers of the same level, so that the layer opened last is visible.
         let at = self.stack.partition_point(|below| below.level() <= layer.level());
         self.stack.insert(at, Box::new(layer));
     }
 
     /// Closes the layer of a type and returns it.
     pub(super) fn close<L: Layer>(&mut self) -> Option<L> {
-        let at = self.stack.iter().position(|layer| is::<L>(layer.as_ref()))?;
+        let at = self.stack.iter().position(|layer| is_of_type::<L>(layer.as_ref()))?;
         let layer: Box<dyn Any> = self.stack.remove(at);
         layer.downcast().ok().map(|layer| *layer)
     }
@@ -81,19 +83,20 @@ impl Layers {
         self.stack.iter().find_map(|layer| (layer.as_ref() as &dyn Any).downcast_ref())
     }
 
-    /// Returns the layer of a type, if open, to change it.
+    /// Returns the layer of a type, if open, for changes.
     pub(super) fn get_mut<L: Layer>(&mut self) -> Option<&mut L> {
         self.stack.iter_mut().find_map(|layer| (layer.as_mut() as &mut dyn Any).downcast_mut())
     }
 
-    /// Returns the modes of keys on a screen of this size, topmost first, with `below` under all
-    /// layers.
+    /// Returns the modes of the keymap that are in force on a screen of this size, topmost first.
+    ///
+    /// `moving` is the mode of the movement keys, which comes after the modes of the layers.
     pub(super) fn modes(&self, screen: Rect, moving: KeyMode) -> Vec<KeyMode> {
-        // A question takes the keys of movement too: a key that does not answer it should only dismiss it.
+        // A question excludes the mode of the movement keys, so that a key that does not answer only dismisses it.
         if let Some(question) = self.stack.iter().find(|layer| layer.takes_all_keys()) {
             return question.mode(screen).into_iter().chain([KeyMode::Always]).collect();
         }
-        // Layers on things in the picture take precedence over panels.
+        // From the lowest layer up, so that keys of a mark on the picture take precedence over those of a panel.
         let layers = self.stack.iter().filter_map(|layer| layer.mode(screen));
         layers.chain([moving, KeyMode::Always]).collect()
     }
@@ -112,36 +115,36 @@ impl Layers {
     }
 }
 
-fn is<L: Layer>(layer: &dyn Layer) -> bool {
+fn is_of_type<L: Layer>(layer: &dyn Layer) -> bool {
     (layer as &dyn Any).is::<L>()
 }
 
-/// The cells to draw on, and the state that layers share.
+/// The cells that layers draw on, and the state that all layers may read.
 pub(super) struct Canvas<'a> {
     pub(super) grid: &'a mut Grid,
     pub(super) cell_mode: CellMode,
     pub(super) keymap: &'a Keymap,
-    /// The modes of keys, topmost first.
+    /// The modes of the keymap that are in force, topmost first.
     pub(super) modes: &'a [KeyMode],
     pub(super) frame: Option<&'a Frame>,
     pub(super) figures: FrameStatistics,
-    /// Number of rows at the bottom that the status line takes.
+    /// Number of rows that the status line takes at the bottom of the screen.
     pub(super) status_rows: u16,
 }
 
 /// Statistics of the frames shown.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FrameStatistics {
-    /// Time for cells and bytes of the last frame.
+    /// Time that making the cells and bytes of the last frame took.
     pub(super) encode: Duration,
     /// Frames shown per second, while something moves.
     pub(super) frames_per_second: Option<f32>,
-    /// The rate of a slow link, in bytes per second.
+    /// The rate of the link in bytes per second, if it is slow.
     pub(super) slow: Option<f64>,
 }
 
 impl Canvas<'_> {
-    /// Returns the area of all cells.
+    /// Returns the area of the whole screen.
     pub(super) fn screen(&self) -> Rect {
         theme::area(self.grid.size())
     }
@@ -155,20 +158,20 @@ impl Canvas<'_> {
         theme::has_room(self.screen())
     }
 
-    /// Returns the row that has `below` others under it, counted from the bottom.
+    /// Returns the row of the screen that has `below` rows under it.
     pub(super) fn foot(&self, below: u16) -> Rect {
         theme::foot(self.screen(), below)
     }
 
-    /// Draws on a ratatui buffer over an area of the cells.
+    /// Calls `draw` on an empty ratatui buffer of this area, and lays the buffer over the cells.
     pub(super) fn lay(&mut self, area: Rect, draw: impl FnOnce(Theme, Rect, &mut Buffer)) {
         let mut buffer = Buffer::empty(area);
         draw(self.theme(), area, &mut buffer);
-        // A buffer of the area only: one of the whole screen would be compared cell by cell.
+        // The buffer has the size of the area, because laying it over the grid visits each of its cells.
         overlay::lay_over(self.grid, &buffer);
     }
 
-    /// Writes text on a row of its own.
+    /// Writes text into a row of the screen.
     pub(super) fn write_line(&mut self, text: &str, row: Rect) {
         self.lay(row, |theme, area, buffer| theme::draw_line(text, theme, area, buffer));
     }

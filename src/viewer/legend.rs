@@ -1,4 +1,4 @@
-//! The legend of a map in the lowest row; with two maps, one under each.
+//! The legends of maps in the lowest row, one under each map.
 
 use super::layers::{Canvas, Layer, Level};
 use super::theme::Theme;
@@ -7,7 +7,7 @@ use ratatui_core::layout::Rect;
 use ratatui_core::widgets::Widget;
 use ratatui_widgets::paragraph::Paragraph;
 
-/// The legends of the shown frame.
+/// The layer with the legends of the shown frame's maps.
 pub(super) struct Legends;
 
 impl Layer for Legends {
@@ -23,12 +23,14 @@ impl Layer for Legends {
     }
 }
 
-/// Returns each text with its area, as wide as the text, so that the picture continues beside it.
+/// Returns each legend with its area in row `line`.
+///
+/// An area is only as wide as its text, so that the picture is visible beside it.
 fn legend_areas(texts: &[String], line: Rect) -> impl Iterator<Item = (&str, Rect)> {
     let count = texts.len().max(1) as u16;
     (0..).zip(texts).map(move |(at, text)| {
         let room = line.width / count;
-        // Legends are ASCII, so that bytes are columns.
+        // Legends are ASCII, so their length in bytes is their width in columns.
         let width = (text.len() as u16).saturating_add(2).min(room);
         (text.as_str(), Rect { x: line.x + (line.width * at).div_ceil(count), width, ..line })
     })

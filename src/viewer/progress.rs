@@ -1,4 +1,4 @@
-//! The progress panel of a load.
+//! The panel with the progress of loading a scene.
 
 use super::layers::{Canvas, Layer, Level};
 use super::theme::Theme;
@@ -14,7 +14,7 @@ use ratatui_widgets::paragraph::Paragraph;
 use std::path::Path;
 use unicode_width::UnicodeWidthStr;
 
-/// A panel with the work and how much of it is done.
+/// A panel that names the current work and shows how much of it is done.
 pub(super) struct ProgressPanel(pub(super) Progress);
 
 impl Layer for ProgressPanel {
@@ -27,12 +27,12 @@ impl Layer for ProgressPanel {
     }
 }
 
-/// The panel's width where there is room.
-// Holds the verb and names of 34 characters; for longer ones the end is shown.
+/// The panel's width in columns, on screens that are wide enough.
+// Enough for the verb and file names of 34 characters; longer names lose their beginning.
 const PROGRESS_WIDTH: u16 = 46;
 const PROGRESS_HEIGHT: u16 = 4;
 
-/// Returns the panel's area: in the middle, above the lowest row.
+/// Returns the panel's area: horizontally in the middle, above the lowest row.
 fn area(screen: Rect) -> Rect {
     let (width, height) = (PROGRESS_WIDTH.min(screen.width), PROGRESS_HEIGHT.min(screen.height));
     let y = (screen.height - height).saturating_sub(1);
@@ -43,14 +43,15 @@ fn draw(progress: &Progress, theme: Theme, area: Rect, buffer: &mut Buffer) {
     Clear.render(area, buffer);
     Block::bordered().border_set(theme.border()).style(theme.style()).render(area, buffer);
     let inside = area.inner(Margin::new(2, 1));
-    let lines = [what_is_done(&progress.work, theme, inside.width.into()), bar(progress, theme, inside.width.into())];
+    let lines =
+        [work_line(&progress.work, theme, inside.width.into()), progress_bar(progress, theme, inside.width.into())];
     Paragraph::new(lines.map(Line::from).to_vec()).style(theme.style()).render(inside, buffer);
 }
 
-/// Returns the work and, if there is room, the file's name.
+/// Returns the line that names the work and its file.
 ///
-/// Of a long name the end is shown, which says more than its beginning.
-fn what_is_done(work: &Work, theme: Theme, width: usize) -> String {
+/// A name that does not fit loses its beginning, because the end of a name says more.
+fn work_line(work: &Work, theme: Theme, width: usize) -> String {
     let (verb, name) = match work {
         Work::Reading(name) => ("reading", name),
         Work::Parsing(name) => ("parsing", name),
@@ -58,7 +59,7 @@ fn what_is_done(work: &Work, theme: Theme, width: usize) -> String {
     };
     let room = width.saturating_sub(verb.len() + 1);
     let name = Path::new(name).file_name().map_or_else(|| name.into(), |name| name.to_string_lossy());
-    // A terminal without block characters may lack all others beyond ASCII.
+    // A terminal whose progress bar is ASCII may lack all other characters too.
     let is_shown = |c: char| c.is_ascii() || !theme.bar()[0].is_ascii();
     let mut name: String = visible(&name).chars().map(|c| if is_shown(c) { c } else { '?' }).collect();
     while name.width() > room {
@@ -67,13 +68,13 @@ fn what_is_done(work: &Work, theme: Theme, width: usize) -> String {
     format!("{verb} {name}")
 }
 
-/// Returns a bar of this width with the percentage; `None` if the total is unknown.
-fn bar(progress: &Progress, theme: Theme, width: usize) -> String {
+/// Returns a bar of this width with the percentage; empty if the total is unknown.
+fn progress_bar(progress: &Progress, theme: Theme, width: usize) -> String {
     if progress.total == 0 {
         return String::new();
     }
     let share = (progress.done as f64 / progress.total as f64).min(1.0);
-    // Rounded down: 100 % must mean that nothing is left.
+    // Rounded down, so that 100 % means that nothing is left.
     let per_cent = format!(" {:3.0} %", (100.0 * share).floor());
     let room = width.saturating_sub(per_cent.len());
     let filled = (share * room as f64) as usize;

@@ -18,40 +18,42 @@ use crate::grid::{Grid, HalfBlocks, Size};
 use crate::pace::Limit;
 use std::time::Duration;
 
-/// Least time between frames that only make colours exact.
-// tmux drops output of a pane that sends faster than its client draws; at 30 frames a second it drops none.
+/// Least time between two frames that only replace approximate colours by exact ones.
+// tmux drops the output of a pane that sends faster than its client draws; at 30 frames a second it drops none.
 const EXACT_COLORS_INTERVAL: Duration = Duration::from_millis(33);
 
-/// Approximate bytes per cell of a frame in which everything moves.
-// Two colours of 24 bits cost up to 38 bytes a cell, but neighbours share most of them.
+/// Approximate bytes per cell of a frame in which every cell changes.
+// A cell with two colours of 24 bits costs up to 38 bytes, but most cells share colours with their neighbours.
 const USUAL_BYTES_PER_CELL: usize = 8;
 
-/// Erases the whole window (ED 2), which many terminals fill with the pen's colour.
+/// The sequence that erases the whole window (ED 2). Many terminals fill it with the pen's
+/// background colour.
 const ERASE: &[u8] = b"\x1b[2J";
-/// Resets the pen and erases the whole window, in the terminal's own colours.
+/// The sequence that resets the pen and erases the whole window, which then has the terminal's
+/// default background.
 const RESET_ERASE: &[u8] = b"\x1b[m\x1b[2J";
 
-/// The content that the user is to see, and the state of the terminal.
+/// The content of the user's screen, and the encoder that brings the terminal to it.
 pub(super) struct Screen {
     content: Tracked<Content>,
     painter: Painter,
     encoder: Encoder,
-    /// The wanted grid.
-    // Kept, because allocating it takes longer than filling it: with this and the buffer of bytes kept, a key at 200x60
-    // causes 210 page faults instead of 571.
+    /// The cells of the frame that is drawn.
+    // Kept between frames, because allocating it takes longer than filling it: with the grid and the buffer of bytes
+    // kept, a key press at 200x60 causes 210 page faults instead of 571.
     grid: Grid,
     order: Option<Order>,
     quality: Option<Quality>,
-    /// Whether the next bytes erase the whole window first.
+    /// Whether the next frame's bytes erase the whole window first.
     erases: bool,
-    /// Time at which the last bytes were drawn.
+    /// Time at which the last frame was drawn.
     drawn: Option<Duration>,
     rate: FrameRate,
-    /// Time for cells and bytes of the last frame.
+    /// Time that making the cells and bytes of the last frame took.
     encode: Duration,
 }
 
-/// The content that the user is to see.
+/// The content of the screen before it is turned into cells.
 struct Content {
     frame: Option<Frame>,
     /// Position of the line between two maps, as a share of the width.
@@ -62,7 +64,7 @@ struct Content {
 }
 
 impl Content {
-    /// Returns the modes of keys on a screen of this size, topmost first.
+    /// Returns the modes of the keymap that are in force on a screen of this size, topmost first.
     fn modes(&self, size: Size) -> Vec<KeyMode> {
         self.layers.modes(theme::area(size), self.moving)
     }
@@ -86,35 +88,35 @@ impl Screen {
         }
     }
 
-    /// Returns the approximate bytes of a frame in which everything moves.
+    /// Returns the approximate bytes of a frame in which every cell changes.
     pub(super) fn usual_bytes(size: Size) -> usize {
         USUAL_BYTES_PER_CELL * size.cell_count()
     }
 
-    /// Adopts new findings about the terminal.
+    /// Sets the capabilities by which pictures become cells and cells become bytes.
     pub(super) fn set_capabilities(&mut self, capabilities: &Capabilities) {
         let mode = self.painter.mode();
         self.painter = painter(capabilities);
         self.encoder = encoder(std::mem::take(&mut self.encoder), capabilities);
         self.content.touch();
-        // The cells on the screen were made with other glyphs or colours, and do not tell what is shown now.
+        // The encoder's cells were made with other glyphs or colours, and no longer describe what the terminal shows.
         if mode != self.painter.mode() {
             self.encoder.forget();
         }
         self.encoder.set_half_blocks(capabilities.half_blocks);
     }
 
-    /// Takes a frame, with the time if something moves.
+    /// Replaces the frame. `moving` is the time if the view is moving, for the frame rate.
     pub(super) fn take_frame(&mut self, mut frame: Frame, moving: Option<Duration>) {
         let content = &mut *self.content;
-        // The line may have been moved while the frame was traced.
+        // The user may have moved the line between two maps while the frame was traced.
         frame.wipe(content.wipe);
         content.layers.take_frame(&frame);
         content.frame = Some(frame);
         self.rate.count(moving);
     }
 
-    /// Moves the line between two maps to this share of the width.
+    /// Moves the line between the two maps of a wipe to this share of the width.
     pub(super) fn wipe_to(&mut self, share: f32) {
         let content = &mut *self.content;
         content.wipe = share.clamp(0.0, 1.0);
@@ -123,7 +125,7 @@ impl Screen {
         }
     }
 
-    /// Returns the position of that line.
+    /// Returns the position of the line between the two maps of a wipe, as a share of the width.
     pub(super) fn wipe(&self) -> f32 {
         self.content.wipe
     }
@@ -135,12 +137,13 @@ impl Screen {
 
     /// Closes the layer of a type, if open, and returns it.
     pub(super) fn close<L: Layer>(&mut self) -> Option<L> {
-        // Without this look, closing nothing would count as a change and draw the screen.
+        // Checked first, because any access for writing counts as a change, which draws the screen.
         self.get::<L>()?;
         self.content.layers.close()
     }
 
-    /// Closes the layer of a type when the picture is to show something else.
+    /// Closes the layer of a type without counting it as a change, because the next frame redraws
+    /// the screen anyway.
     pub(super) fn close_quietly<L: Layer>(&mut self) {
         self.content.quietly().layers.close::<L>();
     }
@@ -150,7 +153,7 @@ impl Screen {
         self.content.layers.get()
     }
 
-    /// Opens `layer` unless it is open already; closes the layer of its type if `None`.
+    /// Opens `layer`, unless an equal one is open already; if `None`, closes the layer of type `L`.
     pub(super) fn set<L: Layer + PartialEq>(&mut self, layer: Option<L>) {
         match layer {
             Some(layer) if self.get() == Some(&layer) => {}
@@ -164,7 +167,7 @@ impl Screen {
         self.content.frame.as_ref()
     }
 
-    /// Returns whether a frame has been shown.
+    /// Returns whether a frame has been drawn since the start.
     pub(super) fn has_shown(&self) -> bool {
         self.drawn.is_some()
     }
@@ -180,20 +183,21 @@ impl Screen {
         }
     }
 
-    /// Returns the modes of keys on a screen of this size, topmost first.
+    /// Returns the modes of the keymap that are in force on a screen of this size, topmost first.
     pub(super) fn modes(&self, size: Size) -> Vec<KeyMode> {
         self.content.modes(size)
     }
 
     /// Sets whether the eye flies or orbits.
     pub(super) fn set_moving(&mut self, moving: KeyMode) {
-        // Compared first, because a write counts as a change.
+        // Written only if it differs, because any access for writing counts as a change, which draws the screen.
         if self.content.moving != moving {
             self.content.moving = moving;
         }
     }
 
-    /// Starts or ends the explanation of a pixel.
+    /// Closes the explanation of a pixel if it is open; otherwise opens one for the pixel in the
+    /// middle.
     pub(super) fn toggle_explaining(&mut self) {
         if self.close::<ExplainPanel>().is_none()
             && let Some(explaining) = self.frame().and_then(ExplainPanel::new)
@@ -202,7 +206,7 @@ impl Screen {
         }
     }
 
-    /// Changes the explanation.
+    /// Calls `change` with the open explanation and the frame, if there are both.
     pub(super) fn explain(&mut self, change: impl FnOnce(&mut ExplainPanel, &Frame)) {
         if self.get::<ExplainPanel>().is_none() {
             return;
@@ -215,7 +219,7 @@ impl Screen {
 
     /// Forgets what the terminal shows: the next bytes draw everything, with these half blocks.
     ///
-    /// They erase the window first if the picture covers only a part of it.
+    /// With `covers_a_part` (the picture covers only a part of the window) these bytes erase the window first.
     pub(super) fn redraw(&mut self, half_blocks: HalfBlocks, covers_a_part: bool) {
         self.encoder.forget();
         self.erases = covers_a_part;
@@ -223,33 +227,39 @@ impl Screen {
         self.content.touch();
     }
 
-    /// Returns whether the screen differs from the wanted content and can be updated.
+    /// Returns whether the content has changed since it was drawn last and can be drawn at this
+    /// size.
     pub(super) fn is_changed(&self, size: Size) -> bool {
         self.content.is_changed() && self.can_show(size)
     }
 
-    /// Returns the time at which the shown colours can be made exact, if they are not.
+    /// Returns the time from which a frame may replace the shown approximate colours by exact ones.
+    ///
+    /// `None` if the shown colours are exact.
     pub(super) fn improvable_at(&self, size: Size) -> Option<Duration> {
         let due = self.encoder.due().filter(|_| self.can_show(size))?;
         Some(self.drawn.map_or(due, |drawn| due.max(drawn + EXACT_COLORS_INTERVAL)))
     }
 
-    /// Returns whether the scene is still loading, so that at best a sketch of it is shown.
+    /// Returns whether a scene is still being loaded, so that at best a sketch of it is shown.
     pub(super) fn awaits_scene(&self) -> bool {
         self.get::<ProgressPanel>().is_some()
     }
 
-    /// Returns whether there is a frame of this size.
+    /// Returns whether a screen of this size can be drawn: the last frame has this size, or a scene
+    /// is loading.
     ///
-    /// While a scene is loading and there is none, black serves as a background for panels.
+    /// Without any frame, panels about the loading are drawn on black.
     fn can_show(&self, size: Size) -> bool {
         let Some(frame) = self.frame() else { return self.awaits_scene() };
-        // After a resize the old frame would be cut off or leave a part of the window empty.
+        // After a resize the old frame would be cut off, or would leave a part of the window empty.
         let wanted = cell::resolution(self.painter.mode(), size, 1.0);
         wanted.is_ok_and(|wanted| (frame.picture.width, frame.picture.height) == (wanted.width(), wanted.height()))
     }
 
-    /// Appends the bytes that bring the terminal to the wanted content.
+    /// Appends the bytes that bring the terminal to the current content.
+    ///
+    /// `limit` is the limit of a slow link on the frame's bytes.
     pub(super) fn draw(
         &mut self,
         size: Size,
@@ -261,7 +271,7 @@ impl Screen {
         let slow = limit.and_then(|limit| limit.rate);
         let figures = FrameStatistics { encode: self.encode, frames_per_second: self.rate.frames_per_second, slow };
         let cell_mode = self.painter.mode();
-        // Drawing a panel may update its scroll position, which must not count as a change: the loop would never rest.
+        // Drawing a panel may clamp its scroll position. If that counted as a change, every frame would cause another.
         self.content.settle();
         let content = self.content.quietly();
         let grid = &mut self.grid;
@@ -281,7 +291,7 @@ impl Screen {
             figures,
             status_rows,
         });
-        // Order by colour saves bytes, but takes 0.5 ms longer, which a fast link does not give back.
+        // Order by colour saves bytes but takes 0.5 ms longer, more than a fast link saves by fewer bytes.
         let (usual, order) =
             if limit.is_some() { (Quality::Equal, Order::Color) } else { (Quality::Exact, Order::Raster) };
         self.encoder.set_order(self.order.unwrap_or(order));
@@ -294,7 +304,7 @@ impl Screen {
         self.drawn = Some(now);
     }
 
-    /// Records the time for making and encoding the cells.
+    /// Records how long making and encoding the cells of the last frame took.
     pub(super) fn record_encode_time(&mut self, encode: Duration) {
         self.encode = encode;
     }
@@ -309,7 +319,7 @@ fn encoder(encoder: Encoder, capabilities: &Capabilities) -> Encoder {
     encoder.with_colors(has_colors).with_synchronized_output(capabilities.synchronized_output)
 }
 
-/// A count of the frames shown per second while something moves.
+/// A running mean of the frames shown per second while the view is moving.
 #[derive(Default)]
 struct FrameRate {
     last: Option<Duration>,
@@ -317,13 +327,13 @@ struct FrameRate {
 }
 
 impl FrameRate {
-    /// Counts a frame shown at `time`, or at rest if `None`.
+    /// Counts a frame shown at the time `moving`, or a frame shown at rest if `None`.
     ///
-    /// A pause ends the count, because frames before it say nothing about those after it.
+    /// A frame at rest or a pause longer than [`MAX_MOTION_GAP`] starts the mean anew.
     fn count(&mut self, moving: Option<Duration>) {
         let between = self.last.zip(moving).map(|(last, now)| now.saturating_sub(last));
         self.last = moving;
-        // An interval of 0 would be infinitely many frames a second.
+        // An interval of zero would be infinitely many frames a second.
         self.frames_per_second =
             between.filter(|&between| between < MAX_MOTION_GAP && between > Duration::ZERO).map(|between| {
                 let now = 1.0 / between.as_secs_f32();
@@ -334,7 +344,7 @@ impl FrameRate {
     }
 }
 
-/// Longest time between two frames of one motion.
+/// Greatest time between two frames of the same motion, for the mean frame rate.
 const MAX_MOTION_GAP: Duration = Duration::from_millis(500);
 
 #[cfg(all(test, unit_tests))]

@@ -1,4 +1,4 @@
-//! The status line: statistics of the last frame, and below them the important keys.
+//! The status line: the important keys, and below them statistics of the last frame.
 
 use super::help;
 use super::layers::{Canvas, FrameStatistics, Layer, Level};
@@ -9,12 +9,13 @@ use glam::Vec3;
 use ratatui_core::layout::Rect;
 use std::time::Duration;
 
-/// The lowest row or two.
+/// The layer with the statistics of the last frame in the lowest row, and the important keys above
+/// it.
 pub(super) struct StatusLine;
 
 impl StatusLine {
-    /// Returns the number of rows: the statistics, and the keys below them where there is room for
-    /// panels.
+    /// Returns the number of rows: one for the statistics, and one for the keys if there is room
+    /// for panels.
     pub(super) fn rows(screen: Rect) -> u16 {
         // On a small screen the keys would not fit into a row anyway.
         1 + u16::from(theme::has_room(screen))
@@ -47,18 +48,18 @@ impl Layer for StatusLine {
     }
 }
 
-/// The content of the status line.
+/// The statistics in the status line.
 struct Status {
     cells: Size,
     sampling: Sampling,
-    /// Time for tracing.
+    /// Time that tracing took.
     trace: Duration,
-    /// Time for cells and bytes.
+    /// Time that making the cells and bytes took.
     encode: Duration,
     /// Frames shown per second, while something moves.
     shown: Option<f32>,
     rays: u64,
-    /// The rate of a slow link, in bytes per second.
+    /// The rate of the link in bytes per second, if it is slow.
     slow: Option<f64>,
     eye: Vec3,
 }
@@ -67,7 +68,7 @@ impl Status {
     fn text(&self) -> String {
         let Self { cells, eye, .. } = self;
         let shown = self.shown.map_or_else(|| "-".to_owned(), |fps| format!("{fps:.0}"));
-        // The facts that limit the frame rate: on a slow link tracing and encoding do not.
+        // Shows what limits the frame rate: the rate of a slow link, otherwise the times for tracing and encoding.
         let stages = match self.slow {
             Some(rate) => format!("slow link {}B/s", short(rate)),
             None => {
@@ -87,10 +88,10 @@ impl Status {
     }
 }
 
-/// Returns the samples per pixel as text: `1/4`, or the maximum.
+/// Returns the samples per pixel as text: `1/4` if coarse, otherwise the (greatest) number.
 fn samples(sampling: Sampling) -> String {
     match sampling {
-        // One ray for 2x2 pixels.
+        // A coarse picture has one ray for 2x2 pixels.
         Sampling::Coarse => "1/4".to_owned(),
         Sampling::Each(samples) | Sampling::UpTo(samples) => samples.to_string(),
     }
@@ -101,7 +102,7 @@ fn per_second(count: f64, time: Duration) -> f64 {
     count / time.as_secs_f64().max(1e-9)
 }
 
-/// Formats a number in two or three digits and a letter: 812, 3.9k, 12M.
+/// Formats a number with two or three digits and a unit prefix, such as 812, 3.9k or 12M.
 fn short(value: f64) -> String {
     let (value, unit) = match value {
         v if v >= 1e9 => (v / 1e9, "G"),

@@ -1,4 +1,4 @@
-//! The appearance of layers, and the room for them.
+//! The colours and borders of layers, and the screen size that they need.
 
 use crate::capabilities::{CellMode, Colors};
 use crate::grid::Size;
@@ -9,14 +9,15 @@ use ratatui_core::symbols::border;
 use ratatui_core::widgets::Widget;
 use ratatui_widgets::paragraph::Paragraph;
 
-/// Colours and border of panels. Panels use no colour or block characters if the picture does not.
+/// The colours and characters of panels. They use no colour or block characters if the picture uses
+/// none.
 #[derive(Clone, Copy)]
 pub(super) struct Theme {
     style: Style,
     /// The style of marks on the picture.
     mark: Style,
     border: border::Set<'static>,
-    /// The characters of a progress bar: done, and left.
+    /// The characters of a progress bar, for the part done and the part left.
     bar: [char; 2],
 }
 
@@ -24,7 +25,7 @@ impl Theme {
     pub(super) fn of(cell_mode: CellMode) -> Self {
         let style = match cell_mode.colors {
             Colors::Truecolor => Style::new().fg(Color::Rgb(0xe6, 0xe6, 0xe6)).bg(Color::Rgb(0x18, 0x1c, 0x24)),
-            // Greys of the fixed part of the palette: the user may have changed the first 16 colours.
+            // Greys from the fixed part of the palette, because the user may have changed the first 16 colours.
             Colors::Indexed256 => Style::new().fg(Color::Indexed(254)).bg(Color::Indexed(234)),
             Colors::Indexed16(_) => Style::new().fg(Color::White).bg(Color::Black),
             Colors::None => Style::new(),
@@ -32,14 +33,14 @@ impl Theme {
         let (border, bar) =
             if cell_mode.glyphs.has_blocks() { (border::ROUNDED, ['█', '░']) } else { (ASCII_BORDER, ['#', '.']) };
         let mark = match cell_mode.colors {
-            // Bold is no colour, and `NO_COLOR` allows it.
+            // Without colours marks are bold, which `NO_COLOR` allows.
             Colors::None => style.add_modifier(Modifier::BOLD),
             _ => style.fg(Color::LightYellow),
         };
         Self { style, mark, border, bar }
     }
 
-    /// Returns the characters of a progress bar: done, and left.
+    /// Returns the characters of a progress bar, for the part done and the part left.
     pub(super) fn bar(self) -> [char; 2] {
         self.bar
     }
@@ -70,8 +71,8 @@ const ASCII_BORDER: border::Set<'static> = border::Set {
     horizontal_bottom: "-",
 };
 
-/// The smallest screen with panels, in columns and rows.
-// The explanation has 39 columns and takes half of the rows of a narrow screen.
+/// The smallest screen on which panels are shown, in columns and rows.
+// The explanation is 39 columns wide, and takes half of the rows of a narrow screen.
 pub(super) const MIN_PANEL_SCREEN: (u16, u16) = (40, 12);
 
 /// Returns the area of the whole screen.
@@ -81,17 +82,17 @@ pub(super) fn area(size: Size) -> Rect {
 
 /// Returns whether the screen is large enough for panels.
 ///
-/// On a smaller one they would hide what they describe.
+/// On a smaller screen panels would hide what they describe.
 pub(super) fn has_room(screen: Rect) -> bool {
     screen.width >= MIN_PANEL_SCREEN.0 && screen.height >= MIN_PANEL_SCREEN.1
 }
 
-/// Returns the row that has `below` others under it, counted from the bottom.
+/// Returns the row of the screen that has `below` rows under it.
 pub(super) fn foot(screen: Rect, below: u16) -> Rect {
     Rect { y: screen.bottom().saturating_sub(1 + below), height: screen.height.min(1), ..screen }
 }
 
-/// Writes text on a row of its own.
+/// Writes text into `area`, which is one row.
 pub(super) fn draw_line(text: &str, theme: Theme, area: Rect, buffer: &mut Buffer) {
     Paragraph::new(text).style(theme.style).render(area, buffer);
 }

@@ -1,10 +1,10 @@
-//! A value that records whether it was changed.
+//! A wrapper that records whether its value may have been changed.
 
 use std::ops::{Deref, DerefMut};
 
 /// A value, and whether it was borrowed mutably since the last [`settle`](Tracked::settle).
 ///
-/// So no method that changes the value has to set a flag, and none can forget it.
+/// So no method that changes the value can forget to set a flag.
 pub(super) struct Tracked<T> {
     value: T,
     is_changed: bool,
@@ -21,12 +21,12 @@ impl<T> Tracked<T> {
         self.is_changed
     }
 
-    /// Marks the value as changed, because something outside it that it is drawn with has changed.
+    /// Marks the value as changed, because something else that it is drawn with has changed.
     pub(super) fn touch(&mut self) {
         self.is_changed = true;
     }
 
-    /// Returns the value for a change that does not count.
+    /// Returns the value for writing without marking it as changed.
     pub(super) fn quietly(&mut self) -> &mut T {
         &mut self.value
     }

@@ -1,6 +1,5 @@
-//! The view from the side, as the lecture draws it.
-//!
-//! Shows the eye, the view rectangle, the ray and its hit.
+//! The inset of the explanation: a drawing of the eye, view rectangle, ray and hit from the side,
+//! as in the lecture.
 
 use crate::camera::{Basis, Camera};
 use crate::capabilities::{CellMode, Colors};
@@ -18,31 +17,32 @@ use ratatui_core::text::Line as Text;
 use ratatui_core::widgets::Widget;
 use ratatui_widgets::canvas::{Canvas, Circle, Line};
 
-/// The drawing's geometry, in the plane of the view direction and the vertical.
+/// The geometry of the drawing, projected onto the plane through the eye along -w and v.
 ///
-/// Coordinates are lengths along -w and v from the eye.
+/// Coordinates are distances from the eye along -w (the view direction) and v (up), in world units.
 pub(super) struct Inset {
-    /// The ends of the view rectangle.
+    /// The lower and upper end of the view rectangle, which is seen edge-on.
     rectangle: [Vec2; 2],
-    /// The point where the ray passes through it.
+    /// The point where the ray passes through the view rectangle.
     q: Vec2,
     /// The end of the ray: its hit, or a point far away.
     end: Vec2,
     /// Whether the ray hits anything.
     has_hit: bool,
-    /// The sphere that is hit.
+    /// The center and radius of the sphere that the ray hits, if it hits one.
     sphere: Option<(Vec2, f32)>,
-    /// The ways from there to the lights, and whether each light is visible.
+    /// The end of the line from the hit to each light, and whether the light reaches the hit.
     lights: Vec<(Vec2, bool)>,
 }
 
-/// Length of a ray without a hit, in distances of the eye from the target.
-// Beyond the target, so that it is seen to pass the scene.
+/// Length at which a ray without a hit is drawn, as a multiple of the distance from the eye to the
+/// target.
+// Greater than 1, so that the ray visibly passes the scene.
 const MISS_LENGTH: f32 = 1.5;
 
-/// Distance at which the view rectangle is drawn, as a share of the ray.
+/// Distance from the eye at which the view rectangle is drawn, as a share of the ray's length.
 ///
-/// Only the ratios of its distance and sides matter, so it is drawn where it is easy to see.
+/// The distance is free, because only the ratio of the rectangle's sides to its distance matters for the rays.
 const VIEW_RECTANGLE_DISTANCE: f32 = 0.3;
 
 impl Inset {
@@ -57,7 +57,7 @@ impl Inset {
         let sphere = shaded.and_then(|shaded| shaded.hit.surface(scene).circle());
         let sphere = sphere.map(|(center, radius)| (from_side(center), radius));
         let lights = shaded.map_or(Vec::new(), |shaded| {
-            // For a light at infinity its direction is drawn, as long as the ray.
+            // For a light at infinity a line as long as the ray is drawn in the light's direction.
             let far = |lit: &LightContribution| shaded.point.position + lit.incidence.l * t;
             let end =
                 |(light, lit): (&Light, &LightContribution)| from_side(light.position().unwrap_or_else(|| far(lit)));
@@ -74,7 +74,7 @@ impl Inset {
         }
     }
 
-    /// Draws everything at one scale.
+    /// Draws the inset into `area`, with the same scale in both directions.
     pub(super) fn draw(&self, theme: Theme, mode: CellMode, resolution: Resolution, area: Rect, buffer: &mut Buffer) {
         if area.is_empty() {
             return;
@@ -98,7 +98,7 @@ impl Inset {
             for &(light, is_seen) in &self.lights {
                 canvas.draw(&line(self.end, light, if is_seen { Color::LightYellow } else { Color::DarkGray }));
             }
-            // A layer each, because dots of one layer share their cell's colour.
+            // Each colour has its own canvas layer, because all dots of a layer in one cell share the cell's colour.
             canvas.layer();
             canvas.draw(&line(self.rectangle[0], self.rectangle[1], Color::LightBlue));
             canvas.draw(&line(Vec2::ZERO, self.end, Color::LightGreen));
@@ -112,11 +112,12 @@ impl Inset {
         buffer.set_style(area, Style { fg: None, ..style });
     }
 
-    /// Returns the part of the plane to draw in this much room.
+    /// Returns the ranges of x and y to draw in a room of this width and height, both in units of a
+    /// cell's width.
     ///
-    /// It contains everything but spheres and lights, centred, with a margin.
+    /// The eye, the view rectangle and the ray are centred in them, with a margin.
     fn bounds(&self, width: f32, height: f32) -> [[f64; 2]; 2] {
-        // Spheres and lights are left out: one far away would shrink the ray to a dot.
+        // Spheres and lights may lie outside: a distant one would shrink the ray to a dot.
         let points = [Vec2::ZERO, self.rectangle[0], self.rectangle[1], self.end];
         let min = points.into_iter().reduce(Vec2::min).unwrap_or_default();
         let max = points.into_iter().reduce(Vec2::max).unwrap_or_default();

@@ -1,4 +1,5 @@
-//! Areas of the explanation's cursor and panel, which never cover the explained pixel.
+//! The areas of the explanation's cursor and panel on the screen. Neither covers the explained
+//! pixel.
 
 use super::ExplainPanel;
 use crate::capabilities::CellMode;
@@ -15,25 +16,29 @@ const PANEL_WIDTH: u16 = MAX_LINE_WIDTH as u16 + 4;
 const RESERVED_ROWS: u16 = 2;
 
 /// Least and greatest height of the inset within the panel, in rows.
-// With fewer rows the letters o, q and p overlap; more would take room from the text without showing more.
+// With fewer rows the letters o, q and p of the drawing overlap; more rows would show nothing more and leave the text
+// less room.
 const INSET_HEIGHT: [u16; 2] = [6, 16];
 
-/// Returns the panel's area, on the side of the screen away from the cell.
+/// Returns the panel's area, on the half of the screen that does not contain the cell at this
+/// column and row.
 pub(super) fn panel_area(screen: Rect, [column, row]: [u16; 2]) -> Rect {
     let (middle, height) = (screen.width / 2, screen.height.saturating_sub(RESERVED_ROWS));
-    // Greater, not equal: the cursor's mark beside the cell takes a column as well.
+    // Half the screen must be wider than the panel by a column, for the cursor's mark beside the cell.
     if middle > PANEL_WIDTH {
         let x = if column < middle { screen.width - PANEL_WIDTH } else { 0 };
         return Rect::new(x, 0, PANEL_WIDTH, height);
     }
-    // A narrow screen has it above or below.
+    // On a narrow screen the panel lies above or below the cell.
     let (half, width) = (screen.height / 2, PANEL_WIDTH.min(screen.width));
     let x = (screen.width - width) / 2;
     if row < half { Rect::new(x, half + 1, width, height - half - 1) } else { Rect::new(x, 0, width, half - 1) }
 }
 
-/// Returns the areas within the panel of the text, which has `lines` lines, and of the inset below
-/// it, which is empty if there is no room for it.
+/// Splits the panel's inside into the areas of the text, of `lines` lines, and of the inset below
+/// the text.
+///
+/// The inset's area is empty if there is no room for it.
 pub(super) fn split(inside: Rect, lines: u16) -> [Rect; 2] {
     let [least, most] = INSET_HEIGHT;
     let inset = if inside.height < 2 * least { 0 } else { inside.height.saturating_sub(lines + 1).clamp(least, most) };
@@ -41,7 +46,8 @@ pub(super) fn split(inside: Rect, lines: u16) -> [Rect; 2] {
     [text, Rect { y: inside.bottom() - inset, height: inset, ..inside }]
 }
 
-/// Draws the cursor: marks beside, above and below the cell, with nothing on the cell itself.
+/// Returns the cursor as one-cell buffers beside, above and below the explained cell, which itself
+/// stays uncovered.
 pub(super) fn marks(explaining: &ExplainPanel, theme: Theme, mode: CellMode, screen: Rect) -> Vec<Buffer> {
     let [column, row] = explaining.cell(mode);
     let [beside, above] = match explaining.row_in_cell(mode) {

@@ -7,7 +7,7 @@ fn all_modes() -> [Vec<KeyMode>; 4] {
     [under(KeyMode::Fly), under(KeyMode::Orbit), above(KeyMode::Explain), above(KeyMode::Light)]
 }
 
-/// Returns the text of all pages on a screen of this size.
+/// Returns the text of all pages of the help on a screen of this size.
 fn shown(keymap: &Keymap, modes: &[KeyMode], columns: u16, rows: u16) -> String {
     let screen = Rect::new(0, 0, columns, rows);
     let help = Help::new(keymap, modes, screen);
@@ -25,14 +25,15 @@ fn shown(keymap: &Keymap, modes: &[KeyMode], columns: u16, rows: u16) -> String 
     text
 }
 
-/// Asserts that the help fits on one page of a common screen.
+/// Every key and its description is on one of the pages, on every screen that is large enough for
+/// panels.
 #[test]
 fn all_of_it_is_shown_wherever_there_is_room_for_panels() {
     let keymap = Keymap::default();
     for modes in all_modes() {
         for (columns, rows) in [(80, 24), (200, 60), (40, 12), (41, 24), (300, 12)] {
             let text = shown(&keymap, &modes, columns, rows);
-            for (keys, description) in super::rows(&keymap, &modes) {
+            for (keys, description) in key_rows(&keymap, &modes) {
                 let line = text.lines().any(|line| line.contains(&keys) && line.contains(description));
                 assert!(line, "{keys} {description} in {columns}x{rows}:\n{text}");
             }
@@ -52,8 +53,8 @@ fn it_goes_by_what_is_bound() {
     let text = shown(&keymap, &[KeyMode::Fly, KeyMode::Always], 80, 24);
     assert!(text.contains("8        ") && text.contains("move forward"), "{text}");
     assert!(!text.contains("save picture"), "{text}");
-    assert_eq!(keys(&keymap, &[KeyMode::Fly], &[Command::Move(Direction::Forward)]).as_deref(), Some("8"));
-    assert_eq!(keys(&keymap, &[KeyMode::Fly, KeyMode::Always], &[Command::Export]), None);
+    assert_eq!(key_names(&keymap, &[KeyMode::Fly], &[Command::Move(Direction::Forward)]).as_deref(), Some("8"));
+    assert_eq!(key_names(&keymap, &[KeyMode::Fly, KeyMode::Always], &[Command::Export]), None);
 }
 
 /// A key bound in a higher mode is not listed for the lower one.

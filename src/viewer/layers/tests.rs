@@ -1,7 +1,8 @@
 use super::*;
 use crate::grid::Size;
 
-/// A panel of this test: all that a panel takes is its type and the line that opens it.
+/// A layer of the given level that draws `LETTER`; `L` has the mode of lights, and `?` takes all
+/// keys.
 struct Letter<const LETTER: char>(Level);
 
 impl<const LETTER: char> Layer for Letter<LETTER> {

@@ -8,8 +8,8 @@ use crate::viewer::frame::Shot;
 use crate::viewer::view_layout::ViewLayout;
 use std::num::NonZeroU32;
 
-/// Returns the order of cells: by colour while the link is slow, raster otherwise, unless the
-/// user has chosen one.
+/// Cells are sent in order of colour while the link is slow, otherwise in raster order, unless the
+/// user chose one.
 #[test]
 fn the_order_is_the_links() {
     let text = include_str!("../../../scenes/three_spheres.ron");
