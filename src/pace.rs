@@ -3,16 +3,16 @@
 //! A query ends each frame. Its reply shows that the frame has arrived, and so gives the round-trip time, the rate of
 //! the link, and the bytes in flight. At most the bandwidth-delay product (the rate times the shortest round trip) and
 //! one frame are in flight; more would only queue somewhere in between, ahead of the frame that shows the next key.
-//! (Both estimates age, as in BBR. The terminal's status report, DSR 5, would be a shorter reply, but st 0.9 does not
-//! send it.)
+//! (Estimates of the rate and the round trip age, as in BBR. A status report, DSR 5, would be a shorter reply than the
+//! one to DA1, but st 0.9 does not send it.)
 //!
-//! A frame is written at once, so each frame gives the link's rate: its bytes over the time by which its round trip
-//! exceeds the shortest. Frames are sent at 6/7 of that rate, so that queues drain and the shortest round trip is
-//! measured again.
+//! A frame is written at once, so each frame gives the link's rate: its bytes divided by the time by which its round
+//! trip exceeds the shortest. Frames are sent at 6/7 of that rate, so that queues drain and the shortest round trip can
+//! be measured again.
 //!
-//! Replies get lost. The ledger matches replies to queries. If a reply is missing, a timeout ends the wait
+//! Replies may get lost. The ledger matches replies to queries. If a reply is missing, a timeout ends the wait for it
 //! (`Recovering`): frames are sent one at a time, until a reply arrives or the terminal is considered silent
-//! (`Silent`). The state decides:
+//! (`Silent`). The state determines when frames are sent and which of them end with a query:
 //!
 //! | State      | next frame                          | query             | left by                               |
 //! |------------|-------------------------------------|-------------------|---------------------------------------|
@@ -26,7 +26,7 @@
 //! After a resync on a slow link, `Steady` has at most one query in flight until enough replies have arrived in order.
 //! The frames in between end without one, and the next reply shows that they have arrived.
 //!
-//! Pure: the time is passed in, and there is no I/O.
+//! Pure: it reads no clock and does no I/O; the time is passed in.
 //!
 //! ```
 //! use std::time::Duration;
@@ -57,63 +57,67 @@ use reply_tracker::{ReplyTracker, State};
 /// A link is slow if it transmits fewer than this many screens per second.
 // Below about 16 pictures a second, motion is seen as a sequence of pictures.
 const SMOOTH_SCREENS_PER_SECOND: f64 = 16.0;
-/// Frames per second on a slow link, each of which may take this part of the rate.
-// The smaller a frame, the sooner its reply shows that the link has become slower, and the less is in flight until
+/// Frames per second on a slow link. A frame may have this fraction of the bytes that the link
+/// transmits in a second.
+// The smaller a frame, the sooner its reply shows that the link has become slower, and the fewer bytes are in flight by
 // then. After a tenfold drop of the rate, 36 frames a second with a gain of 0.86 recover in 1.73 to 1.94 s of simulated
 // time; 16 a second with a gain of 0.95 took 1.9 to 2.4 s.
 const SLOW_LINK_FRAME_RATE: f64 = 36.0;
-/// Number of bytes that a frame may always take.
-// Smaller frames cannot show that the rate was estimated too low: an estimate that had collapsed after unsolicited
-// replies took seconds to recover.
+/// Number of bytes that a frame may always have, however low the estimated rate is.
+// Still smaller frames cannot show that the rate was estimated too low: with them, an estimate that had collapsed after
+// unsolicited replies took seconds to recover.
 const MIN_FRAME_BYTES: usize = 200;
 /// Share of the estimated rate at which bytes are sent (the pacing gain of BBR).
-// Below 1, so that queues drain and the shortest round trip can be measured again. Through a link of 50 KB/s and 200 ms
-// 85.7 % are used with it, and the median key is visible after 303 ms.
+// Less than 1, so that queues drain and the shortest round trip can be measured again. With this gain 85.7 % of a link
+// of 50 KB/s and 200 ms are used, and the effect of a key is visible after 303 ms in the median.
 const PACING_GAIN: f64 = 0.86;
-/// Substitute for a transmission time that cannot be computed.
+/// Transmission time to assume if the computed one is not a valid duration, as for a rate of zero.
 const MAX_TRANSMISSION_TIME: Duration = Duration::from_secs(1);
-/// Pause whose unused share of the rate may be sent later.
-// Frames are due up to a frame time (16.7 ms) late, because the loop waits for events; without credit, each delay would
+/// Greatest time without sending that is made up for by sending sooner afterwards.
+// The loop may send a frame up to a frame time (16.7 ms) after it is due; without credit for that, each delay would
 // lose link time for good. A longer credit would allow bursts that queue.
 const BURST_CREDIT: Duration = Duration::from_millis(20);
 /// Least time between two frames: 60 a second.
-// Most terminals draw at most this often; more frames would be encoded and parsed without being seen.
+// Most terminals draw at most this often; further frames would be encoded and parsed without being seen.
 const FRAME_TIME: Duration = Duration::from_micros(16_667);
 /// Least time between two frames if the terminal does not reply: 30 a second.
-// Without replies nothing shows that it cannot keep up, so it gets half the rate.
+// Without replies nothing shows whether the terminal keeps up, so it gets half as many frames.
 const SILENT_FRAME_TIME: Duration = Duration::from_micros(33_334);
 
-/// Congestion window in bytes on a slow link after a resync, until the round trip is known.
+/// Congestion window in bytes on a slow link after a resync, until the round trip is known: 80 ms
+/// of 50 KB/s.
 ///
-/// 80 ms of 50 KB/s. The rate may be wrong by then. With the window of that rate a lost first reply cost a key
-/// 3.2 s instead of 1.4 s.
+/// The estimated rate may be wrong after a resync. With a window computed from it, a key after a lost first reply was
+/// visible after 3.2 s instead of 1.4 s.
 const RESYNC_WINDOW: f64 = 4_000.0;
 
-/// A link to a terminal, with its estimates and the times at which it may be sent more.
+/// A link to a terminal: what its replies show, and when it may be sent more bytes.
 pub struct Link {
     max_rate: Option<f64>,
     frame: Duration,
     replies: ReplyTracker,
-    /// Share of its limit that the last frame used.
+    /// Share that the last frame used of the bytes that it was allowed.
     utilisation: f64,
-    /// Time at which everything sent has been transmitted at the used rate.
+    /// Time at which everything sent has been transmitted at the sending rate, less the credit for
+    /// an earlier pause.
     free_at: Duration,
-    /// That time without credit for earlier pauses.
+    /// Time at which everything sent has been transmitted at the sending rate.
     drained_at: Duration,
 }
 
-/// Limits on a frame on a link that is slow or of unknown rate.
+/// The limit on the bytes of a frame, for a link that is slow or whose rate is unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
     /// The link's rate in bytes per second, if it is slow.
     pub rate: Option<f64>,
-    /// Limit on the bytes of a frame.
+    /// Greatest number of bytes of the frame.
     pub max_bytes: usize,
 }
 
 impl Link {
-    /// Returns a link with limits on bytes and frames per second, to a terminal that tolerates
-    /// queries or does not.
+    /// Returns a link with the user's limits on bytes and frames per second.
+    ///
+    /// `may_ask` is whether the terminal tolerates queries.
     pub fn new(max_rate: Option<u32>, max_frames: Option<f32>, may_ask: bool) -> Self {
         Self {
             max_rate: max_rate.map(f64::from),
@@ -130,9 +134,10 @@ impl Link {
         self.replies.receive_attributes(now);
     }
 
-    /// Records a report of a mode.
+    /// Records a reply to DECRQM with the number of a mode.
     ///
-    /// Returns whether it is the reply to a query in flight: a duplicate, a late one, or one to another query is not.
+    /// Returns whether it answers a query in flight, unlike a duplicate, a late reply or one to another program's
+    /// query.
     pub fn receive_mode(&mut self, mode: u16, now: Duration) -> bool {
         self.replies.receive_mode(mode, now)
     }
@@ -147,24 +152,25 @@ impl Link {
         if self.replies.is_responsive() { self.frame } else { self.frame.max(SILENT_FRAME_TIME) }
     }
 
-    /// Returns the number of frames per second on a slow link.
+    /// Returns the number of frames per second that are sent on a slow link.
     fn frames_per_second(&self) -> f64 {
         SLOW_LINK_FRAME_RATE.min(1.0 / self.frame_time().as_secs_f64())
     }
 
-    /// Returns each such frame's share of a rate, in bytes.
+    /// Returns the bytes that a frame on a slow link of this rate may have.
     fn frame_bytes(&self, rate: Rate) -> f64 {
         rate.bytes_per_second / self.frames_per_second()
     }
 
     /// Returns the time at which the next bytes may be sent, if no reply arrives before.
     pub fn free_at(&self, now: Duration) -> Duration {
-        // A query alone measures the link's round trip, so it must not wait in a queue behind other bytes.
+        // A query without a frame measures the link's round trip, so it is not sent while other bytes may be queued.
         let free_at = if self.replies.is_probe_due(now) { self.drained_at } else { self.free_at };
         free_at.max(self.has_room_at(now))
     }
 
-    /// Returns the time at which another frame may be sent, if no reply arrives before.
+    /// Returns the time from which the state of the replies allows another frame, if no reply
+    /// arrives before.
     fn has_room_at(&self, now: Duration) -> Duration {
         match self.replies.state {
             State::Resyncing { .. } if self.replies.lacks_rate() => self.replies.initial_window.opens_at(true),
@@ -196,9 +202,8 @@ impl Link {
         }
     }
 
-    /// Returns the limits for a frame sent now, on a link for screens of `screen` bytes.
-    ///
-    /// `None` without limits.
+    /// Returns the limit on a frame sent now, or `None` if there is none; a whole screen has about
+    /// `screen` bytes.
     pub fn limit(&mut self, screen: usize, now: Duration) -> Option<Limit> {
         self.replies.check_timeouts(now);
         let initial =
@@ -206,8 +211,10 @@ impl Link {
         self.slow_limit(screen).or(initial)
     }
 
-    /// Returns whether at most the bandwidth-delay product is in flight beside one large frame,
-    /// which was sent at a higher rate. The next frame then need not wait for the whole round trip of its reply.
+    /// Returns whether the bytes in flight and the next frame, without the largest frame in flight,
+    /// are at most the bandwidth-delay product.
+    ///
+    /// A frame that was sent before the rate fell may be too large. The next frame need not wait for its reply.
     fn has_room_beside_largest(&self) -> bool {
         let Some(rate) = self.replies.rates.best().filter(|_| self.is_slow()) else { return false };
         let largest = self.replies.ledger.in_flight().map(|query| query.bytes as f64).fold(0.0, f64::max);
@@ -215,14 +222,16 @@ impl Link {
             <= self.bandwidth_delay_product(rate)
     }
 
-    /// Returns the rate of a link that is slow for screens of this many bytes, and a frame's limit.
+    /// Returns the limit on a frame if the link is slow, that is, for screens of `screen` bytes.
+    ///
+    /// Records whether it is.
     pub fn slow_limit(&mut self, screen: usize) -> Option<Limit> {
         let limit = self.max_rate.unwrap_or(f64::INFINITY);
         let measured = self.replies.rates.best();
         let smooth = screen as f64 * SMOOTH_SCREENS_PER_SECOND;
         let rate = measured.map_or(f64::INFINITY, |rate| rate.bytes_per_second).min(limit);
-        // Hysteresis: slow once a screen does not fit, fast once two do, unchanged in between. A change of the order of
-        // cells and of their quality costs bytes each time.
+        // Hysteresis: a link becomes slow below the rate `smooth` and fast above twice that rate, because each change
+        // switches the order of cells and their quality, which costs bytes.
         let is_sure = limit < smooth || measured.is_some_and(|rate| rate.is_limit);
         let slow = rate < smooth && is_sure || rate < 2.0 * smooth && self.is_slow();
         self.replies.set_slow(slow);
@@ -235,7 +244,7 @@ impl Link {
         self.replies.is_slow()
     }
 
-    /// Appends a query to a frame that is sent now.
+    /// Records that a frame is sent now, and appends the query that it is to end with, if any.
     pub fn send(&mut self, frame: &mut Vec<u8>, now: Duration) {
         self.replies.check_timeouts(now);
         if self.replies.queries_frames() {
@@ -248,9 +257,9 @@ impl Link {
         self.record_sent(frame.len(), now);
     }
 
-    /// Returns a query without a frame if one is due; otherwise no bytes.
+    /// Returns the bytes of a query without a frame if such a query is due; otherwise no bytes.
     ///
-    /// Its round trip is the link's own, whatever the rate.
+    /// Its round trip is the link's own at any rate, because there is nothing to transmit.
     pub fn probe(&mut self, now: Duration) -> Vec<u8> {
         self.replies.check_timeouts(now);
         let mut bytes = Vec::new();
@@ -261,10 +270,12 @@ impl Link {
         bytes
     }
 
-    /// Returns the congestion window: the bytes in flight up to which another frame is sent.
+    /// Returns the congestion window: another frame is sent while at most this many bytes are in
+    /// flight.
     fn congestion_window(&self) -> f64 {
         let Some(rate) = self.replies.rates.best() else { return 0.0 };
-        // Other frames may use what a frame leaves of its share: without this, a fifth of the link was idle.
+        // Bytes that the last frame left unused may be used by other frames: without this, a fifth of the link was
+        // idle.
         let spare = if self.is_slow() { ((1.0 - self.utilisation) * self.frame_bytes(rate)).max(0.0) } else { 0.0 };
         // The first replies may mislead if one of them is lost or duplicated: the window at most doubles with each
         // round trip, as in TCP's slow start.
@@ -273,11 +284,14 @@ impl Link {
         window.min(self.replies.delivered)
     }
 
-    /// Returns the bytes on their way that do not wait in a queue.
+    /// Returns the bytes that a link of this rate has in flight when it is fully used and nothing
+    /// queues.
     fn bandwidth_delay_product(&self, rate: Rate) -> f64 {
         rate.bytes_per_second * self.replies.round_trip.shortest().as_secs_f64()
     }
 
+    /// Advances `free_at` and `drained_at` by the time that bytes sent now take at the sending
+    /// rate.
     fn record_sent(&mut self, bytes: usize, now: Duration) {
         let measured = self.replies.rates.best().filter(|rate| rate.is_limit || self.is_slow());
         // Without replies, an estimate that is too low would never be corrected.

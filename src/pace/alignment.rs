@@ -1,44 +1,48 @@
-//! Detection of a misalignment: replies without a number are counted one query behind, because one
-//! of them was lost.
+//! Detection of a misalignment: each reply without a number is matched to the query before its own,
+//! because the reply to that query was lost.
 //!
-//! No timeout notices the loss while frames follow each other: each reply is matched to the query before its own, and
-//! every round trip seems longer by the interval between two frames. The estimated rate is then too low, frames are
-//! sent further apart, and the estimate falls again: from 50 KB/s to 1 KB/s within seconds. The sign of it is that
-//! replies arrive exactly when those to the next query are due; on a link that has become slower they do not.
+//! No timeout notices the loss while frames follow each other, but every round trip seems longer by the interval
+//! between two frames. The estimated rate is then too low, frames are sent further apart, and the estimate falls again:
+//! from 50 KB/s to 1 KB/s within seconds. A misalignment shows in replies that arrive exactly when those to the next
+//! query are due; on a link that has merely become slower they do not.
 
 use super::ledger::InFlight;
 use super::{MAX_TRANSMISSION_TIME, MIN_FRAME_BYTES};
 use std::time::Duration;
 
-/// Number of consecutive replies at the time of the next query's until one is considered lost.
+/// Number of consecutive replies that must arrive when the reply to the next query is due until one
+/// counts as lost.
 ///
 /// This is one more than occur while a queue drains (see [`SECOND_QUERY_TOLERANCE`]).
 // With three, a link that becomes ten times slower is taken for one that has lost a reply, and a key waits for 3.8 s.
-// The same happens if newer queries than the second oldest are compared.
+// The same happens if the time is compared with queries newer than the second oldest, too.
 const MIN_MISALIGNED_REPLIES: u32 = 4;
-/// Tolerance for a reply to the second oldest query.
+/// Greatest difference from the due time at which a reply may belong to the second oldest query.
 ///
-/// A queue that drains by a seventh of the interval between two frames stays within it for three of them.
+/// If a queue drains by a seventh of the frame interval per frame, three consecutive replies are within it.
 const SECOND_QUERY_TOLERANCE: Duration = Duration::from_millis(5);
-/// Tolerance for a reply to the oldest query.
-// Twice that for the second oldest: in doubt the count is right, because a false alarm costs a second of silence.
+/// Greatest difference from the due time at which a reply may belong to the oldest query.
+// Twice the tolerance for the second oldest query, because a false alarm costs a second without queries.
 const OLDEST_QUERY_TOLERANCE: Duration = Duration::from_millis(10);
 
-/// The evidence for a misalignment.
+/// The evidence of a misalignment so far.
 #[derive(Default)]
 pub(super) struct Alignment {
-    /// The last estimate in bytes per second by which a reply to the oldest query was on time.
+    /// The last estimated rate in bytes per second by which a reply to the oldest query was on
+    /// time.
     ///
-    /// This is the estimate from before the loss.
+    /// After a loss this is the estimate from before it.
     rate: Option<f64>,
-    /// Number of consecutive replies at the time of the one to the second oldest query.
+    /// Number of consecutive replies that arrived when the reply to the second oldest query was
+    /// due.
     misaligned: u32,
 }
 
 impl Alignment {
-    /// Counts a reply that arrives now while these queries are in flight, oldest first.
+    /// Compares the time of a reply with the times when replies to `queries`, the oldest first, are
+    /// due.
     ///
-    /// Returns whether this and the previous replies show that one is lost.
+    /// Returns whether this and the previous replies show that a reply was lost.
     pub(super) fn is_misaligned<'a>(
         &mut self,
         queries: impl IntoIterator<Item = &'a InFlight>,
@@ -56,8 +60,8 @@ impl Alignment {
                 self.rate = Some(rate);
             }
             let fits = |query: &InFlight, tolerance| {
-                // The rate may be known from misaligned replies alone. Small frames then show that it is not the
-                // link's.
+                // If all replies so far were misaligned, the estimated rate is wrong. Small frames show that, because
+                // their transmission takes hardly any time.
                 let is_small = query.bytes <= MIN_FRAME_BYTES;
                 is_on_time(query, self.rate.unwrap_or(rate), tolerance)
                     || is_small && is_on_time(query, f64::INFINITY, tolerance)

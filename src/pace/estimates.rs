@@ -1,49 +1,51 @@
-//! Estimates of the shortest round trip and the rate, both of the last moments, because links
-//! change.
+//! Estimates of the shortest round trip and of the rate. Both use recent samples only, because
+//! links change.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// The age of the shortest round trip: it is kept for this long at least, and twice this at most.
-// BBR keeps it for 10 s. Here a key waits if it is outdated, and while frames follow each other only one round trip a
-// second is measured without a queue: five samples an age.
+/// Length of an age. The minimum of the round trips covers the current age and the one before.
+// BBR keeps its minimum for 10 s. An outdated minimum delays keys, so ages are short; but while frames follow each
+// other, only one round trip a second is measured without a queue, and an age should contain several: five.
 const ROUND_TRIP_AGE: Duration = Duration::from_secs(5);
-/// Time for which the highest rate is kept if there are others.
-// The maximum over it ignores frames that were delayed elsewhere; a real drop of the rate is noticed at once by the
-// first late reply, which drops all higher rates.
+/// Age at which a sample of the rate is dropped when a newer one is recorded.
+// The estimate is the maximum of the samples, which ignores frames that were delayed elsewhere. A real drop of the rate
+// is noticed at once nevertheless: the first late reply drops all higher samples.
 const RATE_AGE: Duration = Duration::from_millis(500);
-/// A frame with less transmission time was not limited by the link.
+/// Least transmission time of a frame whose rate counts as the link's limit.
 ///
-/// It gives a lower bound of the rate only.
-// Terminals that draw 60 times a second delay replies by up to 17 ms, which must not look like transmission.
+/// A frame with a shorter one gives only a lower bound of the rate.
+// Terminals that draw 60 times a second delay replies by up to 17 ms, which must not be taken for transmission time.
 const MIN_SERVICE_TIME: Duration = Duration::from_millis(20);
-/// Part of a short time that may be jitter of the clock and the scheduler.
+/// Greatest error of a measured time, because of the clock and the scheduler.
 const JITTER: Duration = Duration::from_millis(5);
-/// Weight of previous measurements.
-// A frame of a slow link is transmitted in about 28 ms, so that its rate alone varies by a quarter with the jitter of
-// 5 ms. Pooled over several frames, recovery from a tenfold drop became faster by 0.2 s.
+/// Weight of the previous bytes and times in the mean rate; each frame multiplies it once more.
+// The rate of a single frame, which a slow link transmits in about 28 ms, varies by a quarter with a jitter of 5 ms.
+// With the mean over several frames, recovery from a tenfold drop became faster by 0.2 s.
 const SMOOTHING: f64 = 0.75;
-/// Least number of bytes for a frame to give the rate, unless the rate is so low that even those
-/// take long.
-// Round trips of smaller frames consist of jitter and of the terminal's own delay.
+/// Least number of bytes of a frame that gives the rate; at low rates a fiftieth of the bytes per
+/// second suffices.
+// The round trips of smaller frames consist of jitter and the terminal's own delay.
 const MIN_SAMPLE_BYTES: f64 = 512.0;
 
-/// The shortest round trip.
+/// The estimate of the shortest round trip.
 #[derive(Default)]
 pub(super) struct RoundTrip {
-    /// The shortest of the previous age and of the current one.
+    /// The shortest round trip of the previous age and of the current one.
     shortest: [Option<Duration>; 2],
     /// Start of the current age.
     since: Duration,
-    /// The estimate before it was dropped.
+    /// The last estimate before [`invalidate`](Self::invalidate).
     before: Duration,
 }
 
 impl RoundTrip {
-    /// Records a round trip, which is the link's own if nothing was sent with the query that takes
-    /// time to transmit. Only such a round trip starts a new age: if the replies to all queries alone were lost for a
-    /// while, the transmission time of frames would seem to be part of the link's round trip, and the rate that of a
-    /// link which transmits in no time.
+    /// Records a round trip. `is_own` is whether the link transmitted the query at once, so that it
+    /// is the link's own.
+    ///
+    /// Only such a round trip starts a new age. Otherwise, if only replies to frames arrived during an age, the
+    /// transmission time of frames would be taken for a part of the link's round trip, and the rate for a very high
+    /// one.
     pub(super) fn take(&mut self, round_trip: Duration, is_own: bool, now: Duration) {
         if is_own && now.saturating_sub(self.since) >= ROUND_TRIP_AGE {
             self.shortest = [self.shortest[1], None];
@@ -52,12 +54,13 @@ impl RoundTrip {
         self.shortest[1] = Some(self.shortest[1].map_or(round_trip, |shortest| shortest.min(round_trip)));
     }
 
-    /// Drops the estimate because the route may have changed; it remains the expected value.
+    /// Drops the estimate because the route may have changed; [`expected`](Self::expected) still
+    /// returns it.
     pub(super) fn invalidate(&mut self) {
         *self = Self { before: self.expected(), ..Self::default() };
     }
 
-    /// Returns the expected round trip, from the last estimate.
+    /// Returns the estimate, or the last one before it was dropped.
     pub(super) fn expected(&self) -> Duration {
         self.shortest.into_iter().flatten().min().unwrap_or(self.before)
     }
@@ -67,7 +70,8 @@ impl RoundTrip {
         self.shortest[1].is_some()
     }
 
-    /// Returns whether a round trip is so short that the reply must belong to another query.
+    /// Returns whether a round trip is too short for the link, so that the reply must belong to
+    /// another query.
     pub(super) fn is_implausible(&self, round_trip: Duration) -> bool {
         round_trip + JITTER < self.shortest().mul_f64(0.9)
     }
@@ -78,9 +82,9 @@ impl RoundTrip {
     }
 }
 
-/// A busy period: back-to-back transmission.
+/// A busy period: a time in which the link transmitted bytes without a pause.
 ///
-/// Times are arrivals of replies minus one full round trip.
+/// The time at which bytes had been transmitted is that of their reply less the shortest round trip.
 #[derive(Default)]
 pub(super) struct BusyPeriod {
     since: Duration,
@@ -89,10 +93,10 @@ pub(super) struct BusyPeriod {
 }
 
 impl BusyPeriod {
-    /// Records that bytes sent at `sent` have been transmitted.
+    /// Records that bytes sent at `sent` had been transmitted at `passed`, and returns the bytes
+    /// and duration of the busy period so far, which give the rate.
     ///
-    /// Returns the bytes and the time that give the rate. Bytes that waited behind others count only together with
-    /// them: alone they would seem slower than they were.
+    /// Bytes that waited for others count together with them: alone they would seem slower than they were.
     pub(super) fn take(&mut self, sent: Duration, bytes: usize, passed: Duration) -> (usize, Duration) {
         if sent + MIN_SERVICE_TIME >= self.until {
             (self.since, self.bytes) = (sent, 0);
@@ -102,7 +106,7 @@ impl BusyPeriod {
         (self.bytes, passed.saturating_sub(self.since))
     }
 
-    /// Returns the time of the last known transmission.
+    /// Returns the time at which the last confirmed bytes had been transmitted.
     pub(super) fn until(&self) -> Duration {
         self.until
     }
@@ -112,28 +116,28 @@ impl BusyPeriod {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rate {
     pub(super) bytes_per_second: f64,
-    /// Whether it is the link's limit; otherwise a lower bound.
+    /// Whether it is the link's limit; otherwise it is a lower bound.
     pub(super) is_limit: bool,
 }
 
-/// The rates of the last frames.
+/// The estimate of the rate, from samples of the last frames.
 #[derive(Default)]
 pub(super) struct Rates {
-    /// The samples, each with its time.
+    /// The samples, each with the time at which it was recorded.
     rates: VecDeque<(Duration, Rate)>,
-    /// The decaying sums of bytes and time behind the last rate.
+    /// The decaying sums of bytes and times whose quotient is the last sample.
     ///
-    /// Empty if that was not the link's limit.
+    /// Zero if that sample was only a lower bound.
     last: (f64, Duration),
 }
 
 impl Rates {
-    /// Records a transmission of bytes in a time, beyond the round trip.
+    /// Records that transmitting `bytes` took the time `service`, and derives a sample of the rate.
     ///
-    /// If it is late, the rate has fallen, and higher ones are dropped.
+    /// If the reply `is_late`, the rate has fallen, and all higher samples are dropped.
     pub(super) fn take(&mut self, bytes: usize, service: Duration, is_late: bool, now: Duration) {
         let bytes = bytes as f64;
-        // One of the previous rates is kept even after a pause.
+        // Determined before old samples are removed, so that the estimate survives a pause.
         let (best, limit) = (self.best(), self.limit());
         if bytes < best.map_or(MIN_SAMPLE_BYTES, |best| MIN_SAMPLE_BYTES.min(best.bytes_per_second / 50.0)) {
             return;
@@ -155,23 +159,25 @@ impl Rates {
         self.rates.push_back((now, rate));
     }
 
-    /// Drops rates that may stem from mismatched replies: only low ones are kept, if there are any.
+    /// Drops the samples that are only lower bounds, unless all are, because mismatched replies may
+    /// have caused them.
     pub(super) fn keep_limits(&mut self) {
         if self.rates.iter().any(|(_, rate)| rate.is_limit) {
             self.rates.retain(|(_, rate)| rate.is_limit);
         }
     }
 
-    /// Returns the highest rate of the last moments that did not exceed the link's limit.
+    /// Returns the highest sample in bytes per second that was the link's limit; infinite if there
+    /// is none.
     ///
-    /// A sudden increase is not believed: an unsolicited reply causes one, and sending at twice the rate would queue
-    /// seconds of data.
+    /// A new lower bound may be at most twice as high: an unsolicited reply makes the rate seem much higher, and
+    /// sending at that rate would queue seconds of data.
     fn limit(&self) -> f64 {
         let limits = self.rates.iter().filter(|(_, rate)| rate.is_limit).map(|(_, rate)| rate.bytes_per_second);
         limits.reduce(f64::max).unwrap_or(f64::INFINITY)
     }
 
-    /// Returns the highest rate of the last moments.
+    /// Returns the estimated rate: the highest of the recent samples.
     pub(super) fn best(&self) -> Option<Rate> {
         let rates = self.rates.iter().map(|&(_, rate)| rate);
         rates.max_by(|a, b| a.bytes_per_second.total_cmp(&b.bytes_per_second))

@@ -1,4 +1,4 @@
-//! A terminal that loses, duplicates, garbles and delays replies, on a virtual clock.
+//! Tests of the link with a simulated terminal that loses, duplicates, replaces and delays replies.
 
 use super::reply_tracker::TagSupport;
 use super::tests::ms;
@@ -6,7 +6,7 @@ use super::*;
 use crate::protocol::FENCE;
 use std::collections::VecDeque;
 
-/// A fault of a reply.
+/// A fault of one reply, or from one reply on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     Lost,
@@ -14,13 +14,13 @@ enum Fault {
     /// A reply to a query that was never sent arrives instead.
     Foreign,
     Late(Duration),
-    /// The reply is late, and so are all after it.
+    /// The reply is late, and no later reply arrives before it.
     Held(Duration),
-    /// The reply is lost, and so is each third after it.
+    /// The reply is lost, and so is every third one after it.
     EachThird,
-    /// The reply is late, and so is each third after it.
+    /// The reply is late, and so is every third one after it.
     EachThirdLate(Duration),
-    /// The reply is lost, and so are all after it.
+    /// The reply is lost, and so are all later ones.
     Stopped,
 }
 
@@ -39,34 +39,40 @@ const FAULTS: [Fault; 12] = [
     Fault::Stopped,
 ];
 
-/// A reply on its way: to DA1, or of a mode.
+/// A reply to DA1, or to DECRQM with the number of the mode.
 #[derive(Clone, Copy, Debug)]
 enum Reply {
     Attributes,
     Mode(u16),
 }
 
-/// A program that always has something to send, and a terminal with a fault.
+/// A simulation of a program that sends a frame whenever it may, and of a terminal with a fault.
 struct World {
     link: Link,
-    /// Whether the terminal reports modes.
+    /// Whether the terminal answers DECRQM, so that replies have numbers.
     tags: bool,
+    /// Bytes per second that the link transmits.
     rate: f64,
     round_trip: Duration,
     fault: Fault,
     /// Number of the faulty reply, from 1.
     at: usize,
+    /// Number of replies so far.
     replies: usize,
     now: Duration,
+    /// Time of the last frame.
     begun: Duration,
     /// Time at which the link has transmitted all bytes.
     free_at: Duration,
-    /// The frames: when each was sent, its bytes, and when it is visible.
+    /// The frames: the time at which each was sent, its bytes, and the time at which it is visible.
     frames: Vec<(Duration, usize, Duration)>,
+    /// The replies on their way, with their times of arrival.
     due: Vec<(Duration, Reply)>,
+    /// Time before which no reply arrives.
     held_until: Duration,
+    /// Time at which the first round trip was known.
     first_reply: Option<Duration>,
-    /// Bytes of a frame without a limit.
+    /// Bytes of a frame if the link sets no lower limit.
     wanted: usize,
     /// Delay of the first reply, because the terminal is busy starting.
     start: Duration,
@@ -136,7 +142,8 @@ impl World {
         self.frames.push((self.now, frame.len(), seen));
     }
 
-    /// Transmits bytes and replies to queries. Returns the time at which the bytes are visible.
+    /// Transmits bytes, replies to their queries, and returns the time at which the bytes are
+    /// visible.
     fn pass_on(&mut self, bytes: &[u8]) -> Duration {
         self.free_at = self.free_at.max(self.now) + Duration::from_secs_f64(bytes.len() as f64 / self.rate);
         let at = self.free_at + self.round_trip;
@@ -172,7 +179,8 @@ impl World {
         self.due.sort_by_key(|(at, _)| *at);
     }
 
-    /// Returns the longest time until a key pressed in this interval is visible.
+    /// Returns the longest time until the effect of a key is visible, for keys pressed between
+    /// `from` and `to`.
     fn worst_key(&self, from: Duration, to: Duration) -> Duration {
         let keys = (from.as_millis()..to.as_millis()).map(|at| ms(at as u64));
         let mut frames: VecDeque<_> = self.frames.iter().collect();
@@ -187,7 +195,11 @@ impl World {
     }
 }
 
-/// Every fault, of each of the first 40 replies, with and without numbers.
+/// Calls `worst` with every fault of each of the first 40 replies, with and without numbers in
+/// replies.
+///
+/// # Panics
+/// If a returned time is longer than `limit`.
 fn each_fault(limit: Duration, mut worst: impl FnMut(bool, Fault, usize) -> Duration) {
     let mut late = Vec::new();
     for tags in [true, false] {
@@ -220,9 +232,8 @@ fn no_key_waits_longer_than_500_ms_before_a_local_terminal_has_replied() {
     });
 }
 
-/// The first round trip is longer than the others, and frames are small.
-///
-/// A reply that may belong to an older frame gives no rate.
+/// Even if the first round trip is longer than the others and frames are small, lost replies do not
+/// make the rate low.
 #[test]
 fn a_near_terminal_that_loses_replies_is_not_taken_for_a_slow_link() {
     each_fault(ms(250), |tags, fault, at| {
@@ -244,7 +255,8 @@ fn little_is_sent_between_the_first_picture_and_the_first_reply() {
     }
 }
 
-/// A first picture that takes 800 ms does not count as a lost reply.
+/// While the first picture is on its way through a slow link little is sent, and later keys are
+/// visible in time.
 #[test]
 fn the_first_picture_of_a_slow_link_is_waited_for() {
     for tags in [true, false] {
@@ -257,10 +269,10 @@ fn the_first_picture_of_a_slow_link_is_waited_for() {
     }
 }
 
-/// A key without a wait is visible after 310 ms, or 400 ms at worst; two round trips more pass.
+/// Without faults a key is visible after 310 ms, or 400 ms at worst; a fault may cost two round
+/// trips more.
 ///
-/// Left out are faults that make the link look like another one: its first reply, and silence from the first picture
-/// on, because then nothing shows that the link is slow.
+/// Faults of the first reply, and silence from the second on, are left out: nothing then shows that the link is slow.
 #[test]
 fn no_key_waits_much_longer_on_a_slow_link() {
     each_fault(ms(800), |tags, fault, at| {
@@ -298,7 +310,7 @@ fn a_lost_reply_is_known_as_soon_as_the_next_one_comes() {
     assert_eq!(link.replies.ledger.in_flight().count(), 3);
     assert!(link.receive_mode(202, ms(12)));
     assert_eq!(link.replies.ledger.in_flight().count(), 1);
-    // Late, foreign, and of an existing mode.
+    // A reply that is late, a duplicate, one to no query, and one of an existing mode.
     for mode in [201, 202, 700, 2026] {
         assert!(!link.receive_mode(mode, ms(13)));
     }
@@ -306,7 +318,7 @@ fn a_lost_reply_is_known_as_soon_as_the_next_one_comes() {
     assert_eq!((link.replies.ledger.in_flight().count(), link.replies.state), (0, State::Steady));
 }
 
-/// Otherwise each of them might be lost, one a second, and the round trip would be that of frames.
+/// A query without a frame whose reply was lost is sent again at once, and not after a second.
 #[test]
 fn a_lost_query_without_a_frame_is_sent_again() {
     let mut link = Link::new(None, None, true);
@@ -320,7 +332,7 @@ fn a_lost_query_without_a_frame_is_sent_again() {
     assert_eq!(link.probe(ms(5)), b"", "that one was answered");
 }
 
-/// As after a detach, when another terminal takes the place of the first.
+/// If another terminal takes the place of the first, as after a detach, queries go back to DA1.
 #[test]
 fn a_terminal_that_no_longer_repeats_numbers_is_asked_without() {
     let mut world = World::new(true, Fault::Held(ms(3_000)), 30);
@@ -332,8 +344,8 @@ fn a_terminal_that_no_longer_repeats_numbers_is_asked_without() {
     assert!(world.frames.iter().filter(|frame| frame.0 >= since).count() >= 55);
 }
 
-/// Otherwise each reply would be taken for that to the query before its own, and the rate for a
-/// fraction of what it is.
+/// On a slow link that loses replies without numbers, only one query is in flight, so that the
+/// estimated rate is right.
 #[test]
 fn after_a_loss_one_query_is_in_flight_on_a_slow_link() {
     let mut world = World::new(false, Fault::EachThird, 5).slow();

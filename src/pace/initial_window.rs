@@ -1,25 +1,26 @@
-//! Limits on sending before the rate of the link is known, while the reply that would give it is
-//! late. The terminal may be near and the reply lost, or the first picture may still be on its way through a slow link:
-//! keys should be visible soon in the first case, and little should be queued in the second.
+//! Limits on the bytes sent while the rate of the link is unknown, because the first reply is late.
+//!
+//! Either the terminal is near and the reply was lost, and the effect of keys should be visible soon; or the first
+//! picture is still on its way through a slow link, and little should be queued behind it.
 
 use std::time::Duration;
 
-/// Bytes that may be sent until a reply arrives.
-// 40 ms of a link of 50 KB/s. One of 2 KB/s, the slowest considered, drains them in a second.
+/// Greatest number of bytes in all frames that are sent until a reply arrives.
+// 40 ms of a link of 50 KB/s. A link of 2 KB/s, the slowest considered, transmits them in a second.
 const INITIAL_BYTES: usize = 2_000;
 /// Least useful size of a frame in bytes.
 // Smaller frames change too few cells to show the effect of a key.
 const MIN_USEFUL_BYTES: usize = 120;
-/// Bytes that each [`REFILL_INTERVAL`] adds once the window is spent, for a terminal that has
-/// replied before: 3.3 KB/s.
+/// Bytes that may be sent every [`REFILL_INTERVAL`] once [`INITIAL_BYTES`] are spent, to a terminal
+/// that has replied before. This is 3.3 KB/s.
 const REFILL_BYTES: usize = 300;
-/// Interval between refills.
+/// Time between two frames of [`REFILL_BYTES`].
 ///
-/// With the timeout of 150 ms a key is then visible within 250 ms; with refills every 200 ms one waited for 360 ms
-/// where DA1 is counted.
+/// With the timeout of 150 ms, the effect of a key is then visible within 250 ms. With an interval of 200 ms it took
+/// 360 ms if the terminal replies to DA1 only.
 const REFILL_INTERVAL: Duration = Duration::from_millis(90);
 
-/// The budget of bytes sent before the rate is known.
+/// The budget of bytes that may be sent before the rate is known.
 pub(super) struct InitialWindow {
     left: usize,
     last_sent: Duration,
@@ -32,15 +33,15 @@ impl Default for InitialWindow {
 }
 
 impl InitialWindow {
-    /// Returns the limit on the next frame in bytes.
+    /// Returns the greatest number of bytes of the next frame.
     ///
-    /// This is half of the rest, so that a later key has some left too.
+    /// This is half of the budget that is left, so that the frames of later keys get some of it too.
     pub(super) fn max_bytes(&self) -> usize {
         if self.is_spent() { REFILL_BYTES } else { self.left / 2 }
     }
 
-    /// Returns the time at which the next frame may be sent, for a terminal that has replied before
-    /// or has not.
+    /// Returns the time at which the next frame may be sent; once the budget is spent it depends on
+    /// `has_replied`.
     pub(super) fn opens_at(&self, has_replied: bool) -> Duration {
         match self.is_spent() {
             false => Duration::ZERO,
@@ -53,7 +54,7 @@ impl InitialWindow {
         self.left / 2 < MIN_USEFUL_BYTES
     }
 
-    /// Records that such a frame is sent now.
+    /// Records that a frame of this many bytes is sent now.
     pub(super) fn spend(&mut self, bytes: usize, now: Duration) {
         self.left = self.left.saturating_sub(bytes);
         self.last_sent = now;

@@ -1,29 +1,29 @@
 //! The ledger of queries in flight: matches replies to queries and finds missing replies.
 //!
-//! Terminals reply in order. So a reply with a number (a [`Tag`]'s) shows that the replies to all older queries are
-//! lost; one whose number is not in the ledger is late, a duplicate or foreign, and is ignored. Replies without a
-//! number (DA1's) are counted: each belongs to the oldest query, unless one has timed out. A reply may then be that
-//! query's, late, or a newer one's (retransmission ambiguity in TCP). The shortest round trip decides, and no estimate
-//! is derived from it (Karn's algorithm).
+//! Terminals reply in order. So a reply with a number (that of a [`Tag`]) shows that the replies to all older queries
+//! are lost. A reply whose number is not in the ledger is late, a duplicate or foreign, and is ignored. Replies without
+//! a number (those to DA1) are counted: each belongs to the oldest query, unless a query has timed out. In that case it
+//! is either the late reply to that query or the reply to a newer one (retransmission ambiguity in TCP): the shortest
+//! round trip decides, and no estimate is derived from the reply (Karn's algorithm).
 
 use crate::protocol::Tag;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Limit on the queries kept after their timeout.
-// While the first picture is on its way through a very slow link, one query is sent every 150 to 200 ms for 10 s, all
-// of which may be answered late.
+/// Greatest number of queries that are kept after their timeout, because late replies may arrive
+/// for them.
+// While the first picture is on its way through a very slow link, a query is sent every 150 to 200 ms for 10 s, and all
+// of them may be answered late.
 const MAX_TIMED_OUT_QUERIES: usize = 64;
 
-/// The kind of query behind a frame.
+/// The kind of query that ends a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Query {
-    /// DA1.
+    /// DA1. Its reply has no number, so replies are counted.
     Counted,
-    /// DECRQM of a nonexistent mode.
+    /// DECRQM of a nonexistent mode, whose number the terminal repeats in its reply.
     Tagged(Tag),
-    /// Both, either of which may be answered, to find out whether the terminal answers the second
-    /// kind.
+    /// DECRQM and DA1, to find out whether the terminal answers the former.
     Both(Tag),
 }
 
@@ -45,44 +45,48 @@ impl Query {
 pub(super) struct InFlight {
     pub(super) query: Query,
     pub(super) sent: Duration,
-    /// Number of bytes since the previous query; 0 for a query alone.
+    /// Number of bytes sent since the previous query, up to this one; 0 for a query without a
+    /// frame.
     pub(super) bytes: usize,
-    /// Sending time of the first of these bytes.
+    /// Time at which the first of these bytes was sent.
     pub(super) first_sent: Duration,
-    /// Whether its timeout has passed, and no later reply has shown that to be spurious.
+    /// Whether the query has timed out, and no later reply has shown the timeout to be spurious.
     timed_out: bool,
-    /// Whether its timeout has ever passed.
+    /// Whether the query has timed out, spuriously or not.
     late: bool,
 }
 
-/// The match of a reply to a query.
+/// A query and what its reply shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Matched {
     pub(super) query: Query,
     pub(super) sent: Duration,
     pub(super) bytes: usize,
-    /// Sending time of the oldest query in flight before it whose reply is lost, and the bytes up
-    /// to this one: all of them have arrived.
+    /// All bytes that the reply confirms, and the time at which the first of them was sent.
+    ///
+    /// They include the bytes of older queries in flight, whose replies are lost.
     pub(super) acked: (Duration, usize),
-    /// Whether the reply to a query without a frame is among the lost ones.
+    /// Whether one of the older queries whose replies are lost was a query without a frame.
     pub(super) lost_probe: bool,
     pub(super) validity: Validity,
 }
 
-/// The estimates for which a matched reply is a valid sample (Karn's algorithm).
+/// How certain the match of a reply is, and thus which estimates it is a valid sample for (Karn's
+/// algorithm).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Validity {
-    /// The reply is this query's, and no query before it has timed out.
+    /// The reply belongs to this query, and no query before it has timed out.
     ///
-    /// It gives round trip and rate.
+    /// It gives the round trip and the rate.
     Exact,
-    /// The reply is this query's, but older bytes may precede it on a slow link.
+    /// The reply belongs to this query, but bytes of older queries that have timed out may have
+    /// delayed it.
     ///
-    /// It gives the round trip.
+    /// It gives the round trip only.
     AfterLoss,
-    /// The reply is this query's, after its timeout, which was spurious.
+    /// The reply belongs to this query and arrived after its timeout, which was therefore spurious.
     Spurious,
-    /// The reply may be an older query's: it shows only that the terminal replies.
+    /// The reply may belong to an older query, so it shows only that the terminal replies.
     Ambiguous,
 }
 
@@ -90,8 +94,10 @@ pub(super) enum Validity {
 #[derive(Debug)]
 pub(super) struct Ledger {
     queries: VecDeque<InFlight>,
-    /// Sending time and number of the bytes that no query follows yet.
+    /// Bytes that no query follows yet: the time at which the first of them was sent, and their
+    /// number.
     unqueried: Option<(Duration, usize)>,
+    /// The tag of the last query that had one.
     last: Tag,
 }
 
@@ -102,22 +108,20 @@ impl Default for Ledger {
 }
 
 impl Ledger {
-    /// Returns a tag that has not been used for a while.
+    /// Returns the next tag of the cycle, the one that has been unused for the longest time.
     pub(super) fn next_tag(&mut self) -> Tag {
         self.last = self.last.next();
         self.last
     }
 
-    /// Records a query that is sent now behind this many bytes.
+    /// Records that a query is sent now after this many bytes.
     pub(super) fn record(&mut self, query: Query, bytes: usize, now: Duration) {
         let (first_sent, before) = self.unqueried.take().unwrap_or((now, 0));
         let bytes = before + bytes;
         self.queries.push_back(InFlight { query, sent: now, bytes, first_sent, timed_out: false, late: false });
     }
 
-    /// Records bytes that are sent now without a query.
-    ///
-    /// The reply to the next query shows that they have arrived.
+    /// Records that bytes are sent now without a query; the reply to the next query confirms them.
     pub(super) fn record_unqueried(&mut self, bytes: usize, now: Duration) {
         let (_, unqueried) = self.unqueried.get_or_insert((now, 0));
         *unqueried += bytes;
@@ -128,12 +132,12 @@ impl Ledger {
         self.queries.iter().filter(|query| !query.timed_out)
     }
 
-    /// Returns the oldest query that has not timed out.
+    /// Returns the oldest query that has not timed out, if any.
     pub(super) fn oldest(&self) -> Option<&InFlight> {
         self.in_flight().next()
     }
 
-    /// Returns whether a reply may belong to a query that has timed out.
+    /// Returns whether a reply without a number may belong to a query that has timed out.
     pub(super) fn is_ambiguous(&self) -> bool {
         self.queries.iter().any(|query| query.timed_out && query.query.is_counted())
     }
@@ -143,13 +147,13 @@ impl Ledger {
         self.queries.back().map(|query| query.sent)
     }
 
-    /// Returns the bytes that are neither confirmed by a reply nor timed out.
+    /// Returns the number of bytes that are neither confirmed by a reply nor timed out.
     pub(super) fn bytes_in_flight(&self) -> f64 {
         let unqueried = self.unqueried.map_or(0, |(_, bytes)| bytes);
         self.in_flight().map(|query| query.bytes as f64).sum::<f64>() + unqueried as f64
     }
 
-    /// Records a timeout: all queries in flight time out.
+    /// Marks all queries as timed out.
     pub(super) fn time_out_all(&mut self) {
         for query in &mut self.queries {
             (query.timed_out, query.late) = (true, true);
@@ -158,9 +162,10 @@ impl Ledger {
         self.queries.drain(..surplus);
     }
 
-    /// Records that the timeout was spurious.
+    /// Marks all queries as in flight again, because a reply has shown their timeout to be
+    /// spurious.
     ///
-    /// The remaining queries are in flight after all (as after Eifel detection).
+    /// (Eifel detection in TCP has the same effect.)
     pub(super) fn undo_timeout(&mut self) {
         for query in &mut self.queries {
             query.timed_out = false;
@@ -173,7 +178,7 @@ impl Ledger {
         self.unqueried = None;
     }
 
-    /// Matches a reply with a number. `None` if it belongs to no query.
+    /// Matches a reply with a number to its query; `None` if there is no such query.
     pub(super) fn match_tagged(&mut self, tag: Tag) -> Option<Matched> {
         let at = self.queries.iter().position(|query| query.query.tag() == Some(tag))?;
         Some(self.take(at))
@@ -184,20 +189,21 @@ impl Ledger {
         self.queries.iter().filter(|query| query.query.is_counted())
     }
 
-    /// Matches a reply without a number to the oldest query, if it belongs to that.
+    /// Matches a reply without a number to the oldest query that it may belong to.
     pub(super) fn match_oldest(&mut self) -> Option<Matched> {
         let at = self.queries.iter().position(|query| query.query.is_counted())?;
         Some(self.take(at))
     }
 
-    /// Matches a reply without a number to the newest query sent by `sent`.
+    /// Matches a reply without a number to the newest query that was sent at `latest` or before.
     pub(super) fn match_newest_sent_by(&mut self, latest: Duration) -> Option<Matched> {
         let fits = |query: &InFlight| query.query.is_counted() && query.sent <= latest;
         let at = self.queries.iter().rposition(fits)?;
         Some(Matched { validity: Validity::Ambiguous, ..self.take(at) })
     }
 
-    /// Removes the query at this index and all older ones.
+    /// Removes the query at this index and all older ones, whose replies are lost, and returns what
+    /// its reply shows.
     fn take(&mut self, at: usize) -> Matched {
         let InFlight { query, sent, bytes, first_sent, late, .. } = self.queries[at];
         let mut acked = (first_sent, bytes);

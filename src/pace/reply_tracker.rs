@@ -1,4 +1,4 @@
-//! The state of the terminal's replies: what they show, and what follows if they are missing.
+//! The terminal's replies: what they show about the link, and what to do while replies are missing.
 
 use super::alignment::Alignment;
 use super::estimates::{BusyPeriod, Rates, RoundTrip};
@@ -8,22 +8,25 @@ use super::{FRAME_TIME, MAX_TRANSMISSION_TIME};
 use crate::protocol::{FENCE, Tag};
 use std::time::Duration;
 
-/// Timeout beyond the expected time of a reply, after which a frame is sent without it.
-// A local terminal replies within milliseconds, or within 100 ms while it is busy. With this timeout a key that waits
-// for a lost reply is visible within 250 ms, the limit that the tests of `faults` hold. It was 10 s while replies could
-// only be counted, and one lost reply stopped the picture for 8 to 12 s.
+/// Time after a reply was due until it counts as missing, and frames no longer wait for it (the
+/// retransmission timeout).
+// A local terminal replies within milliseconds, or within 100 ms while it is busy. With this timeout the effect of a
+// key that waits for a lost reply is visible within 250 ms, which `faults` tests. The timeout was 10 s while replies
+// could only be counted, and one lost reply stopped the picture for 8 to 12 s.
 const RTO_MARGIN: Duration = Duration::from_millis(150);
 /// [`RTO_MARGIN`] for a slow link.
-// A frame sent too early queues behind others, and a link that becomes ten times slower has its replies 280 ms apart.
+// A frame that is sent too early queues behind others, and the replies of a link that has become ten times slower are
+// 280 ms apart.
 const SLOW_RTO_MARGIN: Duration = Duration::from_millis(300);
-/// Timeout after the first frame, before any reply.
-// A key pressed at once is then visible within 500 ms. A shorter timeout would send more to a
-// terminal that is still busy starting.
+/// Time after the first frame until its reply counts as missing.
+// The effect of a key that is pressed at once is then visible within 500 ms. With a shorter timeout more would be sent
+// to a terminal that is still busy starting.
 const FIRST_RTO: Duration = Duration::from_millis(400);
-/// Time without replies after a timeout until the terminal is considered silent: two more timeouts.
+/// Time after a timeout until a terminal that has not replied is considered silent: two more
+/// timeouts.
 const SILENCE_TIMEOUT: Duration = Duration::from_millis(300);
 /// [`SILENCE_TIMEOUT`] for a slow link.
-// Longer, because frames sent without replies to a terminal that merely pauses would queue there for seconds.
+// Longer, because frames sent to a terminal that merely pauses would queue on the link for seconds.
 const SLOW_SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
 /// [`SILENCE_TIMEOUT`] if no reply has ever arrived.
 ///
@@ -31,94 +34,98 @@ const SLOW_SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
 const FIRST_SILENCE_TIMEOUT: Duration = Duration::from_millis(600);
 /// [`SILENCE_TIMEOUT`] if the rate is unknown.
 ///
-/// Until then small frames show keys (see [`InitialWindow`]).
-// The first picture, 15 KB, may be on its way through a link of 2 KB/s, which full frames without replies would fill
-// for minutes.
+/// Until then small frames show the effect of keys (see [`InitialWindow`]).
+// The first picture, of 15 KB, may still be on its way through a link of 2 KB/s, in which full frames would queue for
+// minutes.
 const UNKNOWN_RATE_SILENCE_TIMEOUT: Duration = Duration::from_secs(10);
-/// Interval between queries to a silent terminal.
-// A terminal that replies again gets all its frames again at most this much later.
+/// Interval between queries to a terminal that is considered silent.
+// A terminal that starts to reply gets the full frame rate again after at most this time.
 const SILENT_QUERY_INTERVAL: Duration = Duration::from_millis(500);
-/// Time without replies after which all outstanding ones count as received or lost.
-// Nothing is queried meanwhile, so a late reply cannot be taken for one to a new query.
+/// Time without replies after which a resync ends: every outstanding reply has then arrived or
+/// counts as lost.
+// No query is sent during a resync, so a late reply cannot be taken for one to a new query.
 const RESYNC_TIME: Duration = Duration::from_secs(1);
-/// A terminal with a shorter round trip is local.
-///
-/// The order of several late replies does not matter there.
-// Longer than the 17 ms between two draws of a local terminal, shorter than most connections over the internet.
+/// Shortest round trip from which on a terminal is not considered local.
+// Longer than the 17 ms between two draws of a local terminal, shorter than most round trips over the internet.
 const LOCAL_ROUND_TRIP: Duration = Duration::from_millis(20);
-/// Tolerance by which a reply may exceed the shortest round trip and count as immediate.
+/// Time by which a reply may exceed the shortest round trip and still count as immediate.
 const IMMEDIATE_REPLY_TOLERANCE: Duration = Duration::from_millis(10);
-/// A reply later than this comes from a terminal that was suspended, and gives no round trip.
+/// Time from which on a round trip is ignored after a spurious timeout, because the terminal was
+/// probably suspended.
 const MAX_ROUND_TRIP: Duration = Duration::from_secs(1);
 
-/// Delay of a reply on a slow link that shows that the link has become slower.
-// Until then frames are sent at a rate that no longer holds. With 50 ms instead of 100 ms a tenfold drop is recovered
-// from in 1.65 to 1.87 s instead of 1.73 to 1.94 s of simulated time.
+/// Time after a reply was due on a slow link from which on the link is known to have become slower.
+// Until then frames are sent at the old rate. With 50 ms, recovery from a tenfold drop takes 1.65 to 1.87 s of
+// simulated time; with 100 ms it took 1.73 to 1.94 s.
 const LATE_REPLY_MARGIN: Duration = Duration::from_millis(50);
-/// Number of replies in order after which several queries may be in flight again.
+/// Number of replies that must arrive in order after a resync until several queries may be in
+/// flight again.
 ///
-/// With 8, a terminal that loses one reply in 20 uses 25 % of a link of 50 KB/s, with 16 it uses 41 %.
+/// With a terminal that loses one reply in 20, 41 % of a link of 50 KB/s are used; with 8 replies it was 25 %.
 const SERIAL_REPLIES: u32 = 16;
-/// Interval between queries alone while frames are sent.
-// Each costs 3 to 8 bytes. Frames cannot take their place: their transmission time would seem to be the link's round
-// trip, and after five seconds the rate 190 KB/s instead of 50.
+/// Interval between queries without a frame, which measure the link's round trip while frames are
+/// sent.
+// Such a query costs 3 to 8 bytes. Queries that end frames cannot replace it: their transmission time would be taken
+// for a part of the round trip, and after five seconds the estimated rate was 190 KB/s instead of 50.
 const PROBE_INTERVAL: Duration = Duration::from_secs(1);
-/// Number of bytes delivered after which a rate that was never the limit is relied on.
-// Four screens of 80x24 cells: a link that slow would have shown its limit by then.
+/// Number of bytes delivered after which an estimated rate is relied on even if it is only a lower
+/// bound.
+// Four screens of 80x24 cells: a slow link would have shown its limit by then.
 const MIN_DELIVERED_BYTES: f64 = 60_000.0;
 
-/// The queries and the conclusions from their replies.
+/// The queries in flight, and what the replies so far show about the terminal and the link.
 pub(super) struct ReplyTracker {
     pub(super) state: State,
     pub(super) ledger: Ledger,
     alignment: Alignment,
     pub(super) tag_support: TagSupport,
-    /// Whether the second reply to a query of both kinds is outstanding.
+    /// Whether the DA1 half of a [`Query::Both`] has not been answered, unlike its other half.
     awaits_second_reply: bool,
     /// Time of the last reply, if any.
     pub(super) last_reply: Option<Duration>,
-    /// Number of replies to arrive in order until a query may be sent while another one is in
-    /// flight.
+    /// Number of replies that must still arrive in order until several queries may be in flight
+    /// again.
     serial_replies: u32,
     /// Time of the last query without a frame.
     last_probe: Option<Duration>,
     pub(super) round_trip: RoundTrip,
     pub(super) rates: Rates,
     busy_period: BusyPeriod,
-    /// Number of bytes known to have arrived since the terminal was silent (slow start).
+    /// Number of bytes known to have arrived since the estimates were dropped last, which limits
+    /// the window (slow start).
     pub(super) delivered: f64,
-    /// Whether the link was slow at the last check.
+    /// Whether the link was slow when the last limit was computed.
     slow: bool,
     pub(super) initial_window: InitialWindow,
 }
 
-/// The state of the terminal's replies.
+/// Whether the terminal replies in time, and how its replies are matched to queries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum State {
-    /// Queries are not sent: the terminal might print them.
+    /// No queries are sent, because the terminal might print them.
     Unqueried,
-    /// No reply has arrived yet, and none is late.
+    /// No reply has arrived yet, and none is missing.
     Unanswered,
     /// Replies arrive in time.
     Steady,
-    /// A reply is late: frames are sent one at a time.
-    ///
-    /// Holds the time at which the terminal is considered silent.
+    /// A reply is missing: frames are sent one at a time, until `until`, when the terminal is
+    /// considered silent.
     Recovering { until: Duration },
-    /// The match of replies to queries is unknown: no query is sent until replies stop.
-    ///
-    /// Holds the time of the last reply.
+    /// Which query the next reply belongs to is unknown: no query is sent until replies stop.
+    /// Contains the time of the last one.
     Resyncing { last_reply: Duration },
     /// The terminal is considered silent.
     Silent,
 }
 
-/// Whether the terminal repeats the number of a nonexistent mode.
+/// Whether the terminal answers DECRQM of a nonexistent mode and repeats its number, so that
+/// replies have numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TagSupport {
-    /// The terminal has reported no mode, and might print the query.
+    /// The terminal has answered no DECRQM, and might print it.
     Unknown,
-    /// The terminal reports modes; a query of both kinds finds out.
+    /// The terminal answers DECRQM of other modes; a [`Query::Both`] finds out about nonexistent
+    /// ones.
     Possible,
     /// The terminal repeats the number.
     Known,
@@ -152,7 +159,7 @@ impl ReplyTracker {
         self.slow = slow;
     }
 
-    /// Returns a query without a frame: its round trip is the link's own.
+    /// Appends a query without a frame, whose round trip is the link's own, and records it.
     pub(super) fn probe(&mut self, bytes: &mut Vec<u8>, now: Duration) {
         self.last_probe = Some(now);
         self.append_query(bytes, false, now);
@@ -163,7 +170,7 @@ impl ReplyTracker {
         match self.state {
             State::Unanswered | State::Recovering { .. } => true,
             State::Steady => self.may_query(),
-            // The next query only after the timeout of the last one.
+            // A silent terminal gets the next query only after the timeout of the last one.
             State::Silent => self.ledger.oldest().is_none(),
             State::Unqueried | State::Resyncing { .. } => false,
         }
@@ -171,14 +178,15 @@ impl ReplyTracker {
 
     /// Returns whether a query may be sent now.
     ///
-    /// After a loss on a slow link, at most one is in flight: replies without a number then cannot be matched to the
-    /// wrong query. Each such mismatch makes the round trip seem longer and the rate lower: with every third reply
-    /// lost, 50 KB/s fell to 0.8 KB/s and a key took 936 ms; in this way it takes 492 ms.
+    /// After a resync on a slow link at most one query is in flight, so that replies without a number cannot be matched
+    /// to the wrong query. Each mismatch makes the round trip seem longer and the rate lower: with every third reply
+    /// lost, the estimate of 50 KB/s fell to 0.8 KB/s and a key took 936 ms, instead of 492 ms with this limit.
     fn may_query(&self) -> bool {
         !self.slow || self.serial_replies == 0 || self.ledger.oldest().is_none()
     }
 
-    /// Counts bytes that are sent now, if the rate is unknown.
+    /// Subtracts bytes that are sent now from the budget for an unknown rate, unless the rate is
+    /// known.
     pub(super) fn spend(&mut self, bytes: usize, now: Duration) {
         if self.lacks_rate() {
             self.initial_window.spend(bytes, now);
@@ -189,43 +197,44 @@ impl ReplyTracker {
         !matches!(self.state, State::Unqueried | State::Silent)
     }
 
-    /// Returns whether bytes sent now are sent without knowing the rate.
+    /// Returns whether replies are missing and the rate is unknown, so that [`InitialWindow`]
+    /// limits the next frame.
     pub(super) fn lacks_rate(&self) -> bool {
         matches!(self.state, State::Recovering { .. } | State::Resyncing { .. }) && !self.knows_rate()
     }
 
-    /// Returns whether the rate can be relied on.
+    /// Returns whether the estimated rate can be relied on.
     ///
-    /// One that was never reached can be, after enough bytes have arrived.
+    /// A lower bound of the rate can be relied on once [`MIN_DELIVERED_BYTES`] have arrived.
     pub(super) fn knows_rate(&self) -> bool {
         self.rates.best().is_some_and(|rate| rate.is_limit || self.delivered >= MIN_DELIVERED_BYTES)
     }
 
-    /// Returns whether a reply on a slow link is late.
+    /// Returns whether the oldest reply on a slow link is late.
     ///
-    /// Then the link is slower than estimated, and more bytes would only queue.
+    /// If so, the link is slower than estimated, and further bytes would only queue.
     pub(super) fn is_late(&self, now: Duration) -> bool {
         self.slow && self.ledger.oldest().is_some_and(|oldest| now > self.reply_due_at(oldest) + LATE_REPLY_MARGIN)
     }
 
-    /// Returns the expected time of the reply to the oldest query in flight.
+    /// Returns the time at which the reply to `oldest`, the oldest query in flight, is expected.
     pub(super) fn reply_due_at(&self, oldest: &InFlight) -> Duration {
         self.transmitted_at(self.busy_period.until(), oldest) + self.round_trip.expected()
     }
 
-    /// Returns the time at which the link has transmitted everything in flight, as far as replies
-    /// show.
+    /// Returns the estimated time at which the link has transmitted everything in flight.
     pub(super) fn idle_at(&self) -> Duration {
         self.ledger.in_flight().fold(self.busy_period.until(), |free_at, query| self.transmitted_at(free_at, query))
     }
 
-    /// Returns the time at which the link, if idle by then, has transmitted the bytes up to a
-    /// query.
+    /// Returns the time at which a link that is free at `free_at` has transmitted `query` and the
+    /// bytes before it.
     pub(super) fn transmitted_at(&self, free_at: Duration, query: &InFlight) -> Duration {
         (free_at.max(query.first_sent) + self.transmission_time(query.bytes)).max(query.sent)
     }
 
-    /// Returns the transmission time of this many bytes; zero if the rate is unknown.
+    /// Returns the time that the link takes to transmit this many bytes; zero if the rate is
+    /// unknown.
     pub(super) fn transmission_time(&self, bytes: usize) -> Duration {
         let rate = self.rates.best().map_or(f64::INFINITY, |rate| rate.bytes_per_second);
         Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(MAX_TRANSMISSION_TIME)
@@ -249,9 +258,10 @@ impl ReplyTracker {
         self.ledger.record(query, if is_frame { bytes.len() } else { 0 }, now);
     }
 
-    /// Returns the next query.
+    /// Returns the kind of query to send next.
     ///
-    /// In doubt it is of both kinds: another terminal may have taken the place of the previous one.
+    /// While replies are missing it is DECRQM and DA1 together, if the terminal answers the former: a terminal that
+    /// does not may have taken its place, as after a detach.
     pub(super) fn next_query(&mut self) -> Query {
         let doubts = matches!(self.state, State::Recovering { .. } | State::Silent);
         match self.tag_support {
@@ -278,7 +288,7 @@ impl ReplyTracker {
         if std::mem::take(&mut self.awaits_second_reply) {
             return;
         }
-        // A reply without an outstanding query, such as a duplicate, shows nothing.
+        // A reply without an outstanding query, such as a duplicate, is ignored.
         let Some(oldest) = self.ledger.counted().next().map(|oldest| oldest.sent) else { return };
         if self.is_misaligned(now) {
             return self.resync(now);
@@ -293,30 +303,32 @@ impl ReplyTracker {
         let matched = if in_order {
             self.ledger.match_oldest()
         } else {
-            // The shortest round trip of a local terminal may be that of its busy start, in which case a reply that
-            // comes at once seemed too early for the newest query and was matched to one long timed out: 786 bytes in
-            // 156 ms made a link of 5 KB/s of a local terminal.
+            // For a local terminal any round trip is plausible, because the shortest one so far may stem from its busy
+            // start: an immediate reply then seemed too early for the newest query and was matched to one long timed
+            // out, and 786 bytes in 156 ms made a local terminal look like a link of 5 KB/s.
             let least =
                 if self.is_local() { Duration::ZERO } else { self.round_trip.shortest().mul_f64(0.9).min(FRAME_TIME) };
             let latest = now.saturating_sub(least);
             self.ledger.match_newest_sent_by(latest)
         };
         if matched.is_some_and(|matched| matches!(matched.query, Query::Both(_))) {
-            // A reply to the DA1 half alone: the terminal has ignored the tag.
+            // The terminal answers the DA1 half of the query, so it has ignored the DECRQM half.
             self.tag_support = TagSupport::Possible;
         }
         self.take(matched, now);
     }
 
-    /// Drops the estimates because the route may have changed: the window grows from its start.
+    /// Drops the estimate of the round trip because the route may have changed, and lets the window
+    /// grow from zero.
     fn restart_slow_start(&mut self) {
         self.round_trip.invalidate();
         self.delivered = 0.0;
     }
 
-    /// Records a report of a mode.
+    /// Records a reply to DECRQM with the number of a mode.
     ///
-    /// Returns whether it is the reply to a query in flight: a duplicate, a late one, or one to another query is not.
+    /// Returns whether it answers a query in flight, unlike a duplicate, a late reply or one to another program's
+    /// query.
     pub(super) fn receive_mode(&mut self, mode: u16, now: Duration) -> bool {
         if self.tag_support == TagSupport::Unknown {
             self.tag_support = TagSupport::Possible;
@@ -334,22 +346,26 @@ impl ReplyTracker {
         matched.is_some()
     }
 
-    /// Returns whether a reply without a number that arrives now shows that one of a slow link was
-    /// lost, which no timeout does between consecutive frames.
+    /// Returns whether a reply without a number that arrives now shows that an earlier one was lost
+    /// on a slow link.
     fn is_misaligned(&mut self, now: Duration) -> bool {
         let Some(rate) = self.rates.best().filter(|_| self.slow && !self.ledger.is_ambiguous()) else { return false };
         let round_trip = self.round_trip.shortest();
         self.alignment.is_misaligned(self.ledger.counted(), round_trip, rate.bytes_per_second, now)
     }
 
-    /// Returns whether a reply that arrives now belongs to another query, or the route has become
-    /// shorter.
+    /// Returns whether a reply that arrives now is too early for a query sent at `sent`.
+    ///
+    /// It then belongs to another query, or the route has become shorter.
     fn is_too_early(&self, sent: Duration, now: Duration) -> bool {
         self.round_trip.is_implausible(now.saturating_sub(sent))
     }
 
-    /// Returns whether a reply that arrives now, and may be late, is the one to the first picture
-    /// rather than to the last bytes: through a slow link it takes long, and a near terminal replies at once.
+    /// Returns whether a reply that may be late is the one to the first picture rather than to the
+    /// last query.
+    ///
+    /// It is the latter's only if the terminal is local and replies at once. The reply to the first picture may take
+    /// long on a slow link.
     fn is_reply_to_first_frame(&self, now: Duration) -> bool {
         let comes_at_once = |sent: Duration| now <= sent + self.round_trip.shortest() + IMMEDIATE_REPLY_TOLERANCE;
         let is_lasts = self.is_local() && self.ledger.last_sent().is_some_and(comes_at_once);
@@ -360,7 +376,7 @@ impl ReplyTracker {
         self.round_trip.is_known() && self.round_trip.shortest() < LOCAL_ROUND_TRIP
     }
 
-    /// Handles a reply, with its query if it matches one.
+    /// Updates the state and the estimates by a reply; does nothing if it matches no query.
     fn take(&mut self, matched: Option<Matched>, now: Duration) {
         let Some(matched) = matched else { return };
         self.initial_window = InitialWindow::default();
@@ -371,13 +387,14 @@ impl ReplyTracker {
         if matched.validity == Validity::Spurious {
             self.ledger.undo_timeout();
         }
-        // In doubt it is unknown what has arrived, and without a rate too much might be in flight.
+        // An ambiguous reply does not show how many bytes have arrived, and while the rate is unknown too many might be
+        // in flight.
         let is_rate_unknown = matched.validity == Validity::Ambiguous && !self.knows_rate();
         self.state = if is_rate_unknown { State::Recovering { until: self.silent_at(now) } } else { State::Steady };
         let had_round_trip = self.round_trip.is_known();
         self.take_round_trip(matched, now);
         let tells_rate = matches!(matched.validity, Validity::Exact | Validity::Spurious);
-        // The first round trip after a resynchronisation is its own minimum, so the transmission time would be 0.
+        // The first round trip after the estimate was dropped is the shortest, so the transmission time would be zero.
         if tells_rate && (had_round_trip || self.rates.best().is_none()) {
             self.take_rate(matched, now);
         }
@@ -395,8 +412,8 @@ impl ReplyTracker {
     }
 
     fn take_rate(&mut self, matched: Matched, now: Duration) {
-        // Frames are close together on a slow link, so that those with lost replies were transmitted without a pause
-        // before this one, and count together with it.
+        // On a slow link frames follow each other without a pause, so that frames whose replies are lost were
+        // transmitted directly before this one and count together with it.
         let (sent, bytes) = if self.slow { matched.acked } else { (matched.sent, matched.bytes) };
         let passed = now.saturating_sub(self.round_trip.shortest());
         let is_late = self.slow
@@ -405,9 +422,10 @@ impl ReplyTracker {
         self.rates.take(bytes, service, is_late, now);
     }
 
-    /// Gives up matching, and starts anew when no more replies arrive.
+    /// Gives up matching replies to queries until no more replies arrive.
     ///
-    /// Until then bytes are sent at the rate alone if that is a slow link's; another rate may stem from a mismatch.
+    /// The rate of a slow link is kept, to send at it meanwhile. Other estimates may stem from mismatches and are
+    /// dropped.
     // Dropping only the query whose reply was lost was tried: a late reply then counts twice, and a key waits for 1.8
     // s.
     fn resync(&mut self, now: Duration) {
@@ -423,8 +441,8 @@ impl ReplyTracker {
         self.state = State::Resyncing { last_reply: now };
     }
 
-    /// Returns the time at which the oldest query in flight times out, if any (the retransmission
-    /// timeout).
+    /// Returns the time at which the reply to the oldest query in flight counts as missing; `None`
+    /// without such a query.
     pub(super) fn times_out_at(&self) -> Option<Duration> {
         let oldest = self.ledger.oldest()?;
         Some(match self.last_reply {
@@ -434,12 +452,13 @@ impl ReplyTracker {
         })
     }
 
-    /// Returns the timeout beyond the expected time of a reply.
+    /// Returns the time after a reply was due until it counts as missing.
     fn timeout(&self) -> Duration {
         if self.slow { SLOW_RTO_MARGIN } else { RTO_MARGIN }
     }
 
-    /// Returns the time at which a terminal that has missed a timeout is considered silent.
+    /// Returns the time at which a terminal that last replied, or timed out, at `since` is
+    /// considered silent.
     fn silent_at(&self, since: Duration) -> Duration {
         let round_trip = self.round_trip.expected();
         since
@@ -451,7 +470,7 @@ impl ReplyTracker {
             }
     }
 
-    /// Stops waiting for missing replies.
+    /// Updates the state for the replies that count as missing at `now`.
     pub(super) fn check_timeouts(&mut self, now: Duration) {
         match self.state {
             State::Unanswered | State::Steady | State::Recovering { .. } => {

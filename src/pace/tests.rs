@@ -1,5 +1,5 @@
-//! The link against a simulated one with a rate, a round trip, and a terminal that replies or does
-//! not.
+//! Tests of the link with a simulated connection: a rate, a round trip, and a terminal that replies
+//! or does not.
 
 use super::*;
 use crate::protocol::FENCE;
@@ -11,36 +11,42 @@ pub(super) const fn ms(milliseconds: u64) -> Duration {
     Duration::from_millis(milliseconds)
 }
 
-/// A frame that has been sent.
+/// A frame, or a query without a frame, that has been sent.
 pub(super) struct Sent {
     pub(super) at: Duration,
     pub(super) bytes: usize,
-    /// Number of its bytes that have not been transmitted yet.
+    /// Number of bytes that have not been transmitted yet.
     pub(super) left: f64,
-    /// Time at which its last byte arrived.
+    /// Time at which the last byte arrived.
     pub(super) seen: Option<Duration>,
     pub(super) is_frame: bool,
+    /// Whether the bytes end with a query.
     pub(super) asks: bool,
 }
 
-/// A sender that always has something to send, and its simulated link.
+/// A simulation of a program that sends a frame whenever it may, and of its connection to the
+/// terminal.
 pub(super) struct World {
     pub(super) link: Link,
+    /// Bytes per second that the connection transmits.
     pub(super) rate: f64,
     pub(super) round_trip: Duration,
+    /// Whether the terminal replies to queries.
     pub(super) replies: bool,
-    /// Size of frames, unless the link is slow and they are to fit.
+    /// Bytes of a frame, unless `fits` and the link's limit is lower.
     pub(super) frame: usize,
+    /// Whether frames obey the link's limit.
     pub(super) fits: bool,
-    /// Share of their limit that frames use.
+    /// Share of the link's limit that frames use.
     pub(super) utilisation: f64,
     pub(super) now: Duration,
+    /// Time of the last frame.
     pub(super) begun: Duration,
     pub(super) sent: Vec<Sent>,
     /// Arrival times of replies, with the bytes that they confirm.
     pub(super) replies_due: VecDeque<(Duration, usize)>,
     pub(super) in_flight: usize,
-    /// The most bytes in flight beyond the link's rate times its round trip and one frame.
+    /// Greatest number of bytes in flight so far, less the bandwidth-delay product and one frame.
     pub(super) excess: f64,
 }
 
@@ -77,7 +83,7 @@ impl World {
         self.now.saturating_sub(ms(milliseconds))
     }
 
-    /// Sends nothing for a while.
+    /// Lets time pass in which bytes and replies arrive but nothing is sent.
     pub(super) fn rest(&mut self, time: Duration) {
         let end = self.now + time;
         while self.now < end {
@@ -87,7 +93,7 @@ impl World {
         }
     }
 
-    /// Transmits bytes in the order of sending.
+    /// Transmits the bytes of one millisecond, in the order of sending.
     fn pass_on(&mut self) {
         let mut room = self.rate / 1_000.0;
         for sent in self.sent.iter_mut().filter(|sent| sent.seen.is_none()) {
@@ -140,14 +146,15 @@ impl World {
         self.sent.push(Sent { at: self.now, bytes, left: bytes as f64, seen: None, is_frame, asks });
     }
 
-    /// Returns the time from a key press until its frame is visible.
+    /// Returns the time from a key press at `pressed` until a frame that shows its effect is
+    /// visible.
     pub(super) fn key(&self, pressed: Duration) -> Duration {
         let heard = pressed + self.round_trip / 2;
         let frame = self.sent.iter().find(|sent| sent.is_frame && sent.at > heard);
         frame.and_then(|frame| frame.seen).map_or(Duration::MAX, |seen| seen.saturating_sub(pressed))
     }
 
-    /// Returns the median and the maximum of a hundred keys.
+    /// Returns the median and the 99th percentile of [`key`](Self::key), for presses every 7 ms.
     pub(super) fn keys(&self, from: Duration, to: Duration) -> [Duration; 2] {
         let mut times: Vec<_> =
             (from.as_millis()..to.as_millis()).step_by(7).map(|at| self.key(ms(at as u64))).collect();
@@ -155,7 +162,7 @@ impl World {
         [times[times.len() / 2], times[times.len() * 99 / 100]]
     }
 
-    /// Returns the frames per second, and the used share of the link.
+    /// Returns the frames per second, and the share of the connection's rate that is used.
     pub(super) fn throughput(&self, from: Duration, to: Duration) -> [f64; 2] {
         let seconds = to.saturating_sub(from).as_secs_f64();
         let sent = || self.sent.iter().filter(|sent| (from..to).contains(&sent.at));
@@ -181,7 +188,7 @@ fn keys_are_visible_soon_at_full_throughput() {
     }
 }
 
-/// Frames as the encoder leaves them: parts that do not fit are left out in steps.
+/// Frames that use only a part of their limit, as the encoder's do, fill the link too.
 #[test]
 fn frames_below_their_share_fill_the_link_too() {
     for utilisation in [0.75, 0.8, 0.83, 0.9] {
@@ -210,14 +217,16 @@ fn any_link_is_used_and_never_overfilled() {
             let [fps, share] = world.throughput(from, to);
             let what = format!("{rate} B/s, {round_trip} ms: p99 {worst:?}, {fps} fps, {share}");
             assert!(worst <= ms(round_trip + 200), "{what}");
-            // Frames are whole: where the round trip is about as long as one, only every second one may be in flight.
+            // Frames are sent whole: if the round trip is about as long as the transmission of a frame, the link is
+            // idle for up to half of the time.
             assert!(fps >= 9.0 && share >= 0.58, "{what}");
             assert!(world.excess <= 0.0, "{what}: {} too many", world.excess);
         }
     }
 }
 
-/// At any moment between two frames.
+/// A tenfold drop of the rate is recovered from within 2 s, at whatever moment between two frames
+/// it occurs.
 #[test]
 fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
     let late = |phase: u64| {
@@ -230,8 +239,8 @@ fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
     };
     let mut late: Vec<_> = (0..70).step_by(5).map(late).collect();
     late.sort_unstable();
-    // The bytes sent before the drop is noticed drain at the new rate: 86 % of the old rate for the round trip and a
-    // frame, in 2 s.
+    // Before the drop is noticed, 86 % of the old rate are sent for a round trip and a frame; these bytes take 2 s at
+    // the new rate.
     assert!(late[late.len() / 2] <= 1_850 && late[late.len() - 1] <= 2_000, "{late:?} ms");
 }
 
@@ -247,7 +256,8 @@ fn a_link_that_becomes_fast_is_fast_soon() {
     assert!(fps > 55.0, "{fps} fps");
 }
 
-/// Small frames, and a terminal that replies only when it draws.
+/// A fast link does not count as slow if frames are small or the terminal replies only when it
+/// draws.
 #[test]
 fn a_fast_link_is_never_slow() {
     for frame in [40, 700, SCREEN] {
@@ -272,8 +282,8 @@ fn a_pause_does_not_make_a_link_slow_for_long() {
     assert_eq!(world.link.slow_limit(SCREEN), None);
 }
 
-/// The first picture arrives at once, the next bytes .4 s later, and from the first second on
-/// thirty times a second.
+/// After the first frame the second one waits 0.4 s for a reply, and soon there are 30 frames a
+/// second.
 #[test]
 fn a_terminal_that_never_replies_gets_thirty_frames_a_second() {
     let mut world = World { replies: false, ..World::new(1e7, ms(2)) };
@@ -284,7 +294,7 @@ fn a_terminal_that_never_replies_gets_thirty_frames_a_second() {
     assert!((28.0..=30.1).contains(&fps), "{fps} fps");
     assert_eq!(world.link.slow_limit(SCREEN), None);
     assert!(world.link.replies.ledger.in_flight().count() <= 8, "few outstanding queries");
-    // The terminal replies after all, having been slow to start.
+    // A terminal that starts to reply gets 60 frames a second.
     world.replies = true;
     world.simulate(ms(2_000));
     let [fps, _] = world.throughput(world.ago(1_000), world.now);
@@ -312,7 +322,7 @@ fn a_lost_reply_is_forgotten() {
     assert!(fps > 25.0, "{fps} fps");
 }
 
-/// The first reply arrives when the terminal is already considered silent.
+/// A link whose first reply arrives after the terminal is considered silent is used fully later.
 #[test]
 fn a_very_long_round_trip_is_taken_for_silence_only_at_first() {
     let mut world = World::new(200_000.0, ms(900));
@@ -329,7 +339,7 @@ fn a_very_long_round_trip_is_taken_for_silence_only_at_first() {
     assert!(fps >= 10.0 && share >= 0.8, "{fps} fps, {share} of the link");
 }
 
-/// Unsolicited replies, and duplicates.
+/// After 40 unsolicited replies and a pause, keys and throughput are as before.
 #[test]
 fn unsolicited_replies_do_no_lasting_harm() {
     let mut world = World::new(50_000.0, ms(200));
@@ -338,7 +348,7 @@ fn unsolicited_replies_do_no_lasting_harm() {
         world.link.receive_attributes(world.now);
         world.simulate(ms(37));
     }
-    // Each reply is matched to another frame until there is a pause.
+    // Until there is a pause, each reply may be matched to the wrong frame.
     world.rest(ms(5_000));
     world.simulate(ms(7_000));
     let from = world.now;
@@ -369,7 +379,7 @@ fn a_shorter_round_trip_is_noticed() {
         let mut world = World::new(50_000.0, ms(200));
         world.simulate(ms(5_000));
         (world.rate, world.round_trip) = (rate, ms(round_trip));
-        // In pieces, as keys arrive.
+        // Frames are sent in bursts, as when keys are pressed.
         for _ in 0..12 {
             world.simulate(ms(190));
             world.rest(ms(30));
@@ -380,7 +390,8 @@ fn a_shorter_round_trip_is_noticed() {
     }
 }
 
-/// Key times and throughput equal those of a link that has always had this round trip.
+/// After the round trip became shorter, key times and throughput are about those of a link that
+/// always had it.
 #[test]
 fn a_slightly_shorter_round_trip_is_used_fully() {
     for round_trip in [150, 100, 50] {
@@ -400,7 +411,8 @@ fn a_slightly_shorter_round_trip_is_used_fully() {
     }
 }
 
-/// Small frames do not contradict an old limit, but the first large one does.
+/// A link that has become fast is noticed when frames become large, although small ones do not show
+/// it.
 #[test]
 fn an_old_limit_does_not_last() {
     let mut world = World::new(100_000.0, ms(20));

@@ -2,8 +2,10 @@ use super::super::ledger::{Ledger, Query};
 use super::super::tests::ms;
 use super::*;
 
-/// Frames of 1,000 bytes are sent every 25 ms through 50 KB/s and 200 ms, and their replies
-/// arrive this much later than through an empty link. Returns the number of the reply that shows a loss, if any.
+/// Simulates frames of 1,000 bytes every 25 ms on a link of 50 KB/s and 200 ms, and returns the
+/// number of the reply that shows a loss, if any.
+///
+/// `later` returns the milliseconds by which the reply with this number is late.
 fn shows_loss(frames: usize, later: impl Fn(usize) -> u64) -> Option<usize> {
     let mut alignment = Alignment::default();
     (0..frames).find(|&number| {
