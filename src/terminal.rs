@@ -1,6 +1,5 @@
-//! The single owner of the terminal.
-//!
-//! Every mode that it switches on it switches off again, in reverse order.
+//! The single owner of the terminal. It switches off every mode that it has switched on, in reverse
+//! order.
 //!
 //! Dropping a [`Terminal`] restores the terminal: on return, on an error, and while a panic unwinds. A signal that
 //! would end the process ends the loop of [`app`](crate::app) instead, which drops the `Terminal` too; `main` then
@@ -41,7 +40,7 @@ use output::{Output, timespec};
 pub use panics::{hold_panic_messages, take_panic_messages};
 pub use signals::{Signals, StopTarget, Waker, before_death, die_of, fail_large_writes, without_signals};
 
-/// A terminal in raw mode with the alternate screen, to be read, written and asked for its size.
+/// A terminal in raw mode with the alternate screen: its input, output, modes and window size.
 pub struct Terminal {
     keys: File,
     output: Output,
@@ -51,9 +50,9 @@ pub struct Terminal {
 /// The inputs that are readable when [`Terminal::wait`] returns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Readable {
-    /// Whether the terminal has sent bytes, or has hung up.
+    /// Whether bytes from the terminal can be read, or the terminal has hung up.
     pub keys: bool,
-    /// Whether the wake pipe has been written to.
+    /// Whether bytes from the wake pipe can be read.
     pub wake: bool,
 }
 
@@ -66,7 +65,8 @@ impl Terminal {
     /// is not a terminal. A process in the background waits here until it is in the foreground.
     ///
     /// # Errors
-    /// If either is not a terminal, or cannot be set up; the terminal is then in its original state.
+    /// If standard output is no terminal, or if there is no terminal for keys or it cannot be set up; it is then in its
+    /// original state.
     pub fn take(signals: &Signals) -> io::Result<Self> {
         let output = Output::open()?;
         let mut terminal = Self { keys: keys_file()?, output, modes: Modes::default() };
@@ -89,7 +89,7 @@ impl Terminal {
     pub fn window(&self) -> io::Result<Window> {
         let window = termios::tcgetwinsize(self.output.file())?;
         let (columns, rows) = (window.ws_col, window.ws_row);
-        // A terminal without a known size reports 0 by 0, a serial line for example.
+        // A terminal without a known size, such as a serial line, reports 0 by 0.
         let size = if columns == 0 || rows == 0 { Size::new(80, 24) } else { Size::new(columns, rows) };
         let aspect = capabilities::cell_aspect(columns, rows, window.ws_xpixel, window.ws_ypixel);
         let cell = CellShape { aspect, half_blocks: capabilities::half_blocks(rows, window.ws_ypixel) };
@@ -133,11 +133,11 @@ impl Terminal {
         self.output.is_pending()
     }
 
-    /// Restores the terminal and waits for outstanding replies, which the shell would otherwise
-    /// read as typed text.
+    /// Restores the terminal and reads outstanding replies, which the shell would take for typed
+    /// text.
     ///
-    /// Both the last bytes and the replies share a timeout of one second. Returns whether the terminal accepted all
-    /// bytes: if it did not, it has stopped reading, and writing to it would block.
+    /// Waits for at most a second. Returns whether the terminal accepted all bytes: if not, it has stopped reading, and
+    /// writing to it would block.
     pub fn restore(&mut self, receiver: &mut Receiver, now: Duration) -> bool {
         let is_drained = self.modes.restore(&self.keys, &mut self.output, Some((&mut *receiver, now)), None);
         receiver.forget();
@@ -172,8 +172,9 @@ impl Terminal {
         }
     }
 
-    /// Sleeps until keys arrive, the wake pipe is readable, or the terminal accepts more pending
-    /// bytes, which are then written. Returns after `timeout` at the latest. `None` waits without a limit.
+    /// Sleeps until keys arrive, the wake pipe is readable, or the terminal accepts pending bytes.
+    ///
+    /// Writes what the terminal accepts. Returns after `timeout` at the latest; `None` waits without a limit.
     ///
     /// # Errors
     /// If the terminal is gone, or polling fails.
@@ -190,7 +191,7 @@ impl Terminal {
             // Interrupted by a signal: its handler has written to the wake pipe, which the next call finds readable.
             Err(rustix::io::Errno::INTR) => Readable::default(),
             Err(error) => return Err(error.into()),
-            // The keys may come from another terminal, so a hang-up of the output would go unnoticed there.
+            // Keys may come from another terminal than that of the output, whose hang-up is noticed only here.
             Ok(_) if fds[2].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL) => {
                 return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the terminal is gone"));
             }
@@ -204,7 +205,7 @@ impl Terminal {
 impl Drop for Terminal {
     /// Restores the terminal without waiting for replies.
     ///
-    /// Only a caller with a [`Receiver`] knows of outstanding ones, and calls [`restore`](Terminal::restore) first.
+    /// A caller whose [`Receiver`] knows of outstanding replies calls [`restore`](Terminal::restore) first.
     fn drop(&mut self) {
         self.modes.restore(&self.keys, &mut self.output, None, None);
     }

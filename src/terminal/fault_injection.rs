@@ -1,8 +1,7 @@
-//! Fault injection for this crate's own tests.
+//! Fault injection for this crate's own tests: the program reports its phases to a test, which may
+//! let them fail.
 //!
-//! A test learns which phase the program has reached, and may have it fail.
-//!
-//! Compiled to nothing without the feature `test-hooks`, which only the tests switch on.
+//! Without the feature `test-hooks`, which only the tests switch on, the functions here do nothing.
 
 use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
@@ -12,25 +11,24 @@ use std::time::Duration;
 
 /// The connection to the test, if there is one.
 static TEST: OnceLock<Mutex<UnixStream>> = OnceLock::new();
-/// Whether the next job of a worker thread is to panic.
+/// Whether the next job of a worker thread must panic, because the test has asked for it.
 static WORKER: AtomicBool = AtomicBool::new(false);
 /// Delay before [`rest`] is retried while another thread is reporting its phase.
 const REST_RETRY: Duration = Duration::from_millis(2);
-/// Number of bytes that the loop has read from the terminal.
+/// Number of bytes that the event loop has read from the terminal.
 static READ: AtomicU64 = AtomicU64::new(0);
 
-/// Reports every phase reached from now on to `test`, which answers what is to happen there.
-///
-/// Only the first call has an effect.
+/// Connects to a test: [`reach`] reports each phase to it and obeys its answer. Only the first call
+/// has an effect.
 #[cfg(feature = "test-hooks")]
 pub fn inject_faults(test: UnixStream) {
     let _ = TEST.set(Mutex::new(test));
 }
 
-/// Reports a phase of the loop to the test and obeys the answer.
+/// Reports a phase of the event loop to the test and obeys the answer.
 ///
-/// `e` for an error, `p` for a panic, `w` for a panic in a worker; anything else continues. Continues as well while
-/// another thread is held at its own phase.
+/// The answer `e` asks for an error, `p` for a panic, `w` for a panic in a worker thread; anything else continues. Also
+/// continues, without a report, while another thread waits for its answer.
 ///
 /// # Errors
 /// If the test asks for one.
@@ -38,17 +36,17 @@ pub fn inject_faults(test: UnixStream) {
 /// # Panics
 /// If the test asks for one.
 pub(crate) fn reach(phase: &str) -> io::Result<()> {
-    report(test().and_then(|test| test.try_lock().ok()), phase)
+    report(connection().and_then(|test| test.try_lock().ok()), phase)
 }
 
-/// Reports a phase of another thread than the loop's, as [`reach`] does, after waiting for its
-/// turn.
+/// Reports a phase of another thread as [`reach`] does, but waits until no other thread is
+/// reporting.
 pub(crate) fn reach_in_thread(phase: &str) -> io::Result<()> {
-    report(test().and_then(|test| test.lock().ok()), phase)
+    report(connection().and_then(|test| test.lock().ok()), phase)
 }
 
 fn report(test: Option<MutexGuard<'_, UnixStream>>, phase: &str) -> io::Result<()> {
-    match test.and_then(|test| answer(test, phase)) {
+    match test.and_then(|test| ask_test(test, phase)) {
         Some(b'e') => Err(io::Error::other("a test asked for an error")),
         Some(b'p') => panic!("a test asked for a panic in the loop"),
         Some(b'w') => {
@@ -59,34 +57,35 @@ fn report(test: Option<MutexGuard<'_, UnixStream>>, phase: &str) -> io::Result<(
     }
 }
 
-/// Reports that the loop is about to sleep without work or timer, and how many bytes it has read,
-/// so that a test need not wait to know that nothing more happens.
+/// Reports that the event loop is about to sleep without work or timer, and how many bytes it has
+/// read.
 ///
-/// Returns the delay after which to call again, if another thread is reporting at the moment.
+/// A test then knows without waiting that nothing more will happen. Returns the delay after which to call again if
+/// another thread is reporting.
 pub(crate) fn rest() -> io::Result<Option<Duration>> {
-    let Some(test) = test() else { return Ok(None) };
+    let Some(test) = connection() else { return Ok(None) };
     let Ok(test) = test.try_lock() else { return Ok(Some(REST_RETRY)) };
     report(Some(test), &format!("rest {}", READ.load(Ordering::SeqCst)))?;
     Ok(None)
 }
 
-/// Adds to the number of bytes that the loop has read from the terminal.
+/// Adds to the number of bytes that the event loop has read from the terminal.
 pub(super) fn count_read(bytes: usize) {
     if cfg!(feature = "test-hooks") {
         READ.fetch_add(bytes as u64, Ordering::SeqCst);
     }
 }
 
-/// Returns whether the test has asked for a panic in a worker, and clears the request.
+/// Returns whether the test has asked for a panic in a worker thread, and clears the request.
 pub(crate) fn take_worker_panic() -> bool {
     cfg!(feature = "test-hooks") && WORKER.swap(false, Ordering::SeqCst)
 }
 
-fn test() -> Option<&'static Mutex<UnixStream>> {
+fn connection() -> Option<&'static Mutex<UnixStream>> {
     if cfg!(feature = "test-hooks") { TEST.get() } else { None }
 }
 
-fn answer(mut test: MutexGuard<'_, UnixStream>, phase: &str) -> Option<u8> {
+fn ask_test(mut test: MutexGuard<'_, UnixStream>, phase: &str) -> Option<u8> {
     writeln!(test, "{phase}").ok()?;
     let mut answer = [0];
     test.read_exact(&mut answer).ok()?;

@@ -1,6 +1,5 @@
-//! The terminal's modes: raw mode first, then those of screen, mouse and keyboard.
-//!
-//! They are switched off in reverse order.
+//! The terminal's modes: raw mode first, then those of screen, mouse and keyboard; switched off in
+//! reverse order.
 
 use super::output::Output;
 use super::replies::{await_last, is_in_background};
@@ -15,19 +14,20 @@ use std::time::{Duration, Instant};
 /// The modes that are on.
 #[derive(Default)]
 pub(super) struct Modes {
-    /// The settings before raw mode, which is switched on first.
+    /// The terminal's settings before raw mode; `None` if it is off.
     before: Option<Box<Termios>>,
+    /// The modes that escape sequences have switched on.
     on: protocol::TerminalModes,
 }
 
-/// Timeout for the last bytes and replies.
-// A terminal that has stopped reading (Ctrl-S, a dead link) delays the exit by this much and does not get the rest. A
-// second is longer than the round trip of any usual link, after which a late reply would be typed into the shell.
+/// Greatest time that restoring the terminal waits for it to accept the last bytes and to reply.
+// A terminal that has stopped reading (Ctrl-S, a dead link) delays the exit by this time. It is longer than the round
+// trip of usual links, because the shell would take a later reply for typed text.
 const RESTORE_TIMEOUT: Duration = Duration::from_secs(1);
 
 impl Modes {
-    /// Switches on raw mode, the alternate screen, bracketed paste and reports of focus and mouse,
-    /// and hides the cursor.
+    /// Switches on raw mode and all modes that every terminal supports, such as the alternate
+    /// screen.
     ///
     /// Each mode is recorded before it is switched on, so that a failure half-way is undone as well.
     pub(super) fn switch_on_all(&mut self, keys: &File, output: &mut Output, signals: &Signals) -> io::Result<()> {
@@ -36,7 +36,7 @@ impl Modes {
         let mut raw = before.clone();
         raw.make_raw();
         self.before = Some(Box::new(before));
-        panics::hold(true);
+        panics::set_held(true);
         termios::tcsetattr(keys, OptionalActions::Now, &raw)?;
         fault_injection::reach("raw mode")?;
         let mut bytes = Vec::new();
@@ -58,8 +58,7 @@ impl Modes {
         if mode == TerminalMode::Keyboard { fault_injection::reach("keyboard") } else { Ok(()) }
     }
 
-    /// Switches off all modes, newest first, and waits for the replies that `receiver` knows to be
-    /// outstanding.
+    /// Switches off all modes, newest first, and waits for the outstanding replies of `receiver`.
     ///
     /// The unwritten rest of a frame is dropped at a sequence boundary, so that no sequence is cut in two. A step that
     /// fails does not keep the next ones from running. Unread keys are flushed, or appended to `typed` if given.
@@ -73,7 +72,7 @@ impl Modes {
     ) -> bool {
         output.drop_frame();
         // With the kitty keyboard protocol the terminal reports key releases until it has processed the sequence that
-        // switches them off, and the release of `q` comes about then. The reply to a fence follows the last report.
+        // switches them off, and the user releases `q` about then. The reply to a fence follows the last report.
         let needs_fence = self.on.is_on(TerminalMode::Keyboard) && !is_in_background(keys);
         let mut off = Vec::new();
         self.on.switch_all_off(&mut off);
@@ -96,40 +95,39 @@ impl Modes {
         }
         let flushes = typed.is_none();
         signals::in_the_background(|| restore_settings(keys, &before, flushes));
-        panics::hold(false);
+        panics::set_held(false);
         is_drained
     }
 }
 
 /// Waits until the process is in the foreground of its terminal.
 ///
-/// The settings found now are restored at the end, so they must be the ones that the shell sets for its jobs, not those
-/// with which its line editor reads.
+/// The settings at that time are restored at the end, so they must be those that the shell sets for its jobs, not those
+/// of the shell's line editor.
 ///
 /// # Errors
-/// `Interrupted`, if a signal asks the process to end meanwhile.
+/// `Interrupted`, if a signal asks the process to end during the wait.
 fn wait_for_foreground(keys: &File, signals: &Signals) -> io::Result<()> {
     while is_in_background(keys) && signals::stop_for_output() {
         if signals.deadly().is_some() {
             return Err(io::ErrorKind::Interrupted.into());
         }
         if !signals.take_continued() {
-            // The process group is orphaned: no shell can continue it. The next call then fails with EIO.
+            // The process group is orphaned, so that no shell can continue it. `tcflow` below then fails with EIO.
             break;
         }
     }
-    // TCOON: resumes output that another program has suspended; on some systems also after Ctrl-S.
+    // TCOON resumes output that another program, or on some systems Ctrl-S, has suspended.
     termios::tcflow(keys, Action::OOn)?;
-    // Discards a SIGCONT from before the first frame: there is nothing to draw again.
+    // Discards a SIGCONT from before the first frame, because there is nothing to draw again.
     signals.take_continued();
     Ok(())
 }
 
-/// Restores the settings, after flushing unread keys if `flushes`, so that the shell does not get
-/// them.
+/// Restores the terminal's settings; if `flushes`, discards unread keys first, so that the shell
+/// does not get them.
 ///
-/// TCSAFLUSH would do both in one call, but it first waits until all output is transmitted, which a terminal stopped by
-/// Ctrl-S never does.
+/// TCSAFLUSH would do both in one call, but first waits until all output is transmitted, for ever after Ctrl-S.
 fn restore_settings(keys: &File, before: &Termios, flushes: bool) {
     if flushes {
         let _ = termios::tcflush(keys, QueueSelector::IFlush);

@@ -1,4 +1,4 @@
-//! Output to the terminal that never blocks for longer than a stated time.
+//! Output to the terminal, which never blocks for longer than a given time.
 
 use super::fault_injection;
 use rustix::event::{PollFd, PollFlags, poll};
@@ -17,13 +17,13 @@ pub(super) struct Output {
     file: File,
     /// Whether the open file description is shared with the shell, so that a write may block.
     shared: bool,
-    /// Bytes to write; those before `written` are written already.
+    /// Bytes to write, of which the first `written` are written already.
     pending: Vec<u8>,
     written: usize,
 }
 
-/// Largest write to a shared file, in bytes.
-// A terminal that polls as writable accepts this much without blocking: Linux accounts for the buffer of a
+/// Greatest number of bytes in one write to a shared file, which is in blocking mode.
+// If `poll` reports a terminal as writable, it accepts this much without blocking: Linux accounts for the buffer of a
 // pseudo-terminal in blocks of 256 bytes. A larger write may block in the middle, with signals and keys unhandled.
 const MAX_SHARED_WRITE: usize = 256;
 
@@ -32,12 +32,12 @@ impl Output {
     pub(super) fn open() -> io::Result<Self> {
         let shared = File::from(io::stdout().as_fd().try_clone_to_owned()?);
         Ok(match reopen(&shared) {
-            Some(own) => Self::of(own, false),
-            None => Self::of(shared, true),
+            Some(own) => Self::new(own, false),
+            None => Self::new(shared, true),
         })
     }
 
-    fn of(file: File, shared: bool) -> Self {
+    fn new(file: File, shared: bool) -> Self {
         Self { file, shared, pending: Vec::new(), written: 0 }
     }
 
@@ -51,13 +51,13 @@ impl Output {
         !self.pending.is_empty()
     }
 
-    /// Appends bytes and writes, in a single call if the terminal accepts them all.
+    /// Appends bytes and writes them, in a single call if the terminal accepts all.
     pub(super) fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.put(bytes);
         self.push()
     }
 
-    /// Appends bytes without writing.
+    /// Appends bytes without writing them.
     pub(super) fn put(&mut self, bytes: &[u8]) {
         self.pending.extend_from_slice(bytes);
     }
@@ -95,19 +95,20 @@ impl Output {
         }
     }
 
-    /// Drops pending text and the sequences that position and colour it.
+    /// Drops the pending part of a frame: text and the sequences that position and colour it.
     ///
-    /// Mode switches and queries stay.
+    /// Pending mode switches and queries are kept.
     pub(super) fn drop_frame(&mut self) {
-        let boundary = boundary(&self.pending, self.written);
+        let boundary = next_boundary(&self.pending, self.written);
         let rest = self.pending.split_off(boundary);
-        self.pending.extend(sequences(&rest).filter(|sequence| !paints(sequence)).flatten());
+        self.pending.extend(sequences(&rest).filter(|sequence| !belongs_to_frame(sequence)).flatten());
         self.advance(0);
     }
 
-    /// Writes all pending bytes, waiting until the deadline at most, and returns whether the
-    /// terminal accepts more: then the next print does not block. (A terminal that has stopped reading may have had
-    /// room for exactly these bytes.)
+    /// Writes all pending bytes until the deadline, and returns whether the terminal accepts more,
+    /// so that the next print does not block.
+    ///
+    /// (A terminal that has stopped reading may have had room for exactly these bytes.)
     pub(super) fn drain(&mut self, deadline: Instant) -> bool {
         while self.push().is_ok() && self.is_pending() {
             let left = deadline.saturating_duration_since(Instant::now());
@@ -122,7 +123,7 @@ impl Output {
 
 /// Returns the first index at or after `index` that lies inside neither an escape sequence nor a
 /// UTF-8 character.
-fn boundary(bytes: &[u8], index: usize) -> usize {
+fn next_boundary(bytes: &[u8], index: usize) -> usize {
     let start = bytes[..index].iter().rposition(|&byte| byte == ESCAPE).unwrap_or(index);
     let end = index.max(start + sequence_len(&bytes[start..]).unwrap_or(0));
     let is_continuation = |byte: &&u8| **byte & 0xc0 == 0x80;
@@ -155,8 +156,8 @@ fn sequence_len(bytes: &[u8]) -> Option<usize> {
     }
 }
 
-/// Returns whether a sequence only moves the cursor, sets colours or erases.
-fn paints(sequence: &[u8]) -> bool {
+/// Returns whether a sequence belongs to a frame: it moves the cursor, sets colours or erases.
+fn belongs_to_frame(sequence: &[u8]) -> bool {
     let [ESCAPE, b'[', parameters @ .., end] = sequence else { return false };
     // Private sequences, such as modes and the keyboard protocol, have a marker (`?`, `>`, ...) before their
     // parameters.
@@ -170,28 +171,27 @@ fn is_writable(file: &impl AsFd, timeout: Duration) -> bool {
     loop {
         let left = deadline.saturating_duration_since(Instant::now());
         match poll(&mut [PollFd::new(file, PollFlags::OUT)], Some(&timespec(left))) {
-            // A window that is dragged sends a SIGWINCH every few milliseconds. Taken for a terminal that accepts
-            // nothing, it would lose the message of an error.
+            // A signal does not end the wait: while a window is resized there is a SIGWINCH every few milliseconds, and
+            // the error message would be lost.
             Err(rustix::io::Errno::INTR) => {}
             ready => return ready.is_ok_and(|ready| ready > 0),
         }
     }
 }
 
-/// Returns whether a message to standard error would not block.
+/// Returns whether a message can be written to standard error without blocking.
 ///
-/// That is so if it is not a terminal, or if the terminal accepts bytes within 250 ms. A terminal that has stopped
-/// reading would keep the program from ending.
+/// That is so if standard error is not a terminal, or if the terminal accepts bytes within 250 ms. A terminal that has
+/// stopped reading would keep the program from ending.
 pub fn stderr_accepts_message() -> bool {
     let stderr = io::stderr();
     !stderr.is_terminal() || is_writable(&stderr, Duration::from_millis(250))
 }
 
-/// Opens the terminal a second time, non-blocking, with an open file description of its own:
-/// `O_NONBLOCK` on the shared one would outlive the program.
+/// Opens the terminal a second time, in non-blocking mode; `None` if that fails.
 ///
-/// Opening it by name fails where the device belongs to another user (after `su`); `/dev/tty` then works if it is the
-/// terminal of this session.
+/// `O_NONBLOCK` on the open file description shared with the shell would outlive the program. Opening by name fails if
+/// the device belongs to another user (after `su`); `/dev/tty` then works if it is the terminal of this session.
 fn reopen(terminal: &File) -> Option<File> {
     let open = |name: &[u8]| {
         let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits().try_into().ok()?;

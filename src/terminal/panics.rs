@@ -1,10 +1,11 @@
-//! Panic messages, which are kept while the alternate screen is on and would be lost with it.
+//! Panic messages, kept while the alternate screen is on, because they would vanish with it.
 
 use std::panic::PanicHookInfo;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether messages are kept: a [`Terminal`](super::Terminal) is in use.
+/// Whether panic messages are kept instead of printed, because a [`Terminal`](super::Terminal) is
+/// in use.
 static HELD: AtomicBool = AtomicBool::new(false);
 static MESSAGES: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
@@ -28,8 +29,8 @@ pub fn take_panic_messages() -> Vec<String> {
     MESSAGES.lock().map(|mut messages| std::mem::take(&mut *messages)).unwrap_or_default()
 }
 
-/// Starts or ends keeping messages.
-pub(super) fn hold(is_held: bool) {
+/// Starts or ends keeping panic messages.
+pub(super) fn set_held(is_held: bool) {
     HELD.store(is_held, Ordering::SeqCst);
 }
 

@@ -1,4 +1,4 @@
-//! Replies that are outstanding when the terminal is restored.
+//! Waiting for replies that are outstanding when the terminal is restored.
 
 use super::fault_injection;
 use super::output::timespec;
@@ -10,10 +10,9 @@ use std::fs::File;
 use std::io::Read;
 use std::time::{Duration, Instant};
 
-/// Reads input up to the last reply outstanding at `now`, until the deadline at most, and returns
-/// it.
+/// Reads input until the last outstanding reply or the deadline, and returns the input.
 ///
-/// The shell would read such a reply as typed text, and still does if it comes after the deadline.
+/// Otherwise the shell would take these replies for typed text, as it does if they arrive after the deadline.
 pub(super) fn await_last(keys: &File, receiver: &mut Receiver, now: Duration, deadline: Instant) -> Vec<Input> {
     let mut inputs = Vec::new();
     if !is_in_background(keys) {
@@ -52,9 +51,7 @@ fn read_up_to_last(
     }
 }
 
-/// Returns whether another process group is in the foreground.
-///
-/// Reading the terminal would stop this process.
+/// Returns whether this process is in the background, so that reading the terminal would stop it.
 pub(super) fn is_in_background(keys: &File) -> bool {
     termios::tcgetpgrp(keys).is_ok_and(|foreground| foreground != process::getpgrp())
 }

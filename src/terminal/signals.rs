@@ -1,13 +1,12 @@
-//! Signals as events of the loop, and job control.
+//! Signals as events of the live view's loop, and job control.
 //!
-//! Signals that were ignored when the program was started stay ignored: after a shell's `trap '' HUP`, or in a
-//! background job of a shell without job control.
+//! Signals that were ignored when the program was started, as after a shell's `trap '' HUP` or in a background job of a
+//! shell without job control, stay ignored.
 //!
-//! Every other signal whose default action ends the process ends the loop instead, except SIGKILL, and SIGSEGV and
-//! SIGBUS, whose handlers report a stack overflow. SIGTERM, SIGHUP, SIGINT and SIGQUIT are caught. All others are
-//! blocked, as SIGTSTP is, and accepted by one thread: their disposition stays the default, so that [`die_of`] only has
-//! to unblock the signal. (Resetting a disposition takes unsafe code; signal-hook offers it only for a list without
-//! real-time signals.)
+//! Every other signal whose default action ends the process ends the loop instead. Exceptions are SIGKILL, and SIGSEGV
+//! and SIGBUS, whose handlers report a stack overflow. SIGTERM, SIGHUP, SIGINT and SIGQUIT are caught. All others, and
+//! SIGTSTP, are blocked and accepted by one thread: their disposition stays the default, so that [`die_of`] only has to
+//! unblock the signal. (Resetting a disposition takes unsafe code, and signal-hook does it for no real-time signals.)
 
 use nix::sys::signal::{SigSet, SigmaskHow, Signal, raise};
 use rustix::fd::{AsFd, BorrowedFd};
@@ -24,11 +23,12 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::Duration;
 
-/// Signal handlers and the wake pipe, which wakes the loop for everything besides keys.
+/// The flags that signal handlers set, and the wake pipe, which wakes the loop for all events but
+/// keys.
 pub struct Signals {
     read: UnixStream,
     write: UnixStream,
-    /// The last signal that asked the program to end, or 0.
+    /// The number of the last signal that asked the program to end, or 0.
     deadly: Arc<AtomicUsize>,
     resized: Arc<AtomicBool>,
     continued: Arc<AtomicBool>,
@@ -36,19 +36,19 @@ pub struct Signals {
     stops: Option<Receiver<()>>,
 }
 
-/// Signals that conventionally ask a program to end. They are caught.
+/// Signals that conventionally ask a program to end, for which handlers are installed.
 const CAUGHT: [i32; 4] = [SIGTERM, SIGHUP, SIGINT, SIGQUIT];
 
-/// The other signals that end a program by default and whose disposition signal-hook can reset.
+/// Signals that [`before_death`] catches besides [`CAUGHT`].
 ///
-/// [`before_death`] catches these too: it is called when threads are running, which would not have them blocked.
-/// Real-time signals, SIGIO, SIGPWR and SIGSTKFLT are not among them; the next run removes the temporary files they
-/// leave.
+/// They end a program by default, and signal-hook can reset their disposition. Blocking them, as the live view does, is
+/// impossible when threads are running already. Real-time signals, SIGIO, SIGPWR and SIGSTKFLT are missing: after them
+/// the next run removes temporary files.
 const CAUGHT_BEFORE_DEATH: [i32; 8] = [SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGSYS, SIGTRAP];
 
 /// Signals that are never blocked.
 const UNBLOCKED: &[Signal] = &[
-    // Cannot be blocked.
+    // The system does not allow blocking these.
     Signal::SIGKILL,
     Signal::SIGSTOP,
     // Faults of the program itself; the standard library reports a stack overflow from their handlers.
@@ -61,10 +61,10 @@ const UNBLOCKED: &[Signal] = &[
     Signal::SIGTTOU,
     #[cfg(target_os = "macos")]
     Signal::SIGINFO,
-    // Reported as the error of the write instead: SIGXFSZ by `fail_large_writes`, SIGPIPE by the standard library.
+    // A write that would cause these fails with an error: by `fail_large_writes`, and by the standard library.
     Signal::SIGXFSZ,
     Signal::SIGPIPE,
-    // Caught.
+    // Handlers are installed for these.
     Signal::SIGTERM,
     Signal::SIGHUP,
     Signal::SIGINT,
@@ -73,12 +73,12 @@ const UNBLOCKED: &[Signal] = &[
     Signal::SIGCONT,
 ];
 
-/// Timeout for this process's own copy of a signal that it has sent to its group.
+/// Time to wait for a signal that this process has sent to its group, itself included.
 // Delivery takes well under a millisecond on an idle machine; the limit only keeps a lost signal from hanging the
 // program.
 const GROUP_SIGNAL_TIMEOUT: Duration = Duration::from_millis(100);
 
-/// The processes that [`Signals::stop`] stops.
+/// Which processes [`Signals::stop`] stops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StopTarget {
     /// Only this process.
@@ -114,7 +114,7 @@ impl Signals {
         };
         let (resized, continued) = (flag(SIGWINCH)?, flag(SIGCONT)?);
         let stops = accept_blocked(ignored, Arc::clone(&deadly), Waker(write.try_clone()?))?;
-        let stops = (!contains(ignored, SIGTSTP)).then_some(stops);
+        let stops = (!contains_signal(ignored, SIGTSTP)).then_some(stops);
         Ok(Self { read, write, deadly, resized, continued, stops })
     }
 
@@ -154,7 +154,7 @@ impl Signals {
         self.resized.swap(false, Ordering::SeqCst)
     }
 
-    /// Returns whether SIGTSTP has arrived since the last call.
+    /// Returns whether a SIGTSTP (stop request) has arrived that no call has returned yet.
     #[doc(hidden)]
     pub fn take_stop(&self) -> bool {
         self.stops.as_ref().is_some_and(|stops| stops.try_recv().is_ok())
@@ -179,13 +179,13 @@ impl Signals {
             // The signal comes to this process too, and would stop it a second time.
             let _ = stops.recv_timeout(GROUP_SIGNAL_TIMEOUT);
         }
-        // Pending for this thread alone, where it is blocked, so that the accepting thread does not get it. A SIGCONT
-        // from here on removes it again.
+        // `raise` makes the signal pending for this thread, where it is blocked, and not for the process, so that the
+        // accepting thread does not get it. A SIGCONT from here on removes the pending signal.
         let stop = stop_signal();
         let _ = raise(Signal::SIGTSTP);
         if self.take_continued() {
-            // The shell has seen the rest of the group stop and has continued it already. Stopping now would be for
-            // ever.
+            // The shell has seen the rest of the group stop and has continued it already, so it would not continue this
+            // process after a stop now.
             let _ = raise(Signal::SIGTSTP);
             let _ = stop.wait();
         } else {
@@ -198,17 +198,18 @@ impl Signals {
     }
 }
 
-/// Catches the signals that are not ignored.
+/// Installs handlers, which set `deadly` and wake the loop, for those of `signals` that are not
+/// ignored.
 fn catch_deadly(signals: &[i32], ignored: u64, deadly: &Arc<AtomicUsize>, wake: &UnixStream) -> io::Result<()> {
-    for &signal in signals.iter().filter(|&&signal| !contains(ignored, signal)) {
-        // The flag before the pipe: a thread that the pipe wakes must find the flag set.
+    for &signal in signals.iter().filter(|&&signal| !contains_signal(ignored, signal)) {
+        // The flag is registered before the pipe, because a thread that the pipe wakes must find the flag set.
         signal_hook::flag::register_usize(signal, Arc::clone(deadly), signal as usize)?;
         signal_hook::low_level::pipe::register(signal, wake.try_clone()?)?;
     }
     Ok(())
 }
 
-/// Returns the signal recorded in `deadly`, which holds 0 for none.
+/// Returns the signal in `deadly`, in which 0 means none.
 fn signal_in(deadly: &AtomicUsize) -> Option<i32> {
     match deadly.load(Ordering::SeqCst) {
         0 => None,
@@ -216,9 +217,11 @@ fn signal_in(deadly: &AtomicUsize) -> Option<i32> {
     }
 }
 
-/// Runs `last_act` before a signal ends the process, for commands without a loop.
+/// Installs handlers that run `last_act` before a signal ends the process, for commands without a
+/// loop.
 ///
-/// It runs on a thread of its own, which then raises the signal with its default action. Stops are not caught.
+/// `last_act` runs on a thread of its own, which then raises the signal with its default action. Stop signals are not
+/// caught.
 ///
 /// # Errors
 /// If the operating system refuses.
@@ -233,7 +236,7 @@ pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> 
             die_of(signal);
         }
     };
-    // Started before the handlers are installed, so that no signal is caught without a receiver.
+    // The thread starts before the handlers are installed, so that no signal is caught without a receiver.
     thread::Builder::new().name("signals".to_owned()).spawn(wait)?;
     let ignored = ignored();
     catch_deadly(&CAUGHT, ignored, &deadly, &write)?;
@@ -242,11 +245,11 @@ pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> 
 
 /// Blocks the uncaught signals in all threads and accepts them on one.
 ///
-/// SIGTSTP goes into the returned channel, any other signal asks the program to end.
+/// SIGTSTP is sent to the returned channel; any other signal asks the program to end.
 ///
-/// SIGTSTP is blocked rather than caught, because only its default action stops a process as its shell expects, and
-/// does nothing in an orphaned process group, where the process could not be continued (a terminal that runs the
-/// program without a shell). SIGSTOP would hang it there for ever.
+/// SIGTSTP is blocked rather than caught, because only its default action stops a process as its shell expects. In an
+/// orphaned process group (a terminal that runs the program without a shell), which cannot be continued, that action
+/// does nothing, whereas SIGSTOP would hang the process for ever.
 fn accept_blocked(ignored: u64, deadly: Arc<AtomicUsize>, mut waker: Waker) -> io::Result<Receiver<()>> {
     let signals = blocked();
     signals.thread_block()?;
@@ -254,8 +257,8 @@ fn accept_blocked(ignored: u64, deadly: Arc<AtomicUsize>, mut waker: Waker) -> i
     let (stopped, stops) = channel();
     let accept = move || {
         while let Ok(signal) = pending.next() {
-            // A blocked signal becomes pending even if it is ignored, and arrives here.
-            if contains(ignored, signal) {
+            // A signal that is both blocked and ignored becomes pending too, and is skipped here.
+            if contains_signal(ignored, signal) {
                 continue;
             }
             if signal == SIGTSTP {
@@ -272,7 +275,7 @@ fn accept_blocked(ignored: u64, deadly: Arc<AtomicUsize>, mut waker: Waker) -> i
     Ok(stops)
 }
 
-/// Returns the signals to block, including the real-time signals, which nix has no names for.
+/// Returns the signals to block; they include the real-time signals, for which nix has no names.
 fn blocked() -> SigSet {
     let mut signals = SigSet::all();
     for &signal in UNBLOCKED {
@@ -281,9 +284,9 @@ fn blocked() -> SigSet {
     signals
 }
 
-/// The signals pending for the process, one by one.
+/// An iterator over the signals pending for the process.
 ///
-/// `sigwait` would do, but nix's version returns an enumeration without the real-time signals.
+/// Not by `sigwait`, because nix's version returns an enumeration without the real-time signals.
 #[cfg(target_os = "linux")]
 struct PendingSignals(nix::sys::signalfd::SignalFd);
 
@@ -301,7 +304,7 @@ impl PendingSignals {
     }
 }
 
-/// The signals pending for the process, one by one.
+/// An iterator over the signals pending for the process.
 #[cfg(not(target_os = "linux"))]
 struct PendingSignals(SigSet);
 
@@ -324,30 +327,29 @@ fn stop_signal() -> SigSet {
 
 /// Runs `work` with all signals blocked, which threads started in it inherit.
 ///
-/// So signals are delivered to the thread that installed the handlers, and a SIGCONT handler has run by the time that
-/// thread continues.
+/// So signals are delivered to the thread that installed the handlers, and after a stop the SIGCONT handler has run
+/// before that thread goes on.
 pub fn without_signals<T>(work: impl FnOnce() -> T) -> T {
-    without(&SigSet::all(), work)
+    with_blocked(&SigSet::all(), work)
 }
 
-/// Stops the whole process group by SIGTTOU, as the kernel does when a background process changes
-/// its terminal, and returns whether it could: `false` if SIGTTOU is ignored.
+/// Stops the process group by SIGTTOU, and returns whether it could: `false` if SIGTTOU is ignored.
 ///
-/// Leaving it to the kernel fails: it restarts the interrupted call after each caught signal, and so stops the process
-/// again before the signal has been handled. The group, not the process: a shell does not notice a partly stopped job.
+/// The kernel does the same when a background process changes its terminal. But it restarts the interrupted call after
+/// each caught signal, and so would stop the process again before the signal is handled. The whole group is stopped,
+/// because a shell does not notice a job of which only one process stops.
 pub(super) fn stop_for_output() -> bool {
-    let is_stopping = !contains(ignored(), SIGTTOU);
+    let is_stopping = !contains_signal(ignored(), SIGTTOU);
     is_stopping && rustix::process::kill_current_process_group(rustix::process::Signal::TTOU).is_ok()
 }
 
-/// Runs `work` with SIGTTOU blocked, so that a background process may change its terminal without
-/// being stopped.
+/// Runs `work` with SIGTTOU blocked, so that a background process may change its terminal.
 pub(super) fn in_the_background<T>(work: impl FnOnce() -> T) -> T {
-    without(&SigSet::from_iter([Signal::SIGTTOU]), work)
+    with_blocked(&SigSet::from_iter([Signal::SIGTTOU]), work)
 }
 
 /// Runs `work` with `signals` blocked in this thread.
-fn without<T>(signals: &SigSet, work: impl FnOnce() -> T) -> T {
+fn with_blocked<T>(signals: &SigSet, work: impl FnOnce() -> T) -> T {
     let before = signals.thread_swap_mask(SigmaskHow::SIG_BLOCK);
     let done = work();
     if let Ok(before) = before {
@@ -356,14 +358,14 @@ fn without<T>(signals: &SigSet, work: impl FnOnce() -> T) -> T {
     done
 }
 
-/// Returns the set of ignored signals, signal n in bit n - 1.
+/// Returns the set of ignored signals, with signal n in bit n - 1.
 ///
-/// Empty except on Linux: elsewhere they are caught too.
+/// On other systems than Linux the set is empty, so that ignored signals are caught too.
 fn ignored() -> u64 {
     ignored_in(&std::fs::read_to_string("/proc/self/status").unwrap_or_default())
 }
 
-fn contains(signals: u64, signal: i32) -> bool {
+fn contains_signal(signals: u64, signal: i32) -> bool {
     signals >> (signal - 1) & 1 == 1
 }
 
@@ -386,33 +388,33 @@ impl Waker {
 
     /// Wakes the loop.
     pub fn wake(&mut self) {
-        // A full pipe wakes the loop as well; a closed one means that there is no loop any more.
+        // Errors do not matter: a full pipe wakes the loop anyway, and a closed one means that the loop has ended.
         let _ = self.0.write(&[1]);
     }
 }
 
-/// Ends the process by the signal's default action, so that the parent process sees the signal as
-/// the cause.
+/// Ends the process by the signal's default action, so that its parent sees the signal as the
+/// cause.
 ///
 /// Returns only if that fails.
 pub fn die_of(signal: i32) {
-    // Does not return for signals that signal-hook knows to end a process.
+    // This call does not return for signals that signal-hook knows to end a process.
     let _ = signal_hook::low_level::emulate_default_handler(signal);
-    // Unblocking delivers the signals pending for this thread before those pending for the process.
+    // For other signals, which are blocked: unblocking delivers those pending for this thread, as by `raise`, first.
     let _ = signal_hook::low_level::raise(signal);
     let _ = blocked().thread_unblock();
 }
 
-/// Makes writes beyond the file size limit (`ulimit -f`) fail with an error instead of ending the
-/// process by SIGXFSZ.
+/// Lets writes beyond the file size limit (`ulimit -f`) fail, instead of ending the process by
+/// SIGXFSZ.
 ///
-/// Call this once, in `main`; it holds for all threads.
+/// Call this once, in `main`; it applies to all threads.
 ///
 /// # Errors
 /// If the operating system refuses.
 pub fn fail_large_writes() -> io::Result<()> {
-    // An empty handler suffices: the write has already failed. Unlike SIG_IGN, a handler is not inherited by programs
-    // that are started.
+    // An empty handler suffices, because the write has already failed. Unlike SIG_IGN, programs that this one starts do
+    // not inherit it.
     signal_hook::flag::register(SIGXFSZ, Arc::default()).map(drop)
 }
 

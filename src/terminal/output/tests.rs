@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::channel;
 use std::thread;
 
-/// Wherever the frame is cut, the bytes written end at a boundary, and all modes, strings and
-/// queries follow in order.
+/// Wherever a frame is cut, no sequence is cut, and all modes, strings and queries are kept in
+/// order.
 #[test]
 fn a_frame_is_dropped_at_a_sequence_boundary() {
     let picture = "\x1b[?2026h\x1b[2;3H\x1b[38;2;1;2;3m▄é\x1b[58:2::1:2:3mx\x1b[C\x1b[m\x1b[2J\x1b[?2026l\x1b[c";
@@ -16,7 +16,7 @@ fn a_frame_is_dropped_at_a_sequence_boundary() {
     let kept = ["\x1b[?1049h", "\x1b[>15u", "\x1b[?u", "\x1b[?2026h", "\x1b[?2026l", "\x1b[c", after];
     for written in 0..=sent.len() {
         let null = File::options().write(true).open("/dev/null").expect("there is always /dev/null");
-        let mut output = Output { pending: sent.clone().into_bytes(), written, ..Output::of(null, false) };
+        let mut output = Output { pending: sent.clone().into_bytes(), written, ..Output::new(null, false) };
         output.drop_frame();
         let shown = if output.pending.is_empty() { sent.clone() } else { string(&output.pending) };
         let mut rest = &*shown;
@@ -24,7 +24,7 @@ fn a_frame_is_dropped_at_a_sequence_boundary() {
             let at = rest.find(sequence).unwrap_or_else(|| panic!("{written}: {sequence:?} in {shown:?}"));
             rest = &rest[at + sequence.len()..];
         }
-        let (begun, rest) = shown.split_at(boundary(sent.as_bytes(), written).min(shown.len()));
+        let (begun, rest) = shown.split_at(next_boundary(sent.as_bytes(), written).min(shown.len()));
         assert!(sent.starts_with(begun) && !rest.contains(['▄', 'é', 'x', 'm', 'H', 'C']), "{written}: {rest:?}");
     }
 }
@@ -33,8 +33,7 @@ fn string(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("no character is cut")
 }
 
-/// Otherwise a window that is resized while the program ends would cost the message that tells
-/// why.
+/// The wait for a terminal goes on after signals, such as those of a window that is resized.
 #[test]
 fn signals_do_not_end_the_wait_for_a_terminal() {
     use nix::sys::pthread::{pthread_kill, pthread_self};
@@ -56,14 +55,14 @@ fn signals_do_not_end_the_wait_for_a_terminal() {
             }
             far.set_nonblocking(true).expect("a socket has flags");
             while far.read(&mut [0; 4096]).is_ok() {}
-            // Returned, so that it is dropped after the wait: a closed socket would count as writable, too.
+            // Returned, so that it is closed only after the wait: a closed socket counts as writable, too.
             far
         });
         assert!(is_writable(&near, Duration::from_secs(60)));
     });
 }
 
-/// A frame that does not fit does not block the sender, even on a descriptor in blocking mode.
+/// A frame larger than the terminal's buffer does not block the sender, even in blocking mode.
 #[test]
 fn sending_to_a_blocking_terminal_does_not_block() {
     let (mut master, slave) = pty_process::blocking::open().expect("a pseudo-terminal can be had");
@@ -72,7 +71,7 @@ fn sending_to_a_blocking_terminal_does_not_block() {
     let sent = frame.clone();
     let (done, wait) = channel();
     thread::spawn(move || {
-        let mut output = Output::of(File::from(slave), true);
+        let mut output = Output::new(File::from(slave), true);
         output.send(&frame).expect("the terminal is there");
         let _ = done.send(output.is_pending());
         let is_drained = output.drain(Instant::now() + Duration::from_secs(10));
