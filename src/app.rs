@@ -1,11 +1,12 @@
-//! The live view: its options, its loop (`live`) and its outcome.
+//! The live view on a terminal: a viewer, driven by an event loop (`live`), with threads that trace
+//! and load.
 
 use crate::camera::Camera;
 use crate::memory::OutOfMemory;
 use crate::scene::{LoadError, Scene};
 use crate::terminal::{self, Signals, Terminal};
 use crate::text::Notice;
-/// For the fuzz target; compiled in test builds only.
+/// Re-exported for the fuzz target, in test builds only.
 #[cfg(feature = "test-hooks")]
 pub use crate::viewer::run_scenario as run_viewer_scenario;
 pub use crate::viewer::{MAX_PIXELS, Options};
@@ -34,9 +35,8 @@ pub struct Outcome {
     pub ending: Ending,
     /// The last camera, if the user has moved it.
     pub moved: Option<Camera>,
-    /// Whether the terminal accepted all bytes.
-    ///
-    /// If not, it has stopped reading, and printing to it would block.
+    /// Whether the terminal accepted all bytes. If not, it has stopped reading, and printing to it
+    /// would block.
     pub heard: bool,
 }
 
@@ -59,7 +59,7 @@ pub enum Ending {
 /// With the payload of a thread that panicked while tracing.
 pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<Outcome> {
     let scenes = Scenes::<Infallible>::of_scene(scene, signals)?;
-    view(scenes, options, signals).map_err(|error| match error {
+    drive_scenes(scenes, options, signals).map_err(|error| match error {
         Error::Terminal(error) => error,
         Error::Scene(never) => match never {},
     })
@@ -67,9 +67,9 @@ pub fn run(scene: Scene, options: Options, signals: &mut Signals) -> io::Result<
 
 /// Shows the scenes of these sources, beginning with the first, until the user leaves.
 ///
-/// A scene that takes longer than a moment to load shows its progress, then a coarse sketch to look around in; the user
-/// can leave meanwhile. The terminal is restored when this returns or panics. An error in the first scene that is found
-/// at once is returned without touching the terminal.
+/// If loading a scene takes longer than a moment, the view shows its progress, then a sketch to look around in; the
+/// user can leave meanwhile. The terminal is restored when this returns or panics. An error in the first scene that is
+/// found within that moment is returned without touching the terminal.
 ///
 /// A scene is read again when one of its files changes. Errors of a later load are shown as a [`Notice`] over the last
 /// good picture.
@@ -86,7 +86,7 @@ pub fn open<E: Into<Notice> + Send + 'static>(
     signals: &mut Signals,
 ) -> Result<Outcome, Error<E>> {
     let scenes = Scenes::start(sources, options.threads, signals)?;
-    view(scenes, options, signals)
+    drive_scenes(scenes, options, signals)
 }
 
 /// The error that kept the live view from starting, or ended it.
@@ -122,16 +122,16 @@ impl<E: fmt::Display> fmt::Display for Error<E> {
 
 impl<E: fmt::Debug + fmt::Display> std::error::Error for Error<E> {}
 
-fn view<E: Into<Notice> + Send + 'static>(
+fn drive_scenes<E: Into<Notice> + Send + 'static>(
     mut scenes: Scenes<E>,
     options: Options,
     signals: &mut Signals,
 ) -> Result<Outcome, Error<E>> {
-    // Declared last, and therefore dropped first: the terminal is restored even if dropping the others blocks or
-    // panics.
+    // `live`, below, is declared last and therefore dropped first: the terminal is restored even if dropping the
+    // renderer or the scenes blocks or panics.
     let waker = signals.waker()?;
     let mut renderer = terminal::without_signals(|| Renderer::start(options.threads, waker))?;
-    // An error that is found at once is printed in the shell, where it stays readable.
+    // An error that is found before the terminal is taken is printed in the shell, where it stays readable.
     scenes.wait().map_err(Error::Scene)?;
     let killed = |signal| Outcome { ending: Ending::Signal(signal), moved: None, heard: true };
     if let Some(signal) = signals.deadly() {
@@ -139,13 +139,13 @@ fn view<E: Into<Notice> + Send + 'static>(
     }
     let terminal = match Terminal::take(signals) {
         Ok(terminal) => terminal,
-        // A signal may have arrived while it waited for the foreground.
+        // A signal may have arrived while `take` waited for the foreground.
         Err(error) => return signals.deadly().map(killed).ok_or(Error::Terminal(error)),
     };
     let mut live = Live::new(terminal, options, scenes.names())?;
     let ended = live.drive(&mut renderer, &mut scenes, signals);
     let ending = ended.or_else(|error| match error {
-        // When the terminal vanishes, the system says so by a signal too.
+        // If the terminal has vanished, there is also a signal (SIGHUP), which is the more precise reason.
         Error::Terminal(error) => signals.deadly().map(Ending::Signal).ok_or(Error::Terminal(error)),
         fault @ Error::Scene(_) => Err(fault),
     })?;

@@ -21,9 +21,9 @@ pub use crate::terminal::Signals;
 
 /// Shows the scenes of these sources, beginning with the first, until the user leaves.
 ///
-/// A scene that takes longer than a moment to load shows its progress, then a coarse sketch to look around in; the user
-/// can leave meanwhile. The terminal is restored when this returns or panics. An error in the first scene that is found
-/// at once is returned without touching the terminal.
+/// If loading a scene takes longer than a moment, the view shows its progress, then a sketch to look around in; the
+/// user can leave meanwhile. The terminal is restored when this returns or panics. An error in the first scene that is
+/// found within that moment is returned without touching the terminal.
 ///
 /// A scene is read again when one of its files changes. Errors of a later load are shown over the last good picture.
 ///

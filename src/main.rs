@@ -1,6 +1,7 @@
-//! The program `termtrace`: arguments in; a picture or an error message, and an exit code, out.
+//! The program `termtrace`: it turns arguments into a picture or an error message, and an exit
+//! code.
 //!
-//! Exit codes: 0 success; 1 failure, or a difference found by `frame --check`; 2 wrong arguments or a faulty scene.
+//! Exit codes: 0 is success, 1 a failure or a difference found by `frame --check`, 2 wrong arguments or a faulty scene.
 
 mod cli;
 

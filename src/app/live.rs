@@ -1,8 +1,8 @@
-//! The loop that drives one viewer on the terminal.
+//! The event loop that drives one viewer on the terminal.
 //!
 //! It sleeps until a key, a signal, a finished frame or a timeout wakes it, reports the event to the viewer, and
 //! carries out the viewer's decisions. Frames are traced and scenes are read on other threads, so that keys and signals
-//! are handled meanwhile; only frames that take less time than waking a thread are traced here.
+//! are handled meanwhile; only frames that take less time than waking a thread are traced by the loop itself.
 
 use super::loading::LoadEvent;
 use super::picture_export;
@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 
 /// The loop's clock.
 ///
-/// It starts at the time of one frame, so that a key pressed at once may have been held for a frame.
+/// It starts at [`FIRST_FRAME_MOTION`] and not at 0, because a key counts as held for that time before its press.
 struct Clock {
     start: Instant,
 }
@@ -40,11 +40,12 @@ pub(super) struct Live {
     terminal: Terminal,
     clock: Clock,
     /// The bytes of the last frame.
-    // Reused, because a new buffer has to grow: with it and the grid kept, the time from a key to its frame at 200x60
-    // fell from 1.08 to 0.98 of the time that it took before the viewer was a module of its own.
+    // The buffer is reused, because a new one would have to grow: with the buffer and the grid kept, the time from a
+    // key to its frame at 200x60 fell from 1.08 to 0.98 of what it was before the viewer became a module of its own.
     bytes: Vec<u8>,
     /// The names of the scenes.
     names: Vec<SceneName>,
+    /// The folder for exported pictures, if the user may export.
     exports: Option<PathBuf>,
     /// The view that the user was last asked to confirm.
     proposed: Option<ProposedView>,
@@ -57,7 +58,7 @@ impl Drop for Live {
 }
 
 impl Live {
-    /// Returns a loop that has shown nothing yet.
+    /// Returns a loop around a new viewer, which has shown nothing yet.
     ///
     /// # Errors
     /// If the terminal is gone, or there is not enough memory for its window.
@@ -87,12 +88,12 @@ impl Live {
     ) -> Result<Ending, Error<E>> {
         self.terminal.send(&self.viewer.queries(self.clock.now()))?;
         loop {
-            while let Some(heard) = scenes.next()? {
-                self.handle_event(heard).map_err(Error::Scene)?;
+            while let Some(event) = scenes.next_event()? {
+                self.handle_event(event).map_err(Error::Scene)?;
             }
             let until = self.act(renderer)?;
-            // After the first picture, because starting to watch takes a quarter of a millisecond and more. A change in
-            // between is noticed: each file is compared with its state when it was read.
+            // Watching starts after the first picture, because that takes a quarter of a millisecond or more. An
+            // earlier change is noticed nevertheless, because each file is compared with its state when it was read.
             if self.viewer.has_shown()
                 && !self.terminal.is_sending()
                 && let Some(problem) = scenes.watch()?
@@ -113,7 +114,7 @@ impl Live {
                 terminal::reach("resize")?;
                 self.viewer.resize(self.terminal.window()?)?;
             }
-            // Repeated in each turn: the modes depend on replies, and one that is on costs nothing.
+            // Repeated in each turn, because the modes depend on replies; a mode that is on already costs nothing.
             for mode in self.viewer.modes() {
                 self.terminal.switch_on(mode)?;
             }
@@ -151,8 +152,7 @@ impl Live {
 
     /// Sleeps until an event or the time `until`, then passes the terminal's bytes to the viewer.
     ///
-    /// If the process is to be stopped, the bytes are left to be read with the last replies when the terminal is
-    /// restored.
+    /// If the process is to be stopped, the bytes are read later, when the terminal is restored.
     fn wait(&mut self, until: Option<Duration>, renderer: &Renderer, signals: &mut Signals) -> io::Result<()> {
         let mut timeout = until.map(|until| until.saturating_sub(self.clock.now()));
         if timeout.is_none() && renderer.tracing().is_none() && !self.terminal.is_sending() {
@@ -166,12 +166,13 @@ impl Live {
             return self.suspend(Some(StopTarget::Process), signals);
         }
         if signals.take_continued() {
-            // Continued after SIGSTOP, which cannot be caught: another program may have left the terminal in any state.
+            // The process was stopped by SIGSTOP, which cannot be caught, and another program may have left the
+            // terminal in any state.
             return self.suspend(None, signals);
         }
         let mut buffer = [0; 4096];
         let bytes = if woken.keys { self.terminal.read(&mut buffer)? } else { &[] };
-        // Readable without bytes is the end of the file: the loop would spin on it.
+        // A readable terminal without bytes has hung up, and would stay readable: the loop would spin.
         if woken.keys && bytes.is_empty() {
             return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the terminal is gone"));
         }
@@ -211,7 +212,7 @@ impl Live {
     }
 
     /// Returns the name of the shown scene.
-    fn shown(&self) -> Option<&SceneName> {
+    fn shown_name(&self) -> Option<&SceneName> {
         self.names.get(self.viewer.shown_scene()?)
     }
 
@@ -219,14 +220,14 @@ impl Live {
     fn export(&self, format: Format) -> io::Result<String> {
         let nothing = || io::Error::other("there is no picture, or no folder for it");
         let (frame, folder) = self.viewer.frame().zip(self.exports.as_deref()).ok_or_else(nothing)?;
-        let stem = picture_export::stem(self.shown().map_or("scene", |scene| &scene.name));
+        let stem = picture_export::file_stem(self.shown_name().map_or("scene", |scene| &scene.name));
         let contents = picture_export::contents(format, &frame.picture, self.viewer.capabilities())?;
         picture_export::write_new(folder, &stem, format, &contents)
     }
 
     /// Asks the user whether to write `camera` into the scene's file, if it has one.
     fn propose(&mut self, camera: Camera) {
-        let file = self.shown().and_then(|scene| scene.file.as_deref());
+        let file = self.shown_name().and_then(|scene| scene.file.as_deref());
         self.proposed = file.and_then(|file| ProposedView::new(file, camera));
         match &self.proposed {
             Some(view) => self.viewer.ask_to_save_view(view.file_name()),
@@ -234,16 +235,16 @@ impl Live {
         }
     }
 
-    /// Shows an event of a load.
+    /// Passes an event of loading a scene to the viewer.
     ///
-    /// An error of loading is returned if there is no scene to show it over.
-    fn handle_event<E: Into<Notice>>(&mut self, SceneEvent { of, event, is_slow }: SceneEvent<E>) -> Result<(), E> {
-        let orbits = self.names.get(of).is_some_and(|scene| scene.orbited);
+    /// An error of loading is returned if no scene is shown yet.
+    fn handle_event<E: Into<Notice>>(&mut self, SceneEvent { index, event, is_slow }: SceneEvent<E>) -> Result<(), E> {
+        let orbits = self.names.get(index).is_some_and(|scene| scene.orbited);
         match event {
             LoadEvent::Progress(progress) if is_slow => self.viewer.show_progress(progress),
             LoadEvent::Progress(_) | LoadEvent::Dependencies(_) => {}
-            LoadEvent::Sketch(sketch) => self.viewer.show_sketch(sketch, of, orbits),
-            LoadEvent::Scene(scene) => self.viewer.show(scene, of, orbits),
+            LoadEvent::Sketch(sketch) => self.viewer.show_sketch(sketch, index, orbits),
+            LoadEvent::Scene(scene) => self.viewer.show(scene, index, orbits),
             LoadEvent::Error(fault) if self.viewer.shown_scene().is_none() => return Err(fault),
             LoadEvent::Error(fault) => self.viewer.show_error(fault.into()),
             LoadEvent::Panic(panic) => resume_unwind(panic),
@@ -251,27 +252,27 @@ impl Live {
         Ok(())
     }
 
-    /// Restores the terminal, stops if `stop` is given, takes the terminal again, and draws
-    /// everything anew at its current size.
+    /// Restores the terminal, stops the process or its group, takes the terminal again and redraws
+    /// everything.
     ///
-    /// After a signal that ends the program the terminal stays restored. Without `stop` no shell has had the terminal,
-    /// and the input read meanwhile is kept.
+    /// `None` does not stop, because the process has been stopped and continued already; input read meanwhile is kept.
+    /// After a signal that ends the program the terminal stays restored.
     fn suspend(&mut self, stop: Option<StopTarget>, signals: &mut Signals) -> io::Result<()> {
         let now = self.clock.now();
         self.viewer.lose_terminal(now);
         let mut typed = Vec::new();
-        if let Some(who) = stop {
+        if let Some(target) = stop {
             self.terminal.restore(self.viewer.receiver(), now);
-            signals.stop(who);
+            signals.stop(target);
         } else {
             typed = self.terminal.restore_keeping_input(self.viewer.receiver(), now);
         }
         if signals.deadly().is_some() {
             return Ok(());
         }
-        // It waits for the foreground, and so continues only when the shell has handed the terminal over.
+        // This waits for the foreground, that is, until the shell has handed over the terminal.
         self.terminal.take_again(signals)?;
-        // Replies to earlier queries are lost.
+        // The queries are sent again, because replies to the earlier ones may be lost.
         self.terminal.send(&self.viewer.queries(self.clock.now()))?;
         self.viewer.resize(self.terminal.window()?)?;
         Ok(self.viewer.receive_typed(typed, self.clock.now())?)

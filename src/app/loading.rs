@@ -1,9 +1,9 @@
 //! Loading of scenes on a thread of its own, so that keys and signals are handled meanwhile.
 //!
-//! One thread reads one scene at a time. A save makes a load in progress worthless and cancels it, so that at most one
-//! load takes memory, however fast a large scene is saved. (With a thread for each load, 30 saves of a scene of 12 MB
-//! took 5.9 GB; now they peak at 409 MB, where one load takes 394.) A load that waits on a pipe may never end: another
-//! thread then takes over the queue.
+//! One thread reads one scene at a time. Saving a scene's file cancels its load in progress and requests another one,
+//! so that at most one load takes memory, however often a large scene is saved. (With a thread for each load, 30 saves
+//! of a scene of 12 MB took 5.9 GB; now they peak at 409 MB, where one load takes 394.) A load that waits on a pipe may
+//! never end, so another thread takes over the queue of requests.
 
 use super::source::Source;
 use super::watching::Dependency;
@@ -23,13 +23,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// An event of a load. Events arrive in this order; exactly one of the last three ends the load.
+/// An event of loading a scene. Events arrive in this order; exactly one of the last three ends the
+/// load.
 pub(super) enum LoadEvent<E> {
     /// Progress of reading or building.
     Progress(Progress),
-    /// The files that the scene was read from, including missing ones.
+    /// The files that the scene was read from, and those that were missing.
     Dependencies(Vec<Dependency>),
-    /// A coarse scene to look at while the trees are built.
+    /// A scene with coarse meshes, to show while the trees of the complete scene are built.
     Sketch(Scene),
     /// The complete scene.
     Scene(Scene),
@@ -39,12 +40,12 @@ pub(super) enum LoadEvent<E> {
     Panic(Box<dyn Any + Send>),
 }
 
-/// Loads that take less time are shown without a progress panel, which would only flash up.
-// 100 ms is the usual limit of what is felt as immediate (Miller 1968).
+/// Time after which a load shows a progress panel. In a faster load the panel would only flash up.
+// 100 ms is the usual limit of what users feel as immediate (Miller 1968).
 pub(super) const PROGRESS_DELAY: Duration = Duration::from_millis(100);
 
-/// Least time between two progress reports.
-// 20 a second look continuous, and each one costs a frame.
+/// Least time between two progress reports of a load.
+// 20 reports a second look continuous, and each one costs a frame.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
 
 /// The receiving side of a load. Dropping it cancels the load without waiting for its end.
@@ -70,7 +71,8 @@ impl<E> Loading<E> {
         Self { events, received, begun: Instant::now(), cancellation: Cancellation::default() }
     }
 
-    /// Waits for the scene, for at most `patience`.
+    /// Waits until the load has ended, for at most `patience`, and keeps its events for
+    /// [`next`](Self::next).
     ///
     /// # Errors
     /// The error that ended the load.
@@ -79,7 +81,7 @@ impl<E> Loading<E> {
         while let Ok(event) = self.events.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
             match event {
                 LoadEvent::Error(fault) => return Err(fault),
-                // Progress and the sketch of a scene that is complete are not shown any more.
+                // Once a scene is complete, its progress and sketch are not shown.
                 LoadEvent::Scene(_) => {
                     self.received.retain(|event| matches!(event, LoadEvent::Dependencies(_)));
                     self.received.push_back(event);
@@ -108,7 +110,8 @@ pub(super) struct Loader<E> {
 }
 
 impl<E: Send + 'static> Loader<E> {
-    /// Starts the thread. It ends when `self` is dropped and the last load has ended.
+    /// Starts the thread, which ends when the returned value is dropped and the last load has
+    /// ended.
     pub(super) fn start(threads: Option<usize>, waker: Waker) -> io::Result<Self> {
         let (requests, queue) = channel();
         Worker { queue: Arc::new(Mutex::new(queue)), threads, waker: Arc::new(Mutex::new(waker)) }.start()?;
@@ -134,7 +137,7 @@ struct LoadRequest<E> {
 
 /// The state of the loading thread.
 struct Worker<E> {
-    /// Shared with threads that wait on pipes, which no longer receive from it.
+    /// The requests. Shared with threads that wait on pipes, which take no more requests.
     queue: Arc<Mutex<Receiver<LoadRequest<E>>>>,
     threads: Option<usize>,
     waker: Arc<Mutex<Waker>>,
@@ -152,11 +155,12 @@ impl<E: Send + 'static> Worker<E> {
         loop {
             let request = self.queue.lock().unwrap_or_else(PoisonError::into_inner).recv();
             let Ok(request) = request else { return };
-            // Of many saves in a row only the last one is read.
+            // Requests that were cancelled in the queue are skipped, so that of many saves in a row the last one is
+            // read.
             if request.cancellation.is_cancelled() {
                 continue;
             }
-            // Once is enough, however many pipes a scene has.
+            // Another thread is started only once, however many pipes the scene has.
             let is_handed_over = AtomicBool::new(false);
             let hand_over_queue = || {
                 if !is_handed_over.load(Ordering::Relaxed) {
@@ -170,13 +174,15 @@ impl<E: Send + 'static> Worker<E> {
         }
     }
 
-    /// Starts another thread on the same queue.
+    /// Starts another thread that loads the scenes of the same queue.
     fn start_another(&self) -> io::Result<()> {
         Self { queue: Arc::clone(&self.queue), threads: self.threads, waker: Arc::clone(&self.waker) }.start()
     }
 
     /// Returns a pool with the requested number of threads, or of this thread alone if they cannot
-    /// be started. (Rayon's global pool, which `None` stands for, would panic then.)
+    /// be started.
+    ///
+    /// (`None` would mean rayon's global pool, which panics if its threads cannot be started.)
     fn pool(&self) -> Option<ThreadPool> {
         let pool = ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0)).build();
         pool.or_else(|_| ThreadPoolBuilder::new().num_threads(1).use_current_thread().build()).ok()
@@ -184,9 +190,9 @@ impl<E: Send + 'static> Worker<E> {
 }
 
 impl<E: Send> LoadRequest<E> {
-    /// Loads the scene.
+    /// Loads the scene and sends the events of the load.
     ///
-    /// Calls `hand_over_queue` before opening a file that may block, and builds on the threads of `pool`.
+    /// Calls `hand_over_queue` before opening a file that may block, and builds large trees on the threads of `pool`.
     fn process<'p>(
         self,
         waker: &Mutex<Waker>,
@@ -212,7 +218,7 @@ struct EventSender<'w, E> {
 
 impl<E> EventSender<'_, E> {
     fn send(&self, event: LoadEvent<E>) {
-        // A closed channel means that the load is cancelled; the loop then needs no wake-up.
+        // If the channel is closed, the load has been cancelled and the event loop needs no wake-up.
         if self.events.send(event).is_ok()
             && let Ok(mut waker) = self.waker.lock()
         {
@@ -257,12 +263,12 @@ fn load<'p, E: Send>(
     let reporter = Reporter::new(&on_progress).with_dependencies(&on_dependency).cancelled_by(cancellation);
     let read = source.read(&reporter);
     let needed = needed.lock().map(|mut needed| std::mem::take(&mut *needed)).unwrap_or_default();
-    // Also after an error: the file is watched, so that its correction is seen.
+    // Sent after an error too, so that the files are watched and a correction is noticed.
     events.send(LoadEvent::Dependencies(needed));
     match read {
         // The result of a cancelled load is not wanted, whatever it is.
         _ if cancellation.is_cancelled() => {}
-        // Two threads for the small scenes, which are built in microseconds, would cost 130 MB of address space.
+        // Small scenes are built in microseconds, without threads: two would cost 130 MB of address space.
         Ok(draft) => match draft.builds_in_parallel().then(pool).flatten() {
             Some(pool) => pool.install(|| build(draft, &reporter, events)),
             None => build(draft, &reporter, events),
@@ -272,7 +278,7 @@ fn load<'p, E: Send>(
 }
 
 fn build<E>(draft: Draft, reporter: &Reporter<'_>, events: &EventSender<'_, E>) {
-    // Before the trees are built, which takes most of the time of a large mesh.
+    // The sketch comes before the trees are built, which takes most of the time of loading a large mesh.
     if let Some(sketch) = draft.sketch() {
         events.send(LoadEvent::Sketch(sketch));
     }

@@ -1,4 +1,4 @@
-//! The tracing thread, so that the loop never waits for a frame.
+//! The thread that traces frames, so that the event loop need not wait for them.
 //!
 //! The loop itself traces frames that take less time than waking the thread and being woken by it.
 
@@ -24,25 +24,26 @@ use std::time::{Duration, Instant};
 /// The result of a job: a frame, [`Cancelled`], or the payload of a panic.
 type Traced = Result<Result<Frame, Cancelled>, Box<dyn Any + Send>>;
 
-/// Limit on the predicted time of frames that the loop traces itself.
+/// Greatest predicted time of frames that the event loop traces itself.
 // Waking the render thread and its pool and being woken takes 0.15 to 0.3 ms, and 1 to 4 ms in one of twenty cases.
-// Three spheres at 80x24 take one thread 0.59 ms and two threads 0.62 to 0.64 ms; the median time from a key to its
-// first byte fell from 0.87 to 0.65 ms. Keys wait for such a frame, so the limit stays well below a frame time.
+// Three spheres at 80x24 take one thread 0.59 ms, and two threads with waking 0.62 to 0.64 ms; traced by the loop, the
+// median time from a key to its first byte fell from 0.87 to 0.65 ms. Keys wait for such a frame, so the limit stays
+// well below a frame time.
 const MAX_INLINE_TRACE_TIME: Duration = Duration::from_micros(1500);
 
-/// The loop's side of the tracing thread.
+/// The event loop's handle of the tracing thread.
 pub(super) struct Renderer {
     jobs: Option<Sender<TraceTask>>,
     frames: Receiver<Traced>,
     thread: Option<JoinHandle<()>>,
-    /// Jobs sent and not finished, in the order in which they will finish.
+    /// Jobs that were sent and are not finished, in the order in which they will finish.
     pending: VecDeque<PendingJob>,
-    /// The last frame of one sample per pixel, and its time per pixel in seconds, all threads
-    /// together.
+    /// The shot of the last frame with one sample per pixel, and the seconds per pixel, summed over
+    /// all threads.
     seconds_per_pixel: Option<(Shot, f64)>,
 }
 
-/// A job that has been sent to the thread.
+/// A job that was sent to the tracing thread and is not finished.
 struct PendingJob {
     refines: bool,
     token: Cancellation,
@@ -55,9 +56,9 @@ impl PendingJob {
 }
 
 impl Renderer {
-    /// Starts the thread and the pool that it shares the tiles with.
+    /// Starts the tracing thread and its pool.
     ///
-    /// The thread is a member of the pool: handing a frame to another thread and waiting for it takes as long as a
+    /// The thread is a member of the pool, because passing a frame to another thread and waiting takes as long as a
     /// small frame.
     pub(super) fn start(threads: Option<usize>, mut waker: Waker) -> io::Result<Self> {
         let (jobs, wanted) = channel::<TraceTask>();
@@ -65,7 +66,7 @@ impl Renderer {
         let (done, frames) = channel();
         let mut tracer = Tracer::default();
         let thread = thread::Builder::new().name("render".to_owned()).spawn(move || {
-            // A pool of its own, because a scene that is being built may occupy rayon's global pool for seconds.
+            // The pool is not rayon's global one, which building a scene may occupy for seconds.
             let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).use_current_thread().build();
             let pool = match pool {
                 Ok(pool) => pool,
@@ -76,9 +77,9 @@ impl Renderer {
             };
             let _ = begun.send(Ok(()));
             for task in wanted {
-                // The panic is passed to the loop, which restores the terminal before it goes on.
+                // A panic is passed to the loop, which restores the terminal before it continues the panic.
                 let traced = catch_unwind(AssertUnwindSafe(|| pool.install(|| task(&mut tracer))));
-                // The receiver is gone if the loop has ended.
+                // If the receiver is gone, the loop has ended.
                 let heard = done.send(traced).is_ok();
                 waker.wake();
                 if !heard {
@@ -91,21 +92,23 @@ impl Renderer {
         Ok(Self { jobs: Some(jobs), frames, thread: Some(thread), pending, seconds_per_pixel: None })
     }
 
-    /// Returns what is being traced and not cancelled; a new view before a refinement.
+    /// Returns the kind of the frame that is being traced, if any; cancelled ones do not count.
     pub(super) fn tracing(&self) -> Option<Tracing> {
         let wanted = self.pending.iter().filter(|work| work.is_wanted());
         let tracing = wanted.map(|work| if work.refines { Tracing::Refinement } else { Tracing::NewView });
-        // The refinement may be cancelled, the new view may not: it decides what the loop waits for.
+        // If there are both kinds, the frame of a new view counts, because only a refinement may be cancelled.
         tracing.min_by_key(|&tracing| tracing == Tracing::Refinement)
     }
 
-    /// Starts tracing a frame; a small one is traced at once and returned.
+    /// Starts tracing a frame. A frame predicted to be small is traced at once and returned.
     pub(super) fn begin(&mut self, job: Job) -> Option<Frame> {
         if self.is_small(&job) {
-            // The same light as `UpTo(1)`, without the accumulator for refining, which is quickly traced again.
+            // Gives the same light as `UpTo(1)`, without the accumulators for a refinement, which traces this sample
+            // again in little time.
             let one = Sampling::Each(NonZeroU32::MIN);
-            let see = |map, part| maps::trace(map, Executor::CurrentThread, &job.scene, &job.shot.camera, part, one);
-            return frame_of(&job, see).ok().map(|frame| self.record_time(frame));
+            let trace_map =
+                |map, part| maps::trace(map, Executor::CurrentThread, &job.scene, &job.shot.camera, part, one);
+            return frame_of(&job, trace_map).ok().map(|frame| self.record_time(frame));
         }
         let work = PendingJob { refines: job.refines, token: Cancellation::default() };
         let token = work.token.clone();
@@ -151,21 +154,23 @@ impl Renderer {
         loop {
             let traced = self.frames.try_recv().ok()?;
             let is_wanted = self.pending.pop_front().is_some_and(|work| work.is_wanted());
-            // The panic hook has printed or kept the message. The panic continues here, where the terminal is restored.
+            // The panic hook has printed or kept the message. The panic continues on this thread, which restores the
+            // terminal.
             let frame = traced.unwrap_or_else(|panic| resume_unwind(panic));
-            // A frame may have been finished before it noticed that it was cancelled.
+            // A cancelled job may have finished before it noticed, and its frame is dropped.
             if let (Ok(frame), true) = (frame, is_wanted) {
                 return Some(self.record_time(frame));
             }
         }
     }
 
-    /// Returns whether a frame is predicted to take less than [`MAX_INLINE_TRACE_TIME`], from the
-    /// time per pixel of the last one like it.
+    /// Returns whether a frame is predicted to take less than [`MAX_INLINE_TRACE_TIME`].
+    ///
+    /// The prediction is the time per pixel of the last frame of the same scene and maps.
     fn is_small(&self, job: &Job) -> bool {
         let pixels = job.shot.resolution.pixel_count() as f64;
         let is_short = |(shot, seconds): (Shot, f64)| {
-            // Other cameras may cost more or less, but change little from frame to frame.
+            // The camera may differ, because its effect on the time is small from frame to frame.
             let is_alike = (shot.scene, shot.layout) == (job.shot.scene, job.shot.layout);
             is_alike && seconds * pixels < MAX_INLINE_TRACE_TIME.as_secs_f64()
         };
@@ -195,20 +200,20 @@ impl Drop for Renderer {
     }
 }
 
-/// A job as sent to the thread.
+/// A job in the form in which it is sent to the tracing thread.
 type TraceTask = Box<dyn FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send>;
 
-/// Returns the frame of a job, whose pictures `see` traces one by one.
+/// Returns the frame of a job: `trace_map` traces each of its maps, which are then combined.
 fn frame_of(
     job: &Job,
-    mut see: impl FnMut(Map, Resolution) -> Result<TracedMap, Cancelled>,
+    mut trace_map: impl FnMut(Map, Resolution) -> Result<TracedMap, Cancelled>,
 ) -> Result<Frame, Cancelled> {
     let start = Instant::now();
     let Job { scene, shot, sampling, refines } = job.clone();
     let mut cost = Cost::default();
     let mut parts = Vec::new();
     for (map, resolution) in shot.layout.parts(shot.resolution) {
-        let seen = see(map, resolution)?;
+        let seen = trace_map(map, resolution)?;
         cost += seen.cost;
         parts.push(seen.picture);
     }
@@ -224,11 +229,12 @@ fn frame_of(
 /// The state of the tracing thread.
 #[derive(Default)]
 struct Tracer {
-    /// The last picture that can be refined.
+    /// The last picture with its samples, if it can be refined.
     kept: Option<RefinablePicture>,
 }
 
-/// A picture with its samples, to be refined if the next job is of the same scene and view.
+/// A picture with its samples, which the next job may refine if it has the same scene, camera and
+/// size.
 struct RefinablePicture {
     scene: Scene,
     view: (Camera, Resolution),
@@ -241,24 +247,24 @@ impl RefinablePicture {
         Self { scene: scene.clone(), view: (shot.camera, resolution), picture }
     }
 
-    fn is_of(&self, Job { scene, shot, .. }: &Job, resolution: Resolution) -> bool {
+    fn has_view_of(&self, Job { scene, shot, .. }: &Job, resolution: Resolution) -> bool {
         self.scene.is_copy_of(scene) && self.view == (shot.camera, resolution)
     }
 }
 
 impl Tracer {
     fn trace(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
-        // The kept picture may be of an older frame, because the loop traces small ones itself, or of another view.
+        // The kept picture need not be of the last frame: the loop traces small frames itself.
         let mut kept = self.kept.take();
         frame_of(job, |map, resolution| {
             let last = if map.refines() { kept.take() } else { None };
-            let last = last.filter(|kept| job.refines && kept.is_of(job, resolution));
-            self.seen(job, token, map, resolution, last)
+            let last = last.filter(|kept| job.refines && kept.has_view_of(job, resolution));
+            self.trace_or_refine(job, token, map, resolution, last)
         })
     }
 
-    /// Traces one of a frame's pictures, or refines `kept` if it is given.
-    fn seen(
+    /// Traces one map of a frame, or refines `kept` if it is given.
+    fn trace_or_refine(
         &mut self,
         job: &Job,
         token: &Cancellation,

@@ -1,4 +1,4 @@
-//! Writing a view into its scene's file.
+//! Saving a view into its scene's file.
 
 use super::watching::Dependency;
 use crate::camera::Camera;
@@ -8,15 +8,16 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// A view that the user is asked to confirm before it is written.
+/// A view that is written into a scene file once the user has confirmed it.
 pub(super) struct ProposedView {
-    /// The file and its state when the question was put.
+    /// The scene file and its state when the user was asked.
     file: Dependency,
     camera: Camera,
 }
 
 impl ProposedView {
-    /// Proposes to write a view into `file`. `None` if that is not a plain file.
+    /// Returns a proposal to write a view into `file`, or `None` if that is a pipe, device or
+    /// folder.
     pub(super) fn new(file: &Path, camera: Camera) -> Option<Self> {
         Some(Dependency::now(file)).filter(|file| !file.is_other()).map(|file| Self { file, camera })
     }
@@ -29,8 +30,8 @@ impl ProposedView {
     /// Adds the view to the file, which is replaced atomically and keeps all other text.
     ///
     /// # Errors
-    /// If the file cannot be written, is not a scene file, or has changed since the question was put; it is then left
-    /// as it was.
+    /// If the file cannot be written, is not a scene file, or has changed since the user was asked; it is then left as
+    /// it was.
     pub(super) fn write(&self) -> io::Result<()> {
         let path = self.file.path();
         let text = fs::read_to_string(path)?;
@@ -38,7 +39,7 @@ impl ProposedView {
         let mut file = OutputFile::create(path)?;
         file.remove_stale();
         file.write_all(written.as_bytes())?;
-        // Compared after writing the temporary file, as late as possible: an editor may save at any moment.
+        // Compared as late as possible, after writing the temporary file, because an editor may save at any moment.
         if self.file.has_changed() || fs::read_to_string(path)? != text {
             return Err(io::Error::other("it has changed in the meantime"));
         }

@@ -1,4 +1,5 @@
-//! The list of scenes: the current one, its load, and when it is read again.
+//! The list of scenes: the current one, its load in progress, and reading it again when its files
+//! change.
 
 use super::loading::{LoadEvent, Loader, Loading, PROGRESS_DELAY};
 use super::source::{SceneName, Source};
@@ -9,38 +10,39 @@ use std::io;
 
 /// The scenes that the user can switch between.
 pub(super) struct Scenes<E> {
-    /// Empty for a scene that was passed as a value.
+    /// The sources of the scenes; empty for a scene that was passed as a value.
     sources: Vec<Source<E>>,
     /// Index of the current scene.
     wanted: usize,
-    /// `None` for a scene that was passed as a value.
+    /// The loading thread; `None` for a scene that was passed as a value.
     loader: Option<Loader<E>>,
+    /// The last load of the current scene.
     loading: Loading<E>,
     waker: Waker,
-    /// `None` before the first watch, and if the system does not support it.
+    /// The watching thread; `None` before it is started, and if that fails.
     watching: Option<Watching>,
     /// The files of the current scene that are not watched yet.
     unwatched: Option<Vec<Dependency>>,
-    /// The reason why changes are not noticed, as last reported to the user.
+    /// The reason why changes are not noticed that the user was told last.
     reported_problem: Option<String>,
 }
 
-/// An event of the current scene's load.
+/// An event of loading the current scene.
 pub(super) struct SceneEvent<E> {
-    /// Index of the scene.
-    pub(super) of: usize,
+    /// Index of the scene in the list.
+    pub(super) index: usize,
     pub(super) event: LoadEvent<E>,
     /// Whether the load has taken longer than [`PROGRESS_DELAY`].
     pub(super) is_slow: bool,
 }
 
 impl<E: Send + 'static> Scenes<E> {
-    /// Returns a list of one loaded scene.
+    /// Returns a list of one scene, which is loaded already.
     pub(super) fn of_scene(scene: Scene, signals: &Signals) -> io::Result<Self> {
         Self::new(Vec::new(), None, Loading::finished(scene), signals)
     }
 
-    /// Starts to load the first scene.
+    /// Returns a list of these scenes and starts to load the first one.
     pub(super) fn start(sources: Vec<Source<E>>, threads: Option<usize>, signals: &Signals) -> io::Result<Self> {
         let first = sources.first().cloned().ok_or_else(|| io::Error::other("there is no scene to look at"))?;
         let loader = Loader::start(threads, signals.waker()?)?;
@@ -58,7 +60,7 @@ impl<E: Send + 'static> Scenes<E> {
         Ok(Self { sources, wanted: 0, loader, loading, waker, watching: None, unwatched: None, reported_problem: None })
     }
 
-    /// Waits for the first scene, for at most [`PROGRESS_DELAY`].
+    /// Waits until the first scene is loaded, for at most [`PROGRESS_DELAY`].
     ///
     /// # Errors
     /// The error of loading it.
@@ -66,17 +68,17 @@ impl<E: Send + 'static> Scenes<E> {
         self.loading.wait(PROGRESS_DELAY)
     }
 
-    /// Returns the next event of the load, if one has arrived.
+    /// Returns the next event of loading the current scene, if one has arrived.
     ///
-    /// Starts to read the scene again if a file has changed.
-    pub(super) fn next(&mut self) -> io::Result<Option<SceneEvent<E>>> {
+    /// Before that, starts to load the scene again if one of its files has changed.
+    pub(super) fn next_event(&mut self) -> io::Result<Option<SceneEvent<E>>> {
         if self.watching.as_mut().is_some_and(Watching::take_changed) {
             self.read_again()?;
         }
         while let Some(event) = self.loading.next() {
             match event {
                 LoadEvent::Dependencies(files) => self.unwatched = Some(files),
-                event => return Ok(Some(SceneEvent { of: self.wanted, event, is_slow: self.loading.is_slow() })),
+                event => return Ok(Some(SceneEvent { index: self.wanted, event, is_slow: self.loading.is_slow() })),
             }
         }
         Ok(None)
@@ -87,9 +89,9 @@ impl<E: Send + 'static> Scenes<E> {
         self.sources.iter().map(|source| source.named().clone()).collect()
     }
 
-    /// Switches to the scene `steps` further on, in a cycle. Does nothing if there is only one.
+    /// Switches to the scene `steps` places further on in the cyclic list, and starts to load it.
     pub(super) fn switch(&mut self, steps: isize) -> io::Result<()> {
-        // The only scene would merely be loaded again.
+        // With a single scene nothing is done, because that would only be loaded again.
         if self.sources.len() < 2 {
             return Ok(());
         }
@@ -101,20 +103,20 @@ impl<E: Send + 'static> Scenes<E> {
     /// Cancels the load in progress and starts one of the current scene.
     fn read_again(&mut self) -> io::Result<()> {
         if let (Some(source), Some(loader)) = (self.sources.get(self.wanted), &self.loader) {
-            // The new load reports its files itself.
+            // The new load will report the scene's files again.
             self.unwatched = None;
             self.loading = loader.load(source.clone())?;
         }
         Ok(())
     }
 
-    /// Starts to watch the current scene's files, and reads the scene again if one has changed
-    /// since it was read.
+    /// Starts to watch the current scene's files; if one has changed since it was read, loads the
+    /// scene again.
     ///
     /// Returns the reason why changes will not be noticed, unless it was returned before.
     pub(super) fn watch(&mut self) -> io::Result<Option<String>> {
         let Some(files) = self.unwatched.take().filter(|files| !files.is_empty()) else { return Ok(None) };
-        let problem = match self.started() {
+        let problem = match self.started_watching() {
             Ok(watching) => {
                 // A file may have changed between reading and watching.
                 if watching.watch(files) {
@@ -124,13 +126,13 @@ impl<E: Send + 'static> Scenes<E> {
             }
             Err(problem) => Some(problem),
         };
-        // Reported once: the reason stays the same at each reload, and a note hides the lowest row.
+        // A reason is reported only once, because it is the same at each reload and a note hides the lowest row.
         let is_new = problem != self.reported_problem;
         self.reported_problem.clone_from(&problem);
         Ok(problem.filter(|_| is_new))
     }
 
-    fn started(&mut self) -> Result<&mut Watching, String> {
+    fn started_watching(&mut self) -> Result<&mut Watching, String> {
         Ok(match &mut self.watching {
             Some(watching) => watching,
             none => none.insert(Watching::start(self.waker.try_clone().map_err(|error| error.to_string())?)?),

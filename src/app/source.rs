@@ -1,4 +1,4 @@
-//! The source of a scene.
+//! A source of a scene: its name, and the function that reads it.
 
 use crate::mesh_file;
 use crate::progress::{Cancelled, Reporter, Unfinished};
@@ -9,11 +9,11 @@ use std::{fmt, io};
 
 /// A scene that can be read repeatedly.
 ///
-/// This happens at the start, when the user returns to it, and when one of its files has changed. See
+/// A scene is read when it is first shown, when the user returns to it, and when one of its files has changed. See
 /// [`open`](super::open).
 pub struct Source<E = LoadError> {
     named: SceneName,
-    // Shared with the loading thread, which may outlive the current scene.
+    // In an `Arc`, because the loading thread may use it for longer than `self` lives.
     read: Arc<Read<E>>,
 }
 
@@ -22,7 +22,7 @@ pub struct Source<E = LoadError> {
 pub(super) struct SceneName {
     /// The name shown to the user.
     pub(super) name: String,
-    /// The scene file, into which views can be written.
+    /// The scene file, into which views can be saved.
     pub(super) file: Option<PathBuf>,
     /// Whether the live view starts in orbit mode.
     pub(super) orbited: bool,
@@ -31,13 +31,13 @@ pub(super) struct SceneName {
 type Read<E> = dyn Fn(&Reporter<'_>) -> Result<Draft, E> + Send + Sync;
 
 impl Source {
-    /// Returns the scene or mesh in the file at `path`. A mesh starts in orbit mode.
+    /// Returns the source of the scene or mesh in the file at `path`. A mesh starts in orbit mode.
     pub fn of_file(path: &Path) -> Self {
         let (name, file) = (path.to_string_lossy().into_owned(), path.to_owned());
         let is_mesh = mesh_file::is_mesh(&name, &[]);
         let source = Self::new(name, move |reporter| draft(&file, reporter));
         let source = source.with_file(path.to_owned());
-        // A mesh is a single object, which is looked at from all sides.
+        // A mesh is a single object, which users want to see from all sides.
         if is_mesh { source.orbited() } else { source }
     }
 }
@@ -45,7 +45,7 @@ impl Source {
 fn draft(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, LoadError> {
     Draft::load(path, reporter).map_err(|unfinished| match unfinished {
         Unfinished::Failed(error) => error,
-        // Never shown: the result of a cancelled load is dropped.
+        // This error is never shown, because the result of a cancelled load is dropped.
         Unfinished::Cancelled => LoadError::CannotRead { path: path.to_owned(), error: io::Error::other(Cancelled) },
     })
 }
@@ -53,10 +53,10 @@ fn draft(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, LoadError> {
 impl<E> Source<E> {
     /// Returns a source that calls `read`, with the name shown to the user.
     ///
-    /// `read` should return soon after its reporter [is cancelled](Reporter::is_cancelled), with any result: one scene
-    /// is read at a time, and the next one waits for it. Only after reporting a pipe to its reporter may it block for
-    /// ever. The files that it reports as [dependencies](Reporter::report_dependency) are watched, and the scene is
-    /// read again when one changes.
+    /// `read` should return soon after its reporter [is cancelled](Reporter::is_cancelled), with any result, because
+    /// one scene is read at a time. It may block for ever only after reporting a pipe as a
+    /// [dependency](Reporter::report_dependency). The files that it reports are watched, and the scene is read again
+    /// when one changes.
     #[doc(hidden)]
     pub fn new(
         name: impl Into<String>,
@@ -65,7 +65,7 @@ impl<E> Source<E> {
         Self { named: SceneName { name: name.into(), file: None, orbited: false }, read: Arc::new(read) }
     }
 
-    /// Sets the scene file, into which views can be written.
+    /// Sets the scene file, into which views can be saved.
     #[doc(hidden)]
     pub fn with_file(self, file: PathBuf) -> Self {
         Self { named: SceneName { file: Some(file), ..self.named }, ..self }

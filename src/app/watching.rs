@@ -1,8 +1,8 @@
 //! Watching the files of the shown scene, which is read again when one changes.
 //!
-//! Folders are watched, not files, because a file that is replaced under its name is a new file. A path may lead
-//! through several folders and links: each is watched, and while one is missing, also the folders around it. A thread
-//! sleeps until the system reports an event; at rest neither that thread nor the loop is woken.
+//! Folders are watched instead of files, because a file that is replaced under its name is a new file. A path may lead
+//! through several folders and links: each is watched, and while the file is missing, the folders around them too. A
+//! thread sleeps until the system reports an event; at rest neither that thread nor the event loop is woken.
 
 mod dependency;
 mod resolved_path;
@@ -20,29 +20,30 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The loop's side of the watching thread.
+/// The event loop's handle of the watching thread.
 pub(super) struct Watching {
     watcher: RecommendedWatcher,
     /// The files that the scene was read from.
     dependencies: Vec<Dependency>,
-    /// The watched folders, and which folder each name led to.
+    /// The watched folders: their paths, and which folder had each path when its watch began.
     folders: HashMap<PathBuf, Identity>,
-    /// The reason why a folder could not be watched.
+    /// The reason why a folder could not be watched, if there is one.
     problem: Option<String>,
     shared: Arc<Mutex<Shared>>,
 }
 
-/// The state shared with the thread, which fills `change`.
+/// The state that the event loop shares with the watching thread, which sets `change`.
 #[derive(Default)]
 struct Shared {
-    /// Folders and links on the path to the files.
+    /// The folders and links on the paths to the files.
     steps: HashSet<PathBuf>,
     /// The files themselves.
     ends: HashSet<PathBuf>,
     change: FileChange,
 }
 
-/// The most significant event since the last look. A later variant includes the earlier ones.
+/// The most significant change since [`Watching::take_changed`], from the least to the most
+/// significant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 enum FileChange {
     #[default]
@@ -55,12 +56,13 @@ enum FileChange {
     Written,
 }
 
-/// Limit on how often the path to a file is resolved again because it has changed in the meantime.
-// A program that keeps replacing a link would otherwise keep the loop here. The next event tries again.
+/// Greatest number of times that the paths are resolved in a row because a link has changed
+/// meanwhile.
+// Otherwise a program that keeps replacing a link would keep the event loop busy. The next event tries again.
 const MAX_RESOLUTIONS: usize = 8;
 
 impl Watching {
-    /// Starts the thread without any folder to watch.
+    /// Starts the watching thread, without any folder to watch.
     pub(super) fn start(mut waker: Waker) -> Result<Self, String> {
         terminal::reach("watching").map_err(|error| error.to_string())?;
         let shared = Arc::<Mutex<Shared>>::default();
@@ -68,7 +70,7 @@ impl Watching {
         let hear = move |event: notify::Result<Event>| {
             let mut shared = lock(&theirs);
             // After an overflow of the event queue any file may have changed.
-            let change = event.map_or(FileChange::Written, |event| shared.meaning(&event));
+            let change = event.map_or(FileChange::Written, |event| shared.change_of(&event));
             if change > shared.change {
                 shared.change = change;
                 waker.wake();
@@ -76,8 +78,8 @@ impl Watching {
         };
         let watcher = terminal::without_signals(|| notify::recommended_watcher(hear)).map_err(|e| reason(&e))?;
         let mut watching = Self { watcher, dependencies: Vec::new(), folders: HashMap::new(), problem: None, shared };
-        // notify does not report a failure to start its thread, and then panics at every call, even when dropped. Only
-        // `configure` returns an error.
+        // If its thread cannot be started, notify does not report that and then panics at every call, even when
+        // dropped. Only `configure` returns an error.
         if watching.watcher.configure(Config::default()).is_err() {
             std::mem::forget(watching);
             return Err("no thread can be started".to_owned());
@@ -103,7 +105,7 @@ impl Watching {
             FileChange::Written => true,
         };
         if has_changed {
-            // One change may cause several events, but is to be reported once.
+            // The new states are recorded, because one change may cause several events but is reported once.
             self.dependencies.iter_mut().for_each(|dependency| *dependency = Dependency::now(dependency.path()));
         }
         has_changed
@@ -114,18 +116,18 @@ impl Watching {
         self.problem.as_deref()
     }
 
-    /// Watches the current paths to the files.
+    /// Resolves the paths to the files and watches their folders.
     ///
-    /// Returns whether a file has changed: any file if `all`, otherwise one whose folder was not watched before. (For
-    /// the others the end of writing is reported; read now, they might be incomplete.)
+    /// Returns whether a file has changed: any file if `all`, otherwise one whose folder was not watched before. (In a
+    /// folder that was, an event follows when the file's writer closes it; until then it might be incomplete.)
     fn update_watches(&mut self, all: bool) -> bool {
         let mut fresh = HashSet::new();
         for _ in 0..MAX_RESOLUTIONS {
-            let paths = self.resolve();
-            self.share(&paths);
+            let paths = self.resolve_paths();
+            self.share_paths(&paths);
             fresh.extend(self.watch_folders(&paths));
-            // A link may have been replaced before its folder was watched.
-            if self.resolve() == paths {
+            // If a link was replaced before its folder was watched, the paths have changed.
+            if self.resolve_paths() == paths {
                 break;
             }
         }
@@ -136,19 +138,18 @@ impl Watching {
         self.dependencies.iter().any(|dependency| (all || is_fresh(dependency)) && dependency.has_changed())
     }
 
-    fn resolve(&self) -> Vec<ResolvedPath> {
+    fn resolve_paths(&self) -> Vec<ResolvedPath> {
         self.dependencies.iter().filter_map(|dependency| ResolvedPath::to(dependency.path())).collect()
     }
 
-    fn share(&self, paths: &[ResolvedPath]) {
+    fn share_paths(&self, paths: &[ResolvedPath]) {
         let mut shared = lock(&self.shared);
         shared.steps = paths.iter().flat_map(ResolvedPath::steps).map(Path::to_owned).collect();
         shared.ends = paths.iter().map(|path| path.end().to_owned()).collect();
     }
 
-    /// Watches the folders of these paths and no others.
-    ///
-    /// Returns those that were not watched before.
+    /// Watches the folders of these paths and no others. Returns those that were not watched
+    /// before.
     fn watch_folders(&mut self, paths: &[ResolvedPath]) -> Vec<PathBuf> {
         let mut searched_folders: HashSet<_> =
             paths.iter().flat_map(ResolvedPath::searched_folders).map(Path::to_owned).collect();
@@ -179,17 +180,17 @@ impl Watching {
         fresh
     }
 
-    /// Returns whether the folder was not watched before.
+    /// Watches a folder and returns whether it was not watched before.
     fn watch_folder(&mut self, folder: &Path) -> notify::Result<bool> {
         let found = identity(&fs::metadata(folder)?);
         let known = self.folders.get(folder).copied();
         if known.is_some_and(|known| known != found) {
-            // The watch is on the folder that had this name before.
+            // The existing watch is on another folder, which had this path before.
             let _ = self.watcher.unwatch(folder);
         }
         self.folders.remove(folder);
-        // Repeated even for a watched folder, which is free: notify drops a watch when the folder's name is removed,
-        // even if there is a new folder of that name by then.
+        // Called even for a watched folder, which costs nothing: notify drops a watch when the folder's name is
+        // removed, even if a new folder has that name by then.
         self.watcher.watch(folder, RecursiveMode::NonRecursive)?;
         self.folders.insert(folder.to_owned(), found);
         Ok(known != Some(found))
@@ -201,11 +202,11 @@ fn lock(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
 }
 
 impl Shared {
-    fn meaning(&self, event: &Event) -> FileChange {
+    fn change_of(&self, event: &Event) -> FileChange {
         if event.need_rescan() {
             return FileChange::Written;
         }
-        // kqueue does not say what has changed in a folder.
+        // On systems with kqueue an event does not say what has changed in a folder.
         if cfg!(not(target_os = "linux")) {
             return FileChange::Moved;
         }
@@ -218,33 +219,34 @@ impl Shared {
     }
 }
 
-/// Returns the meaning of an event for a file.
+/// Returns the change that an event at `path`, a file of the scene, indicates.
 ///
-/// New contents count when the writer closes the file, so that no file is read half written.
+/// New contents count when their writer closes the file, so that no file is read half written.
 fn file_change(kind: EventKind, path: &Path) -> FileChange {
     match kind {
         EventKind::Remove(_) | EventKind::Modify(ModifyKind::Name(RenameMode::From)) => FileChange::Gone,
-        // Not for pipes: writing to one is not a change of the scene.
+        // Only for plain files, because writing to a pipe does not change the scene.
         EventKind::Access(AccessKind::Close(AccessMode::Write)) | EventKind::Modify(ModifyKind::Name(_))
             if path.is_file() =>
         {
             FileChange::Written
         }
-        // Its writer closes it later, which is an event of its own.
+        // A new file counts only when its writer closes it, which is an event of its own.
         EventKind::Create(_) if is_about_to_be_written(path) => FileChange::Nothing,
-        // Anything else has taken the name; or the permissions have changed, and the file may have become readable.
+        // The path now leads to a folder, link or other thing, or permissions have changed and the file may be
+        // readable.
         EventKind::Create(_) | EventKind::Modify(ModifyKind::Name(_) | ModifyKind::Metadata(_)) => FileChange::Moved,
         _ => FileChange::Nothing,
     }
 }
 
-/// Returns whether a path that was just created is a new file, and not a folder, a symbolic or a
-/// hard link.
+/// Returns whether a path that was just created is a new file, and no folder, symbolic link or hard
+/// link.
 fn is_about_to_be_written(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|data| data.is_file() && data.nlink() == 1)
 }
 
-/// Returns the meaning of an event for a folder or link on the path to a file.
+/// Returns the change that an event at a folder or link on the path to a file indicates.
 fn step_change(kind: EventKind) -> FileChange {
     match kind {
         EventKind::Access(_) | EventKind::Modify(ModifyKind::Data(_)) => FileChange::Nothing,

@@ -14,12 +14,13 @@ fn draft(reporter: &Reporter<'_>) -> Draft {
     Draft::from_bytes("x", text, reporter).expect("the scene is fine")
 }
 
-/// Waits until the load ends and returns whether it gave a scene.
+/// Waits until the load has ended and returns whether it gave a scene.
 fn has_scene(loading: &Loading<Infallible>) -> bool {
     loading.events.iter().any(|event| matches!(event, LoadEvent::Scene(_)))
 }
 
-/// Loads that are cancelled while queued are never started.
+/// At most one scene is read at a time, and loads that are cancelled in the queue are never
+/// started.
 #[test]
 fn scenes_are_read_one_at_a_time_and_the_newest_next() {
     let (begun, at_work, most) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)), Arc::default());
@@ -49,7 +50,7 @@ fn scenes_are_read_one_at_a_time_and_the_newest_next() {
     assert_eq!(begun.load(Ordering::SeqCst), 2, "the first and the last");
 }
 
-/// A load that waits on a pipe without a writer does not block the next one.
+/// A load that waits for a writer to open a pipe does not block the next load.
 #[test]
 fn a_load_that_waits_on_a_pipe_is_left_behind() {
     let folder = tempfile::tempdir().expect("a folder can be made");

@@ -11,7 +11,7 @@ fn names_are_plain_words() {
         ("/", "scene"),
         ("été.ron", "été"),
     ] {
-        assert_eq!(stem(name), expected, "{name}");
+        assert_eq!(file_stem(name), expected, "{name}");
     }
 }
 

@@ -1,21 +1,22 @@
-//! The files of a scene and the state of each when it was read.
+//! The files that a scene was read from, and the state of each at that time.
 
 use std::fs::{self, Metadata};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
-/// A file that a scene needs, and its state before it was read.
+/// A file that a scene is read from, and its state just before it was read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::app) struct Dependency {
     path: PathBuf,
     state: State,
 }
 
-/// The thing that a path leads to.
+/// The state of the file that a path leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// Nothing, or nothing that the process may reach.
+    /// There is no file, or the process has no access to it.
     Missing,
+    /// A regular file.
     Plain {
         identity: Identity,
         /// The file type and permissions: a file that becomes readable counts as changed.
@@ -24,13 +25,12 @@ enum State {
         modified: (i64, i64),
         length: u64,
     },
-    /// A folder, pipe or device.
-    ///
-    /// Only its identity counts: reading alone changes the times of pipes and devices.
+    /// A folder, pipe or device. Its times do not count, because reading changes those of pipes and
+    /// devices.
     Other(Identity),
 }
 
-/// Device and inode numbers.
+/// Device and inode number, which identify a file or folder.
 pub(super) type Identity = (u64, u64);
 
 impl State {
@@ -62,16 +62,17 @@ impl Dependency {
         &self.path
     }
 
-    /// Returns whether it was neither missing nor a plain file, so that reading may block for ever.
+    /// Returns whether the path led to a pipe, device or folder, so that reading it may block for
+    /// ever.
     pub(in crate::app) fn is_other(&self) -> bool {
         matches!(self.state, State::Other(_))
     }
 
-    /// Returns whether the path leads to something new.
+    /// Returns whether the path now leads to another file, or to the same file with another state.
     ///
-    /// A missing file does not count: an event reports when it comes back.
+    /// A missing file does not count as changed, because an event reports when it comes back.
     pub(in crate::app) fn has_changed(&self) -> bool {
-        // Editors replace a file in two steps: it is missing for a moment.
+        // Some editors replace a file in two steps, between which it is missing.
         let now = State::of(&self.path);
         now != State::Missing && now != self.state
     }

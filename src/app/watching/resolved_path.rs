@@ -1,15 +1,18 @@
 //! Resolution of a path as the system does it: folder by folder and link by link.
 //!
-//! `canonicalize` gives only the end, and fails if anything is missing; a change of any step must be noticed.
+//! `canonicalize` does not suffice: it returns only the final path, and fails if a step is missing, but a change of any
+//! step must be noticed.
 
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-/// Limit on the links followed, the same as that of Linux: links may form a cycle.
+/// Greatest number of links that are followed, because links may form a cycle. Linux has the same
+/// limit.
 const MAX_LINKS: usize = 40;
 
-/// The folders and links that a path leads through. None of their own paths contains a link.
+/// The folders and links that a path leads through, each with its own path, which contains no
+/// further link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ResolvedPath {
     /// The folders and links on the path, each of which may be replaced.
@@ -29,14 +32,14 @@ struct Step {
 impl ResolvedPath {
     /// Resolves `path`. `None` if it is relative and the current folder has been removed.
     pub(super) fn to(path: &Path) -> Option<Self> {
-        // The path of the current folder is not part of the resolution: the process stays in it even if it is moved.
+        // The steps to the current folder do not matter, because the process stays in that folder even if it is moved.
         let mut folder = if path.is_absolute() { PathBuf::new() } else { Path::new(".").canonicalize().ok()? };
         let mut steps = Vec::new();
-        let mut left = names(path);
+        let mut left = components_reversed(path);
         let mut links = 0;
         while let Some(name) = left.pop() {
             let Name::In(name) = name else {
-                name.go(&mut folder);
+                name.apply_to(&mut folder);
                 continue;
             };
             let path = folder.join(name);
@@ -44,7 +47,7 @@ impl ResolvedPath {
             match is_link {
                 Ok(true) if links < MAX_LINKS => {
                     links += 1;
-                    left.extend(fs::read_link(&path).map(|target| names(&target)).unwrap_or_default());
+                    left.extend(fs::read_link(&path).map(|target| components_reversed(&target)).unwrap_or_default());
                     steps.push(Step { path, is_link: true });
                 }
                 Ok(false) if left.is_empty() => return Some(Self { steps, end: path, is_complete: true }),
@@ -52,7 +55,7 @@ impl ResolvedPath {
                     folder.clone_from(&path);
                     steps.push(Step { path, is_link: false });
                 }
-                // Missing, unreadable, or in a cycle of links.
+                // The component is missing or unreadable, or the links form a cycle.
                 _ => return Some(Self { steps, end: path, is_complete: false }),
             }
         }
@@ -67,29 +70,29 @@ impl ResolvedPath {
         self.steps.iter().map(|step| &*step.path)
     }
 
-    /// Returns the folders that contain the file and the links. Watching them is indispensable.
+    /// Returns the folders that contain the file and the links, which must be watched to notice
+    /// changes.
     pub(super) fn searched_folders(&self) -> impl Iterator<Item = &Path> {
         let links = self.steps.iter().filter(|step| step.is_link).map(|step| &*step.path);
         links.chain([&*self.end]).filter_map(Path::parent).filter(|folder| !is_virtual(folder))
     }
 
-    /// Returns further folders to watch.
+    /// Returns the other folders on the path, which are watched to notice that one of them is
+    /// replaced.
     ///
-    /// They are on the path, and each reports when it is replaced.
-    ///
-    /// A removed folder is not reported while a process has it as its current folder. So while the file is missing,
-    /// their parents are watched too. Folders directly below the root are watched only then: they are permanent, and
-    /// busy.
+    /// While the file is missing, their parents are among them, because the removal of a folder is not reported while a
+    /// process has it as its current folder. Folders directly below the root, which are permanent and busy, are watched
+    /// only in that case.
     pub(super) fn outer_folders(&self) -> impl Iterator<Item = &Path> {
         let folders = self.steps.iter().filter(|step| !step.is_link).map(|step| &*step.path);
-        // Deeper than two components: `/home` and the like belong to the system.
+        // A path with two components, such as `/home`, belongs to the system.
         let own = folders.clone().filter(|folder| folder.components().count() > 2);
         let outer = folders.filter_map(Path::parent).filter(|_| !self.is_complete);
         own.chain(outer).filter(|folder| !is_virtual(folder))
     }
 }
 
-/// Returns whether a folder belongs to a virtual file system, where nothing is saved and events are
+/// Returns whether a folder is in a virtual file system, where no scenes are saved and events are
 /// frequent.
 fn is_virtual(folder: &Path) -> bool {
     ["/proc", "/sys", "/dev"].iter().any(|root| folder.starts_with(root)) && !folder.starts_with("/dev/shm")
@@ -103,24 +106,25 @@ enum Name {
 }
 
 impl Name {
-    fn go(&self, folder: &mut PathBuf) {
+    fn apply_to(&self, folder: &mut PathBuf) {
         match self {
             Self::Root => *folder = PathBuf::from("/"),
-            // After links are resolved, as the system does it: `a/..` is not the current folder if `a` is a link.
+            // Links before `..` are already resolved, as the system does it: if `a` is a link, `a/..` is the parent of
+            // the link's target.
             Self::Parent => drop(folder.pop()),
             Self::In(_) => {}
         }
     }
 }
 
-/// Returns the components of a path, last first.
-fn names(path: &Path) -> Vec<Name> {
+/// Returns the components of a path in reverse order.
+fn components_reversed(path: &Path) -> Vec<Name> {
     let name = |part: Component<'_>| match part {
         Component::RootDir => Some(Name::Root),
         Component::ParentDir => Some(Name::Parent),
         Component::Normal(name) => Some(Name::In(name.to_owned())),
         Component::CurDir | Component::Prefix(_) => None,
     };
-    // Last first, so that the target of a link is pushed in front of the rest.
+    // The last component comes first, so that the list is a stack onto which the target of a link is pushed.
     path.components().rev().filter_map(name).collect()
 }
