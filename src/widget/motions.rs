@@ -17,7 +17,7 @@ impl SceneState {
 
     /// Moves eye and target to the right and upwards.
     ///
-    /// The distances are parts of the picture's height at the target.
+    /// Distances are shares of the height of the view rectangle at the target's distance.
     pub fn pan(&mut self, right: f32, up: f32) {
         let aspect_ratio = self.aspect_ratio();
         self.move_camera(self.camera().panned(Vec2::new(-right / aspect_ratio, up), aspect_ratio));
@@ -45,14 +45,14 @@ impl SceneState {
     ///
     /// Returns whether the position is inside the picture.
     pub fn press(&mut self, at: Position, grip: Grip) -> bool {
-        // Outside the picture a previous drag ends, so that a missed release does no harm.
+        // A press outside the picture ends a previous drag, so that a missed release does no harm.
         self.set_drag_state(self.ray_through(at).map(|_| (grip, at)));
         self.drag_state().is_some()
     }
 
     /// Continues a drag to a position, which may be outside the pane. Does nothing without a drag.
     pub fn drag(&mut self, to: Position) {
-        let (Some((grip, from)), Some(size)) = (self.drag_state(), self.size()) else { return };
+        let (Some((grip, from)), Some(size)) = (self.drag_state(), self.size_in_cells()) else { return };
         self.set_drag_state(Some((grip, to)));
         let delta = |from: u16, to: u16| f32::from(to) - f32::from(from);
         let by = Vec2::new(delta(from.x, to.x), delta(from.y, to.y)) / size;
@@ -78,7 +78,8 @@ impl SceneState {
         true
     }
 
-    /// Returns the point shown in a cell, or the point at the target's distance.
+    /// Returns the surface point seen in a cell, or a point at the target's distance if there is
+    /// none.
     fn point_at(&self, scene: &Scene, at: Position) -> Option<Vec3> {
         let ray = self.ray_through(at)?;
         // Eye rays have a component of 1 along -w, so t is the depth, as the target's distance is.

@@ -1,4 +1,4 @@
-//! The inputs of a pane's picture, its tracing, and its cells.
+//! A shot (the inputs of a pane's picture), and the tracer that turns it into cells.
 
 use crate::camera::Camera;
 use crate::cell::{self, CellMode, Painter};
@@ -12,7 +12,7 @@ use crate::tone::{Picture, tone};
 use ratatui_core::buffer::Buffer;
 use std::num::NonZeroU32;
 
-/// The options of a view, without its scene.
+/// The options of a [`SceneView`](super::SceneView), without its scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Options {
     pub(super) map: Map,
@@ -21,13 +21,13 @@ pub(super) struct Options {
     pub(super) sampling: Sampling,
 }
 
-/// The inputs of a picture: everything that it depends on.
+/// The inputs of a pane's picture: everything that determines it.
 #[derive(Clone, Debug)]
 pub(super) struct Shot {
     pub(super) scene: Scene,
     pub(super) camera: Camera,
     pub(super) size: Size,
-    /// The size in pixels, which follows from the size in cells.
+    /// The size in pixels, derived from the size in cells.
     pub(super) resolution: Resolution,
     pub(super) options: Options,
 }
@@ -52,7 +52,7 @@ impl Shot {
     /// Returns the samples per pixel of the refinement, if a picture with one sample comes first.
     fn refinement_samples(&self) -> Option<NonZeroU32> {
         match self.options.sampling {
-            // Only adaptive sampling has a useful first picture: its pixels are those of one sample each.
+            // Only adaptive sampling has such a first picture, because its first sample is that of one per pixel.
             Sampling::UpTo(samples) if samples > NonZeroU32::MIN && self.options.map.refines() => Some(samples),
             _ => None,
         }
@@ -63,13 +63,13 @@ impl Shot {
 #[derive(Debug)]
 pub(super) struct RenderedShot {
     pub(super) shot: Shot,
-    /// The cells, from (0, 0) on.
+    /// The cells, in a buffer whose area begins at (0, 0).
     pub(super) cells: Buffer,
     /// Whether the picture has all samples that the shot asks for.
     pub(super) is_final: bool,
 }
 
-/// A tracer of shots, which keeps the painter's cache of mixes between pictures.
+/// A tracer of shots, which keeps the painter with its cache of mixed colours between pictures.
 #[derive(Default)]
 pub(super) struct Tracer {
     painter: Option<Painter>,
@@ -80,12 +80,13 @@ impl Tracer {
     pub(super) fn trace(&mut self, shot: Shot) -> RenderedShot {
         let Options { map, sampling, .. } = shot.options;
         let picture = maps::picture(map, &shot.scene, &shot.camera, shot.resolution, sampling);
-        self.shown(shot, &picture, true)
+        self.rendered(shot, &picture, true)
     }
 
-    /// Traces a shot and delivers its pictures, the first with one sample per pixel.
+    /// Traces a shot and passes to `deliver` one picture, or two of which the first has one sample
+    /// per pixel.
     ///
-    /// The final picture equals that of [`trace`](Self::trace).
+    /// The last picture equals that of [`trace`](Self::trace).
     ///
     /// # Errors
     /// [`Cancelled`], if the token is cancelled, which `deliver` may do.
@@ -99,18 +100,18 @@ impl Tracer {
         let Some(samples) = shot.refinement_samples() else {
             let Options { map, sampling, .. } = *options;
             let seen = maps::trace(map, Executor::Cancellable(token), scene, camera, shot.resolution, sampling)?;
-            deliver(self.shown(shot, &seen.picture, true));
+            deliver(self.rendered(shot, &seen.picture, true));
             return Ok(());
         };
         let mut picture = ProgressiveRender::new(camera, shot.resolution);
         for (samples, is_final) in [(NonZeroU32::MIN, false), (samples, true)] {
             picture.refine_or_cancel(token, scene, samples)?;
-            deliver(self.shown(shot.clone(), &tone(&picture.framebuffer(), scene), is_final));
+            deliver(self.rendered(shot.clone(), &tone(&picture.framebuffer(), scene), is_final));
         }
         Ok(())
     }
 
-    fn shown(&mut self, shot: Shot, picture: &Picture, is_final: bool) -> RenderedShot {
+    fn rendered(&mut self, shot: Shot, picture: &Picture, is_final: bool) -> RenderedShot {
         let mode = shot.options.cells;
         // A painter's cache is valid for its mode only.
         let painter = self.painter.take().filter(|painter| painter.mode() == mode);

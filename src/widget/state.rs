@@ -44,7 +44,8 @@ use std::fmt;
 /// ```
 pub struct SceneState {
     camera: Camera,
-    /// The length relative to which the distance of the eye from its target is limited.
+    /// Distance from the eye to the target when the camera was set, relative to which that distance
+    /// is limited.
     scale: f32,
     /// The kind of the current drag and the last position of the pointer.
     drag_state: Option<(Grip, Position)>,
@@ -117,7 +118,7 @@ impl SceneState {
         self.scale = camera.target_distance();
     }
 
-    /// Moves the camera and keeps the scale of its distance.
+    /// Replaces the camera, but keeps [`scale`](Self::scale).
     pub(super) fn move_camera(&mut self, to: Camera) {
         self.camera = to;
     }
@@ -132,7 +133,7 @@ impl SceneState {
         self.drag_state
     }
 
-    /// Starts or ends a drag.
+    /// Starts, continues or ends (`None`) a drag.
     pub(super) fn set_drag_state(&mut self, drag_state: Option<(Grip, Position)>) {
         self.drag_state = drag_state;
     }
@@ -158,14 +159,14 @@ impl SceneState {
     pub fn cell_of(&self, point: Vec3) -> Option<Position> {
         let (RenderedShot { shot, .. }, part) = (self.shown.as_ref()?, self.covered_area()?);
         let place = shot.camera.project(point, shot.resolution.aspect_ratio())?;
-        let cell = (place * self.size()?).floor();
+        let cell = (place * self.size_in_cells()?).floor();
         let is_inside =
             cell.cmpge(Vec2::ZERO).all() && cell.cmplt(Vec2::new(part.width.into(), part.height.into())).all();
         is_inside.then(|| Position::new(part.x + cell.x as u16, part.y + cell.y as u16))
     }
 
     /// Returns the size of the last picture in cells.
-    pub(super) fn size(&self) -> Option<Vec2> {
+    pub(super) fn size_in_cells(&self) -> Option<Vec2> {
         let Size { columns, rows } = self.shown.as_ref()?.shot.size;
         Some(Vec2::new(columns.into(), rows.into()))
     }
@@ -181,14 +182,14 @@ impl SceneState {
         if !part.contains(at) {
             return None;
         }
-        // The middle of the cell, so that a cell's ray hits the point that `cell_of` assigns to the cell.
+        // The ray passes through the middle of the cell, so that `cell_of` maps the point that it hits to this cell.
         let share = |at: u16, of: u16| (f32::from(at) + 0.5) / f32::from(of);
         let (qu, qv) = (share(at.x - part.x, shot.size.columns), 1.0 - share(at.y - part.y, shot.size.rows));
         Some(shot.camera.eye_rays(shot.resolution.aspect_ratio()).through(qu, qv))
     }
 
     /// Returns the part of the pane that the last picture covers.
-    // A pane that has grown since shows the old picture in part of its area until the new one arrives.
+    // If the pane has grown, the old picture covers a part of it until the new one arrives.
     fn covered_area(&self) -> Option<Rect> {
         let size = self.shown.as_ref()?.shot.size;
         Some(self.area.intersection(Rect { width: size.columns, height: size.rows, ..self.area }))
@@ -199,9 +200,8 @@ impl SceneState {
         self.area = Rect::ZERO;
     }
 
-    /// Requests the picture of a new shot, and returns the picture to draw.
-    ///
-    /// The rectangle is the part of the pane that this picture covers.
+    /// Requests the picture of `shot`, if it is new, and returns the picture to draw and the part
+    /// of `area` for it.
     ///
     /// # Panics
     /// With the payload of a panic in the background thread.
@@ -216,8 +216,8 @@ impl SceneState {
                 if is_new {
                     worker.request(shot);
                 }
-                // The old picture stays until a new one arrives, even of another size.
-                self.shown = worker.take().or(self.shown.take());
+                // The old picture stays until the new one arrives, even if its size is another.
+                self.shown = worker.take_finished().or(self.shown.take());
             }
             None if is_new => self.shown = Some(self.tracer.trace(shot)),
             None => {}
@@ -226,7 +226,7 @@ impl SceneState {
         self.shown.as_ref().map(|shown| (shown, part))
     }
 
-    /// Writes a mark into the shown picture, which only another picture removes.
+    /// Writes a mark into the shown picture, by which tests notice whether the picture is replaced.
     #[cfg(test)]
     pub(super) fn mark(&mut self, mark: &'static str) {
         if let Some(shown) = &mut self.shown {

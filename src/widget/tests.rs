@@ -1,4 +1,5 @@
-//! Panes drawn into buffers, and a worker that tests can hold between pictures.
+//! Tests of panes, drawn into buffers, with a background thread that a test can halt between
+//! pictures.
 
 use super::state::SceneState;
 use super::view::SceneView;
@@ -26,15 +27,15 @@ fn scene() -> Scene {
     Scene::from_ron("three_spheres.ron", text).expect("the scene is fine")
 }
 
-/// Returns a buffer of `AREA` full of `x` after a view has been drawn into it.
+/// Draws a view into a buffer of `AREA` that is filled with `x`, and returns the buffer.
 fn drawn(view: &SceneView<'_>, area: Rect, state: &mut SceneState) -> Buffer {
     let mut buffer = Buffer::filled(AREA, Cell::new("x"));
     view.render(area, &mut buffer, state);
     buffer
 }
 
-/// Returns the picture of the state's camera, traced in the draw call.
-fn in_place(view: &SceneView<'_>, state: &SceneState) -> Buffer {
+/// Returns a buffer with the view from the state's camera, traced in the draw call.
+fn traced_in_draw_call(view: &SceneView<'_>, state: &SceneState) -> Buffer {
     drawn(view, AREA, &mut SceneState::new(state.camera()))
 }
 
@@ -63,11 +64,11 @@ fn a_pane_shows_the_cells_of_a_frame() {
 fn an_implausible_cell_aspect_is_replaced() {
     let scene = scene();
     let state = SceneState::new(scene.camera());
-    let usual = in_place(&SceneView::new(&scene), &state);
+    let usual = traced_in_draw_call(&SceneView::new(&scene), &state);
     for aspect in [f32::NAN, 0.0, -2.0, f32::INFINITY, 1e-30] {
-        assert_eq!(in_place(&SceneView::new(&scene).cell_aspect(aspect), &state), usual, "{aspect}");
+        assert_eq!(traced_in_draw_call(&SceneView::new(&scene).cell_aspect(aspect), &state), usual, "{aspect}");
     }
-    assert_ne!(in_place(&SceneView::new(&scene).cell_aspect(1.0), &state), usual);
+    assert_ne!(traced_in_draw_call(&SceneView::new(&scene).cell_aspect(1.0), &state), usual);
 }
 
 #[test]
@@ -108,7 +109,7 @@ fn without_cells_nothing_is_drawn_or_found() {
             assert_eq!(buffer, Buffer::filled(AREA, Cell::new("x")));
             assert!(!state.is_current() && !state.press(Position::ORIGIN, Grip::Turn));
         }
-        // The cells of an earlier, larger pane are not found either.
+        // The same holds for a pane that had cells in an earlier draw call.
         drawn(&SceneView::new(&scene), area, &mut state);
         assert_eq!(state.cell_of(scene.camera().pose().target), None);
         assert!(AREA.positions().all(|at| state.hit(&scene, at).is_none()));
@@ -156,7 +157,7 @@ fn a_shown_picture_is_not_traced_again() {
 
 /// A state whose background thread stops after each picture, until the test lets it continue.
 struct Held {
-    // Dropped first: the state waits for the thread.
+    // Dropped before `state`, which waits for the thread, so that the thread is not halted.
     go_on: Sender<()>,
     state: SceneState,
     woken: Receiver<()>,
@@ -167,7 +168,7 @@ impl Held {
         let (wake, woken) = channel();
         let (go_on, may_go_on) = channel();
         let state = SceneState::new(scene.camera()).in_background(move || {
-            // The test may have ended.
+            // These fail if the test has ended.
             let _ = wake.send(());
             let _ = may_go_on.recv();
         });
@@ -182,7 +183,8 @@ impl Held {
         self.go_on.send(()).expect("the thread is there");
     }
 
-    /// Ends the thread and returns the number of pictures that it made meanwhile.
+    /// Ends the thread and returns the number of pictures that it has finished since the last
+    /// `wait`.
     fn end(self) -> usize {
         drop(self.go_on);
         drop(self.state);
@@ -198,7 +200,7 @@ fn of_several_requests_only_the_newest_is_traced() {
     let blank = Buffer::filled(AREA, Cell::new("x"));
     assert_eq!(drawn(&view, AREA, &mut held.state), blank, "nothing is there yet");
     held.wait();
-    let first = in_place(&view, &held.state);
+    let first = traced_in_draw_call(&view, &held.state);
     for _ in 0..5 {
         held.state.orbit(0.2, 0.0);
         assert_eq!(drawn(&view, AREA, &mut held.state), first, "the last picture stays");
@@ -206,7 +208,7 @@ fn of_several_requests_only_the_newest_is_traced() {
     }
     held.go_on();
     held.wait();
-    assert_eq!(drawn(&view, AREA, &mut held.state), in_place(&view, &held.state));
+    assert_eq!(drawn(&view, AREA, &mut held.state), traced_in_draw_call(&view, &held.state));
     assert!(held.state.is_current());
     held.state.orbit(0.2, 0.0);
     assert!(!held.state.is_current(), "the camera has moved since");
@@ -220,13 +222,13 @@ fn refinement_follows_unless_the_view_has_changed() {
     let mut held = Held::new(&scene);
     drawn(&best, AREA, &mut held.state);
     held.wait();
-    assert_eq!(drawn(&best, AREA, &mut held.state), in_place(&one, &held.state));
+    assert_eq!(drawn(&best, AREA, &mut held.state), traced_in_draw_call(&one, &held.state));
     assert!(!held.state.is_current());
     held.go_on();
     held.wait();
-    assert_eq!(drawn(&best, AREA, &mut held.state), in_place(&best, &held.state));
+    assert_eq!(drawn(&best, AREA, &mut held.state), traced_in_draw_call(&best, &held.state));
     assert!(held.state.is_current());
-    // Now the view changes while the first picture is all there is, and while it is being refined.
+    // The view changes after the first picture is finished, and again while it is being refined.
     held.state.orbit(0.2, 0.0);
     drawn(&best, AREA, &mut held.state);
     held.go_on();
@@ -235,10 +237,10 @@ fn refinement_follows_unless_the_view_has_changed() {
     drawn(&best, AREA, &mut held.state);
     held.go_on();
     held.wait();
-    assert_eq!(drawn(&best, AREA, &mut held.state), in_place(&one, &held.state), "of the newest view");
+    assert_eq!(drawn(&best, AREA, &mut held.state), traced_in_draw_call(&one, &held.state), "of the newest view");
     held.go_on();
     held.wait();
-    assert_eq!(drawn(&best, AREA, &mut held.state), in_place(&best, &held.state));
+    assert_eq!(drawn(&best, AREA, &mut held.state), traced_in_draw_call(&best, &held.state));
     assert_eq!(held.end(), 0);
 }
 
@@ -260,7 +262,7 @@ fn a_picture_of_another_size_stays_until_the_next_arrives() {
     assert_eq!((&smaller[(4, 3)], smaller[(5, 3)].symbol()), (&old[(4, 3)], "x"));
 }
 
-/// Without the cancellation the test would not end.
+/// Dropping a state cancels the picture in progress, which here would take for ever.
 #[test]
 fn dropping_a_state_cancels_its_picture() {
     let scene = scene();
@@ -321,7 +323,7 @@ fn a_dragged_point_follows_the_pointer() {
     assert!(!state.press(Position::new(3, 3), Grip::Pan), "beside the pane");
     state.drag(Position::new(9, 3));
     assert_eq!(*state.camera(), before, "nothing is held");
-    // In the middle of a cell, so that rounding does not show.
+    // The point is in the middle of a cell, so that rounding errors do not move it to another cell.
     let ray = state.ray_through(Position::new(12, 3)).expect("inside");
     let point = ray.at(before.target_distance());
     let start = Position::new(12, 3);

@@ -125,7 +125,7 @@ impl StatefulWidget for &SceneView<'_> {
             return;
         };
         let Some((shown, part)) = state.show(shot, area) else { return };
-        // Row by row: cell by cell, each copy would compute and check an index.
+        // Rows are copied as a whole, because copying cell by cell would compute and check an index each.
         let columns = usize::from(part.width);
         for (from, row) in part.rows().enumerate() {
             let (from, to) = (shown.cells.index_of(0, from as u16), buffer.index_of(row.x, row.y));

@@ -23,16 +23,16 @@ struct Shared {
     request_added: Condvar,
 }
 
-/// The request, the picture and the progress of the worker.
-// One slot for each instead of channels: a newer request or picture replaces an older one.
+/// The current request, the newest picture and the state of the worker.
+// There are slots instead of channels, because a newer request or picture replaces an older one.
 #[derive(Default)]
 struct SharedState {
-    /// The next shot, replaced by a newer one.
+    /// The shot to trace next.
     requested: Option<Shot>,
-    /// The token of the shot in progress.
+    /// The token that cancels the shot in progress.
     token: Cancellation,
     /// Whether a picture of the shot in progress has been delivered.
-    // Only then does a newer request cancel it: otherwise a camera in motion would never get a picture.
+    // A newer request cancels the shot only in this case: otherwise a camera in motion would never get a picture.
     is_refining: bool,
     /// The newest picture that has not been taken.
     finished: Option<RenderedShot>,
@@ -48,7 +48,7 @@ impl Worker {
         let shared = Arc::new(Shared::default());
         let own = Arc::clone(&shared);
         let thread = thread::Builder::new().name("termtrace pane".to_owned()).spawn(move || {
-            // A panic of `wake` itself must not call it again.
+            // Whether `wake` is running: if it panics, it must not be called again.
             let is_waking = Cell::new(false);
             let wake = || {
                 is_waking.set(true);
@@ -57,7 +57,7 @@ impl Worker {
             };
             if let Err(panic) = catch_unwind(AssertUnwindSafe(|| own.trace_all(&wake))) {
                 own.lock().panic = Some(panic);
-                // The next draw call continues the panic.
+                // Wakes the application, whose next draw call continues the panic.
                 if !is_waking.get() {
                     wake();
                 }
@@ -80,7 +80,7 @@ impl Worker {
     ///
     /// # Panics
     /// With the payload of a panic in the thread.
-    pub(super) fn take(&self) -> Option<RenderedShot> {
+    pub(super) fn take_finished(&self) -> Option<RenderedShot> {
         let mut state = self.shared.lock();
         if let Some(panic) = state.panic.take() {
             drop(state);
@@ -99,13 +99,13 @@ impl Worker {
 
 impl Drop for Worker {
     /// Cancels the shot in progress and joins the thread.
-    // Each tracing thread traces at most 256 more rays, a batch.
+    // Each tracing thread finishes its current batch, of at most 256 rays.
     fn drop(&mut self) {
         let mut state = self.shared.lock();
         state.is_closed = true;
         state.token.cancel();
         drop(state);
-        // Joined, so that no thread uses the scene's memory or calls `wake` afterwards.
+        // The thread is joined, so that it does not use the scene's memory or call `wake` afterwards.
         self.shared.request_added.notify_one();
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
@@ -119,7 +119,7 @@ impl Shared {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits for the next shot; `None` when the state is dropped.
+    /// Waits for the next shot; `None` when the `SceneState` has been dropped.
     fn next(&self) -> Option<(Shot, Cancellation)> {
         let mut state = self.lock();
         loop {
@@ -136,10 +136,10 @@ impl Shared {
     }
 
     fn trace_all(&self, wake: &impl Fn()) {
-        // One tracer for all shots keeps the cache of mixes.
+        // One tracer for all shots keeps its cache of mixed colours.
         let mut tracer = Tracer::default();
         while let Some((shot, token)) = self.next() {
-            // The pictures delivered before a cancel stay valid.
+            // A cancellation is no error: pictures that were delivered before it stay valid.
             let _ = tracer.trace_progressively(shot, &token, |shown| {
                 self.deliver(shown);
                 wake();
@@ -150,7 +150,7 @@ impl Shared {
     fn deliver(&self, shown: RenderedShot) {
         let mut state = self.lock();
         state.is_refining = !shown.is_final;
-        // A request that arrived before the first picture waits for it, and then cancels the refinement.
+        // If a newer shot was requested before this first picture was finished, the refinement is cancelled now.
         if state.is_refining && state.requested.is_some() {
             state.token.cancel();
         }
