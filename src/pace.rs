@@ -57,7 +57,7 @@ use reply_tracker::{ReplyTracker, State};
 /// A link is slow if it transmits fewer than this many screens per second.
 // Below about 16 pictures a second, motion is seen as a sequence of pictures.
 const SMOOTH_SCREENS_PER_SECOND: f64 = 16.0;
-/// Frames per second on a slow link. A frame may have this fraction of the bytes that the link
+/// Frames per second on a slow link; a frame has at most a 36th of the bytes that the link
 /// transmits in a second.
 // The smaller a frame, the sooner its reply shows that the link has become slower, and the fewer bytes are in flight by
 // then. After a tenfold drop of the rate, 36 frames a second with a gain of 0.86 recover in 1.73 to 1.94 s of simulated
@@ -224,7 +224,7 @@ impl Link {
 
     /// Returns the limit on a frame if the link is slow, that is, for screens of `screen` bytes.
     ///
-    /// Records whether it is.
+    /// Also records whether the link is slow, for [`is_slow`](Self::is_slow).
     pub fn slow_limit(&mut self, screen: usize) -> Option<Limit> {
         let limit = self.max_rate.unwrap_or(f64::INFINITY);
         let measured = self.replies.rates.best();

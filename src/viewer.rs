@@ -185,7 +185,7 @@ impl Viewer {
     pub(crate) fn resize(&mut self, window: Window) -> Result<(), OutOfMemory> {
         let before = *self.display.capabilities();
         self.display.set_window(window);
-        // The cell shape may have changed with the font, and with it the half blocks that join.
+        // A new font may have another cell shape, on which it depends which half blocks join without gaps.
         self.apply_changed_capabilities(&before)?;
         self.display.check_memory()?;
         self.redraw();

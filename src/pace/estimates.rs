@@ -46,7 +46,7 @@ impl RoundTrip {
     /// Only such a round trip starts a new age. Otherwise, if only replies to frames arrived during an age, the
     /// transmission time of frames would be taken for a part of the link's round trip, and the rate for a very high
     /// one.
-    pub(super) fn take(&mut self, round_trip: Duration, is_own: bool, now: Duration) {
+    pub(super) fn record(&mut self, round_trip: Duration, is_own: bool, now: Duration) {
         if is_own && now.saturating_sub(self.since) >= ROUND_TRIP_AGE {
             self.shortest = [self.shortest[1], None];
             self.since = now;
@@ -97,7 +97,7 @@ impl BusyPeriod {
     /// and duration of the busy period so far, which give the rate.
     ///
     /// Bytes that waited for others count together with them: alone they would seem slower than they were.
-    pub(super) fn take(&mut self, sent: Duration, bytes: usize, passed: Duration) -> (usize, Duration) {
+    pub(super) fn extend(&mut self, sent: Duration, bytes: usize, passed: Duration) -> (usize, Duration) {
         if sent + MIN_SERVICE_TIME >= self.until {
             (self.since, self.bytes) = (sent, 0);
         }
@@ -135,7 +135,7 @@ impl Rates {
     /// Records that transmitting `bytes` took the time `service`, and derives a sample of the rate.
     ///
     /// If the reply `is_late`, the rate has fallen, and all higher samples are dropped.
-    pub(super) fn take(&mut self, bytes: usize, service: Duration, is_late: bool, now: Duration) {
+    pub(super) fn record(&mut self, bytes: usize, service: Duration, is_late: bool, now: Duration) {
         let bytes = bytes as f64;
         // Determined before old samples are removed, so that the estimate survives a pause.
         let (best, limit) = (self.best(), self.limit());

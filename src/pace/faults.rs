@@ -134,17 +134,17 @@ impl World {
         }
         self.begun = self.now;
         let probe = self.link.probe(self.now);
-        self.pass_on(&probe);
+        self.transmit(&probe);
         let limit = self.link.limit(SCREEN, self.now).map_or(self.wanted, |limit| limit.max_bytes.min(self.wanted));
         let mut frame = vec![b'x'; limit - 11];
         self.link.send(&mut frame, self.now);
-        let seen = self.pass_on(&frame);
+        let seen = self.transmit(&frame);
         self.frames.push((self.now, frame.len(), seen));
     }
 
     /// Transmits bytes, replies to their queries, and returns the time at which the bytes are
     /// visible.
-    fn pass_on(&mut self, bytes: &[u8]) -> Duration {
+    fn transmit(&mut self, bytes: &[u8]) -> Duration {
         self.free_at = self.free_at.max(self.now) + Duration::from_secs_f64(bytes.len() as f64 / self.rate);
         let at = self.free_at + self.round_trip;
         let tagged = bytes.strip_suffix(FENCE).unwrap_or(bytes);

@@ -181,7 +181,7 @@ impl Ledger {
     /// Matches a reply with a number to its query; `None` if there is no such query.
     pub(super) fn match_tagged(&mut self, tag: Tag) -> Option<Matched> {
         let at = self.queries.iter().position(|query| query.query.tag() == Some(tag))?;
-        Some(self.take(at))
+        Some(self.remove_through(at))
     }
 
     /// Returns the queries that replies without a number may belong to, oldest first.
@@ -192,19 +192,19 @@ impl Ledger {
     /// Matches a reply without a number to the oldest query that it may belong to.
     pub(super) fn match_oldest(&mut self) -> Option<Matched> {
         let at = self.queries.iter().position(|query| query.query.is_counted())?;
-        Some(self.take(at))
+        Some(self.remove_through(at))
     }
 
     /// Matches a reply without a number to the newest query that was sent at `latest` or before.
     pub(super) fn match_newest_sent_by(&mut self, latest: Duration) -> Option<Matched> {
         let fits = |query: &InFlight| query.query.is_counted() && query.sent <= latest;
         let at = self.queries.iter().rposition(fits)?;
-        Some(Matched { validity: Validity::Ambiguous, ..self.take(at) })
+        Some(Matched { validity: Validity::Ambiguous, ..self.remove_through(at) })
     }
 
     /// Removes the query at this index and all older ones, whose replies are lost, and returns what
     /// its reply shows.
-    fn take(&mut self, at: usize) -> Matched {
+    fn remove_through(&mut self, at: usize) -> Matched {
         let InFlight { query, sent, bytes, first_sent, late, .. } = self.queries[at];
         let mut acked = (first_sent, bytes);
         let mut validity = if late { Validity::Spurious } else { Validity::Exact };

@@ -185,8 +185,8 @@ impl ReplyTracker {
         !self.slow || self.serial_replies == 0 || self.ledger.oldest().is_none()
     }
 
-    /// Subtracts bytes that are sent now from the budget for an unknown rate, unless the rate is
-    /// known.
+    /// Subtracts bytes that are sent now from the budget of `initial_window`, if the rate is
+    /// unknown.
     pub(super) fn spend(&mut self, bytes: usize, now: Duration) {
         if self.lacks_rate() {
             self.initial_window.spend(bytes, now);
@@ -315,7 +315,7 @@ impl ReplyTracker {
             // The terminal answers the DA1 half of the query, so it has ignored the DECRQM half.
             self.tag_support = TagSupport::Possible;
         }
-        self.take(matched, now);
+        self.apply_reply(matched, now);
     }
 
     /// Drops the estimate of the round trip because the route may have changed, and lets the window
@@ -341,7 +341,7 @@ impl ReplyTracker {
         if let Some(Matched { query, .. }) = matched {
             self.awaits_second_reply = matches!(query, Query::Both(_));
             self.last_reply = Some(now);
-            self.take(matched, now);
+            self.apply_reply(matched, now);
         }
         matched.is_some()
     }
@@ -377,7 +377,7 @@ impl ReplyTracker {
     }
 
     /// Updates the state and the estimates by a reply; does nothing if it matches no query.
-    fn take(&mut self, matched: Option<Matched>, now: Duration) {
+    fn apply_reply(&mut self, matched: Option<Matched>, now: Duration) {
         let Some(matched) = matched else { return };
         self.initial_window = InitialWindow::default();
         self.delivered += matched.acked.1 as f64;
@@ -392,15 +392,15 @@ impl ReplyTracker {
         let is_rate_unknown = matched.validity == Validity::Ambiguous && !self.knows_rate();
         self.state = if is_rate_unknown { State::Recovering { until: self.silent_at(now) } } else { State::Steady };
         let had_round_trip = self.round_trip.is_known();
-        self.take_round_trip(matched, now);
+        self.record_round_trip(matched, now);
         let tells_rate = matches!(matched.validity, Validity::Exact | Validity::Spurious);
         // The first round trip after the estimate was dropped is the shortest, so the transmission time would be zero.
         if tells_rate && (had_round_trip || self.rates.best().is_none()) {
-            self.take_rate(matched, now);
+            self.record_rate(matched, now);
         }
     }
 
-    fn take_round_trip(&mut self, matched: Matched, now: Duration) {
+    fn record_round_trip(&mut self, matched: Matched, now: Duration) {
         let round_trip = now.saturating_sub(matched.sent);
         match matched.validity {
             Validity::Ambiguous => return,
@@ -408,18 +408,18 @@ impl ReplyTracker {
             Validity::Exact => self.serial_replies = self.serial_replies.saturating_sub(1),
             _ => {}
         }
-        self.round_trip.take(round_trip, matched.bytes == 0 || !self.slow, now);
+        self.round_trip.record(round_trip, matched.bytes == 0 || !self.slow, now);
     }
 
-    fn take_rate(&mut self, matched: Matched, now: Duration) {
+    fn record_rate(&mut self, matched: Matched, now: Duration) {
         // On a slow link frames follow each other without a pause, so that frames whose replies are lost were
         // transmitted directly before this one and count together with it.
         let (sent, bytes) = if self.slow { matched.acked } else { (matched.sent, matched.bytes) };
         let passed = now.saturating_sub(self.round_trip.shortest());
         let is_late = self.slow
             && passed > self.busy_period.until().max(sent) + self.transmission_time(bytes) + LATE_REPLY_MARGIN;
-        let (bytes, service) = self.busy_period.take(sent, bytes, passed);
-        self.rates.take(bytes, service, is_late, now);
+        let (bytes, service) = self.busy_period.extend(sent, bytes, passed);
+        self.rates.record(bytes, service, is_late, now);
     }
 
     /// Gives up matching replies to queries until no more replies arrive.

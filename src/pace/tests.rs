@@ -73,7 +73,7 @@ impl World {
         let end = self.now + time;
         while self.now < end {
             self.now += ms(1);
-            self.pass_on();
+            self.transmit();
             self.receive();
             self.send();
         }
@@ -88,13 +88,13 @@ impl World {
         let end = self.now + time;
         while self.now < end {
             self.now += ms(1);
-            self.pass_on();
+            self.transmit();
             self.receive();
         }
     }
 
     /// Transmits the bytes of one millisecond, in the order of sending.
-    fn pass_on(&mut self) {
+    fn transmit(&mut self) {
         let mut room = self.rate / 1_000.0;
         for sent in self.sent.iter_mut().filter(|sent| sent.seen.is_none()) {
             let taken = room.min(sent.left);
@@ -148,16 +148,17 @@ impl World {
 
     /// Returns the time from a key press at `pressed` until a frame that shows its effect is
     /// visible.
-    pub(super) fn key(&self, pressed: Duration) -> Duration {
+    pub(super) fn key_delay(&self, pressed: Duration) -> Duration {
         let heard = pressed + self.round_trip / 2;
         let frame = self.sent.iter().find(|sent| sent.is_frame && sent.at > heard);
         frame.and_then(|frame| frame.seen).map_or(Duration::MAX, |seen| seen.saturating_sub(pressed))
     }
 
-    /// Returns the median and the 99th percentile of [`key`](Self::key), for presses every 7 ms.
-    pub(super) fn keys(&self, from: Duration, to: Duration) -> [Duration; 2] {
+    /// Returns the median and the 99th percentile of [`key_delay`](Self::key_delay), for presses
+    /// every 7 ms.
+    pub(super) fn key_delays(&self, from: Duration, to: Duration) -> [Duration; 2] {
         let mut times: Vec<_> =
-            (from.as_millis()..to.as_millis()).step_by(7).map(|at| self.key(ms(at as u64))).collect();
+            (from.as_millis()..to.as_millis()).step_by(7).map(|at| self.key_delay(ms(at as u64))).collect();
         times.sort();
         [times[times.len() / 2], times[times.len() * 99 / 100]]
     }
@@ -180,7 +181,7 @@ fn keys_are_visible_soon_at_full_throughput() {
         let from = world.now;
         world.simulate(ms(40_000));
         let to = world.ago(2_000);
-        let [median, worst] = world.keys(from, to);
+        let [median, worst] = world.key_delays(from, to);
         let [fps, share] = world.throughput(from, to);
         assert!(median <= ms(p50) && worst <= ms(p99), "{frame}: p50 {median:?} p99 {worst:?}");
         assert!(fps >= 10.0 && share >= 0.85, "{frame}: {fps} fps, {share} of the link");
@@ -213,7 +214,7 @@ fn any_link_is_used_and_never_overfilled() {
             let from = world.now;
             world.simulate(ms(20_000));
             let to = world.ago(3_000);
-            let [_, worst] = world.keys(from, to);
+            let [_, worst] = world.key_delays(from, to);
             let [fps, share] = world.throughput(from, to);
             let what = format!("{rate} B/s, {round_trip} ms: p99 {worst:?}, {fps} fps, {share}");
             assert!(worst <= ms(round_trip + 200), "{what}");
@@ -235,7 +236,7 @@ fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
         world.rate /= 10.0;
         let dropped = world.now;
         world.simulate(ms(20_000));
-        (0..15_000).rev().find(|&at| world.key(dropped + ms(at)) > ms(400)).unwrap_or(0)
+        (0..15_000).rev().find(|&at| world.key_delay(dropped + ms(at)) > ms(400)).unwrap_or(0)
     };
     let mut late: Vec<_> = (0..70).step_by(5).map(late).collect();
     late.sort_unstable();
@@ -333,7 +334,7 @@ fn a_very_long_round_trip_is_taken_for_silence_only_at_first() {
     let from = world.now;
     world.simulate(ms(10_000));
     let to = world.ago(3_000);
-    let [_, worst] = world.keys(from, to);
+    let [_, worst] = world.key_delays(from, to);
     let [fps, share] = world.throughput(from, to);
     assert!(worst <= ms(1_150), "{worst:?}");
     assert!(fps >= 10.0 && share >= 0.8, "{fps} fps, {share} of the link");
@@ -354,7 +355,7 @@ fn unsolicited_replies_do_no_lasting_harm() {
     let from = world.now;
     world.simulate(ms(10_000));
     let to = world.ago(2_000);
-    let [_, worst] = world.keys(from, to);
+    let [_, worst] = world.key_delays(from, to);
     let [fps, share] = world.throughput(from, to);
     assert!(worst <= ms(400), "{worst:?}");
     assert!(fps >= 10.0 && share >= 0.8, "{fps} fps, {share} of the link");
@@ -403,7 +404,7 @@ fn a_slightly_shorter_round_trip_is_used_fully() {
             let from = world.now;
             world.simulate(ms(20_000));
             let to = world.ago(2_000);
-            let [_, worst] = world.keys(from, to);
+            let [_, worst] = world.key_delays(from, to);
             let [_, share] = world.throughput(from, to);
             [worst.as_secs_f64(), share]
         });

@@ -15,7 +15,7 @@ pub(crate) const FIRST_FRAME_MOTION: Duration = Duration::from_micros(16_667);
 /// The camera on the shown scene, and its current motion.
 #[derive(Default)]
 pub(super) struct Eye {
-    /// `None` without a scene.
+    /// The view of the shown scene; `None` before the first.
     view: Option<ViewState>,
     motion: Motion,
     /// Whether the turntable is on.

@@ -93,7 +93,7 @@ impl Pacing {
         self.link.probe(now)
     }
 
-    /// Appends a query to a frame that is sent now.
+    /// Records that a frame is sent now, and appends the query that it is to end with, if any.
     pub(super) fn send(&mut self, frame: &mut Vec<u8>, now: Duration) {
         self.link.send(frame, now);
     }

@@ -29,7 +29,8 @@ const INITIAL_COST_RATIOS: [f64; MAX_MOTION_LEVEL + 1] = [1.0, 4.0, 2.0, 3.0];
 /// Share of a frame's time that tracing may take.
 // The rest is for making cells and bytes, and for the terminal, which draws on the same cores.
 const TRACING_SHARE: f64 = 0.75;
-/// Share of the time for tracing that a finer level may be predicted to take and still be tried.
+/// A finer level is tried only if it is predicted to take at most this share of the time for
+/// tracing.
 // Less than 1, so that the level does not oscillate: a level that takes more is kept but not tried. The test
 // `no_level_flickers` covers all frame times up to 40 ms with a noise of a tenth.
 const FINER_LEVEL_SHARE: f64 = 0.8;

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 /// The shown scene, and the view in which the user left each of the other scenes.
 #[derive(Default)]
 pub(super) struct SceneHistory {
-    /// `None` without a scene.
+    /// The shown scene; `None` before the first.
     current: Option<Current>,
     /// The view in which each scene was left, by the scene's index in the driver's list.
     left: HashMap<usize, ViewState>,
