@@ -197,7 +197,7 @@ impl Terminal {
             }
             Ok(_) => Readable { keys: !fds[0].revents().is_empty(), wake: !fds[1].revents().is_empty() },
         };
-        self.output.push()?;
+        self.output.write_pending()?;
         Ok(readable)
     }
 }

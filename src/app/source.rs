@@ -35,14 +35,14 @@ impl Source {
     pub fn of_file(path: &Path) -> Self {
         let (name, file) = (path.to_string_lossy().into_owned(), path.to_owned());
         let is_mesh = mesh_file::is_mesh(&name, &[]);
-        let source = Self::new(name, move |reporter| draft(&file, reporter));
+        let source = Self::new(name, move |reporter| load_draft(&file, reporter));
         let source = source.with_file(path.to_owned());
         // A mesh is a single object, which users want to see from all sides.
         if is_mesh { source.orbited() } else { source }
     }
 }
 
-fn draft(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, LoadError> {
+fn load_draft(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, LoadError> {
     Draft::load(path, reporter).map_err(|unfinished| match unfinished {
         Unfinished::Failed(error) => error,
         // This error is never shown, because the result of a cancelled load is dropped.

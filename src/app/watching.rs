@@ -132,14 +132,14 @@ impl Watching {
             }
         }
         let is_fresh = |dependency: &Dependency| {
-            ResolvedPath::to(dependency.path())
+            ResolvedPath::resolve(dependency.path())
                 .is_some_and(|path| path.end().parent().is_some_and(|folder| fresh.contains(folder)))
         };
         self.dependencies.iter().any(|dependency| (all || is_fresh(dependency)) && dependency.has_changed())
     }
 
     fn resolve_paths(&self) -> Vec<ResolvedPath> {
-        self.dependencies.iter().filter_map(|dependency| ResolvedPath::to(dependency.path())).collect()
+        self.dependencies.iter().filter_map(|dependency| ResolvedPath::resolve(dependency.path())).collect()
     }
 
     fn share_paths(&self, paths: &[ResolvedPath]) {

@@ -107,7 +107,7 @@ impl BusyPeriod {
     }
 
     /// Returns the time at which the last confirmed bytes had been transmitted.
-    pub(super) fn until(&self) -> Duration {
+    pub(super) fn transmitted_until(&self) -> Duration {
         self.until
     }
 }
@@ -138,7 +138,7 @@ impl Rates {
     pub(super) fn record(&mut self, bytes: usize, service: Duration, is_late: bool, now: Duration) {
         let bytes = bytes as f64;
         // Determined before old samples are removed, so that the estimate survives a pause.
-        let (best, limit) = (self.best(), self.limit());
+        let (best, limit) = (self.best(), self.highest_limit());
         if bytes < best.map_or(MIN_SAMPLE_BYTES, |best| MIN_SAMPLE_BYTES.min(best.bytes_per_second / 50.0)) {
             return;
         }
@@ -172,7 +172,7 @@ impl Rates {
     ///
     /// A new lower bound may be at most twice as high: an unsolicited reply makes the rate seem much higher, and
     /// sending at that rate would queue seconds of data.
-    fn limit(&self) -> f64 {
+    fn highest_limit(&self) -> f64 {
         let limits = self.rates.iter().filter(|(_, rate)| rate.is_limit).map(|(_, rate)| rate.bytes_per_second);
         limits.reduce(f64::max).unwrap_or(f64::INFINITY)
     }

@@ -185,7 +185,7 @@ impl Ledger {
     }
 
     /// Returns the queries that replies without a number may belong to, oldest first.
-    pub(super) fn counted(&self) -> impl Iterator<Item = &InFlight> {
+    pub(super) fn counted_queries(&self) -> impl Iterator<Item = &InFlight> {
         self.queries.iter().filter(|query| query.query.is_counted())
     }
 

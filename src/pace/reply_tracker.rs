@@ -14,7 +14,7 @@ use std::time::Duration;
 // key that waits for a lost reply is visible within 250 ms, which `faults` tests. The timeout was 10 s while replies
 // could only be counted, and one lost reply stopped the picture for 8 to 12 s.
 const RTO_MARGIN: Duration = Duration::from_millis(150);
-/// [`RTO_MARGIN`] for a slow link.
+/// Time after a reply was due on a slow link until it counts as missing.
 // A frame that is sent too early queues behind others, and the replies of a link that has become ten times slower are
 // 280 ms apart.
 const SLOW_RTO_MARGIN: Duration = Duration::from_millis(300);
@@ -25,14 +25,15 @@ const FIRST_RTO: Duration = Duration::from_millis(400);
 /// Time after a timeout until a terminal that has not replied is considered silent: two more
 /// timeouts.
 const SILENCE_TIMEOUT: Duration = Duration::from_millis(300);
-/// [`SILENCE_TIMEOUT`] for a slow link.
+/// Time after a timeout on a slow link until a terminal that has not replied is considered silent.
 // Longer, because frames sent to a terminal that merely pauses would queue on the link for seconds.
 const SLOW_SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
-/// [`SILENCE_TIMEOUT`] if no reply has ever arrived.
+/// Time after the first timeout until a terminal that has never replied is considered silent.
 ///
 /// Together with [`FIRST_RTO`] it ends a second after the first frame.
 const FIRST_SILENCE_TIMEOUT: Duration = Duration::from_millis(600);
-/// [`SILENCE_TIMEOUT`] if the rate is unknown.
+/// Time after a timeout until a terminal that has not replied is considered silent, at unknown
+/// rate.
 ///
 /// Until then small frames show the effect of keys (see [`InitialWindow`]).
 // The first picture, of 15 KB, may still be on its way through a link of 2 KB/s, in which full frames would queue for
@@ -219,12 +220,14 @@ impl ReplyTracker {
 
     /// Returns the time at which the reply to `oldest`, the oldest query in flight, is expected.
     pub(super) fn reply_due_at(&self, oldest: &InFlight) -> Duration {
-        self.transmitted_at(self.busy_period.until(), oldest) + self.round_trip.expected()
+        self.transmitted_at(self.busy_period.transmitted_until(), oldest) + self.round_trip.expected()
     }
 
     /// Returns the estimated time at which the link has transmitted everything in flight.
     pub(super) fn idle_at(&self) -> Duration {
-        self.ledger.in_flight().fold(self.busy_period.until(), |free_at, query| self.transmitted_at(free_at, query))
+        self.ledger
+            .in_flight()
+            .fold(self.busy_period.transmitted_until(), |free_at, query| self.transmitted_at(free_at, query))
     }
 
     /// Returns the time at which a link that is free at `free_at` has transmitted `query` and the
@@ -289,7 +292,7 @@ impl ReplyTracker {
             return;
         }
         // A reply without an outstanding query, such as a duplicate, is ignored.
-        let Some(oldest) = self.ledger.counted().next().map(|oldest| oldest.sent) else { return };
+        let Some(oldest) = self.ledger.counted_queries().next().map(|oldest| oldest.sent) else { return };
         if self.is_misaligned(now) {
             return self.resync(now);
         }
@@ -351,7 +354,7 @@ impl ReplyTracker {
     fn is_misaligned(&mut self, now: Duration) -> bool {
         let Some(rate) = self.rates.best().filter(|_| self.slow && !self.ledger.is_ambiguous()) else { return false };
         let round_trip = self.round_trip.shortest();
-        self.alignment.is_misaligned(self.ledger.counted(), round_trip, rate.bytes_per_second, now)
+        self.alignment.is_misaligned(self.ledger.counted_queries(), round_trip, rate.bytes_per_second, now)
     }
 
     /// Returns whether a reply that arrives now is too early for a query sent at `sent`.
@@ -417,7 +420,8 @@ impl ReplyTracker {
         let (sent, bytes) = if self.slow { matched.acked } else { (matched.sent, matched.bytes) };
         let passed = now.saturating_sub(self.round_trip.shortest());
         let is_late = self.slow
-            && passed > self.busy_period.until().max(sent) + self.transmission_time(bytes) + LATE_REPLY_MARGIN;
+            && passed
+                > self.busy_period.transmitted_until().max(sent) + self.transmission_time(bytes) + LATE_REPLY_MARGIN;
         let (bytes, service) = self.busy_period.extend(sent, bytes, passed);
         self.rates.record(bytes, service, is_late, now);
     }

@@ -2,7 +2,7 @@
 //! reverse order.
 
 use super::output::Output;
-use super::replies::{await_last, is_in_background};
+use super::replies::{await_last_reply, is_in_background};
 use super::{Signals, fault_injection, panics, signals};
 use crate::input::Input;
 use crate::protocol::{self, FENCE, Receiver, TerminalMode};
@@ -76,10 +76,10 @@ impl Modes {
         let needs_fence = self.on.is_on(TerminalMode::Keyboard) && !is_in_background(keys);
         let mut off = Vec::new();
         self.on.switch_all_off(&mut off);
-        output.put(&off);
+        output.append(&off);
         let Some(before) = self.before.take() else { return true };
         if needs_fence {
-            output.put(FENCE);
+            output.append(FENCE);
             if let Some((receiver, now)) = &mut receiver {
                 receiver.sent(FENCE, *now);
             }
@@ -88,7 +88,7 @@ impl Modes {
         let is_drained = output.drain(deadline);
         // A terminal that has stopped reading does not reply either.
         if let Some((receiver, now)) = receiver.filter(|_| is_drained) {
-            let read = await_last(keys, receiver, now, deadline);
+            let read = await_last_reply(keys, receiver, now, deadline);
             if let Some(typed) = &mut typed {
                 typed.extend(read);
             }

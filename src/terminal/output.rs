@@ -31,7 +31,7 @@ impl Output {
     /// Opens the terminal of standard output.
     pub(super) fn open() -> io::Result<Self> {
         let shared = File::from(io::stdout().as_fd().try_clone_to_owned()?);
-        Ok(match reopen(&shared) {
+        Ok(match reopen_non_blocking(&shared) {
             Some(own) => Self::new(own, false),
             None => Self::new(shared, true),
         })
@@ -53,17 +53,17 @@ impl Output {
 
     /// Appends bytes and writes them, in a single call if the terminal accepts all.
     pub(super) fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.put(bytes);
-        self.push()
+        self.append(bytes);
+        self.write_pending()
     }
 
     /// Appends bytes without writing them.
-    pub(super) fn put(&mut self, bytes: &[u8]) {
+    pub(super) fn append(&mut self, bytes: &[u8]) {
         self.pending.extend_from_slice(bytes);
     }
 
     /// Writes pending bytes until the terminal accepts no more.
-    pub(super) fn push(&mut self) -> io::Result<()> {
+    pub(super) fn write_pending(&mut self) -> io::Result<()> {
         while self.is_pending() {
             match self.write() {
                 Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
@@ -110,7 +110,7 @@ impl Output {
     ///
     /// (A terminal that has stopped reading may have had room for exactly these bytes.)
     pub(super) fn drain(&mut self, deadline: Instant) -> bool {
-        while self.push().is_ok() && self.is_pending() {
+        while self.write_pending().is_ok() && self.is_pending() {
             let left = deadline.saturating_duration_since(Instant::now());
             if left.is_zero() {
                 break;
@@ -192,7 +192,7 @@ pub fn stderr_accepts_message() -> bool {
 ///
 /// `O_NONBLOCK` on the open file description shared with the shell would outlive the program. Opening by name fails if
 /// the device belongs to another user (after `su`); `/dev/tty` then works if it is the terminal of this session.
-fn reopen(terminal: &File) -> Option<File> {
+fn reopen_non_blocking(terminal: &File) -> Option<File> {
     let open = |name: &[u8]| {
         let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits().try_into().ok()?;
         OpenOptions::new().write(true).custom_flags(flags).open(OsStr::from_bytes(name)).ok()

@@ -13,15 +13,15 @@ use std::time::{Duration, Instant};
 /// Reads input until the last outstanding reply or the deadline, and returns the input.
 ///
 /// Otherwise the shell would take these replies for typed text, as it does if they arrive after the deadline.
-pub(super) fn await_last(keys: &File, receiver: &mut Receiver, now: Duration, deadline: Instant) -> Vec<Input> {
+pub(super) fn await_last_reply(keys: &File, receiver: &mut Receiver, now: Duration, deadline: Instant) -> Vec<Input> {
     let mut inputs = Vec::new();
     if !is_in_background(keys) {
-        read_up_to_last(keys, receiver, now, deadline, &mut inputs);
+        read_up_to_last_reply(keys, receiver, now, deadline, &mut inputs);
     }
     inputs
 }
 
-fn read_up_to_last(
+fn read_up_to_last_reply(
     mut keys: &File,
     receiver: &mut Receiver,
     now: Duration,

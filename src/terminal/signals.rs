@@ -103,7 +103,7 @@ impl Signals {
     pub fn catch() -> io::Result<Self> {
         let (read, write) = UnixStream::pair()?;
         read.set_nonblocking(true)?;
-        let ignored = ignored();
+        let ignored = ignored_signals();
         let deadly = Arc::new(AtomicUsize::new(0));
         catch_deadly(&CAUGHT, ignored, &deadly, &write)?;
         let flag = |signal| -> io::Result<Arc<AtomicBool>> {
@@ -238,7 +238,7 @@ pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> 
     };
     // The thread starts before the handlers are installed, so that no signal is caught without a receiver.
     thread::Builder::new().name("signals".to_owned()).spawn(wait)?;
-    let ignored = ignored();
+    let ignored = ignored_signals();
     catch_deadly(&CAUGHT, ignored, &deadly, &write)?;
     catch_deadly(&CAUGHT_BEFORE_DEATH, ignored, &deadly, &write)
 }
@@ -251,7 +251,7 @@ pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> 
 /// orphaned process group (a terminal that runs the program without a shell), which cannot be continued, that action
 /// does nothing, whereas SIGSTOP would hang the process for ever.
 fn accept_blocked(ignored: u64, deadly: Arc<AtomicUsize>, mut waker: Waker) -> io::Result<Receiver<()>> {
-    let signals = blocked();
+    let signals = signals_to_block();
     signals.thread_block()?;
     let mut pending = PendingSignals::of(&signals)?;
     let (stopped, stops) = channel();
@@ -276,7 +276,7 @@ fn accept_blocked(ignored: u64, deadly: Arc<AtomicUsize>, mut waker: Waker) -> i
 }
 
 /// Returns the signals to block; they include the real-time signals, for which nix has no names.
-fn blocked() -> SigSet {
+fn signals_to_block() -> SigSet {
     let mut signals = SigSet::all();
     for &signal in UNBLOCKED {
         signals.remove(signal);
@@ -339,7 +339,7 @@ pub fn without_signals<T>(work: impl FnOnce() -> T) -> T {
 /// each caught signal, and so would stop the process again before the signal is handled. The whole group is stopped,
 /// because a shell does not notice a job of which only one process stops.
 pub(super) fn stop_for_output() -> bool {
-    let is_stopping = !contains_signal(ignored(), SIGTTOU);
+    let is_stopping = !contains_signal(ignored_signals(), SIGTTOU);
     is_stopping && rustix::process::kill_current_process_group(rustix::process::Signal::TTOU).is_ok()
 }
 
@@ -361,7 +361,7 @@ fn with_blocked<T>(signals: &SigSet, work: impl FnOnce() -> T) -> T {
 /// Returns the set of ignored signals, with signal n in bit n - 1.
 ///
 /// On other systems than Linux the set is empty, so that ignored signals are caught too.
-fn ignored() -> u64 {
+fn ignored_signals() -> u64 {
     ignored_in(&std::fs::read_to_string("/proc/self/status").unwrap_or_default())
 }
 
@@ -402,7 +402,7 @@ pub fn die_of(signal: i32) {
     let _ = signal_hook::low_level::emulate_default_handler(signal);
     // For other signals, which are blocked: unblocking delivers those pending for this thread, as by `raise`, first.
     let _ = signal_hook::low_level::raise(signal);
-    let _ = blocked().thread_unblock();
+    let _ = signals_to_block().thread_unblock();
 }
 
 /// Lets writes beyond the file size limit (`ulimit -f`) fail, instead of ending the process by

@@ -43,7 +43,7 @@ impl Display {
 
     /// Returns the part of the window that the picture covers, from its upper left corner.
     pub(super) fn size(&self) -> Size {
-        extent::covered(self.window.size, self.capabilities.cell_mode)
+        extent::covered_size(self.window.size, self.capabilities.cell_mode)
     }
 
     pub(super) fn resolution(&self) -> Resolution {
@@ -87,7 +87,7 @@ impl Display {
     /// # Errors
     /// If there is not enough.
     pub(super) fn check_memory(&self) -> Result<(), OutOfMemory> {
-        extent::check(self.size(), self.capabilities.cell_mode)
+        extent::check_memory(self.size(), self.capabilities.cell_mode)
     }
 
     /// Returns whether the terminal supports the kitty keyboard protocol.

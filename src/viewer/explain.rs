@@ -145,7 +145,7 @@ impl ExplainPanel {
     fn paint(&mut self, scroll: &str, theme: Theme, mode: CellMode, area: Rect, buffer: &mut Buffer) {
         let lines = self.lines(mode);
         let inside = area.inner(Margin::new(2, 1));
-        let [text, inset] = placement::split(inside, lines.len() as u16);
+        let [text, inset] = placement::split_panel(inside, lines.len() as u16);
         // The scroll position is clamped here and not on the key press, because its limit depends on the pixel and the
         // panel's height.
         self.scrolled = self.scrolled.min(lines.len().saturating_sub(text.height.into()));

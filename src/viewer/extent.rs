@@ -14,7 +14,7 @@ use crate::memory::{self, OutOfMemory};
 pub const MAX_PIXELS: u32 = 1 << 21;
 
 /// Returns the size that the picture covers, from the window's upper left corner.
-pub(super) fn covered(window: Size, mode: CellMode) -> Size {
+pub(super) fn covered_size(window: Size, mode: CellMode) -> Size {
     let (across, down) = mode.pixels_per_cell();
     let (most, cells) = ((MAX_PIXELS / (across * down)) as usize, window.cell_count());
     if cells <= most {
@@ -33,7 +33,7 @@ const BYTES_PER_PIXEL: usize = 256;
 ///
 /// # Errors
 /// If there is not enough.
-pub(super) fn check(size: Size, mode: CellMode) -> Result<(), OutOfMemory> {
+pub(super) fn check_memory(size: Size, mode: CellMode) -> Result<(), OutOfMemory> {
     let (across, down) = mode.pixels_per_cell();
     let pixels = size.cell_count() * (across * down) as usize;
     let Size { columns, rows } = size;

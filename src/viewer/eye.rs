@@ -45,7 +45,7 @@ pub(super) struct ViewState {
 
 impl ViewState {
     /// Returns the initial view of a scene.
-    pub(super) fn of(scene: &Scene, orbits: bool) -> Self {
+    pub(super) fn initial(scene: &Scene, orbits: bool) -> Self {
         let home = *scene.camera();
         Self {
             home,
@@ -140,7 +140,8 @@ impl Eye {
         self.start_motion(now);
     }
 
-    /// Starts the clock of the motion, if anything moves, [`FIRST_FRAME_MOTION`] before `now`.
+    /// Starts the motion, if anything moves, as if it had begun [`FIRST_FRAME_MOTION`] before
+    /// `now`.
     fn start_motion(&mut self, now: Duration) {
         let moves = self.turntable || self.motion.is_moving(now);
         self.moved_until = moves.then(|| self.moved_until.unwrap_or(now.saturating_sub(FIRST_FRAME_MOTION)));

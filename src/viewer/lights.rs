@@ -18,7 +18,7 @@ pub(super) struct Lights {
 
 impl Lights {
     /// Returns the lights of a scene before any move.
-    pub(super) fn of(scene: Scene) -> Self {
+    pub(super) fn new(scene: Scene) -> Self {
         Self { written: scene.lights().to_vec(), scene, held: None, moves: 0 }
     }
 

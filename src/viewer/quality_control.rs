@@ -39,7 +39,7 @@ const FINER_LEVEL_SHARE: f64 = 0.8;
 // fails costs a late frame.
 const FRAMES_BEFORE_FINER: u32 = 8;
 /// Number of late frames in a row before a coarser level is chosen.
-// A single frame may be late because another process had the core, unless it is very late.
+// A single frame may be late because another process had the core. A frame that is very late counts at once.
 const LATE_FRAMES_BEFORE_COARSER: u32 = 2;
 
 /// The choice of the next picture's level of sampling, from the times of the pictures before.

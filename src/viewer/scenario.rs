@@ -50,7 +50,7 @@ pub fn run_scenario(scenario: &[u8]) {
     let mut driver = Driver::new(wishes);
     let mut bytes = events.iter().copied();
     while let Some(event) = bytes.next() {
-        driver.take(event, &mut bytes);
+        driver.apply_event(event, &mut bytes);
         driver.act();
     }
     driver.come_to_rest();
@@ -98,7 +98,7 @@ impl Driver {
         driver
     }
 
-    fn take(&mut self, event: u8, more: &mut impl Iterator<Item = u8>) {
+    fn apply_event(&mut self, event: u8, more: &mut impl Iterator<Item = u8>) {
         let mut next = || more.next().unwrap_or(0);
         match event % 9 {
             0 => {
@@ -114,7 +114,7 @@ impl Driver {
             2 => self.now += Duration::from_millis(u64::from(next())),
             3 => self.finish_job(next()),
             4 => self.is_sending = false,
-            5 => self.reply(),
+            5 => self.reply_to_queries(),
             6 => {
                 let of = usize::from(next() % 3);
                 let scene = SCENES[of % 2].clone();
@@ -153,7 +153,7 @@ impl Driver {
     }
 
     /// Passes the viewer the terminal's replies to all outstanding queries.
-    fn reply(&mut self) {
+    fn reply_to_queries(&mut self) {
         let mut replies = Vec::new();
         for (at, _) in self.sent.iter().enumerate().filter(|(_, byte)| **byte == 0x1b) {
             let rest = &self.sent[at..];
@@ -172,8 +172,9 @@ impl Driver {
     fn finish_job(&mut self, milliseconds: u8) {
         let Some(Job { scene, shot, sampling, refines }) = self.job.take() else { return };
         self.frames = self.frames.wrapping_add(1);
-        let parts: Vec<_> = shot.layout.parts(shot.resolution).into_iter().map(|(_, part)| self.flat(part)).collect();
-        let picture = shot.layout.combined(&parts, INITIAL_WIPE).unwrap_or_else(|| self.flat(shot.resolution));
+        let parts: Vec<_> =
+            shot.layout.parts(shot.resolution).into_iter().map(|(_, part)| self.flat_picture(part)).collect();
+        let picture = shot.layout.combined(&parts, INITIAL_WIPE).unwrap_or_else(|| self.flat_picture(shot.resolution));
         let legends = shot.layout.legends(&scene, &shot.camera);
         let (cost, trace) = (Cost::default(), Duration::from_millis(milliseconds.into()));
         let parts = if shot.layout.is_wipe() { parts } else { Vec::new() };
@@ -181,7 +182,7 @@ impl Driver {
     }
 
     /// Returns a picture whose pixels differ from those of the previous frame.
-    fn flat(&self, resolution: Resolution) -> Picture {
+    fn flat_picture(&self, resolution: Resolution) -> Picture {
         let [width, height] = [resolution.width(), resolution.height()];
         // The frame's number is part of the colour, so that drawing a new frame always sends bytes.
         let pixel = |at: u32| Srgb8::new(self.frames, at as u8, 7);
@@ -244,7 +245,7 @@ impl Driver {
         for _ in 0..MAX_WAKE_UPS {
             self.finish_job(1);
             self.is_sending = false;
-            self.reply();
+            self.reply_to_queries();
             match self.act() {
                 None if self.job.is_none() && !self.is_sending => return,
                 None => {}

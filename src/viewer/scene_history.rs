@@ -36,11 +36,11 @@ impl SceneHistory {
         // If a scene is loaded again with the same own camera, something else in its file was edited, and the user's
         // view is kept. If the camera was edited, the user wants to see the new one.
         let view = (before != Some((index, home))).then(|| {
-            // A view that was left counts only if the scene's own camera is unchanged, for the same reason.
+            // For the same reason a view that was left is used only if the scene's own camera is unchanged.
             let left = self.left.remove(&index).filter(|left| left.home() == home);
-            left.unwrap_or_else(|| ViewState::of(&scene, orbits))
+            left.unwrap_or_else(|| ViewState::initial(&scene, orbits))
         });
-        self.current = Some(Current { index, home, lights: Lights::of(scene) });
+        self.current = Some(Current { index, home, lights: Lights::new(scene) });
         self.count += 1;
         view
     }

@@ -113,7 +113,7 @@ impl Screen {
         frame.wipe(content.wipe);
         content.layers.take_frame(&frame);
         content.frame = Some(frame);
-        self.rate.count(moving);
+        self.rate.count_frame(moving);
     }
 
     /// Moves the line between the two maps of a wipe to this share of the width.
@@ -330,7 +330,7 @@ impl FrameRate {
     /// Counts a frame shown at the time `moving`, or a frame shown at rest if `None`.
     ///
     /// A frame at rest or a pause longer than [`MAX_MOTION_GAP`] starts the mean anew.
-    fn count(&mut self, moving: Option<Duration>) {
+    fn count_frame(&mut self, moving: Option<Duration>) {
         let between = self.last.zip(moving).map(|(last, now)| now.saturating_sub(last));
         self.last = moving;
         // An interval of zero would be infinitely many frames a second.

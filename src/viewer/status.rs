@@ -70,17 +70,21 @@ impl Status {
         let shown = self.shown.map_or_else(|| "-".to_owned(), |fps| format!("{fps:.0}"));
         // Shows what limits the frame rate: the rate of a slow link, otherwise the times for tracing and encoding.
         let stages = match self.slow {
-            Some(rate) => format!("slow link {}B/s", short(rate)),
+            Some(rate) => format!("slow link {}B/s", short_number(rate)),
             None => {
-                format!("trace {} encode {}", short(per_second(1.0, self.trace)), short(per_second(1.0, self.encode)))
+                format!(
+                    "trace {} encode {}",
+                    short_number(per_second(1.0, self.trace)),
+                    short_number(per_second(1.0, self.encode))
+                )
             }
         };
         format!(
             " {}x{}x{}  {} rays/s  {stages} shown {shown} fps  eye {:.2} {:.2} {:.2}",
             cells.columns,
             cells.rows,
-            samples(self.sampling),
-            short(per_second(self.rays as f64, self.trace)),
+            samples_text(self.sampling),
+            short_number(per_second(self.rays as f64, self.trace)),
             eye.x,
             eye.y,
             eye.z,
@@ -89,7 +93,7 @@ impl Status {
 }
 
 /// Returns the samples per pixel as text: `1/4` if coarse, otherwise the (greatest) number.
-fn samples(sampling: Sampling) -> String {
+fn samples_text(sampling: Sampling) -> String {
     match sampling {
         // A coarse picture has one ray for 2x2 pixels.
         Sampling::Coarse => "1/4".to_owned(),
@@ -103,7 +107,7 @@ fn per_second(count: f64, time: Duration) -> f64 {
 }
 
 /// Formats a number with two or three digits and a unit prefix, such as 812, 3.9k or 12M.
-fn short(value: f64) -> String {
+fn short_number(value: f64) -> String {
     let (value, unit) = match value {
         v if v >= 1e9 => (v / 1e9, "G"),
         v if v >= 1e6 => (v / 1e6, "M"),

@@ -82,7 +82,7 @@ impl ViewLayout {
     /// Returns the maps to trace for a picture of size `whole`, each with its own size in pixels.
     pub(crate) fn parts(self, whole: Resolution) -> Vec<(Map, Resolution)> {
         match self.right {
-            Some(RightMap { split: Split::Beside, .. }) => self.maps().zip(halves(whole)).collect(),
+            Some(RightMap { split: Split::Beside, .. }) => self.maps().zip(side_by_side_sizes(whole)).collect(),
             // Both maps of a wipe have the full size, so that moving the line traces nothing.
             _ => self.maps().map(|map| (map, whole)).collect(),
         }
@@ -113,7 +113,7 @@ impl ViewLayout {
     /// `None` for a single map.
     pub(crate) fn combined(self, parts: &[Picture], wipe: f32) -> Option<Picture> {
         match (self.right?.split, parts) {
-            (Split::Beside, [left, right]) => Some(beside(left, right)),
+            (Split::Beside, [left, right]) => Some(side_by_side(left, right)),
             (Split::Wipe, [left, right]) => Some(wiped(left, right, wipe)),
             _ => None,
         }
@@ -126,13 +126,13 @@ const LINE: Srgb8 = Srgb8::new(255, 208, 64);
 /// Returns the sizes of two maps side by side, with a line of one column between them.
 ///
 /// In a picture too narrow for two maps, the left one has all columns and the right one none.
-fn halves(whole: Resolution) -> [Resolution; 2] {
+fn side_by_side_sizes(whole: Resolution) -> [Resolution; 2] {
     // At least one column for each map and one for the line.
     let left = if whole.width() < 3 { whole.width() } else { (whole.width() - 1) / 2 };
     [left, whole.width().saturating_sub(left + 1)].map(|width| whole.with_width(width))
 }
 
-fn beside(left: &Picture, right: &Picture) -> Picture {
+fn side_by_side(left: &Picture, right: &Picture) -> Picture {
     if right.width == 0 {
         return left.clone();
     }

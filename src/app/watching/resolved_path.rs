@@ -31,7 +31,7 @@ struct Step {
 
 impl ResolvedPath {
     /// Resolves `path`. `None` if it is relative and the current folder has been removed.
-    pub(super) fn to(path: &Path) -> Option<Self> {
+    pub(super) fn resolve(path: &Path) -> Option<Self> {
         // The steps to the current folder do not matter, because the process stays in that folder even if it is moved.
         let mut folder = if path.is_absolute() { PathBuf::new() } else { Path::new(".").canonicalize().ok()? };
         let mut steps = Vec::new();

@@ -13,7 +13,7 @@ fn shows_loss(frames: usize, later: impl Fn(usize) -> u64) -> Option<usize> {
         let sent = (number..number + 8).map(|number| ms(25 * number as u64));
         sent.for_each(|sent| ledger.record(Query::Counted, 1_000, sent));
         let now = ms(25 * number as u64 + 220 + later(number));
-        alignment.is_misaligned(ledger.counted(), ms(200), 50_000.0, now)
+        alignment.is_misaligned(ledger.counted_queries(), ms(200), 50_000.0, now)
     })
 }
 
