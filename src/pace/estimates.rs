@@ -4,7 +4,8 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Length of an age. The minimum of the round trips covers the current age and the one before.
+/// Length of an age: the shortest round trip is the minimum over the current age and the one
+/// before.
 // BBR keeps its minimum for 10 s. An outdated minimum delays keys, so ages are short; but while frames follow each
 // other, only one round trip a second is measured without a queue, and an age should contain several: five.
 const ROUND_TRIP_AGE: Duration = Duration::from_secs(5);

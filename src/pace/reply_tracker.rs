@@ -26,7 +26,7 @@ const FIRST_RTO: Duration = Duration::from_millis(400);
 /// timeouts.
 const SILENCE_TIMEOUT: Duration = Duration::from_millis(300);
 /// Time after a timeout on a slow link until a terminal that has not replied is considered silent.
-// Longer, because frames sent to a terminal that merely pauses would queue on the link for seconds.
+// Longer than on a fast link, where frames to a terminal that merely pauses do not queue for seconds.
 const SLOW_SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
 /// Time after the first timeout until a terminal that has never replied is considered silent.
 ///
@@ -367,8 +367,7 @@ impl ReplyTracker {
     /// Returns whether a reply that may be late is the one to the first picture rather than to the
     /// last query.
     ///
-    /// It is the latter's only if the terminal is local and replies at once. The reply to the first picture may take
-    /// long on a slow link.
+    /// A local terminal replies to the last query at once; the reply to the first picture may take long on a slow link.
     fn is_reply_to_first_frame(&self, now: Duration) -> bool {
         let comes_at_once = |sent: Duration| now <= sent + self.round_trip.shortest() + IMMEDIATE_REPLY_TOLERANCE;
         let is_lasts = self.is_local() && self.ledger.last_sent().is_some_and(comes_at_once);

@@ -18,8 +18,9 @@ const REST_RETRY: Duration = Duration::from_millis(2);
 /// Number of bytes that the event loop has read from the terminal.
 static READ: AtomicU64 = AtomicU64::new(0);
 
-/// Connects to a test: [`reach`] reports each phase to it and obeys its answer. Only the first call
-/// has an effect.
+/// Connects to a test, to which `reach` reports each phase and whose answers it obeys.
+///
+/// Only the first call has an effect.
 #[cfg(feature = "test-hooks")]
 pub fn inject_faults(test: UnixStream) {
     let _ = TEST.set(Mutex::new(test));
