@@ -181,8 +181,7 @@ impl FromStr for Format {
 /// ```
 ///
 /// # Panics
-/// If the screen has more pixels than [a picture may have](crate::framebuffer::Resolution::MAX_PIXELS): two for each
-/// cell.
+/// If the screen has more than 16,777,216 cells.
 pub fn text_frame(scene: &Scene, size: Size) -> String {
     text(&frame_grid(scene, CellMode::RAMP, size, USUAL_CELL_ASPECT))
 }

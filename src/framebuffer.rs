@@ -5,7 +5,7 @@ use std::fmt;
 
 /// The size of a picture in pixels, and the aspect ratio of a pixel.
 ///
-/// A picture has between 0 and [`MAX_PIXELS`](Self::MAX_PIXELS) pixels.
+/// A picture has between 0 and 33,554,432 pixels.
 ///
 /// ```
 /// use termtrace::Resolution;
@@ -37,7 +37,7 @@ impl Resolution {
     /// Returns the size of a picture of square pixels.
     ///
     /// # Errors
-    /// [`ResolutionError::TooLarge`], if there are more than [`MAX_PIXELS`](Self::MAX_PIXELS).
+    /// [`ResolutionError::TooLarge`], if there are more than 33,554,432 pixels.
     pub const fn new(width: u32, height: u32) -> Result<Self, ResolutionError> {
         if width as u64 * height as u64 > Self::MAX_PIXELS as u64 {
             return Err(ResolutionError::TooLarge { width, height });
@@ -48,7 +48,7 @@ impl Resolution {
     /// Returns the size of a picture of square pixels. For sizes that are known to be valid.
     ///
     /// # Panics
-    /// If there are more than [`MAX_PIXELS`](Self::MAX_PIXELS).
+    /// If there are more than 33,554,432 pixels.
     #[doc(hidden)]
     pub const fn square(width: u32, height: u32) -> Self {
         match Self::new(width, height) {
@@ -111,7 +111,7 @@ impl Resolution {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ResolutionError {
-    /// The picture has more than [`Resolution::MAX_PIXELS`] pixels.
+    /// The picture has more than 33,554,432 pixels.
     TooLarge {
         /// The number of pixels in a row.
         width: u32,

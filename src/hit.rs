@@ -27,7 +27,7 @@ pub struct Hit {
     pub t: f32,
     /// The index of the object in [`Scene::objects`].
     pub object: u32,
-    /// The index of the [primitive](crate::shape::Shape::primitive) in the object's shape.
+    /// The index of the primitive in the object's shape: the triangle of a mesh, else 0.
     pub primitive: u32,
 }
 

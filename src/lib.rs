@@ -192,7 +192,7 @@
 //! - No flag that marks a picture as stale: the wanted shot is compared with the one that was begun.
 //! - No list of cell kinds, formats or panels outside their tables: a cell kind is a file under `cell/` and a row of
 //!   the table of [`Glyphs`]; an export format is a file under `export/` and a row of the table of
-//!   [`Format`](export::Format)s. Flags, keys, commands, panels and the check against a golden file follow from these.
+//!   `export::Format`s. Flags, keys, commands, panels and the check against a golden file follow from these.
 //!   A panel is one file with a type that implements `viewer::layers::Layer`, and the line that opens it.
 //!
 //! # One eye ray

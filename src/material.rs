@@ -61,8 +61,7 @@ macro_rules! materials {
         #[non_exhaustive]
         pub enum Material {
             $(#[doc = $of] #[doc(hidden)] $(#[$on])* $material($material),)*
-            /// The colours and textures of a mesh's file, or [`DEFAULT`](Self::DEFAULT) if the file
-            /// has none.
+            /// The colours and textures of a mesh's file, or a diffuse light grey if the file has none.
             Own,
         }
 
@@ -145,7 +144,7 @@ materials! {
     Stripes, "Stripes of two reflectances in turn.";
 }
 
-/// Returns [`DEFAULT`](Material::DEFAULT).
+/// Returns the material of an object without one: a diffuse light grey.
 impl Default for Material {
     fn default() -> Self {
         Self::DEFAULT

@@ -9,8 +9,7 @@ use std::{fmt, io};
 
 /// A scene that can be read repeatedly.
 ///
-/// A scene is read when it is first shown, when the user returns to it, and when one of its files has changed. See
-/// [`open`](super::open).
+/// A scene is read when it is first shown, when the user returns to it, and when one of its files has changed.
 pub struct Source<E = LoadError> {
     named: SceneName,
     // In an `Arc`, because the loading thread may use it for longer than `self` lives.

@@ -153,8 +153,7 @@ impl<W> EncoderBackend<W> {
     ///
     /// `clock` returns the time from any fixed start. Text is always exact. From half a second after the last change
     /// on, each frame that is drawn makes a part of the picture exact, so that no single frame is large. A program
-    /// that only draws on events therefore goes on drawing for a while after the last one: twelve frames, 100 ms
-    /// apart, were enough for all pictures that were tried.
+    /// that only draws on events also draws when [`due`](Self::due) says so, until that is `None`.
     ///
     /// ```
     /// use ratatui::{Terminal, widgets::Paragraph};
@@ -165,7 +164,7 @@ impl<W> EncoderBackend<W> {
     /// let backend = EncoderBackend::new(Vec::new(), (80, 24)).with_quality(Quality::Equal, move || start.elapsed());
     /// let mut terminal = Terminal::new(backend)?;
     /// terminal.draw(|frame| frame.render_widget(Paragraph::new("text is exact"), frame.area()))?;
-    /// assert_eq!(terminal.size()?.height, 24);
+    /// assert_eq!(terminal.backend().due(), None, "the screen is exact");
     /// # Ok::<(), std::io::Error>(())
     /// ```
     pub fn with_quality(mut self, quality: Quality, clock: impl FnMut() -> Duration + Send + Sync + 'static) -> Self {
@@ -234,7 +233,6 @@ impl<W> EncoderBackend<W> {
     ///
     /// The time is on the clock passed to [`with_quality`](Self::with_quality). `None` means that the screen shows
     /// exactly the drawn cells.
-    #[doc(hidden)]
     pub fn due(&self) -> Option<Duration> {
         let limits = self.limits.as_ref()?;
         self.encoder.due().map(|due| limits.due(due))

@@ -94,7 +94,7 @@ impl<'a> Render<'a> {
         Self { sampling: sampling.into(), ..self }
     }
 
-    /// Sets the number of threads, clamped to between 1 and [`MAX_THREADS`](Self::MAX_THREADS).
+    /// Sets the number of threads, clamped to between 1 and 1,024.
     ///
     /// The picture is the same for any number. Without the feature `parallel` only the calling thread traces.
     pub fn threads(self, count: usize) -> Self {
@@ -115,7 +115,7 @@ impl<'a> Render<'a> {
         Self { callback: Some(Box::new(callback)), ..self }
     }
 
-    /// Renders the picture, with the same bits as [`render`](super::render).
+    /// Renders the picture, with the same bits for any number of threads.
     ///
     /// # Errors
     /// [`Cancelled`], if the token is cancelled or the callback returns `Break` before the last report.

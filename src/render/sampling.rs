@@ -11,7 +11,7 @@ use std::ops::Range;
 pub enum Sampling {
     /// One ray for each block of two by two pixels.
     Coarse,
-    /// The same number of rays through each pixel, at most [`MAX_SAMPLES`](Self::MAX_SAMPLES).
+    /// The same number of rays through each pixel, at most 65,536.
     Each(NonZeroU32),
     /// One ray through each pixel, and 4, 16 or 64 rays at edges, limited to the given number.
     ///

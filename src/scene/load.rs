@@ -74,7 +74,7 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// If the file cannot be read, or as [`Scene::from_bytes`].
+    /// If the file cannot be read, is not a mesh or UTF-8 text, or has faults.
     pub fn load(path: &Path) -> Result<Self, LoadError> {
         load(path, &Reporter::silent()).map(Draft::finish).map_err(Unfinished::failure)
     }
@@ -222,7 +222,7 @@ impl CameraPath {
     /// ```
     ///
     /// # Errors
-    /// If the file cannot be read, or as [`CameraPath::from_bytes`].
+    /// If the file cannot be read, is not UTF-8 text, or has faults.
     pub fn load(path: &Path, camera: &Camera) -> Result<Self, LoadError> {
         let bytes = read_bytes(path, |_| MAX_TEXT_BYTES, &Reporter::silent())?;
         Ok(Self::from_bytes(&path.to_string_lossy(), &bytes, camera)?)

@@ -31,7 +31,6 @@ use std::fmt;
 ///
 /// let cell = Position::new(20, 6);
 /// assert!(pane.hit(&scene, cell).is_some());
-/// assert!(pane.cell_of(pane.camera().pose().target).is_some());
 /// assert!(pane.scroll(&scene, cell, 1.0), "the wheel, over the picture");
 /// assert!(pane.press(cell, Grip::Turn));
 /// pane.drag(Position::new(24, 6));
@@ -156,6 +155,7 @@ impl SceneState {
     /// Returns the cell that shows a point of the scene, whether or not the point is hidden.
     ///
     /// Returns `None` outside the picture, and for points behind the eye.
+    #[doc(hidden)]
     pub fn cell_of(&self, point: Vec3) -> Option<Position> {
         let (RenderedShot { shot, .. }, part) = (self.shown.as_ref()?, self.covered_area()?);
         let place = shot.camera.project(point, shot.resolution.aspect_ratio())?;
