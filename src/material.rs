@@ -61,7 +61,9 @@ macro_rules! materials {
         #[non_exhaustive]
         pub enum Material {
             $(#[doc = $of] #[doc(hidden)] $(#[$on])* $material($material),)*
-            /// The colours and textures of a mesh's file, or a diffuse light grey if the file has none.
+            /// The colours and textures of a mesh's file.
+            ///
+            /// If the file has none, a diffuse light grey.
             Own,
         }
 

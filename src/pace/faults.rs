@@ -290,7 +290,7 @@ fn no_key_waits_much_longer_on_a_slow_link() {
     });
 }
 
-/// The first reply gives the round trip: until a better one comes, its fault makes the link look slower than it is.
+/// The first reply gives the round trip: until the next one, its fault makes the link look slow.
 #[test]
 fn a_fault_of_the_first_reply_delays_a_key_by_little_more_on_a_slow_link() {
     each_fault(ms(1_800), |tags, fault, at| {
