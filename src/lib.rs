@@ -407,7 +407,7 @@ pub use cell::{CellMode, Colors, Glyphs, Painter};
 pub use export::{Difference, compare, frame_grid, text_frame};
 pub use grid::{Cell, Glyph, Grid, HalfBlocks, Ink, Size};
 
-// ratatui.
+// For programs that use ratatui.
 #[cfg(feature = "ratatui")]
 pub use camera::Grip;
 #[cfg(feature = "ratatui")]
@@ -420,13 +420,13 @@ pub use overlay::lay_over;
 #[cfg(feature = "ratatui")]
 pub use widget::{SceneState, SceneView};
 
-// Films.
+// Recordings of films.
 #[cfg(feature = "cast")]
 pub use record::Cast;
 #[cfg(feature = "gif")]
 pub use record::Gif;
 
-// The error of `FromStr`.
+// The error of all `FromStr` implementations.
 pub use text::ParseError;
 
 // The crates whose types are in signatures.

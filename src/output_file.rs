@@ -93,7 +93,7 @@ impl OutputFile {
 
     /// Removes the temporary files that killed processes of this user left in the folder.
     ///
-    /// The whole folder is read, so one call should serve many files.
+    /// Each call reads the whole folder, so a command that writes many files should call this once.
     pub fn remove_stale(&self) {
         if let Destination::New(temporary) | Destination::NewOnly(temporary) | Destination::Replace(temporary, _) =
             &self.destination

@@ -252,8 +252,8 @@ fn char_shown_by_pen(cell: &Cell, half_blocks: HalfBlocks, pen: &Pen) -> Option<
 }
 
 /// Returns the cursor's position after writing a cell; `None` if it depends on the terminal.
-// It does in the last column, and after a cluster: terminals disagree on the width of flags, families and letters with
-// marks. The next move then has to be absolute.
+// The position depends on the terminal in the last column, and after a cluster: terminals disagree on the width of
+// flags, families and letters with marks. The next move then has to be absolute.
 pub(super) fn cursor_after(wanted: &Grid, position: CellPosition) -> Option<CellPosition> {
     if matches!(wanted.cell(position.column, position.row).glyph, Glyph::Cluster(_)) {
         return None;

@@ -20,7 +20,7 @@ pub(super) enum Meaning {
     OldMouse,
     /// The start of a function key of the Linux console; a letter of it follows.
     LinuxFunction,
-    /// A sequence that is valid but not reported.
+    /// Any sequence that is ignored.
     Nothing,
 }
 

@@ -51,7 +51,7 @@ pub(super) fn local_path(folder: &Path, written: &str) -> Result<PathBuf, String
     if written.len() > MAX_PATH_BYTES {
         return say("is longer than a path may be");
     }
-    // Nothing is ever fetched: a picture must not depend on the network, and a mesh must not reveal who views it.
+    // URLs are refused: a picture must not depend on the network, and a mesh must not reveal who views it.
     if written.contains("://") || written.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("data:")) {
         return say("is a URL; only files beside this one are read");
     }
@@ -65,7 +65,7 @@ pub(super) fn local_path(folder: &Path, written: &str) -> Result<PathBuf, String
     if has_drive || path.components().any(|part| matches!(part, Component::RootDir | Component::Prefix(_))) {
         return say("is an absolute path; write it relative to this file");
     }
-    // One spelling for each file, without `./`: files that were read are found again by their path.
+    // Without `./` each file has one spelling: files that were already read are looked up by their path.
     Ok(folder.join(path.components().filter(|part| *part != Component::CurDir).collect::<PathBuf>()))
 }
 

@@ -11,9 +11,9 @@ use super::text::TextCursor;
 use crate::progress::Meter;
 use glam::Vec3;
 
-/// Size of the header: 80 arbitrary bytes and a count of 4 bytes.
+/// Size of the header in bytes: 80 arbitrary ones, and 4 for the number of triangles.
 const HEADER: usize = 84;
-/// Size of a triangle: a normal, three corners, two attribute bytes.
+/// Size of a triangle in bytes: a normal, three corners, two attribute bytes.
 const FACET: usize = 50;
 
 /// Returns the size in bytes that a binary file should have, by the number of triangles in its

@@ -178,7 +178,8 @@ fn streams_are_distinguished_from_files() {
         assert!(!is_stream(&folder.path(name)), "{name}");
     }
     assert_eq!(folder.read("x"), OLD);
-    // A descriptor of a plain file is a stream too: a process that has opened the file would not see a replacement.
+    // A descriptor such as `/dev/fd/3` is a stream even if it refers to a plain file: the process that has opened that
+    // file would not see a replacement.
     if cfg!(target_os = "linux") {
         use std::os::fd::AsRawFd;
         let open = File::options().append(true).open(&file).expect("it is there");
