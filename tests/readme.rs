@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 use termtrace::internals::control::{Key, Keymap};
 use termtrace::{CameraPath, Scene};
 
@@ -193,4 +194,34 @@ fn every_page_is_in_the_index() {
 fn the_readme_is_short() {
     let lines = page("README.md").lines().count();
     assert!(lines <= 200, "{lines} lines");
+}
+
+/// Returns the commands of the table in a section of README: its code spans that begin with `termtrace `.
+fn commands_of<'a>(readme: &'a str, section: &str) -> Vec<&'a str> {
+    let (_, section) = readme.split_once(&format!("\n## {section}\n")).expect("README has this section");
+    let section = section.split("\n## ").next().unwrap_or_default();
+    section.split('`').skip(1).step_by(2).filter_map(|code| code.strip_prefix("termtrace ")).collect()
+}
+
+/// Each command of the table of features succeeds; films are cut short.
+#[test]
+fn each_command_of_the_readme_works() {
+    let readme = page("README.md");
+    let commands = commands_of(&readme, "What it can do");
+    assert!(commands.len() >= 10, "{commands:?}");
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let scene = page("docs/scenes.md");
+    fs::write(folder.path().join("my.ron"), blocks(&scene, "ron")[0]).expect("a scene can be written");
+    fs::copy(root().join("tests/meshes/tetrahedron.ply"), folder.path().join("bunny.ply"))
+        .expect("a mesh can be copied");
+    for command in commands {
+        let mut arguments: Vec<_> = command.split(' ').collect();
+        if arguments[0] == "record" {
+            arguments.extend(["--seconds", "0.1"]);
+        }
+        let mut program = Command::new(env!("CARGO_BIN_EXE_termtrace"));
+        program.current_dir(&folder).env("XDG_CONFIG_HOME", folder.path()).args(arguments).stdin(Stdio::null());
+        let output = program.output().expect("the program starts");
+        assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
+    }
 }
