@@ -196,7 +196,7 @@ fn the_readme_is_short() {
     assert!(lines <= 200, "{lines} lines");
 }
 
-/// Returns the commands of the table in a section of README: its code spans that begin with `termtrace `.
+/// Returns the code spans in a section of README that begin with `termtrace `, without that word.
 fn commands_of<'a>(readme: &'a str, section: &str) -> Vec<&'a str> {
     let (_, section) = readme.split_once(&format!("\n## {section}\n")).expect("README has this section");
     let section = section.split("\n## ").next().unwrap_or_default();
