@@ -7,7 +7,7 @@ use crate::scene::{LoadError, Scene};
 use crate::terminal::{self, Signals, Terminal};
 use crate::text::Notice;
 /// Re-exported for the fuzz target, in test builds only.
-#[cfg(feature = "test-hooks")]
+#[cfg(all(unit_tests, feature = "test-hooks"))]
 pub use crate::viewer::run_scenario as run_viewer_scenario;
 pub use crate::viewer::{MAX_PIXELS, Options};
 use std::convert::Infallible;

@@ -55,7 +55,7 @@ mod schedule;
 mod screen;
 mod view_layout;
 mod status;
-#[cfg(any(test, feature = "test-hooks"))]
+#[cfg(all(unit_tests, any(test, feature = "test-hooks")))]
 mod scenario;
 mod tracked;
 mod wipe_commands;
@@ -71,7 +71,7 @@ pub use options::Options;
 use pacing::Pacing;
 use pointer::PointerState;
 use progress::ProgressPanel;
-#[cfg(feature = "test-hooks")]
+#[cfg(all(unit_tests, feature = "test-hooks"))]
 pub use scenario::run_scenario;
 use scene_history::SceneHistory;
 use schedule::{Action, Facts, PictureState, decide};
