@@ -94,6 +94,29 @@ impl Resolution {
         self.width as f32 / (self.height as f32 * self.pixel_aspect)
     }
 
+    /// Returns the width and height in square pixels of the picture enlarged by `scale`.
+    ///
+    /// Each pixel becomes `scale` square pixels along its shorter side, and more along the other, so that the picture
+    /// has the shape that it has on the screen.
+    #[doc(hidden)]
+    pub fn size_in_square_pixels(&self, scale: u32) -> [u64; 2] {
+        let [width, height] = [self.width, self.height].map(|side| u64::from(side) * u64::from(scale));
+        let stretched = |side: u64, by: f32| ((side as f64 * f64::from(by)).round() as u64).max(side);
+        if self.pixel_aspect < 1.0 {
+            [stretched(width, 1.0 / self.pixel_aspect), height]
+        } else {
+            [width, stretched(height, self.pixel_aspect)]
+        }
+    }
+
+    /// Returns the pixels of a picture of this size, repeated to fill `across` by `down` pixels.
+    #[cfg(any(feature = "png", feature = "gif"))]
+    pub(crate) fn repeated<T: Copy>(self, pixels: &[T], [across, down]: [usize; 2]) -> impl Iterator<Item = T> {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let rows = (0..down).map(move |y| &pixels[y * height / down * width..][..width]);
+        rows.flat_map(move |row| (0..across).map(move |x| row[x * width / across]))
+    }
+
     /// Returns the number of pixels.
     pub(crate) const fn pixel_count(&self) -> usize {
         self.width as usize * self.height as usize

@@ -11,4 +11,4 @@ mod gif;
 #[cfg(feature = "cast")]
 pub use cast::Cast;
 #[cfg(feature = "gif")]
-pub use gif::{Gif, gif_size};
+pub use gif::Gif;

@@ -50,7 +50,7 @@ cost\t''
 facing\t''
 contrast\t''"
 complete -c termtrace -n "__fish_termtrace_needs_command" -l samples -d 'Rays per pixel, also in motion, or `best`: 1, and up to 64 at edges [default: as many as the time allows; best at rest]' -r
-complete -c termtrace -n "__fish_termtrace_needs_command" -l quality -d 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; live, on a slow link, equal]' -r -f -a "exact\t''
+complete -c termtrace -n "__fish_termtrace_needs_command" -l quality -d 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]' -r -f -a "exact\t''
 equal\t''
 fast\t''"
 complete -c termtrace -n "__fish_termtrace_needs_command" -l max-rate -d 'Average bandwidth cap in bytes per second, such as 50k or 2M [default: what the link takes]' -r
@@ -86,10 +86,10 @@ complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l target -d 
 complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l up -d 'Up vector, vertical in the picture, instead of the scene\'s' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l fov -d 'Vertical field of view in degrees, instead of the scene\'s' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l threads -d 'Number of threads that trace [default: one per core]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l size -d 'The frame\'s size in cells [default: 80x24]' -r
+complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l size -d 'The frame\'s size in cells [default: 80x24; PNG: 1280x800 pixels, GIF: 480x300]' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l pixels -d 'The frame\'s size in pixels; a cell has two pixels, one above the other, or with --glyphs shape two by four' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l cell-aspect -d 'A cell\'s height over its width' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l samples -d 'Rays per pixel, the first through its centre; or `best`: 1, and up to 64 at edges' -r
+complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l samples -d 'Rays per pixel, the first through its centre; or `best`: 1, and up to 64 at edges [default: 1; PNG and GIF: best]' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l scale -d 'Picture files: draw each pixel as N by N pixels of the file [default: 1]' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l map -d 'The shaded picture, or a map of the scene [default: shaded]' -r -f -a "shaded\t''
 lambert\t''
@@ -114,7 +114,7 @@ complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l format -d 
 ansi\t'Cells in colour'
 svg\t'Cells as a drawing, one rectangle per half cell'
 html\t'Cells as a web page'
-png\t'A picture file, one pixel per half cell'"
+png\t'A picture file'"
 complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -s o -l output -d 'Write to a file; - is standard output [default: -]' -r -F
 complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l check -d 'Compare with the frame in a file instead of writing one; exit code 1 and a diff if they differ' -r -F
 complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l no-config -d 'Ignore config.ron and keys.ron'
@@ -127,11 +127,11 @@ complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l fov -d 'V
 complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l threads -d 'Number of threads that trace [default: one per core]' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l path -d 'Path of the camera: orbit, or a file of keyframes' -r -F
 complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l seconds -d 'Length of the film in seconds [default: 8, or the length of the path file]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l fps -d 'Frames per second' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l size -d 'The frame\'s size in cells [default: 80x24]' -r
+complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l fps -d 'Frames per second [default: 30; GIF: 25]' -r
+complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l size -d 'The frame\'s size in cells [default: 80x24; PNG: 1280x800 pixels, GIF: 480x300]' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l pixels -d 'The frame\'s size in pixels; a cell has two pixels, one above the other, or with --glyphs shape two by four' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l cell-aspect -d 'A cell\'s height over its width' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l samples -d 'Rays per pixel, the first through its centre; or `best`: 1, and up to 64 at edges' -r
+complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l samples -d 'Rays per pixel, the first through its centre; or `best`: 1, and up to 64 at edges [default: 1; PNG and GIF: best]' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l scale -d 'Picture files: draw each pixel as N by N pixels of the file [default: 1]' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l map -d 'The shaded picture, or a map of the scene [default: shaded]' -r -f -a "shaded\t''
 lambert\t''
@@ -144,7 +144,7 @@ facing\t''
 contrast\t''"
 complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l order -d 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]' -r -f -a "color\t''
 raster\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l quality -d 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; live, on a slow link, equal]' -r -f -a "exact\t''
+complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l quality -d 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]' -r -f -a "exact\t''
 equal\t''
 fast\t''"
 complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l max-rate -d 'Average bandwidth cap in bytes per second, such as 50k or 2M [default: what the link takes]' -r
@@ -158,7 +158,7 @@ complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l up -d 'U
 complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l fov -d 'Vertical field of view in degrees, instead of the scene\'s' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l threads -d 'Number of threads that trace [default: one per core]' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l pixel -d 'The pixel\'s column and row, from (0, 0) at the top left' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l size -d 'The frame\'s size in cells [default: 80x24]' -r
+complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l size -d 'The frame\'s size in cells [default: 80x24; PNG: 1280x800 pixels, GIF: 480x300]' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l pixels -d 'The frame\'s size in pixels; a cell has two pixels, one above the other, or with --glyphs shape two by four' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l cell-aspect -d 'A cell\'s height over its width' -r
 complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l no-config -d 'Ignore config.ron and keys.ron'
@@ -226,7 +226,7 @@ cost\t''
 facing\t''
 contrast\t''"
 complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l samples -d 'Rays per pixel, also in motion, or `best`: 1, and up to 64 at edges [default: as many as the time allows; best at rest]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l quality -d 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; live, on a slow link, equal]' -r -f -a "exact\t''
+complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l quality -d 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]' -r -f -a "exact\t''
 equal\t''
 fast\t''"
 complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l max-rate -d 'Average bandwidth cap in bytes per second, such as 50k or 2M [default: what the link takes]' -r

@@ -6,7 +6,7 @@ use super::cells::{self, CellArgs};
 use super::map::{self, MapArgs};
 use super::outcome::{CommandResult, Failure, write_stdout};
 use super::outputs;
-use super::picture::PictureArgs;
+use super::picture::{FrameKind, PictureArgs};
 use super::scene_args::SceneArgs;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -23,14 +23,15 @@ const DEFAULT: Format = Format::Text;
 
 const FILES: &str = "\
 A frame does not depend on the terminal or the environment: auto means the ramp without colours for text, and truecolor
-half blocks for ANSI, SVG and HTML.";
+half blocks for ANSI, SVG and HTML. A golden frame (--check) of any format has 80x24 cells and one sample per pixel,
+unless flags say otherwise.";
 
 const EXAMPLES: &str = "\
 Examples:
   termtrace frame my.ron                                      text, 80x24 cells, to standard output
   termtrace frame my.ron --format ansi --size 120x40          truecolor half blocks
   termtrace frame my.ron --glyphs shape                       text whose characters follow the shapes
-  termtrace frame my.ron -o my.png --pixels 800x600 --samples 16
+  termtrace frame my.ron -o my.png                            1280x800 pixels, smooth edges
   termtrace frame my.ron -o my.svg --size 120x40              a drawing for a web page; .html is a page
   termtrace frame my.ron --check my.txt --bless               write the golden frame
   termtrace frame my.ron --check my.txt                       compare with it";
@@ -104,7 +105,7 @@ impl FrameArgs {
     /// program.
     fn check_flags(&self, format: Format) -> CommandResult {
         let wrong = |why: String| Err(Failure::Usage(why));
-        self.map.check_samples(self.picture.samples())?;
+        self.map.check_samples(self.picture.given_samples())?;
         let name = format.name();
         match format.contents() {
             Contents::Pixels(_) if self.cells.is_given() => {
@@ -129,9 +130,13 @@ impl FrameArgs {
     fn contents(&self, format: Format) -> Result<Vec<u8>, Failure> {
         let scene = self.scene.load()?;
         let mode = self.cell_mode(format);
-        let resolution = self.picture.resolution(mode)?;
-        self.picture.check_scaled_pixel_count(resolution)?;
-        let samples = self.picture.samples();
+        let kind = if self.check.is_some() { FrameKind::Cells } else { FrameKind::of(format) };
+        let resolution = self.picture.resolution(mode, kind)?;
+        // Only pictures have a scale: a grid of cells may have more pixels on the screen than a picture in memory.
+        if format.has_pixels() {
+            self.picture.check_scaled_pixel_count(resolution)?;
+        }
+        let samples = self.picture.samples(kind);
         let map = self.map.map();
         // Only tracing runs in the pool of `--threads`; the file is encoded on one thread.
         let picture = self

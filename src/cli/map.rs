@@ -38,9 +38,9 @@ impl MapArgs {
 
     /// Refuses more than one sample per pixel for a map whose values cannot be averaged: the mean
     /// of two object numbers has no meaning.
-    pub(super) fn check_samples(&self, sampling: Sampling) -> CommandResult {
+    pub(super) fn check_samples(&self, given: Option<Sampling>) -> CommandResult {
         let map = self.map();
-        if map.refines() || sampling == Sampling::Each(NonZeroU32::MIN) {
+        if map.refines() || given.is_none_or(|sampling| sampling == Sampling::Each(NonZeroU32::MIN)) {
             return Ok(());
         }
         let name = map.name();

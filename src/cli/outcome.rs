@@ -82,7 +82,7 @@ fn report_failure(message: &str, code: u8) -> ExitCode {
 }
 
 /// Prints a message to standard error, unless the write could block the program or suspend it.
-fn print_error(text: &str) {
+pub(super) fn print_error(text: &str) {
     // With `stty tostop`, SIGTTOU suspends a background process that writes to the terminal. A failed write is ignored:
     // there is no other place for the message, and the exit code reports the failure.
     if termtrace::internals::terminal::stderr_accepts_message() {

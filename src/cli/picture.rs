@@ -3,13 +3,49 @@
 use super::outcome::{CommandResult, Failure};
 use clap::Args;
 use std::num::NonZeroU32;
+use termtrace::export::Format;
 use termtrace::internals::capabilities::{CELL_ASPECT_RANGE, USUAL_CELL_ASPECT};
 use termtrace::{CellMode, Resolution, Sampling};
+
+/// The use of a frame, which decides its size and samples where no flag does.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum FrameKind {
+    /// Cells, or a golden frame of any format.
+    // The sizes of golden frames are promised: users' tests rely on them.
+    Cells,
+    /// A file with a picture, to look at.
+    Picture,
+    /// An animated GIF.
+    Gif,
+}
+
+impl FrameKind {
+    /// Returns the kind of a frame in a file of this format.
+    pub(super) fn of(format: Format) -> Self {
+        if format.has_pixels() { Self::Picture } else { Self::Cells }
+    }
+
+    /// Returns the default size in pixels; `None` for 80x24 cells.
+    fn resolution(self) -> Option<Resolution> {
+        match self {
+            Self::Cells => None,
+            Self::Picture => Some(Resolution::square(1280, 800)),
+            Self::Gif => Some(Resolution::square(480, 300)),
+        }
+    }
+
+    fn samples(self) -> Sampling {
+        match self {
+            Self::Cells => Sampling::Each(NonZeroU32::MIN),
+            Self::Picture | Self::Gif => Sampling::BEST,
+        }
+    }
+}
 
 /// The flags for the size of a frame.
 #[derive(Args)]
 pub(super) struct SizeArgs {
-    /// The frame's size in cells [default: 80x24]
+    /// The frame's size in cells [default: 80x24; PNG: 1280x800 pixels, GIF: 480x300]
     #[arg(long, value_name = "COLSxROWS", value_parser = parse_size, conflicts_with = "pixels")]
     size: Option<(u32, u32)>,
     /// The frame's size in pixels; a cell has two pixels, one above the other, or with --glyphs
@@ -25,9 +61,10 @@ pub(super) struct SizeArgs {
 pub(super) struct PictureArgs {
     #[command(flatten)]
     size: SizeArgs,
-    /// Rays per pixel, the first through its centre; or `best`: 1, and up to 64 at edges
-    #[arg(long, value_name = "N|best", default_value = "1", value_parser = parse_samples)]
-    samples: Sampling,
+    /// Rays per pixel, the first through its centre; or `best`: 1, and up to 64 at edges [default:
+    /// 1; PNG and GIF: best]
+    #[arg(long, value_name = "N|best", value_parser = parse_samples)]
+    samples: Option<Sampling>,
     /// Picture files: draw each pixel as N by N pixels of the file [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
     scale: Option<u32>,
@@ -50,8 +87,11 @@ impl SizeArgs {
 }
 
 impl PictureArgs {
-    pub(super) fn resolution(&self, mode: CellMode) -> Result<Resolution, Failure> {
-        self.size.resolution(mode)
+    /// Returns the size of a frame of this kind.
+    pub(super) fn resolution(&self, mode: CellMode, kind: FrameKind) -> Result<Resolution, Failure> {
+        let is_default = self.size.size.is_none() && self.size.pixels.is_none() && self.scale.is_none();
+        // The default size is one of square pixels, for which the shape of cells has no meaning.
+        kind.resolution().filter(|_| is_default).map_or_else(|| self.size.resolution(mode), Ok)
     }
 
     /// Returns the value of `--cell-aspect`: a cell's height over its width.
@@ -59,20 +99,24 @@ impl PictureArgs {
         self.size.cell_aspect
     }
 
-    pub(super) fn samples(&self) -> Sampling {
+    /// Returns the sampling of a frame of this kind.
+    pub(super) fn samples(&self, kind: FrameKind) -> Sampling {
+        self.samples.unwrap_or_else(|| kind.samples())
+    }
+
+    /// Returns the value of `--samples`, if given.
+    pub(super) fn given_samples(&self) -> Option<Sampling> {
         self.samples
     }
 
-    /// Returns the value of `--scale`: each pixel of the picture becomes a square of `scale` by
-    /// `scale` pixels in the file.
+    /// Returns the value of `--scale`: the file pixels along the shorter side of each pixel.
     pub(super) fn scale(&self) -> u32 {
         self.scale.unwrap_or(1)
     }
 
     /// Refuses a picture whose file would have too many pixels at the scale of `--scale`.
     pub(super) fn check_scaled_pixel_count(&self, resolution: Resolution) -> CommandResult {
-        let [width, height] =
-            [resolution.width(), resolution.height()].map(|side| u64::from(side) * u64::from(self.scale()));
+        let [width, height] = resolution.size_in_square_pixels(self.scale());
         check_pixel_count(width, height)
     }
 

@@ -5,18 +5,22 @@ mod progress;
 
 use super::encoding::{self, EncodingArgs};
 use super::map::{self, MapArgs};
-use super::outcome::{CommandResult, Failure, reason};
+use super::outcome::{CommandResult, Failure, print_error, reason};
 use super::outputs::{Output, Outputs};
-use super::picture::{PictureArgs, check_pixel_count};
+use super::picture::{FrameKind, PictureArgs, check_pixel_count};
 use super::scene_args::SceneArgs;
 use clap::Args;
 use numbered::NumberedFiles;
+use std::fs;
 use std::io::{self, BufWriter, IsTerminal};
 use std::path::{Path, PathBuf};
 use termtrace::internals::cell;
 use termtrace::internals::grid::HalfBlocks;
-use termtrace::internals::record::gif_size;
-use termtrace::{Camera, CameraPath, Cast, CellMode, Encoder, Gif, Order, Picture, Resolution, Scene, Size, export};
+use termtrace::internals::text::visible;
+use termtrace::{
+    Camera, CameraPath, Cast, CellMode, Encoder, Gif, Order, Picture, Quality, Resolution, Sampling, Scene, Size,
+    export,
+};
 
 const EXAMPLES: &str = "\
 Camera paths:
@@ -26,7 +30,7 @@ Camera paths:
 
 Examples:
   termtrace record my.ron -o my.cast                          an orbit, 80x24 cells; asciinema play my.cast
-  termtrace record my.ron --seconds 4 --fps 20 --scale 6 -o my.gif
+  termtrace record my.ron --seconds 4 -o my.gif               480x300 pixels, 25 frames per second
   termtrace record my.ron --path flight.ron --pixels 640x360 --samples 4 -o frame-%04d.png
   termtrace record my.ron --compressed-link | gzip >my.cast.gz";
 
@@ -41,9 +45,9 @@ pub(super) struct RecordArgs {
     /// Length of the film in seconds [default: 8, or the length of the path file]
     #[arg(long, value_name = "S", value_parser = parse_seconds)]
     seconds: Option<f64>,
-    /// Frames per second
-    #[arg(long, value_name = "N", default_value = "30", value_parser = clap::value_parser!(u32).range(1..=120))]
-    fps: u32,
+    /// Frames per second [default: 30; GIF: 25]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=120))]
+    fps: Option<u32>,
     #[command(flatten)]
     picture: PictureArgs,
     #[command(flatten)]
@@ -62,6 +66,10 @@ const MAX_FRAMES: usize = 100_000;
 /// Limit on the frame rate of a GIF. Delays between frames are in hundredths of a second, and
 /// viewers treat a delay of 1 as 10.
 const MAX_GIF_FPS: u32 = 50;
+/// Default frame rate of a GIF: smooth, and its delays are all the same.
+const GIF_FPS: u32 = 25;
+/// Default frame rate of an asciicast, and of numbered pictures.
+const CAST_FPS: u32 = 30;
 /// Default length of an orbit in seconds.
 const ORBIT_SECONDS: f64 = 8.0;
 
@@ -73,11 +81,24 @@ enum FilmFormat {
     Png(NumberedFiles),
 }
 
+impl FilmFormat {
+    /// Returns the kind of the film's frames.
+    fn kind(&self) -> FrameKind {
+        match self {
+            Self::Cast(_) => FrameKind::Cells,
+            Self::Gif(_) => FrameKind::Gif,
+            Self::Png(_) => FrameKind::Picture,
+        }
+    }
+}
+
 /// A film whose arguments have been checked.
 struct Film {
     scene: Scene,
     cameras: Vec<Camera>,
+    fps: u32,
     resolution: Resolution,
+    samples: Sampling,
     format: FilmFormat,
 }
 
@@ -99,18 +120,20 @@ impl RecordArgs {
         if let Some(output) = &self.output {
             self.scene.refuse_overwriting(&[&self.path], output)?;
         }
-        let resolution = self.picture.resolution(CellMode::HALF_BLOCK)?;
-        self.check_flags(&format, resolution)?;
+        let kind = format.kind();
+        let resolution = self.picture.resolution(CellMode::HALF_BLOCK, kind)?;
+        let fps = self.fps.unwrap_or(if kind == FrameKind::Gif { GIF_FPS } else { CAST_FPS });
+        self.check_flags(&format, resolution, fps)?;
         let scene = self.scene.load()?;
-        let cameras = self.cameras(scene.camera())?;
-        Ok(Film { scene, cameras, resolution, format })
+        let cameras = self.cameras(scene.camera(), fps)?;
+        Ok(Film { scene, cameras, fps, resolution, samples: self.picture.samples(kind), format })
     }
 
     /// Refuses sizes and frame rates that the format cannot represent, and flags that have no
     /// effect on it.
-    fn check_flags(&self, format: &FilmFormat, resolution: Resolution) -> CommandResult {
+    fn check_flags(&self, format: &FilmFormat, resolution: Resolution, fps: u32) -> CommandResult {
         let wrong = |why: &str| Err(Failure::Usage(why.to_owned()));
-        self.map.check_samples(self.picture.samples())?;
+        self.map.check_samples(self.picture.given_samples())?;
         let is_cast = matches!(format, FilmFormat::Cast(_));
         if matches!(format, FilmFormat::Cast(None)) && io::stdout().is_terminal() {
             return wrong("an asciicast would garble the terminal; name a file with -o, or pipe it");
@@ -123,23 +146,22 @@ impl RecordArgs {
                 "--order, --compressed-link, --quality and --max-rate are for an asciicast; other films send no cells",
             );
         }
-        // A GIF has square pixels, so its size in pixels differs from the resolution of the frames.
-        let (width, height) = gif_size(resolution, self.picture.scale());
+        // A file has square pixels, so its size differs from the resolution of the frames.
+        let [width, height] = resolution.size_in_square_pixels(self.picture.scale());
         match format {
             FilmFormat::Cast(_) => Ok(()),
-            FilmFormat::Png(_) => self.picture.check_scaled_pixel_count(resolution),
-            FilmFormat::Gif(_) if self.fps > MAX_GIF_FPS => {
+            FilmFormat::Gif(_) if fps > MAX_GIF_FPS => {
                 wrong("a GIF has at most 50 frames per second: viewers slow down one that has more")
             }
             FilmFormat::Gif(_) if width.max(height) > u16::MAX.into() => Err(Failure::Usage(format!(
                 "a GIF of {width}x{height} pixels is too large; at most 65535 in each direction"
             ))),
-            FilmFormat::Gif(_) => check_pixel_count(width, height),
+            FilmFormat::Gif(_) | FilmFormat::Png(_) => check_pixel_count(width, height),
         }
     }
 
     /// Returns the camera of each frame.
-    fn cameras(&self, camera: &Camera) -> Result<Vec<Camera>, Failure> {
+    fn cameras(&self, camera: &Camera, fps: u32) -> Result<Vec<Camera>, Failure> {
         let path = self.camera_path(camera)?;
         let name = self.path.display();
         let seconds = self.seconds.unwrap_or(path.seconds());
@@ -148,11 +170,11 @@ impl RecordArgs {
         }
         // The cast to usize does not saturate: `--seconds` is at most 1e6 and `--fps` 120, which makes 120 million
         // frames.
-        let frames = ((seconds * f64::from(self.fps)).round() as usize).max(1);
+        let frames = ((seconds * f64::from(fps)).round() as usize).max(1);
         if frames > MAX_FRAMES {
             return Err(Failure::Usage(format!("a film of {frames} frames is too long; at most {MAX_FRAMES}")));
         }
-        path.cameras(frames, self.fps).map_err(|error| Failure::Usage(format!("{name}: {error}")))
+        path.cameras(frames, fps).map_err(|error| Failure::Usage(format!("{name}: {error}")))
     }
 
     fn camera_path(&self, camera: &Camera) -> Result<CameraPath, Failure> {
@@ -173,23 +195,20 @@ impl RecordArgs {
                     Some(path) => outputs.begin(path)?,
                     None => Output::Stdout(io::stdout()),
                 };
-                let (across, down) = CellMode::HALF_BLOCK.pixels_per_cell();
-                // `SizeArgs::resolution` refuses more than 65535 cells in either direction.
-                let size = Size::new((resolution.width() / across) as u16, resolution.height().div_ceil(down) as u16);
                 // Players draw both half blocks without a seam, so the encoder may choose between them.
                 let encoder = Encoder::new()
                     .with_order(self.encoding.order().unwrap_or(Order::Color))
                     .with_half_blocks(HalfBlocks::Either);
                 // Buffered, because `Cast` writes a frame in many small pieces.
-                let cast = Cast::begin(BufWriter::new(out), size, encoder, self.fps)?;
+                let cast = Cast::begin(BufWriter::new(out), film.cells(), encoder, film.fps)?;
                 Sink::Cast(
-                    cast.with_quality(self.encoding.loss.quality().unwrap_or_default())
+                    cast.with_quality(self.encoding.loss.quality().unwrap_or(Quality::Equal))
                         .with_max_rate(self.encoding.loss.max_rate()),
                 )
             }
             FilmFormat::Gif(path) => {
                 let out = BufWriter::new(outputs.begin(path)?);
-                Sink::Gif(Gif::begin(out, resolution, self.picture.scale(), self.fps)?)
+                Sink::Gif(Gif::begin(out, resolution, self.picture.scale(), film.fps)?)
             }
             FilmFormat::Png(_) => Sink::Png { pixel_aspect: resolution.pixel_aspect(), scale: self.picture.scale() },
         })
@@ -238,6 +257,33 @@ impl Film {
         }
     }
 
+    /// Returns a line about the finished film: its name, length and size.
+    ///
+    /// `None` for standard output.
+    fn summary(&self, pattern: Option<&Path>, scale: u32) -> Option<String> {
+        let name = pattern.filter(|_| !matches!(self.format, FilmFormat::Cast(None)))?.display();
+        let frames = self.cameras.len();
+        let files = if matches!(self.format, FilmFormat::Png(_)) { frames } else { 1 };
+        let bytes: u64 = (0..files).filter_map(|frame| Some(fs::metadata(self.file(frame)).ok()?.len())).sum();
+        let (size, unit) = match self.format {
+            FilmFormat::Cast(_) => {
+                let Size { columns, rows } = self.cells();
+                ([columns, rows].map(u64::from), " cells")
+            }
+            FilmFormat::Gif(_) | FilmFormat::Png(_) => (self.resolution.size_in_square_pixels(scale), ""),
+        };
+        let [width, height] = size;
+        let plural = if frames == 1 { "" } else { "s" };
+        Some(format!("{name}: {frames} frame{plural}, {width}x{height}{unit}, {}", file_size(bytes)))
+    }
+
+    /// Returns the size of the film in cells.
+    fn cells(&self) -> Size {
+        let (across, down) = CellMode::HALF_BLOCK.pixels_per_cell();
+        // `SizeArgs::resolution` refuses more than 65535 cells in either direction.
+        Size::new((self.resolution.width() / across) as u16, self.resolution.height().div_ceil(down) as u16)
+    }
+
     /// Adds the frame's file name to an error of writing it. A closed pipe, as after `| head`,
     /// becomes [`Stop::NoReader`].
     fn written<T>(&self, frame: usize, result: io::Result<T>) -> Result<T, Stop> {
@@ -280,13 +326,32 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
     bar.tick();
     let mut sink = film.written(0, args.sink(film, &mut outputs))?;
     for (frame, camera) in film.cameras.iter().enumerate() {
-        let (map, samples) = (args.map.map(), args.picture.samples());
-        let picture = termtrace::internals::maps::picture(map, &film.scene, camera, film.resolution, samples);
+        let Film { scene, resolution, samples, .. } = film;
+        let picture = termtrace::internals::maps::picture(args.map.map(), scene, camera, *resolution, *samples);
         film.written(frame, sink.write_frame(&picture, &film.file(frame), &mut outputs))?;
         bar.inc(1);
     }
     // `end` gives an asciicast or GIF its name, so an interrupted film leaves no file.
-    film.written(0, sink.end())
+    film.written(0, sink.end())?;
+    if let Some(summary) = film.summary(args.output.as_deref(), args.picture.scale()) {
+        // Not printed where the bar is hidden: what runs without a terminal is silent if all went well.
+        let is_shown = !bar.is_hidden();
+        bar.finish_and_clear();
+        if is_shown {
+            print_error(&format!("{}\n", visible(&summary)));
+        }
+    }
+    Ok(())
+}
+
+/// Formats the size of a file in bytes with two digits or three, such as `6.6 MB`.
+fn file_size(bytes: u64) -> String {
+    let (value, unit) = match bytes as f64 {
+        v if v >= 999.5e6 => (v / 1e9, "GB"),
+        v if v >= 999.5e3 => (v / 1e6, "MB"),
+        v => (v / 1e3, "kB"),
+    };
+    if value < 9.95 { format!("{value:.1} {unit}") } else { format!("{value:.0} {unit}") }
 }
 
 /// Parses a length in seconds: greater than 0, and at most the largest time of a path file.

@@ -82,7 +82,7 @@ pub(super) struct SettingArgs {
 impl SettingArgs {
     /// Refuses more than one sample per pixel for a map whose values cannot be averaged.
     pub(super) fn check_samples(&self) -> CommandResult {
-        self.samples.map_or(Ok(()), |samples| self.map.check_samples(samples))
+        self.map.check_samples(self.samples)
     }
 
     pub(super) fn key_speed(&self) -> KeySpeed {

@@ -7,7 +7,7 @@ use std::{fmt, io};
 
 pub(super) const KIND: FormatRow = FormatRow {
     name: "png",
-    help: "A picture file, one pixel per half cell",
+    help: "A picture file",
     extensions: &["png"],
     key: 'p',
     command: "WritePng",
@@ -16,9 +16,10 @@ pub(super) const KIND: FormatRow = FormatRow {
     difference,
 };
 
-/// Returns the PNG file of a picture, with each pixel enlarged to a square of `scale` by `scale`.
+/// Returns the PNG file of a picture, with each pixel enlarged by `scale`.
 ///
-/// The file is marked as sRGB, and has the pixels' aspect if they are not square.
+/// Viewers show the pixels of a file as squares, whatever aspect it states. A pixel of another aspect (height / width)
+/// therefore becomes `scale` squares along its shorter side and more along the other. The file is marked as sRGB.
 ///
 /// ```
 /// use termtrace::{Picture, Srgb8, export::png};
@@ -32,17 +33,20 @@ pub(super) const KIND: FormatRow = FormatRow {
 /// If the picture has no pixels, or more than a [`Resolution`] may have when it is scaled; and unless `pixel_aspect` is
 /// greater than 0 and finite.
 pub fn png(picture: &Picture, pixel_aspect: f32, scale: u32) -> Result<Vec<u8>, ExportError> {
+    let shown = Resolution::new(picture.width, picture.height)?.with_pixel_aspect(pixel_aspect)?;
+    let [width, height] = shown.size_in_square_pixels(scale).map(|side| u32::try_from(side).unwrap_or(u32::MAX));
     // The size is checked before anything is allocated, because an allocation for the largest scale panicked.
-    let [width, height] = [picture.width, picture.height].map(|side| side.saturating_mul(scale));
-    Resolution::new(width, height).and_then(|file| file.with_pixel_aspect(pixel_aspect))?;
+    let file = Resolution::new(width, height)?;
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     // The sRGB chunk tells viewers the transfer function, which they would otherwise guess.
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    encoder.set_pixel_dims(pixel_dimensions(pixel_aspect));
-    let written = encoder.write_header().and_then(|mut file| file.write_image_data(&scaled(picture, scale as usize)));
+    let mut data = Vec::with_capacity(3 * file.pixel_count());
+    let pixels = shown.repeated(&picture.pixels, [width as usize, height as usize]);
+    data.extend(pixels.flat_map(|pixel| [pixel.r, pixel.g, pixel.b]));
+    let written = encoder.write_header().and_then(|mut file| file.write_image_data(&data));
     written.map(|()| bytes).map_err(ExportError)
 }
 
@@ -66,29 +70,6 @@ impl std::error::Error for ExportError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         self.0.source()
     }
-}
-
-/// Returns the pixels per unit along x and y, which express the pixel aspect in PNG; `None` for
-/// square pixels.
-fn pixel_dimensions(pixel_aspect: f32) -> Option<png::PixelDimensions> {
-    // PNG stores whole numbers, so 1000 pixels per unit keep the aspect to a thousandth.
-    let per_unit = 1000.0;
-    (pixel_aspect != 1.0).then(|| png::PixelDimensions {
-        xppu: (per_unit * pixel_aspect).round() as u32,
-        yppu: per_unit as u32,
-        unit: png::Unit::Unspecified,
-    })
-}
-
-fn scaled(picture: &Picture, scale: usize) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(picture.pixels.len() * scale * scale * 3);
-    for row in picture.pixels.chunks_exact(picture.width.max(1) as usize) {
-        let line: Vec<u8> = row.iter().flat_map(|p| [p.r, p.g, p.b].repeat(scale)).collect();
-        for _ in 0..scale {
-            bytes.extend_from_slice(&line);
-        }
-    }
-    bytes
 }
 
 /// Returns a text with the number of differing pixels, the largest difference, and the first

@@ -9,9 +9,9 @@ use std::time::Duration;
 /// An asciicast (version 2, the format of asciinema) of an encoder's bytes.
 ///
 /// Each frame is one output event, empty if there is nothing to send. Its time is the frame's number divided by the
-/// frame rate. The last frame, which stays on the screen, is exact with every quality. The cast contains frames only:
-/// it
-/// switches no modes, and sends no queries to the viewer's terminal.
+/// frame rate. The last frame, which stays on the screen, is exact with every quality. The first frame hides the
+/// viewer's cursor, and the last one shows it again. The cast contains nothing else: it switches no other modes, and
+/// sends no queries to the viewer's terminal.
 ///
 /// ```
 /// use termtrace::{Cast, Encoder, Grid, Size};
@@ -21,6 +21,7 @@ use std::time::Duration;
 /// cast.frame(Grid::new(size))?;
 /// let file = cast.end()?;
 /// assert!(file.starts_with(br#"{"version":2,"width":80,"height":24}"#));
+/// assert!(file.ends_with(b"\\u001b[?25h\"]\n"));
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub struct Cast<W: Write> {
@@ -38,6 +39,12 @@ pub struct Cast<W: Write> {
     // is.
     last: Option<(Grid, Vec<u8>)>,
 }
+
+// In the first and the last frame, so that a film has one event for each frame.
+/// Hides the cursor, which would blink in the picture (DECTCEM).
+const HIDE_CURSOR: &[u8] = b"\x1b[?25l";
+/// Shows the cursor.
+const SHOW_CURSOR: &[u8] = b"\x1b[?25h";
 
 impl<W: Write> fmt::Debug for Cast<W> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -89,7 +96,7 @@ impl<W: Write> Cast<W> {
     /// If writing fails.
     pub fn frame(&mut self, grid: Grid) -> io::Result<()> {
         self.write_last()?;
-        let mut bytes = Vec::new();
+        let mut bytes = if self.frame == 0 { HIDE_CURSOR.to_vec() } else { Vec::new() };
         let now = Duration::from_secs_f64(self.time());
         // As in the live view, a frame for which the link is not free is dropped, not queued: queued frames would be
         // later and later.
@@ -112,6 +119,7 @@ impl<W: Write> Cast<W> {
     pub fn end(mut self) -> io::Result<W> {
         if let Some((grid, bytes)) = &mut self.last {
             self.encoder.encode(grid, bytes);
+            bytes.extend_from_slice(SHOW_CURSOR);
         }
         self.write_last()?;
         self.out.flush()?;

@@ -1,15 +1,19 @@
 //! Recording of animated GIFs.
 
+use crate::color::Srgb8;
 use crate::framebuffer::Resolution;
 use crate::tone::Picture;
+use color_quant::NeuQuant;
 use gif::{EncodingError, Repeat};
+use std::collections::BTreeSet;
 use std::fmt;
 use std::io::{self, Write};
 
 /// An animated GIF that repeats for ever.
 ///
 /// Viewers show the pixels of a GIF as squares. Pixels of another aspect are repeated along their longer axis, so that
-/// the picture has the right shape. Each frame has its own 256 colours. Delays are whole hundredths of a second; the
+/// the picture has the right shape. Each frame has its own 127 colours; pixels that hardly change from one frame to the
+/// next keep theirs, which saves half of the bytes. Delays are whole hundredths of a second; the
 /// rounding error is carried over to the next frame, so that the total time is right. (Viewers show delays of less than
 /// two hundredths much longer.)
 ///
@@ -28,6 +32,8 @@ pub struct Gif<W: Write> {
     size: (u16, u16),
     frames_per_second: u32,
     frame: u64,
+    /// The colour of each pixel that a viewer shows after the last frame; empty before the first.
+    shown: Vec<Srgb8>,
 }
 
 impl<W: Write> fmt::Debug for Gif<W> {
@@ -46,14 +52,13 @@ impl<W: Write> Gif<W> {
     /// # Errors
     /// If writing fails, or a side of the GIF would exceed 65,535 pixels.
     pub fn begin(out: W, resolution: Resolution, scale: u32, frames_per_second: u32) -> io::Result<Self> {
-        let (width, height) = gif_size(resolution, scale);
-        let size = match (width.try_into(), height.try_into()) {
-            (Ok(width), Ok(height)) => (width, height),
+        let size = match resolution.size_in_square_pixels(scale).map(u16::try_from) {
+            [Ok(width), Ok(height)] => (width, height),
             _ => return Err(invalid("a GIF has at most 65535 pixels each way")),
         };
         let mut encoder = gif::Encoder::new(out, size.0, size.1, &[]).map_err(io_error)?;
         encoder.set_repeat(Repeat::Infinite).map_err(io_error)?;
-        Ok(Self { encoder, resolution, size, frames_per_second, frame: 0 })
+        Ok(Self { encoder, resolution, size, frames_per_second, frame: 0, shown: Vec::new() })
     }
 
     /// Adds a frame.
@@ -65,17 +70,51 @@ impl<W: Write> Gif<W> {
         if (picture.width, picture.height, picture.pixels.len()) != (width, height, self.resolution.pixel_count()) {
             return Err(invalid("all frames of a film have one size"));
         }
-        let rgb = picture.to_bytes();
-        // Colours are quantised before the enlargement, because there are fewer pixels. The casts do not truncate: no
-        // side exceeds that of the GIF, which fits into 16 bits.
-        let mut frame =
-            gif::Frame::from_rgb_speed(width as u16, height as u16, &rgb, sampling_step(picture.pixels.len()));
-        // Enlarged to square pixels here, because viewers ignore a GIF's pixel aspect.
-        frame.buffer = self.enlarged(&frame.buffer).into();
+        let mut frame = self.quantised(picture);
+        // Enlarged to square pixels here, because viewers ignore a GIF's pixel aspect. The colours are chosen before,
+        // because there are fewer pixels.
+        let size = [self.size.0, self.size.1].map(usize::from);
+        frame.buffer = self.resolution.repeated(&frame.buffer, size).collect();
         (frame.width, frame.height) = self.size;
         frame.delay = self.delay();
         self.frame += 1;
         self.encoder.write_frame(&frame).map_err(io_error)
+    }
+
+    /// Returns the frame of a picture, not enlarged: pixels that keep their colour are transparent.
+    fn quantised(&mut self, picture: &Picture) -> gif::Frame<'static> {
+        let stays = self.kept(picture);
+        let pixels = || picture.pixels.iter().copied().zip(&stays);
+        let palette = Palette::of(pixels().filter(|(_, stays)| !**stays).map(|(pixel, _)| pixel));
+        self.shown.resize(picture.pixels.len(), Srgb8::default());
+        let index = |((pixel, stays), shown): ((Srgb8, &bool), &mut Srgb8)| {
+            if *stays {
+                return MAX_COLORS as u8;
+            }
+            let index = palette.index(pixel);
+            *shown = palette.colors[usize::from(index)];
+            index
+        };
+        gif::Frame {
+            buffer: pixels().zip(&mut self.shown).map(index).collect(),
+            palette: Some(palette.colors.iter().flat_map(|color| [color.r, color.g, color.b]).collect()),
+            transparent: Some(MAX_COLORS as u8),
+            ..gif::Frame::default()
+        }
+    }
+
+    /// Returns whether each pixel keeps the colour that a viewer shows.
+    fn kept(&self, picture: &Picture) -> Vec<bool> {
+        let mut kept = vec![false; picture.pixels.len()];
+        // Without a frame before this one there is nothing to keep.
+        for (at, (&shown, &wanted)) in self.shown.iter().zip(&picture.pixels).enumerate() {
+            // A pixel between others that are kept may differ more: single changed pixels cost the most bytes.
+            let is_between = at > 0 && kept[at - 1] && at.checked_sub(picture.width as usize).is_none_or(|up| kept[up]);
+            let most = if is_between { MAX_DIFFERENCE_BETWEEN } else { MAX_DIFFERENCE };
+            let pairs = [(shown.r, wanted.r), (shown.g, wanted.g), (shown.b, wanted.b)];
+            kept[at] = pairs.into_iter().all(|(shown, wanted)| shown.abs_diff(wanted) <= most);
+        }
+        kept
     }
 
     /// Finishes the film and returns the writer.
@@ -88,18 +127,6 @@ impl<W: Write> Gif<W> {
         Ok(out)
     }
 
-    /// Returns the pixels of a picture, each repeated across and down so that they fill the GIF.
-    fn enlarged(&self, pixels: &[u8]) -> Vec<u8> {
-        let (across, down) = (usize::from(self.size.0), usize::from(self.size.1));
-        let (width, height) = (self.resolution.width() as usize, self.resolution.height() as usize);
-        let mut enlarged = Vec::with_capacity(across * down);
-        for y in 0..down {
-            let row = &pixels[y * height / down * width..][..width];
-            enlarged.extend((0..across).map(|x| row[x * width / across]));
-        }
-        enlarged
-    }
-
     /// Returns the time from the current frame to the next in hundredths of a second.
     fn delay(&self) -> u16 {
         let second = u64::from(self.frames_per_second.max(1));
@@ -110,16 +137,49 @@ impl<W: Write> Gif<W> {
     }
 }
 
-/// Returns the width and height in pixels of a GIF of this resolution, with each pixel enlarged
-/// `scale` times.
-pub fn gif_size(resolution: Resolution, scale: u32) -> (u64, u64) {
-    let pixel_aspect = resolution.pixel_aspect();
-    let [width, height] = [resolution.width(), resolution.height()].map(|side| u64::from(side) * u64::from(scale));
-    let stretched = |side: u64, by: f32| ((side as f64 * f64::from(by)).round() as u64).max(side);
-    if pixel_aspect < 1.0 {
-        (stretched(width, 1.0 / pixel_aspect), height)
-    } else {
-        (width, stretched(height, pixel_aspect))
+// With these three constants the orbit of three_spheres, 8 seconds at 480x300, takes 3.7 MB and has a PSNR of 38 dB.
+// With 255 colours it takes 4.5 MB. With differences of 4 and 8 it takes 5.0 MB, at 41 dB; with none 6.8 MB, at 45 dB.
+/// Largest number of colours of a frame. The index after the last is transparent.
+const MAX_COLORS: usize = 127;
+/// Largest difference of a channel at which a pixel keeps its colour.
+const MAX_DIFFERENCE: u8 = 7;
+/// The same, for a pixel whose neighbours to the left and above keep theirs.
+const MAX_DIFFERENCE_BETWEEN: u8 = 12;
+
+/// The colours of a frame.
+struct Palette {
+    /// As many as the format stores: [`MAX_COLORS`], and one that stands at the transparent index.
+    colors: Vec<Srgb8>,
+    /// Finds the index of a colour; `None` where all colours are in the palette.
+    quantiser: Option<NeuQuant>,
+}
+
+impl Palette {
+    /// Returns the palette of these pixels: all their colours, if they are few enough.
+    fn of(pixels: impl Iterator<Item = Srgb8> + Clone) -> Self {
+        let mut few = BTreeSet::new();
+        let is_few = pixels.clone().all(|pixel| {
+            few.insert(pixel);
+            few.len() <= MAX_COLORS
+        });
+        let mut colors: Vec<_> = few.into_iter().take(MAX_COLORS).collect();
+        let mut quantiser = None;
+        if !is_few {
+            let rgba: Vec<u8> = pixels.flat_map(|pixel| [pixel.r, pixel.g, pixel.b, u8::MAX]).collect();
+            let found = NeuQuant::new(sampling_step(rgba.len() / 4), MAX_COLORS, &rgba);
+            let rgb = found.color_map_rgb();
+            colors = rgb.chunks_exact(3).map(|rgb| Srgb8::new(rgb[0], rgb[1], rgb[2])).collect();
+            quantiser = Some(found);
+        }
+        colors.resize(MAX_COLORS + 1, Srgb8::default());
+        Self { colors, quantiser }
+    }
+
+    fn index(&self, Srgb8 { r, g, b }: Srgb8) -> u8 {
+        match &self.quantiser {
+            Some(quantiser) => quantiser.index_of(&[r, g, b, u8::MAX]) as u8,
+            None => self.colors.iter().position(|color| *color == Srgb8 { r, g, b }).unwrap_or_default() as u8,
+        }
     }
 }
 

@@ -33,7 +33,7 @@ fn pixels_are_explained_in_the_lectures_symbols() {
 #[test]
 fn the_bytes_are_the_frames() {
     let folder = Folder::new();
-    let png = folder.frame("ball.ron --pixels 8x6 --format png");
+    let png = folder.frame("ball.ron --pixels 8x6 --samples 1 --format png");
     let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().expect("a PNG");
     let mut rgb = vec![0; reader.output_buffer_size().expect("it fits")];
     reader.next_frame(&mut rgb).expect("a picture");

@@ -137,7 +137,7 @@ fn right(folder: &Folder, named: &Named) -> Vec<u8> {
                        0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     match named.file {
         "golden.txt" => folder.frame("ball.ron"),
-        "golden.png" => folder.frame("ball.ron --format png"),
+        "golden.png" => folder.frame("ball.ron --size 80x24 --samples 1 --format png"),
         "path.ron" => b"(keyframes: [(time: 0, eye: (0, 1, 5), target: (0, 1, 0)), (time: 0.1, eye: (0, 2, 5), \
                        target: (0, 1, 0))])"
             .to_vec(),

@@ -3,7 +3,7 @@
 //! The plain text is what CIE's formula makes of its pixels.
 
 use super::{Folder, shipped_scenes};
-use png::{ColorType, Decoder, PixelDimensions, SrgbRenderingIntent, Unit};
+use png::{ColorType, Decoder, PixelDimensions, SrgbRenderingIntent};
 use std::io::Cursor;
 use std::num::NonZeroU16;
 
@@ -162,15 +162,17 @@ fn assert_lightness(glyph: char, (upper, lower): (Rgb, Option<Rgb>)) {
 fn every_shipped_scene_is_one_picture_in_all_formats() {
     let folder = Folder::new();
     for scene in shipped_scenes() {
-        judge(&folder, &format!("{} --size 60x20", scene.display()));
+        judge(&folder, &format!("{} --size 60x20 --samples 1", scene.display()));
     }
 }
 
 #[test]
 fn odd_and_small_pictures_are_one_picture_in_all_formats() {
     let folder = Folder::new();
-    for arguments in ["--pixels 1x1", "--pixels 7x5", "--pixels 2x3", "--size 1x1", "--pixels 60x41 --samples 3"] {
-        judge(&folder, &format!("ball.ron {arguments}"));
+    for (size, samples) in
+        [("--pixels 1x1", 1), ("--pixels 7x5", 1), ("--pixels 2x3", 1), ("--size 1x1", 1), ("--pixels 60x41", 3)]
+    {
+        judge(&folder, &format!("ball.ron {size} --samples {samples}"));
     }
 }
 
@@ -178,11 +180,22 @@ fn odd_and_small_pictures_are_one_picture_in_all_formats() {
 fn a_png_has_a_pixel_for_each_half_cell() {
     let folder = Folder::new();
     for (arguments, size) in
-        [("", (80, 48)), ("--size 9x4", (9, 8)), ("--pixels 9x5", (9, 5)), ("--pixels 1x1", (1, 1))]
+        [("--scale 1", (80, 48)), ("--size 9x4", (9, 8)), ("--pixels 9x5", (9, 5)), ("--pixels 1x1", (1, 1))]
     {
         let png = Png::decode(&folder.frame(&format!("ball.ron --format png {arguments}")));
         assert_eq!((png.width, png.height), size, "{arguments}");
     }
+}
+
+/// A picture without flags is one to look at; a golden frame keeps its promised size.
+#[test]
+fn a_png_is_large_and_smooth_by_default() {
+    let folder = Folder::new();
+    let png = folder.frame("ball.ron --format png");
+    assert!(png == folder.frame("ball.ron --format png --pixels 1280x800 --samples best"));
+    folder.run("frame ball.ron --check ball.png --bless").done();
+    assert!(folder.read("ball.png") == folder.frame("ball.ron --format png --size 80x24 --samples 1"));
+    folder.run("frame ball.ron --check ball.png").done();
 }
 
 #[test]
@@ -200,20 +213,35 @@ fn scale_makes_each_pixel_a_square() {
     }
 }
 
-/// pHYs has the number of pixels of a unit on each axis: of high pixels more fit across than down.
+/// In a viewer's square pixels a ball is as wide as high, whatever the terminal's cells were.
 #[test]
-fn pixels_that_are_not_square_are_marked() {
+fn a_ball_is_round_in_a_png() {
     let folder = Folder::new();
-    for (aspect, shape) in [("2", None), ("3", Some(1.5)), ("1", Some(0.5)), ("1.9", Some(0.95)), ("2.2", Some(1.1))] {
-        let png = Png::decode(&folder.frame(&format!("ball.ron --size 9x4 --format png --cell-aspect {aspect}")));
-        let found = png.shape.map(|shape| {
-            assert_eq!(shape.unit, Unit::Unspecified);
-            f64::from(shape.xppu) / f64::from(shape.yppu)
-        });
-        match (found, shape) {
-            (Some(found), Some(shape)) => assert!((found - shape).abs() < 2e-3, "{found} for {aspect}"),
-            _ => assert_eq!(found, shape, "{aspect}"),
-        }
+    folder.write(
+        "round.ron",
+        "(camera: (eye: (0, 0, 10), target: (0, 0, 0), vertical_fov: 20), ambient: 1, objects: [
+            Sphere(center: (0, 0, 0), radius: 1)])",
+    );
+    // A cell of 6 by 13 pixels has an aspect of 2.1667.
+    for (flags, size) in [
+        ("--size 150x40", (150, 80)),
+        ("--size 150x40 --cell-aspect 1.9", (158, 80)),
+        ("--size 150x40 --cell-aspect 2.1667", (150, 87)),
+        ("--size 150x40 --cell-aspect 2.5 --scale 2", (300, 200)),
+        ("--size 150x40 --cell-aspect 1 --scale 2", (600, 160)),
+        ("--pixels 90x80 --cell-aspect 3", (90, 120)),
+        ("--cell-aspect 1.9", (1280, 800)),
+    ] {
+        let png = Png::decode(&folder.frame(&format!("round.ron {flags} --format png")));
+        assert_eq!((png.width, png.height), size, "{flags}");
+        assert!(png.shape.is_none(), "{flags}: its pixels are squares");
+        let lit = |&i: &usize| png.pixels[i][0] > 99;
+        let extent = |of: fn(usize, usize) -> usize| {
+            let places = || (0..png.pixels.len()).filter(lit).map(|i| of(i, png.width));
+            (places().max().expect("a ball") - places().min().expect("a ball")) as f64
+        };
+        let (across, down) = (extent(|i, width| i % width), extent(|i, width| i / width));
+        assert!((across / down - 1.0).abs() < 0.05, "{flags}: {across} by {down}");
     }
 }
 

@@ -6,7 +6,7 @@ const DEFAULTS: [(&str, &str); 12] = [
     ("color", "auto"),
     ("glyphs", "auto"),
     ("map", "shaded"),
-    ("quality", "exact; live, on a slow link, equal"),
+    ("quality", "exact; in casts, and live on a slow link, equal"),
     ("max_rate", "what the link takes"),
     ("cell_aspect", "as detected, or 2"),
     ("samples", "as many as the time allows; best at rest"),
