@@ -5,6 +5,17 @@ use crate::ray::{Interval, Probe, Rays};
 use glam::Vec3;
 
 /// An axis-aligned box: all points from `min` to `max`. It may be flat, or a point.
+///
+/// ```
+/// use glam::Vec3;
+/// use termtrace::{Camera, Scene, Sphere};
+///
+/// let camera = Camera::look_at(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO)?;
+/// let scene = Scene::builder(camera).object(Sphere::new(Vec3::ZERO, 1.0)?, termtrace::Material::default()).build()?;
+/// let bounds = scene.bounds().ok_or("only planes")?;
+/// assert!(bounds.min.x <= -1.0 && bounds.max.x >= 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// The least coordinates. Finite.

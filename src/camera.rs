@@ -67,6 +67,16 @@ pub struct Basis {
 /// The view rectangle: the intrinsic parameters, on the plane at distance 1 in front of the eye.
 // The picture depends only on the ratios of the lecture's f, w and h, so the focal length is always scaled to 1. Equal
 // views then have equal values.
+///
+/// ```
+/// use glam::Vec3;
+/// use termtrace::{Camera, Pose, ViewRectangle};
+///
+/// let pose = Pose { eye: Vec3::new(0.0, 1.0, 5.0), target: Vec3::ZERO, up: Vec3::Y };
+/// let camera = Camera::new(pose, ViewRectangle::from_vertical_fov(0.7)?)?;
+/// assert_eq!(camera.pose(), pose);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewRectangle {
     /// The width divided by the focal length; `None` if it follows from the picture's aspect ratio.

@@ -30,6 +30,14 @@ pub(crate) use colors::xterm_color;
 pub use ramp::RAMP;
 
 /// The mode in which pixels are drawn as cells: a glyph kind and a set of colours.
+///
+/// ```
+/// use termtrace::{CellMode, Size};
+///
+/// let resolution = CellMode::HALF_BLOCK.resolution(Size { columns: 80, rows: 24 }, 2.0)?;
+/// assert_eq!((resolution.width(), resolution.height()), (80, 48));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CellMode {
     /// The glyph kind.

@@ -70,6 +70,14 @@ pub struct CellShape {
 }
 
 /// The half blocks (`▄`, `▀`) that cells may use to show two pixels.
+///
+/// ```
+/// use termtrace::{Encoder, HalfBlocks};
+///
+/// // For a terminal that divides its cells evenly, such as kitty.
+/// let encoder = Encoder::new().with_half_blocks(HalfBlocks::Either);
+/// # let _ = encoder;
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum HalfBlocks {
     /// Lower half blocks only, which is right at every cell height.
@@ -104,6 +112,13 @@ pub struct Window {
 }
 
 /// A colour of a cell: the terminal's default, one of its palette, or an RGB colour.
+///
+/// ```
+/// use termtrace::{Ink, Srgb8};
+///
+/// let red = Ink::Rgb(Srgb8 { r: 255, g: 0, b: 0 });
+/// assert_ne!(red, Ink::Indexed(1), "the theme determines palette colours");
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Ink {
     /// The terminal's default colour (SGR 39, 49 and 59).

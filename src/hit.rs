@@ -21,6 +21,17 @@ mod observer;
 pub use observer::{Observer, PrimitiveTest};
 
 /// The closest intersection of a ray with a scene, in front of the ray's origin.
+///
+/// ```
+/// use glam::Vec3;
+/// use termtrace::{Camera, Material, Resolution, Scene, Sphere};
+///
+/// let camera = Camera::look_at(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO)?;
+/// let scene = Scene::builder(camera).object(Sphere::new(Vec3::ZERO, 1.0)?, Material::default()).build()?;
+/// let hit = scene.hit(scene.camera(), Resolution::new(3, 3)?, [1, 1]).ok_or("the middle shows the sphere")?;
+/// assert_eq!((hit.t, hit.object), (4.0, 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The ray parameter of the crossing; for eye rays, the depth in world units.

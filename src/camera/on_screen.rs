@@ -7,6 +7,14 @@ use super::{Camera, Pose};
 use glam::{Vec2, Vec3};
 
 /// The action of a mouse drag on the camera.
+///
+/// ```
+/// use termtrace::Grip;
+///
+/// let with_shift = true;
+/// let grip = if with_shift { Grip::Pan } else { Grip::Turn };
+/// assert_eq!(grip, Grip::Pan);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Grip {
     /// Orbits the target, or looks around in flight; usually with the left button.

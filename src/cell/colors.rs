@@ -3,6 +3,12 @@
 use crate::color::Srgb8;
 
 /// A set of colours, ordered by the number of colours.
+///
+/// ```
+/// use termtrace::Colors;
+///
+/// assert!(Colors::None < Colors::Indexed256 && Colors::Indexed256 < Colors::Truecolor);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Colors {
     /// The terminal's two default colours; no colour sequence is sent.

@@ -1,7 +1,7 @@
 use super::*;
 
 #[test]
-fn what_no_machine_has_is_an_error() {
+fn more_memory_than_any_machine_has_is_an_error() {
     assert!(check(1 << 20).is_ok());
     for bytes in [1 << 60, usize::MAX] {
         let error = io::Error::from(check(bytes).expect_err("no machine has it").when("for a test"));

@@ -13,6 +13,16 @@ use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
 use glam::Vec3;
 
 /// A plane: all points x with (x - a).n = 0. It is unbounded, and visible from both sides.
+///
+/// ```
+/// use glam::Vec3;
+/// use termtrace::Plane;
+///
+/// let floor = Plane::new(Vec3::ZERO, Vec3::Y)?;
+/// assert!(Plane::new(Vec3::ZERO, Vec3::ZERO).is_err(), "the normal has no direction");
+/// # let _ = floor;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     point: Vec3,

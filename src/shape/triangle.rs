@@ -24,6 +24,16 @@ pub use edge_functions::EdgeFunctions;
 /// A triangle: all points between three corners.
 ///
 /// It is visible from both sides; its front is the side from which the corners are in counterclockwise order.
+///
+/// ```
+/// use glam::Vec3;
+/// use termtrace::Triangle;
+///
+/// let triangle = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y])?;
+/// assert!(Triangle::new([Vec3::ZERO, Vec3::X, 2.0 * Vec3::X]).is_err(), "the corners lie on a line");
+/// # let _ = triangle;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     corners: [Vec3; 3],

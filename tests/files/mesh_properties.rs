@@ -36,7 +36,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
-    fn what_is_written_is_read_back(written in written()) {
+    fn a_written_mesh_reads_back_equal(written in written()) {
         for writer in WRITERS {
             let bytes = (writer.write)(&written);
             let mesh = MeshFile::from_bytes(writer.name, &bytes, &mut |_| unreachable!());

@@ -176,7 +176,7 @@ fn signals_that_the_tests_block_are_not_blocked_in_their_children() {
 }
 
 #[test]
-fn what_is_typed_is_read() {
+fn typed_characters_reach_the_child() {
     let mut session = Start::shell("read line; printf 'got <%s>' \"$line\"").spawn();
     session.send(b"some words\n");
     session.wait_for_text("got <some words>");

@@ -16,7 +16,7 @@ fn names_are_plain_words() {
 }
 
 #[test]
-fn what_is_shown_is_written_in_each_format() {
+fn the_shown_picture_is_written_in_each_format() {
     let pixels = vec![crate::color::Srgb8::new(255, 255, 255); 4];
     let picture = Picture { width: 2, height: 2, pixels };
     let capabilities = Capabilities {

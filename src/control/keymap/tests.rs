@@ -91,7 +91,7 @@ fn each_format_has_a_key_and_a_command() {
 }
 
 #[test]
-fn what_a_mode_does_not_bind_is_left_to_the_next() {
+fn a_key_that_a_mode_does_not_bind_goes_to_the_next_mode() {
     let keymap = Keymap::default();
     let explain = [KeyMode::Explain, KeyMode::Orbit, KeyMode::Always];
     let code = |code: KeyCode| keymap.command(&explain, &code.into()).map(|(command, _)| command);

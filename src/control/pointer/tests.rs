@@ -18,7 +18,7 @@ fn gestures(events: &[(MouseEventKind, Vec2)]) -> Vec<Option<Gesture>> {
 }
 
 #[test]
-fn what_is_pressed_is_dragged_and_released() {
+fn a_pressed_grip_drags_until_its_release() {
     for (button, grip) in [(Left, Grip::Turn), (Right, Grip::Pan), (Middle, Grip::Pan)] {
         assert_eq!(
             gestures(&[(Down(button), A), (Drag(button), B), (Up(button), B), (Drag(button), A)]),

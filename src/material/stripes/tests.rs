@@ -27,7 +27,7 @@ fn they_are_read_drawn_and_described() {
 }
 
 #[test]
-fn what_is_wrong_with_them_is_said_as_of_any_material() {
+fn faults_are_reported_like_those_of_other_materials() {
     let message = |objects: &str| Scene::from_ron("x.ron", &scene(objects)).expect_err("a fault").to_string();
     let on = |shape: &str, stripes: &str| message(&format!("{shape}, material: {stripes})"));
     let plane = "Plane(point: (0, 0, 0), normal: (0, 1, 0)";

@@ -9,7 +9,7 @@ fn read_back(camera: &Camera) -> Camera {
 }
 
 #[test]
-fn what_was_written_comes_back() {
+fn a_written_camera_reads_back_equal() {
     for lens in [
         "vertical_fov: 45",
         "vertical_fov: 12.5",

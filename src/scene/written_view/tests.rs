@@ -47,7 +47,7 @@ fn all_else_stays_as_it_is() {
 }
 
 #[test]
-fn what_is_no_scene_is_left_alone() {
+fn text_that_is_no_scene_stays_as_it_is() {
     let camera = *Scene::from_ron("x", "(camera: (eye: (3, 1, 2), target: (0, 0, 0)))").expect("a scene").camera();
     for text in ["", "(", "5", "()", "(1, 2)", "(keyframes: [])", "(camera: 5, views: 5)", "(views: None)"] {
         assert_eq!(with_view(text, &camera), None, "{text}");

@@ -61,7 +61,7 @@ fn nothing_is_drawn_or_begun_that_cannot_be_sent() {
 }
 
 #[test]
-fn what_is_shown_is_made_better_only_while_it_lasts() {
+fn a_picture_is_refined_only_while_it_is_current() {
     let improvable = Facts { improvable_at: Some(Duration::ZERO), ..AT_REST };
     assert_eq!(decide(&improvable, NOW), Action::Draw);
     assert_eq!(decide(&Facts { improvable_at: Some(LATER), ..AT_REST }, NOW), Action::Wait(Some(LATER)));
@@ -120,7 +120,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_begun_can_be_sent(facts in facts()) {
+    fn a_begun_frame_can_be_sent(facts in facts()) {
         match decide(&facts, NOW) {
             Action::Draw => prop_assert!(!facts.busy.sending),
             Action::Trace | Action::Refine => prop_assert_eq!(facts.busy, DriverState::default()),
