@@ -10,6 +10,7 @@ mod doctor;
 mod encoding;
 mod explain;
 mod frame;
+mod help;
 mod deferred_args;
 mod live;
 mod map;
@@ -19,59 +20,104 @@ mod outcome;
 mod outputs;
 mod picture;
 mod record;
-mod renamed;
 mod scene_args;
 mod settings;
 mod shipped;
+mod style;
 mod threads;
+mod tips;
 
-use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{ArgAction, ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use deferred_args::DeferredArgs;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-const ABOUT: &str = "A live ray tracer whose screen is the terminal";
+const ABOUT: &str = "A real-time ray tracer that runs in your terminal";
+
+const USAGE: &str = "\
+termtrace [OPTIONS] [SCENE]...
+       termtrace COMMAND [OPTIONS] [SCENE]";
+
+/// The help of `-h`: what fits a screen of 80x24 cells.
+const SUMMARY: &str = "\
+Commands:
+  scenes                      list the built-in scenes
+  frame, record               write a picture or a film
+  describe, explain, check    a picture in words, one pixel, a file's faults
+  doctor, config, bench       this terminal, the settings, the speed
+  completions, man, help, version
+
+Options:
+  --eye X,Y,Z                 look from there; --target X,Y,Z looks at a point
+  --map MAP                   lambert, depth, normal, object and other maps
+  --samples N|best            rays per pixel
+  --color WHICH               auto, never, truecolor, 256, 16
+  --compressed-link           the link compresses, as ssh -C does
+  --reduced-motion            nothing moves by itself
+  --no-config                 ignore config.ron and keys.ron
+  -h, --help, -V, --version   -h prints a summary, --help everything
+
+Keys: drag or WASD to move; v maps; x explain; ? all keys; q quit";
 
 const EXAMPLES: &str = "\
-Without a scene the built-in one is shown. With several, n shows the next one and p the previous one.
+Without a scene the default one is shown. With several, n shows the next one
+and p the previous one.
 
 Examples:
-  termtrace corridor                                     open a built-in scene; termtrace scenes lists them
-  termtrace scenes/three_spheres.ron                     open a scene; ? shows the keys, q quits
-  termtrace scenes/three_spheres.ron --eye 0,4,9         from another eye point
-  termtrace frame scenes/three_spheres.ron               one frame as text
-  termtrace frame scenes/three_spheres.ron -o ball.png --pixels 800x600 --samples 16
-  termtrace frame my.ron --check my.txt                  compare with a golden frame (--bless writes it)
+  termtrace corridor                       open a built-in scene
+  termtrace scenes/three_spheres.ron       open a scene; ? shows the keys
+  termtrace scenes/three_spheres.ron --eye 0,4,9
+  termtrace frame scenes/three_spheres.ron
+  termtrace frame scenes/three_spheres.ron -o ball.png --samples best
+  termtrace frame my.ron --check my.txt    compare with a golden frame
   termtrace record scenes/three_spheres.ron --seconds 4 -o orbit.cast
-  termtrace describe my.ron                              describe the picture in words
-  termtrace explain my.ron --pixel 40,24                 explain one pixel in the lecture's symbols
-  termtrace check my.ron                                 report every fault of a scene file
-  termtrace bench my.ron --pixels 200x120                measure how fast its rays are traced
-  termtrace doctor                                       show what was detected about this terminal
-  termtrace config                                       show the effective settings and their sources
-  termtrace completions bash                             print shell completions; termtrace man prints the man page
-  generate_scene | termtrace -                           read the scene from standard input
+  termtrace describe my.ron                describe the picture in words
+  termtrace explain my.ron --pixel 40,24   explain one pixel
+  termtrace check my.ron                   report every fault of a file
+  termtrace bench my.ron --pixels 200x120  measure how fast it is traced
+  termtrace doctor                         what was detected about this terminal
+  termtrace config                         the effective settings
+  generate_scene | termtrace -             read the scene from standard input";
 
-Exit codes: 0 success; 1 failure or a difference found by --check; 2 wrong arguments or a faulty scene";
+const EXIT_STATUS: &str = "Exit status:
+  0  success
+  1  failure, or a difference found by frame --check
+  2  wrong arguments or a faulty scene";
 
-/// Returns the help text below the options.
-fn help() -> String {
-    let cells = cells::after_help();
-    let explained = [&cells, map::MAP_HELP, encoding::ENCODING_HELP, settings::SETTINGS_HELP].join("\n");
-    format!("{explained}\n\n{EXAMPLES}")
+/// Returns the help text below the options of `--help`.
+fn after_options() -> String {
+    format!("{}\n\n{}\n\n{EXAMPLES}\n\n{EXIT_STATUS}", help::KEYS, settings::SETTINGS_HELP)
+}
+
+/// Returns the list of commands for `--help`.
+fn commands() -> String {
+    let program = Command::augment_subcommands(clap::Command::new(""));
+    let line = |command: &clap::Command| {
+        let about = command.get_about().map(ToString::to_string).unwrap_or_default();
+        format!("\n  {:<11}  {about}", command.get_name())
+    };
+    program.get_subcommands().map(line).fold("Commands:".to_owned(), |list, line| list + &line)
 }
 
 #[derive(Parser)]
-#[command(name = "termtrace", version, about = ABOUT, after_help = help())]
+#[command(name = "termtrace", version, about = ABOUT, override_usage = USAGE, max_term_width = 100)]
+#[command(help_template = "{about-with-newline}\n{usage-heading} {usage}\n\n{before-help}{all-args}{after-help}")]
+#[command(before_help = SUMMARY, before_long_help = commands(), after_long_help = after_options())]
 #[command(args_conflicts_with_subcommands = true, disable_help_subcommand = true)]
+#[command(disable_help_flag = true, disable_version_flag = true)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
     #[command(flatten)]
     live: live::LiveArgs,
-    /// Ignore config.ron and keys.ron
-    #[arg(long, global = true)]
-    no_config: bool,
+    #[command(flatten)]
+    no_config: settings::NoConfig,
+    /// Print help; -h prints a summary
+    #[arg(short, long, global = true, help_heading = None, action = ArgAction::Help, hide_short_help = true)]
+    help: Option<bool>,
+    /// Print the version
+    #[arg(short = 'V', long, help_heading = None, action = ArgAction::Version, hide_short_help = true)]
+    version: Option<bool>,
 }
 
 #[derive(Subcommand)]
@@ -80,7 +126,7 @@ enum Command {
     Scenes(DeferredArgs<shipped::ScenesArgs>),
     /// Print one frame, or compare it with a golden frame
     Frame(DeferredArgs<frame::FrameArgs>),
-    /// Record a film along a camera path: asciicast, GIF or numbered PNGs
+    /// Record a film along a camera path: asciicast, GIF, PNGs
     Record(DeferredArgs<record::RecordArgs>),
     /// Explain one pixel: its ray, what it hit, each light
     Explain(DeferredArgs<explain::ExplainArgs>),
@@ -98,6 +144,10 @@ enum Command {
     Completions(DeferredArgs<completions::CompletionsArgs>),
     /// Print the man page
     Man(DeferredArgs<completions::ManArgs>),
+    /// Print the help of a command
+    Help(DeferredArgs<help::HelpArgs>),
+    /// Print the version
+    Version(DeferredArgs<help::VersionArgs>),
 }
 
 /// Runs the command of the command line and returns its exit code. Errors are printed to standard
@@ -126,14 +176,26 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Config(DeferredArgs(args))) => config::run(&args, given),
         Some(Command::Completions(DeferredArgs(args))) => completions::complete(&args),
         Some(Command::Man(DeferredArgs(args))) => completions::man(&args),
+        Some(Command::Help(DeferredArgs(args))) => help::run(&args),
+        Some(Command::Version(_)) => help::version(),
         None => live::run(&cli.live, given),
     };
     outcome::exit_code(done)
 }
 
+impl Cli {
+    /// Returns the command line as its help shows it.
+    ///
+    /// The help lists the commands before the options itself, so clap's own list is hidden. `-h` shows no options but
+    /// those that [`SUMMARY`] names.
+    fn for_help() -> clap::Command {
+        Self::command().mut_subcommands(|command| command.hide(true)).mut_args(|arg| arg.hide_short_help(true))
+    }
+}
+
 fn parse(arguments: impl Iterator<Item = OsString>) -> Result<(Cli, ArgMatches), ExitCode> {
-    let given = Cli::command().try_get_matches_from(arguments);
+    let given = Cli::for_help().try_get_matches_from(arguments);
     given
         .and_then(|given| Ok((Cli::from_arg_matches(&given)?, given)))
-        .map_err(|error| outcome::print_clap_message(&renamed::with_tip(error)))
+        .map_err(|error| outcome::print_clap_message(&tips::with_tip(error)))
 }

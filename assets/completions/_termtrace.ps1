@@ -30,7 +30,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--glyphs', '--glyphs', [CompletionResultType]::ParameterName, 'Characters to draw with [default: auto]')
             [CompletionResult]::new('--cell-aspect', '--cell-aspect', [CompletionResultType]::ParameterName, 'A cell''s height over its width [default: as detected, or 2]')
             [CompletionResult]::new('--map', '--map', [CompletionResultType]::ParameterName, 'The shaded picture, or a map of the scene [default: shaded]')
-            [CompletionResult]::new('--samples', '--samples', [CompletionResultType]::ParameterName, 'Rays per pixel, also in motion, or `best`: 1, and up to 64 at edges [default: as many as the time allows; best at rest]')
+            [CompletionResult]::new('--samples', '--samples', [CompletionResultType]::ParameterName, 'Rays per pixel, also in motion; best: up to 64 at edges [default: as many as the time allows; best at rest]')
             [CompletionResult]::new('--quality', '--quality', [CompletionResultType]::ParameterName, 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]')
             [CompletionResult]::new('--max-rate', '--max-rate', [CompletionResultType]::ParameterName, 'Average bandwidth cap in bytes per second, such as 50k or 2M [default: what the link takes]')
             [CompletionResult]::new('--fps', '--fps', [CompletionResultType]::ParameterName, 'Frame-rate cap in frames per second [default: 60]')
@@ -42,13 +42,13 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--compressed-link', '--compressed-link', [CompletionResultType]::ParameterName, 'The link compresses, as ssh -C does; the same as --order raster')
             [CompletionResult]::new('--quiet', '--quiet', [CompletionResultType]::ParameterName, 'Do not print the camera on exit')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
-            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help')
-            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help')
-            [CompletionResult]::new('-V', '-V ', [CompletionResultType]::ParameterName, 'Print version')
-            [CompletionResult]::new('--version', '--version', [CompletionResultType]::ParameterName, 'Print version')
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('-V', '-V ', [CompletionResultType]::ParameterName, 'Print the version')
+            [CompletionResult]::new('--version', '--version', [CompletionResultType]::ParameterName, 'Print the version')
             [CompletionResult]::new('scenes', 'scenes', [CompletionResultType]::ParameterValue, 'List the built-in scenes')
             [CompletionResult]::new('frame', 'frame', [CompletionResultType]::ParameterValue, 'Print one frame, or compare it with a golden frame')
-            [CompletionResult]::new('record', 'record', [CompletionResultType]::ParameterValue, 'Record a film along a camera path: asciicast, GIF or numbered PNGs')
+            [CompletionResult]::new('record', 'record', [CompletionResultType]::ParameterValue, 'Record a film along a camera path: asciicast, GIF, PNGs')
             [CompletionResult]::new('explain', 'explain', [CompletionResultType]::ParameterValue, 'Explain one pixel: its ray, what it hit, each light')
             [CompletionResult]::new('check', 'check', [CompletionResultType]::ParameterValue, 'Report every fault of a scene file')
             [CompletionResult]::new('describe', 'describe', [CompletionResultType]::ParameterValue, 'Describe a picture in words')
@@ -57,12 +57,14 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('config', 'config', [CompletionResultType]::ParameterValue, 'Show the effective settings and where each comes from')
             [CompletionResult]::new('completions', 'completions', [CompletionResultType]::ParameterValue, 'Print shell completions')
             [CompletionResult]::new('man', 'man', [CompletionResultType]::ParameterValue, 'Print the man page')
+            [CompletionResult]::new('help', 'help', [CompletionResultType]::ParameterValue, 'Print the help of a command')
+            [CompletionResult]::new('version', 'version', [CompletionResultType]::ParameterValue, 'Print the version')
             break
         }
         'termtrace;scenes' {
-            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
-            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help')
-            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help')
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
         }
         'termtrace;frame' {
@@ -71,10 +73,10 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--up', '--up', [CompletionResultType]::ParameterName, 'Up vector, vertical in the picture, instead of the scene''s')
             [CompletionResult]::new('--fov', '--fov', [CompletionResultType]::ParameterName, 'Vertical field of view in degrees, instead of the scene''s')
             [CompletionResult]::new('--threads', '--threads', [CompletionResultType]::ParameterName, 'Number of threads that trace [default: one per core]')
-            [CompletionResult]::new('--size', '--size', [CompletionResultType]::ParameterName, 'The frame''s size in cells [default: 80x24; PNG: 1280x800 pixels, GIF: 480x300]')
-            [CompletionResult]::new('--pixels', '--pixels', [CompletionResultType]::ParameterName, 'The frame''s size in pixels; a cell has two pixels, one above the other, or with --glyphs shape two by four')
+            [CompletionResult]::new('--size', '--size', [CompletionResultType]::ParameterName, 'The frame''s size in cells [default: 80x24]')
+            [CompletionResult]::new('--pixels', '--pixels', [CompletionResultType]::ParameterName, 'Size in pixels [default: PNG 1280x800, GIF 480x300]')
             [CompletionResult]::new('--cell-aspect', '--cell-aspect', [CompletionResultType]::ParameterName, 'A cell''s height over its width')
-            [CompletionResult]::new('--samples', '--samples', [CompletionResultType]::ParameterName, 'Rays per pixel, the first through its centre; or `best`: 1, and up to 64 at edges [default: 1; PNG and GIF: best]')
+            [CompletionResult]::new('--samples', '--samples', [CompletionResultType]::ParameterName, 'Rays per pixel; best: 1 to 64 [default: 1; PNG, GIF: best]')
             [CompletionResult]::new('--scale', '--scale', [CompletionResultType]::ParameterName, 'Picture files: draw each pixel as N by N pixels of the file [default: 1]')
             [CompletionResult]::new('--map', '--map', [CompletionResultType]::ParameterName, 'The shaded picture, or a map of the scene [default: shaded]')
             [CompletionResult]::new('--color', '--color', [CompletionResultType]::ParameterName, 'Colours to draw with [default: auto]')
@@ -82,11 +84,11 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--format', '--format', [CompletionResultType]::ParameterName, 'Format to write [default: by the file name''s extension, or text]')
             [CompletionResult]::new('-o', '-o', [CompletionResultType]::ParameterName, 'Write to a file; - is standard output [default: -]')
             [CompletionResult]::new('--output', '--output', [CompletionResultType]::ParameterName, 'Write to a file; - is standard output [default: -]')
-            [CompletionResult]::new('--check', '--check', [CompletionResultType]::ParameterName, 'Compare with the frame in a file instead of writing one; exit code 1 and a diff if they differ')
-            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
+            [CompletionResult]::new('--check', '--check', [CompletionResultType]::ParameterName, 'Compare with the frame in a file, and print a diff')
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--bless', '--bless', [CompletionResultType]::ParameterName, 'With --check: write the golden frame instead of comparing')
-            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help (see more with ''--help'')')
-            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help (see more with ''--help'')')
+            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
         }
         'termtrace;record' {
@@ -95,24 +97,24 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--up', '--up', [CompletionResultType]::ParameterName, 'Up vector, vertical in the picture, instead of the scene''s')
             [CompletionResult]::new('--fov', '--fov', [CompletionResultType]::ParameterName, 'Vertical field of view in degrees, instead of the scene''s')
             [CompletionResult]::new('--threads', '--threads', [CompletionResultType]::ParameterName, 'Number of threads that trace [default: one per core]')
-            [CompletionResult]::new('--path', '--path', [CompletionResultType]::ParameterName, 'Path of the camera: orbit, or a file of keyframes')
-            [CompletionResult]::new('--seconds', '--seconds', [CompletionResultType]::ParameterName, 'Length of the film in seconds [default: 8, or the length of the path file]')
+            [CompletionResult]::new('--path', '--path', [CompletionResultType]::ParameterName, 'The orbit, or a file of keyframes')
+            [CompletionResult]::new('--seconds', '--seconds', [CompletionResultType]::ParameterName, 'Length in seconds [default: 8, or the path''s]')
             [CompletionResult]::new('--fps', '--fps', [CompletionResultType]::ParameterName, 'Frames per second [default: 30; GIF: 25]')
-            [CompletionResult]::new('--size', '--size', [CompletionResultType]::ParameterName, 'The frame''s size in cells [default: 80x24; PNG: 1280x800 pixels, GIF: 480x300]')
-            [CompletionResult]::new('--pixels', '--pixels', [CompletionResultType]::ParameterName, 'The frame''s size in pixels; a cell has two pixels, one above the other, or with --glyphs shape two by four')
+            [CompletionResult]::new('--size', '--size', [CompletionResultType]::ParameterName, 'The frame''s size in cells [default: 80x24]')
+            [CompletionResult]::new('--pixels', '--pixels', [CompletionResultType]::ParameterName, 'Size in pixels [default: PNG 1280x800, GIF 480x300]')
             [CompletionResult]::new('--cell-aspect', '--cell-aspect', [CompletionResultType]::ParameterName, 'A cell''s height over its width')
-            [CompletionResult]::new('--samples', '--samples', [CompletionResultType]::ParameterName, 'Rays per pixel, the first through its centre; or `best`: 1, and up to 64 at edges [default: 1; PNG and GIF: best]')
+            [CompletionResult]::new('--samples', '--samples', [CompletionResultType]::ParameterName, 'Rays per pixel; best: 1 to 64 [default: 1; PNG, GIF: best]')
             [CompletionResult]::new('--scale', '--scale', [CompletionResultType]::ParameterName, 'Picture files: draw each pixel as N by N pixels of the file [default: 1]')
             [CompletionResult]::new('--map', '--map', [CompletionResultType]::ParameterName, 'The shaded picture, or a map of the scene [default: shaded]')
             [CompletionResult]::new('--order', '--order', [CompletionResultType]::ParameterName, 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]')
             [CompletionResult]::new('--quality', '--quality', [CompletionResultType]::ParameterName, 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]')
             [CompletionResult]::new('--max-rate', '--max-rate', [CompletionResultType]::ParameterName, 'Average bandwidth cap in bytes per second, such as 50k or 2M [default: what the link takes]')
-            [CompletionResult]::new('-o', '-o', [CompletionResultType]::ParameterName, 'Write to FILE.cast (asciicast), FILE.gif, or FILE-%04d.png, numbered from 1; - writes an asciicast to standard output [default: -]')
-            [CompletionResult]::new('--output', '--output', [CompletionResultType]::ParameterName, 'Write to FILE.cast (asciicast), FILE.gif, or FILE-%04d.png, numbered from 1; - writes an asciicast to standard output [default: -]')
-            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
+            [CompletionResult]::new('-o', '-o', [CompletionResultType]::ParameterName, 'FILE.cast (asciicast), FILE.gif, or FILE-%04d.png')
+            [CompletionResult]::new('--output', '--output', [CompletionResultType]::ParameterName, 'FILE.cast (asciicast), FILE.gif, or FILE-%04d.png')
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--compressed-link', '--compressed-link', [CompletionResultType]::ParameterName, 'The link compresses, as ssh -C does; the same as --order raster')
-            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help')
-            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help')
+            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
         }
         'termtrace;explain' {
@@ -122,12 +124,12 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--fov', '--fov', [CompletionResultType]::ParameterName, 'Vertical field of view in degrees, instead of the scene''s')
             [CompletionResult]::new('--threads', '--threads', [CompletionResultType]::ParameterName, 'Number of threads that trace [default: one per core]')
             [CompletionResult]::new('--pixel', '--pixel', [CompletionResultType]::ParameterName, 'The pixel''s column and row, from (0, 0) at the top left')
-            [CompletionResult]::new('--size', '--size', [CompletionResultType]::ParameterName, 'The frame''s size in cells [default: 80x24; PNG: 1280x800 pixels, GIF: 480x300]')
-            [CompletionResult]::new('--pixels', '--pixels', [CompletionResultType]::ParameterName, 'The frame''s size in pixels; a cell has two pixels, one above the other, or with --glyphs shape two by four')
+            [CompletionResult]::new('--size', '--size', [CompletionResultType]::ParameterName, 'The frame''s size in cells [default: 80x24]')
+            [CompletionResult]::new('--pixels', '--pixels', [CompletionResultType]::ParameterName, 'Size in pixels [default: PNG 1280x800, GIF 480x300]')
             [CompletionResult]::new('--cell-aspect', '--cell-aspect', [CompletionResultType]::ParameterName, 'A cell''s height over its width')
-            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
-            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help')
-            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help')
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
         }
         'termtrace;check' {
@@ -136,9 +138,9 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--up', '--up', [CompletionResultType]::ParameterName, 'Up vector, vertical in the picture, instead of the scene''s')
             [CompletionResult]::new('--fov', '--fov', [CompletionResultType]::ParameterName, 'Vertical field of view in degrees, instead of the scene''s')
             [CompletionResult]::new('--threads', '--threads', [CompletionResultType]::ParameterName, 'Number of threads that trace [default: one per core]')
-            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
-            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help')
-            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help')
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
         }
         'termtrace;describe' {
@@ -148,9 +150,9 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--fov', '--fov', [CompletionResultType]::ParameterName, 'Vertical field of view in degrees, instead of the scene''s')
             [CompletionResult]::new('--threads', '--threads', [CompletionResultType]::ParameterName, 'Number of threads that trace [default: one per core]')
             [CompletionResult]::new('--size', '--size', [CompletionResultType]::ParameterName, 'The size of the screen, in cells')
-            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
-            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help')
-            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help')
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
         }
         'termtrace;bench' {
@@ -160,19 +162,19 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--threads', '--threads', [CompletionResultType]::ParameterName, 'Number of threads that trace [default: one per core]')
             [CompletionResult]::new('--kernel', '--kernel', [CompletionResultType]::ParameterName, 'How rays are traced through the scene; affects the time only')
             [CompletionResult]::new('--rounds', '--rounds', [CompletionResultType]::ParameterName, 'Number of rounds')
-            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--no-shadow', '--no-shadow', [CompletionResultType]::ParameterName, 'Trace no shadow rays')
-            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help (see more with ''--help'')')
-            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help (see more with ''--help'')')
+            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
         }
         'termtrace;doctor' {
             [CompletionResult]::new('--color', '--color', [CompletionResultType]::ParameterName, 'Colours to draw with [default: auto]')
             [CompletionResult]::new('--glyphs', '--glyphs', [CompletionResultType]::ParameterName, 'Characters to draw with [default: auto]')
             [CompletionResult]::new('--cell-aspect', '--cell-aspect', [CompletionResultType]::ParameterName, 'A cell''s height over its width [default: as detected, or 2]')
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
-            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help')
-            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help')
             break
         }
         'termtrace;config' {
@@ -180,7 +182,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--glyphs', '--glyphs', [CompletionResultType]::ParameterName, 'Characters to draw with [default: auto]')
             [CompletionResult]::new('--cell-aspect', '--cell-aspect', [CompletionResultType]::ParameterName, 'A cell''s height over its width [default: as detected, or 2]')
             [CompletionResult]::new('--map', '--map', [CompletionResultType]::ParameterName, 'The shaded picture, or a map of the scene [default: shaded]')
-            [CompletionResult]::new('--samples', '--samples', [CompletionResultType]::ParameterName, 'Rays per pixel, also in motion, or `best`: 1, and up to 64 at edges [default: as many as the time allows; best at rest]')
+            [CompletionResult]::new('--samples', '--samples', [CompletionResultType]::ParameterName, 'Rays per pixel, also in motion; best: up to 64 at edges [default: as many as the time allows; best at rest]')
             [CompletionResult]::new('--quality', '--quality', [CompletionResultType]::ParameterName, 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]')
             [CompletionResult]::new('--max-rate', '--max-rate', [CompletionResultType]::ParameterName, 'Average bandwidth cap in bytes per second, such as 50k or 2M [default: what the link takes]')
             [CompletionResult]::new('--fps', '--fps', [CompletionResultType]::ParameterName, 'Frame-rate cap in frames per second [default: 60]')
@@ -188,22 +190,34 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--turn-speed', '--turn-speed', [CompletionResultType]::ParameterName, 'Speed at which keys turn the view: a factor from 0.1 to 10 [default: 1]')
             [CompletionResult]::new('--reduced-motion', '--reduced-motion', [CompletionResultType]::ParameterName, 'Each key press moves one step at once; nothing moves by itself [default: false]')
             [CompletionResult]::new('--hint', '--hint', [CompletionResultType]::ParameterName, 'Show the keys to press in the lowest row until the first one [default: true]')
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
             [CompletionResult]::new('--keys', '--keys', [CompletionResultType]::ParameterName, 'Print the keys instead, in the form of keys.ron')
-            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help')
-            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help')
             break
         }
         'termtrace;completions' {
-            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
-            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help')
-            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help')
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
         }
         'termtrace;man' {
-            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
-            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help')
-            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help')
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
+            break
+        }
+        'termtrace;help' {
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
+            break
+        }
+        'termtrace;version' {
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
         }
     })

@@ -1,613 +1,85 @@
-_termtrace() {
-    local i cur prev opts cmd
-    COMPREPLY=()
-    if [[ "${BASH_VERSINFO[0]}" -ge 4 ]]; then
-        cur="$2"
-    else
-        cur="${COMP_WORDS[COMP_CWORD]}"
-    fi
-    prev="$3"
-    cmd=""
-    opts=""
+# Made by termtrace completions bash.
 
-    for i in "${COMP_WORDS[@]:0:COMP_CWORD}"
-    do
-        case "${cmd},${i}" in
-            ",$1")
-                cmd="termtrace"
-                ;;
-            termtrace,bench)
-                cmd="termtrace__subcmd__bench"
-                ;;
-            termtrace,check)
-                cmd="termtrace__subcmd__check"
-                ;;
-            termtrace,completions)
-                cmd="termtrace__subcmd__completions"
-                ;;
-            termtrace,config)
-                cmd="termtrace__subcmd__config"
-                ;;
-            termtrace,describe)
-                cmd="termtrace__subcmd__describe"
-                ;;
-            termtrace,doctor)
-                cmd="termtrace__subcmd__doctor"
-                ;;
-            termtrace,explain)
-                cmd="termtrace__subcmd__explain"
-                ;;
-            termtrace,frame)
-                cmd="termtrace__subcmd__frame"
-                ;;
-            termtrace,man)
-                cmd="termtrace__subcmd__man"
-                ;;
-            termtrace,record)
-                cmd="termtrace__subcmd__record"
-                ;;
-            termtrace,scenes)
-                cmd="termtrace__subcmd__scenes"
-                ;;
-            *)
-                ;;
-        esac
+_termtrace_words() {
+    COMPREPLY+=($(compgen -W "$1" -- "$cur"))
+}
+
+_termtrace_files() {
+    local IFS=$'\n'
+    COMPREPLY+=($(compgen -f -- "$cur"))
+    compopt -o filenames 2>/dev/null
+}
+
+_termtrace_scenes() {
+    local file IFS=$'\n'
+    COMPREPLY+=($(compgen -d -- "$cur"))
+    for file in $(compgen -f -- "$cur"); do
+        case $file in *.ron|*.RON|*.obj|*.OBJ|*.stl|*.STL|*.ply|*.PLY|*.gltf|*.GLTF|*.glb|*.GLB) COMPREPLY+=("$file") ;; esac
     done
+    compopt -o filenames 2>/dev/null
+}
 
-    case "${cmd}" in
-        termtrace)
-            opts="-h -V --eye --target --up --fov --threads --color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order --compressed-link --quiet --no-config --help --version scenes frame record explain check describe bench doctor config completions man"
-            if [[ ${cur} == -* || ${COMP_CWORD} -eq 1 ]] ; then
-                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-                return 0
-            fi
-            case "${prev}" in
-                --eye)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --target)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --up)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --fov)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --threads)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --color)
-                    COMPREPLY=($(compgen -W "auto always never truecolor 256 16" -- "${cur}"))
-                    return 0
-                    ;;
-                --glyphs)
-                    COMPREPLY=($(compgen -W "auto half shape ramp" -- "${cur}"))
-                    return 0
-                    ;;
-                --cell-aspect)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --map)
-                    COMPREPLY=($(compgen -W "shaded lambert depth normal object shadow cost facing contrast" -- "${cur}"))
-                    return 0
-                    ;;
-                --samples)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --quality)
-                    COMPREPLY=($(compgen -W "exact equal fast" -- "${cur}"))
-                    return 0
-                    ;;
-                --max-rate)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --fps)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --move-speed)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --turn-speed)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --reduced-motion)
-                    COMPREPLY=($(compgen -W "true false" -- "${cur}"))
-                    return 0
-                    ;;
-                --hint)
-                    COMPREPLY=($(compgen -W "true false" -- "${cur}"))
-                    return 0
-                    ;;
-                --order)
-                    COMPREPLY=($(compgen -W "color raster" -- "${cur}"))
-                    return 0
-                    ;;
-                *)
-                    COMPREPLY=()
-                    ;;
-            esac
-            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-            return 0
-            ;;
-        termtrace__subcmd__bench)
-            opts="-h --no-config --scene --pixels --samples --threads --kernel --rounds --no-shadow --help"
-            if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
-                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-                return 0
-            fi
-            case "${prev}" in
-                --scene)
-                    COMPREPLY=($(compgen -W "three s1k s100k" -- "${cur}"))
-                    return 0
-                    ;;
-                --pixels)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --samples)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --threads)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --kernel)
-                    COMPREPLY=($(compgen -W "auto single packet scalar" -- "${cur}"))
-                    return 0
-                    ;;
-                --rounds)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                *)
-                    COMPREPLY=()
-                    ;;
-            esac
-            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-            return 0
-            ;;
-        termtrace__subcmd__check)
-            opts="-h --no-config --eye --target --up --fov --threads --help"
-            if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
-                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-                return 0
-            fi
-            case "${prev}" in
-                --eye)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --target)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --up)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --fov)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --threads)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                *)
-                    COMPREPLY=()
-                    ;;
-            esac
-            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-            return 0
-            ;;
-        termtrace__subcmd__completions)
-            opts="-h --no-config --help bash elvish fish powershell zsh"
-            if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
-                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-                return 0
-            fi
-            case "${prev}" in
-                *)
-                    COMPREPLY=()
-                    ;;
-            esac
-            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-            return 0
-            ;;
-        termtrace__subcmd__config)
-            opts="-h --no-config --color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --keys --help"
-            if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
-                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-                return 0
-            fi
-            case "${prev}" in
-                --color)
-                    COMPREPLY=($(compgen -W "auto always never truecolor 256 16" -- "${cur}"))
-                    return 0
-                    ;;
-                --glyphs)
-                    COMPREPLY=($(compgen -W "auto half shape ramp" -- "${cur}"))
-                    return 0
-                    ;;
-                --cell-aspect)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --map)
-                    COMPREPLY=($(compgen -W "shaded lambert depth normal object shadow cost facing contrast" -- "${cur}"))
-                    return 0
-                    ;;
-                --samples)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --quality)
-                    COMPREPLY=($(compgen -W "exact equal fast" -- "${cur}"))
-                    return 0
-                    ;;
-                --max-rate)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --fps)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --move-speed)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --turn-speed)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --reduced-motion)
-                    COMPREPLY=($(compgen -W "true false" -- "${cur}"))
-                    return 0
-                    ;;
-                --hint)
-                    COMPREPLY=($(compgen -W "true false" -- "${cur}"))
-                    return 0
-                    ;;
-                *)
-                    COMPREPLY=()
-                    ;;
-            esac
-            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-            return 0
-            ;;
-        termtrace__subcmd__describe)
-            opts="-h --no-config --eye --target --up --fov --threads --size --help"
-            if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
-                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-                return 0
-            fi
-            case "${prev}" in
-                --eye)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --target)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --up)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --fov)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --threads)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --size)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                *)
-                    COMPREPLY=()
-                    ;;
-            esac
-            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-            return 0
-            ;;
-        termtrace__subcmd__doctor)
-            opts="-h --no-config --color --glyphs --cell-aspect --help"
-            if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
-                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-                return 0
-            fi
-            case "${prev}" in
-                --color)
-                    COMPREPLY=($(compgen -W "auto always never truecolor 256 16" -- "${cur}"))
-                    return 0
-                    ;;
-                --glyphs)
-                    COMPREPLY=($(compgen -W "auto half shape ramp" -- "${cur}"))
-                    return 0
-                    ;;
-                --cell-aspect)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                *)
-                    COMPREPLY=()
-                    ;;
-            esac
-            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-            return 0
-            ;;
-        termtrace__subcmd__explain)
-            opts="-h --no-config --eye --target --up --fov --threads --pixel --size --pixels --cell-aspect --help"
-            if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
-                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-                return 0
-            fi
-            case "${prev}" in
-                --eye)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --target)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --up)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --fov)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --threads)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --pixel)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --size)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --pixels)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --cell-aspect)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                *)
-                    COMPREPLY=()
-                    ;;
-            esac
-            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-            return 0
-            ;;
-        termtrace__subcmd__frame)
-            opts="-o -h --no-config --eye --target --up --fov --threads --size --pixels --cell-aspect --samples --scale --map --color --glyphs --format --output --check --bless --help"
-            if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
-                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-                return 0
-            fi
-            case "${prev}" in
-                --eye)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --target)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --up)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --fov)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --threads)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --size)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --pixels)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --cell-aspect)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --samples)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --scale)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --map)
-                    COMPREPLY=($(compgen -W "shaded lambert depth normal object shadow cost facing contrast" -- "${cur}"))
-                    return 0
-                    ;;
-                --color)
-                    COMPREPLY=($(compgen -W "auto always never truecolor 256 16" -- "${cur}"))
-                    return 0
-                    ;;
-                --glyphs)
-                    COMPREPLY=($(compgen -W "auto half shape ramp" -- "${cur}"))
-                    return 0
-                    ;;
-                --format)
-                    COMPREPLY=($(compgen -W "text ansi svg html png" -- "${cur}"))
-                    return 0
-                    ;;
-                --output)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                -o)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --check)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                *)
-                    COMPREPLY=()
-                    ;;
-            esac
-            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-            return 0
-            ;;
-        termtrace__subcmd__man)
-            opts="-h --no-config --help"
-            if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
-                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-                return 0
-            fi
-            case "${prev}" in
-                *)
-                    COMPREPLY=()
-                    ;;
-            esac
-            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-            return 0
-            ;;
-        termtrace__subcmd__record)
-            opts="-o -h --no-config --eye --target --up --fov --threads --path --seconds --fps --size --pixels --cell-aspect --samples --scale --map --order --compressed-link --quality --max-rate --output --help"
-            if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
-                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-                return 0
-            fi
-            case "${prev}" in
-                --eye)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --target)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --up)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --fov)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --threads)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --path)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --seconds)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --fps)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --size)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --pixels)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --cell-aspect)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --samples)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --scale)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --map)
-                    COMPREPLY=($(compgen -W "shaded lambert depth normal object shadow cost facing contrast" -- "${cur}"))
-                    return 0
-                    ;;
-                --order)
-                    COMPREPLY=($(compgen -W "color raster" -- "${cur}"))
-                    return 0
-                    ;;
-                --quality)
-                    COMPREPLY=($(compgen -W "exact equal fast" -- "${cur}"))
-                    return 0
-                    ;;
-                --max-rate)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                --output)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                -o)
-                    COMPREPLY=($(compgen -f "${cur}"))
-                    return 0
-                    ;;
-                *)
-                    COMPREPLY=()
-                    ;;
-            esac
-            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-            return 0
-            ;;
-        termtrace__subcmd__scenes)
-            opts="-h --no-config --help"
-            if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
-                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-                return 0
-            fi
-            case "${prev}" in
-                *)
-                    COMPREPLY=()
-                    ;;
-            esac
-            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
-            return 0
-            ;;
+_termtrace() {
+    local cur=${COMP_WORDS[COMP_CWORD]} flag=${COMP_WORDS[COMP_CWORD-1]} command=
+    COMPREPLY=()
+    # bash cuts --flag=value into three words.
+    if [[ $cur == = ]]; then
+        cur=
+    elif [[ $flag == = ]]; then
+        flag=${COMP_WORDS[COMP_CWORD-2]}
+    fi
+    if ((COMP_CWORD > 1)); then
+        case ${COMP_WORDS[1]} in scenes|frame|record|explain|check|describe|bench|doctor|config|completions|man|help|version) command=${COMP_WORDS[1]} ;; esac
+    fi
+    case $flag in
+        --cell-aspect) return ;;
+        --check) _termtrace_files; return ;;
+        --color) _termtrace_words "auto always never truecolor 256 16"; return ;;
+        --eye) return ;;
+        --format) _termtrace_words "text ansi svg html png"; return ;;
+        --fov) return ;;
+        --fps) return ;;
+        --glyphs) _termtrace_words "auto half shape ramp"; return ;;
+        --hint) _termtrace_words "true false"; return ;;
+        --kernel) _termtrace_words "auto single packet scalar"; return ;;
+        --map) _termtrace_words "shaded lambert depth normal object shadow cost facing contrast"; return ;;
+        --max-rate) return ;;
+        --move-speed) return ;;
+        --order) _termtrace_words "color raster"; return ;;
+        --path) _termtrace_words "orbit"; _termtrace_files; return ;;
+        --pixel) return ;;
+        --pixels) return ;;
+        --quality) _termtrace_words "exact equal fast"; return ;;
+        --reduced-motion) _termtrace_words "true false"; return ;;
+        --rounds) return ;;
+        --samples) _termtrace_words "best"; return ;;
+        --scale) return ;;
+        --scene) _termtrace_words "three s1k s100k"; return ;;
+        --seconds) return ;;
+        --size) return ;;
+        --target) return ;;
+        --threads) return ;;
+        --turn-speed) return ;;
+        --up) return ;;
+        -o|--output) _termtrace_files; return ;;
+    esac
+    case $command in
+        scenes) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
+        frame) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --threads --size --pixels --cell-aspect --samples --scale --map --color --glyphs --format -o --output --check -h --help --bless"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi ;;
+        record) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --threads --path --seconds --fps --size --pixels --cell-aspect --samples --scale --map --order --quality --max-rate -o --output -h --help --compressed-link"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi ;;
+        explain) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --threads --pixel --size --pixels --cell-aspect -h --help"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi ;;
+        check) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --threads -h --help"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi ;;
+        describe) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --threads --size -h --help"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi ;;
+        bench) if [[ $cur == -* ]]; then _termtrace_words "--scene --pixels --samples --threads --kernel --rounds -h --help --no-shadow"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi ;;
+        doctor) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect -h --help --no-config"; else :; fi ;;
+        config) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint -h --help --no-config --keys"; else :; fi ;;
+        completions) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "bash elvish fish powershell zsh"; :; fi ;;
+        man) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes frame record explain check describe bench doctor config completions man help version"; :; fi ;;
+        help) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes frame record explain check describe bench doctor config completions man help version"; :; fi ;;
+        version) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
+        *) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --threads --color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order --compressed-link --quiet --no-config -h --help -V --version"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi
+            ((COMP_CWORD > 1)) || _termtrace_words "scenes frame record explain check describe bench doctor config completions man help version" ;;
     esac
 }
 
-if [[ "${BASH_VERSINFO[0]}" -eq 4 && "${BASH_VERSINFO[1]}" -ge 4 || "${BASH_VERSINFO[0]}" -gt 4 ]]; then
-    complete -F _termtrace -o nosort -o bashdefault -o default termtrace
-else
-    complete -F _termtrace -o bashdefault -o default termtrace
-fi
+complete -F _termtrace -o nosort termtrace 2>/dev/null || complete -F _termtrace termtrace

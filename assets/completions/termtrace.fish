@@ -1,246 +1,355 @@
-# Print an optspec for argparse to handle cmd's options that are independent of any subcommand.
-function __fish_termtrace_global_optspecs
-    string join \n eye= target= up= fov= threads= color= glyphs= cell-aspect= map= samples= quality= max-rate= fps= move-speed= turn-speed= reduced-motion= hint= order= compressed-link quiet no-config h/help V/version
+# Made by termtrace completions fish.
+
+function __termtrace_is
+    set -l words (commandline -opc)
+    set -l command ''
+    contains -- "$words[2]" scenes frame record explain check describe bench doctor config completions man help version; and set command $words[2]
+    test "$command" = "$argv[1]"
 end
 
-function __fish_termtrace_needs_command
-    # Figure out if the current invocation already has a command.
-    set -l cmd (commandline -opc)
-    set -e cmd[1]
-    argparse -s (__fish_termtrace_global_optspecs) -- $cmd 2>/dev/null
-    or return
-    if set -q argv[1]
-        # Also print the command, so this can be used to figure out what it is.
-        echo $argv[1]
-        return 1
-    end
-    return 0
+function __termtrace_first
+    test (count (commandline -opc)) -eq 1
 end
 
-function __fish_termtrace_using_subcommand
-    set -l cmd (__fish_termtrace_needs_command)
-    test -z "$cmd"
-    and return 1
-    contains -- $cmd[1] $argv
+function __termtrace_scenes
+    complete -C "'' "(commandline -ct) | string match -ri '^[^\t]*(?:/|\.(?:ron|obj|stl|ply|gltf|glb))(?:\t.*)?$'
 end
 
-complete -c termtrace -n "__fish_termtrace_needs_command" -l eye -d 'Eye point, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_needs_command" -l target -d 'Target point, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_needs_command" -l up -d 'Up vector, vertical in the picture, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_needs_command" -l fov -d 'Vertical field of view in degrees, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_needs_command" -l threads -d 'Number of threads that trace [default: one per core]' -r
-complete -c termtrace -n "__fish_termtrace_needs_command" -l color -d 'Colours to draw with [default: auto]' -r -f -a "auto\t''
-always\t''
-never\t''
-truecolor\t''
-256\t''
-16\t''"
-complete -c termtrace -n "__fish_termtrace_needs_command" -l glyphs -d 'Characters to draw with [default: auto]' -r -f -a "auto\t''
-half\t''
-shape\t''
-ramp\t''"
-complete -c termtrace -n "__fish_termtrace_needs_command" -l cell-aspect -d 'A cell\'s height over its width [default: as detected, or 2]' -r
-complete -c termtrace -n "__fish_termtrace_needs_command" -l map -d 'The shaded picture, or a map of the scene [default: shaded]' -r -f -a "shaded\t''
-lambert\t''
-depth\t''
-normal\t''
-object\t''
-shadow\t''
-cost\t''
-facing\t''
-contrast\t''"
-complete -c termtrace -n "__fish_termtrace_needs_command" -l samples -d 'Rays per pixel, also in motion, or `best`: 1, and up to 64 at edges [default: as many as the time allows; best at rest]' -r
-complete -c termtrace -n "__fish_termtrace_needs_command" -l quality -d 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]' -r -f -a "exact\t''
-equal\t''
-fast\t''"
-complete -c termtrace -n "__fish_termtrace_needs_command" -l max-rate -d 'Average bandwidth cap in bytes per second, such as 50k or 2M [default: what the link takes]' -r
-complete -c termtrace -n "__fish_termtrace_needs_command" -l fps -d 'Frame-rate cap in frames per second [default: 60]' -r
-complete -c termtrace -n "__fish_termtrace_needs_command" -l move-speed -d 'Speed at which keys move the eye: a factor from 0.1 to 10 [default: 1]' -r
-complete -c termtrace -n "__fish_termtrace_needs_command" -l turn-speed -d 'Speed at which keys turn the view: a factor from 0.1 to 10 [default: 1]' -r
-complete -c termtrace -n "__fish_termtrace_needs_command" -l reduced-motion -d 'Each key press moves one step at once; nothing moves by itself [default: false]' -r -f -a "true\t''
-false\t''"
-complete -c termtrace -n "__fish_termtrace_needs_command" -l hint -d 'Show the keys to press in the lowest row until the first one [default: true]' -r -f -a "true\t''
-false\t''"
-complete -c termtrace -n "__fish_termtrace_needs_command" -l order -d 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]' -r -f -a "color\t''
-raster\t''"
-complete -c termtrace -n "__fish_termtrace_needs_command" -l compressed-link -d 'The link compresses, as ssh -C does; the same as --order raster'
-complete -c termtrace -n "__fish_termtrace_needs_command" -l quiet -d 'Do not print the camera on exit'
-complete -c termtrace -n "__fish_termtrace_needs_command" -l no-config -d 'Ignore config.ron and keys.ron'
-complete -c termtrace -n "__fish_termtrace_needs_command" -s h -l help -d 'Print help'
-complete -c termtrace -n "__fish_termtrace_needs_command" -s V -l version -d 'Print version'
-complete -c termtrace -n "__fish_termtrace_needs_command" -a "scenes" -d 'List the built-in scenes'
-complete -c termtrace -n "__fish_termtrace_needs_command" -a "frame" -d 'Print one frame, or compare it with a golden frame'
-complete -c termtrace -n "__fish_termtrace_needs_command" -a "record" -d 'Record a film along a camera path: asciicast, GIF or numbered PNGs'
-complete -c termtrace -n "__fish_termtrace_needs_command" -a "explain" -d 'Explain one pixel: its ray, what it hit, each light'
-complete -c termtrace -n "__fish_termtrace_needs_command" -a "check" -d 'Report every fault of a scene file'
-complete -c termtrace -n "__fish_termtrace_needs_command" -a "describe" -d 'Describe a picture in words'
-complete -c termtrace -n "__fish_termtrace_needs_command" -a "bench" -d 'Measure how fast a scene is traced'
-complete -c termtrace -n "__fish_termtrace_needs_command" -a "doctor" -d 'Show what was detected about this terminal, and a test card'
-complete -c termtrace -n "__fish_termtrace_needs_command" -a "config" -d 'Show the effective settings and where each comes from'
-complete -c termtrace -n "__fish_termtrace_needs_command" -a "completions" -d 'Print shell completions'
-complete -c termtrace -n "__fish_termtrace_needs_command" -a "man" -d 'Print the man page'
-complete -c termtrace -n "__fish_termtrace_using_subcommand scenes" -l no-config -d 'Ignore config.ron and keys.ron'
-complete -c termtrace -n "__fish_termtrace_using_subcommand scenes" -s h -l help -d 'Print help'
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l eye -d 'Eye point, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l target -d 'Target point, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l up -d 'Up vector, vertical in the picture, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l fov -d 'Vertical field of view in degrees, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l threads -d 'Number of threads that trace [default: one per core]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l size -d 'The frame\'s size in cells [default: 80x24; PNG: 1280x800 pixels, GIF: 480x300]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l pixels -d 'The frame\'s size in pixels; a cell has two pixels, one above the other, or with --glyphs shape two by four' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l cell-aspect -d 'A cell\'s height over its width' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l samples -d 'Rays per pixel, the first through its centre; or `best`: 1, and up to 64 at edges [default: 1; PNG and GIF: best]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l scale -d 'Picture files: draw each pixel as N by N pixels of the file [default: 1]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l map -d 'The shaded picture, or a map of the scene [default: shaded]' -r -f -a "shaded\t''
-lambert\t''
-depth\t''
-normal\t''
-object\t''
-shadow\t''
-cost\t''
-facing\t''
-contrast\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l color -d 'Colours to draw with [default: auto]' -r -f -a "auto\t''
-always\t''
-never\t''
-truecolor\t''
-256\t''
-16\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l glyphs -d 'Characters to draw with [default: auto]' -r -f -a "auto\t''
-half\t''
-shape\t''
-ramp\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l format -d 'Format to write [default: by the file name\'s extension, or text]' -r -f -a "text\t'Characters without colour'
+complete -c termtrace -f
+complete -c termtrace -n __termtrace_first -a "scenes\t'List the built-in scenes'"
+complete -c termtrace -n __termtrace_first -a "frame\t'Print one frame, or compare it with a golden frame'"
+complete -c termtrace -n __termtrace_first -a "record\t'Record a film along a camera path: asciicast, GIF, PNGs'"
+complete -c termtrace -n __termtrace_first -a "explain\t'Explain one pixel: its ray, what it hit, each light'"
+complete -c termtrace -n __termtrace_first -a "check\t'Report every fault of a scene file'"
+complete -c termtrace -n __termtrace_first -a "describe\t'Describe a picture in words'"
+complete -c termtrace -n __termtrace_first -a "bench\t'Measure how fast a scene is traced'"
+complete -c termtrace -n __termtrace_first -a "doctor\t'Show what was detected about this terminal, and a test card'"
+complete -c termtrace -n __termtrace_first -a "config\t'Show the effective settings and where each comes from'"
+complete -c termtrace -n __termtrace_first -a "completions\t'Print shell completions'"
+complete -c termtrace -n __termtrace_first -a "man\t'Print the man page'"
+complete -c termtrace -n __termtrace_first -a "help\t'Print the help of a command'"
+complete -c termtrace -n __termtrace_first -a "version\t'Print the version'"
+complete -c termtrace -n "__termtrace_is scenes" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is frame" -l eye -r -f -d 'Eye point, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is frame" -l target -r -f -d 'Target point, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is frame" -l up -r -f -d 'Up vector, vertical in the picture, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is frame" -l fov -r -f -d 'Vertical field of view in degrees, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is frame" -l threads -r -f -d 'Number of threads that trace [default: one per core]'
+complete -c termtrace -n "__termtrace_is frame" -l size -r -f -d 'The frame\'s size in cells [default: 80x24]'
+complete -c termtrace -n "__termtrace_is frame" -l pixels -r -f -d 'Size in pixels [default: PNG 1280x800, GIF 480x300]'
+complete -c termtrace -n "__termtrace_is frame" -l cell-aspect -r -f -d 'A cell\'s height over its width'
+complete -c termtrace -n "__termtrace_is frame" -l samples -r -f -a "best\t''" -d 'Rays per pixel; best: 1 to 64 [default: 1; PNG, GIF: best]'
+complete -c termtrace -n "__termtrace_is frame" -l scale -r -f -d 'Picture files: draw each pixel as N by N pixels of the file [default: 1]'
+complete -c termtrace -n "__termtrace_is frame" -l map -r -f -a "shaded\t'The lit picture'
+lambert\t'The sum of n.l over all lights, at most 1: no colours, no shadows'
+depth\t'The distance: white at the eye, half as light at the target\'s distance, black far away'
+normal\t'(n + 1) / 2 as red, green and blue'
+object\t'One colour per object'
+shadow\t'The lights that reach the surface: dark grey for none, white for all'
+cost\t'The surfaces and tree nodes that a pixel\'s rays are tested against: blue 1, green 16, red 256'
+facing\t'Front sides blue, back sides red'
+contrast\t'Black and white, with lines between objects'" -d 'The shaded picture, or a map of the scene [default: shaded]'
+complete -c termtrace -n "__termtrace_is frame" -l color -r -f -a "auto\t'As many as the terminal supports, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, its own reply, terminfo and TERM; termtrace doctor shows which of them decided'
+always\t'As auto, but at least 16 colours, even if NO_COLOR is set'
+never\t'No colours, and no escape sequences for them'
+truecolor\t'24-bit colours'
+256\t'256 colours, dithered'
+16\t'16 colours, dithered'" -d 'Colours to draw with [default: auto]'
+complete -c termtrace -n "__termtrace_is frame" -l glyphs -r -f -a "auto\t'Half blocks; shape if there is no colour, the locale is not UTF-8, or a block is not one column wide'
+half\t'Two pixels, one above the other'
+shape\t'The character of ASCII that has its ink where the picture has its light'
+ramp\t'One of ten characters, by lightness'" -d 'Characters to draw with [default: auto]'
+complete -c termtrace -n "__termtrace_is frame" -l format -r -f -a "text\t'Characters without colour'
 ansi\t'Cells in colour'
 svg\t'Cells as a drawing, one rectangle per half cell'
 html\t'Cells as a web page'
-png\t'A picture file'"
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -s o -l output -d 'Write to a file; - is standard output [default: -]' -r -F
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l check -d 'Compare with the frame in a file instead of writing one; exit code 1 and a diff if they differ' -r -F
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l no-config -d 'Ignore config.ron and keys.ron'
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -l bless -d 'With --check: write the golden frame instead of comparing'
-complete -c termtrace -n "__fish_termtrace_using_subcommand frame" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l eye -d 'Eye point, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l target -d 'Target point, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l up -d 'Up vector, vertical in the picture, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l fov -d 'Vertical field of view in degrees, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l threads -d 'Number of threads that trace [default: one per core]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l path -d 'Path of the camera: orbit, or a file of keyframes' -r -F
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l seconds -d 'Length of the film in seconds [default: 8, or the length of the path file]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l fps -d 'Frames per second [default: 30; GIF: 25]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l size -d 'The frame\'s size in cells [default: 80x24; PNG: 1280x800 pixels, GIF: 480x300]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l pixels -d 'The frame\'s size in pixels; a cell has two pixels, one above the other, or with --glyphs shape two by four' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l cell-aspect -d 'A cell\'s height over its width' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l samples -d 'Rays per pixel, the first through its centre; or `best`: 1, and up to 64 at edges [default: 1; PNG and GIF: best]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l scale -d 'Picture files: draw each pixel as N by N pixels of the file [default: 1]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l map -d 'The shaded picture, or a map of the scene [default: shaded]' -r -f -a "shaded\t''
-lambert\t''
-depth\t''
-normal\t''
-object\t''
-shadow\t''
-cost\t''
-facing\t''
-contrast\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l order -d 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]' -r -f -a "color\t''
-raster\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l quality -d 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]' -r -f -a "exact\t''
-equal\t''
-fast\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l max-rate -d 'Average bandwidth cap in bytes per second, such as 50k or 2M [default: what the link takes]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -s o -l output -d 'Write to FILE.cast (asciicast), FILE.gif, or FILE-%04d.png, numbered from 1; - writes an asciicast to standard output [default: -]' -r -F
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l no-config -d 'Ignore config.ron and keys.ron'
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -l compressed-link -d 'The link compresses, as ssh -C does; the same as --order raster'
-complete -c termtrace -n "__fish_termtrace_using_subcommand record" -s h -l help -d 'Print help'
-complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l eye -d 'Eye point, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l target -d 'Target point, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l up -d 'Up vector, vertical in the picture, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l fov -d 'Vertical field of view in degrees, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l threads -d 'Number of threads that trace [default: one per core]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l pixel -d 'The pixel\'s column and row, from (0, 0) at the top left' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l size -d 'The frame\'s size in cells [default: 80x24; PNG: 1280x800 pixels, GIF: 480x300]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l pixels -d 'The frame\'s size in pixels; a cell has two pixels, one above the other, or with --glyphs shape two by four' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l cell-aspect -d 'A cell\'s height over its width' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -l no-config -d 'Ignore config.ron and keys.ron'
-complete -c termtrace -n "__fish_termtrace_using_subcommand explain" -s h -l help -d 'Print help'
-complete -c termtrace -n "__fish_termtrace_using_subcommand check" -l eye -d 'Eye point, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand check" -l target -d 'Target point, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand check" -l up -d 'Up vector, vertical in the picture, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand check" -l fov -d 'Vertical field of view in degrees, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand check" -l threads -d 'Number of threads that trace [default: one per core]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand check" -l no-config -d 'Ignore config.ron and keys.ron'
-complete -c termtrace -n "__fish_termtrace_using_subcommand check" -s h -l help -d 'Print help'
-complete -c termtrace -n "__fish_termtrace_using_subcommand describe" -l eye -d 'Eye point, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand describe" -l target -d 'Target point, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand describe" -l up -d 'Up vector, vertical in the picture, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand describe" -l fov -d 'Vertical field of view in degrees, instead of the scene\'s' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand describe" -l threads -d 'Number of threads that trace [default: one per core]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand describe" -l size -d 'The size of the screen, in cells' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand describe" -l no-config -d 'Ignore config.ron and keys.ron'
-complete -c termtrace -n "__fish_termtrace_using_subcommand describe" -s h -l help -d 'Print help'
-complete -c termtrace -n "__fish_termtrace_using_subcommand bench" -l scene -d 'A generated scene instead of a file' -r -f -a "three\t'Three spheres on a plane'
+png\t'A picture file'" -d 'Format to write [default: by the file name\'s extension, or text]'
+complete -c termtrace -n "__termtrace_is frame" -s o -l output -r -F -d 'Write to a file; - is standard output [default: -]'
+complete -c termtrace -n "__termtrace_is frame" -l check -r -F -d 'Compare with the frame in a file, and print a diff'
+complete -c termtrace -n "__termtrace_is frame" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is frame" -l bless -d 'With --check: write the golden frame instead of comparing'
+complete -c termtrace -n "__termtrace_is frame" -a "three_spheres\t'Three spheres on a checkered floor: the whole lecture in one picture.'
+bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
+two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
+three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+inside_sphere\t'The eye inside a sphere, together with the light.'
+many_spheres\t'Two hundred and forty spheres, arranged like the seeds of a sunflower: each a golden angle on from the previous one.'
+near_fov\t'Near, with a wide field of view: 84 degrees from 4 units away.'
+far_fov\t'Far, with a narrow field of view: 20 degrees from 20 units away.'
+corridor\t'A corridor of four planes: parallel lines meet at a vanishing point.'
+tilted_up\t'A tilted up vector: the camera is rolled to the right by about 20 degrees.'
+off_centre\t'A view rectangle off centre, as in photographs of buildings.'
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+complete -c termtrace -n "__termtrace_is frame" -a '(__termtrace_scenes)'
+complete -c termtrace -n "__termtrace_is record" -l eye -r -f -d 'Eye point, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is record" -l target -r -f -d 'Target point, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is record" -l up -r -f -d 'Up vector, vertical in the picture, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is record" -l fov -r -f -d 'Vertical field of view in degrees, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is record" -l threads -r -f -d 'Number of threads that trace [default: one per core]'
+complete -c termtrace -n "__termtrace_is record" -l path -r -F -a "orbit\t''" -d 'The orbit, or a file of keyframes'
+complete -c termtrace -n "__termtrace_is record" -l seconds -r -f -d 'Length in seconds [default: 8, or the path\'s]'
+complete -c termtrace -n "__termtrace_is record" -l fps -r -f -d 'Frames per second [default: 30; GIF: 25]'
+complete -c termtrace -n "__termtrace_is record" -l size -r -f -d 'The frame\'s size in cells [default: 80x24]'
+complete -c termtrace -n "__termtrace_is record" -l pixels -r -f -d 'Size in pixels [default: PNG 1280x800, GIF 480x300]'
+complete -c termtrace -n "__termtrace_is record" -l cell-aspect -r -f -d 'A cell\'s height over its width'
+complete -c termtrace -n "__termtrace_is record" -l samples -r -f -a "best\t''" -d 'Rays per pixel; best: 1 to 64 [default: 1; PNG, GIF: best]'
+complete -c termtrace -n "__termtrace_is record" -l scale -r -f -d 'Picture files: draw each pixel as N by N pixels of the file [default: 1]'
+complete -c termtrace -n "__termtrace_is record" -l map -r -f -a "shaded\t'The lit picture'
+lambert\t'The sum of n.l over all lights, at most 1: no colours, no shadows'
+depth\t'The distance: white at the eye, half as light at the target\'s distance, black far away'
+normal\t'(n + 1) / 2 as red, green and blue'
+object\t'One colour per object'
+shadow\t'The lights that reach the surface: dark grey for none, white for all'
+cost\t'The surfaces and tree nodes that a pixel\'s rays are tested against: blue 1, green 16, red 256'
+facing\t'Front sides blue, back sides red'
+contrast\t'Black and white, with lines between objects'" -d 'The shaded picture, or a map of the scene [default: shaded]'
+complete -c termtrace -n "__termtrace_is record" -l order -r -f -a "color\t'By colour, so that colour changes are rare: the fewest bytes on a link without compression'
+raster\t'Row by row: more bytes, but they compress best, because each frame resembles the last; less computing'" -d 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]'
+complete -c termtrace -n "__termtrace_is record" -l quality -r -f -a "exact\t'Every half cell has its exact colour'
+equal\t'Within a distance of 0.01, which is invisible, and 44 dB; half the bytes or less'
+fast\t'Within 0.02, and 41 dB; fewer bytes still'" -d 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]'
+complete -c termtrace -n "__termtrace_is record" -l max-rate -r -f -d 'Average bandwidth cap in bytes per second, such as 50k or 2M [default: what the link takes]'
+complete -c termtrace -n "__termtrace_is record" -s o -l output -r -F -d 'FILE.cast (asciicast), FILE.gif, or FILE-%04d.png'
+complete -c termtrace -n "__termtrace_is record" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is record" -l compressed-link -d 'The link compresses, as ssh -C does; the same as --order raster'
+complete -c termtrace -n "__termtrace_is record" -a "three_spheres\t'Three spheres on a checkered floor: the whole lecture in one picture.'
+bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
+two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
+three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+inside_sphere\t'The eye inside a sphere, together with the light.'
+many_spheres\t'Two hundred and forty spheres, arranged like the seeds of a sunflower: each a golden angle on from the previous one.'
+near_fov\t'Near, with a wide field of view: 84 degrees from 4 units away.'
+far_fov\t'Far, with a narrow field of view: 20 degrees from 20 units away.'
+corridor\t'A corridor of four planes: parallel lines meet at a vanishing point.'
+tilted_up\t'A tilted up vector: the camera is rolled to the right by about 20 degrees.'
+off_centre\t'A view rectangle off centre, as in photographs of buildings.'
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+complete -c termtrace -n "__termtrace_is record" -a '(__termtrace_scenes)'
+complete -c termtrace -n "__termtrace_is explain" -l eye -r -f -d 'Eye point, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is explain" -l target -r -f -d 'Target point, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is explain" -l up -r -f -d 'Up vector, vertical in the picture, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is explain" -l fov -r -f -d 'Vertical field of view in degrees, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is explain" -l threads -r -f -d 'Number of threads that trace [default: one per core]'
+complete -c termtrace -n "__termtrace_is explain" -l pixel -r -f -d 'The pixel\'s column and row, from (0, 0) at the top left'
+complete -c termtrace -n "__termtrace_is explain" -l size -r -f -d 'The frame\'s size in cells [default: 80x24]'
+complete -c termtrace -n "__termtrace_is explain" -l pixels -r -f -d 'Size in pixels [default: PNG 1280x800, GIF 480x300]'
+complete -c termtrace -n "__termtrace_is explain" -l cell-aspect -r -f -d 'A cell\'s height over its width'
+complete -c termtrace -n "__termtrace_is explain" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is explain" -a "three_spheres\t'Three spheres on a checkered floor: the whole lecture in one picture.'
+bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
+two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
+three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+inside_sphere\t'The eye inside a sphere, together with the light.'
+many_spheres\t'Two hundred and forty spheres, arranged like the seeds of a sunflower: each a golden angle on from the previous one.'
+near_fov\t'Near, with a wide field of view: 84 degrees from 4 units away.'
+far_fov\t'Far, with a narrow field of view: 20 degrees from 20 units away.'
+corridor\t'A corridor of four planes: parallel lines meet at a vanishing point.'
+tilted_up\t'A tilted up vector: the camera is rolled to the right by about 20 degrees.'
+off_centre\t'A view rectangle off centre, as in photographs of buildings.'
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+complete -c termtrace -n "__termtrace_is explain" -a '(__termtrace_scenes)'
+complete -c termtrace -n "__termtrace_is check" -l eye -r -f -d 'Eye point, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is check" -l target -r -f -d 'Target point, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is check" -l up -r -f -d 'Up vector, vertical in the picture, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is check" -l fov -r -f -d 'Vertical field of view in degrees, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is check" -l threads -r -f -d 'Number of threads that trace [default: one per core]'
+complete -c termtrace -n "__termtrace_is check" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is check" -a "three_spheres\t'Three spheres on a checkered floor: the whole lecture in one picture.'
+bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
+two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
+three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+inside_sphere\t'The eye inside a sphere, together with the light.'
+many_spheres\t'Two hundred and forty spheres, arranged like the seeds of a sunflower: each a golden angle on from the previous one.'
+near_fov\t'Near, with a wide field of view: 84 degrees from 4 units away.'
+far_fov\t'Far, with a narrow field of view: 20 degrees from 20 units away.'
+corridor\t'A corridor of four planes: parallel lines meet at a vanishing point.'
+tilted_up\t'A tilted up vector: the camera is rolled to the right by about 20 degrees.'
+off_centre\t'A view rectangle off centre, as in photographs of buildings.'
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+complete -c termtrace -n "__termtrace_is check" -a '(__termtrace_scenes)'
+complete -c termtrace -n "__termtrace_is describe" -l eye -r -f -d 'Eye point, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is describe" -l target -r -f -d 'Target point, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is describe" -l up -r -f -d 'Up vector, vertical in the picture, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is describe" -l fov -r -f -d 'Vertical field of view in degrees, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is describe" -l threads -r -f -d 'Number of threads that trace [default: one per core]'
+complete -c termtrace -n "__termtrace_is describe" -l size -r -f -d 'The size of the screen, in cells'
+complete -c termtrace -n "__termtrace_is describe" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is describe" -a "three_spheres\t'Three spheres on a checkered floor: the whole lecture in one picture.'
+bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
+two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
+three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+inside_sphere\t'The eye inside a sphere, together with the light.'
+many_spheres\t'Two hundred and forty spheres, arranged like the seeds of a sunflower: each a golden angle on from the previous one.'
+near_fov\t'Near, with a wide field of view: 84 degrees from 4 units away.'
+far_fov\t'Far, with a narrow field of view: 20 degrees from 20 units away.'
+corridor\t'A corridor of four planes: parallel lines meet at a vanishing point.'
+tilted_up\t'A tilted up vector: the camera is rolled to the right by about 20 degrees.'
+off_centre\t'A view rectangle off centre, as in photographs of buildings.'
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+complete -c termtrace -n "__termtrace_is describe" -a '(__termtrace_scenes)'
+complete -c termtrace -n "__termtrace_is bench" -l scene -r -f -a "three\t'Three spheres on a plane'
 s1k\t'1,000 spheres in a cube'
-s100k\t'100,000 smaller spheres in the same cube'"
-complete -c termtrace -n "__fish_termtrace_using_subcommand bench" -l pixels -d 'The picture\'s size in pixels' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand bench" -l samples -d 'Rays per pixel' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand bench" -l threads -d 'Number of threads that trace [default: one per core]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand bench" -l kernel -d 'How rays are traced through the scene; affects the time only' -r -f -a "auto\t'As packets, while that is cheaper than single rays'
+s100k\t'100,000 smaller spheres in the same cube'" -d 'A generated scene instead of a file'
+complete -c termtrace -n "__termtrace_is bench" -l pixels -r -f -d 'The picture\'s size in pixels'
+complete -c termtrace -n "__termtrace_is bench" -l samples -r -f -d 'Rays per pixel'
+complete -c termtrace -n "__termtrace_is bench" -l threads -r -f -d 'Number of threads that trace [default: one per core]'
+complete -c termtrace -n "__termtrace_is bench" -l kernel -r -f -a "auto\t'As packets, while that is cheaper than single rays'
 single\t'Single rays, each against eight boxes or primitives at once'
 packet\t'Always as packets'
-scalar\t'Single rays, without SIMD instructions'"
-complete -c termtrace -n "__fish_termtrace_using_subcommand bench" -l rounds -d 'Number of rounds' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand bench" -l no-config -d 'Ignore config.ron and keys.ron'
-complete -c termtrace -n "__fish_termtrace_using_subcommand bench" -l no-shadow -d 'Trace no shadow rays'
-complete -c termtrace -n "__fish_termtrace_using_subcommand bench" -s h -l help -d 'Print help (see more with \'--help\')'
-complete -c termtrace -n "__fish_termtrace_using_subcommand doctor" -l color -d 'Colours to draw with [default: auto]' -r -f -a "auto\t''
-always\t''
-never\t''
-truecolor\t''
-256\t''
-16\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand doctor" -l glyphs -d 'Characters to draw with [default: auto]' -r -f -a "auto\t''
-half\t''
-shape\t''
-ramp\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand doctor" -l cell-aspect -d 'A cell\'s height over its width [default: as detected, or 2]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand doctor" -l no-config -d 'Ignore config.ron and keys.ron'
-complete -c termtrace -n "__fish_termtrace_using_subcommand doctor" -s h -l help -d 'Print help'
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l color -d 'Colours to draw with [default: auto]' -r -f -a "auto\t''
-always\t''
-never\t''
-truecolor\t''
-256\t''
-16\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l glyphs -d 'Characters to draw with [default: auto]' -r -f -a "auto\t''
-half\t''
-shape\t''
-ramp\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l cell-aspect -d 'A cell\'s height over its width [default: as detected, or 2]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l map -d 'The shaded picture, or a map of the scene [default: shaded]' -r -f -a "shaded\t''
-lambert\t''
-depth\t''
-normal\t''
-object\t''
-shadow\t''
-cost\t''
-facing\t''
-contrast\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l samples -d 'Rays per pixel, also in motion, or `best`: 1, and up to 64 at edges [default: as many as the time allows; best at rest]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l quality -d 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]' -r -f -a "exact\t''
-equal\t''
-fast\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l max-rate -d 'Average bandwidth cap in bytes per second, such as 50k or 2M [default: what the link takes]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l fps -d 'Frame-rate cap in frames per second [default: 60]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l move-speed -d 'Speed at which keys move the eye: a factor from 0.1 to 10 [default: 1]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l turn-speed -d 'Speed at which keys turn the view: a factor from 0.1 to 10 [default: 1]' -r
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l reduced-motion -d 'Each key press moves one step at once; nothing moves by itself [default: false]' -r -f -a "true\t''
-false\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l hint -d 'Show the keys to press in the lowest row until the first one [default: true]' -r -f -a "true\t''
-false\t''"
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l no-config -d 'Ignore config.ron and keys.ron'
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -l keys -d 'Print the keys instead, in the form of keys.ron'
-complete -c termtrace -n "__fish_termtrace_using_subcommand config" -s h -l help -d 'Print help'
-complete -c termtrace -n "__fish_termtrace_using_subcommand completions" -l no-config -d 'Ignore config.ron and keys.ron'
-complete -c termtrace -n "__fish_termtrace_using_subcommand completions" -s h -l help -d 'Print help'
-complete -c termtrace -n "__fish_termtrace_using_subcommand man" -l no-config -d 'Ignore config.ron and keys.ron'
-complete -c termtrace -n "__fish_termtrace_using_subcommand man" -s h -l help -d 'Print help'
+scalar\t'Single rays, without SIMD instructions'" -d 'How rays are traced through the scene; affects the time only'
+complete -c termtrace -n "__termtrace_is bench" -l rounds -r -f -d 'Number of rounds'
+complete -c termtrace -n "__termtrace_is bench" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is bench" -l no-shadow -d 'Trace no shadow rays'
+complete -c termtrace -n "__termtrace_is bench" -a "three_spheres\t'Three spheres on a checkered floor: the whole lecture in one picture.'
+bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
+two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
+three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+inside_sphere\t'The eye inside a sphere, together with the light.'
+many_spheres\t'Two hundred and forty spheres, arranged like the seeds of a sunflower: each a golden angle on from the previous one.'
+near_fov\t'Near, with a wide field of view: 84 degrees from 4 units away.'
+far_fov\t'Far, with a narrow field of view: 20 degrees from 20 units away.'
+corridor\t'A corridor of four planes: parallel lines meet at a vanishing point.'
+tilted_up\t'A tilted up vector: the camera is rolled to the right by about 20 degrees.'
+off_centre\t'A view rectangle off centre, as in photographs of buildings.'
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+complete -c termtrace -n "__termtrace_is bench" -a '(__termtrace_scenes)'
+complete -c termtrace -n "__termtrace_is doctor" -l color -r -f -a "auto\t'As many as the terminal supports, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, its own reply, terminfo and TERM; termtrace doctor shows which of them decided'
+always\t'As auto, but at least 16 colours, even if NO_COLOR is set'
+never\t'No colours, and no escape sequences for them'
+truecolor\t'24-bit colours'
+256\t'256 colours, dithered'
+16\t'16 colours, dithered'" -d 'Colours to draw with [default: auto]'
+complete -c termtrace -n "__termtrace_is doctor" -l glyphs -r -f -a "auto\t'Half blocks; shape if there is no colour, the locale is not UTF-8, or a block is not one column wide'
+half\t'Two pixels, one above the other'
+shape\t'The character of ASCII that has its ink where the picture has its light'
+ramp\t'One of ten characters, by lightness'" -d 'Characters to draw with [default: auto]'
+complete -c termtrace -n "__termtrace_is doctor" -l cell-aspect -r -f -d 'A cell\'s height over its width [default: as detected, or 2]'
+complete -c termtrace -n "__termtrace_is doctor" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is doctor" -l no-config -d 'Ignore config.ron and keys.ron'
+complete -c termtrace -n "__termtrace_is config" -l color -r -f -a "auto\t'As many as the terminal supports, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, its own reply, terminfo and TERM; termtrace doctor shows which of them decided'
+always\t'As auto, but at least 16 colours, even if NO_COLOR is set'
+never\t'No colours, and no escape sequences for them'
+truecolor\t'24-bit colours'
+256\t'256 colours, dithered'
+16\t'16 colours, dithered'" -d 'Colours to draw with [default: auto]'
+complete -c termtrace -n "__termtrace_is config" -l glyphs -r -f -a "auto\t'Half blocks; shape if there is no colour, the locale is not UTF-8, or a block is not one column wide'
+half\t'Two pixels, one above the other'
+shape\t'The character of ASCII that has its ink where the picture has its light'
+ramp\t'One of ten characters, by lightness'" -d 'Characters to draw with [default: auto]'
+complete -c termtrace -n "__termtrace_is config" -l cell-aspect -r -f -d 'A cell\'s height over its width [default: as detected, or 2]'
+complete -c termtrace -n "__termtrace_is config" -l map -r -f -a "shaded\t'The lit picture'
+lambert\t'The sum of n.l over all lights, at most 1: no colours, no shadows'
+depth\t'The distance: white at the eye, half as light at the target\'s distance, black far away'
+normal\t'(n + 1) / 2 as red, green and blue'
+object\t'One colour per object'
+shadow\t'The lights that reach the surface: dark grey for none, white for all'
+cost\t'The surfaces and tree nodes that a pixel\'s rays are tested against: blue 1, green 16, red 256'
+facing\t'Front sides blue, back sides red'
+contrast\t'Black and white, with lines between objects'" -d 'The shaded picture, or a map of the scene [default: shaded]'
+complete -c termtrace -n "__termtrace_is config" -l samples -r -f -a "best\t''" -d 'Rays per pixel, also in motion; best: up to 64 at edges [default: as many as the time allows; best at rest]'
+complete -c termtrace -n "__termtrace_is config" -l quality -r -f -a "exact\t'Every half cell has its exact colour'
+equal\t'Within a distance of 0.01, which is invisible, and 44 dB; half the bytes or less'
+fast\t'Within 0.02, and 41 dB; fewer bytes still'" -d 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]'
+complete -c termtrace -n "__termtrace_is config" -l max-rate -r -f -d 'Average bandwidth cap in bytes per second, such as 50k or 2M [default: what the link takes]'
+complete -c termtrace -n "__termtrace_is config" -l fps -r -f -d 'Frame-rate cap in frames per second [default: 60]'
+complete -c termtrace -n "__termtrace_is config" -l move-speed -r -f -d 'Speed at which keys move the eye: a factor from 0.1 to 10 [default: 1]'
+complete -c termtrace -n "__termtrace_is config" -l turn-speed -r -f -d 'Speed at which keys turn the view: a factor from 0.1 to 10 [default: 1]'
+complete -c termtrace -n "__termtrace_is config" -l reduced-motion -f -a "true\t''
+false\t''" -d 'Each key press moves one step at once; nothing moves by itself [default: false]'
+complete -c termtrace -n "__termtrace_is config" -l hint -f -a "true\t''
+false\t''" -d 'Show the keys to press in the lowest row until the first one [default: true]'
+complete -c termtrace -n "__termtrace_is config" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is config" -l no-config -d 'Ignore config.ron and keys.ron'
+complete -c termtrace -n "__termtrace_is config" -l keys -d 'Print the keys instead, in the form of keys.ron'
+complete -c termtrace -n "__termtrace_is completions" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is completions" -a "bash\t''
+elvish\t''
+fish\t''
+powershell\t''
+zsh\t''"
+complete -c termtrace -n "__termtrace_is man" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is man" -a "scenes\t'List the built-in scenes'
+frame\t'Print one frame, or compare it with a golden frame'
+record\t'Record a film along a camera path: asciicast, GIF, PNGs'
+explain\t'Explain one pixel: its ray, what it hit, each light'
+check\t'Report every fault of a scene file'
+describe\t'Describe a picture in words'
+bench\t'Measure how fast a scene is traced'
+doctor\t'Show what was detected about this terminal, and a test card'
+config\t'Show the effective settings and where each comes from'
+completions\t'Print shell completions'
+man\t'Print the man page'
+help\t'Print the help of a command'
+version\t'Print the version'"
+complete -c termtrace -n "__termtrace_is help" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is help" -a "scenes\t'List the built-in scenes'
+frame\t'Print one frame, or compare it with a golden frame'
+record\t'Record a film along a camera path: asciicast, GIF, PNGs'
+explain\t'Explain one pixel: its ray, what it hit, each light'
+check\t'Report every fault of a scene file'
+describe\t'Describe a picture in words'
+bench\t'Measure how fast a scene is traced'
+doctor\t'Show what was detected about this terminal, and a test card'
+config\t'Show the effective settings and where each comes from'
+completions\t'Print shell completions'
+man\t'Print the man page'
+help\t'Print the help of a command'
+version\t'Print the version'"
+complete -c termtrace -n "__termtrace_is version" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is ''" -l eye -r -f -d 'Eye point, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is ''" -l target -r -f -d 'Target point, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is ''" -l up -r -f -d 'Up vector, vertical in the picture, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is ''" -l fov -r -f -d 'Vertical field of view in degrees, instead of the scene\'s'
+complete -c termtrace -n "__termtrace_is ''" -l threads -r -f -d 'Number of threads that trace [default: one per core]'
+complete -c termtrace -n "__termtrace_is ''" -l color -r -f -a "auto\t'As many as the terminal supports, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, its own reply, terminfo and TERM; termtrace doctor shows which of them decided'
+always\t'As auto, but at least 16 colours, even if NO_COLOR is set'
+never\t'No colours, and no escape sequences for them'
+truecolor\t'24-bit colours'
+256\t'256 colours, dithered'
+16\t'16 colours, dithered'" -d 'Colours to draw with [default: auto]'
+complete -c termtrace -n "__termtrace_is ''" -l glyphs -r -f -a "auto\t'Half blocks; shape if there is no colour, the locale is not UTF-8, or a block is not one column wide'
+half\t'Two pixels, one above the other'
+shape\t'The character of ASCII that has its ink where the picture has its light'
+ramp\t'One of ten characters, by lightness'" -d 'Characters to draw with [default: auto]'
+complete -c termtrace -n "__termtrace_is ''" -l cell-aspect -r -f -d 'A cell\'s height over its width [default: as detected, or 2]'
+complete -c termtrace -n "__termtrace_is ''" -l map -r -f -a "shaded\t'The lit picture'
+lambert\t'The sum of n.l over all lights, at most 1: no colours, no shadows'
+depth\t'The distance: white at the eye, half as light at the target\'s distance, black far away'
+normal\t'(n + 1) / 2 as red, green and blue'
+object\t'One colour per object'
+shadow\t'The lights that reach the surface: dark grey for none, white for all'
+cost\t'The surfaces and tree nodes that a pixel\'s rays are tested against: blue 1, green 16, red 256'
+facing\t'Front sides blue, back sides red'
+contrast\t'Black and white, with lines between objects'" -d 'The shaded picture, or a map of the scene [default: shaded]'
+complete -c termtrace -n "__termtrace_is ''" -l samples -r -f -a "best\t''" -d 'Rays per pixel, also in motion; best: up to 64 at edges [default: as many as the time allows; best at rest]'
+complete -c termtrace -n "__termtrace_is ''" -l quality -r -f -a "exact\t'Every half cell has its exact colour'
+equal\t'Within a distance of 0.01, which is invisible, and 44 dB; half the bytes or less'
+fast\t'Within 0.02, and 41 dB; fewer bytes still'" -d 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]'
+complete -c termtrace -n "__termtrace_is ''" -l max-rate -r -f -d 'Average bandwidth cap in bytes per second, such as 50k or 2M [default: what the link takes]'
+complete -c termtrace -n "__termtrace_is ''" -l fps -r -f -d 'Frame-rate cap in frames per second [default: 60]'
+complete -c termtrace -n "__termtrace_is ''" -l move-speed -r -f -d 'Speed at which keys move the eye: a factor from 0.1 to 10 [default: 1]'
+complete -c termtrace -n "__termtrace_is ''" -l turn-speed -r -f -d 'Speed at which keys turn the view: a factor from 0.1 to 10 [default: 1]'
+complete -c termtrace -n "__termtrace_is ''" -l reduced-motion -f -a "true\t''
+false\t''" -d 'Each key press moves one step at once; nothing moves by itself [default: false]'
+complete -c termtrace -n "__termtrace_is ''" -l hint -f -a "true\t''
+false\t''" -d 'Show the keys to press in the lowest row until the first one [default: true]'
+complete -c termtrace -n "__termtrace_is ''" -l order -r -f -a "color\t'By colour, so that colour changes are rare: the fewest bytes on a link without compression'
+raster\t'Row by row: more bytes, but they compress best, because each frame resembles the last; less computing'" -d 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]'
+complete -c termtrace -n "__termtrace_is ''" -l compressed-link -d 'The link compresses, as ssh -C does; the same as --order raster'
+complete -c termtrace -n "__termtrace_is ''" -l quiet -d 'Do not print the camera on exit'
+complete -c termtrace -n "__termtrace_is ''" -l no-config -d 'Ignore config.ron and keys.ron'
+complete -c termtrace -n "__termtrace_is ''" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is ''" -s V -l version -d 'Print the version'
+complete -c termtrace -n "__termtrace_is ''" -a "three_spheres\t'Three spheres on a checkered floor: the whole lecture in one picture.'
+bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
+two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
+three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+inside_sphere\t'The eye inside a sphere, together with the light.'
+many_spheres\t'Two hundred and forty spheres, arranged like the seeds of a sunflower: each a golden angle on from the previous one.'
+near_fov\t'Near, with a wide field of view: 84 degrees from 4 units away.'
+far_fov\t'Far, with a narrow field of view: 20 degrees from 20 units away.'
+corridor\t'A corridor of four planes: parallel lines meet at a vanishing point.'
+tilted_up\t'A tilted up vector: the camera is rolled to the right by about 20 degrees.'
+off_centre\t'A view rectangle off centre, as in photographs of buildings.'
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+complete -c termtrace -n "__termtrace_is ''" -a '(__termtrace_scenes)'

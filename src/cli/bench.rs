@@ -18,17 +18,18 @@ use termtrace::internals::text::visible;
 use termtrace::{Resolution, Scene, render, tone};
 
 const FIGURES: &str = "\
-A round traces the eye rays of a picture and a shadow ray from each hit to each light. It prints the number of hits, the
-time and the rays per second; then the time of a whole frame, up to its 8-bit picture, and a hash of its light.";
+A round traces the eye rays of a picture and a shadow ray from each hit to each
+light. It prints the number of hits, the time and the rays per second; then the
+time of a whole frame, up to its 8-bit picture, and a hash of its light.";
 
 const EXAMPLES: &str = "\
 Examples:
-  termtrace bench                                       three spheres on a plane
-  termtrace bench --scene s100k --threads 1             100,000 spheres, on one thread
-  termtrace bench my.ron --pixels 200x120 --samples 16  as a screen of 200x60 cells shows it";
+  termtrace bench                             three spheres on a plane
+  termtrace bench --scene s100k --threads 1   100,000 spheres, one thread
+  termtrace bench my.ron --pixels 200x120 --samples 16";
 
 #[derive(Args)]
-#[command(after_help = format!("{FIGURES}\n\n{EXAMPLES}"))]
+#[command(after_long_help = format!("{FIGURES}\n\n{EXAMPLES}"))]
 pub(super) struct BenchArgs {
     /// The scene file [default: --scene three]
     #[arg(value_name = "SCENE", conflicts_with = "generated")]

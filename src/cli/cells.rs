@@ -1,56 +1,51 @@
 //! `--color` and `--glyphs`: the colours and glyphs of the cells that a command prints.
 
+use super::help::capitalized;
 use super::settings::defaults;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use termtrace::internals::capabilities::{ColorChoice, GlyphChoice, Hints, terminfo_colors};
 use termtrace::{CellMode, Colors, Glyphs};
 
-const CELL_HELP: &str = "\
-The colours (--color):
-  auto       as many as the terminal supports, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, its own reply,
-             terminfo and TERM; termtrace doctor shows which of them decided
-  always     as auto, but at least 16 colours, even if NO_COLOR is set
-  never      no colours, and no escape sequences for them
-  truecolor, 256, 16
-             exactly these; with 256 or 16 the picture is dithered
-The characters of cells (--glyphs):
-  auto       half blocks; shape if there is no colour, the locale is not UTF-8, or a block is not one column wide";
-
-/// Returns the help text below the options, which describes the colours and every kind of glyphs.
-pub(super) fn after_help() -> String {
-    Glyphs::ALL
-        .iter()
-        .fold(CELL_HELP.to_owned(), |text, glyphs| format!("{text}\n  {:<9}  {}", glyphs.name(), glyphs.help()))
-}
-
 #[derive(Args)]
+#[command(next_help_heading = "Cells")]
 pub(super) struct CellArgs {
-    #[arg(long, help = defaults::help("color", "Colours to draw with"), value_name = "WHICH")]
+    #[arg(long, value_name = "WHICH", hide_short_help = true)]
+    #[arg(help = defaults::help("color", "Colours to draw with"))]
     color: Option<ColorArg>,
-    #[arg(long, value_name = "KIND", value_parser = glyph_parser())]
+    #[arg(long, value_name = "KIND", value_parser = glyph_parser(), hide_short_help = true)]
     #[arg(help = defaults::help("glyphs", "Characters to draw with"))]
     glyphs: Option<GlyphChoice>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum ColorArg {
+    /// As many as the terminal supports, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM,
+    /// its own reply, terminfo and TERM; termtrace doctor shows which of them decided
     Auto,
+    /// As auto, but at least 16 colours, even if NO_COLOR is set
     Always,
+    /// No colours, and no escape sequences for them
     Never,
+    /// 24-bit colours
     Truecolor,
+    /// 256 colours, dithered
     #[value(name = "256")]
     Indexed256,
+    /// 16 colours, dithered
     #[value(name = "16")]
     Indexed16,
 }
 
 /// The value of `--color` and `--glyphs` that leaves the choice to the terminal or the file format.
 const AUTO: &str = "auto";
+const AUTO_HELP: &str =
+    "Half blocks; shape if there is no colour, the locale is not UTF-8, or a block is not one column wide";
 
 fn glyph_parser() -> impl TypedValueParser<Value = GlyphChoice> {
-    let names = Glyphs::ALL.iter().map(|glyphs| glyphs.name());
-    PossibleValuesParser::new([AUTO].into_iter().chain(names)).map(|name| Glyphs::from_name(&name))
+    let kinds = Glyphs::ALL.iter().map(|glyphs| PossibleValue::new(glyphs.name()).help(capitalized(glyphs.help())));
+    let auto = PossibleValue::new(AUTO).help(AUTO_HELP);
+    PossibleValuesParser::new([auto].into_iter().chain(kinds)).map(|name| Glyphs::from_name(&name))
 }
 
 impl CellArgs {

@@ -13,7 +13,7 @@ Examples:
   termtrace check my.ron --eye 0,0,0      check the scene with this eye point";
 
 #[derive(Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_long_help = EXAMPLES)]
 pub(super) struct CheckArgs {
     /// The scene file or mesh; - reads the scene from standard input
     #[arg(value_name = "SCENE")]

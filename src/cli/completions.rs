@@ -1,18 +1,25 @@
 //! `termtrace completions` and `termtrace man`: shell completions and man pages, generated from the
 //! command line.
 
-use super::Cli;
 use super::outcome::{CommandResult, Failure, reason, write_stdout};
+mod bash;
+mod fish;
+mod values;
+mod zsh;
+
+use super::Cli;
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 use termtrace::internals::text::closest;
 
 const COMPLETIONS: &str = "\
 Examples:
-  termtrace completions bash >~/.local/share/bash-completion/completions/termtrace
-  termtrace completions zsh >~/.zfunc/_termtrace              with fpath+=(~/.zfunc) before compinit in .zshrc
   termtrace completions fish >~/.config/fish/completions/termtrace.fish
-  termtrace completions powershell >>$PROFILE";
+  termtrace completions powershell >>$PROFILE
+  mkdir -p ~/.local/share/bash-completion/completions
+  termtrace completions bash >~/.local/share/bash-completion/completions/termtrace
+  mkdir -p ~/.zfunc       with fpath+=(~/.zfunc) before compinit in .zshrc
+  termtrace completions zsh >~/.zfunc/_termtrace";
 
 const MAN: &str = "\
 Examples:
@@ -20,7 +27,7 @@ Examples:
   termtrace man frame | man -l -";
 
 #[derive(Args)]
-#[command(after_help = COMPLETIONS)]
+#[command(after_long_help = COMPLETIONS)]
 pub(super) struct CompletionsArgs {
     /// The shell to complete for
     #[arg(value_name = "SHELL")]
@@ -28,7 +35,7 @@ pub(super) struct CompletionsArgs {
 }
 
 #[derive(Args)]
-#[command(after_help = MAN)]
+#[command(after_long_help = MAN)]
 pub(super) struct ManArgs {
     /// The command [default: the whole program]
     #[arg(value_name = "COMMAND")]
@@ -37,24 +44,41 @@ pub(super) struct ManArgs {
 
 /// Prints a completion script for the shell.
 pub(super) fn complete(args: &CompletionsArgs) -> CommandResult {
-    let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), "termtrace", &mut script);
-    write_stdout(&script)
+    let mut program = Cli::command();
+    // Lists the deferred arguments of all commands, which would be missing otherwise.
+    program.build();
+    let script = match args.shell {
+        Shell::Bash => bash::script(&program),
+        Shell::Fish => fish::script(&program),
+        Shell::Zsh => zsh::script(&program),
+        shell => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "termtrace", &mut script);
+            return write_stdout(&script);
+        }
+    };
+    write_stdout(script.as_bytes())
 }
 
 /// Prints a man page, as roff.
 pub(super) fn man(args: &ManArgs) -> CommandResult {
-    let mut program = Cli::command();
-    // Adds the deferred arguments to all commands; without them the man pages would be empty.
-    program.build();
-    let page = match &args.command {
-        None => program,
-        Some(name) => program.find_subcommand(name).cloned().ok_or_else(|| no_command(name))?,
-    };
+    let page = command_named(Cli::command(), args.command.as_deref())?;
+    // What the summary leaves out has no text otherwise.
+    let page = page.mut_args(|arg| arg.hide_short_help(false));
     let mut roff = Vec::new();
     let written = clap_mangen::Man::new(page).render(&mut roff);
     written.map_err(|error| Failure::runtime("the man page", reason(&error)))?;
     write_stdout(&roff)
+}
+
+/// Returns the command of this name with all its arguments; without a name, the whole program.
+pub(super) fn command_named(mut program: clap::Command, name: Option<&str>) -> Result<clap::Command, Failure> {
+    // Adds the deferred arguments to all commands.
+    program.build();
+    match name {
+        None => Ok(program),
+        Some(name) => program.find_subcommand(name).cloned().ok_or_else(|| no_command(name)),
+    }
 }
 
 /// Returns the error about a word that clap took for a scene though a command was meant: a misspelt

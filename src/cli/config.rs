@@ -2,7 +2,7 @@
 
 use super::outcome::{CommandResult, write_stdout};
 use super::settings::files::path_of;
-use super::settings::{EffectiveSetting, SettingArgs, Settings, keys};
+use super::settings::{EffectiveSetting, NoConfig, SettingArgs, Settings, keys};
 use clap::{ArgMatches, Args};
 use std::fmt::Write;
 use termtrace::internals::text::visible_lines;
@@ -16,14 +16,16 @@ Examples:
   termtrace config --keys              what each key does, as a keys.ron to edit";
 
 #[derive(Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_long_help = EXAMPLES)]
 pub(super) struct ConfigArgs {
     // Present only for parsing and the help: `Settings::gather` reads clap's matches, which also say which flags were
     // given.
     #[command(flatten)]
     _settings: SettingArgs,
+    #[command(flatten)]
+    _no_config: NoConfig,
     /// Print the keys instead, in the form of keys.ron
-    #[arg(long)]
+    #[arg(long, help_heading = None)]
     keys: bool,
 }
 

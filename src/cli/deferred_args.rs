@@ -1,6 +1,6 @@
 //! Arguments of a command that clap builds only if the command is used.
 
-use clap::{ArgMatches, Args, Command, Error, FromArgMatches};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 
 /// The arguments `T` of a command, which clap builds only when the command is used.
 ///
@@ -32,5 +32,11 @@ impl<T: Args> FromArgMatches for DeferredArgs<T> {
 /// code would replace.
 fn keep_about(command: Command, list: fn(Command) -> Command) -> Command {
     let about = command.get_about().cloned().unwrap_or_default();
-    list(command).about(about)
+    let more = format!("termtrace {} --help lists all options, with examples.", command.get_name());
+    let command = list(command).about(about).after_help(more);
+    // Every command accepts the flag, so that a script may add it to any; only those that read settings list it.
+    if command.get_arguments().any(|arg| arg.get_id() == "no_config") {
+        return command;
+    }
+    command.arg(Arg::new("no_config").long("no-config").action(ArgAction::SetTrue).hide(true))
 }

@@ -8,8 +8,9 @@ use termtrace::internals::text::visible;
 use termtrace::{Resolution, describe};
 
 const EXAMPLES: &str = "\
-The text lists the visible objects, the largest first: kind, colour and size, position and share of the picture,
-distance, and what hides what; then the objects that are not visible, and why; the background and the lights. Objects
+The text lists the visible objects, the largest first: kind, colour and size,
+position and share of the picture, distance, and what hides what; then the
+objects that are not visible, and why; the background and the lights. Objects
 are numbered in the order of the scene file.
 
 Examples:
@@ -17,12 +18,12 @@ Examples:
   termtrace describe my.ron --eye 0,5,0.1      the view from above";
 
 #[derive(Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_long_help = EXAMPLES)]
 pub(super) struct DescribeArgs {
     #[command(flatten)]
     scene: SceneArgs,
     /// The size of the screen, in cells
-    #[arg(long, value_name = "COLSxROWS", default_value = "80x24", value_parser = parse_size)]
+    #[arg(long, help_heading = "Picture", value_name = "COLSxROWS", default_value = "80x24", value_parser = parse_size)]
     size: (u32, u32),
 }
 

@@ -5,7 +5,7 @@ mod card;
 mod report;
 
 use super::outcome::{CommandResult, Failure, reason, write_stdout};
-use super::settings::{Settings, TerminalArgs};
+use super::settings::{NoConfig, Settings, TerminalArgs};
 use clap::{ArgMatches, Args};
 use report::{QueryOutcome, Report};
 use std::io::{self, IsTerminal};
@@ -22,6 +22,8 @@ pub(super) struct DoctorArgs {
     // given.
     #[command(flatten)]
     _terminal: TerminalArgs,
+    #[command(flatten)]
+    _no_config: NoConfig,
 }
 
 /// Time limit for the terminal's replies. It is long because the command should also show the

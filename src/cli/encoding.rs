@@ -4,17 +4,6 @@ use super::settings::defaults;
 use clap::{Args, ValueEnum};
 use termtrace::internals::encode;
 
-/// The help text below the options.
-pub(super) const ENCODING_HELP: &str = "\
-The order of cells (--order):
-  color    by colour, so that colour changes are rare: the fewest bytes on a link without compression
-  raster   row by row: more bytes, but they compress best, because each frame resembles the last; less computing
-  The program cannot see whether ssh compresses: say so with --compressed-link.
-The quality of a moving picture (--quality; a still picture is exact within a second, text always is):
-  exact    every half cell has its exact colour
-  equal    within 0.01 of it in OKLab, which is invisible, and 44 dB; half the bytes or less
-  fast     within 0.02, and 41 dB; fewer bytes still";
-
 #[derive(Args)]
 pub(super) struct EncodingArgs {
     #[command(flatten)]
@@ -25,37 +14,49 @@ pub(super) struct EncodingArgs {
 
 /// The flags for the order in which cells are sent.
 #[derive(Args)]
+#[command(next_help_heading = "Link")]
 pub(super) struct OrderArgs {
     /// Order in which changed cells are sent [default: color; live, raster until the link is found
     /// slow]
-    #[arg(long, value_name = "ORDER", conflicts_with = "compressed_link")]
+    #[arg(long, value_name = "ORDER", conflicts_with = "compressed_link", hide_short_help = true)]
     order: Option<OrderArg>,
     /// The link compresses, as ssh -C does; the same as --order raster
-    #[arg(long)]
+    ///
+    /// The program cannot see whether ssh compresses.
+    #[arg(long, hide_short_help = true)]
     compressed_link: bool,
 }
 
 /// The flags for lossy encoding.
 #[derive(Args)]
+#[command(next_help_heading = "Link")]
 pub(super) struct LossArgs {
-    #[arg(long, value_name = "QUALITY")]
+    #[arg(long, value_name = "QUALITY", hide_short_help = true)]
     #[arg(help = defaults::help("quality", "Fidelity of the picture while it moves: lower sends fewer bytes"))]
     quality: Option<QualityArg>,
-    #[arg(long, value_name = "BYTES", value_parser = parse_rate)]
+    #[arg(long, value_name = "BYTES", value_parser = parse_rate, hide_short_help = true)]
     #[arg(help = defaults::help("max_rate", "Average bandwidth cap in bytes per second, such as 50k or 2M"))]
     max_rate: Option<u32>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 enum OrderArg {
+    /// By colour, so that colour changes are rare: the fewest bytes on a link without compression
     Color,
+    /// Row by row: more bytes, but they compress best, because each frame resembles the last;
+    /// less computing
     Raster,
 }
 
+/// Values of `--quality`. A still picture is exact within a second, and text always is.
 #[derive(Clone, Copy, ValueEnum)]
 enum QualityArg {
+    /// Every half cell has its exact colour
     Exact,
+    // Distances of colours are those of OKLab.
+    /// Within a distance of 0.01, which is invisible, and 44 dB; half the bytes or less
     Equal,
+    /// Within 0.02, and 41 dB; fewer bytes still
     Fast,
 }
 

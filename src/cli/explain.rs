@@ -8,23 +8,26 @@ use termtrace::internals::explain::cell_of_pixel;
 use termtrace::{CellMode, explain};
 
 const MEANING: &str = "\
-The explanation uses the symbols of the lecture: the eye ray o + t d through the point (q_u, q_v) of the view rectangle,
-t for every surface that the ray was tested against, the equation of the closest one, the point p and its normal n, the
-direction l and n.l of each light and the object that blocks it, and the light from there to the bytes of the frame.
-Surfaces and lights are numbered from 1, in the order of the scene file. With several samples it explains the first.";
+The explanation uses the symbols of the lecture: the eye ray o + t d through the
+point (q_u, q_v) of the view rectangle, t for every surface that the ray was
+tested against, the equation of the closest one, the point p and its normal n,
+the direction l and n.l of each light and the object that blocks it, and the
+light from there to the bytes of the frame. Surfaces and lights are numbered
+from 1, in the order of the scene file. The ray is that through the centre of
+the pixel, which is the only one unless a command is given --samples.";
 
 const EXAMPLES: &str = "\
 Examples:
-  termtrace explain my.ron --pixel 40,24                  in the frame of 80x24 cells, 80x48 pixels
-  termtrace explain my.ron --pixel 0,0 --pixels 800x600   the upper left corner of a picture";
+  termtrace explain my.ron --pixel 40,24    in the frame of 80x24 cells
+  termtrace explain my.ron --pixel 0,0 --pixels 800x600";
 
 #[derive(Args)]
-#[command(after_help = format!("{MEANING}\n\n{EXAMPLES}"))]
+#[command(after_long_help = format!("{MEANING}\n\n{EXAMPLES}"))]
 pub(super) struct ExplainArgs {
     #[command(flatten)]
     scene: SceneArgs,
     /// The pixel's column and row, from (0, 0) at the top left
-    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Picture", value_name = "X,Y", value_parser = parse_pixel, allow_hyphen_values = true)]
     pixel: [u32; 2],
     #[command(flatten)]
     size: SizeArgs,

@@ -2,8 +2,9 @@
 
 mod golden;
 
-use super::cells::{self, CellArgs};
-use super::map::{self, MapArgs};
+use super::cells::CellArgs;
+use super::help::capitalized;
+use super::map::MapArgs;
 use super::outcome::{CommandResult, Failure, write_stdout};
 use super::outputs;
 use super::picture::{FrameKind, PictureArgs};
@@ -22,22 +23,23 @@ use termtrace::{CellMode, Colors};
 const DEFAULT: Format = Format::Text;
 
 const FILES: &str = "\
-A frame does not depend on the terminal or the environment: auto means the ramp without colours for text, and truecolor
-half blocks for ANSI, SVG and HTML. A golden frame (--check) of any format has 80x24 cells and one sample per pixel,
+A frame does not depend on the terminal or the environment: auto means the
+ramp without colours for text, and truecolor half blocks for ANSI, SVG and HTML.
+A golden frame (--check) of any format has 80x24 cells and one sample per pixel,
 unless flags say otherwise.";
 
 const EXAMPLES: &str = "\
 Examples:
-  termtrace frame my.ron                                      text, 80x24 cells, to standard output
-  termtrace frame my.ron --format ansi --size 120x40          truecolor half blocks
-  termtrace frame my.ron --glyphs shape                       text whose characters follow the shapes
-  termtrace frame my.ron -o my.png                            1280x800 pixels, smooth edges
-  termtrace frame my.ron -o my.svg --size 120x40              a drawing for a web page; .html is a page
-  termtrace frame my.ron --check my.txt --bless               write the golden frame
-  termtrace frame my.ron --check my.txt                       compare with it";
+  termtrace frame my.ron                              text, 80x24 cells
+  termtrace frame my.ron --format ansi --size 120x40  truecolor half blocks
+  termtrace frame my.ron --glyphs shape               characters by shape
+  termtrace frame my.ron -o my.png                    1280x800 pixels, smooth edges
+  termtrace frame my.ron -o my.svg --size 120x40      a drawing for a web page
+  termtrace frame my.ron --check my.txt --bless       write the golden frame
+  termtrace frame my.ron --check my.txt               compare with it";
 
 #[derive(Args)]
-#[command(after_help = format!("{}\n{}\n{FILES}\n\n{EXAMPLES}", cells::after_help(), map::MAP_HELP))]
+#[command(after_long_help = format!("{FILES}\n\n{EXAMPLES}"))]
 pub(super) struct FrameArgs {
     #[command(flatten)]
     scene: SceneArgs,
@@ -48,17 +50,18 @@ pub(super) struct FrameArgs {
     #[command(flatten)]
     cells: CellArgs,
     /// Format to write [default: by the file name's extension, or text]
-    #[arg(long, value_parser = format_parser())]
+    #[arg(long, help_heading = "Output", value_name = "FORMAT", value_parser = format_parser())]
     format: Option<Format>,
     /// Write to a file; - is standard output [default: -]
-    #[arg(short, long, value_name = "FILE", conflicts_with = "check")]
+    #[arg(short, long, help_heading = "Output", value_name = "FILE", conflicts_with = "check")]
     output: Option<PathBuf>,
-    /// Compare with the frame in a file instead of writing one; exit code 1 and a diff if they
-    /// differ
-    #[arg(long, value_name = "GOLDEN")]
+    /// Compare with the frame in a file, and print a diff
+    ///
+    /// The exit code is 1 if they differ.
+    #[arg(long, help_heading = "Output", value_name = "GOLDEN")]
     check: Option<PathBuf>,
     /// With --check: write the golden frame instead of comparing
-    #[arg(long, requires = "check")]
+    #[arg(long, help_heading = "Output", requires = "check", hide_short_help = true)]
     bless: bool,
 }
 
@@ -72,7 +75,7 @@ fn formats() -> Vec<Format> {
 }
 
 fn format_parser() -> impl TypedValueParser<Value = Format> {
-    let values = formats().into_iter().map(|format| PossibleValue::new(format.name()).help(format.help()));
+    let values = formats().into_iter().map(|format| PossibleValue::new(format.name()).help(capitalized(format.help())));
     PossibleValuesParser::new(values).map(|name| Format::from_name(&name).unwrap_or(DEFAULT))
 }
 

@@ -40,10 +40,11 @@ fn hint(keymap: &Keymap, is_demo: bool) -> String {
     parts.into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 
+const SCENES_HELP: &str = "Scenes or meshes; - is standard input [default: three_spheres]";
+
 #[derive(Args)]
 pub(super) struct LiveArgs {
-    /// Scene files, names of built-in scenes, or - for standard input [default: `three_spheres`]
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", help = SCENES_HELP)]
     scenes: Vec<PathBuf>,
     #[command(flatten)]
     camera_args: CameraArgs,
@@ -52,7 +53,7 @@ pub(super) struct LiveArgs {
     #[command(flatten)]
     order: OrderArgs,
     /// Do not print the camera on exit
-    #[arg(long)]
+    #[arg(long, help_heading = None)]
     quiet: bool,
 }
 

@@ -1,5 +1,6 @@
 //! The outcome of a command: its error message and its exit code.
 
+use super::style;
 use std::fmt::{self, Display};
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -72,20 +73,28 @@ pub(super) fn print_clap_message(message: &clap::Error) -> ExitCode {
         return ExitCode::from(2);
     }
     // An error of writing is ignored: printing help into a closed pipe counts as a success, as in other programs.
-    let _ = write_stdout(text.as_bytes());
+    let _ = write_help(&text);
     ExitCode::SUCCESS
 }
 
+/// Writes help to standard output, coloured if that is a terminal.
+pub(super) fn write_help(text: &str) -> CommandResult {
+    let text = if style::is_colored(&io::stdout()) { style::help(text) } else { text.to_owned() };
+    write_stdout(text.as_bytes())
+}
+
 fn report_failure(message: &str, code: u8) -> ExitCode {
-    print_error(&format!("termtrace: {}\n", visible_lines(message)));
+    print_error(&format!("error: {}\n", visible_lines(message)));
     ExitCode::from(code)
 }
 
-/// Prints a message to standard error, unless the write could block the program or suspend it.
+/// Prints a message to standard error, coloured if that is a terminal, unless the write could block
+/// the program or suspend it.
 pub(super) fn print_error(text: &str) {
     // With `stty tostop`, SIGTTOU suspends a background process that writes to the terminal. A failed write is ignored:
     // there is no other place for the message, and the exit code reports the failure.
     if termtrace::internals::terminal::stderr_accepts_message() {
+        let text = if style::is_colored(&io::stderr()) { style::error(text) } else { text.to_owned() };
         let _ = io::stderr().write_all(text.as_bytes());
     }
 }

@@ -44,29 +44,34 @@ impl FrameKind {
 
 /// The flags for the size of a frame.
 #[derive(Args)]
+#[command(next_help_heading = "Picture")]
 pub(super) struct SizeArgs {
-    /// The frame's size in cells [default: 80x24; PNG: 1280x800 pixels, GIF: 480x300]
+    /// The frame's size in cells [default: 80x24]
     #[arg(long, value_name = "COLSxROWS", value_parser = parse_size, conflicts_with = "pixels")]
     size: Option<(u32, u32)>,
-    /// The frame's size in pixels; a cell has two pixels, one above the other, or with --glyphs
-    /// shape two by four
+    /// Size in pixels [default: PNG 1280x800, GIF 480x300]
+    ///
+    /// A cell has two pixels, one above the other, or with --glyphs shape two by four.
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pixels: Option<(u32, u32)>,
     /// A cell's height over its width
     #[arg(long, value_name = "A", default_value_t = USUAL_CELL_ASPECT, value_parser = parse_cell_aspect)]
+    #[arg(hide_short_help = true)]
     cell_aspect: f32,
 }
 
 #[derive(Args)]
+#[command(next_help_heading = "Picture")]
 pub(super) struct PictureArgs {
     #[command(flatten)]
     size: SizeArgs,
-    /// Rays per pixel, the first through its centre; or `best`: 1, and up to 64 at edges [default:
-    /// 1; PNG and GIF: best]
+    /// Rays per pixel; best: 1 to 64 [default: 1; PNG, GIF: best]
+    ///
+    /// The first ray goes through the centre of the pixel. best traces one ray, and up to 64 at edges.
     #[arg(long, value_name = "N|best", value_parser = parse_samples)]
     samples: Option<Sampling>,
     /// Picture files: draw each pixel as N by N pixels of the file [default: 1]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), hide_short_help = true)]
     scale: Option<u32>,
 }
 

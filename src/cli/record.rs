@@ -3,8 +3,8 @@
 mod numbered;
 mod progress;
 
-use super::encoding::{self, EncodingArgs};
-use super::map::{self, MapArgs};
+use super::encoding::EncodingArgs;
+use super::map::MapArgs;
 use super::outcome::{CommandResult, Failure, print_error, reason};
 use super::outputs::{Output, Outputs};
 use super::picture::{FrameKind, PictureArgs, check_pixel_count};
@@ -24,29 +24,32 @@ use termtrace::{
 
 const EXAMPLES: &str = "\
 Camera paths:
-  orbit       once around the scene's target at constant height, in --seconds (8), starting at the scene's own view
-  FILE.ron    through keyframes: (keyframes: [(time: 0, eye: (0, 1, 5), target: (0, 0, 0)), ...]); a keyframe may also
-              have up and vertical_fov; the film ends at the last keyframe, or after --seconds
+  orbit       once around the scene's target at constant height, in --seconds
+              (8), starting at the scene's own view
+  FILE.ron    through keyframes:
+              (keyframes: [(time: 0, eye: (0, 1, 5), target: (0, 0, 0)), ...])
+              A keyframe may also have up and vertical_fov. The film ends at the
+              last keyframe, or after --seconds.
 
 Examples:
-  termtrace record my.ron -o my.cast                          an orbit, 80x24 cells; asciinema play my.cast
-  termtrace record my.ron --seconds 4 -o my.gif               480x300 pixels, 25 frames per second
+  termtrace record my.ron -o my.cast      an orbit; asciinema play my.cast
+  termtrace record my.ron -o my.gif       480x300 pixels, 25 frames per second
   termtrace record my.ron --path flight.ron --pixels 640x360 --samples 4 -o frame-%04d.png
   termtrace record my.ron --compressed-link | gzip >my.cast.gz";
 
 #[derive(Args)]
-#[command(after_help = format!("{}\n{}\n\n{EXAMPLES}", map::MAP_HELP, encoding::ENCODING_HELP))]
+#[command(after_long_help = EXAMPLES)]
 pub(super) struct RecordArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Path of the camera: orbit, or a file of keyframes
-    #[arg(long, value_name = "orbit|FILE", default_value = "orbit")]
+    /// The orbit, or a file of keyframes
+    #[arg(long, help_heading = "Film", value_name = "orbit|FILE", default_value = "orbit")]
     path: PathBuf,
-    /// Length of the film in seconds [default: 8, or the length of the path file]
-    #[arg(long, value_name = "S", value_parser = parse_seconds)]
+    /// Length in seconds [default: 8, or the path's]
+    #[arg(long, help_heading = "Film", value_name = "S", value_parser = parse_seconds)]
     seconds: Option<f64>,
     /// Frames per second [default: 30; GIF: 25]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=120))]
+    #[arg(long, help_heading = "Film", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=120))]
     fps: Option<u32>,
     #[command(flatten)]
     picture: PictureArgs,
@@ -54,9 +57,10 @@ pub(super) struct RecordArgs {
     map: MapArgs,
     #[command(flatten)]
     encoding: EncodingArgs,
-    /// Write to FILE.cast (asciicast), FILE.gif, or FILE-%04d.png, numbered from 1; - writes an
-    /// asciicast to standard output [default: -]
-    #[arg(short, long, value_name = "FILE")]
+    /// FILE.cast (asciicast), FILE.gif, or FILE-%04d.png
+    ///
+    /// PNG files are numbered from 1. - writes an asciicast to standard output, which is the default.
+    #[arg(short, long, help_heading = "Film", value_name = "FILE")]
     output: Option<PathBuf>,
 }
 

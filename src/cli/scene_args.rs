@@ -11,11 +11,12 @@ use termtrace::internals::progress::Reporter;
 use termtrace::internals::scene::Draft;
 use termtrace::{Camera, CameraError, Pose, Scene};
 
+const SCENE_HELP: &str = "Scene or mesh; - is standard input [default: three_spheres]";
+
 /// The arguments that name a scene and change its camera.
 #[derive(Args)]
 pub(super) struct SceneArgs {
-    /// Scene file, name of a built-in scene, or - for standard input [default: `three_spheres`]
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", help = SCENE_HELP)]
     scene: Option<PathBuf>,
     #[command(flatten)]
     pub(super) camera_args: CameraArgs,
@@ -54,21 +55,23 @@ impl SceneArgs {
 
 /// The flags for the camera, and for the threads that trace.
 #[derive(Args, Clone)]
+#[command(next_help_heading = "Camera")]
 pub(super) struct CameraArgs {
     /// Eye point, instead of the scene's
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true)]
     pub(super) eye: Option<Vec3>,
     /// Target point, instead of the scene's
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true, hide_short_help = true)]
     pub(super) target: Option<Vec3>,
     /// Up vector, vertical in the picture, instead of the scene's
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true, hide_short_help = true)]
     pub(super) up: Option<Vec3>,
     /// Vertical field of view in degrees, instead of the scene's
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, hide_short_help = true)]
     pub(super) fov: Option<f32>,
     /// Number of threads that trace [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(help_heading = "Picture", hide_short_help = true)]
     pub(super) threads: Option<u16>,
 }
 

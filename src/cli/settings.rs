@@ -26,16 +26,29 @@ use termtrace::internals::control::KeySpeed;
 
 /// The help text below the options.
 pub(super) const SETTINGS_HELP: &str = "\
-Settings: permanent settings live in config.ron under the flags' names, as in (fps: 30, color: 256), or in the
-environment, as in TERMTRACE_FPS=30. A flag overrides the environment, which overrides the file. keys.ron beside it
-binds keys. termtrace config shows the effective settings, where each comes from, and where the files are.";
+Settings:
+  Permanent settings live in config.ron under the flags' names, as in
+  (fps: 30, color: 256), or in the environment, as in TERMTRACE_FPS=30. A flag
+  overrides the environment, which overrides the file. keys.ron beside it binds
+  keys. termtrace config shows the effective settings, where each comes from,
+  and where the files are.";
+
+/// The flag of the commands that read the user's own files.
+#[derive(Args)]
+pub(super) struct NoConfig {
+    /// Ignore config.ron and keys.ron
+    #[arg(long, help_heading = None)]
+    no_config: bool,
+}
 
 /// The flags that override what is detected about the terminal.
 #[derive(Args)]
+#[command(next_help_heading = "Cells")]
 pub(super) struct TerminalArgs {
     #[command(flatten)]
     pub(super) cells: CellArgs,
     #[arg(long, value_name = "A", value_parser = parse_cell_aspect)]
+    #[arg(hide_short_help = true)]
     #[arg(help = defaults::help("cell_aspect", "A cell's height over its width"))]
     pub(super) cell_aspect: Option<f32>,
 }
@@ -55,27 +68,29 @@ pub(super) struct SettingArgs {
     pub(super) terminal: TerminalArgs,
     #[command(flatten)]
     pub(super) map: MapArgs,
-    #[arg(long, value_name = "N|best", value_parser = parse_samples)]
-    #[arg(help = defaults::help("samples", "Rays per pixel, also in motion, or `best`: 1, and up to 64 at edges"))]
+    #[arg(long, value_name = "N|best", value_parser = parse_samples, help_heading = "Picture", hide_short_help = true)]
+    #[arg(help = defaults::help("samples", "Rays per pixel, also in motion; best: up to 64 at edges"))]
     pub(super) samples: Option<Sampling>,
     #[command(flatten)]
     pub(super) loss: LossArgs,
-    #[arg(long, value_name = "N", value_parser = parse_fps)]
+    #[arg(long, value_name = "N", value_parser = parse_fps, hide_short_help = true)]
     #[arg(help = defaults::help("fps", "Frame-rate cap in frames per second"))]
     pub(super) fps: Option<f32>,
-    #[arg(long, value_name = "N", value_parser = parse_speed)]
+    #[arg(long, value_name = "N", value_parser = parse_speed, help_heading = "Motion")]
+    #[arg(hide_short_help = true)]
     #[arg(help = defaults::help("move_speed", "Speed at which keys move the eye: a factor from 0.1 to 10"))]
     move_speed: Option<f32>,
-    #[arg(long, value_name = "N", value_parser = parse_speed)]
+    #[arg(long, value_name = "N", value_parser = parse_speed, help_heading = "Motion")]
+    #[arg(hide_short_help = true)]
     #[arg(help = defaults::help("turn_speed", "Speed at which keys turn the view: a factor from 0.1 to 10"))]
     turn_speed: Option<f32>,
     #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     #[arg(help = defaults::help("reduced_motion", "Each key press moves one step at once; nothing moves by itself"))]
-    #[arg(hide_possible_values = true)]
+    #[arg(hide_possible_values = true, help_heading = "Motion", hide_short_help = true)]
     reduced_motion: Option<bool>,
     #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     #[arg(help = defaults::help("hint", "Show the keys to press in the lowest row until the first one"))]
-    #[arg(hide_possible_values = true)]
+    #[arg(hide_possible_values = true, help_heading = None, hide_short_help = true)]
     hint: Option<bool>,
 }
 

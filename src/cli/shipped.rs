@@ -62,6 +62,11 @@ impl ShippedScene {
         SHIPPED.iter().map(|scene| scene.name)
     }
 
+    /// Returns the names of all shipped scenes with what they show.
+    pub(super) fn titles() -> impl Iterator<Item = (&'static str, &'static str)> {
+        SHIPPED.iter().map(|scene| (scene.name, scene.title()))
+    }
+
     /// Returns the scene's title: the first line of the comment at the start of the file.
     fn title(&self) -> &'static str {
         self.text.lines().next().and_then(|line| line.strip_prefix("// ")).unwrap_or_default()
@@ -70,18 +75,19 @@ impl ShippedScene {
 
 const EXAMPLES: &str = "\
 Examples:
-  termtrace corridor                look into a built-in scene, from any folder
-  termtrace frame teapots           every command takes these names; a file of the same name wins";
+  termtrace corridor        look into a built-in scene, from any folder
+  termtrace frame teapots   every command takes these names; a file of the
+                            same name wins";
 
 #[derive(Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_long_help = EXAMPLES)]
 pub(super) struct ScenesArgs {}
 
 /// `termtrace scenes`: prints the name of each shipped scene and what it shows.
 pub(super) fn list() -> CommandResult {
     let width = ShippedScene::names().map(str::len).max().unwrap_or(0);
-    let lines = SHIPPED.iter().fold(String::new(), |mut lines, scene| {
-        let _ = writeln!(lines, "{:width$}  {}", scene.name, scene.title());
+    let lines = ShippedScene::titles().fold(String::new(), |mut lines, (name, title)| {
+        let _ = writeln!(lines, "{name:width$}  {title}");
         lines
     });
     write_stdout(lines.as_bytes())

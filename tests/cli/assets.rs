@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each file in `assets/`, and the command that prints it.
-const ASSETS: [(&str, &str); 17] = [
+const ASSETS: [(&str, &str); 19] = [
     ("completions/termtrace.bash", "completions bash"),
     ("completions/termtrace.elv", "completions elvish"),
     ("completions/termtrace.fish", "completions fish"),
@@ -24,9 +24,11 @@ const ASSETS: [(&str, &str); 17] = [
     ("man/termtrace-doctor.1", "man doctor"),
     ("man/termtrace-explain.1", "man explain"),
     ("man/termtrace-frame.1", "man frame"),
+    ("man/termtrace-help.1", "man help"),
     ("man/termtrace-man.1", "man man"),
     ("man/termtrace-record.1", "man record"),
     ("man/termtrace-scenes.1", "man scenes"),
+    ("man/termtrace-version.1", "man version"),
 ];
 
 fn assets() -> PathBuf {

@@ -145,7 +145,7 @@ fn all_faults_of_a_file_are_in_one_message() {
         assert_eq!(
             heads,
             [
-                "termtrace: ~/config.ron:2:5: unknown setting \"colour\"; did you mean \"color\"?",
+                "error: ~/config.ron:2:5: unknown setting \"colour\"; did you mean \"color\"?",
                 "~/config.ron:3:10: expected one of shaded, lambert, depth, normal, object, shadow, cost, facing, \
                  contrast; did you mean depth?",
                 "~/config.ron:4:10: expected frames per second, from 0.01 to 1000",

@@ -64,7 +64,7 @@ fn files_that_are_no_scenes_are_errors() {
         ] {
             let run = folder.run(&format!("{command} {file}"));
             run.fails(2, words);
-            assert!(run.stderr.starts_with(&format!("termtrace: {file}")), "{run:?}");
+            assert!(run.stderr.starts_with(&format!("error: {file}")), "{run:?}");
             assert!(run.stderr.len() < 2000, "{} bytes about {file}", run.stderr.len());
         }
     }
@@ -90,8 +90,15 @@ fn help_has_examples() {
     let help = folder.run("--help").text();
     for words in [
         "Usage:",
+        "Camera:",
+        "Picture:",
+        "Cells:",
+        "Link:",
+        "Motion:",
+        "Keys (",
+        "Settings:",
         "Examples:",
-        "Exit codes",
+        "Exit status:",
         "frame",
         "check",
         "--eye",
@@ -118,7 +125,112 @@ fn help_has_examples() {
         assert!(!help.contains('\x1b'), "no colour in help");
         assert!(!help.contains("test-panic"), "what is for tests alone is hidden");
     }
-    assert!(folder.run("-h").text().contains("Usage:"));
+}
+
+/// Returns the names of all commands, as `--help` lists them.
+fn commands(folder: &Folder) -> Vec<String> {
+    let help = folder.run("--help").text();
+    let listed = help.split("Commands:\n").nth(1).and_then(|rest| rest.split("\n\n").next()).expect("commands");
+    let first = listed.lines().filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    let commands: Vec<_> = first.filter_map(|line| line.split_whitespace().next()).map(str::to_owned).collect();
+    assert!(commands.len() > 12, "{commands:?}");
+    commands
+}
+
+/// Returns the help in a window of 80 columns.
+fn help_in_80_columns(folder: &Folder, arguments: &str) -> String {
+    super::finish(folder.command(arguments).env("COLUMNS", "80")).text()
+}
+
+/// A row is left for the prompt.
+#[test]
+fn short_help_fits_80_by_24_cells() {
+    let folder = Folder::new();
+    for command in commands(&folder).iter().map(String::as_str).chain([""]) {
+        let help = help_in_80_columns(&folder, &format!("{command} -h"));
+        let widest = help.lines().map(|line| line.chars().count()).max();
+        assert!(help.lines().count() <= 23 && widest <= Some(80), "{widest:?}, {} rows:\n{help}", help.lines().count());
+        assert!(help.contains("Usage:") && help.contains("--help"), "{help}");
+        assert!(!help.contains("--no-config") || ["", "config", "doctor"].contains(&command), "{command}: {help}");
+    }
+}
+
+/// Options that the short help names exist, and it names every command.
+#[test]
+fn short_help_names_commands_and_options_that_exist() {
+    let folder = Folder::new();
+    let (short, long) = (folder.run("-h").text(), folder.run("--help").text());
+    let listed = short.split("Commands:\n").nth(1).and_then(|rest| rest.split("\n\n").next()).expect("commands");
+    let names = listed.lines().flat_map(|line| line.trim().split("  ").next().unwrap_or_default().split(", "));
+    let mut names: Vec<_> = names.map(str::to_owned).collect();
+    let mut expected = commands(&folder);
+    names.sort();
+    expected.sort();
+    assert_eq!(names, expected);
+    let flags: Vec<_> = short.split_whitespace().filter(|word| word.starts_with("--")).collect();
+    assert!(flags.len() >= 8 && short.contains("Keys:"), "{short}");
+    for flag in flags.into_iter().map(|flag| flag.trim_end_matches(',')) {
+        assert!(long.contains(flag), "{flag}");
+    }
+}
+
+/// Nothing is cut by the window; a pipe gets at most 100 columns.
+#[test]
+fn long_help_wraps_at_the_width_of_the_window() {
+    let folder = Folder::new();
+    for command in commands(&folder).iter().map(String::as_str).chain([""]) {
+        for (help, most) in [
+            (help_in_80_columns(&folder, &format!("{command} --help")), 80),
+            (folder.run(&format!("{command} --help")).text(), 100),
+        ] {
+            assert!(help.lines().all(|line| line.chars().count() <= most), "{most} columns:\n{help}");
+        }
+    }
+}
+
+#[test]
+fn help_and_version_are_commands() {
+    let folder = Folder::new();
+    assert_eq!(folder.run("help").text(), folder.run("--help").text());
+    for command in commands(&folder) {
+        assert_eq!(folder.run(&format!("help {command}")).text(), folder.run(&format!("{command} --help")).text());
+    }
+    folder.run("help fram").fails_in_a_line(2, "there is no command \"fram\"; did you mean \"frame\"?");
+    assert_eq!(folder.run("version").text(), folder.run("--version").text());
+    folder.run("-v").is_misused("'-V'");
+    // Files of these names are opened by their path.
+    folder.write("help", BALL);
+    assert!(folder.run("./help").done() == folder.run("ball.ron").done());
+}
+
+/// Returns the output of a command on a terminal of 80x24 cells.
+fn on_a_terminal(folder: &Folder, arguments: &str) -> (String, Vec<String>) {
+    let script = format!("cd '{}'; {arguments}", folder.path("").display());
+    let mut session = crate::pty::Start::shell(&script.replace("termtrace", env!("CARGO_BIN_EXE_termtrace"))).spawn();
+    session.wait_exit(std::time::Duration::from_secs(60));
+    let seen = session.seen();
+    (String::from_utf8_lossy(seen.bytes()).into_owned(), seen.screen().text())
+}
+
+#[test]
+fn help_and_errors_are_colored_on_a_terminal_alone() {
+    let folder = Folder::new();
+    let red = "\x1b[1;31merror:\x1b[0m ";
+    let (help, screen) = on_a_terminal(&folder, "termtrace frame -h");
+    assert!(help.contains("\x1b[1;32mUsage:\x1b[0m"), "{help:?}");
+    assert!(screen[0].starts_with("Print one frame"), "nothing scrolls away: {screen:?}");
+    for (arguments, told) in [
+        ("termtrace frame --sise 3", "unexpected argument"),
+        ("termtrace fram", "there is no command"),
+        ("termtrace check none.ron", "none.ron: there is no such file"),
+    ] {
+        let (said, _) = on_a_terminal(&folder, arguments);
+        assert!(said.contains(&format!("{red}{told}")), "{said:?}");
+        let (said, screen) = on_a_terminal(&folder, &format!("NO_COLOR=1 {arguments}"));
+        assert!(!said.contains('\x1b') && screen[0].starts_with(&format!("error: {told}")), "{said:?}");
+    }
+    let (said, _) = on_a_terminal(&folder, "termtrace frame --sise 3");
+    assert!(said.contains("\x1b[1;36mtip:\x1b[0m"), "{said:?}");
 }
 
 /// Each example of the help runs as it is printed.
@@ -223,13 +335,9 @@ fn flags_with_values(help: &str) -> Vec<String> {
 #[test]
 fn no_argument_reaches_the_terminal_unquoted() {
     let folder = Folder::new();
-    let help = folder.run("--help").text();
-    let listed =
-        help.split("Commands:\n").nth(1).and_then(|rest| rest.split("\n\n").next()).expect("there are commands");
-    let commands: Vec<_> = listed.lines().filter_map(|line| line.split_whitespace().next()).chain([""]).collect();
-    assert!(commands.len() > 9, "{commands:?}");
+    let commands = commands(&folder);
     let mut count = 0;
-    for command in commands {
+    for command in commands.iter().map(String::as_str).chain([""]) {
         for flag in flags_with_values(&folder.run(&format!("{command} --help")).text()) {
             // This holds beside a valid scene, too.
             says_nothing_unprintable(&folder, &format!("{command} {flag}={EVIL}"));

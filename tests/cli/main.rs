@@ -163,10 +163,10 @@ impl Run {
     pub(crate) fn fails(&self, code: i32, words: &str) {
         assert_eq!(self.code, Some(code), "{self:?}");
         assert!(self.stdout.is_empty(), "{self:?}");
-        assert!(self.stderr.starts_with("termtrace: "), "{self:?}");
+        assert!(self.stderr.starts_with("error: "), "{self:?}");
         assert!(self.stderr.contains(words), "not {words:?}: {self:?}");
         assert!(self.stderr.ends_with('\n') && !self.stderr.ends_with("\n\n"), "{self:?}");
-        assert_eq!(self.stderr.matches("termtrace: ").count(), 1, "{self:?}");
+        assert_eq!(self.stderr.matches("error: ").count(), 1, "{self:?}");
         for word in ["panicked", "RUST_BACKTRACE", "Os {", "Error {"] {
             assert!(!self.stderr.contains(word), "{self:?}");
         }

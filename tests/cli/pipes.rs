@@ -137,7 +137,7 @@ fn outputs_that_take_no_bytes_are_errors() {
             let output = folder.command(arguments).stdout(full).output().expect("the program starts");
             let stderr = String::from_utf8_lossy(&output.stderr);
             assert_eq!(output.status.code(), Some(1), "{arguments}: {stderr}");
-            assert!(stderr.starts_with("termtrace: standard output: ") && stderr.lines().count() == 1, "{stderr}");
+            assert!(stderr.starts_with("error: standard output: ") && stderr.lines().count() == 1, "{stderr}");
         }
     }
 }

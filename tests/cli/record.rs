@@ -495,7 +495,7 @@ fn outputs_that_take_no_film_are_errors() {
         let full = OpenOptions::new().write(true).open(full).expect("it can be opened");
         let output = folder.command("record ball.ron --seconds 1").stdout(full).output().expect("it starts");
         assert_eq!(output.status.code(), Some(1));
-        assert_eq!(String::from_utf8_lossy(&output.stderr), "termtrace: standard output: No space left on device\n");
+        assert_eq!(String::from_utf8_lossy(&output.stderr), "error: standard output: No space left on device\n");
     }
 }
 
@@ -583,7 +583,7 @@ fn a_bar_shows_the_progress_and_leaves_a_line() {
     // The error of a film is on a line of its own.
     let mut session = on_a_terminal(&folder, "--seconds 2 -o /missing/%d.png").spawn();
     assert_eq!(session.wait_exit(SOON).code(), Some(1));
-    assert!(session.seen().screen().text()[0].starts_with("termtrace: /missing/1.png: No such file"));
+    assert!(session.seen().screen().text()[0].contains("error: /missing/1.png: No such file"));
 }
 
 /// A terminal that cannot return to the start of a line gets no bar.
@@ -647,6 +647,6 @@ fn a_terminal_gets_no_asciicast() {
     for flags in ["--seconds 1", "--seconds 1 -o -"] {
         let mut session = on_a_terminal(&folder, flags).spawn();
         assert_eq!(session.wait_exit(SOON).code(), Some(2));
-        session.wait_for_text("termtrace: an asciicast would garble the terminal");
+        session.wait_for_text("error: an asciicast would garble the terminal");
     }
 }

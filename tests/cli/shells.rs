@@ -1,9 +1,12 @@
 //! Completions for shells, the manual, and suggestions for misspelt words.
 
-use super::Folder;
+use super::{Folder, finish};
+use crate::pty::{SOON, Size, Start};
+use std::process::Command;
 
 const SHELLS: [&str; 5] = ["bash", "zsh", "fish", "powershell", "elvish"];
-const COMMANDS: [&str; 9] = ["frame", "record", "check", "describe", "bench", "doctor", "config", "completions", "man"];
+const COMMANDS: [&str; 11] =
+    ["frame", "record", "check", "describe", "bench", "doctor", "config", "completions", "man", "help", "version"];
 
 #[test]
 fn every_shell_learns_of_every_command_and_flag() {
@@ -18,24 +21,123 @@ fn every_shell_learns_of_every_command_and_flag() {
     folder.run("completions").is_misused("<SHELL>");
 }
 
-/// The shell accepts the script.
-#[test]
-fn bash_takes_its_completions() {
+/// Returns whether a program is installed, and says which test is skipped otherwise.
+fn is_installed(program: &str) -> bool {
+    let is_there = Command::new(program).arg("--version").output().is_ok();
+    if !is_there {
+        eprintln!("skipped: there is no {program}");
+    }
+    is_there
+}
+
+/// Rows of a line to complete, a word that is offered at its end, and one that is not.
+const COMPLETED: [(&str, &str, &str); 16] = [
+    ("termtrace ", "frame", "--eye"),
+    ("termtrace ", "three_spheres", "--eye"),
+    ("termtrace b", "ball.ron", "corridor"),
+    ("termtrace ball.ron --reduced", "--reduced-motion", "frame"),
+    ("termtrace frame b", "ball.ron", "bench"),
+    ("termtrace frame ", "mesh.obj", "notes.txt"),
+    ("termtrace frame ", "corridor", "record"),
+    ("termtrace frame --pix", "--pixels", "--size"),
+    ("termtrace frame --format ", "svg", "ball.ron"),
+    ("termtrace frame --glyphs ", "shape", "ball.ron"),
+    ("termtrace frame ball.ron -o ", "notes.txt", "corridor"),
+    ("termtrace record --path ", "orbit", "corridor"),
+    ("termtrace record --samples b", "best", "ball.ron"),
+    ("termtrace check ", "ball.ron", "notes.txt"),
+    ("termtrace completions ", "zsh", "ball.ron"),
+    ("termtrace help ", "record", "ball.ron"),
+];
+
+/// Returns a folder with the shell's completions, a scene, a mesh and a text.
+fn completed_folder(shell: &str) -> Folder {
     let folder = Folder::new();
-    folder.write("termtrace.bash", folder.run("completions bash").done());
-    let script = "source ./termtrace.bash && COMP_WORDS=(termtrace frame --pix) COMP_CWORD=2 && _termtrace termtrace --pix frame && echo ${COMPREPLY[@]}";
-    let mut bash = std::process::Command::new("bash");
-    let run = bash.args(["-c", script]).current_dir(folder.path(".")).output();
-    // Not every system has this shell.
-    let Ok(run) = run else { return };
-    assert_eq!(String::from_utf8_lossy(&run.stdout).trim(), "--pixels", "{run:?}");
+    folder.write(&format!("termtrace.{shell}"), folder.run(&format!("completions {shell}")).done());
+    folder.write("mesh.obj", "");
+    folder.write("notes.txt", "");
+    folder
+}
+
+/// Asserts what the shell offers, one word per line.
+#[track_caller]
+fn offers(shell: &str, complete: impl Fn(&str) -> String) {
+    for (line, offered, other) in COMPLETED {
+        let words = complete(line);
+        let has = |word: &str| words.lines().any(|line| line.split('\t').next() == Some(word));
+        assert!(has(offered) && !has(other), "{shell}: {line:?} offers {words:?}");
+    }
+}
+
+#[test]
+fn bash_completes_files_options_and_values() {
+    if !is_installed("bash") {
+        return;
+    }
+    let folder = completed_folder("bash");
+    offers("bash", |line| {
+        let script = format!(
+            "source ./termtrace.bash; IFS=' ' read -ra COMP_WORDS <<<'{line}'
+             case '{line}' in *' ') COMP_WORDS+=('') ;; esac
+             COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); _termtrace; printf '%s\\n' \"${{COMPREPLY[@]}}\""
+        );
+        finish(Command::new("bash").args(["--norc", "-c", &script]).current_dir(folder.path("."))).text()
+    });
+}
+
+#[test]
+fn fish_completes_files_options_and_values() {
+    if !is_installed("fish") {
+        return;
+    }
+    let folder = completed_folder("fish");
+    offers("fish", |line| {
+        let script = format!("source ./termtrace.fish; complete -C '{line}'");
+        let mut fish = Command::new("fish");
+        fish.args(["--no-config", "-c", &script]).env("HOME", folder.path(".")).current_dir(folder.path("."));
+        finish(&mut fish).text()
+    });
+}
+
+/// zsh completes in its line editor alone: Ctrl-D lists what it offers.
+#[test]
+fn zsh_completes_files_options_and_values() {
+    if !is_installed("zsh") {
+        return;
+    }
+    let folder = completed_folder("zsh");
+    let size = Size::cells(150, 50);
+    let mut session = Start::new("zsh").arg("-f").env("PS1", "ready ").env("HOME", folder.path(".")).size(size).spawn();
+    let start = format!(
+        "cd '{}'; autoload -U compinit; compinit -u -D; source ./termtrace.zsh; LISTMAX=0; zstyle ':completion:*' verbose no",
+        folder.path(".").display()
+    );
+    session.wait_for_text("ready");
+    session.send(format!("{start}; clear; echo set up\r").as_bytes());
+    session.wait_for("the set-up", SOON, |seen| seen.screen().text()[0].starts_with("set up"));
+    for (line, offered, other) in COMPLETED {
+        // Ctrl-U and Ctrl-L remove the line and list before.
+        session.send(b"\x15\x0c");
+        session.wait_for("an empty screen", SOON, |seen| seen.screen().text()[1].trim().is_empty());
+        session.send(format!("{line}\x04").as_bytes());
+        let has = |seen: &crate::pty::Seen, word: &str| {
+            seen.screen()
+                .text()
+                .join(" ")
+                .trim_start_matches(&format!("ready {line}"))
+                .split_whitespace()
+                .any(|shown| shown == word)
+        };
+        session.wait_for(&format!("{offered} after {line:?}"), SOON, |seen| has(seen, offered));
+        assert!(!has(session.seen(), other), "{line:?}: {:?}", session.seen().screen().text());
+    }
 }
 
 #[test]
 fn the_manual_has_a_page_for_each_command() {
     let folder = Folder::new();
     let page = folder.run("man").text();
-    assert!(page.contains(".TH termtrace 1") && page.contains("Exit codes"), "{page}");
+    assert!(page.contains(".TH termtrace 1") && page.contains("Exit status"), "{page}");
     for command in COMMANDS {
         assert!(page.contains(&format!("termtrace\\-{command}(1)")), "{command}: {page}");
         let page = folder.run(&format!("man {command}")).text();
@@ -63,7 +165,7 @@ fn a_link_that_leads_nowhere_is_not_suggested() {
             ("bal.ron", "there is no such file; did you mean ball.ron?"),
         ] {
             let run = folder.run(&format!("{command} {name}"));
-            run.fails_in_a_line(2, &format!("termtrace: {name}: {reason}\n"));
+            run.fails_in_a_line(2, &format!("error: {name}: {reason}\n"));
         }
     }
 }

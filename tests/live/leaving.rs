@@ -201,7 +201,7 @@ fn check_end(way: Way, status: ExitStatus, session: &mut Session) {
     session.assert_clean();
     assert!(!session.seen().screen().is_alternate());
     let (code, signal, message) = match way {
-        Way::Fault(Answer::Error) => (Some(1), None, Some("termtrace: terminal: a test asked for an error")),
+        Way::Fault(Answer::Error) => (Some(1), None, Some("terminal: a test asked for an error")),
         Way::Fault(Answer::Panic) => (Some(101), None, Some("a test asked for a panic in the loop")),
         Way::Fault(_) => (Some(101), None, Some("a test asked for a panic in a worker")),
         Way::Death(signal) => (None, Some(signal.as_raw()), None),
@@ -658,7 +658,7 @@ fn a_frame_is_one_write() {
 ///
 /// Returns the exit status, and all that was written to the standard streams and the terminal.
 fn run_with(redirections: &str) -> (Option<i32>, String) {
-    let mut session = Start::shell(&format!("exec '{PROGRAM}' '{SCENE}' {redirections}")).spawn();
+    let mut session = Start::shell(&format!("export NO_COLOR=1; exec '{PROGRAM}' '{SCENE}' {redirections}")).spawn();
     let status = session.wait_exit(SOON);
     session.assert_clean();
     (status.code(), String::from_utf8_lossy(session.seen().bytes()).into_owned())
@@ -691,18 +691,18 @@ fn standard_output_that_is_no_terminal_gets_one_plain_frame_or_a_line_of_error()
 #[test]
 fn a_full_disk_is_reported_in_one_line() {
     let (code, said) = run_with(">/dev/full");
-    assert_eq!((code, said.as_str()), (Some(1), "termtrace: standard output: No space left on device\r\n"));
+    assert_eq!((code, said.as_str()), (Some(1), "error: standard output: No space left on device\r\n"));
 }
 
 /// Without a terminal for keys there is one line of error, and no mode is turned on.
 #[cfg(target_os = "linux")]
 #[test]
 fn without_a_terminal_for_keys_there_is_one_line_of_error() {
-    let mut session = Start::shell(&format!("setsid -w '{PROGRAM}' '{SCENE}' </dev/null")).spawn();
+    let mut session = Start::shell(&format!("NO_COLOR=1 setsid -w '{PROGRAM}' '{SCENE}' </dev/null")).spawn();
     assert_eq!(session.wait_exit(SOON).code(), Some(1));
     session.assert_clean();
     let said = String::from_utf8_lossy(session.seen().bytes()).into_owned();
-    assert!(said.starts_with("termtrace: terminal: no terminal to read keys from") && !said.contains('\x1b'), "{said}");
+    assert!(said.starts_with("error: terminal: no terminal to read keys from") && !said.contains('\x1b'), "{said}");
     assert_eq!(said.lines().count(), 1);
     // With a terminal for keys it needs no controlling terminal.
     let mut session = looking_of(Start::shell(&format!("setsid -w '{PROGRAM}' '{SCENE}'")));

@@ -84,5 +84,5 @@ fn too_little_memory_for_a_window_is_an_error_message() {
     assert_eq!(session.wait_exit(SOON).code(), Some(1));
     session.assert_clean();
     let said = String::from_utf8_lossy(session.seen().bytes()).into_owned();
-    assert!(said.contains("termtrace: there is not enough memory for a picture of "), "{said:?}");
+    assert!(said.contains("there is not enough memory for a picture of "), "{said:?}");
 }

@@ -2,7 +2,7 @@
 
 use super::files::UserFile;
 use super::values::check;
-use crate::cli::renamed;
+use crate::cli::tips;
 use clap::Command;
 use termtrace::SceneError;
 use termtrace::internals::scene_text::{self, Faults, Field, Name, Value, line_and_column};
@@ -71,7 +71,7 @@ fn text_of(field: &Field<'_>, command: &Command, faults: &mut Faults) -> Option<
 }
 
 fn unknown(name: &str, command: &Command) -> String {
-    if let Some(new) = renamed::setting(name) {
+    if let Some(new) = tips::setting(name) {
         return format!("unknown setting \"{name}\"; the name is now \"{new}\"");
     }
     let known: Vec<_> = command.get_arguments().map(|setting| setting.get_id().as_str()).collect();

@@ -1,4 +1,4 @@
-//! Renamed flags and settings: hints that give the new name.
+//! Tips in errors about flags that do not exist, and the new names of renamed settings.
 
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue};
@@ -11,12 +11,20 @@ pub(super) fn setting(old: &str) -> Option<&'static str> {
     RENAMED.iter().find(|(name, _)| *name == old).map(|(_, new)| *new)
 }
 
-/// Adds the new name of a renamed flag to clap's error about the old one.
+/// Returns what to write instead of a flag that does not exist.
+fn tip(flag: &str) -> Option<String> {
+    match flag {
+        "-v" => Some("the version is printed by '-V'".to_owned()),
+        _ => flag.strip_prefix("--").and_then(setting).map(|new| format!("the name is now '--{new}'")),
+    }
+}
+
+/// Adds a tip to the error about a flag that does not exist.
 pub(super) fn with_tip(mut error: clap::Error) -> clap::Error {
     if let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg)
-        && let Some(new) = flag.strip_prefix("--").and_then(setting)
+        && let Some(tip) = tip(flag)
     {
-        let tip = StyledStr::from(format!("the name is now '--{new}'"));
+        let tip = StyledStr::from(tip);
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
     }
     error

@@ -1,0 +1,131 @@
+//! The completions of zsh.
+//!
+//! clap's own generator takes a scene in the place of a command for a command, and then completes nothing.
+
+use super::values::{Files, SCENE_ENDINGS, Values, Word, commands, options, spellings, takes_value, text};
+use clap::{Arg, Command};
+use std::fmt::Write;
+
+const HEAD: &str = r#"#compdef termtrace
+# Made by termtrace completions zsh.
+
+_termtrace_first() {
+    _alternative 'commands:command:_termtrace_commands' 'scenes:scene:_termtrace_scenes'
+}
+
+_termtrace() {
+    local curcontext="$curcontext"
+    local -a specs
+    (( CURRENT > 2 )) && case $words[2] in
+"#;
+
+const TAIL: &str = r#"    )
+    _arguments -s -S : $specs
+}
+
+if [ "$funcstack[1]" = _termtrace ]; then
+    _termtrace "$@"
+else
+    compdef _termtrace termtrace
+fi
+"#;
+
+/// Returns the script: the options and values of each command, and those of the live view.
+pub(super) fn script(program: &Command) -> String {
+    let mut script = HEAD.replacen("_termtrace_first", &(lists(program) + "_termtrace_first"), 1);
+    for command in program.get_subcommands() {
+        let _ = writeln!(script, "        {}) specs=(", command.get_name());
+        for spec in specs(command, program) {
+            let _ = writeln!(script, "            {spec}");
+        }
+        script.push_str("            ) ;;\n");
+    }
+    script.push_str(
+        "    esac\n    if (( $#specs )); then\n        curcontext=\"${curcontext%:*:*}:termtrace-$words[2]:\"\n",
+    );
+    script.push_str(
+        "        shift words\n        (( CURRENT-- ))\n        _arguments -s -S : $specs\n        return\n    fi\n",
+    );
+    script.push_str("    specs=(\n");
+    for spec in options(program).map(|arg| option(arg, program)) {
+        let _ = writeln!(script, "        {spec}");
+    }
+    script.push_str("        '1: :_termtrace_first'\n        '*:scene:_termtrace_scenes'\n");
+    script + TAIL
+}
+
+/// Returns the functions that offer commands and scenes.
+fn lists(program: &Command) -> String {
+    let scene = program.get_positionals().next().map(|arg| Values::of(arg, program));
+    let scenes = scene.map(|values| values.words).unwrap_or_default();
+    let mut text = String::new();
+    for (name, what, words) in [("commands", "command", commands(program)), ("names", "built-in scene", scenes)] {
+        let _ = writeln!(text, "_termtrace_{name}() {{\n    local -a list=(");
+        for (word, help) in words {
+            let _ = writeln!(text, "        {}", quoted(&format!("{word}:{help}")));
+        }
+        let _ = writeln!(text, "    )\n    _describe -t {name} '{what}' list\n}}\n");
+    }
+    let endings = SCENE_ENDINGS.join("|");
+    let _ = writeln!(text, "_termtrace_scenes() {{\n    _alternative 'names:built-in scene:_termtrace_names' \\");
+    let _ = writeln!(text, "        'files:scene or mesh:_files -g \"*.(#i)({endings})(-.)\"'\n}}\n");
+    text
+}
+
+fn specs(command: &Command, program: &Command) -> Vec<String> {
+    let places = command.get_positionals().map(|arg| {
+        let place = arg.get_index().map_or_else(|| "*".to_owned(), |index| index.to_string());
+        quoted(&format!("{place}:{}:{}", arg.get_id(), action(&Values::of(arg, program))))
+    });
+    options(command).map(|arg| option(arg, program)).chain(places).collect()
+}
+
+/// Returns an option as `_arguments` reads it: spellings, description, value.
+fn option(arg: &Arg, program: &Command) -> String {
+    let names = spellings(arg);
+    let help = text(arg.get_help()).replace('\\', "\\\\").replace('[', "\\[").replace(']', "\\]");
+    let value = value(arg, program);
+    let named = |name: &str| match (takes_value(arg), name.starts_with("--"), arg.is_require_equals_set()) {
+        (false, ..) => name.to_owned(),
+        (_, _, true) => format!("{name}=-"),
+        (_, true, _) => format!("{name}="),
+        (_, false, _) => format!("{name}+"),
+    };
+    match &names[..] {
+        [only] => quoted(&format!("{}[{help}]{value}", named(only))),
+        _ => {
+            let list: Vec<_> = names.iter().map(|name| named(name)).collect();
+            format!("'({})'{{{}}}{}", names.join(" "), list.join(","), quoted(&format!("[{help}]{value}")))
+        }
+    }
+}
+
+fn value(arg: &Arg, program: &Command) -> String {
+    if !takes_value(arg) {
+        return String::new();
+    }
+    let name = arg.get_value_names().and_then(<[_]>::first).map(|name| name.replace(':', "\\:")).unwrap_or_default();
+    // A value that may be left out.
+    let colons = if arg.is_require_equals_set() { "::" } else { ":" };
+    format!("{colons}{name}:{}", action(&Values::of(arg, program)))
+}
+
+fn action(values: &Values) -> String {
+    match (values.files, &values.words[..]) {
+        (Files::Scenes, _) => "_termtrace_scenes".to_owned(),
+        (Files::Any, []) => "_files".to_owned(),
+        (Files::Any, _) => format!("{{compadd - {}; _files}}", values.names()),
+        (Files::None, []) => " ".to_owned(),
+        (Files::None, words) => format!("(({}))", words.iter().map(described).collect::<Vec<_>>().join(" ")),
+    }
+}
+
+fn described((word, help): &Word) -> String {
+    let help: String =
+        help.chars().flat_map(|c| ['\\', c].into_iter().skip(usize::from(c.is_alphanumeric()))).collect();
+    format!("{word}\\:{help}")
+}
+
+fn quoted(text: &str) -> String {
+    format!("'{}'", text.replace('\'', r"'\''"))
+}

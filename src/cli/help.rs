@@ -1,0 +1,51 @@
+//! `termtrace help` and `termtrace version`, and the keys in the help.
+
+use super::Cli;
+use super::completions::command_named;
+use super::outcome::{CommandResult, write_help, write_stdout};
+use clap::Args;
+
+/// The most important keys.
+pub(super) const KEYS: &str = "\
+Keys (termtrace config --keys prints all of them):
+  drag, WASD, arrows   look around and move; the wheel moves towards the pointer
+  Tab                  fly, or orbit around the target
+  v, b, |              next map, previous map, map and picture side by side
+  x                    explain the pixel under the pointer
+  m, 1 to 9            save this view under a number, go to a view
+  r, f                 back to the scene's view, frame everything
+  o                    save the picture to a file
+  ?, q                 all keys, quit";
+
+const EXAMPLES: &str = "\
+Examples:
+  termtrace help frame
+  termtrace ./help        open a scene file of that name";
+
+#[derive(Args)]
+#[command(after_long_help = EXAMPLES)]
+pub(super) struct HelpArgs {
+    /// The command [default: the whole program]
+    #[arg(value_name = "COMMAND")]
+    command: Option<String>,
+}
+
+#[derive(Args)]
+pub(super) struct VersionArgs {}
+
+/// Returns the text with a capital at its start, as other help has it.
+pub(super) fn capitalized(text: &str) -> String {
+    let (first, rest) = text.split_at(text.chars().next().map_or(0, char::len_utf8));
+    first.to_uppercase() + rest
+}
+
+/// Prints the help of a command, as its `--help` does.
+pub(super) fn run(args: &HelpArgs) -> CommandResult {
+    let mut command = command_named(Cli::for_help(), args.command.as_deref())?;
+    write_help(&command.render_long_help().to_string())
+}
+
+/// Prints the version, as `--version` does.
+pub(super) fn version() -> CommandResult {
+    write_stdout(concat!("termtrace ", env!("CARGO_PKG_VERSION"), "\n").as_bytes())
+}
