@@ -16,5 +16,5 @@ pub use camera_moves::{dragged, on_turntable, speed, wheeled};
 pub use command::{Command, Direction, Side, Toward};
 pub use key::Key;
 pub use keymap::{Binding, KeyMode, Keymap};
-pub use motion::{COAST_TIME, GLIDE_TIME, KeySpeed, Motion};
+pub use motion::{AGAIN_TIME, COAST_TIME, KeySpeed, Motion, TAP_TIME};
 pub use pointer::{Gesture, Pointer};

@@ -36,9 +36,11 @@ mod extent;
 mod eye;
 mod error_panel;
 mod frame;
+mod jump;
 mod scene_history;
 mod pointer;
 mod help;
+mod help_commands;
 mod layers;
 mod legend;
 mod light_commands;
@@ -132,7 +134,9 @@ pub(crate) struct Viewer {
     screen: Screen,
     pacing: Pacing,
     requests: VecDeque<Request>,
-    /// The time that the driver passed with its last call.
+    /// The names of the scenes, by number.
+    names: Vec<String>,
+    /// The time of the last call.
     now: Duration,
 }
 
@@ -152,16 +156,22 @@ impl Viewer {
             layout: ViewLayout::one(options.map),
             pointer: PointerState::default(),
             requests: VecDeque::new(),
+            names: Vec::new(),
             now: Duration::ZERO,
             display,
             screen,
             options: Options { welcome: None, ..options.clone() },
         };
         if let Some(welcome) = options.welcome.take() {
-            viewer.show_note(welcome);
+            viewer.screen.open(Note::lasting(welcome));
         }
         viewer.resize(window)?;
         Ok(viewer)
+    }
+
+    /// Sets the names of the scenes, which the status line shows.
+    pub(crate) fn set_names(&mut self, names: Vec<String>) {
+        self.names = names;
     }
 
     fn set_time(&mut self, now: Duration) {
@@ -250,7 +260,8 @@ impl Viewer {
                 self.scenes.leave(before, left);
             }
         }
-        // Also if the user's camera is kept, because the views in the scene's file may have changed.
+        self.screen.set_name(self.names.get(index).map_or("", String::as_str));
+        // Also for a scene whose view is kept: its file may have got other views.
         self.eye.set_written(written);
     }
 
@@ -260,9 +271,9 @@ impl Viewer {
         self.screen.open(ErrorPanel(fault));
     }
 
-    /// Shows a note in the lowest row until the next key.
+    /// Shows a note in the lowest row for some seconds, or until the next key.
     pub(crate) fn show_note(&mut self, text: impl Into<String>) {
-        self.screen.open(Note(text.into()));
+        self.screen.open(Note::new(text));
     }
 
     /// Accepts a finished frame as the next picture to show.
@@ -280,13 +291,16 @@ impl Viewer {
         self.eye.advance(now);
         self.screen.set_moving(self.eye.mode());
         self.mark_light();
+        let fades_at = self.screen.fade_note(now);
         match decide(&self.facts(busy), now) {
             Action::GiveUp => Step::GiveUp,
             Action::Draw => Step::Draw,
             Action::Trace => self.trace(),
             Action::Refine => self.refine(),
-            // An incomplete escape sequence needs a wake-up of its own: it may be a lone Esc, which no bytes follow.
-            Action::Wait(until) => Step::Wait(until.into_iter().chain(self.receiver.escape_due(now)).min()),
+            // An incomplete escape sequence needs a wake-up of its own: no bytes may follow.
+            Action::Wait(until) => {
+                Step::Wait(until.into_iter().chain(self.receiver.escape_due(now)).chain(fades_at).min())
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use termtrace::internals::control::{Key, Keymap};
+use termtrace::internals::control::{Key, KeyMode, Keymap};
 use termtrace::{CameraPath, Scene};
 
 fn root() -> &'static Path {
@@ -131,6 +131,36 @@ fn every_key_of_the_table_does_something() {
         }
     }
     assert!(count > 25, "the table was read");
+}
+
+/// The table of assignments has each key once; every key that is bound while no panel is open is in
+/// it, and none that is reserved is bound.
+#[test]
+fn no_key_is_assigned_twice() {
+    let page = page("docs/controls.md");
+    let (_, table) = page.split_once("| keys | assigned to |").expect("there is a table of assignments");
+    let (mut assigned, mut reserved) = (Vec::new(), Vec::new());
+    for row in table.lines().filter(|line| line.starts_with("| `")) {
+        let keys = row.replace(r"\|", "\u{1}");
+        let names = keys.split('`').skip(1).step_by(2).map(|name| name.replace('\u{1}', "|"));
+        for name in names {
+            let key = Key::from_name(&name).unwrap_or_else(|| panic!("{name} is no key: {row}"));
+            let shift = Key::from_name(&name.to_uppercase()).filter(|shift| *shift != key);
+            for key in [Some(key), shift.filter(|_| row.contains("with Shift too"))].into_iter().flatten() {
+                assert!(!assigned.contains(&key) && !reserved.contains(&key), "{key} is assigned twice");
+                if row.contains("| reserved: ") { &mut reserved } else { &mut assigned }.push(key);
+            }
+        }
+    }
+    let keymap = Keymap::default();
+    let modes = [KeyMode::Fly, KeyMode::Orbit, KeyMode::Always];
+    for key in modes.iter().flat_map(|&mode| keymap.of(mode)).flat_map(|row| &row.keys) {
+        assert!(assigned.contains(key), "{key} is bound, but not assigned in docs/controls.md");
+    }
+    for key in &assigned {
+        let meant = keymap.command(&modes, &key.pressed());
+        assert!(meant.is_some(), "{key} is assigned in docs/controls.md, but not bound");
+    }
 }
 
 /// Returns the headings' anchors as GitHub and crates.io make them.

@@ -64,7 +64,8 @@ impl Live {
     /// If the terminal is gone, or there is not enough memory for its window.
     pub(super) fn new(terminal: Terminal, options: Options, names: Vec<SceneName>) -> io::Result<Self> {
         let exports = options.exports.clone();
-        let viewer = Viewer::new(options, terminal.window()?)?;
+        let mut viewer = Viewer::new(options, terminal.window()?)?;
+        viewer.set_names(names.iter().map(SceneName::short).collect());
         let clock = Clock { start: Instant::now() };
         Ok(Self { viewer, terminal, clock, bytes: Vec::new(), names, exports, proposed: None })
     }
@@ -189,7 +190,12 @@ impl Live {
             match request {
                 Request::Leave => return Ok(true),
                 Request::Suspend => self.suspend(Some(StopTarget::Group), signals)?,
-                Request::SwitchScene(steps) => scenes.switch(steps)?,
+                Request::SwitchScene(steps) => {
+                    let (of, count) = (scenes.switch(steps)?, self.names.len());
+                    let name = self.names.get(of).filter(|_| count > 1);
+                    let note = name.map(|name| format!("{} ({} of {count})", name.short(), of + 1));
+                    self.viewer.show_note(note.unwrap_or_else(|| "only one scene".to_owned()));
+                }
                 Request::Copy(text) => self.terminal.copy(&text)?,
                 Request::Export(format) => {
                     let note = self.export(format).map_or_else(

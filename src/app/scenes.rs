@@ -89,15 +89,17 @@ impl<E: Send + 'static> Scenes<E> {
         self.sources.iter().map(|source| source.named().clone()).collect()
     }
 
-    /// Switches to the scene `steps` places further on in the cyclic list, and starts to load it.
-    pub(super) fn switch(&mut self, steps: isize) -> io::Result<()> {
+    /// Switches to the scene `steps` places further on in the cyclic list, starts to load it, and
+    /// returns its index.
+    pub(super) fn switch(&mut self, steps: isize) -> io::Result<usize> {
         // With a single scene nothing is done, because that would only be loaded again.
         if self.sources.len() < 2 {
-            return Ok(());
+            return Ok(self.wanted);
         }
         let count = self.sources.len();
         self.wanted = (self.wanted + steps.rem_euclid(count.cast_signed()).cast_unsigned()) % count;
-        self.read_again()
+        self.read_again()?;
+        Ok(self.wanted)
     }
 
     /// Cancels the load in progress and starts one of the current scene.

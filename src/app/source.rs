@@ -3,6 +3,7 @@
 use crate::mesh_file;
 use crate::progress::{Cancelled, Reporter, Unfinished};
 use crate::scene::{Draft, LoadError};
+use crate::text::visible;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::{fmt, io};
@@ -25,6 +26,14 @@ pub(super) struct SceneName {
     pub(super) file: Option<PathBuf>,
     /// Whether the live view starts in orbit mode.
     pub(super) orbited: bool,
+}
+
+impl SceneName {
+    /// Returns the name without its folders, safe to print.
+    pub(super) fn short(&self) -> String {
+        let name = self.name.rsplit('/').find(|part| !part.is_empty());
+        visible(name.unwrap_or_default())
+    }
 }
 
 type Read<E> = dyn Fn(&Reporter<'_>) -> Result<Draft, E> + Send + Sync;

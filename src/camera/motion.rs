@@ -134,6 +134,33 @@ impl Camera {
         self.with_valid_pose(Pose { eye: target + wanted * self.basis.w, ..self.pose })
     }
 
+    /// Returns the camera on the way to `end`: this one at `share` 0, exactly `end` at 1.
+    ///
+    /// The direction of view turns evenly, about the target or about the eye, whichever of them moves less.
+    pub(crate) fn on_the_way_to(&self, end: &Self, share: f32) -> Self {
+        if share >= 1.0 {
+            return *end;
+        }
+        let [from, to] = [self.pose, end.pose];
+        let [a, b] = [from, to].map(|pose| pose.target - pose.eye);
+        let angle = libm::acosf(a.normalize_or_zero().dot(b.normalize_or_zero()).clamp(-1.0, 1.0));
+        // Between opposite directions the turn is horizontal.
+        let axis = a.cross(b).try_normalize().unwrap_or(self.basis.v);
+        let even = |from: f32, to: f32| libm::powf(to / from, share);
+        let view = rotated(a, axis, share * angle) * even(a.length(), b.length());
+        let up = from.up.normalize_or_zero().lerp(to.up.normalize_or_zero(), share);
+        let pose = if from.target.distance(to.target) < from.eye.distance(to.eye) {
+            let target = from.target.lerp(to.target, share);
+            Pose { eye: target - view, target, up }
+        } else {
+            let eye = from.eye.lerp(to.eye, share);
+            Pose { eye, target: eye + view, up }
+        };
+        let zoom = even(self.rectangle.height(), end.rectangle.height());
+        let rectangle = self.rectangle.scaled(zoom).unwrap_or(self.rectangle);
+        self.with_valid_pose(pose).with_rectangle(rectangle)
+    }
+
     /// Returns the distance from the eye to the target, in world units.
     pub(crate) fn target_distance(&self) -> f32 {
         self.pose.eye.distance(self.pose.target)

@@ -31,6 +31,10 @@ pub enum Command {
     SaveView,
     /// Returns to the scene's own camera.
     Reset,
+    /// Returns to the view before the last jump.
+    ViewBack,
+    /// Returns to the view that [`ViewBack`](Self::ViewBack) left.
+    ViewForward,
     /// Shows the next map.
     NextMap,
     /// Shows the previous map.
@@ -166,7 +170,7 @@ commands! {
     [Command::Nearer] "Nearer", "closer to the target";
     [Command::Farther] "Farther", "away from the target";
     [Command::ChangeMode] "ChangeMode", "switch fly and orbit";
-    [Command::FrameAll] "Frame", "fit everything in view";
+    [Command::FrameAll] "Frame", "frame all (when lost)";
     [Command::Narrower] "Narrower", "zoom in (field of view)";
     [Command::Wider] "Wider", "zoom out (field of view)";
     [Command::Turntable] "Turntable", "turntable on or off";
@@ -180,7 +184,9 @@ commands! {
     [Command::View(8)] "View8", A_VIEW;
     [Command::View(9)] "View9", A_VIEW;
     [Command::SaveView] "SaveView", "save view as 1-9";
-    [Command::Reset] "Reset", "reset view";
+    [Command::Reset] "Reset", "first view";
+    [Command::ViewBack] "ViewBack", "view before";
+    [Command::ViewForward] "ViewForward", "view after";
     [Command::NextMap] "NextMap", "next map (depth, ...)";
     [Command::LastMap] "LastMap", "previous map";
     [Command::Compare] "Compare", "compare two maps";

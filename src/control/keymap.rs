@@ -173,6 +173,8 @@ const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Always, &[letter('9')], Command::View(9)),
     (KeyMode::Always, &[letter('m')], Command::SaveView),
     (KeyMode::Always, &[letter('r')], Command::Reset),
+    (KeyMode::Always, &[letter(','), Key::named(KeyCode::Backspace)], Command::ViewBack),
+    (KeyMode::Always, &[letter('.')], Command::ViewForward),
     (KeyMode::Always, &[letter('v')], Command::NextMap),
     (KeyMode::Always, &[letter('b')], Command::LastMap),
     (KeyMode::Always, &[letter('|')], Command::Compare),

@@ -9,19 +9,19 @@ use std::time::Duration;
 
 /// The keys that are held, and the motion of the camera that they cause.
 ///
-/// With the kitty keyboard protocol the terminal reports releases, so any number of keys can be held, each from its
+/// A tap is a step: [`TAP_TIME`] of motion at full speed. A press runs at full speed while its key is held; the rest of
+/// the step after an earlier release is carried out at a speed that falls to 0.
+///
+/// With the kitty keyboard protocol the terminal reports releases, and each of any number of keys is held from its
 /// press to its release.
 ///
-/// A plain terminal reports a press, then after about 660 ms repeats of the last key, some 25 a second, and no release.
-/// So a press causes motion for [`GLIDE_TIME`], which bridges the delay before the first repeat, and each repeat for
-/// [`COAST_TIME`], which bridges the interval between repeats. A press of another key ends the motion at once.
+/// A plain terminal reports a press, then after 250 to 660 ms repeats of the last key, some 25 a second, and no
+/// release. There a press counts as released at once. A repeat, or another press of the key within [`AGAIN_TIME`], runs
+/// at full speed for [`COAST_TIME`], which bridges the interval between repeats. Another key ends the motion at once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Motion {
+    /// The keys that move the camera, and those pressed within [`AGAIN_TIME`].
     held: Vec<Held>,
-    /// Time at which the motion stops if no further key event arrives.
-    ///
-    /// `Duration::MAX` if the terminal reports releases.
-    until: Duration,
     /// Whether Shift is held.
     fast: bool,
     reports_releases: bool,
@@ -47,6 +47,35 @@ impl Default for KeySpeed {
 struct Held {
     key: PhysicalKey,
     command: Command,
+    /// Time of the last press.
+    pressed: Duration,
+    /// Time until which the key moves at full speed; `Duration::MAX` until its release.
+    full_until: Duration,
+    /// Time at which the speed, which falls evenly after `full_until`, is 0.
+    ends: Duration,
+    /// Factor of the motion: 1, or less for a tap before a surface.
+    share: f32,
+}
+
+impl Held {
+    /// Returns the time from `from` to `to` in seconds, weighted by the share of the full speed.
+    fn seconds(&self, from: Duration, to: Duration) -> f32 {
+        let full = to.min(self.full_until).saturating_sub(from);
+        // The way left at a time of an evenly falling speed is half of the time left times the speed at that time.
+        let falls = self.ends.saturating_sub(self.full_until).as_secs_f32();
+        let left = |at: Duration| {
+            let left = self.ends.saturating_sub(at.max(self.full_until)).as_secs_f32();
+            if falls > 0.0 { 0.5 * left * (left / falls) } else { 0.0 }
+        };
+        self.share * (full.as_secs_f32() + left(from) - left(to))
+    }
+
+    /// Lets the key go at time `now`: the rest of its tap follows at a falling speed.
+    fn release(&mut self, now: Duration) {
+        let rest = TAP_TIME.saturating_sub(now.saturating_sub(self.pressed));
+        self.full_until = now;
+        self.ends = now + 2 * rest;
+    }
 }
 
 /// A key of the keyboard, independent of Shift.
@@ -58,13 +87,14 @@ fn physical_key(key: &KeyEvent) -> PhysicalKey {
     (unshifted(key.code), key.state.contains(KeyEventState::KEYPAD))
 }
 
-/// Duration of the motion after a press without repeats, if the terminal does not report releases.
-// X11 repeats keys after 660 ms by default, the longest delay among common systems: with a shorter duration the motion
-// by a held key stops once before the first repeat. The price is that a short press moves as long; only releases could
-// shorten it.
-pub const GLIDE_TIME: Duration = Duration::from_millis(700);
-/// Duration of the motion after the last repeat of a key, if the terminal does not report releases.
-// Repeats are 33 to 40 ms apart, so three may be lost or late on a slow link without a visible stop.
+/// Motion of a tap, as the time for which it would last at full speed.
+// A thirteenth of the way to the target, or seven degrees: small enough to place the eye with, and visible.
+pub const TAP_TIME: Duration = Duration::from_millis(150);
+/// Time after a press within which another press of the key means that the motion is to go on.
+// As long as a tap's motion, so that quick taps make one motion. Repeats are at most 40 ms apart.
+pub const AGAIN_TIME: Duration = Duration::from_millis(300);
+/// Duration of the motion after the last repeat of a key.
+// Repeats are 33 to 40 ms apart; three may be lost or late on a slow link without a visible stop.
 pub const COAST_TIME: Duration = Duration::from_millis(150);
 
 impl Motion {
@@ -95,8 +125,12 @@ impl Motion {
         // A release is matched by the physical key, not by the command, because the mode may have changed since the
         // press.
         match (key.kind, meant.filter(|(command, _)| command.moves())) {
-            (KeyEventKind::Release, _) => self.held.retain(|held| held.key != physical_key(key)),
-            (_, Some((command, fast))) => self.hold(Held { key: physical_key(key), command }, fast, key.kind, now),
+            (KeyEventKind::Release, _) => {
+                let key = physical_key(key);
+                let lets_go = |held: &&mut Held| held.key == key && held.full_until > now;
+                self.held.iter_mut().filter(lets_go).for_each(|held| held.release(now));
+            }
+            (_, Some((command, fast))) => self.hold(physical_key(key), command, fast, key.kind, now),
             (_, None) if self.reports_releases => {}
             // Without reports of releases, a press of any other key stops the motion: the terminal now repeats that key
             // only.
@@ -110,59 +144,81 @@ impl Motion {
         }
     }
 
-    fn hold(&mut self, key: Held, fast: bool, kind: KeyEventKind, now: Duration) {
-        let glides = self.until < Duration::MAX;
-        // Plain terminals send repeats as presses, so a press of a key that still causes motion counts as a repeat.
-        let again = now <= self.until && self.held.contains(&key) || kind == KeyEventKind::Repeat;
+    fn hold(&mut self, key: PhysicalKey, command: Command, fast: bool, kind: KeyEventKind, now: Duration) {
+        // Plain terminals send repeats as presses.
+        let is_again = |held: &Held| (held.key, held.command) == (key, command) && now <= held.pressed + AGAIN_TIME;
+        let again = kind == KeyEventKind::Repeat || self.held.iter().any(is_again);
+        // A repeat must not begin a tap anew, which would go on after the release.
+        let is_held =
+            |held: &&Held| kind == KeyEventKind::Repeat && held.key == key && held.full_until == Duration::MAX;
+        let pressed = self.held.iter().find(is_held).map_or(now, |held| held.pressed);
         // Without reports of releases it is unknown whether the previous key is still held; it is assumed not to be,
         // because terminals repeat only the key pressed last.
-        self.held.retain(|held| !glides && held.key != key.key);
-        self.held.push(key);
+        self.held.retain(|held| self.reports_releases && held.key != key && held.ends > now);
         self.fast = fast;
-        self.until = match again {
-            // The motion ends by a release or by the loss of focus, which the terminal reports.
-            _ if self.reports_releases => Duration::MAX,
-            true => now + COAST_TIME,
-            false => now + GLIDE_TIME,
-        };
+        let mut held = Held { key, command, pressed, full_until: Duration::MAX, ends: Duration::MAX, share: 1.0 };
+        match (self.reports_releases, again) {
+            // A release will come, or the loss of the focus.
+            (true, _) => {}
+            (false, true) => (held.full_until, held.ends) = (now + COAST_TIME, now + COAST_TIME),
+            (false, false) => held.release(now),
+        }
+        self.held.push(held);
     }
 
-    /// Releases all keys.
+    /// Halves the motion that taps have left at time `now` until `is_free` of the motion; after six
+    /// times, ends it.
+    ///
+    /// Does nothing while a key is held.
+    pub fn shorten_taps(&mut self, now: Duration, is_free: impl Fn(&Self) -> bool) {
+        if self.held.iter().any(|held| held.full_until > now) {
+            return;
+        }
+        for _ in 0..6 {
+            if is_free(self) {
+                return;
+            }
+            self.held.iter_mut().for_each(|held| held.share *= 0.5);
+        }
+        // The press stays recorded: another one soon means that the key is held.
+        self.held.iter_mut().for_each(|held| held.share = 0.0);
+    }
+
+    /// Ends the motion of all keys at once.
     pub fn stop(&mut self) {
         self.held.clear();
-        self.until = Duration::ZERO;
     }
 
     /// Returns whether a key causes motion at time `now`.
     pub fn is_moving(&self, now: Duration) -> bool {
-        now < self.until && self.net_motion() != NetMotion::default()
+        self.net_motion(|held| held.seconds(now, now + Duration::from_millis(1))) != NetMotion::default()
     }
 
     /// Returns the camera after the motion from time `from` to `to`, at `speed` world units per
     /// second.
     pub fn step(&self, camera: &Camera, speed: f32, from: Duration, to: Duration) -> Camera {
-        let net = self.net_motion();
-        // The motion may have ended between `from` and `to`.
-        let seconds = to.min(self.until).saturating_sub(from).as_secs_f32();
-        let seconds = if self.fast { SHIFT_SPEED_FACTOR * seconds } else { seconds };
-        // Strang splitting: half of the rotation before the translation and half after it. The error per step is of
-        // third order in its duration, so that a curved path hardly depends on the frame rate.
-        let half = 0.5 * TURN_SPEED * self.key_speed.turning * seconds;
+        let net = self.net_motion(|held| held.seconds(from, to));
+        let shift = if self.fast { SHIFT_SPEED_FACTOR } else { 1.0 };
+        // Strang splitting: half of the turn before the translation and half after it. The error is of third order in
+        // the step, so that a curve hardly depends on the frame rate.
+        let half = 0.5 * TURN_SPEED * self.key_speed.turning * shift;
         let (view, around) = (half * net.turn, half * net.around);
         let turn = |camera: Camera| camera.turned(-view.x, view.y).orbited(-around.x, around.y);
-        let seconds = self.key_speed.moving * seconds;
-        let way = speed * seconds * net.way;
+        let moving = self.key_speed.moving * shift;
+        let way = speed * moving * net.way;
         let camera = turn(*camera).moved(way.x, way.y, -way.z);
-        // By `libm`, so that a motion has the same bits on every machine.
-        turn(camera.nearer_within(libm::expf(-NEARER_SPEED * seconds * net.nearer), speed))
+        // `libm`, so that a motion has the same bits on every machine.
+        turn(camera.nearer_within(libm::expf(-NEARER_SPEED * moving * net.nearer), speed))
     }
 
-    /// Returns the combined motion of all held keys.
+    /// Returns the motion of all held keys together, each for the seconds that `seconds` returns.
     ///
     /// Opposite keys cancel, and two keys of one command count once.
-    fn net_motion(&self) -> NetMotion {
-        let holds = |command: Command| self.held.iter().any(|held| held.command == command);
-        let number = |command: Command| f32::from(u8::from(holds(command)));
+    fn net_motion(&self, seconds: impl Fn(&Held) -> f32) -> NetMotion {
+        let number = |command: Command| {
+            let held = self.held.iter().filter(|held| held.command == command);
+            held.map(&seconds).fold(0.0, f32::max)
+        };
         let way = |plus, minus| number(Command::Move(plus)) - number(Command::Move(minus));
         let turn = |of: fn(Toward) -> Command| {
             let turn = |plus, minus| number(of(plus)) - number(of(minus));
@@ -181,7 +237,7 @@ impl Motion {
     }
 }
 
-/// The direction of the combined motion of all held keys; each component is -1, 0 or 1.
+/// The motion of all held keys, in seconds at full speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct NetMotion {
     /// Translation along the camera's u, up and w.

@@ -44,7 +44,14 @@ impl Viewer {
             return;
         };
         let aspect_ratio = self.map_resolution().aspect_ratio();
-        self.eye.change(self.now, |camera, _| camera.framing(&bounds, aspect_ratio));
+        self.eye.jump(self.now, |camera| camera.framing(&bounds, aspect_ratio));
+    }
+
+    /// Returns to the view before the last jump, or with `forward` to the one that this left.
+    pub(super) fn retrace_views(&mut self, forward: bool) {
+        if !self.eye.retrace(forward, self.now) {
+            self.show_note(if forward { "no view after this one" } else { "no view before this one" });
+        }
     }
 
     /// Returns the size in pixels of one map: the whole picture, or the left one of two maps side

@@ -117,7 +117,7 @@ impl Dialog {
         let word = match self {
             Self::Export => "save:",
             Self::SaveToFile(_) => "save?",
-            Self::Save => "view",
+            Self::Save => return "save view as 1-9?".to_owned(),
         };
         format!("{word} {}", self.keys(keymap))
     }

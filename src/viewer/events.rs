@@ -4,6 +4,7 @@ use super::camera_commands::ZOOM_FACTOR;
 use super::dialog::Dialog;
 use super::explain::ExplainPanel;
 use super::help::HelpPanel;
+use super::lights::Lights;
 use super::note::Note;
 use super::status::StatusLine;
 use super::{Request, Viewer, mouse_actions};
@@ -115,14 +116,18 @@ impl Viewer {
             self.screen.close::<Note>();
         }
         let meant = self.keymap().command(&self.screen.modes(self.size()), key);
+        // The help lies over everything. Releases go on: keys may have been pressed before it was opened.
+        let is_ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
+        if key.kind != KeyEventKind::Release && !is_ctrl && self.take_help_key(key, meant) {
+            return;
+        }
         // An open question takes all keys, except keys with Ctrl that do not answer it, such as Ctrl-C.
-        let is_for_all = key.modifiers.contains(KeyModifiers::CONTROL);
-        let answer = meant.map(|(command, _)| command).filter(|command| command.answers() || !is_for_all);
-        if is_press && (answer.is_some() || !is_for_all) && self.take_answer(answer) {
+        let answer = meant.map(|(command, _)| command).filter(|command| command.answers() || !is_ctrl);
+        if is_press && (answer.is_some() || !is_ctrl) && self.take_answer(answer) {
             return;
         }
         // The eye comes first, so that the motion up to now happens before the command changes the camera.
-        self.eye.take_key(key, meant, self.now);
+        self.eye.take_key(key, meant, self.scenes.lights().map(Lights::scene), self.now);
         if let Some((command, more)) = meant
             && (is_press || key.kind == KeyEventKind::Repeat && command.repeats())
         {
@@ -146,13 +151,15 @@ impl Viewer {
             Command::View(number) => self.go_to_view(number),
             Command::SaveView => self.screen.open(Dialog::Save),
             Command::Reset => self.eye.reset(self.now),
+            Command::ViewBack => self.retrace_views(false),
+            Command::ViewForward => self.retrace_views(true),
             Command::NextScene => self.requests.push_back(Request::SwitchScene(1)),
             Command::LastScene => self.requests.push_back(Request::SwitchScene(-1)),
             Command::CopyCamera => self.copy_camera(),
             Command::Export => self.ask_export(),
             Command::KeepView => self.requests.extend(self.eye.camera().map(Request::ProposeView)),
             Command::Status => self.toggle_status(),
-            Command::Help => self.screen.turn_help(&self.options.keymap, self.display.size()),
+            Command::Help => self.open_help(),
             Command::Close => self.close_topmost(),
             Command::Light => self.take_light(),
             Command::MoveLight(toward) => self.step_light(toward, more),
@@ -163,7 +170,7 @@ impl Viewer {
             Command::LastMap => self.layout.change_map(Map::back),
             Command::Compare => self.layout.compare(),
             Command::Wipe(side) => self.move_wipe(side),
-            Command::Explain => self.screen.toggle_explaining(),
+            Command::Explain => self.toggle_explaining(),
             Command::Point(toward) => self.point(toward, more),
             Command::ScrollUp => self.scroll(-1),
             Command::ScrollDown => self.scroll(1),

@@ -1,6 +1,8 @@
 //! Commands while a pixel is explained.
 
 use super::Viewer;
+use super::explain::ExplainPanel;
+use super::theme;
 use crate::control::Toward;
 
 /// Pixels that the cursor moves per key press with Shift.
@@ -12,7 +14,15 @@ const SHIFT_CURSOR_PIXELS: i32 = 8;
 const PAGE_LINES: isize = 10;
 
 impl Viewer {
-    /// Moves the cursor by one pixel, or by [`SHIFT_CURSOR_PIXELS`] if `faster`.
+    /// Starts or ends the explanation of a pixel.
+    pub(super) fn toggle_explaining(&mut self) {
+        self.screen.toggle_explaining();
+        if !theme::has_room(theme::area(self.size())) && self.screen.get::<ExplainPanel>().is_some() {
+            self.show_note(theme::needs_room("explain"));
+        }
+    }
+
+    /// Moves the cursor by one pixel, or by several if `faster`.
     pub(super) fn point(&mut self, toward: Toward, faster: bool) {
         let pixels = if faster { SHIFT_CURSOR_PIXELS } else { 1 };
         let step = match toward {

@@ -1,7 +1,10 @@
 //! The camera of the shown scene, and its motion by keys and by the turntable.
 
+use super::jump::{Jump, JumpHistory};
 use crate::camera::{Camera, Pose};
-use crate::control::{self, Command, KeyMode, KeySpeed, Motion};
+use crate::control::{self, AGAIN_TIME, Command, KeyMode, KeySpeed, Motion};
+use crate::hit::any_hit;
+use crate::ray::{Interval, Ray};
 use crate::scene::Scene;
 use crossterm::event::{KeyEvent, KeyEventKind};
 use glam::Vec3;
@@ -18,6 +21,8 @@ pub(super) struct Eye {
     /// The view of the shown scene; `None` before the first.
     view: Option<ViewState>,
     motion: Motion,
+    /// The jump in progress.
+    jump: Option<Jump>,
     /// Whether the turntable is on.
     turntable: bool,
     /// The time up to which the motion has been carried out; `None` at rest.
@@ -41,6 +46,7 @@ pub(super) struct ViewState {
     written: Vec<Camera>,
     /// The views saved by the user, by number.
     saved: [Option<Camera>; 9],
+    history: JumpHistory,
 }
 
 impl ViewState {
@@ -54,6 +60,7 @@ impl ViewState {
             orbits,
             written: scene.views().to_vec(),
             saved: [None; 9],
+            history: JumpHistory::default(),
         }
     }
 
@@ -71,7 +78,7 @@ const REDUCED_MOTION_STEP: Duration = Duration::from_millis(200);
 impl Eye {
     /// Returns an eye without a scene.
     ///
-    /// With `reduced_motion` each press is one step at once and nothing glides, for people prone to motion sickness.
+    /// With `reduced_motion` each press is one step at once, for people prone to motion sickness.
     pub(super) fn new(key_speed: KeySpeed, reduced_motion: bool) -> Self {
         Self { motion: Motion::with_speed(key_speed), reduced_motion, ..Self::default() }
     }
@@ -80,6 +87,7 @@ impl Eye {
     pub(super) fn open(&mut self, view: ViewState) -> Option<ViewState> {
         // A turntable that went on in the new scene would turn it before the user has seen its first view.
         self.turntable = false;
+        self.end_jump();
         self.view.replace(view)
     }
 
@@ -113,9 +121,17 @@ impl Eye {
     /// Carries out the motion up to `now`.
     pub(super) fn advance(&mut self, now: Duration) {
         let Some(since) = self.moved_until else { return };
-        // Determined before the step, which may end the motion: the last part of the motion still happens below.
-        self.moved_until = (self.turntable || self.motion.is_moving(now)).then_some(now);
+        let jump = self.jump.take();
+        self.jump = jump.filter(|jump| !jump.has_ended(now));
+        // Asked before the step, which may end the motion: the rest of it is carried out below.
+        let moves = self.turntable || self.motion.is_moving(now) || self.jump.is_some();
+        self.moved_until = moves.then_some(now);
         let Some(view) = &mut self.view else { return };
+        if let Some(jump) = jump {
+            view.camera = jump.camera(now);
+        }
+        // A key that is held goes on where a jump has ended.
+        let since = jump.map_or(since, |jump| since.max(jump.end()).min(now));
         view.camera = self.motion.step(&view.camera, view.speed, since, now);
         if self.turntable {
             view.camera = control::on_turntable(&view.camera, now.saturating_sub(since).as_secs_f32());
@@ -127,10 +143,58 @@ impl Eye {
     /// `change` gets the camera and the speed of flight that suits the scene's size.
     pub(super) fn change(&mut self, now: Duration, change: impl FnOnce(&Camera, f32) -> Camera) {
         self.advance(now);
+        self.end_jump();
         self.turntable = false;
         if let Some(view) = &mut self.view {
             view.camera = change(&view.camera, view.speed);
         }
+    }
+
+    /// Jumps to the camera that `to` returns, and records the one that it leaves.
+    pub(super) fn jump(&mut self, now: Duration, to: impl FnOnce(&Camera) -> Camera) {
+        self.jump_with(now, |view| {
+            let to = to(&view.camera);
+            if to != view.camera {
+                view.history.leave(view.camera);
+            }
+            Some(to)
+        });
+    }
+
+    /// Jumps to the view before the last jump, or with `forward` to the one left by that. Returns
+    /// whether there is one.
+    pub(super) fn retrace(&mut self, forward: bool, now: Duration) -> bool {
+        self.jump_with(now, |view| view.history.retrace(view.camera, forward))
+    }
+
+    /// Jumps to the camera that `to` returns, at once with reduced motion.
+    ///
+    /// Returns whether `to` returned one.
+    fn jump_with(&mut self, now: Duration, to: impl FnOnce(&mut ViewState) -> Option<Camera>) -> bool {
+        self.change(now, |camera, _| *camera);
+        let Some(view) = &mut self.view else { return false };
+        let Some(to) = to(view) else { return false };
+        if self.reduced_motion {
+            view.camera = to;
+        } else if to != view.camera {
+            // The first frame already shows a part of the way, as with a key.
+            let start = now.saturating_sub(FIRST_FRAME_MOTION);
+            self.jump = Some(Jump::new(view.camera, to, start));
+            self.moved_until = Some(start);
+        }
+        true
+    }
+
+    /// Ends the jump in progress at the view that it leads to.
+    fn end_jump(&mut self) {
+        if let (Some(jump), Some(view)) = (self.jump.take(), &mut self.view) {
+            view.camera = jump.to();
+        }
+    }
+
+    /// Returns whether the turntable is on.
+    pub(super) fn is_on_turntable(&self) -> bool {
+        self.turntable
     }
 
     /// Starts or stops the turntable.
@@ -143,7 +207,7 @@ impl Eye {
     /// Starts the motion, if anything moves, as if it had begun [`FIRST_FRAME_MOTION`] before
     /// `now`.
     fn start_motion(&mut self, now: Duration) {
-        let moves = self.turntable || self.motion.is_moving(now);
+        let moves = self.turntable || self.motion.is_moving(now) || self.jump.is_some();
         self.moved_until = moves.then(|| self.moved_until.unwrap_or(now.saturating_sub(FIRST_FRAME_MOTION)));
     }
 
@@ -156,7 +220,7 @@ impl Eye {
         let at = usize::from(number).checked_sub(1)?;
         // A view saved by the user takes precedence over the view of the scene file with the same number.
         let saved = view.saved.get(at).copied().flatten().or_else(|| view.written.get(at).copied())?;
-        self.change(now, |_, _| saved);
+        self.jump(now, |_| saved);
         Some(())
     }
 
@@ -188,25 +252,40 @@ impl Eye {
         }
     }
 
-    /// Advances the motion to `now`, then passes it the key, whose command `meant` may start or end
-    /// motion.
-    pub(super) fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) {
+    /// Carries out the motion so far, then passes the key to it. A press ends a jump at its view.
+    ///
+    /// The motion of a tap never passes a surface of `scene`, so that it neither sinks through a floor nor enters an
+    /// object; a key that is held does.
+    pub(super) fn take_key(
+        &mut self,
+        key: &KeyEvent,
+        meant: Option<(Command, bool)>,
+        scene: Option<&Scene>,
+        now: Duration,
+    ) {
         if self.reduced_motion {
             self.take_step(key, meant);
             return;
         }
         self.advance(now);
+        if key.kind == KeyEventKind::Press {
+            self.end_jump();
+        }
         // Any movement key stops the turntable, which would otherwise fight against it.
         self.turntable &= key.kind == KeyEventKind::Release || !meant.is_some_and(|(command, _)| command.moves());
         self.motion.take_key(key, meant, now);
+        if let (Some(scene), Some(view)) = (scene, &self.view) {
+            self.motion.shorten_taps(now, |motion| is_free(motion, view, scene, now));
+        }
         self.start_motion(now);
     }
 
     /// Moves the camera by one step if the key was pressed or repeats; used with reduced motion.
     fn take_step(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>) {
         let Some(view) = self.view.as_mut().filter(|_| key.kind != KeyEventKind::Release) else { return };
-        // A copy of the motion takes the press, because no key is to stay held after the step.
+        // With reduced motion no key is held: steps are the only motion. Each is that of a held key.
         let mut motion = self.motion.clone();
+        motion.set_reports_releases(true);
         motion.take_key(&KeyEvent { kind: KeyEventKind::Press, ..*key }, meant, Duration::ZERO);
         view.camera = motion.step(&view.camera, view.speed, Duration::ZERO, REDUCED_MOTION_STEP);
     }
@@ -215,12 +294,13 @@ impl Eye {
     pub(super) fn release(&mut self, now: Duration) {
         self.advance(now);
         self.motion.stop();
-        self.moved_until = self.moved_until.filter(|_| self.turntable);
+        self.moved_until = self.moved_until.filter(|_| self.turntable || self.jump.is_some());
     }
 
     /// Stops all motion: that by keys, and the turntable.
     pub(super) fn stop(&mut self, now: Duration) {
         self.release(now);
+        self.end_jump();
         self.turntable = false;
         self.moved_until = None;
     }
@@ -241,6 +321,21 @@ impl Eye {
     /// Returns to the scene's own camera.
     pub(super) fn reset(&mut self, now: Duration) {
         let home = self.view.as_ref().map(|view| view.home);
-        self.change(now, |camera, _| home.unwrap_or(*camera));
+        self.jump(now, |camera| home.unwrap_or(*camera));
     }
 }
+
+/// Returns whether the motion that taps have left leads past no surface and ends close before none.
+fn is_free(motion: &Motion, view: &ViewState, scene: &Scene, now: Duration) -> bool {
+    let end = motion.step(&view.camera, view.speed, now.saturating_sub(FIRST_FRAME_MOTION), now + AGAIN_TIME);
+    let (origin, end) = (view.camera.pose().eye, end.pose().eye);
+    let within = Interval { min: 0.0, max: SURFACE_MARGIN };
+    origin == end || !any_hit(scene, &Ray { origin, direction: end - origin }, within)
+}
+
+/// The way that has to be free of surfaces for a tap, as a multiple of its motion.
+// The way of an orbit is longer than the line that is tested.
+const SURFACE_MARGIN: f32 = 1.1;
+
+#[cfg(all(test, unit_tests))]
+mod tests;

@@ -1,16 +1,19 @@
 //! The help panel and the keys in the status line, both generated from the keymap.
 
+mod rows;
+
 use super::layers::{Canvas, Layer, Level};
 use super::theme::{self, Theme};
 use crate::control::{Command, Direction, Key, KeyMode, Keymap, Toward};
 use crossterm::event::KeyCode;
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::{Margin, Rect};
+use ratatui_core::text;
 use ratatui_core::widgets::Widget;
 use ratatui_widgets::block::Block;
 use ratatui_widgets::clear::Clear;
 use ratatui_widgets::paragraph::Paragraph;
-use std::collections::HashSet;
+use rows::{Line, is_arrows, lines, rows};
 use unicode_width::UnicodeWidthStr;
 
 /// Blank columns between two columns of the help.
@@ -20,24 +23,88 @@ const COLUMN_GAP: usize = 2;
 /// right.
 const PANEL_BORDER: (u16, u16) = (4, 2);
 
-/// A row of the help: keys, and the description of their command.
-type KeyRow = (String, &'static str);
+/// Limit on the characters of the filter.
+// As many as fit into the title on the smallest screen with panels.
+const MAX_FILTER: usize = 12;
 
-/// The open page of the help.
+/// The open help, which takes the keys: characters filter its rows.
 pub(super) struct HelpPanel {
     page: usize,
+    filter: String,
+    /// Words on the current state that follow the descriptions of commands.
+    states: Vec<(Command, String)>,
+}
+
+/// The effect of a key on the help.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum HelpKey {
+    /// Closes the help.
+    Close,
+    /// Turns to the next page, and closes the help after the last one.
+    Turn,
+    /// Turns to the next page.
+    Next,
+    /// Turns to the previous page.
+    Previous,
+    /// Adds a character to the filter.
+    Type(char),
+    /// Deletes the last character of the filter.
+    Delete,
+    /// Clears the filter.
+    Clear,
+    /// Changes nothing.
+    Nothing,
 }
 
 impl HelpPanel {
-    /// Returns the first page.
-    pub(super) const FIRST: Self = Self { page: 0 };
+    /// Returns the first page of all rows.
+    pub(super) fn new(states: Vec<(Command, String)>) -> Self {
+        Self { page: 0, filter: String::new(), states }
+    }
 
-    /// Returns the next page; `None` after the last one, and where the screen has no room for any.
-    pub(super) fn next(&self, keymap: &Keymap, modes: &[KeyMode], screen: Rect) -> Option<Self> {
-        let pages = Help::new(keymap, modes, screen).pages();
-        let page = self.page + 1;
-        // On a screen without room for the help, the next press closes the message about that.
-        (page < pages && theme::has_room(screen)).then_some(Self { page })
+    /// Returns the effect of a key that the keymap binds to `meant`.
+    ///
+    /// While there is a filter, all characters belong to it.
+    pub(super) fn effect(&self, code: KeyCode, meant: Option<Command>) -> HelpKey {
+        let is_filtered = !self.filter.is_empty();
+        match (code, meant) {
+            (KeyCode::Char(c), _) if is_filtered && !c.is_control() => HelpKey::Type(c),
+            (KeyCode::Esc, _) if is_filtered => HelpKey::Clear,
+            (_, Some(Command::Help)) => HelpKey::Turn,
+            (KeyCode::Esc, _) | (_, Some(Command::Quit | Command::Close)) => HelpKey::Close,
+            (KeyCode::Char(' ') | KeyCode::PageDown | KeyCode::Right | KeyCode::Down | KeyCode::Enter, _) => {
+                HelpKey::Next
+            }
+            (KeyCode::PageUp | KeyCode::Left | KeyCode::Up, _) => HelpKey::Previous,
+            (KeyCode::Backspace, _) => HelpKey::Delete,
+            // As pagers begin a search; the characters after it make up the filter.
+            (KeyCode::Char('/'), _) => HelpKey::Nothing,
+            (KeyCode::Char(c), _) if !c.is_control() => HelpKey::Type(c),
+            _ => HelpKey::Nothing,
+        }
+    }
+
+    /// Carries out the effect of a key. Returns whether the help stays open.
+    pub(super) fn take(&mut self, key: HelpKey, keymap: &Keymap, modes: &[KeyMode], screen: Rect) -> bool {
+        let pages = self.laid_out(keymap, modes, screen).pages.len();
+        match key {
+            HelpKey::Close => return false,
+            HelpKey::Turn if self.page + 1 >= pages => return false,
+            HelpKey::Turn | HelpKey::Next => self.page = (self.page + 1).min(pages.saturating_sub(1)),
+            HelpKey::Previous => self.page = self.page.saturating_sub(1),
+            HelpKey::Type(c) if self.filter.chars().count() < MAX_FILTER => self.filter.push(c),
+            HelpKey::Delete => drop(self.filter.pop()),
+            HelpKey::Clear => self.filter.clear(),
+            HelpKey::Type(_) | HelpKey::Nothing => {}
+        }
+        if matches!(key, HelpKey::Type(_) | HelpKey::Delete | HelpKey::Clear) {
+            self.page = 0;
+        }
+        true
+    }
+
+    fn laid_out(&self, keymap: &Keymap, modes: &[KeyMode], screen: Rect) -> Help {
+        Help::new(&rows(keymap, modes, &self.states, &self.filter), modes, &self.filter, screen)
     }
 }
 
@@ -48,11 +115,13 @@ impl Layer for HelpPanel {
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         if canvas.has_room() {
-            let help = Help::new(canvas.keymap, canvas.modes, canvas.screen());
-            let area = help.area(self.page, canvas.screen());
-            canvas.lay(area, |theme, area, buffer| help.draw(self.page, theme, area, buffer));
+            let help = self.laid_out(canvas.keymap, canvas.modes, canvas.screen());
+            // The last page, because a larger window may have left fewer.
+            let page = self.page.min(help.pages.len().saturating_sub(1));
+            let area = help.area(page, canvas.screen());
+            canvas.lay(area, |theme, area, buffer| help.draw(page, theme, area, buffer));
         } else {
-            canvas.write_line(&no_room_message(), canvas.foot(0));
+            canvas.write_line(&theme::needs_room("help"), canvas.foot(0));
         }
     }
 }
@@ -61,124 +130,122 @@ impl Layer for HelpPanel {
 /// pages.
 struct Help {
     title: String,
-    /// The lines of each column of each page.
-    pages: Vec<Vec<Vec<String>>>,
+    filter: String,
+    /// Pages of columns of lines.
+    pages: Vec<Vec<Vec<Line>>>,
 }
 
 impl Help {
-    /// Lays out the help on the keys of these modes, of which the topmost comes first.
-    fn new(keymap: &Keymap, modes: &[KeyMode], screen: Rect) -> Self {
+    fn new(rows: &[rows::Row], modes: &[KeyMode], filter: &str, screen: Rect) -> Self {
         let room = [screen.width.saturating_sub(PANEL_BORDER.0), screen.height.saturating_sub(PANEL_BORDER.1)]
             .map(usize::from);
         // The mode `Always` is left out of the title, because it is always in force.
         let modes_said: Vec<_> =
             modes.iter().filter(|mode| **mode != KeyMode::Always).map(|mode| mode.name()).collect();
-        Self { title: modes_said.join(", "), pages: break_into_pages(&key_rows(keymap, modes), room) }
-    }
-
-    /// Returns the number of pages.
-    fn pages(&self) -> usize {
-        self.pages.len()
-    }
-
-    /// Returns the columns of a page, or of the last page if there are fewer.
-    fn page(&self, page: usize) -> &[Vec<String>] {
-        // A larger window or fewer modes may have left fewer pages since this page was opened.
-        self.pages.get(page).or(self.pages.last()).map_or(&[], Vec::as_slice)
+        let mut lines = lines(rows);
+        if lines.is_empty() {
+            lines.push(Line::Row("no key does this".to_owned()));
+        }
+        Self { title: modes_said.join(", "), filter: filter.to_owned(), pages: pages(&lines, room) }
     }
 
     fn title(&self, page: usize) -> String {
-        match self.pages() {
-            0 | 1 => format!(" keys: {} ", self.title),
-            pages => format!(" keys: {}, page {} of {pages} ", self.title, (page + 1).min(pages)),
+        let filter = if self.filter.is_empty() { String::new() } else { format!(" /{}", self.filter) };
+        match self.pages.len() {
+            0 | 1 => format!(" keys: {}{filter} ", self.title),
+            pages => format!(" keys: {}{filter}, page {} of {pages} ", self.title, page + 1),
         }
     }
 
-    /// Returns the area of the panel with this page: centred, as large as its text, clipped to the
-    /// screen.
+    /// Returns the line below the help: the keys that turn, filter and close it.
+    ///
+    /// Of several lines the longest that fits into `room` columns.
+    fn keys(&self, room: usize) -> &'static str {
+        let lines: &[&str] = match (self.filter.is_empty(), self.pages.len() > 1) {
+            (true, true) => &[" Space next page; type to filter; q close ", " Space next page; q close "],
+            (true, false) => &[" type to filter; q close "],
+            (false, true) => &[" PageDown next page; Esc all keys ", " PageDown next page "],
+            (false, false) => &[" Esc all keys "],
+        };
+        lines.iter().find(|line| line.width() <= room).copied().unwrap_or_default()
+    }
+
+    /// Returns the panel's area: in the middle, as large as its text, at most the screen.
     fn area(&self, page: usize, screen: Rect) -> Rect {
-        let columns = self.page(page);
+        let columns = &self.pages[page];
         let text =
             columns.iter().map(|column| width(column)).sum::<usize>() + COLUMN_GAP * columns.len().saturating_sub(1);
         let lines = columns.iter().map(Vec::len).max().unwrap_or(0) as u16;
-        let width = (text as u16 + PANEL_BORDER.0).max(self.title(page).width() as u16 + 2).min(screen.width);
+        let around = self.title(page).width().max(self.keys(usize::from(screen.width) - 2).width());
+        let width = (text as u16 + PANEL_BORDER.0).max(around as u16 + 2).min(screen.width);
         let height = (lines + PANEL_BORDER.1).min(screen.height);
         Rect::new((screen.width - width) / 2, (screen.height - height) / 2, width, height)
     }
 
     fn draw(&self, page: usize, theme: Theme, area: Rect, buffer: &mut Buffer) {
         Clear.render(area, buffer);
-        Block::bordered().border_set(theme.border()).title(self.title(page)).style(theme.style()).render(area, buffer);
+        let keys = self.keys(usize::from(area.width) - 2);
+        let block = Block::bordered().border_set(theme.border()).title(self.title(page)).title_bottom(keys);
+        block.style(theme.style()).render(area, buffer);
         let mut rest = area.inner(Margin::new(2, 1));
-        for column in self.page(page) {
-            Paragraph::new(column.join("\n")).style(theme.style()).render(rest, buffer);
+        for column in &self.pages[page] {
+            let line = |line: &Line| match line {
+                Line::Heading(text) => text::Line::styled(text.clone(), theme.heading()),
+                Line::Row(text) => text::Line::from(text.clone()),
+            };
+            let text: Vec<_> = column.iter().map(line).collect();
+            Paragraph::new(text).style(theme.style()).render(rest, buffer);
             let taken = (width(column) + COLUMN_GAP).min(rest.width.into()) as u16;
             rest = Rect { x: rest.x + taken, width: rest.width - taken, ..rest };
         }
     }
 }
 
-/// Returns the message for screens that are too small for the help.
-fn no_room_message() -> String {
-    let (columns, rows) = theme::MIN_PANEL_SCREEN;
-    format!("help needs {columns}x{rows}")
+/// Breaks the lines into columns, and these into pages of as many as fit side by side.
+fn pages(lines: &[Line], [width_of_page, height]: [usize; 2]) -> Vec<Vec<Vec<Line>>> {
+    // A screen of three rows has none left beside the border.
+    let height = height.max(1);
+    let paged = |height: usize| {
+        let mut pages: Vec<Vec<Vec<Line>>> = Vec::new();
+        let mut taken = 0;
+        for column in columns(lines, height) {
+            let needed = width(&column) + COLUMN_GAP;
+            match pages.last_mut() {
+                Some(page) if taken + needed <= width_of_page + COLUMN_GAP => page.push(column),
+                _ => {
+                    pages.push(vec![column]);
+                    taken = 0;
+                }
+            }
+            taken += needed;
+        }
+        pages
+    };
+    // The least height with the same number of pages and columns: columns of about the same length.
+    let shape = |pages: &Vec<Vec<Vec<Line>>>| pages.iter().map(Vec::len).collect::<Vec<_>>();
+    let full = paged(height);
+    (1..height).map(paged).find(|pages| shape(pages) == shape(&full)).unwrap_or(full)
 }
 
-/// Returns the rows of the help: the keys in force in these modes, topmost first, and what they do.
-///
-/// A key that several modes bind is listed only for the topmost of them. Of several bindings with the same description,
-/// such as the digits, only the first and last key are listed.
-fn key_rows(keymap: &Keymap, modes: &[KeyMode]) -> Vec<KeyRow> {
-    // Keys seen so far. Modes are topmost first, so the first binding of a key is the one in force.
-    let mut taken = HashSet::new();
-    let mut rows = Vec::new();
-    for row in modes.iter().flat_map(|&mode| keymap.of(mode)) {
-        let keys: Vec<_> = row.keys.iter().filter(|key| taken.insert(**key)).map(Key::to_string).collect();
-        if !keys.is_empty() {
-            rows.push((keys.join(" "), row.command.description()));
+/// Breaks the lines into columns of at most `height` lines. No column ends with a heading.
+fn columns(lines: &[Line], height: usize) -> Vec<Vec<Line>> {
+    let mut columns = vec![Vec::new()];
+    for (at, line) in lines.iter().enumerate() {
+        let last = columns.len() - 1;
+        let column = &mut columns[last];
+        let is_heading = |line: &Line| matches!(line, Line::Heading(_));
+        let would_end = is_heading(line) && column.len() + 1 == height && at + 1 < lines.len();
+        if column.len() == height || would_end && height > 1 {
+            columns.push(vec![line.clone()]);
+        } else {
+            column.push(line.clone());
         }
     }
-    // Shift is not in the keymap, because it modifies the movement keys.
-    rows.push(("Shift".to_owned(), "hold: moves 4x faster"));
-    let alike = rows.chunk_by(|(_, description), (_, next)| description == next);
-    alike.map(|rows| (joined_keys(rows), rows[0].1)).collect()
+    columns
 }
 
-fn joined_keys(rows: &[KeyRow]) -> String {
-    match rows {
-        [(first, _), .., (last, _)] => format!("{first}..{last}"),
-        _ => rows.iter().map(|(label, _)| label.as_str()).collect(),
-    }
-}
-
-/// Breaks the rows into pages of columns of lines, for a room of this many columns and lines of
-/// text.
-///
-/// All rows are on one page if its columns fit beside each other; otherwise there are fewer columns and several pages.
-fn break_into_pages(rows: &[KeyRow], [columns, lines]: [usize; 2]) -> Vec<Vec<Vec<String>>> {
-    // The screen may be so small that the border leaves no line.
-    let lines = lines.max(1);
-    let needed = rows.len().div_ceil(lines).max(1);
-    let laid_out = |count: usize| {
-        let lines = if count == needed { rows.len().div_ceil(count) } else { lines };
-        let pages = rows.chunks(lines * count).map(|page| page.chunks(lines).map(aligned_lines).collect::<Vec<_>>());
-        pages.collect::<Vec<_>>()
-    };
-    let fits = |page: &Vec<Vec<String>>| {
-        page.iter().map(|column| width(column) + COLUMN_GAP).sum::<usize>() <= columns + COLUMN_GAP
-    };
-    // As many columns as a single page needs are tried first, because turning pages is worse than short columns.
-    (2..=needed).rev().map(laid_out).find(|pages| pages.iter().all(fits)).unwrap_or_else(|| laid_out(1))
-}
-
-/// Returns the rows as lines of text, with the descriptions aligned in one column.
-fn aligned_lines(rows: &[KeyRow]) -> Vec<String> {
-    let labels = rows.iter().map(|(label, _)| label.width()).max().unwrap_or(0);
-    rows.iter().map(|(label, description)| format!("{label}{:1$}  {description}", "", labels - label.width())).collect()
-}
-
-fn width(lines: &[String]) -> usize {
-    lines.iter().map(|line| line.width()).max().unwrap_or(0)
+fn width(lines: &[Line]) -> usize {
+    lines.iter().map(|line| line.text().width()).max().unwrap_or(0)
 }
 
 /// Returns the keys of the status line: the topmost mode's name, and as many important keys as fit
@@ -262,11 +329,10 @@ fn status_line_keys(mode: KeyMode) -> &'static [(&'static [Command], &'static st
 pub(super) fn key_names(keymap: &Keymap, modes: &[KeyMode], commands: &[Command]) -> Option<String> {
     let keys: Option<Vec<Key>> = commands.iter().map(|&command| keymap.key_of(modes, command)).collect();
     let keys = keys?;
-    let arrows = [KeyCode::Left, KeyCode::Right, KeyCode::Up, KeyCode::Down].map(Key::named);
     let names: Vec<_> = keys.iter().map(Key::to_string).collect();
     let is_short = names.iter().all(|name| name.width() == 1);
-    // The word "arrows" is shorter than the names of the four keys.
-    Some(if keys == arrows { "arrows".to_owned() } else { names.join(if is_short { "" } else { " " }) })
+    // "arrows" is shorter than four names, and says as much.
+    Some(if is_arrows(&keys) { "arrows".to_owned() } else { names.join(if is_short { "" } else { " " }) })
 }
 
 #[cfg(all(test, unit_tests))]

@@ -27,7 +27,7 @@ pub(super) enum Level {
     Status,
     Legend,
     Error,
-    /// A note in the lowest row until the next key.
+    /// In the lowest row until the next key or for some seconds.
     Note,
     /// A question that has to be answered.
     Question,
@@ -127,6 +127,10 @@ pub(super) struct Canvas<'a> {
     /// The modes of the keymap that are in force, topmost first.
     pub(super) modes: &'a [KeyMode],
     pub(super) frame: Option<&'a Frame>,
+    /// The name of the scene.
+    pub(super) name: &'a str,
+    /// Position of the line between two maps, as a share of the width.
+    pub(super) wipe: f32,
     pub(super) figures: FrameStatistics,
     /// Number of rows that the status line takes at the bottom of the screen.
     pub(super) status_rows: u16,

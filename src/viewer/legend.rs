@@ -1,4 +1,4 @@
-//! The legends of maps in the lowest row, one under each map.
+//! The legend of a map in the lowest row; with two maps, one in the corner of each.
 
 use super::layers::{Canvas, Layer, Level};
 use super::theme::Theme;
@@ -16,24 +16,37 @@ impl Layer for Legends {
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
-        let legends = canvas.frame.filter(|_| canvas.has_room()).map_or(&[][..], |frame| &frame.legends);
-        for (text, area) in legend_areas(legends, canvas.foot(canvas.status_rows)) {
+        let Some(frame) = canvas.frame.filter(|_| canvas.has_room()) else { return };
+        let line = if frame.shot.layout.is_wipe() { canvas.wipe } else { 0.5 };
+        for (text, area) in legend_areas(&frame.legends, line, canvas.foot(canvas.status_rows)) {
             canvas.lay(area, |theme, area, buffer| draw(text, theme, area, buffer));
         }
     }
 }
 
-/// Returns each legend with its area in row `line`.
+/// Returns each text with its area, as wide as the text, so that the picture continues beside it.
 ///
-/// An area is only as wide as its text, so that the picture is visible beside it.
-fn legend_areas(texts: &[String], line: Rect) -> impl Iterator<Item = (&str, Rect)> {
-    let count = texts.len().max(1) as u16;
-    (0..).zip(texts).map(move |(at, text)| {
-        let room = line.width / count;
-        // Legends are ASCII, so their length in bytes is their width in columns.
-        let width = (text.len() as u16).saturating_add(2).min(room);
-        (text.as_str(), Rect { x: line.x + (line.width * at).div_ceil(count), width, ..line })
-    })
+/// Of two texts, the right one ends at the right edge. `line` is the share of the width at which the pictures meet: of
+/// a text that is wider than its picture only the map's name is shown, or nothing, as it would cover the other picture.
+fn legend_areas(texts: &[String], line: f32, row: Rect) -> Vec<(&str, Rect)> {
+    // Legends are ASCII, so that bytes are columns.
+    let width = |text: &str| (text.len() as u16).saturating_add(2);
+    let fitting = |text: &'_ str, room: u16| {
+        let name = text.split(':').next().unwrap_or_default();
+        [text.len(), name.len()].into_iter().find(|&length| length + 2 <= usize::from(room))
+    };
+    match texts {
+        [only] => vec![(only, Rect { width: width(only).min(row.width), ..row })],
+        [left, right] => {
+            let meet = (line * f32::from(row.width)) as u16;
+            let left = fitting(left, meet).map(|length| &left[..length]);
+            let right = fitting(right, row.width.saturating_sub(meet + 1)).map(|length| &right[..length]);
+            let left = left.map(|text| (text, Rect { width: width(text), ..row }));
+            let at_the_edge = |text| Rect { x: row.right() - width(text), width: width(text), ..row };
+            left.into_iter().chain(right.map(|text| (text, at_the_edge(text)))).collect()
+        }
+        _ => Vec::new(),
+    }
 }
 
 pub(super) fn draw(text: &str, theme: Theme, area: Rect, buffer: &mut Buffer) {

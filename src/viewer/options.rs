@@ -36,7 +36,7 @@ pub struct Options {
     /// The speed of moving and turning by keys.
     #[doc(hidden)]
     pub key_speed: KeySpeed,
-    /// Whether motion is reduced: each key press moves one step at once, and nothing glides or
+    /// Whether motion is reduced: each key press moves one step at once, and nothing
     /// moves by itself.
     pub reduced_motion: bool,
     /// The folder that exported pictures are written to. `None`: the user may not export.

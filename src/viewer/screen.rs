@@ -2,9 +2,10 @@
 
 use super::explain::ExplainPanel;
 use super::frame::Frame;
-use super::help::HelpPanel;
+use super::help::{HelpKey, HelpPanel};
 use super::layers::{Canvas, FrameStatistics, Layer, Layers};
 use super::legend::Legends;
+use super::note::Note;
 use super::progress::ProgressPanel;
 use super::status::StatusLine;
 use super::theme;
@@ -60,6 +61,8 @@ struct Content {
     wipe: f32,
     /// Whether the eye flies or orbits.
     moving: KeyMode,
+    /// The name of the scene.
+    name: String,
     layers: Layers,
 }
 
@@ -75,7 +78,13 @@ impl Screen {
         let mut layers = Layers::default();
         layers.open(Legends);
         Self {
-            content: Tracked::new(Content { frame: None, wipe: INITIAL_WIPE, moving: KeyMode::Fly, layers }),
+            content: Tracked::new(Content {
+                frame: None,
+                wipe: INITIAL_WIPE,
+                moving: KeyMode::Fly,
+                name: String::new(),
+                layers,
+            }),
             painter: painter(capabilities),
             encoder: encoder(Encoder::new(), capabilities),
             grid: Grid::new(Size::new(0, 0)),
@@ -142,6 +151,16 @@ impl Screen {
         self.content.layers.close()
     }
 
+    /// Closes the note if its time is over; otherwise returns the time at which it will be.
+    pub(super) fn fade_note(&mut self, now: Duration) -> Option<Duration> {
+        let fades_at = self.content.quietly().layers.get_mut::<Note>()?.fades_at(now)?;
+        if fades_at <= now {
+            self.close::<Note>();
+            return None;
+        }
+        Some(fades_at)
+    }
+
     /// Closes the layer of a type without counting it as a change, because the next frame redraws
     /// the screen anyway.
     pub(super) fn close_quietly<L: Layer>(&mut self) {
@@ -172,14 +191,13 @@ impl Screen {
         self.drawn.is_some()
     }
 
-    /// Opens the help, turns to its next page, or closes it after the last one.
-    pub(super) fn turn_help(&mut self, keymap: &Keymap, size: Size) {
-        let page = match self.close::<HelpPanel>() {
-            None => Some(HelpPanel::FIRST),
-            Some(page) => page.next(keymap, &self.modes(size), theme::area(size)),
-        };
-        if let Some(page) = page {
-            self.open(page);
+    /// Passes a key to the open help.
+    pub(super) fn take_help_key(&mut self, key: HelpKey, keymap: &Keymap, size: Size) {
+        let (modes, screen) = (self.modes(size), theme::area(size));
+        if let Some(help) = self.content.layers.get_mut::<HelpPanel>()
+            && !help.take(key, keymap, &modes, screen)
+        {
+            self.close::<HelpPanel>();
         }
     }
 
@@ -194,6 +212,11 @@ impl Screen {
         if self.content.moving != moving {
             self.content.moving = moving;
         }
+    }
+
+    /// Sets the name of the scene.
+    pub(super) fn set_name(&mut self, name: &str) {
+        name.clone_into(&mut self.content.name);
     }
 
     /// Closes the explanation of a pixel if it is open; otherwise opens one for the pixel in the
@@ -288,6 +311,8 @@ impl Screen {
             keymap,
             modes: &modes,
             frame: content.frame.as_ref(),
+            name: &content.name,
+            wipe: content.wipe,
             figures,
             status_rows,
         });

@@ -1,4 +1,4 @@
-//! The status line: the important keys, and below them statistics of the last frame.
+//! The status line: scene and statistics of the last frame, and above them the important keys.
 
 use super::help;
 use super::layers::{Canvas, FrameStatistics, Layer, Level};
@@ -8,6 +8,7 @@ use crate::render::Sampling;
 use glam::Vec3;
 use ratatui_core::layout::Rect;
 use std::time::Duration;
+use unicode_width::UnicodeWidthStr;
 
 /// The layer with the statistics of the last frame in the lowest row, and the important keys above
 /// it.
@@ -29,85 +30,74 @@ impl Layer for StatusLine {
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         let Some(frame) = canvas.frame else { return };
-        let FrameStatistics { encode, frames_per_second: shown, slow } = canvas.figures;
         let status = Status {
+            name: canvas.name,
             cells: canvas.grid.size(),
             sampling: frame.sampling,
             trace: frame.trace,
-            encode,
-            shown,
-            rays: frame.cost.rays,
-            slow,
+            figures: canvas.figures,
             eye: frame.camera().pose().eye,
         };
+        let width = canvas.screen().width.into();
         if canvas.status_rows > 1 {
-            let keys = help::status_line(canvas.keymap, canvas.modes, canvas.screen().width.into());
+            let keys = help::status_line(canvas.keymap, canvas.modes, width);
             canvas.write_line(&keys, canvas.foot(1));
         }
-        canvas.write_line(&status.text(), canvas.foot(0));
+        let separator = if canvas.cell_mode.glyphs.has_blocks() { " · " } else { "; " };
+        canvas.write_line(&status.text(separator, width), canvas.foot(0));
     }
 }
 
-/// The statistics in the status line.
-struct Status {
+/// The content of the status line.
+struct Status<'a> {
+    name: &'a str,
     cells: Size,
     sampling: Sampling,
     /// Time that tracing took.
     trace: Duration,
-    /// Time that making the cells and bytes took.
-    encode: Duration,
-    /// Frames shown per second, while something moves.
-    shown: Option<f32>,
-    rays: u64,
-    /// The rate of the link in bytes per second, if it is slow.
-    slow: Option<f64>,
+    figures: FrameStatistics,
     eye: Vec3,
 }
 
-impl Status {
-    fn text(&self) -> String {
-        let Self { cells, eye, .. } = self;
-        let shown = self.shown.map_or_else(|| "-".to_owned(), |fps| format!("{fps:.0}"));
-        // Shows what limits the frame rate: the rate of a slow link, otherwise the times for tracing and encoding.
-        let stages = match self.slow {
-            Some(rate) => format!("slow link {}B/s", short_number(rate)),
-            None => {
-                format!(
-                    "trace {} encode {}",
-                    short_number(per_second(1.0, self.trace)),
-                    short_number(per_second(1.0, self.encode))
-                )
-            }
-        };
-        format!(
-            " {}x{}x{}  {} rays/s  {stages} shown {shown} fps  eye {:.2} {:.2} {:.2}",
-            cells.columns,
-            cells.rows,
-            samples_text(self.sampling),
-            short_number(per_second(self.rays as f64, self.trace)),
-            eye.x,
-            eye.y,
-            eye.z,
-        )
+impl Status<'_> {
+    /// Returns the items that fit into `width` columns: of all, the last ones.
+    fn text(&self, separator: &str, width: usize) -> String {
+        let Self { name, cells, sampling, trace, figures, eye } = self;
+        let FrameStatistics { encode, frames_per_second, slow } = *figures;
+        let mut items = vec![(*name).to_owned(), format!("{}x{}", cells.columns, cells.rows), samples(*sampling)];
+        // The facts that limit the frame rate: on a slow link, tracing and encoding do not.
+        items.push(match slow {
+            Some(rate) => format!("slow link {}B/s", short(rate)),
+            None => milliseconds(*trace + encode),
+        });
+        items.extend(frames_per_second.map(|frames| format!("{frames:.0} fps")));
+        items.push(format!("eye {:.2} {:.2} {:.2}", eye.x, eye.y, eye.z));
+        items.retain(|item| !item.is_empty());
+        while items.len() > 1 && items.join(separator).width() + 2 > width {
+            items.remove(0);
+        }
+        format!(" {}", items.join(separator))
     }
 }
 
-/// Returns the samples per pixel as text: `1/4` if coarse, otherwise the (greatest) number.
-fn samples_text(sampling: Sampling) -> String {
+/// Formats the time of a frame: `0.8 ms`, `5 ms`.
+fn milliseconds(time: Duration) -> String {
+    let time = 1e3 * time.as_secs_f64();
+    if time < 1.0 { format!("{time:.1} ms") } else { format!("{time:.0} ms") }
+}
+
+/// Returns the samples per pixel as text, or their maximum: `1/4 sample`, `64 samples`.
+fn samples(sampling: Sampling) -> String {
     match sampling {
-        // A coarse picture has one ray for 2x2 pixels.
-        Sampling::Coarse => "1/4".to_owned(),
-        Sampling::Each(samples) | Sampling::UpTo(samples) => samples.to_string(),
+        // One ray for 2x2 pixels.
+        Sampling::Coarse => "1/4 sample".to_owned(),
+        Sampling::Each(samples) | Sampling::UpTo(samples) if samples.get() == 1 => "1 sample".to_owned(),
+        Sampling::Each(samples) | Sampling::UpTo(samples) => format!("{samples} samples"),
     }
 }
 
-fn per_second(count: f64, time: Duration) -> f64 {
-    // A frame of a few pixels may take no measurable time.
-    count / time.as_secs_f64().max(1e-9)
-}
-
-/// Formats a number with two or three digits and a unit prefix, such as 812, 3.9k or 12M.
-fn short_number(value: f64) -> String {
+/// Formats a number in two or three digits and a letter: 812, 3.9k, 12M.
+fn short(value: f64) -> String {
     let (value, unit) = match value {
         v if v >= 1e9 => (v / 1e9, "G"),
         v if v >= 1e6 => (v / 1e6, "M"),

@@ -54,6 +54,11 @@ impl Theme {
         self.mark
     }
 
+    /// Returns the style of headings in panels, which without colours is that of text.
+    pub(super) fn heading(self) -> Style {
+        Style { add_modifier: self.style.add_modifier, ..self.mark }
+    }
+
     /// Returns the style of text.
     pub(super) fn style(self) -> Style {
         self.style
@@ -74,6 +79,12 @@ const ASCII_BORDER: border::Set<'static> = border::Set {
 /// The smallest screen on which panels are shown, in columns and rows.
 // The explanation is 39 columns wide, and takes half of the rows of a narrow screen.
 pub(super) const MIN_PANEL_SCREEN: (u16, u16) = (40, 12);
+
+/// Returns the message that a panel needs a larger screen.
+pub(super) fn needs_room(panel: &str) -> String {
+    let (columns, rows) = MIN_PANEL_SCREEN;
+    format!("{panel} needs {columns}x{rows}")
+}
 
 /// Returns the area of the whole screen.
 pub(super) fn area(size: Size) -> Rect {

@@ -188,7 +188,7 @@ fn a_sketch_can_be_looked_around_in_until_the_scene_is_there() {
     assert!(!shows(session.seen().screen(), &wanted), "the sketch is coarse");
     // The eye flies in the sketch.
     session.send(b"i");
-    session.wait_for_text("rays/s");
+    session.wait_for_text(" sample");
     let before = eye(session.seen());
     session.send(b"w");
     session.wait_for("another view", SOON, |seen| eye(seen) != before);
@@ -207,7 +207,7 @@ fn the_scene_is_seen_from_where_the_sketch_was() {
     let (mut source, mut phases) = (Source::new(), Phases::new());
     let mut session = sketched(program().arg("--reduced-motion"), &mut source, &mut phases);
     session.send(b"i");
-    session.wait_for_text("rays/s");
+    session.wait_for_text(" sample");
     let start = eye(session.seen());
     session.send(b"d");
     session.wait_for("a step", SOON, |seen| eye(seen) != start);

@@ -115,8 +115,9 @@ fn t_turns_until_the_next_move() {
     session.wait_for_text("keys: orbit");
     frames = session.seen().bytes().len();
     session.wait_for("a frame below the help", SOON, |seen| seen.bytes().len() > frames);
-    session.send(b"1r");
     session.send(b"\x1b");
+    session.wait_for("the help to go", SOON, |seen| !seen.screen().text().concat().contains("keys: orbit"));
+    session.send(b"1r");
     session.wait_for_rest();
     assert_eq!(camera(&mut session), None, "r stops it and goes back");
 }

@@ -192,12 +192,12 @@ fn a_reload_keeps_the_view() {
     let path = folder.write("ball.ron", ball("red", EYE));
     let mut session = looking(&[&path]);
     session.send(b"d");
-    // This waits for the end of the glide.
+    // This waits for the end of the motion.
     session.wait_for_rest();
     folder.write("ball.ron", ball("lime", EYE));
     sees_another_color(&mut session);
     session.send(b"i");
-    session.wait_for_text("rays/s");
+    session.wait_for_text(" sample");
     let status = session.seen().screen().text()[23].clone();
     assert!(!status.contains("eye 0.00 0.00 5.00"), "{status}");
     folder.write("ball.ron", ball("lime", "(0, 1, 6)"));

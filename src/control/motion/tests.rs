@@ -122,10 +122,10 @@ fn opposite_keys_cancel_and_two_keys_of_a_command_count_once() {
     let mut motion = holding("h");
     motion.key(&KeyCode::Left.into(), ms(0));
     assert_eq!(after(&motion, ms(1_000)), after(&holding("h"), ms(1_000)));
-    motion.key(&release('h'), ms(10));
-    assert!(motion.is_moving(ms(20)), "the other key is still held");
-    motion.key(&KeyEvent { kind: KeyEventKind::Release, ..KeyCode::Left.into() }, ms(20));
-    assert!(!motion.is_moving(ms(20)));
+    motion.key(&release('h'), ms(150));
+    assert!(motion.is_moving(ms(160)), "the other key is still held");
+    motion.key(&KeyEvent { kind: KeyEventKind::Release, ..KeyCode::Left.into() }, ms(160));
+    assert!(!motion.is_moving(ms(160)));
 }
 
 #[test]
@@ -151,48 +151,87 @@ fn movement_is_per_second_not_per_step() {
     assert!(at_once.pose().target.abs_diff_eq(in_steps.pose().target, 1e-4));
 }
 
-#[test]
-fn without_releases_a_press_glides_for_700_ms() {
-    let mut motion = Motion::default();
-    motion.key(&press('w'), ms(100));
-    assert!(motion.is_moving(ms(799)) && !motion.is_moving(ms(800)));
-    motion.key(&press('w'), ms(1_000));
-    assert!(motion.is_moving(ms(1_699)) && !motion.is_moving(ms(1_700)), "pressed anew");
+/// Returns the way that the eye goes forward from time 0, with these events of `w` at times in ms.
+fn way(motion: &mut Motion, events: &[(u64, KeyEventKind)], end: u64) -> f32 {
+    let (mut camera, mut last) = (camera(), ms(0));
+    for &(at, kind) in events {
+        camera = motion.step(&camera, 1.0, last, ms(at));
+        motion.key(&event('w', kind), ms(at));
+        last = ms(at);
+    }
+    4.0 - motion.step(&camera, 1.0, last, ms(end)).pose().eye.z
+}
+
+const PRESS: KeyEventKind = KeyEventKind::Press;
+const REPEAT: KeyEventKind = KeyEventKind::Repeat;
+const RELEASE: KeyEventKind = KeyEventKind::Release;
+
+#[track_caller]
+fn assert_way(motion: &mut Motion, events: &[(u64, KeyEventKind)], wanted: f32) {
+    let way = way(motion, events, 5_000);
+    assert!((way - wanted).abs() < 1e-5, "{way}, not {wanted}: {events:?}");
 }
 
 #[test]
-fn without_releases_a_repeat_coasts_for_150_ms() {
+fn without_releases_a_press_is_a_step_of_falling_speed() {
+    assert_way(&mut Motion::default(), &[(100, PRESS)], 0.15);
+    let speeds = [100, 200, 300, 400].map(|at| {
+        let mut motion = Motion::default();
+        motion.key(&press('w'), ms(100));
+        4.0 - motion.step(&camera(), 1.0, ms(at), ms(at + 1)).pose().eye.z
+    });
+    assert!(speeds.is_sorted_by(|a, b| a > b) && speeds[0] > 0.99e-3 && speeds[3] == 0.0, "{speeds:?}");
+    // Another press after the first step is another step.
+    assert_way(&mut Motion::default(), &[(100, PRESS), (500, PRESS)], 0.3);
+}
+
+#[test]
+fn without_releases_a_second_press_soon_and_a_repeat_run_at_full_speed() {
+    let first = 0.15 - 0.5 * 0.1 * 0.1 / 0.3;
+    assert_way(&mut Motion::default(), &[(100, PRESS), (300, PRESS)], first + 0.15);
+    assert_way(&mut Motion::default(), &[(100, PRESS), (1_000, REPEAT)], 0.3);
+    let mut motion = Motion::default();
+    let way = way(&mut motion, &[(0, PRESS), (300, PRESS), (340, PRESS), (380, PRESS)], 420);
+    assert!((way - 0.15 - 0.12).abs() < 1e-5, "{way}");
+    assert!(motion.is_moving(ms(529)) && !motion.is_moving(ms(530)));
+}
+
+/// The first repeat after a long delay is a step like a press; the next ones come soon after it.
+#[test]
+fn without_releases_a_held_key_rests_until_its_repeats() {
     let mut motion = Motion::default();
     motion.key(&press('w'), ms(0));
-    // The first repeat arrives after 660 ms, before the glide of 700 ms ends; the others follow every 40 ms.
-    for at in [660, 700, 740] {
-        assert!(motion.is_moving(ms(at)));
-        motion.key(&press('w'), ms(at));
-    }
-    assert!(motion.is_moving(ms(889)) && !motion.is_moving(ms(890)));
-    motion.key(&press('d'), ms(2_000));
-    motion.key(&event('d', KeyEventKind::Repeat), ms(2_100));
-    assert!(motion.is_moving(ms(2_249)) && !motion.is_moving(ms(2_250)), "a repeat told as one");
+    assert!(motion.is_moving(ms(299)) && !motion.is_moving(ms(300)));
+    let repeats: Vec<_> = (660..1_660).step_by(40).map(|at| (at, PRESS)).collect();
+    let way = way(&mut motion, &repeats, 1_660);
+    assert!((way - 1.15).abs() < 0.01, "{way}");
 }
 
 #[test]
-fn without_releases_another_key_stops_a_glide() {
+fn without_releases_another_key_ends_a_step() {
     for other in ['d', 'i', 'x', 'R'] {
         let mut motion = Motion::default();
         motion.key(&press('w'), ms(0));
         motion.key(&press(other), ms(100));
         let z = motion.step(&camera(), 1.0, ms(100), ms(200)).pose().eye.z;
         assert_eq!(z, 4.0, "{other}");
-        assert_eq!(motion.is_moving(ms(799)), other == 'd', "{other}: it glides itself");
+        assert_eq!(motion.is_moving(ms(399)), other == 'd', "{other}: a step of its own");
     }
 }
 
+/// However short a press is, it moves by a step that is seen; a longer one ends with its release.
 #[test]
-fn a_release_stops_a_glide_too() {
-    let mut motion = Motion::default();
-    motion.key(&press('w'), ms(0));
-    motion.key(&release('w'), ms(50));
-    assert!(!motion.is_moving(ms(50)));
+fn with_releases_a_tap_is_a_whole_step() {
+    for (events, wanted) in [
+        (&[(100, PRESS), (110, RELEASE)][..], 0.15),
+        (&[(100, PRESS), (100, RELEASE)], 0.15),
+        (&[(100, PRESS), (110, RELEASE), (120, RELEASE)], 0.15),
+        (&[(100, PRESS), (240, RELEASE)], 0.15),
+        (&[(100, PRESS), (400, RELEASE)], 0.3),
+        (&[(100, PRESS), (700, REPEAT), (740, REPEAT), (745, RELEASE)], 0.645),
+    ] {
+        assert_way(&mut holding(""), events, wanted);
+    }
 }
 
 #[test]
@@ -211,7 +250,7 @@ fn with_releases_other_keys_stop_nothing() {
     for other in [press('i'), release('i'), press('x'), release('d'), release('W'), press('w')] {
         motion.key(&press('w'), ms(100));
         motion.key(&other, ms(200));
-        assert_eq!(motion.is_moving(ms(300)), other != release('W'), "{other:?}");
+        assert_eq!(motion.is_moving(ms(600)), other != release('W'), "{other:?}");
     }
 }
 
@@ -221,8 +260,8 @@ fn a_release_counts_with_any_modifiers() {
     for modifiers in [Mods::SHIFT, Mods::CONTROL, Mods::ALT, Mods::SUPER, Mods::CONTROL | Mods::SHIFT] {
         for c in ['w', 'W'] {
             let mut motion = holding("wW");
-            motion.key(&KeyEvent { modifiers, ..release(c) }, ms(10));
-            assert!(!motion.is_moving(ms(10)), "{c} with {modifiers:?}");
+            motion.key(&KeyEvent { modifiers, ..release(c) }, ms(150));
+            assert!(!motion.is_moving(ms(150)), "{c} with {modifiers:?}");
         }
     }
 }
@@ -239,7 +278,7 @@ fn a_release_without_a_press_is_ignored() {
 fn a_repeat_without_a_press_holds_the_key() {
     // The press is missing because another window had the focus then.
     let mut motion = holding("");
-    motion.key(&event('w', KeyEventKind::Repeat), ms(10));
+    motion.key(&event('w', REPEAT), ms(10));
     assert!(motion.is_moving(ms(10_000)));
     motion.key(&release('w'), ms(10_010));
     assert!(!motion.is_moving(ms(10_010)));
@@ -272,17 +311,16 @@ fn shift_makes_held_keys_faster_while_it_is_held() {
 }
 
 #[test]
-fn a_glide_from_before_reports_of_releases_ends_as_a_glide() {
+fn a_step_from_before_reports_of_releases_ends_as_a_step() {
     let mut motion = Motion::default();
     motion.key(&press('w'), ms(0));
     motion.set_reports_releases(true);
-    assert!(motion.is_moving(ms(699)) && !motion.is_moving(ms(700)));
+    assert!(motion.is_moving(ms(299)) && !motion.is_moving(ms(300)));
     let mut repeated = motion.clone();
-    repeated.key(&event('w', KeyEventKind::Repeat), ms(660));
+    repeated.key(&event('w', REPEAT), ms(660));
     assert!(repeated.is_moving(ms(5_000)), "it is held after all");
-    // It is unknown whether the key pressed before is still held, so it is released.
     motion.key(&press('d'), ms(300));
-    assert_eq!(motion, holding("d"));
+    assert_eq!(motion.held.len(), 1, "it has ended");
 }
 
 #[test]
@@ -295,7 +333,7 @@ fn all_keys_are_released_on_a_stop_and_when_reports_of_releases_end() {
     motion.set_reports_releases(false);
     assert!(!motion.is_moving(ms(0)));
     motion.key(&press('w'), ms(0));
-    assert!(!motion.is_moving(ms(700)), "it glides again");
+    assert!(!motion.is_moving(ms(300)), "it is a step again");
 }
 
 #[test]
@@ -303,7 +341,7 @@ fn a_step_never_goes_past_the_end_of_the_motion() {
     let mut motion = Motion::default();
     motion.key(&press('w'), ms(0));
     let eye = motion.step(&camera(), 1.0, ms(0), ms(60_000)).pose().eye;
-    assert!((eye.z - 3.3).abs() < 1e-5, "{eye}");
+    assert!((eye.z - 3.85).abs() < 1e-5, "{eye}");
     assert_eq!(motion.step(&camera(), 1.0, ms(800), ms(900)), camera(), "after its end nothing moves");
 }
 
@@ -330,12 +368,9 @@ fn the_view_never_turns_over_the_pole() {
 fn the_view_turns_about_a_tilted_up() {
     let up = Vec3::new(1.0, 1.0, 0.0);
     let camera = camera().with_pose(Pose { up, ..camera().pose() }).unwrap();
-    let mut motion = Motion::default();
-    motion.key(&press('l'), ms(0));
-    let turned = motion.step(&camera, 1.0, ms(0), ms(500)).pose();
+    let turned = holding("l").step(&camera, 1.0, ms(0), ms(500)).pose();
     assert!((turned.target - turned.eye).dot(up).abs() < 1e-5, "the view stays perpendicular to up");
-    motion.key(&press('e'), ms(0));
-    let eye = motion.step(&camera, 1.0, ms(0), ms(500)).pose().eye;
+    let eye = holding("e").step(&camera, 1.0, ms(0), ms(500)).pose().eye;
     assert!((eye - camera.pose().eye).abs_diff_eq(up.normalize() * 0.5, 1e-5));
 }
 

@@ -33,6 +33,8 @@ fn topmost(layers: &mut Layers) -> String {
         keymap: &keymap,
         modes: &[],
         frame: None,
+        name: "",
+        wipe: 0.5,
         figures,
         status_rows: 0,
     });

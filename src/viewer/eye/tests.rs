@@ -1,0 +1,170 @@
+use super::super::jump::JUMP_TIME;
+use super::*;
+use crate::control::Keymap;
+use crossterm::event::{KeyCode, KeyModifiers};
+
+fn ms(milliseconds: u64) -> Duration {
+    Duration::from_millis(milliseconds)
+}
+
+fn press(eye: &mut Eye, key: impl Into<KeyEvent>, scene: Option<&Scene>, now: Duration) {
+    let key = key.into();
+    let meant = Keymap::default().command(&[eye.mode(), KeyMode::Always], &key);
+    eye.take_key(&key, meant, scene, now);
+}
+
+/// Returns every shipped scene and mesh with its name.
+fn shipped_scenes() -> Vec<(String, Scene)> {
+    let folder = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes")).unwrap();
+    let files = folder.map(|file| file.unwrap().path());
+    let scenes = files.filter(|path| path.extension().is_some_and(|ending| ending == "ron" || ending == "obj"));
+    scenes.map(|path| (path.display().to_string(), Scene::load(&path).unwrap())).collect()
+}
+
+/// A tap, with Shift too, neither crosses the floor nor goes through any other surface, and shows
+/// another picture.
+#[test]
+fn no_tap_passes_a_surface_of_a_shipped_scene() {
+    let scenes = shipped_scenes();
+    assert!(scenes.len() >= 12);
+    for (name, scene) in scenes {
+        for (orbits, mode) in [(false, KeyMode::Fly), (true, KeyMode::Orbit)] {
+            for key in Keymap::default().of(mode).flat_map(|row| row.keys.clone()) {
+                for modifiers in [KeyModifiers::NONE, KeyModifiers::SHIFT] {
+                    for reports_releases in [false, true] {
+                        let mut eye = Eye::new(KeySpeed::default(), false);
+                        eye.open(ViewState::initial(&scene, orbits));
+                        eye.set_reports_releases(reports_releases, ms(0));
+                        let key = KeyEvent::new(key.code, modifiers);
+                        press(&mut eye, key, Some(&scene), ms(1_000));
+                        let release = KeyEvent { kind: KeyEventKind::Release, ..key };
+                        press(&mut eye, release, Some(&scene), ms(1_010));
+                        let what = format!("{name}: {key:?} in {mode:?}, releases {reports_releases}");
+                        assert_passes_nothing(&mut eye, &scene, &what);
+                        assert!(eye.moved().is_some() && !eye.is_moving(), "{what}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Follows the eye to its rest in steps of a frame.
+fn assert_passes_nothing(eye: &mut Eye, scene: &Scene, what: &str) {
+    let mut last = *scene.camera();
+    for at in (1_000..2_000).step_by(16) {
+        eye.advance(ms(at));
+        let now = eye.camera().unwrap();
+        let [from, to] = [last, now].map(|camera| camera.pose().eye);
+        let ray = Ray { origin: from, direction: to - from };
+        assert!(from == to || !any_hit(scene, &ray, Interval { min: 0.0, max: 1.0 }), "{what}: {from} to {to}");
+        last = now;
+    }
+}
+
+/// Many taps stop before a surface; a key that is held passes it.
+#[test]
+fn taps_never_pass_a_surface_and_held_keys_do() {
+    let scene = Scene::load(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron").as_ref()).unwrap();
+    let mut eye = Eye::new(KeySpeed::default(), false);
+    eye.open(ViewState::initial(&scene, false));
+    for tap in 0..30 {
+        press(&mut eye, KeyCode::Char('c'), Some(&scene), ms(1_000 * (tap + 1)));
+        eye.advance(ms(1_000 * (tap + 1) + 500));
+    }
+    let height = eye.camera().unwrap().pose().eye.y;
+    assert!(height > 0.0 && height < 0.1, "{height}");
+    for repeat in 0..20 {
+        press(&mut eye, KeyCode::Char('c'), Some(&scene), ms(60_000 + 40 * repeat));
+    }
+    assert!(eye.camera().unwrap().pose().eye.y < -1.0);
+}
+
+fn looking_at_spheres(reduced_motion: bool) -> (Eye, Camera) {
+    let scene = Scene::load(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron").as_ref()).unwrap();
+    let mut eye = Eye::new(KeySpeed::default(), reduced_motion);
+    eye.open(ViewState::initial(&scene, false));
+    (eye, *scene.camera())
+}
+
+#[test]
+fn a_jump_is_eased_and_ends_exactly_at_its_view() {
+    let (mut eye, home) = looking_at_spheres(false);
+    let far = home.orbited(3.0, 0.2).zoomed(0.5).nearer(1.5);
+    eye.jump(ms(1_000), |_| far);
+    let mut last = home;
+    let mut steps = Vec::new();
+    for at in (1_000..1_200).step_by(10) {
+        eye.advance(ms(at));
+        let camera = eye.camera().unwrap();
+        assert_ne!(camera, last, "{at}");
+        steps.push(camera.pose().eye.distance(last.pose().eye));
+        last = camera;
+    }
+    assert!(steps[10] > 2.0 * steps[2] && steps[10] > 2.0 * steps[18], "slow at both ends: {steps:?}");
+    let distances: Vec<_> = [home, last, far].iter().map(Camera::target_distance).collect();
+    assert!(distances.is_sorted(), "the way leads around the target: {distances:?}");
+    eye.advance(ms(1_000) + JUMP_TIME);
+    assert!(eye.camera() == Some(far) && !eye.is_moving());
+}
+
+/// A key acts at once, on the view that the jump leads to.
+#[test]
+fn a_press_ends_a_jump_at_once_and_a_release_does_not() {
+    let (mut eye, home) = looking_at_spheres(false);
+    let far = home.orbited(1.0, 0.0);
+    eye.jump(ms(1_000), |_| far);
+    let release = KeyEvent { kind: KeyEventKind::Release, ..KeyCode::Char('f').into() };
+    press(&mut eye, release, None, ms(1_050));
+    assert_ne!(eye.camera(), Some(far));
+    press(&mut eye, KeyCode::Char('i'), None, ms(1_050));
+    assert!(eye.camera() == Some(far) && !eye.is_moving());
+    eye.jump(ms(2_000), |_| home);
+    press(&mut eye, KeyCode::Char('w'), None, ms(2_050));
+    assert!(eye.camera() == Some(home) && eye.is_moving());
+    // With reduced motion there is no way between.
+    let (mut eye, _) = looking_at_spheres(true);
+    eye.jump(ms(1_000), |_| far);
+    assert!(eye.camera() == Some(far) && !eye.is_moving());
+}
+
+#[test]
+fn a_held_key_goes_on_after_a_jump() {
+    let (mut eye, home) = looking_at_spheres(false);
+    eye.set_reports_releases(true, ms(0));
+    press(&mut eye, KeyCode::Char('w'), None, ms(500));
+    eye.reset(ms(1_000));
+    eye.advance(ms(1_000) + JUMP_TIME);
+    let way = eye.camera().unwrap().pose().eye.distance(home.pose().eye);
+    assert!(eye.is_moving() && way < 0.06, "{way}");
+    eye.advance(ms(2_000) + JUMP_TIME);
+    let way = eye.camera().unwrap().pose().eye.distance(home.pose().eye);
+    assert!((way - 3.2).abs() < 0.1, "{way}");
+}
+
+#[test]
+fn views_that_were_left_by_jumps_are_returned_to() {
+    let (mut eye, home) = looking_at_spheres(true);
+    let [a, b, c] = [0.1, 0.2, 0.3].map(|angle| home.orbited(angle, 0.0));
+    let at = ms(0);
+    assert!(!eye.retrace(false, at) && !eye.retrace(true, at));
+    for to in [a, b, b, c] {
+        eye.jump(at, |_| to);
+    }
+    for (forward, camera) in [(false, b), (false, a), (true, b), (false, a), (false, home)] {
+        assert!(eye.retrace(forward, at));
+        assert_eq!(eye.camera(), Some(camera));
+    }
+    assert!(!eye.retrace(false, at));
+    // A view that was composed by hand is returned to as well.
+    eye.change(at, |camera, _| camera.orbited(1.0, 0.0));
+    let composed = eye.camera();
+    eye.reset(at);
+    assert!(eye.camera() == Some(home) && !eye.retrace(true, at), "a jump ends the way forward");
+    assert!(eye.retrace(false, at));
+    assert_eq!(eye.camera(), composed);
+    for turn in 0..100_u8 {
+        eye.jump(at, |camera| camera.orbited(0.01 + f32::from(turn) * 0.001, 0.0));
+    }
+    assert_eq!((0..200).filter(|_| eye.retrace(false, at)).count(), 64, "bounded");
+}
