@@ -9,11 +9,13 @@ mod describe;
 mod doctor;
 mod encoding;
 mod explain;
+mod folder;
 mod frame;
 mod help;
 mod deferred_args;
 mod live;
 mod map;
+mod new;
 mod suggestions;
 mod scene_source;
 mod outcome;
@@ -26,6 +28,7 @@ mod shipped;
 mod style;
 mod threads;
 mod tips;
+mod tour;
 
 use clap::{ArgAction, ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use deferred_args::DeferredArgs;
@@ -41,7 +44,7 @@ termtrace [OPTIONS] [SCENE]...
 /// The help of `-h`: what fits a screen of 80x24 cells.
 const SUMMARY: &str = "\
 Commands:
-  scenes                      list the built-in scenes
+  tour, scenes, new           see or list the built-in scenes, write a scene
   frame, record               write a picture or a film
   describe, explain, check    a picture in words, one pixel, a file's faults
   doctor, config, bench       this terminal, the settings, the speed
@@ -64,6 +67,7 @@ Without a scene the default one is shown. With several, n shows the next one
 and p the previous one.
 
 Examples:
+  termtrace tour                           see what ray tracing is
   termtrace corridor                       open a built-in scene
   termtrace scenes/three_spheres.ron       open a scene; ? shows the keys
   termtrace scenes/three_spheres.ron --eye 0,4,9
@@ -124,6 +128,10 @@ struct Cli {
 enum Command {
     /// List the built-in scenes
     Scenes(DeferredArgs<shipped::ScenesArgs>),
+    /// Lead through the built-in scenes, with a caption for each
+    Tour(DeferredArgs<tour::TourArgs>),
+    /// Write a commented scene to start from, and open it
+    New(DeferredArgs<new::NewArgs>),
     /// Print one frame, or compare it with a golden frame
     Frame(DeferredArgs<frame::FrameArgs>),
     /// Record a film along a camera path: asciicast, GIF, PNGs
@@ -166,6 +174,8 @@ pub(crate) fn main() -> ExitCode {
     let given = given.subcommand().map_or(&given, |(_, given)| given);
     let done = match cli.command {
         Some(Command::Scenes(_)) => shipped::list(),
+        Some(Command::Tour(DeferredArgs(args))) => tour::run(&args, given),
+        Some(Command::New(DeferredArgs(args))) => new::run(&args, given),
         Some(Command::Frame(DeferredArgs(args))) => frame::run(&args),
         Some(Command::Record(DeferredArgs(args))) => record::run(&args),
         Some(Command::Explain(DeferredArgs(args))) => explain::run(&args),

@@ -219,6 +219,9 @@ impl Description<'_> {
             LinearRgb::new(r, g, b).luminance()
         };
         lights.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+        if let Some(darkness) = self.scene.darkness() {
+            return format!("N{}.\n", darkness.trim_start_matches('n'));
+        }
         let mut text = if lights.is_empty() { "No lights.\n" } else { "Lights, the strongest first:\n" }.to_owned();
         for light in lights.iter().take(MAX_LISTED) {
             let light_color = light.color();

@@ -5,6 +5,8 @@
 
 mod builder;
 #[cfg(feature = "ron")]
+mod caption;
+#[cfg(feature = "ron")]
 mod checked;
 mod draft;
 #[cfg(feature = "ron")]
@@ -59,10 +61,10 @@ pub struct Scene {
 impl fmt::Debug for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // Destructured, so that a new field cannot be forgotten here.
-        let Checked { camera, views, background, ambient, lights, shadows, exposure, tone_curve, objects } =
+        let Checked { caption, camera, views, background, ambient, lights, shadows, exposure, tone_curve, objects } =
             &*self.checked;
         let mut scene = f.debug_struct("Scene");
-        scene.field("camera", camera).field("views", views);
+        scene.field("caption", caption).field("camera", camera).field("views", views);
         // A colour takes one line also with `{:#?}`, as three lines per colour would make a scene hard to read.
         scene.field("background", &format_args!("{background:?}")).field("ambient", &format_args!("{ambient:?}"));
         scene.field("lights", lights).field("shadows", shadows);
@@ -79,6 +81,8 @@ impl fmt::Debug for Scene {
 /// and camera.
 #[derive(Clone, Debug, PartialEq)]
 struct Checked {
+    /// Shared with the panel that shows it.
+    caption: Option<Arc<str>>,
     camera: Camera,
     views: Vec<Camera>,
     background: Background,
@@ -96,6 +100,7 @@ impl Checked {
     /// the rest.
     fn new(camera: Camera, objects: Vec<Object>) -> Self {
         Self {
+            caption: None,
             camera,
             views: Vec::new(),
             background: Background::Color(LinearRgb::BLACK),
@@ -144,6 +149,27 @@ impl Scene {
     #[doc(hidden)]
     pub fn new(camera: Camera, objects: Vec<Object>) -> Self {
         Draft::new(Checked::new(camera, objects)).finish()
+    }
+
+    /// Returns the caption: what the scene shows, one paragraph a line.
+    ///
+    /// It is the field `caption` of the scene file, or else the comment that the file begins with.
+    #[doc(hidden)]
+    pub fn caption(&self) -> Option<&Arc<str>> {
+        self.checked.caption.as_ref()
+    }
+
+    /// Returns a warning if no light falls on any object.
+    #[doc(hidden)]
+    pub fn darkness(&self) -> Option<&'static str> {
+        let Checked { ambient, lights, objects, background, .. } = &*self.checked;
+        let is_black = *background == Background::Color(LinearRgb::BLACK);
+        let is_unlit = *ambient == LinearRgb::BLACK && lights.iter().all(|light| light.color() == LinearRgb::BLACK);
+        match (is_unlit, is_black) {
+            (true, true) => Some("no lights and no ambient light: the picture is black"),
+            (true, false) if !objects.is_empty() => Some("no lights and no ambient light: every object is black"),
+            _ => None,
+        }
     }
 
     /// Returns the scene's own camera.

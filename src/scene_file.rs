@@ -24,6 +24,8 @@ use crate::written::{Fields, NodeReader, Spanned, WrittenColor, WrittenNumber};
 /// A whole scene file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneFile {
+    /// The caption.
+    pub caption: Option<String>,
     /// The camera.
     pub camera: Option<WrittenCamera>,
     /// Further views, in the order of the file.
@@ -113,6 +115,7 @@ impl SceneFile {
         };
         // All fields are read, even after a fault in one, so that all faults are found.
         let mut scene = Self {
+            caption: reader.optional(&fields, "caption", NodeReader::caption),
             camera: reader.required(&fields, "camera", NodeReader::camera),
             views: reader.optional(&fields, "views", NodeReader::views).unwrap_or_default(),
             background: reader.optional(&fields, "background", NodeReader::background),
@@ -135,6 +138,7 @@ impl SceneFile {
 impl NodeReader<'_> {
     fn root_fields<'n>(&mut self, root: &'n SyntaxNode<'n>) -> Option<Fields<'n>> {
         const FIELDS: &[&str] = &[
+            "caption",
             "camera",
             "views",
             "background",
@@ -147,6 +151,10 @@ impl NodeReader<'_> {
             "tone_curve",
         ];
         self.fields(root, "a scene", "a scene (camera: ..., lights: [...], objects: [...])", FIELDS)
+    }
+
+    fn caption(&mut self, node: &SyntaxNode<'_>) -> Option<String> {
+        self.text(node, "a caption in quotes").map(|caption| caption.value)
     }
 
     fn background(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenBackground> {

@@ -23,9 +23,11 @@ use crate::render::Sampling;
 use crate::scene::Scene;
 use crate::text::Notice;
 use std::collections::VecDeque;
+use std::sync::Arc;
 use std::time::Duration;
 
 mod requests;
+mod caption;
 mod dialog;
 mod display;
 mod quality_control;
@@ -60,8 +62,10 @@ mod status;
 #[cfg(all(unit_tests, any(test, feature = "test-hooks")))]
 mod scenario;
 mod tracked;
+mod warnings;
 mod wipe_commands;
 
+use caption::Caption;
 use display::Display;
 use error_panel::ErrorPanel;
 pub use extent::MAX_PIXELS;
@@ -80,6 +84,7 @@ use schedule::{Action, Facts, PictureState, decide};
 pub(crate) use schedule::{DriverState, Tracing};
 use screen::Screen;
 pub(crate) use view_layout::{INITIAL_WIPE, ViewLayout};
+use warnings::Warnings;
 
 /// Greatest time for which the first picture is held back, so that it is shown only once, already
 /// refined.
@@ -132,6 +137,8 @@ pub(crate) struct Viewer {
     layout: ViewLayout,
     pointer: PointerState,
     screen: Screen,
+    /// Whether captions are shown.
+    captions: bool,
     pacing: Pacing,
     requests: VecDeque<Request>,
     /// The names of the scenes, by number.
@@ -157,6 +164,7 @@ impl Viewer {
             pointer: PointerState::default(),
             requests: VecDeque::new(),
             names: Vec::new(),
+            captions: options.tour.is_some(),
             now: Duration::ZERO,
             display,
             screen,
@@ -254,6 +262,11 @@ impl Viewer {
 
     fn open(&mut self, scene: Scene, index: usize, orbits: bool) {
         let (before, written) = (self.scenes.shown(), scene.views().to_vec());
+        if let Some(darkness) = scene.darkness() {
+            self.warn(darkness.to_owned());
+        }
+        let caption = self.captions.then(|| self.caption(&scene, index)).flatten();
+        self.screen.set(caption);
         if let Some(view) = self.scenes.show(scene, index, orbits) {
             let left = self.eye.open(view);
             if let Some((before, left)) = before.zip(left).filter(|(before, _)| *before != index) {
@@ -274,6 +287,36 @@ impl Viewer {
     /// Shows a note in the lowest row for some seconds, or until the next key.
     pub(crate) fn show_note(&mut self, text: impl Into<String>) {
         self.screen.open(Note::new(text));
+    }
+
+    /// Shows a warning above the lowest row until the next key.
+    fn warn(&mut self, warning: String) {
+        let mut warnings = self.screen.close::<Warnings>().unwrap_or_default();
+        warnings.add(warning);
+        self.screen.open(warnings);
+    }
+
+    /// Returns the caption of scene number `of`, if it has one.
+    fn caption(&self, scene: &Scene, of: usize) -> Option<Caption> {
+        let place = self.options.tour.map(|count| (of + 1, count));
+        Some(Caption::new(Arc::clone(scene.caption()?), place))
+    }
+
+    /// Shows the caption of the scene, its next page, or hides it after the last one.
+    fn turn_caption(&mut self) {
+        let next = match self.screen.close::<Caption>() {
+            Some(caption) => caption.next(theme::area(self.size())),
+            None => {
+                let shown = self.scene().zip(self.scenes.shown());
+                let caption = shown.and_then(|(scene, of)| self.caption(&scene, of));
+                if caption.is_none() {
+                    self.show_note("this scene has no caption: no comment at the start of its file");
+                }
+                caption
+            }
+        };
+        self.captions = next.is_some();
+        self.screen.set(next);
     }
 
     /// Accepts a finished frame as the next picture to show.

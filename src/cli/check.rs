@@ -29,5 +29,6 @@ pub(super) fn run(args: &CheckArgs) -> CommandResult {
     let objects = count(scene.objects().len(), "object");
     let lights = count(scene.lights().len(), "light");
     let path = args.scene.display().to_string();
-    write_stdout(format!("{}: OK ({objects}, {lights})\n", visible(&path)).as_bytes())
+    let darkness = scene.darkness().map(|darkness| format!(", but {darkness}")).unwrap_or_default();
+    write_stdout(format!("{}: OK ({objects}, {lights}){darkness}\n", visible(&path)).as_bytes())
 }

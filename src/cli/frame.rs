@@ -9,6 +9,7 @@ use super::outcome::{CommandResult, Failure, write_stdout};
 use super::outputs;
 use super::picture::{FrameKind, PictureArgs};
 use super::scene_args::SceneArgs;
+use super::scene_source::warn_of_darkness;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::io::{self, IsTerminal};
@@ -141,6 +142,7 @@ impl FrameArgs {
         }
         let samples = self.picture.samples(kind);
         let map = self.map.map();
+        warn_of_darkness(map, &scene);
         // Only tracing runs in the pool of `--threads`; the file is encoded on one thread.
         let picture = self
             .scene

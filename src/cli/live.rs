@@ -3,9 +3,10 @@
 
 use super::completions::{command_near, no_command};
 use super::encoding::OrderArgs;
+use super::folder;
 use super::outcome::{CommandResult, Failure, exit_after_panic, reason, usage, write_stdout};
 use super::scene_args::CameraArgs;
-use super::scene_source::SceneSource;
+use super::scene_source::{SceneSource, warn_of_darkness};
 use super::settings::{SettingArgs, Settings, keys};
 use super::shipped::ShippedScene;
 use super::threads::on_threads;
@@ -22,8 +23,19 @@ use termtrace::internals::{app, cell, maps};
 use termtrace::live::{Ending, Options, Outcome, Signals, Source};
 use termtrace::{Colors, Sampling, Size, export};
 
+/// The occasion on which the live view opens, which decides what it shows first.
+#[derive(Clone, Copy)]
+pub(super) enum Occasion {
+    /// The default scene, because none was named.
+    Demo,
+    /// Scenes that the user named.
+    Scenes,
+    /// A tour of this many scenes.
+    Tour(usize),
+}
+
 /// Returns the hint shown until the first key press: the main commands and the keys bound to them.
-fn hint(keymap: &Keymap, is_demo: bool) -> String {
+fn hint(keymap: &Keymap, occasion: Occasion) -> String {
     let key = |command| keymap.key_of(&[KeyMode::Fly, KeyMode::Always], command).map(|key| key.to_string());
     let moves = [Direction::Forward, Direction::Left, Direction::Back, Direction::Right];
     let moves: Option<Vec<_>> = moves.into_iter().map(|direction| key(Command::Move(direction))).collect();
@@ -31,11 +43,15 @@ fn hint(keymap: &Keymap, is_demo: bool) -> String {
     let does = |command, does: &str| key(command).map(|key| format!("{key} {does}"));
     let moves = Some(moves.map_or_else(|| "drag to look".to_owned(), |keys| format!("drag or {keys} to move")));
     let (help, quit) = (does(Command::Help, "keys"), does(Command::Quit, "quit"));
-    // Either line fits into 80 columns.
-    let parts = if is_demo {
-        vec![moves, help, quit, Some("termtrace FILE opens yours".to_owned())]
-    } else {
-        vec![moves, does(Command::NextMap, "maps"), does(Command::Explain, "explain"), help, quit]
+    // Each line fits into 80 columns.
+    let parts = match occasion {
+        Occasion::Demo => vec![moves, help, quit, Some("termtrace FILE opens yours".to_owned())],
+        Occasion::Scenes => {
+            vec![moves, does(Command::NextMap, "maps"), does(Command::Explain, "explain"), help, quit]
+        }
+        Occasion::Tour(_) => {
+            vec![does(Command::NextScene, "next scene"), does(Command::LastScene, "previous scene"), moves, help, quit]
+        }
     };
     parts.into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
@@ -49,6 +65,13 @@ pub(super) struct LiveArgs {
     #[command(flatten)]
     camera_args: CameraArgs,
     #[command(flatten)]
+    view: ViewArgs,
+}
+
+/// The flags of the live view besides its scenes and their camera.
+#[derive(Args)]
+pub(super) struct ViewArgs {
+    #[command(flatten)]
     settings: SettingArgs,
     #[command(flatten)]
     order: OrderArgs,
@@ -57,10 +80,10 @@ pub(super) struct LiveArgs {
     quiet: bool,
 }
 
-impl LiveArgs {
+impl ViewArgs {
     /// Returns the options of the live view from the effective `settings`, which already include
     /// this command line's flags.
-    fn options(&self, settings: &SettingArgs, keymap: Keymap) -> Options {
+    fn options(&self, settings: &SettingArgs, keymap: Keymap, occasion: Occasion) -> Options {
         let mut options = Options::new(settings.terminal.hints());
         options.order = self.order.order();
         options.quality = settings.loss.quality();
@@ -71,9 +94,9 @@ impl LiveArgs {
         options.reduced_motion = settings.reduced_motion();
         options.map = settings.map.map();
         options.exports = Some(PathBuf::from("."));
-        options.welcome = settings.hint().then(|| hint(&keymap, self.scenes.is_empty()));
+        options.welcome = settings.hint().then(|| hint(&keymap, occasion));
+        options.tour = if let Occasion::Tour(scenes) = occasion { Some(scenes) } else { None };
         options.keymap = keymap;
-        options.threads = self.camera_args.threads.map(usize::from);
         options
     }
 }
@@ -89,15 +112,20 @@ pub(super) fn run(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
     {
         return Err(no_command(first));
     }
-    if io::stdout().is_terminal() { open_view(args, given) } else { print_frame(args) }
+    if !io::stdout().is_terminal() {
+        return print_frame(args);
+    }
+    let occasion = if args.scenes.is_empty() { Occasion::Demo } else { Occasion::Scenes };
+    open_view(&args.view, given, occasion, args.camera_args.threads, || sources(args))
 }
 
 /// Prints one frame as `termtrace frame` does. Only flags are used, because output to a file or
 /// pipe must not depend on config.ron.
 fn print_frame(args: &LiveArgs) -> CommandResult {
-    let settings = &args.settings;
+    let settings = &args.view.settings;
     settings.check_samples()?;
-    if let [first, more @ ..] = &args.scenes[..]
+    let scenes = folder::expanded(&args.scenes)?;
+    if let [first, more @ ..] = &scenes[..]
         && !more.is_empty()
     {
         let more: Vec<_> = more.iter().map(|path| path.to_string_lossy()).collect();
@@ -108,28 +136,36 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
         );
         return Err(Failure::Usage(message));
     }
-    let source = SceneSource::from_argument(args.scenes.first().map(PathBuf::as_path))?;
+    let source = SceneSource::from_argument(scenes.first().map(PathBuf::as_path))?;
     let scene = args.camera_args.load(&source)?;
     let cell_aspect = settings.terminal.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
     let cell_mode = settings.terminal.cells.mode_for_file(Colors::None);
     let resolution = cell::resolution(cell_mode, Size::new(80, 24), cell_aspect).map_err(usage)?;
     let sampling = settings.samples.unwrap_or(Sampling::Each(NonZeroU32::MIN));
     let map = settings.map.map();
+    warn_of_darkness(map, &scene);
     let picture =
         on_threads(args.camera_args.threads, || maps::picture(map, &scene, scene.camera(), resolution, sampling))?;
     let grid = cell::grid_from_picture(cell_mode, &picture);
     write_stdout(&export::ansi_or_text(&grid, cell_mode.colors))
 }
 
-/// Runs the live view. After its end, even by a panic, the terminal is restored before a message is
-/// printed.
-fn open_view(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
+/// Runs the live view of the scenes that `sources` returns. After its end, even by a panic, the
+/// terminal is restored before a message is printed.
+pub(super) fn open_view(
+    args: &ViewArgs,
+    given: &ArgMatches,
+    occasion: Occasion,
+    threads: Option<u16>,
+    sources: impl FnOnce() -> Result<Vec<Source<Failure>>, Failure>,
+) -> CommandResult {
     #[cfg(feature = "test-hooks")]
     inject_faults();
     let settings = Settings::gather(given)?.args;
     settings.check_samples()?;
     let keymap = keys::keymap(given.get_flag("no_config"))?;
-    let (sources, options) = (sources(args)?, args.options(&settings, keymap));
+    let (sources, mut options) = (sources()?, args.options(&settings, keymap, occasion));
+    options.threads = threads.map(usize::from);
     // Signal handlers are installed before the terminal is put into raw mode, so that no signal can leave it so.
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
     let ended = catch_unwind(AssertUnwindSafe(|| app::open(sources, options, &mut signals)));
@@ -162,13 +198,12 @@ fn sources(args: &LiveArgs) -> Result<Vec<Source<Failure>>, Failure> {
     if args.scenes.is_empty() {
         return Ok(vec![live_source(SceneSource::from_argument(None)?, &args.camera_args)]);
     }
-    args.scenes
-        .iter()
-        .map(|path| SceneSource::from_path(path).map(|scene| live_source(scene, &args.camera_args)))
-        .collect()
+    let scenes = folder::expanded(&args.scenes)?;
+    scenes.iter().map(|path| SceneSource::from_path(path).map(|scene| live_source(scene, &args.camera_args))).collect()
 }
 
-fn live_source(scene: SceneSource, camera_args: &CameraArgs) -> Source<Failure> {
+/// Returns the source of a scene for the live view.
+pub(super) fn live_source(scene: SceneSource, camera_args: &CameraArgs) -> Source<Failure> {
     let file = if let SceneSource::File(path) = &scene { Some(path.clone()) } else { None };
     let (name, camera_args) = (scene.to_string(), camera_args.clone());
     // Decided by the name alone, because the file is read later, on another thread.

@@ -88,6 +88,11 @@ fn report_failure(message: &str, code: u8) -> ExitCode {
     ExitCode::from(code)
 }
 
+/// Prints a warning to standard error.
+pub(super) fn warn(message: impl Display) {
+    print_error(&format!("termtrace: warning: {}\n", visible_lines(&message.to_string())));
+}
+
 /// Prints a message to standard error, coloured if that is a terminal, unless the write could block
 /// the program or suspend it.
 pub(super) fn print_error(text: &str) {

@@ -54,7 +54,7 @@ impl SceneArgs {
 }
 
 /// The flags for the camera, and for the threads that trace.
-#[derive(Args, Clone)]
+#[derive(Args, Clone, Default)]
 #[command(next_help_heading = "Camera")]
 pub(super) struct CameraArgs {
     /// Eye point, instead of the scene's

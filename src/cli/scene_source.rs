@@ -1,6 +1,6 @@
 //! The source of a scene: a file, standard input, or a scene embedded in the program.
 
-use super::outcome::{Failure, reason, usage};
+use super::outcome::{Failure, reason, usage, warn};
 use super::shipped::ShippedScene;
 use super::suggestions;
 use super::threads::on_threads;
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use termtrace::internals::progress::{Reporter, Unfinished};
 use termtrace::internals::scene::Draft;
 use termtrace::internals::text::closest;
-use termtrace::{LoadError, Scene, SceneError};
+use termtrace::{LoadError, Map, Scene, SceneError};
 
 /// The source of a scene, which can be loaded repeatedly.
 #[derive(Clone)]
@@ -91,6 +91,13 @@ fn not_loaded(path: &Path, error: Unfinished<LoadError>) -> Failure {
 /// Returns the name of the shipped scene that is most similar to `name`, if one is similar.
 fn shipped_like(name: &Path) -> Option<PathBuf> {
     closest(name.to_str()?, ShippedScene::names()).map(PathBuf::from)
+}
+
+/// Warns of a picture without any light. Maps need none.
+pub(super) fn warn_of_darkness(map: Map, scene: &Scene) {
+    if let Some(darkness) = scene.darkness().filter(|_| map == Map::Shaded) {
+        warn(darkness);
+    }
 }
 
 /// Reads standard input, up to one byte more than a scene may have. With that byte the scene's

@@ -21,7 +21,7 @@ pub(super) struct ShippedScene {
 /// Defines the table `SHIPPED`. Each row is a scene's name and the mesh files that it refers to.
 macro_rules! shipped {
     ($($name:literal $([$($mesh:literal),+])?),+ $(,)?) => {
-        /// All shipped scenes; the first is the default scene.
+        /// All shipped scenes, in the order of the tour; the first is the default scene.
         static SHIPPED: &[ShippedScene] = &[$(ShippedScene {
             name: $name,
             text: include_str!(concat!("../../scenes/", $name, ".ron")),
@@ -30,18 +30,19 @@ macro_rules! shipped {
     };
 }
 
+// In the order of the lecture, which is that of the tour: eye rays, the closest hit, light, meshes.
 shipped! {
     "three_spheres",
+    "corridor",
+    "near_fov",
+    "far_fov",
+    "tilted_up",
+    "off_centre",
+    "many_spheres",
+    "inside_sphere",
     "bare",
     "two_lights",
     "three_lights",
-    "inside_sphere",
-    "many_spheres",
-    "near_fov",
-    "far_fov",
-    "corridor",
-    "tilted_up",
-    "off_centre",
     "teapots" ["teapot.obj"],
 }
 
@@ -57,9 +58,14 @@ impl ShippedScene {
         SHIPPED.iter().find(|scene| Path::new(scene.name) == name)
     }
 
+    /// Returns all shipped scenes, in the order of the tour.
+    pub(super) fn all() -> impl Iterator<Item = &'static Self> {
+        SHIPPED.iter()
+    }
+
     /// Returns the names of all shipped scenes.
     pub(super) fn names() -> impl Iterator<Item = &'static str> {
-        SHIPPED.iter().map(|scene| scene.name)
+        Self::all().map(|scene| scene.name)
     }
 
     /// Returns the names of all shipped scenes with what they show.

@@ -1,7 +1,7 @@
 //! Suggestions for misspelt file names.
 
+use super::folder::is_scene;
 use std::path::{Path, PathBuf};
-use termtrace::internals::mesh_file::is_mesh;
 use termtrace::internals::text::closest;
 
 /// Limit on the number of files in a folder that are compared, so that a huge folder does not delay
@@ -15,7 +15,7 @@ pub(super) fn scene_like(path: &Path) -> Option<PathBuf> {
     let folder = path.parent().filter(|folder| *folder != Path::new(""));
     let files = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
     let names = files.take(MAX_LISTED_FILES).filter_map(|file| file.ok()?.file_name().into_string().ok());
-    let scenes = names.filter(|name| is_mesh(name, &[]) || Path::new(name).extension().is_some_and(|end| end == "ron"));
+    let scenes = names.filter(|name| is_scene(name));
     // Excludes dangling symbolic links, which a folder lists too; `path` itself may be one.
     let there: Vec<_> = scenes.filter(|other| path.with_file_name(other).exists()).collect();
     nearest(name, there).map(|other| path.with_file_name(other))

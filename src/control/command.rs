@@ -72,6 +72,8 @@ pub enum Command {
     Help,
     /// Closes the topmost panel or deselects the selected light.
     Close,
+    /// Shows the caption of the scene, turns its page, or hides it.
+    Caption,
     /// Redraws the whole screen, in case another program has written on it.
     Redraw,
     /// Suspends the program; the shell's `fg` continues it.
@@ -209,6 +211,7 @@ commands! {
     [Command::Status] "Status", "status line on or off";
     [Command::Help] "Help", "this help";
     [Command::Close] "Close", "close panel";
+    [Command::Caption] "Caption", "caption on or off";
     [Command::Redraw] "Redraw", "redraw";
     [Command::Suspend] "Suspend", "suspend (fg returns)";
     [Command::Quit] "Quit", "quit";

@@ -188,6 +188,7 @@ const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Always, &[letter('x')], Command::Explain),
     (KeyMode::Always, &[letter('g')], Command::Light),
     (KeyMode::Always, &[letter('i')], Command::Status),
+    (KeyMode::Always, &[letter('\'')], Command::Caption),
     (KeyMode::Always, &[letter('?')], Command::Help),
     (KeyMode::Always, &[Key::named(KeyCode::Esc)], Command::Close),
     (KeyMode::Always, &[Key::ctrl('l')], Command::Redraw),

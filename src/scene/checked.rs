@@ -6,7 +6,7 @@
 mod camera;
 pub(super) mod path;
 
-use super::{Background, Checked, Draft, Object, ToneCurve};
+use super::{Background, Checked, Draft, Object, ToneCurve, caption};
 use crate::checks;
 use crate::color::{LinearRgb, Srgb8};
 use crate::material::{Material, WrittenMaterial};
@@ -45,6 +45,7 @@ pub(super) fn check(
         Some(WrittenToneCurve::Filmic) => ToneCurve::Filmic,
     };
     Some(Draft::new(Checked {
+        caption: file.caption.as_deref().and_then(caption::shown),
         views,
         background: background.unwrap_or(Background::Color(LinearRgb::BLACK)),
         ambient: ambient.unwrap_or(LinearRgb::BLACK),

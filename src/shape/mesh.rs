@@ -239,11 +239,7 @@ impl CheckedShape for Mesh {
 }
 
 fn read_path(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Spanned<String>> {
-    let Value::String(path) = &node.value else {
-        reader.mismatch(node, "the path of a mesh in quotes");
-        return None;
-    };
-    Some(Spanned { value: path.to_string(), span: node.span })
+    reader.text(node, "the path of a mesh in quotes")
 }
 
 /// Reads the scale: one factor for all axes, or three.

@@ -71,7 +71,7 @@ fn text_width(width: u16) -> usize {
 }
 
 /// Wraps the text to lines of at most `width` columns, between words where possible.
-fn wrapped(text: &str, width: usize) -> Vec<String> {
+pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     // Lines break after slashes too, because paths are the longest words of messages.
     for word in text.split_inclusive([' ', '/']) {

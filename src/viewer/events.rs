@@ -7,6 +7,7 @@ use super::help::HelpPanel;
 use super::lights::Lights;
 use super::note::Note;
 use super::status::StatusLine;
+use super::warnings::Warnings;
 use super::{Request, Viewer, mouse_actions};
 use crate::control::Command;
 use crate::input::{Input, Reply};
@@ -114,6 +115,7 @@ impl Viewer {
         // Only a press closes a note: otherwise the release of the key that opened the note would close it at once.
         if is_press {
             self.screen.close::<Note>();
+            self.screen.close::<Warnings>();
         }
         let meant = self.keymap().command(&self.screen.modes(self.size()), key);
         // The help lies over everything. Releases go on: keys may have been pressed before it was opened.
@@ -175,6 +177,7 @@ impl Viewer {
             Command::ScrollUp => self.scroll(-1),
             Command::ScrollDown => self.scroll(1),
             Command::Redraw => self.redraw(),
+            Command::Caption => self.turn_caption(),
             // Keys of motion have been passed to the eye, and answers do nothing without an open question.
             Command::Move(_)
             | Command::Look(_)

@@ -19,6 +19,8 @@ use std::time::Duration;
 pub(super) enum Level {
     /// A mark on something in the picture. Marks lie lowest, so that they hide no text.
     Mark,
+    /// The caption at the bottom, below all panels that the user opens.
+    Caption,
     /// A panel beside the thing in the picture that it describes.
     Side,
     /// A panel in the middle of the screen's lower half.
@@ -27,6 +29,8 @@ pub(super) enum Level {
     Status,
     Legend,
     Error,
+    /// A warning above the lowest row until the next key.
+    Warning,
     /// In the lowest row until the next key or for some seconds.
     Note,
     /// A question that has to be answered.

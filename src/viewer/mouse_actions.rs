@@ -3,6 +3,7 @@
 use super::Viewer;
 use super::note::Note;
 use super::pointer::DragTarget;
+use super::warnings::Warnings;
 use crate::control::{self, Command, Gesture, Grip, KeyMode};
 use crate::hit::closest_hit;
 use crate::input::Input;
@@ -37,6 +38,7 @@ impl Viewer {
         match gesture {
             Gesture::Press { at, grip } => {
                 self.screen.close::<Note>();
+                self.screen.close::<Warnings>();
                 self.pointer.start_drag(self.drag_target_at(at, grip, &modes));
                 self.drag(at, at, grip);
             }

@@ -43,6 +43,9 @@ pub struct Options {
     pub exports: Option<PathBuf>,
     /// A note that is shown in the lowest row until the first key press.
     pub welcome: Option<String>,
+    /// The number of scenes of a tour, whose captions are shown. `None`: no tour.
+    #[doc(hidden)]
+    pub tour: Option<usize>,
     /// The first map to show.
     pub map: Map,
     /// The commands that keys are bound to.
@@ -73,6 +76,7 @@ impl Options {
             reduced_motion: false,
             exports: None,
             welcome: None,
+            tour: None,
             map: Map::Shaded,
             keymap: Keymap::default(),
         }

@@ -231,6 +231,15 @@ impl<'f> NodeReader<'f> {
         None
     }
 
+    /// Reads a text in quotes. `wanted` says what it is, for the fault.
+    pub(crate) fn text(&mut self, node: &SyntaxNode<'_>, wanted: &str) -> Option<Spanned<String>> {
+        let Value::String(text) = &node.value else {
+            self.mismatch(node, wanted);
+            return None;
+        };
+        Some(Spanned { value: text.to_string(), span: node.span })
+    }
+
     /// Reads a finite number.
     pub(crate) fn number(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenNumber> {
         let Value::Number(value) = node.value else {

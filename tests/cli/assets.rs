@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each file in `assets/`, and the command that prints it.
-const ASSETS: [(&str, &str); 19] = [
+const ASSETS: [(&str, &str); 21] = [
     ("completions/termtrace.bash", "completions bash"),
     ("completions/termtrace.elv", "completions elvish"),
     ("completions/termtrace.fish", "completions fish"),
@@ -26,8 +26,10 @@ const ASSETS: [(&str, &str); 19] = [
     ("man/termtrace-frame.1", "man frame"),
     ("man/termtrace-help.1", "man help"),
     ("man/termtrace-man.1", "man man"),
+    ("man/termtrace-new.1", "man new"),
     ("man/termtrace-record.1", "man record"),
     ("man/termtrace-scenes.1", "man scenes"),
+    ("man/termtrace-tour.1", "man tour"),
     ("man/termtrace-version.1", "man version"),
 ];
 

@@ -24,6 +24,7 @@ mod record;
 mod shells;
 mod shipped;
 mod sizes;
+mod starting;
 mod web;
 
 use std::fs::{self, File};

@@ -1,5 +1,6 @@
 //! The live view on a real pseudo-terminal: keys and signals in, bytes and an exit status out.
 
+mod captions;
 mod explaining;
 mod files;
 #[path = "../gravel/mod.rs"]

@@ -116,7 +116,9 @@ fn differences(expected: &BTreeMap<String, String>, found: &BTreeMap<String, Str
 fn all_differ(hashes: &BTreeMap<String, String>) {
     let mut frames = BTreeMap::new();
     for (frame, hash) in hashes {
-        if let Some(other) = frames.insert(hash, frame) {
+        // A scene may have changed in ways that its first picture does not show.
+        let is_copy = |other: &String| frame.strip_prefix("shipped ") == Some(other);
+        if let Some(other) = frames.insert(hash, frame).filter(|other| !is_copy(other)) {
             panic!("{frame} has the hash of {other}");
         }
     }

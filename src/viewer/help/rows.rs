@@ -33,7 +33,7 @@ impl Group {
             C::Light | C::MoveLight(_) | C::LightNearer | C::LightFarther | C::LightBack => Self::Light,
             C::NextScene | C::LastScene | C::Export | C::CopyCamera | C::KeepView => Self::Files,
             C::Write(_) | C::Yes | C::No => Self::Files,
-            C::Status | C::Help | C::Close | C::Redraw | C::Suspend | C::Quit => Self::Program,
+            C::Caption | C::Status | C::Help | C::Close | C::Redraw | C::Suspend | C::Quit => Self::Program,
         }
     }
 }

@@ -1,0 +1,107 @@
+//! The caption of a scene, at the bottom of the picture.
+
+use super::error_panel::wrapped;
+use super::help::key_names;
+use super::layers::{Canvas, Layer, Level};
+use super::theme::has_room;
+use crate::control::Command;
+use ratatui_core::layout::Rect;
+use ratatui_core::widgets::Widget;
+use ratatui_widgets::clear::Clear;
+use ratatui_widgets::paragraph::Paragraph;
+use std::sync::Arc;
+use unicode_width::UnicodeWidthStr;
+
+/// Limit on the columns of a line. Longer lines are hard to read.
+const MAX_COLUMNS: u16 = 92;
+
+/// A page of a caption.
+#[derive(PartialEq)]
+pub(super) struct Caption {
+    text: Arc<str>,
+    /// The number of the scene on the tour, from 1, and the number of all its scenes.
+    place: Option<(usize, usize)>,
+    page: usize,
+}
+
+impl Caption {
+    /// Returns the first page of a caption with one paragraph a line.
+    pub(super) fn new(text: Arc<str>, place: Option<(usize, usize)>) -> Self {
+        Self { text, place, page: 0 }
+    }
+
+    /// Returns the next page; `None` after the last one.
+    pub(super) fn next(self, screen: Rect) -> Option<Self> {
+        let page = self.page + 1;
+        (page < self.pages(screen).len()).then_some(Self { page, ..self })
+    }
+
+    /// Returns the lines of each page on a screen of this size, without the row of keys.
+    fn pages(&self, screen: Rect) -> Vec<Vec<String>> {
+        let width = usize::from(screen.width.min(MAX_COLUMNS).saturating_sub(2)).max(1);
+        let rows = rows(screen).saturating_sub(1).max(1);
+        let mut pages = vec![Vec::new()];
+        for paragraph in self.text.lines() {
+            let lines = wrapped(paragraph, width);
+            // A paragraph that fits on a page of its own is not divided.
+            let left = rows - pages.last().map_or(0, Vec::len);
+            if lines.len() > left && lines.len() <= rows {
+                pages.push(Vec::new());
+            }
+            for line in lines {
+                match pages.last_mut() {
+                    Some(page) if page.len() < rows => page.push(line),
+                    _ => pages.push(vec![line]),
+                }
+            }
+        }
+        pages.retain(|page| !page.is_empty());
+        pages
+    }
+
+    /// Returns the row of keys below a page.
+    fn foot(&self, canvas: &Canvas<'_>, is_last: bool) -> String {
+        let key =
+            |command, does: &str| key_names(canvas.keymap, canvas.modes, &[command]).map(|key| format!("{key} {does}"));
+        let turn = key(Command::Caption, if is_last { "hides this" } else { "more" });
+        let place = self.place.map(|(number, count)| format!("{number} of {count}"));
+        let on = self.place.and_then(|_| key(Command::NextScene, "next scene"));
+        [place, on, turn].into_iter().flatten().collect::<Vec<_>>().join("; ")
+    }
+}
+
+/// Returns the rows of a caption: as many as leave the middle of the screen and the lowest row free.
+fn rows(screen: Rect) -> usize {
+    usize::from(screen.height * 5 / 12).saturating_sub(1)
+}
+
+impl Layer for Caption {
+    fn level(&self) -> Level {
+        Level::Caption
+    }
+
+    fn draw(&mut self, canvas: &mut Canvas<'_>) {
+        let screen = canvas.screen();
+        if !has_room(screen) {
+            return;
+        }
+        let mut pages = self.pages(screen);
+        // A larger window may have left fewer pages.
+        let page = self.page.min(pages.len().saturating_sub(1));
+        let is_last = page + 1 >= pages.len();
+        let mut lines = if page < pages.len() { pages.swap_remove(page) } else { Vec::new() };
+        lines.push(self.foot(canvas, is_last));
+        let width = lines.iter().map(|line| line.trim_end().width() as u16 + 2).max().unwrap_or(0).min(screen.width);
+        let height = lines.len() as u16;
+        let below = canvas.status_rows.max(1);
+        let area = Rect { y: screen.bottom().saturating_sub(below + height), width, height, ..screen };
+        canvas.lay(area, |theme, area, buffer| {
+            Clear.render(area, buffer);
+            let text = lines.iter().map(|line| format!(" {line}")).collect::<Vec<_>>().join("\n");
+            Paragraph::new(text).style(theme.style()).render(area, buffer);
+        });
+    }
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;

@@ -1,0 +1,45 @@
+//! Warnings about the shown scene, above the lowest row until the next key.
+
+use super::error_panel::wrapped;
+use super::layers::{Canvas, Layer, Level};
+use ratatui_core::layout::Rect;
+
+/// Limit on the rows of all warnings.
+const MAX_ROWS: usize = 4;
+
+/// What is wrong with a scene that is shown nonetheless.
+#[derive(Default)]
+pub(super) struct Warnings(Vec<String>);
+
+impl Warnings {
+    /// Adds a warning, unless it is there already.
+    pub(super) fn add(&mut self, warning: String) {
+        if !self.0.contains(&warning) {
+            self.0.push(warning);
+        }
+    }
+
+    /// Returns the lines that fit into this width.
+    fn lines(&self, width: u16) -> Vec<String> {
+        let lines = self.0.iter().flat_map(|warning| wrapped(warning, usize::from(width.saturating_sub(2)).max(1)));
+        lines.take(MAX_ROWS).collect()
+    }
+}
+
+impl Layer for Warnings {
+    fn level(&self) -> Level {
+        Level::Warning
+    }
+
+    fn draw(&mut self, canvas: &mut Canvas<'_>) {
+        // The lowest row is that of notes, which are shown at the same time.
+        let row = canvas.foot(canvas.status_rows.max(1));
+        let lines = self.lines(row.width);
+        for (above, line) in (0..).zip(lines.iter().rev()).take_while(|&(above, _)| above < row.y) {
+            canvas.write_line(&format!(" {line}"), Rect { y: row.y - above, ..row });
+        }
+    }
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;
