@@ -21,6 +21,7 @@ mod colors;
 mod contrast;
 mod cost;
 mod shaded;
+mod wire;
 
 /// The quantity that a picture shows: the scene's light, or another one.
 ///
@@ -67,6 +68,8 @@ pub enum Map {
     ///
     /// This map is for people who see outlines better than colours.
     Contrast,
+    /// The edges of triangles, over a grey that is darker where a surface is seen at a flat angle.
+    Wire,
 }
 
 /// The colour of pixels without a hit, in all maps except `Cost` and `Contrast`.
@@ -89,7 +92,7 @@ pub struct TracedMap {
 
 impl Map {
     /// All maps, in the order in which keys of the live view select them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Shaded,
         Self::Lambert,
         Self::Depth,
@@ -99,6 +102,7 @@ impl Map {
         Self::Cost,
         Self::Facing,
         Self::Contrast,
+        Self::Wire,
     ];
 
     /// Returns the picture of `scene` from `camera`, as a pure function of the arguments.
@@ -128,6 +132,7 @@ impl Map {
             Self::Cost => "cost",
             Self::Facing => "facing",
             Self::Contrast => "contrast",
+            Self::Wire => "wire",
         }
     }
 
@@ -176,6 +181,7 @@ impl Map {
             Self::Cost => "blue 1, green 16, red 256 tests".to_owned(),
             Self::Facing => "blue front, red back".to_owned(),
             Self::Contrast => "lines between objects".to_owned(),
+            Self::Wire => "edges of triangles".to_owned(),
         };
         format!("{}: {meaning}", self.name())
     }
@@ -267,6 +273,7 @@ fn trace_partial(
             Some(Side::Front) => FRONT,
             Some(Side::Back) => BACK,
         }),
+        Map::Wire => of_surfaces(&|sample| wire::color(scene, camera, resolution, sample).unwrap_or(NO_HIT)),
         Map::Contrast => contrast::trace(executor, scene, camera, resolution, sampling),
     }
 }

@@ -16,7 +16,8 @@
 //!
 //! Side files (MTL files, textures, buffers of glTF) are requested by their path relative to the mesh through a
 //! function passed in; no URL and no absolute path is ever requested. A missing side file is an error, because a
-//! picture without it would look plausible and be wrong.
+//! picture without it would look plausible and be wrong. To a caller that takes warnings, missing materials and
+//! textures are reported as such, and their surfaces are clay.
 //!
 //! # Crates that were tried
 //!
@@ -56,6 +57,8 @@ mod gltf;
 #[cfg(feature = "mesh")]
 mod format;
 mod limits;
+#[cfg_attr(not(feature = "mesh"), allow(dead_code, reason = "only mesh files are turned"))]
+mod up;
 #[cfg(feature = "mesh")]
 mod mtl;
 #[cfg(feature = "mesh")]
@@ -80,13 +83,23 @@ pub use attribute::Attribute;
 pub use limits::{MAX_MESH_BYTES, MAX_TEXELS, MAX_TRIANGLES};
 pub use mesh_error::{FilePosition, MeshError};
 #[cfg(feature = "mesh")]
+pub(crate) use read::format_name;
+#[cfg(feature = "mesh")]
 pub use read::is_mesh;
 pub use texture::{Texture, TexturePlacement};
 #[cfg(all(feature = "ron", not(feature = "mesh")))]
+pub(crate) use unread::format_name;
+#[cfg(all(feature = "ron", not(feature = "mesh")))]
 pub use unread::is_mesh;
+pub use up::UpAxis;
+#[cfg(feature = "ron")]
+pub(crate) use up::guessed;
 
 use crate::color::LinearRgb;
 use glam::{Mat3, Vec2, Vec3};
+
+/// The reflectance of a mesh without colours: warm clay, `#d98b5f`.
+pub(crate) const CLAY: LinearRgb = LinearRgb::new(0.694, 0.258, 0.114);
 
 /// Triangles and their attributes as in a file. All numbers are finite, all indices in range, and
 /// there is at least one triangle; some may have no area.
@@ -165,6 +178,18 @@ impl MeshFile {
             self.colors = self.colors.turned();
         }
         self.is_valid().then_some(self)
+    }
+
+    /// Returns the mesh turned so that this axis of its file points along +y; `None` if a position
+    /// exceeds the range of f32.
+    pub fn turned_up(self, up: UpAxis) -> Option<Self> {
+        // Unturned it keeps the bits of its normals, which a rotation would normalise once more.
+        if up == UpAxis::Y { Some(self) } else { self.transformed(Vec3::ONE, up.turn(), Vec3::ZERO) }
+    }
+
+    /// Returns whether the file gives colours: of materials, vertices or a texture.
+    pub(crate) fn has_colors(&self) -> bool {
+        !self.materials.is_empty() || !self.colors.values().is_empty()
     }
 
     /// Returns the positions of the vertices.

@@ -58,13 +58,14 @@ pub enum Work {
 pub struct Reporter<'w> {
     on_progress: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync),
     on_dependency: Option<&'w (dyn Fn(&Path) + Sync)>,
+    on_warning: Option<&'w (dyn Fn(String) + Sync)>,
     cancellation: Cancellation,
 }
 
 impl<'w> Reporter<'w> {
     /// Returns a reporter that calls `on_progress`, which cancels the work by returning `Break`.
     pub fn new(on_progress: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Self {
-        Self { on_progress, on_dependency: None, cancellation: Cancellation::default() }
+        Self { on_progress, on_dependency: None, on_warning: None, cancellation: Cancellation::default() }
     }
 
     /// Returns the reporter with a callback that gets the path of each file before the file is
@@ -72,6 +73,19 @@ impl<'w> Reporter<'w> {
     // It is called before, so that a live view also watches for a missing file to be created.
     pub fn with_dependencies(self, on_dependency: &'w (dyn Fn(&Path) + Sync)) -> Self {
         Self { on_dependency: Some(on_dependency), ..self }
+    }
+
+    /// Returns the reporter with a callback that gets warnings about files that can be shown
+    /// nonetheless, each as a line.
+    ///
+    /// Without it, what would be a warning is an error.
+    pub fn with_warnings(self, on_warning: &'w (dyn Fn(String) + Sync)) -> Self {
+        Self { on_warning: Some(on_warning), ..self }
+    }
+
+    /// Returns the reporter without a callback for warnings, which makes them errors.
+    pub fn strict(&self) -> Self {
+        Self { on_warning: None, cancellation: self.cancellation.clone(), ..*self }
     }
 
     /// Returns the reporter with a token that cancels the work.
@@ -100,6 +114,14 @@ impl<'w> Reporter<'w> {
         if let Some(on_dependency) = self.on_dependency {
             on_dependency(file);
         }
+    }
+
+    /// Reports a warning. Returns whether there is a callback for it: if not, it is an error.
+    pub fn warn(&self, warning: impl FnOnce() -> String) -> bool {
+        if let Some(on_warning) = self.on_warning {
+            on_warning(warning());
+        }
+        self.on_warning.is_some()
     }
 
     /// Returns whether the work has been cancelled.

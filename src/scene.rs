@@ -23,6 +23,7 @@ pub use builder::SceneBuilder;
 pub use draft::Draft;
 #[cfg(feature = "ron")]
 pub use load::LoadError;
+pub use of_mesh::MeshOrigin;
 #[cfg(feature = "ron")]
 pub use written_view::with_view;
 
@@ -61,10 +62,21 @@ pub struct Scene {
 impl fmt::Debug for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // Destructured, so that a new field cannot be forgotten here.
-        let Checked { caption, camera, views, background, ambient, lights, shadows, exposure, tone_curve, objects } =
-            &*self.checked;
+        let Checked {
+            caption,
+            mesh,
+            camera,
+            views,
+            background,
+            ambient,
+            lights,
+            shadows,
+            exposure,
+            tone_curve,
+            objects,
+        } = &*self.checked;
         let mut scene = f.debug_struct("Scene");
-        scene.field("caption", caption).field("camera", camera).field("views", views);
+        scene.field("caption", caption).field("mesh", mesh).field("camera", camera).field("views", views);
         // A colour takes one line also with `{:#?}`, as three lines per colour would make a scene hard to read.
         scene.field("background", &format_args!("{background:?}")).field("ambient", &format_args!("{ambient:?}"));
         scene.field("lights", lights).field("shadows", shadows);
@@ -83,6 +95,8 @@ impl fmt::Debug for Scene {
 struct Checked {
     /// Shared with the panel that shows it.
     caption: Option<Arc<str>>,
+    /// The mesh file around which the default scene was made.
+    mesh: Option<MeshOrigin>,
     camera: Camera,
     views: Vec<Camera>,
     background: Background,
@@ -101,6 +115,7 @@ impl Checked {
     fn new(camera: Camera, objects: Vec<Object>) -> Self {
         Self {
             caption: None,
+            mesh: None,
             camera,
             views: Vec::new(),
             background: Background::Color(LinearRgb::BLACK),
@@ -157,6 +172,12 @@ impl Scene {
     #[doc(hidden)]
     pub fn caption(&self) -> Option<&Arc<str>> {
         self.checked.caption.as_ref()
+    }
+
+    /// Returns the mesh file around which the scene was made; `None` for a scene of its own.
+    #[doc(hidden)]
+    pub fn mesh(&self) -> Option<MeshOrigin> {
+        self.checked.mesh
     }
 
     /// Returns a warning if no light falls on any object.

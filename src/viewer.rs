@@ -13,10 +13,11 @@
 
 use crate::camera::Camera;
 use crate::capabilities::Capabilities;
-use crate::control::Keymap;
+use crate::control::{Command, Keymap};
 use crate::framebuffer::Resolution;
 use crate::grid::{Size, Window};
 use crate::memory::OutOfMemory;
+use crate::mesh_file::UpAxis;
 use crate::progress::Progress;
 use crate::protocol::{Receiver, TerminalMode};
 use crate::render::Sampling;
@@ -27,6 +28,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 mod requests;
+mod axes;
 mod caption;
 mod dialog;
 mod display;
@@ -53,6 +55,8 @@ mod camera_commands;
 mod note;
 mod options;
 mod pacing;
+mod mesh_commands;
+mod metadata;
 mod mouse_actions;
 mod progress;
 mod schedule;
@@ -104,6 +108,10 @@ pub(crate) enum Request {
     /// Switch to the scene this many places further on in the list of scenes; negative numbers go
     /// back.
     SwitchScene(isize),
+    /// Call [`Viewer::show_metadata`] with the name of the shown scene.
+    ShowMetadata,
+    /// Read the mesh again with this axis of its file up.
+    TurnMesh(UpAxis),
     /// Copy this text to the user's clipboard.
     Copy(String),
     /// Write the shown picture into a file of this format.
@@ -265,6 +273,10 @@ impl Viewer {
         if let Some(darkness) = scene.darkness() {
             self.warn(darkness.to_owned());
         }
+        if let Some(mesh) = scene.mesh().filter(|mesh| mesh.is_guess) {
+            let turn = self.hint(Command::TurnMesh, "turns it");
+            self.warn(format!("{} is up in this {} (a guess){turn}", mesh.up.name(), mesh.format));
+        }
         let caption = self.captions.then(|| self.caption(&scene, index)).flatten();
         self.screen.set(caption);
         if let Some(view) = self.scenes.show(scene, index, orbits) {
@@ -289,6 +301,14 @@ impl Viewer {
         self.screen.open(Note::new(text));
     }
 
+    /// Replaces the warnings, before the scene that they are about is shown.
+    pub(crate) fn set_warnings(&mut self, warnings: Vec<String>) {
+        self.screen.close::<Warnings>();
+        for warning in warnings {
+            self.warn(warning);
+        }
+    }
+
     /// Shows a warning above the lowest row until the next key.
     fn warn(&mut self, warning: String) {
         let mut warnings = self.screen.close::<Warnings>().unwrap_or_default();
@@ -304,16 +324,15 @@ impl Viewer {
 
     /// Shows the caption of the scene, its next page, or hides it after the last one.
     fn turn_caption(&mut self) {
-        let next = match self.screen.close::<Caption>() {
-            Some(caption) => caption.next(theme::area(self.size())),
-            None => {
-                let shown = self.scene().zip(self.scenes.shown());
-                let caption = shown.and_then(|(scene, of)| self.caption(&scene, of));
-                if caption.is_none() {
-                    self.show_note("this scene has no caption: no comment at the start of its file");
-                }
-                caption
+        let next = if let Some(caption) = self.screen.close::<Caption>() {
+            caption.next(theme::area(self.size()))
+        } else {
+            let shown = self.scene().zip(self.scenes.shown());
+            let caption = shown.and_then(|(scene, index)| self.caption(&scene, index));
+            if caption.is_none() {
+                self.show_note("this scene has no caption: no comment at the start of its file");
             }
+            caption
         };
         self.captions = next.is_some();
         self.screen.set(next);

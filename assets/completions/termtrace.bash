@@ -29,7 +29,7 @@ _termtrace() {
         flag=${COMP_WORDS[COMP_CWORD-2]}
     fi
     if ((COMP_CWORD > 1)); then
-        case ${COMP_WORDS[1]} in scenes|frame|record|explain|check|describe|bench|doctor|config|completions|man|help|version) command=${COMP_WORDS[1]} ;; esac
+        case ${COMP_WORDS[1]} in scenes|tour|new|frame|record|explain|check|describe|bench|doctor|config|completions|man|help|version) command=${COMP_WORDS[1]} ;; esac
     fi
     case $flag in
         --cell-aspect) return ;;
@@ -42,8 +42,9 @@ _termtrace() {
         --glyphs) _termtrace_words "auto half shape ramp"; return ;;
         --hint) _termtrace_words "true false"; return ;;
         --kernel) _termtrace_words "auto single packet scalar"; return ;;
-        --map) _termtrace_words "shaded lambert depth normal object shadow cost facing contrast"; return ;;
+        --map) _termtrace_words "shaded lambert depth normal object shadow cost facing contrast wire"; return ;;
         --max-rate) return ;;
+        --mesh-up) _termtrace_words "y z x -y -z -x"; return ;;
         --move-speed) return ;;
         --order) _termtrace_words "color raster"; return ;;
         --path) _termtrace_words "orbit"; _termtrace_files; return ;;
@@ -65,20 +66,22 @@ _termtrace() {
     esac
     case $command in
         scenes) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
-        frame) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --threads --size --pixels --cell-aspect --samples --scale --map --color --glyphs --format -o --output --check -h --help --bless"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi ;;
-        record) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --threads --path --seconds --fps --size --pixels --cell-aspect --samples --scale --map --order --quality --max-rate -o --output -h --help --compressed-link"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi ;;
-        explain) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --threads --pixel --size --pixels --cell-aspect -h --help"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi ;;
-        check) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --threads -h --help"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi ;;
-        describe) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --threads --size -h --help"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi ;;
-        bench) if [[ $cur == -* ]]; then _termtrace_words "--scene --pixels --samples --threads --kernel --rounds -h --help --no-shadow"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi ;;
+        tour) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order -h --help --compressed-link --quiet"; else :; fi ;;
+        new) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order -h --help --compressed-link --quiet"; else _termtrace_files; :; fi ;;
+        frame) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --threads --size --pixels --cell-aspect --samples --scale --map --color --glyphs --format -o --output --check -h --help --strict --bless"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        record) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --threads --path --seconds --fps --size --pixels --cell-aspect --samples --scale --map --order --quality --max-rate -o --output -h --help --strict --compressed-link"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        explain) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --threads --pixel --size --pixels --cell-aspect -h --help --strict"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        check) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --threads -h --help --strict"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        describe) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --threads --size -h --help --strict"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        bench) if [[ $cur == -* ]]; then _termtrace_words "--scene --pixels --samples --threads --kernel --rounds -h --help --no-shadow"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
         doctor) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect -h --help --no-config"; else :; fi ;;
         config) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint -h --help --no-config --keys"; else :; fi ;;
         completions) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "bash elvish fish powershell zsh"; :; fi ;;
-        man) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes frame record explain check describe bench doctor config completions man help version"; :; fi ;;
-        help) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes frame record explain check describe bench doctor config completions man help version"; :; fi ;;
+        man) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes tour new frame record explain check describe bench doctor config completions man help version"; :; fi ;;
+        help) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes tour new frame record explain check describe bench doctor config completions man help version"; :; fi ;;
         version) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
-        *) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --threads --color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order --compressed-link --quiet --no-config -h --help -V --version"; else _termtrace_words "three_spheres bare two_lights three_lights inside_sphere many_spheres near_fov far_fov corridor tilted_up off_centre teapots"; _termtrace_scenes; :; fi
-            ((COMP_CWORD > 1)) || _termtrace_words "scenes frame record explain check describe bench doctor config completions man help version" ;;
+        *) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --threads --color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order --strict --compressed-link --quiet --no-config -h --help -V --version"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi
+            ((COMP_CWORD > 1)) || _termtrace_words "scenes tour new frame record explain check describe bench doctor config completions man help version" ;;
     esac
 }
 

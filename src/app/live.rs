@@ -7,7 +7,7 @@
 use super::loading::LoadEvent;
 use super::picture_export;
 use super::renderer::Renderer;
-use super::save_view::ProposedView;
+use super::save_view::Proposal;
 use super::scenes::{SceneEvent, Scenes};
 use super::source::SceneName;
 use super::{Ending, Error, Options};
@@ -48,7 +48,7 @@ pub(super) struct Live {
     /// The folder for exported pictures, if the user may export.
     exports: Option<PathBuf>,
     /// The view that the user was last asked to confirm.
-    proposed: Option<ProposedView>,
+    proposed: Option<Proposal>,
 }
 
 impl Drop for Live {
@@ -196,6 +196,11 @@ impl Live {
                     let note = name.map(|name| format!("{} ({} of {count})", name.short(), of + 1));
                     self.viewer.show_note(note.unwrap_or_else(|| "only one scene".to_owned()));
                 }
+                Request::ShowMetadata => {
+                    let name = self.shown_name().map_or_else(String::new, SceneName::short);
+                    self.viewer.show_metadata(name);
+                }
+                Request::TurnMesh(up) => scenes.turn_up(up)?,
                 Request::Copy(text) => self.terminal.copy(&text)?,
                 Request::Export(format) => {
                     let note = self.export(format).map_or_else(
@@ -206,11 +211,9 @@ impl Live {
                 }
                 Request::ProposeView(camera) => self.propose(camera),
                 Request::SaveView => {
-                    let note = match self.proposed.take().map_or(Ok(()), |view| view.write()) {
-                        Ok(()) => "view saved to the scene file".to_owned(),
-                        Err(error) => format!("scene file left unchanged: {error}"),
-                    };
-                    self.viewer.show_note(note);
+                    if let Some(proposal) = self.proposed.take() {
+                        self.viewer.show_note(proposal.carry_out());
+                    }
                 }
             }
         }
@@ -234,9 +237,16 @@ impl Live {
     /// Asks the user whether to write `camera` into the scene's file, if it has one.
     fn propose(&mut self, camera: Camera) {
         let file = self.shown_name().and_then(|scene| scene.file.as_deref());
-        self.proposed = file.and_then(|file| ProposedView::new(file, camera));
+        self.proposed = file.and_then(|file| {
+            let name = file.file_name()?.to_string_lossy();
+            match self.viewer.scene_around_mesh(&name, &camera) {
+                Some(text) => Some(Proposal::scene_beside(file, text)),
+                None => Proposal::view(file, camera),
+            }
+        });
         match &self.proposed {
-            Some(view) => self.viewer.ask_to_save_view(view.file_name()),
+            Some(proposal) if proposal.is_new() => self.viewer.ask_to_write_scene(proposal.file_name()),
+            Some(proposal) => self.viewer.ask_to_save_view(proposal.file_name()),
             None => self.viewer.show_note("this scene has no scene file to save views to"),
         }
     }
@@ -249,6 +259,7 @@ impl Live {
         match event {
             LoadEvent::Progress(progress) if is_slow => self.viewer.show_progress(progress),
             LoadEvent::Progress(_) | LoadEvent::Dependencies(_) => {}
+            LoadEvent::Warnings(warnings) => self.viewer.set_warnings(warnings),
             LoadEvent::Sketch(sketch) => self.viewer.show_sketch(sketch, index, orbits),
             LoadEvent::Scene(scene) => self.viewer.show(scene, index, orbits),
             LoadEvent::Error(fault) if self.viewer.shown_scene().is_none() => return Err(fault),

@@ -30,6 +30,8 @@ pub(super) enum LoadEvent<E> {
     Progress(Progress),
     /// The files that the scene was read from, and those that were missing.
     Dependencies(Vec<Dependency>),
+    /// Warnings about the scene's files; empty if there are none.
+    Warnings(Vec<String>),
     /// A scene with coarse meshes, to show while the trees of the complete scene are built.
     Sketch(Scene),
     /// The complete scene.
@@ -83,7 +85,7 @@ impl<E> Loading<E> {
                 LoadEvent::Error(fault) => return Err(fault),
                 // Once a scene is complete, its progress and sketch are not shown.
                 LoadEvent::Scene(_) => {
-                    self.received.retain(|event| matches!(event, LoadEvent::Dependencies(_)));
+                    self.received.retain(|event| matches!(event, LoadEvent::Dependencies(_) | LoadEvent::Warnings(_)));
                     self.received.push_back(event);
                     return Ok(());
                 }
@@ -260,11 +262,19 @@ fn load<'p, E: Send>(
             needed.push(file);
         }
     };
+    let warnings = Mutex::new(Vec::new());
+    let on_warning = |warning: String| {
+        if let Ok(mut warnings) = warnings.lock() {
+            warnings.push(warning);
+        }
+    };
     let reporter = Reporter::new(&on_progress).with_dependencies(&on_dependency).cancelled_by(cancellation);
+    let reporter = reporter.with_warnings(&on_warning);
     let read = source.read(&reporter);
     let needed = needed.lock().map(|mut needed| std::mem::take(&mut *needed)).unwrap_or_default();
     // Sent after an error too, so that the files are watched and a correction is noticed.
     events.send(LoadEvent::Dependencies(needed));
+    events.send(LoadEvent::Warnings(warnings.lock().map(|mut all| std::mem::take(&mut *all)).unwrap_or_default()));
     match read {
         // The result of a cancelled load is not wanted, whatever it is.
         _ if cancellation.is_cancelled() => {}

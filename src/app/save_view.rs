@@ -4,9 +4,72 @@ use super::watching::Dependency;
 use crate::camera::Camera;
 use crate::output_file::OutputFile;
 use crate::scene::with_view;
+use crate::text::visible;
 use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// Something to write that the user is asked to confirm.
+pub(super) enum Proposal {
+    /// A view, into a scene file that exists.
+    View(ProposedView),
+    /// The text of a scene, into a new file at this path.
+    Scene(PathBuf, String),
+}
+
+impl Proposal {
+    /// Proposes to write a view into `file`. `None` if that is not a plain file.
+    pub(super) fn view(file: &Path, camera: Camera) -> Option<Self> {
+        ProposedView::new(file, camera).map(Self::View)
+    }
+
+    /// Proposes to write a scene into a new file beside a mesh, under the first unused name.
+    pub(super) fn scene_beside(mesh: &Path, text: String) -> Self {
+        let stem = mesh.file_stem().unwrap_or_default().to_string_lossy();
+        let name = |number: u32| match number {
+            1 => mesh.with_file_name(format!("{stem}.ron")),
+            number => mesh.with_file_name(format!("{stem}-{number}.ron")),
+        };
+        // Checked again when it is written: the name may be taken until then.
+        let path = (1..1000).map(name).find(|path| path.symlink_metadata().is_err()).unwrap_or_else(|| name(1000));
+        Self::Scene(path, text)
+    }
+
+    /// Returns whether a new file would be written.
+    pub(super) fn is_new(&self) -> bool {
+        matches!(self, Self::Scene(..))
+    }
+
+    /// Returns the name without its folder of the file that would be written.
+    pub(super) fn file_name(&self) -> String {
+        let path = match self {
+            Self::View(view) => view.file.path(),
+            Self::Scene(path, _) => path,
+        };
+        path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+    }
+
+    /// Writes the file and returns a note that says so, or why not.
+    pub(super) fn carry_out(&self) -> String {
+        match self {
+            Self::View(view) => match view.write() {
+                Ok(()) => "view saved to the scene file".to_owned(),
+                Err(error) => format!("scene file left unchanged: {error}"),
+            },
+            Self::Scene(path, text) => match write_new(path, text) {
+                Ok(()) => format!("written: {}", visible(&path.to_string_lossy())),
+                Err(error) => format!("could not write {}: {error}", self.file_name()),
+            },
+        }
+    }
+}
+
+fn write_new(path: &Path, text: &str) -> io::Result<()> {
+    let mut file = OutputFile::create_new(path)?;
+    file.remove_stale();
+    file.write_all(text.as_bytes())?;
+    file.finish()
+}
 
 /// A view that is written into a scene file once the user has confirmed it.
 pub(super) struct ProposedView {
@@ -20,11 +83,6 @@ impl ProposedView {
     /// folder.
     pub(super) fn new(file: &Path, camera: Camera) -> Option<Self> {
         Some(Dependency::now(file)).filter(|file| !file.is_other()).map(|file| Self { file, camera })
-    }
-
-    /// Returns the file's name without its folder.
-    pub(super) fn file_name(&self) -> String {
-        self.file.path().file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
     }
 
     /// Adds the view to the file, which is replaced atomically and keeps all other text.

@@ -4,6 +4,7 @@
 use super::loading::{LoadEvent, Loader, Loading, PROGRESS_DELAY};
 use super::source::{SceneName, Source};
 use super::watching::{Dependency, Watching};
+use crate::mesh_file::UpAxis;
 use crate::scene::Scene;
 use crate::terminal::{Signals, Waker};
 use std::io;
@@ -100,6 +101,14 @@ impl<E: Send + 'static> Scenes<E> {
         self.wanted = (self.wanted + steps.rem_euclid(count.cast_signed()).cast_unsigned()) % count;
         self.read_again()?;
         Ok(self.wanted)
+    }
+
+    /// Reads the current scene again, a mesh with this axis of its file up.
+    pub(super) fn turn_up(&mut self, up: UpAxis) -> io::Result<()> {
+        if let Some(source) = self.sources.get_mut(self.wanted) {
+            source.turn_up(up);
+        }
+        self.read_again()
     }
 
     /// Cancels the load in progress and starts one of the current scene.

@@ -1,6 +1,6 @@
 //! A source of a scene: its name, and the function that reads it.
 
-use crate::mesh_file;
+use crate::mesh_file::{self, UpAxis};
 use crate::progress::{Cancelled, Reporter, Unfinished};
 use crate::scene::{Draft, LoadError};
 use crate::text::visible;
@@ -13,6 +13,8 @@ use std::{fmt, io};
 /// A scene is read when it is first shown, when the user returns to it, and when one of its files has changed.
 pub struct Source<E = LoadError> {
     named: SceneName,
+    /// The axis of a mesh that points up, if the user has chosen one.
+    up: Option<UpAxis>,
     // In an `Arc`, because the loading thread may use it for longer than `self` lives.
     read: Arc<Read<E>>,
 }
@@ -36,22 +38,22 @@ impl SceneName {
     }
 }
 
-type Read<E> = dyn Fn(&Reporter<'_>) -> Result<Draft, E> + Send + Sync;
+type Read<E> = dyn Fn(&Reporter<'_>, Option<UpAxis>) -> Result<Draft, E> + Send + Sync;
 
 impl Source {
     /// Returns the source of the scene or mesh in the file at `path`. A mesh starts in orbit mode.
     pub fn of_file(path: &Path) -> Self {
         let (name, file) = (path.to_string_lossy().into_owned(), path.to_owned());
         let is_mesh = mesh_file::is_mesh(&name, &[]);
-        let source = Self::new(name, move |reporter| load_draft(&file, reporter));
+        let source = Self::turnable(name, move |reporter, up| load_draft(&file, up, reporter));
         let source = source.with_file(path.to_owned());
         // A mesh is a single object, which users want to see from all sides.
         if is_mesh { source.orbited() } else { source }
     }
 }
 
-fn load_draft(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, LoadError> {
-    Draft::load(path, reporter).map_err(|unfinished| match unfinished {
+fn load_draft(path: &Path, up: Option<UpAxis>, reporter: &Reporter<'_>) -> Result<Draft, LoadError> {
+    Draft::load_turned(path, up, reporter).map_err(|unfinished| match unfinished {
         Unfinished::Failed(error) => error,
         // This error is never shown, because the result of a cancelled load is dropped.
         Unfinished::Cancelled => LoadError::CannotRead { path: path.to_owned(), error: io::Error::other(Cancelled) },
@@ -70,7 +72,24 @@ impl<E> Source<E> {
         name: impl Into<String>,
         read: impl Fn(&Reporter<'_>) -> Result<Draft, E> + Send + Sync + 'static,
     ) -> Self {
-        Self { named: SceneName { name: name.into(), file: None, orbited: false }, read: Arc::new(read) }
+        Self::turnable(name, move |reporter, _| read(reporter))
+    }
+
+    /// Returns a source whose `read` also gets the axis of a mesh file that is to point up.
+    ///
+    /// The axis is `None` until the user chooses one. All else is as for [`Source::new`].
+    #[doc(hidden)]
+    pub fn turnable(
+        name: impl Into<String>,
+        read: impl Fn(&Reporter<'_>, Option<UpAxis>) -> Result<Draft, E> + Send + Sync + 'static,
+    ) -> Self {
+        let named = SceneName { name: name.into(), file: None, orbited: false };
+        Self { named, up: None, read: Arc::new(read) }
+    }
+
+    /// Turns the mesh so that this axis of its file points up.
+    pub(super) fn turn_up(&mut self, up: UpAxis) {
+        self.up = Some(up);
     }
 
     /// Sets the scene file, into which views can be saved.
@@ -95,13 +114,13 @@ impl<E> Source<E> {
     /// The error of `read`.
     #[doc(hidden)]
     pub fn read(&self, reporter: &Reporter<'_>) -> Result<Draft, E> {
-        (self.read)(reporter)
+        (self.read)(reporter, self.up)
     }
 }
 
 impl<E> Clone for Source<E> {
     fn clone(&self) -> Self {
-        Self { named: self.named.clone(), read: Arc::clone(&self.read) }
+        Self { named: self.named.clone(), up: self.up, read: Arc::clone(&self.read) }
     }
 }
 

@@ -4,6 +4,7 @@ mod generated;
 
 use super::outcome::{CommandResult, Failure, usage, write_stdout};
 use super::picture::{check_pixel_count, parse_size};
+use super::scene_args::CameraArgs;
 use super::scene_source::SceneSource;
 use super::threads::on_threads;
 use clap::{Args, ValueEnum};
@@ -84,8 +85,9 @@ impl KernelArg {
 impl BenchArgs {
     /// Returns the scene's name and the scene.
     fn scene(&self) -> Result<(String, Scene), Failure> {
+        let camera_args = CameraArgs { threads: self.threads, ..CameraArgs::default() };
         let (name, scene) = if let Some(path) = &self.scene {
-            (visible(&path.display().to_string()), SceneSource::from_path(path)?.load(self.threads)?)
+            (visible(&path.display().to_string()), camera_args.load(&SceneSource::from_path(path)?)?)
         } else {
             let generated = self.generated.unwrap_or(Generated::Three);
             (format!("{generated:?}").to_lowercase(), generated.scene().map_err(usage)?)

@@ -24,7 +24,9 @@ pub(super) struct CheckArgs {
 
 /// Loads the scene and prints that it has no faults; otherwise the error lists every fault.
 pub(super) fn run(args: &CheckArgs) -> CommandResult {
-    let scene = args.camera_args.load(&SceneSource::from_path(&args.scene)?)?;
+    // A missing texture is a fault here, whatever the other commands make of it.
+    let strict = CameraArgs { strict: true, ..args.camera_args.clone() };
+    let scene = strict.load(&SceneSource::from_path(&args.scene)?)?;
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let objects = count(scene.objects().len(), "object");
     let lights = count(scene.lights().len(), "light");

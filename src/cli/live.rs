@@ -208,7 +208,7 @@ pub(super) fn live_source(scene: SceneSource, camera_args: &CameraArgs) -> Sourc
     let (name, camera_args) = (scene.to_string(), camera_args.clone());
     // Decided by the name alone, because the file is read later, on another thread.
     let is_mesh = is_mesh(&name, &[]);
-    let source = Source::new(name, move |watcher| camera_args.draft(&scene, watcher));
+    let source = Source::turnable(name, move |watcher, up| camera_args.draft(&scene, up, watcher));
     let source = if is_mesh { source.orbited() } else { source };
     file.into_iter().fold(source, Source::with_file)
 }

@@ -19,6 +19,7 @@ const MAPS: [(Map, &str); Map::ALL.len()] = [
     (Map::Cost, "the surfaces and tree nodes that a pixel's rays are tested against: blue 1, green 16, red 256"),
     (Map::Facing, "front sides blue, back sides red"),
     (Map::Contrast, "black and white, with lines between objects"),
+    (Map::Wire, "the edges of triangles"),
 ];
 
 #[derive(Args)]

@@ -9,19 +9,20 @@ use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use termtrace::internals::mesh_file::is_mesh;
 use termtrace::internals::output_file::OutputFile;
+use termtrace::internals::text::visible;
 
 /// The scene that is written.
 const STARTER: &str = include_str!("starter.ron");
 
 const EXAMPLES: &str = "\
-The file must not exist yet. It is opened if standard output is a terminal: edit it in another window, and each save
-is shown at once.
+The file must not exist yet. It is opened if standard output is a terminal:
+edit it in another window, and each save is shown at once.
 
 Examples:
   termtrace new my.ron";
 
 #[derive(Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_long_help = EXAMPLES)]
 pub(super) struct NewArgs {
     /// The scene file to write
     #[arg(value_name = "FILE")]
@@ -43,7 +44,7 @@ pub(super) fn run(args: &NewArgs, given: &ArgMatches) -> CommandResult {
     }
     write(path)?;
     if !io::stdout().is_terminal() {
-        let name = path.display();
+        let name = visible(&path.to_string_lossy());
         return write_stdout(format!("written: {name}; termtrace {name} opens it\n").as_bytes());
     }
     let source = || Ok(vec![live_source(SceneSource::File(path.clone()), &CameraArgs::default())]);

@@ -1,12 +1,14 @@
 //! The scene and camera arguments of every command.
 
-use super::outcome::{CommandResult, Failure, usage};
+use super::outcome::{CommandResult, Failure, usage, warn};
 use super::scene_source::SceneSource;
 use super::shipped::ShippedScene;
 use super::threads::on_threads;
 use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::Vec3;
 use std::path::{Path, PathBuf};
+use termtrace::internals::mesh_file::UpAxis;
 use termtrace::internals::progress::Reporter;
 use termtrace::internals::scene::Draft;
 use termtrace::{Camera, CameraError, Pose, Scene};
@@ -53,7 +55,7 @@ impl SceneArgs {
     }
 }
 
-/// The flags for the camera, and for the threads that trace.
+/// The flags for the camera, for a mesh, and for the threads that trace.
 #[derive(Args, Clone, Default)]
 #[command(next_help_heading = "Camera")]
 pub(super) struct CameraArgs {
@@ -69,6 +71,13 @@ pub(super) struct CameraArgs {
     /// Vertical field of view in degrees, instead of the scene's
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, hide_short_help = true)]
     pub(super) fov: Option<f32>,
+    /// Axis of a mesh file that points up [default: y; for STL and PLY a guess]
+    #[arg(long, value_name = "AXIS", value_parser = up_axis_parser(), allow_hyphen_values = true)]
+    #[arg(help_heading = "Mesh", hide_short_help = true)]
+    pub(super) mesh_up: Option<UpAxis>,
+    /// Refuse a mesh whose materials or textures are missing, instead of a warning
+    #[arg(long, help_heading = "Mesh", hide_short_help = true)]
+    pub(super) strict: bool,
     /// Number of threads that trace [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     #[arg(help_heading = "Picture", hide_short_help = true)]
@@ -78,17 +87,43 @@ pub(super) struct CameraArgs {
 impl CameraArgs {
     /// Loads the scene, with the camera changed by the flags.
     pub(super) fn load(&self, source: &SceneSource) -> Result<Scene, Failure> {
-        let scene = source.load(self.threads)?;
+        let on_warning = |warning: String| warn(warning);
+        let reporter = Reporter::silent().with_warnings(&on_warning);
+        let draft = self.read(source, self.mesh_up, &reporter)?;
+        if let Some(mesh) = draft.mesh().filter(|mesh| mesh.is_guess && mesh.up != UpAxis::Y) {
+            let (up, format) = (mesh.up.name(), mesh.format);
+            warn(format!(
+                "{source}: {up} is taken for up in this {format}; --mesh-up y (or another axis) says otherwise"
+            ));
+        }
+        let scene = on_threads(self.threads, || draft.finish())?;
         let camera = self.camera(scene.camera()).map_err(usage)?;
         Ok(scene.with_camera(camera))
     }
 
     /// Loads the scene without building its trees, with the camera changed by the flags, until the
     /// reporter cancels.
-    pub(super) fn draft(&self, source: &SceneSource, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
-        let draft = source.draft(reporter)?;
+    ///
+    /// A mesh file is turned so that its axis `up` points up, by default that of the command line.
+    pub(super) fn draft(
+        &self,
+        source: &SceneSource,
+        up: Option<UpAxis>,
+        reporter: &Reporter<'_>,
+    ) -> Result<Draft, Failure> {
+        let draft = self.read(source, up.or(self.mesh_up), reporter)?;
         let camera = self.camera(draft.camera()).map_err(usage)?;
         Ok(draft.with_camera(camera))
+    }
+
+    fn read(&self, source: &SceneSource, up: Option<UpAxis>, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
+        let draft = if self.strict { source.draft(up, &reporter.strict()) } else { source.draft(up, reporter) }?;
+        // An ignored flag would look like a fault of the program.
+        if self.mesh_up.is_some() && draft.mesh().is_none() {
+            let message = "--mesh-up turns a mesh file; in a scene, write rotate: (-90, 0, 0) in the mesh";
+            return Err(Failure::Usage(format!("{source}: {message}")));
+        }
+        Ok(draft)
     }
 
     /// Returns `camera` changed by the flags `--eye`, `--target`, `--up` and `--fov`.
@@ -102,6 +137,10 @@ impl CameraArgs {
             None => Ok(camera),
         }
     }
+}
+
+fn up_axis_parser() -> impl TypedValueParser<Value = UpAxis> {
+    PossibleValuesParser::new(UpAxis::ALL.map(UpAxis::name)).map(|name| UpAxis::from_name(&name).unwrap_or_default())
 }
 
 /// Parses a vector such as `0,1.5,6`, each number within a scene file's limits.

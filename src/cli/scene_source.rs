@@ -3,10 +3,10 @@
 use super::outcome::{Failure, reason, usage, warn};
 use super::shipped::ShippedScene;
 use super::suggestions;
-use super::threads::on_threads;
 use std::fmt;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use termtrace::internals::mesh_file::UpAxis;
 use termtrace::internals::progress::{Reporter, Unfinished};
 use termtrace::internals::scene::Draft;
 use termtrace::internals::text::closest;
@@ -40,16 +40,12 @@ impl SceneSource {
         path.map_or_else(|| Ok(Self::Shipped(ShippedScene::default_scene())), Self::from_path)
     }
 
-    /// Loads the scene and builds its trees on `threads` threads; by default one per core.
-    pub(super) fn load(&self, threads: Option<u16>) -> Result<Scene, Failure> {
-        let draft = self.draft(&Reporter::silent())?;
-        on_threads(threads, || draft.finish())
-    }
-
     /// Loads the scene without building its trees, until the reporter cancels.
-    pub(super) fn draft(&self, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
+    ///
+    /// A mesh file is turned so that its axis `up` points up.
+    pub(super) fn draft(&self, up: Option<UpAxis>, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
         match self {
-            Self::File(path) => Draft::load(path, reporter).map_err(|error| not_loaded(path, error)),
+            Self::File(path) => Draft::load_turned(path, up, reporter).map_err(|error| not_loaded(path, error)),
             Self::Stdin(text) => Draft::from_bytes("standard input", text, reporter).map_err(wrong),
             Self::Shipped(scene) => {
                 Draft::from_embedded(scene.name, scene.text.as_bytes(), scene.meshes, reporter).map_err(wrong)

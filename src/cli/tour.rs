@@ -9,14 +9,15 @@ use clap::{ArgMatches, Args};
 use std::io::{self, IsTerminal};
 
 const EXAMPLES: &str = "\
-n shows the next scene and p the previous one; ' turns the pages of a caption and hides it.
+n shows the next scene and p the previous one; ' turns the pages of a caption
+and hides it.
 
 Examples:
   termtrace tour
   termtrace tour | less             read the captions";
 
 #[derive(Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_long_help = EXAMPLES)]
 pub(super) struct TourArgs {
     #[command(flatten)]
     view: ViewArgs,
@@ -36,7 +37,7 @@ pub(super) fn run(args: &TourArgs, given: &ArgMatches) -> CommandResult {
 fn print_captions() -> CommandResult {
     let mut text = String::new();
     for scene in ShippedScene::all() {
-        let loaded = SceneSource::Shipped(scene).load(None)?;
+        let loaded = CameraArgs::default().load(&SceneSource::Shipped(scene))?;
         let caption = loaded.caption().map_or("", |caption| caption);
         let gap = if text.is_empty() { "" } else { "\n" };
         text.extend([gap, scene.name, "\n", caption, "\n"]);

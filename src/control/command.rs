@@ -72,6 +72,20 @@ pub enum Command {
     Help,
     /// Closes the topmost panel or deselects the selected light.
     Close,
+    /// Looks at everything finite from the front, along -z.
+    Front,
+    /// Looks at everything finite from the right, along -x.
+    FromRight,
+    /// Looks at everything finite from above.
+    FromAbove,
+    /// Shows the edges of triangles, or the shaded picture again.
+    Wireframe,
+    /// Shows or hides the directions of the axes.
+    Axes,
+    /// Shows or hides the name, the format and the size of the scene.
+    Metadata,
+    /// Turns a mesh so that the next axis of its file points up.
+    TurnMesh,
     /// Shows the caption of the scene, turns its page, or hides it.
     Caption,
     /// Redraws the whole screen, in case another program has written on it.
@@ -211,6 +225,13 @@ commands! {
     [Command::Status] "Status", "status line on or off";
     [Command::Help] "Help", "this help";
     [Command::Close] "Close", "close panel";
+    [Command::Front] "Front", A_SIDE;
+    [Command::FromRight] "FromRight", A_SIDE;
+    [Command::FromAbove] "FromAbove", A_SIDE;
+    [Command::Wireframe] "Wireframe", "wireframe on or off";
+    [Command::Axes] "Axes", "axes on or off";
+    [Command::Metadata] "Metadata", "name, format and size";
+    [Command::TurnMesh] "TurnMesh", "mesh: next axis up";
     [Command::Caption] "Caption", "caption on or off";
     [Command::Redraw] "Redraw", "redraw";
     [Command::Suspend] "Suspend", "suspend (fg returns)";
@@ -224,6 +245,9 @@ commands! {
     [Command::Yes] "Yes", "yes";
     [Command::No] "No", "cancel";
 }
+
+/// The description of the views from three sides, which the help lists in one row.
+const A_SIDE: &str = "front, right, top view";
 
 /// The description of all nine view commands, which the help lists in one row.
 const A_VIEW: &str = "go to view 1-9";

@@ -118,8 +118,8 @@ const LOWER: &[Key] = &[letter('c'), Key::named(KeyCode::PageDown)];
 /// The built-in bindings in the order of the help, except those of [`Format`]s, which are part of
 /// each format's row.
 // The left hand moves by WASD while the right hand turns by the arrows; hjkl replace the arrows on keyboards without
-// them. Explanation and light bind the arrows only, so that hjkl and WASD still move the eye. No binding needs Alt or a
-// function key, which window managers and multiplexers use themselves.
+// them. Explanation and light bind the arrows only, so that hjkl and WASD still move the eye. No binding needs Alt,
+// which window managers and multiplexers use themselves; function keys have slower alternatives.
 const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Fly, &[letter('w')], Command::Move(Direction::Forward)),
     (KeyMode::Fly, &[letter('s')], Command::Move(Direction::Back)),
@@ -189,6 +189,13 @@ const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Always, &[letter('g')], Command::Light),
     (KeyMode::Always, &[letter('i')], Command::Status),
     (KeyMode::Always, &[letter('\'')], Command::Caption),
+    (KeyMode::Always, &[letter('z')], Command::TurnMesh),
+    (KeyMode::Always, &[Key::named(KeyCode::F(5))], Command::Front),
+    (KeyMode::Always, &[Key::named(KeyCode::F(6))], Command::FromRight),
+    (KeyMode::Always, &[Key::named(KeyCode::F(7))], Command::FromAbove),
+    (KeyMode::Always, &[letter('#')], Command::Wireframe),
+    (KeyMode::Always, &[letter('X')], Command::Axes),
+    (KeyMode::Always, &[letter('M')], Command::Metadata),
     (KeyMode::Always, &[letter('?')], Command::Help),
     (KeyMode::Always, &[Key::named(KeyCode::Esc)], Command::Close),
     (KeyMode::Always, &[Key::ctrl('l')], Command::Redraw),

@@ -1,10 +1,10 @@
 //! MTL, the materials of OBJ files: `Kd` and `map_Kd`. All other lines are skipped.
 
-use super::MeshMaterial;
 use super::fault::{MeshFault, shown};
 use super::side_files::{SideFiles, local_path};
 use super::text::TextCursor;
 use super::texture::{self, TexelBudget, Texture, TexturePlacement};
+use super::{CLAY, MeshMaterial};
 use crate::color::LinearRgb;
 use glam::Vec3;
 use std::collections::{HashMap, HashSet};
@@ -17,6 +17,8 @@ pub(super) struct Library {
     materials: Vec<MeshMaterial>,
     by_name: HashMap<Box<[u8]>, u32>,
     files: HashSet<PathBuf>,
+    /// Whether a file is missing, so that names may be unknown.
+    is_incomplete: bool,
     textures: HashMap<PathBuf, Arc<Texture>>,
     budget: TexelBudget,
 }
@@ -30,7 +32,18 @@ impl Library {
         self.by_name.get(name).copied()
     }
 
-    /// Returns whether a file was read already.
+    /// Records that a file is missing.
+    pub(super) fn miss(&mut self, path: PathBuf) {
+        self.files.insert(path);
+        self.is_incomplete = true;
+    }
+
+    /// Returns whether a file is missing.
+    pub(super) fn is_incomplete(&self) -> bool {
+        self.is_incomplete
+    }
+
+    /// Returns whether a file was read already, or is missing.
     pub(super) fn has_file(&self, path: &Path) -> bool {
         self.files.contains(path)
     }
@@ -80,10 +93,10 @@ impl MtlReader<'_, '_> {
                 b"map_Kd" => {
                     let texture = self.texture()?;
                     let material = self.last_material(at)?;
-                    material.texture = Some(texture);
                     if !has_reflectance {
-                        material.reflectance = LinearRgb::grey(1.0);
+                        material.reflectance = if texture.is_some() { LinearRgb::grey(1.0) } else { CLAY };
                     }
+                    material.texture = texture;
                 }
                 _ => {}
             }
@@ -115,7 +128,8 @@ impl MtlReader<'_, '_> {
         Ok(LinearRgb::new(r, self.text.number()?.clamp(0.0, 1.0), self.text.number()?.clamp(0.0, 1.0)))
     }
 
-    fn texture(&mut self) -> Result<TexturePlacement, MeshFault> {
+    /// Reads the name of a texture, and the file; `None` if it is missing.
+    fn texture(&mut self) -> Result<Option<TexturePlacement>, MeshFault> {
         let transform = self.options()?;
         let name = self.text.rest_of_line();
         let at = self.text.at() - name.len();
@@ -123,22 +137,23 @@ impl MtlReader<'_, '_> {
         let path = local_path(self.folder, &name).map_err(|message| MeshFault::in_text(at, message))?;
         // Materials often share a texture: decoding it takes longer than everything else in the file.
         let texture = match self.library.textures.get(&path) {
-            Some(texture) => Arc::clone(texture),
+            Some(texture) => Some(Arc::clone(texture)),
             None => self.load(path, at)?,
         };
-        Ok(TexturePlacement { texture, transform })
+        Ok(texture.map(|texture| TexturePlacement { texture, transform }))
     }
 
-    fn load(&mut self, path: PathBuf, at: usize) -> Result<Arc<Texture>, MeshFault> {
-        let bytes = self.side_files.read(&path).map_err(|message| {
+    fn load(&mut self, path: PathBuf, at: usize) -> Result<Option<Arc<Texture>>, MeshFault> {
+        let bytes = self.side_files.read_colors(&path, "texture").map_err(|message| {
             MeshFault::in_text(at, format!("the texture is missing: {message}; add the file, or remove this line"))
         })?;
+        let Some(bytes) = bytes else { return Ok(None) };
         let name = shown(self.side_files.name_of(&path).as_bytes());
         let texture = texture::decode(&bytes, &mut self.library.budget)
             .map_err(|what| MeshFault::in_text(at, format!("{name} {what}")))?;
         let texture = Arc::new(texture);
         self.library.textures.insert(path, Arc::clone(&texture));
-        Ok(texture)
+        Ok(Some(texture))
     }
 
     /// Reads the options between `map_Kd` and the file name: `-s` (scale) and `-o` (offset) take

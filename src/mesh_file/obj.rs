@@ -210,9 +210,15 @@ impl ObjReader<'_, '_> {
         let name = self.text.rest_of_line();
         let at = self.text.at() - name.len();
         let material = match &self.library {
-            Some(library) if !is_no_material(name) => Some(library.index_of(name).ok_or_else(|| {
-                MeshFault::in_text(at, format!("material {} is not in any MTL file named above this line", shown(name)))
-            })?),
+            Some(library) if !is_no_material(name) => match library.index_of(name) {
+                // It may be in a file that is missing.
+                None if !library.is_incomplete() => {
+                    let name = shown(name);
+                    let message = format!("material {name} is not in any MTL file named above this line");
+                    return Err(MeshFault::in_text(at, message));
+                }
+                material => material,
+            },
             // A model without its MTL files is shown without its colours.
             _ => None,
         };
@@ -232,13 +238,16 @@ impl ObjReader<'_, '_> {
             if library.has_file(&path) {
                 continue;
             }
-            let bytes = self.side_files.read(&path).map_err(|message| {
+            let bytes = self.side_files.read_colors(&path, "materials").map_err(|message| {
                 MeshFault::in_text(
                     at,
                     format!("the materials are missing: {message}; add the file, or remove this line"),
                 )
             })?;
-            mtl::read(&path, &bytes, self.side_files, library)?;
+            match bytes {
+                Some(bytes) => mtl::read(&path, &bytes, self.side_files, library)?,
+                None => library.miss(path),
+            }
         }
         self.text.skip_line();
         Ok(())

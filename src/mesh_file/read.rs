@@ -30,7 +30,8 @@ impl MeshFile {
         open: &mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
         reporter: &Reporter<'_>,
     ) -> Result<Self, Unfinished<MeshError>> {
-        read(name, bytes, &mut SideFiles::new(name, open), reporter).map_err(|fault| fault.into_error(name, bytes))
+        read(name, bytes, &mut SideFiles::new(name, open, reporter), reporter)
+            .map_err(|fault| fault.into_error(name, bytes))
     }
 
     /// Loads a mesh file.
@@ -93,6 +94,18 @@ impl MeshFile {
 /// Returns whether a file is meant to be a mesh, by its name's extension or its first bytes.
 pub fn is_mesh(name: &str, bytes: &[u8]) -> bool {
     format::by_ending(name).is_some() || bytes.starts_with(b"ply") || bytes.starts_with(b"glTF")
+}
+
+/// Returns the name of the format of these bytes, for people; empty if they are no mesh.
+pub(crate) fn format_name(name: &str, bytes: &[u8]) -> &'static str {
+    match format::recognised(name, bytes) {
+        Ok(MeshFormat::Obj) => "OBJ",
+        Ok(MeshFormat::StlText | MeshFormat::StlBinary) => "STL",
+        Ok(MeshFormat::Ply) => "PLY",
+        Ok(MeshFormat::Gltf) => "glTF",
+        Ok(MeshFormat::Glb) => "GLB",
+        Err(_) => "",
+    }
 }
 
 /// Recognises the format and reads the mesh.

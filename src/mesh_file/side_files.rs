@@ -3,6 +3,9 @@
 use super::fault::shown;
 use super::limits::MAX_MESH_BYTES;
 use crate::named_file;
+use crate::progress::Reporter;
+use crate::text::visible;
+use std::collections::HashSet;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
@@ -10,32 +13,74 @@ use std::path::{Component, Path, PathBuf};
 pub(super) struct SideFiles<'a> {
     open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     bytes_left: usize,
-    /// The folder of the mesh file, which messages put before a side file's name.
-    folder: PathBuf,
+    /// The path of the mesh file, whose folder messages put before a side file's name.
+    mesh: PathBuf,
+    /// The files that were reported as missing.
+    missing: HashSet<PathBuf>,
+    reporter: &'a Reporter<'a>,
 }
 
 impl<'a> SideFiles<'a> {
     /// Returns a reader of the side files of the mesh file `name`, whose bytes `open` returns.
-    pub(super) fn new(name: &str, open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>) -> Self {
-        let folder = Path::new(name).parent().unwrap_or(Path::new("")).to_owned();
-        Self { open, bytes_left: MAX_MESH_BYTES, folder }
+    pub(super) fn new(
+        name: &str,
+        open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
+        reporter: &'a Reporter<'a>,
+    ) -> Self {
+        Self { open, bytes_left: MAX_MESH_BYTES, mesh: PathBuf::from(name), missing: HashSet::new(), reporter }
     }
 
     /// Returns a side file's name for messages: relative to the user's current folder, like the
     /// mesh's own.
     pub(super) fn name_of(&self, path: &Path) -> String {
-        self.folder.join(path).to_string_lossy().into_owned()
+        self.mesh.parent().unwrap_or(Path::new("")).join(path).to_string_lossy().into_owned()
     }
 
     /// Returns the bytes of a side file, or the message of a fault.
     pub(super) fn read(&mut self, path: &Path) -> Result<Vec<u8>, String> {
+        let opened = (self.open)(path);
+        self.taken(path, opened)
+    }
+
+    /// Returns the bytes of a side file that only adds colours, or the message of a fault.
+    ///
+    /// `None` if it is missing and the reporter takes the warning; `what` says what is missing.
+    pub(super) fn read_colors(&mut self, path: &Path, what: &str) -> Result<Option<Vec<u8>>, String> {
+        let opened = (self.open)(path);
+        let is_missing = opened.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::NotFound);
+        if is_missing && self.warns(path, what) {
+            return Ok(None);
+        }
+        self.taken(path, opened).map(Some)
+    }
+
+    /// Warns of a missing file, once. Returns whether the reporter takes warnings.
+    fn warns(&mut self, path: &Path, what: &str) -> bool {
+        // A material library may name one texture a hundred times.
+        if self.missing.contains(path) {
+            return true;
+        }
+        let warning = || format!("{}: {what} missing: {}", visible_path(&self.mesh), visible_path(path));
+        let is_taken = self.reporter.warn(warning);
+        if is_taken {
+            self.missing.insert(path.to_owned());
+        }
+        is_taken
+    }
+
+    /// Counts the bytes of a file that was opened.
+    fn taken(&mut self, path: &Path, opened: io::Result<Vec<u8>>) -> Result<Vec<u8>, String> {
         let name = self.name_of(path);
         let say = |what: &str| format!("{}: {what}", shown(name.as_bytes()));
-        let bytes = (self.open)(path).map_err(|error| say(&named_file::reason(&error)))?;
+        let bytes = opened.map_err(|error| say(&named_file::reason(&error)))?;
         let left = self.bytes_left.checked_sub(bytes.len());
         self.bytes_left = left.ok_or_else(|| say("with this file more than 2 GiB would be read"))?;
         Ok(bytes)
     }
+}
+
+fn visible_path(path: &Path) -> String {
+    visible(&path.to_string_lossy())
 }
 
 /// Limit on the length of a path in bytes: no supported system allows longer file names, and

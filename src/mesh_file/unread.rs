@@ -19,6 +19,11 @@ impl MeshFile {
     }
 }
 
+/// Returns an empty name: without readers no format is known.
+pub(crate) fn format_name(_: &str, _: &[u8]) -> &'static str {
+    ""
+}
+
 /// Returns whether a file is meant to be a mesh, by its name's extension or its first bytes.
 pub fn is_mesh(name: &str, bytes: &[u8]) -> bool {
     let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);

@@ -1,6 +1,6 @@
 //! Drafts: scenes that are read and checked but have no trees yet.
 
-use super::{Checked, Scene};
+use super::{Checked, MeshOrigin, Scene};
 use crate::accel::Accelerator;
 use crate::bvh::MIN_TASK_ITEMS;
 use crate::camera::Camera;
@@ -24,6 +24,11 @@ impl Draft {
     /// Returns the scene's own camera.
     pub fn camera(&self) -> &Camera {
         &self.checked.camera
+    }
+
+    /// Returns the mesh file around which the scene was made; `None` for a scene of its own.
+    pub fn mesh(&self) -> Option<MeshOrigin> {
+        self.checked.mesh
     }
 
     /// Returns the draft with another camera.

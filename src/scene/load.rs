@@ -1,11 +1,11 @@
 //! Loading of scenes and camera paths from files, bytes and text.
 
 use super::caption::leading_comment;
-use super::{Draft, Scene, checked};
+use super::{Draft, MeshOrigin, Scene, checked};
 use crate::camera::Camera;
 use crate::camera_path::CameraPath;
 use crate::memory;
-use crate::mesh_file::{self, MeshError, MeshFile};
+use crate::mesh_file::{self, MeshError, MeshFile, UpAxis};
 use crate::named_file::{self, Accepted};
 use crate::progress::{Progress, Reporter, Unfinished};
 use crate::scene_file::{PathFile, SceneFile};
@@ -77,7 +77,7 @@ impl Scene {
     /// # Errors
     /// If the file cannot be read, is not a mesh or UTF-8 text, or has faults.
     pub fn load(path: &Path) -> Result<Self, LoadError> {
-        load(path, &Reporter::silent()).map(Draft::finish).map_err(Unfinished::failure)
+        load(path, None, &Reporter::silent()).map(Draft::finish).map_err(Unfinished::failure)
     }
 
     /// Loads as [`Scene::load`] does and reports progress to `on_progress`, from any thread.
@@ -134,14 +134,28 @@ impl Draft {
     /// # Errors
     /// As [`Scene::load`], and if the reporter cancels.
     pub fn load(path: &Path, reporter: &Reporter<'_>) -> Result<Self, Unfinished<LoadError>> {
+        Self::load_turned(path, None, reporter)
+    }
+
+    /// Loads as [`Draft::load`] does, with a mesh turned so that the axis `up` points up.
+    ///
+    /// `None` stands for the axis that the format states, or else a guess.
+    ///
+    /// # Errors
+    /// As [`Draft::load`].
+    pub fn load_turned(
+        path: &Path,
+        up: Option<UpAxis>,
+        reporter: &Reporter<'_>,
+    ) -> Result<Self, Unfinished<LoadError>> {
         // A cancelled read may end with another error, as waiting for a pipe fails when the reporter is cancelled.
-        load(path, reporter)
+        load(path, up, reporter)
             .map_err(|unfinished| if reporter.is_cancelled() { Unfinished::Cancelled } else { unfinished })
     }
 }
 
 /// Loads a scene file or a mesh file, which are told apart by the file's name and first bytes.
-fn load(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, Unfinished<LoadError>> {
+fn load(path: &Path, up: Option<UpAxis>, reporter: &Reporter<'_>) -> Result<Draft, Unfinished<LoadError>> {
     let name = path.to_string_lossy();
     reporter.report_dependency(path);
     let is_mesh = |bytes: &[u8]| mesh_file::is_mesh(&name, bytes);
@@ -149,7 +163,7 @@ fn load(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, Unfinished<LoadEr
     let max_bytes = |bytes: &[u8]| if is_mesh(bytes) { mesh_file::MAX_MESH_BYTES } else { MAX_TEXT_BYTES };
     let bytes = read_bytes(path, max_bytes, reporter)?;
     if is_mesh(&bytes) {
-        return draft_around_mesh(path, &bytes, reporter);
+        return draft_around_mesh(path, &bytes, up, reporter);
     }
     // Without this check, a failed allocation would abort the process and leave the terminal in raw mode.
     memory::check(bytes.len() * PEAK_PER_TEXT_BYTE)
@@ -158,10 +172,10 @@ fn load(path: &Path, reporter: &Reporter<'_>) -> Result<Draft, Unfinished<LoadEr
     parse_draft(&name, text, &[], reporter).map_err(|unfinished| unfinished.map(LoadError::Scene))
 }
 
-/// The example in the error about an empty file: it shows a lit ball.
-const SMALLEST_SCENE: &str = "scene that shows something is (camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 0.1, \
-                              lights: [Point(position: (3, 4, 5), intensity: 40)], objects: [Sphere(center: (0, 0, 0), \
-                              radius: 1)])";
+/// The example in the error about an empty file, which shows a lit ball.
+const SMALLEST_SCENE: &str = "scene that shows something is (camera: (eye: (0, 0, 5), target: (0, 0, 0)), \
+                              ambient: 0.1, lights: [Point(position: (3, 4, 5), intensity: 40)], \
+                              objects: [Sphere(center: (0, 0, 0), radius: 1)])";
 
 fn parse_draft(
     name: &str,
@@ -323,10 +337,25 @@ impl From<SceneError> for LoadError {
     }
 }
 
-/// Returns the default scene with the mesh of a mesh file, whose contents are `bytes`.
-fn draft_around_mesh(path: &Path, bytes: &[u8], reporter: &Reporter<'_>) -> Result<Draft, Unfinished<LoadError>> {
+/// Returns the default scene with the mesh of a mesh file, whose contents are `bytes`, turned so
+/// that its axis `up` points up.
+fn draft_around_mesh(
+    path: &Path,
+    bytes: &[u8],
+    up: Option<UpAxis>,
+    reporter: &Reporter<'_>,
+) -> Result<Draft, Unfinished<LoadError>> {
     let mesh = MeshFile::of_file(path, bytes, reporter).map_err(|unfinished| unfinished.map(LoadError::Mesh))?;
-    Draft::of_mesh(mesh).ok_or_else(|| LoadError::Unseen { path: path.to_owned() }.into())
+    let format = mesh_file::format_name(&path.to_string_lossy(), bytes);
+    // Neither format states the axis: STL files come mostly from programs for parts, in which +z points up.
+    let usual = match format {
+        "STL" => Some(UpAxis::Z),
+        "PLY" => Some(UpAxis::Y),
+        _ => None,
+    };
+    let guess = usual.filter(|_| up.is_none()).map(|usual| mesh_file::guessed(&mesh, usual));
+    let origin = MeshOrigin { format, up: up.or(guess).unwrap_or_default(), is_guess: guess.is_some() };
+    Draft::around_mesh(mesh, origin).ok_or_else(|| LoadError::Unseen { path: path.to_owned() }.into())
 }
 
 /// The meshes that a scene names.

@@ -1,13 +1,19 @@
 //! The default scene around a mesh file.
 
+#[cfg(feature = "ron")]
+use super::written_camera::{number_text as number, vector_text as vector};
 use super::{Background, Checked, Draft, Object, Scene};
 use crate::bounds::Bounds;
 use crate::camera::{Camera, FRAMED_SHARE, Pose, ViewRectangle, framing_distance};
-use crate::color::{LinearRgb, Srgb8};
+use crate::color::LinearRgb;
 use crate::light::{Falloff, Light, PointLight};
 use crate::material::Material;
-use crate::mesh_file::MeshFile;
+use crate::mesh_file::{CLAY, MeshFile, UpAxis};
+#[cfg(feature = "ron")]
+use crate::shape::Shape;
 use crate::shape::{Mesh, Plane};
+#[cfg(feature = "ron")]
+use crate::text::visible;
 use glam::{Vec2, Vec3};
 
 /// The direction from the middle of the mesh to the eye: slightly to the right, and above.
@@ -24,21 +30,114 @@ const WITHIN: f32 = FRAMED_SHARE * 0.363_970_23;
 /// The least aspect ratio of a picture that shows the whole mesh. Most terminals are wider.
 const ASPECT_RATIO: f32 = 4.0 / 3.0;
 
+/// The lights: their directions from the middle of the mesh, in multiples of its radius, and their
+/// colours with intensity.
+// A warm key light, a weak blue light from the other side, and a rose one from behind, which parts the mesh from the
+// background. (`#ffe6c8`, `#7fa4ff` and `#ffd0e0` times 0.8, 0.16 and 0.3.)
+const LIGHTS: [(Vec3, LinearRgb); 3] = [
+    (Vec3::new(-2.6, 3.9, 3.6), LinearRgb::new(0.8, 0.634, 0.462)),
+    (Vec3::new(4.2, 1.4, 2.2), LinearRgb::new(0.034, 0.059, 0.16)),
+    (Vec3::new(1.8, 2.6, -4.0), LinearRgb::new(0.3, 0.189, 0.224)),
+];
+
+/// The colours of the floor's squares, `#6d737d` and `#5d636d`.
+const FLOOR: [LinearRgb; 2] = [LinearRgb::new(0.153, 0.171, 0.205), LinearRgb::new(0.109, 0.125, 0.153)];
+
+/// The background, `#2a2d34` at the bottom and `#0e1016` at the top.
+const BACKGROUND: [LinearRgb; 2] = [LinearRgb::new(0.0232, 0.0262, 0.0343), LinearRgb::new(0.0044, 0.0052, 0.008)];
+
+/// The side of a square of the floor, as a multiple of the mesh's radius.
+const SQUARE: f32 = 0.2;
+
+/// Returns the ambient light by which a floor that no other light reaches is as bright as the
+/// background at the horizon.
+// Far away the lights fall on the floor at ever flatter angles, and only ambient light is left: with any other amount
+// there would be an edge at the horizon, mostly a black band.
+fn ambient() -> LinearRgb {
+    let channel = |of: fn(LinearRgb) -> f32| {
+        let [horizon, floor] = [BACKGROUND, FLOOR].map(|[a, b]| of(a) + of(b));
+        horizon / floor
+    };
+    LinearRgb::new(channel(|color| color.r), channel(|color| color.g), channel(|color| color.b))
+}
+
+/// The mesh file around which a scene was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeshOrigin {
+    /// The name of the format; empty if unknown.
+    pub format: &'static str,
+    /// The axis of the file that points up.
+    pub up: UpAxis,
+    /// Whether the axis is a guess.
+    pub is_guess: bool,
+}
+
 impl Scene {
     /// Returns a scene with the mesh on a floor, all of it visible from the front and above.
     ///
-    /// A strong light comes from the left, a weak one from the right. Up is +y. Returns `None` if the mesh has no
-    /// extent, is too small for its distance from the origin, or exceeds ±1e9. A scene file can move or scale such a
-    /// mesh.
+    /// A warm light comes from the left, a weak blue one from the right, and one from behind. A mesh without colours is
+    /// clay. Up is +y. Returns `None` if the mesh has no extent, is too small for its distance from the origin, or
+    /// exceeds ±1e9. A scene file can move or scale such a mesh.
     #[doc(hidden)]
     pub fn of_mesh(mesh: MeshFile) -> Option<Self> {
         Draft::of_mesh(mesh).map(Draft::finish)
+    }
+
+    /// Returns the text of a scene file with the same mesh, floor and lights, seen by `camera`.
+    ///
+    /// `name` is the mesh's file, beside the scene file. `None` unless the scene was made around a mesh file.
+    #[cfg(feature = "ron")]
+    #[doc(hidden)]
+    pub fn around_mesh_to_ron(&self, name: &str, camera: &Camera) -> Option<String> {
+        let [mesh, floor] = self.objects() else { return None };
+        let (origin, Shape::Mesh(shape), Shape::Plane(plane)) = (self.mesh()?, &mesh.shape, &floor.shape) else {
+            return None;
+        };
+        let color = |color: LinearRgb| vector(Vec3::new(color.r, color.g, color.b));
+        let lights = self.lights().iter().filter_map(|light| {
+            let (position, color) = (vector(light.position()?), color(light.color()));
+            Some(format!("        Point(position: {position}, color: {color}, intensity: 1, falloff: None),\n"))
+        });
+        let turn = match origin.up.degrees() {
+            [0, 0, 0] => String::new(),
+            [x, y, z] => format!(", rotate: ({x}, {y}, {z})"),
+        };
+        let clay =
+            if shape.file().has_colors() { String::new() } else { format!(", material: Diffuse({})", color(CLAY)) };
+        let [[bottom, top], [a, b]] = [BACKGROUND, FLOOR].map(|colors| colors.map(color));
+        let size = number(SQUARE * 0.5 * Bounds::of(shape.file().positions().iter().copied()).extent().length());
+        let (camera, ambient, point) = (camera.to_ron(), color(self.ambient()), vector(plane.point()));
+        Some(format!(
+            "// {}, on a floor. Edit this file while termtrace shows it: each save is seen at once.
+(
+    {camera},
+    background: Gradient(bottom: {bottom}, top: {top}),
+    ambient: {ambient},
+    // A warm light, a blue one, and one from behind, each as bright everywhere.
+    lights: [
+{}    ],
+    objects: [
+        Mesh(path: {name:?}{turn}{clay}),
+        Plane(point: {point}, normal: (0, 1, 0), material: Checker(a: {a}, b: {b}, size: {size})),
+    ],
+)
+",
+            visible(name),
+            lights.collect::<String>()
+        ))
     }
 }
 
 impl Draft {
     /// Returns the draft of [`Scene::of_mesh`].
     pub fn of_mesh(mesh: MeshFile) -> Option<Self> {
+        Self::around_mesh(mesh, MeshOrigin { format: "", up: UpAxis::Y, is_guess: false })
+    }
+
+    /// Returns the draft of [`Scene::of_mesh`] for a mesh of this origin, turned so that its axis
+    /// points up.
+    pub(super) fn around_mesh(mesh: MeshFile, origin: MeshOrigin) -> Option<Self> {
+        let mesh = mesh.turned_up(origin.up)?;
         let bounds = Bounds::of(mesh.positions().iter().copied());
         let middle = bounds.min + 0.5 * bounds.extent();
         let radius = 0.5 * bounds.extent().length();
@@ -49,20 +148,18 @@ impl Draft {
             return None;
         }
         let floor = Plane::new(Vec3::new(middle.x, bounds.min.y, middle.z), Vec3::Y).ok()?;
-        let concrete = Material::diffuse(grey(0xb0)).ok()?;
+        let squares = Material::checker(FLOOR[0], FLOOR[1], SQUARE * radius).ok()?;
+        let material = if mesh.has_colors() { Material::Own } else { Material::diffuse(CLAY).ok()? };
         // There is a floor because the shadows on it show the shape and the height of the mesh.
-        let objects = vec![Object::new(Mesh::of_checked(mesh), Material::Own), Object::new(floor, concrete)];
+        let objects = vec![Object::new(Mesh::of_checked(mesh), material), Object::new(floor, squares)];
+        let [bottom, top] = BACKGROUND;
+        // The lights are placed relative to the mesh's radius, so that all meshes are lit alike.
+        let lights = LIGHTS.map(|(towards, color)| light(middle + radius * towards, color));
         Some(Self::new(Checked {
-            background: Background::Gradient {
-                bottom: grey(0x90),
-                top: LinearRgb::from_srgb8(Srgb8::new(0x87, 0xa6, 0xcc)),
-            },
-            ambient: LinearRgb::grey(0.12),
-            // The lights are placed relative to the mesh's radius, so that all meshes are lit alike.
-            lights: vec![
-                light(middle + radius * Vec3::new(-2.5, 4.0, 3.0), 0.85)?,
-                light(middle + radius * Vec3::new(4.0, 2.0, 2.0), 0.2)?,
-            ],
+            mesh: Some(origin),
+            background: Background::Gradient { bottom, top },
+            ambient: ambient(),
+            lights: lights.into_iter().collect::<Option<_>>()?,
             ..Checked::new(camera(&bounds, middle)?, objects)
         }))
     }
@@ -80,11 +177,7 @@ fn camera(bounds: &Bounds, middle: Vec3) -> Option<Camera> {
 }
 
 /// Returns a light without falloff, whose effect does not depend on the mesh's size.
-fn light(position: Vec3, strength: f32) -> Option<Light> {
-    let light = PointLight::new(position, LinearRgb::grey(strength)).ok()?;
+fn light(position: Vec3, color: LinearRgb) -> Option<Light> {
+    let light = PointLight::new(position, color).ok()?;
     Some(light.with_falloff(Falloff::None).into())
-}
-
-fn grey(level: u8) -> LinearRgb {
-    LinearRgb::from_srgb8(Srgb8::new(level, level, level))
 }

@@ -37,12 +37,12 @@ impl Camera {
     }
 }
 
-fn vector_text(v: Vec3) -> String {
+pub(super) fn vector_text(v: Vec3) -> String {
     format!("({}, {}, {})", number_text(v.x), number_text(v.y), number_text(v.z))
 }
 
 /// Returns the shortest decimal that is read back as `x`.
-fn number_text(x: f32) -> String {
+pub(super) fn number_text(x: f32) -> String {
     let plain = x.to_string();
     // `to_string` never writes an exponent: 1e-30 would have 31 digits.
     let short = if plain.len() > 16 { format!("{x:e}") } else { plain };

@@ -70,7 +70,7 @@ impl Caption {
     }
 }
 
-/// Returns the rows of a caption: as many as leave the middle of the screen and the lowest row free.
+/// Returns the number of rows that leave the middle of the screen and the lowest row free.
 fn rows(screen: Rect) -> usize {
     usize::from(screen.height * 5 / 12).saturating_sub(1)
 }

@@ -20,6 +20,8 @@ pub(super) enum Dialog {
     Export,
     /// Whether to write a view into the scene file of this name.
     SaveToFile(String),
+    /// Whether to write a new scene file of this name, with the mesh and this view.
+    NewScene(String),
     /// Under which number to save the view.
     Save,
 }
@@ -63,7 +65,7 @@ impl Dialog {
     fn key_mode(&self) -> KeyMode {
         match self {
             Self::Export => KeyMode::Export,
-            Self::SaveToFile(_) => KeyMode::Keep,
+            Self::SaveToFile(_) | Self::NewScene(_) => KeyMode::Keep,
             // `Always` binds the digits to views, so that the key that saves a view is the one that returns to it.
             Self::Save => KeyMode::Always,
         }
@@ -75,7 +77,7 @@ impl Dialog {
     pub(super) fn answer(self, meant: Option<Command>) -> Answer {
         match (self, meant) {
             (Self::Export, Some(Command::Write(format))) => Answer::Export(format),
-            (Self::SaveToFile(_), Some(Command::Yes)) => Answer::SaveToFile,
+            (Self::SaveToFile(_) | Self::NewScene(_), Some(Command::Yes)) => Answer::SaveToFile,
             (Self::Save, Some(Command::View(number))) => Answer::Save(number),
             // Users who opened the question by mistake can press any other key, and need not know a key for that.
             _ => Answer::Nothing,
@@ -86,6 +88,7 @@ impl Dialog {
         match self {
             Self::Export => " save picture as ",
             Self::SaveToFile(_) => " save this view to the scene file? ",
+            Self::NewScene(_) => " write a scene with this mesh and view? ",
             Self::Save => " save this view as ",
         }
     }
@@ -100,7 +103,7 @@ impl Dialog {
         let name = match self {
             Self::Export => None,
             // A file name may contain escape sequences.
-            Self::SaveToFile(name) => Some(visible(name)),
+            Self::SaveToFile(name) | Self::NewScene(name) => Some(visible(name)),
             Self::Save => return vec![self.keys(keymap)],
         };
         let answers: Vec<_> = self.answers(keymap).map(|row| (row.label(), row.command.description())).collect();
@@ -117,6 +120,7 @@ impl Dialog {
         let word = match self {
             Self::Export => "save:",
             Self::SaveToFile(_) => "save?",
+            Self::NewScene(_) => "write?",
             Self::Save => return "save view as 1-9?".to_owned(),
         };
         format!("{word} {}", self.keys(keymap))

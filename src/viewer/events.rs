@@ -5,6 +5,7 @@ use super::dialog::Dialog;
 use super::explain::ExplainPanel;
 use super::help::HelpPanel;
 use super::lights::Lights;
+use super::metadata::Metadata;
 use super::note::Note;
 use super::status::StatusLine;
 use super::warnings::Warnings;
@@ -178,6 +179,11 @@ impl Viewer {
             Command::ScrollDown => self.scroll(1),
             Command::Redraw => self.redraw(),
             Command::Caption => self.turn_caption(),
+            Command::TurnMesh => self.turn_mesh(),
+            Command::Front | Command::FromRight | Command::FromAbove => self.look_from(command),
+            Command::Wireframe => self.layout.toggle_wire(),
+            Command::Axes => self.toggle_axes(),
+            Command::Metadata => self.toggle_metadata(),
             // Keys of motion have been passed to the eye, and answers do nothing without an open question.
             Command::Move(_)
             | Command::Look(_)
@@ -200,8 +206,11 @@ impl Viewer {
     /// the explanation.
     fn close_topmost(&mut self) {
         // This is the order of the layers, from the topmost.
-        if self.screen.close::<HelpPanel>().is_none() && !self.release_light() {
-            self.screen.close::<ExplainPanel>();
+        if self.screen.close::<HelpPanel>().is_none()
+            && !self.release_light()
+            && self.screen.close::<ExplainPanel>().is_none()
+        {
+            self.screen.close::<Metadata>();
         }
     }
 }

@@ -4,9 +4,10 @@ use super::Viewer;
 use super::note::Note;
 use super::pointer::DragTarget;
 use super::warnings::Warnings;
-use crate::control::{self, Command, Gesture, Grip, KeyMode};
+use crate::control::{self, Gesture, Grip, KeyMode};
 use crate::hit::closest_hit;
 use crate::input::Input;
+use crate::ray::Ray;
 use crossterm::event::{Event, MouseEvent, MouseEventKind};
 use glam::{Vec2, Vec3};
 
@@ -39,13 +40,24 @@ impl Viewer {
             Gesture::Press { at, grip } => {
                 self.screen.close::<Note>();
                 self.screen.close::<Warnings>();
-                self.pointer.start_drag(self.drag_target_at(at, grip, &modes));
+                let target = self.drag_target_at(at, grip, &modes);
+                let is_on_view = grip == Grip::Turn && target == DragTarget::View;
+                let object = is_on_view.then(|| self.object_at(at)).flatten();
+                self.pointer.start_drag(target, object);
                 self.drag(at, at, grip);
             }
-            Gesture::Drag { from, to, grip } => self.drag(from, to, grip),
+            Gesture::Drag { from, to, grip } => {
+                if from != to {
+                    self.pointer.record_motion();
+                }
+                self.drag(from, to, grip);
+            }
+            Gesture::Release if self.pointer.is_click() => self.centre_on(at),
             Gesture::Release => {}
             Gesture::DoubleClick if self.pointer.drag_target() == DragTarget::View => {
-                self.execute(Command::FrameAll, false);
+                self.frame_object(self.pointer.object());
+                // The release that follows is not a click.
+                self.pointer.record_motion();
             }
             // A double click on the line, a light or the cursor counts as two clicks, and does not change the view.
             Gesture::DoubleClick => self.drag(at, at, Grip::Turn),
@@ -123,15 +135,20 @@ impl Viewer {
     ///
     /// If nothing is hit there, returns a point as far away as the target.
     fn scene_point_at(&self, at: Vec2) -> Option<Vec3> {
+        let (frame, pose) = (self.screen.frame()?, self.eye.camera()?.pose());
+        let ray = self.eye_ray_at(at)?;
+        // The ray's direction has the component 1 along -w, so t is the depth.
+        let t = closest_hit(&frame.scene, &ray).map_or(pose.eye.distance(pose.target), |hit| hit.t);
+        Some(ray.at(t))
+    }
+
+    /// Returns the eye ray through the pixel at a position.
+    pub(super) fn eye_ray_at(&self, at: Vec2) -> Option<Ray> {
         let (frame, camera) = (self.screen.frame()?, self.eye.camera()?);
         let (part, [x, y]) = frame.part_at(self.pixel_at(at));
         let share = |at: u32, of: u32| (at as f32 + 0.5) / of.max(1) as f32;
         let rays = camera.eye_rays(part.aspect_ratio());
-        let ray = rays.through(share(x, part.width()), 1.0 - share(y, part.height()));
-        let pose = camera.pose();
-        // The ray's direction has the component 1 along -w, so t is the depth.
-        let t = closest_hit(&frame.scene, &ray).map_or(pose.eye.distance(pose.target), |hit| hit.t);
-        Some(ray.at(t))
+        Some(rays.through(share(x, part.width()), 1.0 - share(y, part.height())))
     }
 }
 

@@ -10,6 +10,10 @@ use std::time::Duration;
 pub(super) struct PointerState {
     pointer: Pointer,
     target: DragTarget,
+    /// Whether the pointer has moved since the button was pressed.
+    has_moved: bool,
+    /// The object under the pointer when the button was pressed.
+    object: Option<u32>,
 }
 
 /// The thing that a drag moves.
@@ -31,8 +35,25 @@ impl PointerState {
         self.pointer.take(&event, at, now)
     }
 
-    pub(super) fn start_drag(&mut self, target: DragTarget) {
-        self.target = target;
+    /// Starts a drag of a thing; `object` is under the pointer.
+    pub(super) fn start_drag(&mut self, thing: DragTarget, object: Option<u32>) {
+        (self.target, self.object, self.has_moved) = (thing, object, false);
+    }
+
+    /// Records that the pointer has moved since the button was pressed.
+    pub(super) fn record_motion(&mut self) {
+        self.has_moved = true;
+    }
+
+    /// Returns whether the button was released on an object where it was pressed.
+    pub(super) fn is_click(&self) -> bool {
+        !self.has_moved && self.object.is_some()
+    }
+
+    /// Returns the object that was under the pointer when the button was pressed.
+    // Not the one of a second click, because the first may have shifted the picture.
+    pub(super) fn object(&self) -> Option<u32> {
+        self.object
     }
 
     pub(super) fn drag_target(&self) -> DragTarget {

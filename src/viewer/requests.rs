@@ -3,6 +3,7 @@
 
 use super::dialog::{Answer, Dialog};
 use super::{Request, Viewer};
+use crate::camera::Camera;
 use crate::control::Command;
 
 impl Viewer {
@@ -25,6 +26,17 @@ impl Viewer {
     /// Opens the question whether to write the proposed camera into the scene file of this name.
     pub(crate) fn ask_to_save_view(&mut self, file: String) {
         self.screen.open(Dialog::SaveToFile(file));
+    }
+
+    /// Asks whether to write a new scene file of this name.
+    pub(crate) fn ask_to_write_scene(&mut self, file: String) {
+        self.screen.open(Dialog::NewScene(file));
+    }
+
+    /// Returns the text of a scene with the shown mesh, whose file is `name`, as it is lit now and
+    /// seen by `camera`. `None` for a scene of its own.
+    pub(crate) fn scene_around_mesh(&self, name: &str, camera: &Camera) -> Option<String> {
+        self.scene()?.around_mesh_to_ron(name, camera)
     }
 
     /// Closes the open question and carries out the answer `meant`. Returns whether a question was

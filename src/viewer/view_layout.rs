@@ -60,6 +60,11 @@ impl ViewLayout {
         }
     }
 
+    /// Shows the edges of triangles alone, or the shaded picture again.
+    pub(super) fn toggle_wire(&mut self) {
+        *self = Self::one(if *self == Self::one(Map::Wire) { Map::Shaded } else { Map::Wire });
+    }
+
     /// Switches from one map to two side by side, to a wipe, and back.
     pub(super) fn compare(&mut self) {
         self.right = match self.right {

@@ -7,7 +7,7 @@ use ratatui_core::layout::Rect;
 /// Limit on the rows of all warnings.
 const MAX_ROWS: usize = 4;
 
-/// What is wrong with a scene that is shown nonetheless.
+/// The faults of a scene that is shown nonetheless.
 #[derive(Default)]
 pub(super) struct Warnings(Vec<String>);
 

@@ -147,7 +147,7 @@ fn all_faults_of_a_file_are_in_one_message() {
             [
                 "error: ~/config.ron:2:5: unknown setting \"colour\"; did you mean \"color\"?",
                 "~/config.ron:3:10: expected one of shaded, lambert, depth, normal, object, shadow, cost, facing, \
-                 contrast; did you mean depth?",
+                 contrast, wire; did you mean depth?",
                 "~/config.ron:4:10: expected frames per second, from 0.01 to 1000",
                 "~/config.ron:5:5: duplicate setting \"fps\"",
                 "~/config.ron:6:14: expected one value: a word, a number, true or false",

@@ -62,7 +62,7 @@ fn a_difference_of_text_shows_rows_and_marks() {
 #[test]
 fn blanks_at_the_end_of_a_line_count() {
     let folder = Folder::new();
-    folder.write("black.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))");
+    folder.write("black.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1)");
     assert_eq!(folder.frame("black.ron --size 3x2"), b"   \n   \n");
     folder.write("black.txt", "   \n\n");
     let diff = difference(&folder, "black.ron --size 3x2 --check black.txt");

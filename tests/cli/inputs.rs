@@ -67,7 +67,12 @@ fn a_device_is_not_read() {
 #[test]
 fn a_folder_or_a_socket_is_not_read() {
     let make = |folder: &Folder, named: &Named| fs::create_dir(folder.path(named.file)).expect("a folder is made");
-    each_fails(make, |_| "this is a directory, not a file".to_owned());
+    each_fails(make, |named| {
+        // Where a scene is opened, a directory stands for the scenes in it.
+        let is_opened = named.command == named.file;
+        let none = "this is a directory without a scene (.ron) or mesh (.obj, .stl, .ply, .gltf, .glb)";
+        if is_opened { none.to_owned() } else { "this is a directory, not a file".to_owned() }
+    });
     let make = |folder: &Folder, named: &Named| drop(UnixListener::bind(folder.path(named.file)).expect("it is made"));
     each_fails(make, |_| "this is a socket, not a file or a pipe".to_owned());
 }

@@ -15,6 +15,7 @@ mod formats;
 mod golden;
 mod inputs;
 mod maps;
+mod meshes;
 mod outputs;
 mod pictures;
 mod pipes;

@@ -228,7 +228,7 @@ fn a_mesh_alone_is_a_scene() {
     assert!(seen.len() > 400, "it fills the picture: {} pixels", seen.len());
     assert!(seen.iter().all(|&(x, y)| x > 0 && x < 79 && y > 0 && y < 47), "and is seen whole");
     assert!(all().any(|(x, y)| object(x, y) == Some(1)), "on a floor");
-    assert!(seen.iter().any(|&(x, y)| picture.pixel(x, y).g > 0.3), "in light");
+    assert!(seen.iter().any(|&(x, y)| picture.pixel(x, y).r > 0.3), "in light");
 }
 
 #[test]

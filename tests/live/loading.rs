@@ -84,6 +84,7 @@ fn program() -> Start {
 
 /// Starts the view with a ball that is read, and holds the child before it is built.
 fn sketched(start: Start, source: &mut Source, phases: &mut Phases) -> Session {
+    let start = start.arg("--mesh-up").arg("y");
     let mut session = start.arg(source.path()).env("TERMTRACE_TEST_SOCKET", phases.path()).spawn();
     phases.wait_for_on("all modes", &mut session);
     phases.send(Answer::GoOn);
@@ -340,9 +341,10 @@ fn a_small_mesh_comes_without_a_panel() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let path = folder.path().join("ball.stl");
     fs::write(&path, written(&ball(20_000), "binary.stl")).expect("a file can be written");
-    let wanted = picture(&Scene::load(&path).expect("it is a mesh"), Size::cells(80, 24));
+    let mesh = Scene::of_mesh(MeshFile::load(&path).expect("it is a mesh")).expect("it has a size");
+    let wanted = picture(&mesh, Size::cells(80, 24));
     let comes_alone = || {
-        let mut session = program().arg(&path).spawn();
+        let mut session = program().arg("--mesh-up").arg("y").arg(&path).spawn();
         session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
         !["ing ball.stl", "building"].iter().any(|text| session.seen().has(text.as_bytes()))
     };

@@ -14,6 +14,7 @@ mod loading;
 mod maps;
 #[path = "../mesh_writers/mod.rs"]
 mod mesh_writers;
+mod meshes;
 mod mouse;
 mod moving;
 mod orbit;

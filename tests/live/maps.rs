@@ -69,9 +69,9 @@ fn v_and_b_cycle_through_the_maps_and_show_their_legends() {
         wait_for(&mut session, map.name(), &whole(map), |last| last.contains(&legend));
     }
     session.send(b"v");
-    wait_for(&mut session, "the light again", &whole(Map::Shaded), |last| !last.contains("contrast"));
+    wait_for(&mut session, "the light again", &whole(Map::Shaded), |last| !last.contains("wire"));
     session.send(b"b");
-    wait_for(&mut session, "the last map", &whole(Map::Contrast), |last| last.contains("contrast"));
+    wait_for(&mut session, "the last map", &whole(Map::Wire), |last| last.contains("wire"));
     session.send(b"q");
     session.wait_exit(SOON);
 }

@@ -49,7 +49,7 @@ fn assert_near(found: Vec3, wanted: Vec3) {
 fn the_left_button_orbits_a_mesh() {
     let start = load(TEAPOT).camera().pose();
     let way = start.eye - start.target;
-    for (to, steps) in [([32, 6], -10.0), ([8, 6], 10.0), ([20, 6], 0.0)] {
+    for (to, steps) in [([32, 6], -10.0), ([8, 6], 10.0)] {
         let pose = after(TEAPOT, &drag(LEFT, [20, 6], to)).pose();
         assert_near(pose.eye, start.target + turned(way, steps));
         assert_eq!(pose.target, start.target);

@@ -153,7 +153,7 @@ fn renders() -> Vec<Case> {
                 |&map: &Map| maps::picture(map, &scene(), &camera(), Resolution::square(0, 0), ONE).pixels().len();
             Map::ALL.iter().map(map).sum::<usize>().to_string()
         }),
-        ("maps of 1x1", With("9"), || {
+        ("maps of 1x1", With("10"), || {
             let map =
                 |&map: &Map| maps::picture(map, &scene(), &camera(), Resolution::square(1, 1), ONE).pixels().len();
             Map::ALL.iter().map(map).sum::<usize>().to_string()

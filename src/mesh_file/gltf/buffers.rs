@@ -21,6 +21,15 @@ pub(super) struct Buffers<'a, 'b> {
     size: usize,
 }
 
+/// The kind of data that a URI names.
+#[derive(Clone, Copy)]
+enum Resource {
+    /// A buffer, without which there is no shape.
+    Buffer,
+    /// A picture, without which there are no colours.
+    Picture,
+}
+
 /// The bytes of a buffer or an image.
 #[derive(Clone)]
 pub(super) enum Bytes<'a> {
@@ -98,7 +107,10 @@ impl<'a, 'b> Buffers<'a, 'b> {
         }
         let length = buffer.required("byteLength")?.index()?;
         let bytes = match buffer.field("uri")? {
-            Some(uri) => self.resource(uri)?,
+            Some(uri) => {
+                let bytes = self.resource(uri, Resource::Buffer)?;
+                bytes.ok_or_else(|| buffer.fault("the buffer is missing"))?
+            }
             None => match self.glb.filter(|_| index == 0) {
                 Some(bytes) => Bytes::Glb(bytes),
                 None => return Err(buffer.fault("the buffer has no uri, and the file has no BIN chunk for it")),
@@ -114,22 +126,31 @@ impl<'a, 'b> Buffers<'a, 'b> {
         Ok(bytes)
     }
 
+    /// Returns the bytes of a picture: `None` if it is a side file that is missing.
+    pub(super) fn picture(&mut self, uri: Json<'a>) -> Result<Option<Bytes<'a>>, MeshFault> {
+        self.resource(uri, Resource::Picture)
+    }
+
     /// Returns the bytes of a URI: a `data:` URI's own, or those of a side file.
-    pub(super) fn resource(&mut self, uri: Json<'a>) -> Result<Bytes<'a>, MeshFault> {
+    fn resource(&mut self, uri: Json<'a>, kind: Resource) -> Result<Option<Bytes<'a>>, MeshFault> {
         let text = uri.string()?;
         if let Some(data) = text.strip_prefix("data:") {
-            return data_of(data).map(|bytes| Bytes::Read(bytes.into())).map_err(|message| uri.fault(message));
+            return data_of(data).map(|bytes| Some(Bytes::Read(bytes.into()))).map_err(|message| uri.fault(message));
         }
         let path = local_path(Path::new(""), &percent_decoded(text)).map_err(|message| uri.fault(message))?;
         // Several buffers and images may name the same file, under different indices.
         if let Some(bytes) = self.files.get(&path) {
-            return Ok(Bytes::Read(Rc::clone(bytes)));
+            return Ok(Some(Bytes::Read(Rc::clone(bytes))));
         }
-        let bytes = self.side_files.read(&path).map_err(|message| uri.fault(message))?;
+        let bytes = match kind {
+            Resource::Buffer => self.side_files.read(&path).map(Some),
+            Resource::Picture => self.side_files.read_colors(&path, "texture"),
+        };
+        let Some(bytes) = bytes.map_err(|message| uri.fault(message))? else { return Ok(None) };
         self.size += bytes.len();
         let bytes: Rc<[u8]> = bytes.into();
         self.files.insert(path, Rc::clone(&bytes));
-        Ok(Bytes::Read(bytes))
+        Ok(Some(Bytes::Read(bytes)))
     }
 }
 

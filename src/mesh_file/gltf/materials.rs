@@ -3,9 +3,9 @@
 use super::buffers::{Buffers, described};
 use super::json::Json;
 use crate::color::LinearRgb;
-use crate::mesh_file::MeshMaterial;
 use crate::mesh_file::fault::MeshFault;
 use crate::mesh_file::texture::{self, TexelBudget, Texture, TexturePlacement};
+use crate::mesh_file::{CLAY, MeshMaterial};
 use glam::Vec3;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -45,7 +45,13 @@ impl<'a> MaterialReader<'_, 'a, '_> {
             material.material.reflectance = LinearRgb::new(r, g, b);
         }
         if let Some(info) = base.field(texture)? {
-            let (placement, set) = self.placement(info)?;
+            let Some((placement, set)) = self.placement(info)? else {
+                // White stands for the colours of the texture, which is missing.
+                if material.material.reflectance == white {
+                    material.material.reflectance = CLAY;
+                }
+                return Ok(material);
+            };
             material.material.texture = Some(placement);
             material.texture_coordinates = set;
         }
@@ -53,35 +59,40 @@ impl<'a> MaterialReader<'_, 'a, '_> {
     }
 
     /// Returns the texture that `info`, a glTF textureInfo, names, with its placement, and the
-    /// number of its texture coordinate set.
-    fn placement(&mut self, info: Json<'a>) -> Result<(TexturePlacement, usize), MeshFault> {
+    /// number of its texture coordinate set; `None` if the file of the texture is missing.
+    fn placement(&mut self, info: Json<'a>) -> Result<Option<(TexturePlacement, usize)>, MeshFault> {
         let (_, texture) = info.required("index")?.item_of(self.buffers.root(), "textures")?;
         let Some(source) = texture.field("source")? else {
             return Err(texture.fault("the texture has no source that is a PNG or JPEG picture"));
         };
-        let mut placement = TexturePlacement::plain(self.texture(source)?);
+        let Some(texture) = self.texture(source)? else { return Ok(None) };
+        let mut placement = TexturePlacement::plain(texture);
         let mut set = info.index_or("texCoord", 0)?;
         if let Some(transform) = info.extension("KHR_texture_transform")? {
             placement.transform = transform_of(transform)?;
             set = transform.index_or("texCoord", set)?;
         }
-        Ok((placement, set))
+        Ok(Some((placement, set)))
     }
 
-    fn texture(&mut self, source: Json<'a>) -> Result<Arc<Texture>, MeshFault> {
+    /// Returns a picture as a texture; `None` if its file is missing.
+    fn texture(&mut self, source: Json<'a>) -> Result<Option<Arc<Texture>>, MeshFault> {
         let (index, image) = source.item_of(self.buffers.root(), "images")?;
         if let Some(texture) = self.textures.get(&index) {
-            return Ok(Arc::clone(texture));
+            return Ok(Some(Arc::clone(texture)));
         }
         let uri = image.field("uri")?;
         let decoded = match uri {
-            Some(uri) => texture::decode(&self.buffers.resource(uri)?, &mut self.budget),
+            Some(uri) => match self.buffers.picture(uri)? {
+                Some(bytes) => texture::decode(&bytes, &mut self.budget),
+                None => return Ok(None),
+            },
             None => texture::decode(self.buffers.view(image.required("bufferView")?)?.bytes(), &mut self.budget),
         };
         let name = described(uri.map(Json::string).transpose()?);
         let texture = Arc::new(decoded.map_err(|what| image.fault(format!("{name} {what}")))?);
         self.textures.insert(index, Arc::clone(&texture));
-        Ok(texture)
+        Ok(Some(texture))
     }
 }
 

@@ -27,13 +27,16 @@ impl Group {
         match command {
             C::Move(_) | C::Around(_) | C::Nearer | C::Farther | C::ChangeMode | C::Turntable => Self::Move,
             C::Look(_) | C::Narrower | C::Wider => Self::Look,
+            C::Front | C::FromRight | C::FromAbove | C::TurnMesh | C::Axes => Self::Views,
             C::FrameAll | C::View(_) | C::SaveView | C::Reset | C::ViewBack | C::ViewForward => Self::Views,
-            C::NextMap | C::LastMap | C::Compare | C::Wipe(_) => Self::Maps,
+            C::NextMap | C::LastMap | C::Compare | C::Wipe(_) | C::Wireframe => Self::Maps,
             C::Explain | C::Point(_) | C::ScrollUp | C::ScrollDown => Self::Maps,
             C::Light | C::MoveLight(_) | C::LightNearer | C::LightFarther | C::LightBack => Self::Light,
             C::NextScene | C::LastScene | C::Export | C::CopyCamera | C::KeepView => Self::Files,
             C::Write(_) | C::Yes | C::No => Self::Files,
-            C::Caption | C::Status | C::Help | C::Close | C::Redraw | C::Suspend | C::Quit => Self::Program,
+            C::Caption | C::Metadata | C::Status | C::Help | C::Close | C::Redraw | C::Suspend | C::Quit => {
+                Self::Program
+            }
         }
     }
 }
@@ -180,7 +183,7 @@ fn of_mouse(modes: &[KeyMode]) -> Vec<Row> {
     } else {
         ["look around", "closer, farther"]
     };
-    let rows = [("drag", drag), ("right drag", "shift the view"), ("wheel", wheel), ("double click", "frame all")];
+    let rows = [("drag", drag), ("right drag", "shift the view"), ("wheel", wheel), ("double click", "frame object")];
     rows.map(|(keys, does)| Row { group: Group::Mouse, keys: keys.to_owned(), does: does.to_owned() }).to_vec()
 }
 

@@ -1,0 +1,56 @@
+//! The wire map: the edges of triangles over a plain shade.
+
+use crate::camera::Camera;
+use crate::color::Srgb8;
+use crate::framebuffer::Resolution;
+use crate::ray::Ray;
+use crate::render::GBufferSample;
+use crate::scene::Scene;
+use crate::shape::{Primitive, Triangle};
+
+/// The colour of edges.
+const EDGE: [f32; 3] = [255.0, 208.0, 64.0];
+/// Half the width of a line, in pixels.
+const HALF_WIDTH: f32 = 0.6;
+/// The least height of a triangle, in pixels, whose edges are drawn in full. Those of smaller ones
+/// are fainter, because they would cover the whole surface.
+const FULL_HEIGHT: f32 = 5.0;
+
+/// Returns the colour of a pixel: a grey by the angle of the surface, and edges. `None` without a
+/// hit.
+pub(super) fn color(scene: &Scene, camera: &Camera, resolution: Resolution, sample: &GBufferSample) -> Option<Srgb8> {
+    let (hit, surface) = sample.hit.zip(sample.surface(scene))?;
+    let direction = sample.ray.direction;
+    let facing = surface.shading_normal.dot(direction).abs() / direction.length();
+    let grey = 30.0 + 110.0 * facing;
+    let step = camera.eye_rays(resolution.aspect_ratio()).steps(resolution.width(), resolution.height())[1].length();
+    let primitive = hit.surface(scene);
+    let triangle = match &primitive {
+        Primitive::Facet(facet) => Some(facet.triangle()),
+        Primitive::Triangle(triangle) => Some(*triangle),
+        _ => None,
+    };
+    let line = triangle.map_or(0.0, |triangle| strength(triangle, &sample.ray, hit.t * step));
+    let [r, g, b] = EDGE.map(|edge| (grey + line * (edge - grey)) as u8);
+    Some(Srgb8::new(r, g, b))
+}
+
+/// Returns how strongly an edge of the triangle is drawn in the pixel of a ray, from 0 to 1. A
+/// pixel is `pixel` high where the ray hits.
+fn strength(triangle: &Triangle, ray: &Ray, pixel: f32) -> f32 {
+    let [a, b, c] = triangle.corners();
+    // The distance from the ray to an edge is that on the screen, however the triangle is tilted.
+    let distance = |from: glam::Vec3, to: glam::Vec3| {
+        let normal = ray.direction.cross(to - from);
+        (from - ray.origin).dot(normal).abs() / normal.length().max(f32::MIN_POSITIVE)
+    };
+    let nearest = distance(a, b).min(distance(b, c)).min(distance(c, a));
+    if nearest > HALF_WIDTH * pixel {
+        return 0.0;
+    }
+    let height = distance(a, b).max(distance(b, c)).max(distance(c, a));
+    (height / (FULL_HEIGHT * pixel)).clamp(0.15, 1.0)
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;

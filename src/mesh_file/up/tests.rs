@@ -1,0 +1,55 @@
+use super::*;
+
+/// Returns a cup: a square box without a lid, whose bottom is a square at 0 of an axis.
+fn cup(axis: usize) -> MeshFile {
+    let point = |at: [f32; 3]| {
+        let mut point = Vec3::ZERO;
+        for (i, coordinate) in at.into_iter().enumerate() {
+            point[(axis + 1 + i) % 3] = coordinate;
+        }
+        point
+    };
+    let corner = |i: usize, height| point([[0.0, 2.0, 2.0, 0.0][i % 4], [0.0, 0.0, 2.0, 2.0][i % 4], height]);
+    let positions = (0..4).map(|i| corner(i, 0.0)).chain((0..4).map(|i| corner(i, 3.0)));
+    let mut triangles = vec![[0, 2, 1], [0, 3, 2]];
+    for i in 0..4_u32 {
+        let next = (i + 1) % 4;
+        triangles.extend([[i, next, next + 4], [i, next + 4, i + 4]]);
+    }
+    MeshFile::new(positions.collect(), triangles).expect("a mesh")
+}
+
+#[test]
+fn a_thing_stands_on_its_flat_end() {
+    for usual in [UpAxis::Y, UpAxis::Z] {
+        assert_eq!(guessed(&cup(1), usual), UpAxis::Y);
+        assert_eq!(guessed(&cup(2), usual), UpAxis::Z);
+        // Lying on its side, it tells nothing.
+        assert_eq!(guessed(&cup(0), usual), usual);
+    }
+}
+
+#[test]
+fn a_flat_mesh_is_no_reason_to_turn() {
+    let square = MeshFile::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]).expect("a mesh");
+    assert_eq!(guessed(&square, UpAxis::Z), UpAxis::Z);
+    assert_eq!(guessed(&square, UpAxis::Y), UpAxis::Y);
+}
+
+#[test]
+fn each_axis_is_turned_to_y_without_a_mirror() {
+    let directions = [Vec3::Y, Vec3::Z, Vec3::X, Vec3::NEG_Y, Vec3::NEG_Z, Vec3::NEG_X];
+    for (axis, direction) in UpAxis::ALL.into_iter().zip(directions) {
+        assert_eq!(axis.turn() * direction, Vec3::Y, "{axis:?}");
+        assert_eq!(axis.turn().determinant(), 1.0, "{axis:?}");
+        assert_eq!(UpAxis::from_name(axis.name()), Some(axis));
+        let [x, y, z] = axis.degrees().map(|degrees| f64::from(degrees).to_radians() as f32);
+        let written = Mat3::from_rotation_z(z) * Mat3::from_rotation_y(y) * Mat3::from_rotation_x(x);
+        assert!((written * direction).distance(Vec3::Y) < 1e-6, "{axis:?}");
+    }
+    let mut axis = UpAxis::Y;
+    for _ in 0..6 {
+        axis = axis.next();
+    }
+    assert_eq!(axis, UpAxis::Y);
+}

@@ -1,0 +1,48 @@
+//! The directions of the axes, in the upper right corner.
+
+use super::layers::{Canvas, Layer, Level};
+use crate::capabilities::Colors;
+use glam::{Mat3, Vec3};
+use ratatui_core::layout::Rect;
+use ratatui_core::style::{Color, Style};
+
+/// Columns from the middle to the end of an axis in the plane of the screen; half as many rows.
+const REACH: f32 = 5.0;
+/// Points that an axis is drawn with, besides the letter at its end.
+const POINTS: u16 = 4;
+
+/// The axes of the world; of a mesh by itself, those of its file.
+pub(super) struct Axes;
+
+impl Layer for Axes {
+    fn level(&self) -> Level {
+        Level::Mark
+    }
+
+    fn draw(&mut self, canvas: &mut Canvas<'_>) {
+        let Some(frame) = canvas.frame.filter(|_| canvas.has_room()) else { return };
+        let basis = frame.camera().basis();
+        let turn = frame.scene.mesh().map_or(Mat3::IDENTITY, |mesh| mesh.up.turn());
+        let has_colors = canvas.cell_mode.colors != Colors::None;
+        let screen = canvas.screen();
+        let middle = (f32::from(screen.right()) - REACH - 3.0, 0.5 * REACH + 1.5);
+        let axes =
+            [("x", Vec3::X, Color::LightRed), ("y", Vec3::Y, Color::LightGreen), ("z", Vec3::Z, Color::LightBlue)];
+        let mut axes = axes.map(|(name, axis, color)| (name, turn * axis, color));
+        // The axis that points at the viewer last, over the others.
+        axes.sort_by(|a, b| a.1.dot(basis.w).total_cmp(&b.1.dot(basis.w)));
+        for (name, axis, color) in axes {
+            let (across, down) = (REACH * axis.dot(basis.u), -0.5 * REACH * axis.dot(basis.v));
+            for point in 1..=POINTS {
+                let share = f32::from(point) / f32::from(POINTS);
+                let (x, y) = (middle.0 + share * across, middle.1 + share * down);
+                let cell = Rect { x: x as u16, y: y as u16, width: 1, height: 1 }.intersection(screen);
+                let text = if point == POINTS { name } else { "." };
+                canvas.lay(cell, |theme, area, buffer| {
+                    let style = if has_colors { theme.style().fg(color) } else { Style::new() };
+                    buffer.set_stringn(area.x, area.y, text, area.width.into(), style);
+                });
+            }
+        }
+    }
+}

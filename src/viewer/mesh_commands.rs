@@ -1,0 +1,112 @@
+//! Commands for looking at a single object: its sides, its edges, its facts, and which axis is up.
+
+use super::Viewer;
+use super::axes::Axes;
+use super::metadata::Metadata;
+use crate::bounds::Bounds;
+use crate::camera::{Camera, Pose};
+use crate::control::{Command, KeyMode};
+use crate::hit::{Hit, closest_hit};
+use glam::{Vec2, Vec3};
+
+/// The direction of the eye for a view from above: 0.02 radians from the pole, where no direction
+/// of the picture would be vertical.
+const ABOVE: Vec3 = Vec3::new(0.0, 0.9998, 0.02);
+
+impl Viewer {
+    /// Turns the mesh so that the next axis of its file points up.
+    pub(super) fn turn_mesh(&mut self) {
+        match self.scene().and_then(|scene| scene.mesh()) {
+            Some(mesh) => self.requests.push_back(super::Request::TurnMesh(mesh.up.next())),
+            None => self.show_note("only a mesh that is opened by itself can be turned"),
+        }
+    }
+
+    /// Looks at everything finite from the front, the right or above.
+    pub(super) fn look_from(&mut self, side: Command) {
+        let direction = match side {
+            Command::Front => Vec3::Z,
+            Command::FromRight => Vec3::X,
+            _ => ABOVE,
+        };
+        let Some(bounds) = self.screen.frame().and_then(|frame| frame.scene.bounds()) else {
+            self.show_note("nothing finite to fit in view");
+            return;
+        };
+        let aspect_ratio = self.map_resolution().aspect_ratio();
+        self.eye.jump(self.now, |camera| {
+            let target = bounds.min + 0.5 * bounds.extent();
+            // Any distance: framing changes it.
+            let pose = Pose { eye: target + direction * bounds.extent().length(), target, up: Vec3::Y };
+            camera.with_pose(pose).map_or(*camera, |camera| camera.framing(&bounds, aspect_ratio))
+        });
+    }
+
+    /// Opens or closes the directions of the axes.
+    pub(super) fn toggle_axes(&mut self) {
+        if self.screen.close::<Axes>().is_none() {
+            self.screen.open(Axes);
+        }
+    }
+
+    /// Opens or closes the facts about the scene; the driver knows its name.
+    pub(super) fn toggle_metadata(&mut self) {
+        if self.screen.close::<Metadata>().is_none() {
+            self.requests.push_back(super::Request::ShowMetadata);
+        }
+    }
+
+    /// Shows the facts about the scene of this name.
+    pub(crate) fn show_metadata(&mut self, name: String) {
+        if let Some(scene) = self.scene() {
+            self.screen.open(Metadata::of(&scene, name));
+        }
+    }
+
+    /// Returns what is seen at a position of the screen, with the point.
+    fn hit_at(&self, at: Vec2) -> Option<(Hit, Vec3)> {
+        let ray = self.eye_ray_at(at)?;
+        let hit = closest_hit(&self.screen.frame()?.scene, &ray)?;
+        Some((hit, ray.at(hit.t)))
+    }
+
+    /// Returns the object at a position of the screen.
+    pub(super) fn object_at(&self, at: Vec2) -> Option<u32> {
+        self.hit_at(at).map(|(hit, _)| hit.object)
+    }
+
+    /// Makes the point at a position of the screen the target, in the middle of the picture.
+    ///
+    /// Only in orbit, which goes around the target.
+    pub(super) fn centre_on(&mut self, at: Vec2) {
+        if self.eye.mode() == KeyMode::Orbit
+            && let Some((_, point)) = self.hit_at(at)
+        {
+            self.eye.jump(self.now, |camera| centred_on(camera, point));
+        }
+    }
+
+    /// Moves the eye until an object fills the picture.
+    ///
+    /// Without an object, or with an endless one, everything finite fills it.
+    pub(super) fn frame_object(&mut self, object: Option<u32>) {
+        match object.and_then(|object| self.bounds_of(object)) {
+            Some(bounds) => {
+                let aspect_ratio = self.map_resolution().aspect_ratio();
+                self.eye.jump(self.now, |camera| camera.framing(&bounds, aspect_ratio));
+            }
+            None => self.frame_everything(),
+        }
+    }
+
+    fn bounds_of(&self, object: u32) -> Option<Bounds> {
+        self.screen.frame()?.scene.objects().get(object as usize)?.shape.bounds()
+    }
+}
+
+/// Returns the camera shifted so that a point becomes the target, as far away as it is.
+fn centred_on(camera: &Camera, point: Vec3) -> Camera {
+    let (pose, w) = (camera.pose(), camera.basis().w);
+    let depth = (pose.eye - point).dot(w);
+    camera.with_pose(Pose { eye: point + depth * w, target: point, ..pose }).unwrap_or(*camera)
+}

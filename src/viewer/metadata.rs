@@ -1,0 +1,88 @@
+//! The facts about a scene or mesh, in the upper left corner.
+
+use super::layers::{Canvas, Layer, Level};
+use crate::scene::Scene;
+use crate::shape::Shape;
+use crate::text::number;
+use ratatui_core::layout::{Margin, Rect};
+use ratatui_core::text::Line;
+use ratatui_core::widgets::Widget;
+use ratatui_widgets::block::Block;
+use ratatui_widgets::clear::Clear;
+use ratatui_widgets::paragraph::Paragraph;
+use unicode_width::UnicodeWidthStr;
+
+/// Lines of facts.
+pub(super) struct Metadata(Vec<String>);
+
+impl Metadata {
+    /// Returns the facts about the scene of this name.
+    pub(super) fn of(scene: &Scene, name: String) -> Self {
+        let mut lines = vec![name];
+        let meshes = || {
+            scene
+                .objects()
+                .iter()
+                .filter_map(|object| if let Shape::Mesh(mesh) = &object.shape { Some(mesh) } else { None })
+        };
+        let triangles: usize = meshes().map(|mesh| mesh.triangle_count() as usize).sum();
+        if let Some(mesh) = scene.mesh() {
+            lines.push(format!("format     {}", mesh.format));
+        } else {
+            lines.push(format!("objects    {}", grouped(scene.objects().len())));
+            lines.push(format!("lights     {}", grouped(scene.lights().len())));
+        }
+        if triangles > 0 {
+            lines.push(format!("triangles  {}", grouped(triangles)));
+            lines.push(format!("vertices   {}", grouped(meshes().map(|mesh| mesh.file().positions().len()).sum())));
+        }
+        if let Some(bounds) = scene.bounds() {
+            // In the axes of the file.
+            let turn = scene.mesh().map_or(glam::Mat3::IDENTITY, |mesh| mesh.up.turn());
+            let size = (turn.transpose() * bounds.extent()).abs();
+            lines.push(format!("size       {} x {} x {}", number(size.x), number(size.y), number(size.z)));
+        }
+        if let Some(mesh) = scene.mesh() {
+            let guess = if mesh.is_guess { " (a guess)" } else { "" };
+            lines.push(format!("up         {}{guess}", mesh.up.name()));
+        }
+        Self(lines)
+    }
+}
+
+impl Layer for Metadata {
+    fn level(&self) -> Level {
+        Level::Side
+    }
+
+    fn draw(&mut self, canvas: &mut Canvas<'_>) {
+        let screen = canvas.screen();
+        if !canvas.has_room() {
+            return;
+        }
+        let width = self.0.iter().map(|line| line.width() as u16).max().unwrap_or(0) + 4;
+        let area = Rect { width, height: self.0.len() as u16 + 2, ..screen }.intersection(screen);
+        canvas.lay(area, |theme, area, buffer| {
+            Clear.render(area, buffer);
+            Block::bordered().border_set(theme.border()).style(theme.style()).render(area, buffer);
+            let lines: Vec<_> = self.0.iter().map(|line| Line::from(line.as_str())).collect();
+            Paragraph::new(lines).style(theme.style()).render(area.inner(Margin::new(2, 1)), buffer);
+        });
+    }
+}
+
+/// Writes a number with a comma between groups of three digits.
+fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;
