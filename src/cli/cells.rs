@@ -19,6 +19,7 @@ pub(super) struct CellArgs {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[allow(clippy::doc_markdown, reason = "the help shows these texts as they are")]
 enum ColorArg {
     /// As many as the terminal supports, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM,
     /// its own reply, terminfo and TERM; termtrace doctor shows which of them decided

@@ -32,7 +32,7 @@ impl Values {
         let (mut words, mut files) = (Vec::new(), Files::None);
         let possible = arg.get_possible_values();
         words.extend(possible.iter().map(|value| (value.get_name().to_owned(), text(PossibleValue::get_help(value)))));
-        let name = arg.get_value_names().and_then(<[_]>::first).map(|name| name.to_string()).unwrap_or_default();
+        let name = arg.get_value_names().and_then(<[_]>::first).map(ToString::to_string).unwrap_or_default();
         for part in name.split('|').filter(|_| possible.is_empty()) {
             match part {
                 "SCENE" => {
@@ -42,7 +42,7 @@ impl Values {
                 "COMMAND" => words.extend(commands(program)),
                 "FILE" | "GOLDEN" => files = Files::Any,
                 word if word.starts_with(|c: char| c.is_ascii_lowercase()) => {
-                    words.push((word.to_owned(), String::new()))
+                    words.push((word.to_owned(), String::new()));
                 }
                 // A number or a vector: nothing to choose from.
                 _ => (),

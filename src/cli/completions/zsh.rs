@@ -91,13 +91,11 @@ fn option(arg: &Arg, program: &Command) -> String {
         (_, true, _) => format!("{name}="),
         (_, false, _) => format!("{name}+"),
     };
-    match &names[..] {
-        [only] => quoted(&format!("{}[{help}]{value}", named(only))),
-        _ => {
-            let list: Vec<_> = names.iter().map(|name| named(name)).collect();
-            format!("'({})'{{{}}}{}", names.join(" "), list.join(","), quoted(&format!("[{help}]{value}")))
-        }
+    if let [only] = &names[..] {
+        return quoted(&format!("{}[{help}]{value}", named(only)));
     }
+    let list: Vec<_> = names.iter().map(|name| named(name)).collect();
+    format!("'({})'{{{}}}{}", names.join(" "), list.join(","), quoted(&format!("[{help}]{value}")))
 }
 
 fn value(arg: &Arg, program: &Command) -> String {
