@@ -219,6 +219,16 @@ fn every_page_is_in_the_index() {
     }
 }
 
+/// Moving pictures load at once on a slow link.
+#[test]
+fn no_picture_is_large() {
+    let pictures = fs::read_dir(root().join("media")).expect("media is there");
+    for picture in pictures.map(|picture| picture.expect("it can be read")) {
+        let bytes = picture.metadata().expect("it can be read").len();
+        assert!(bytes < 1_000_000, "{}: {bytes} bytes", picture.path().display());
+    }
+}
+
 /// README is in the package, and is read first.
 #[test]
 fn the_readme_is_short() {
