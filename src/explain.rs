@@ -31,6 +31,9 @@ pub struct Explanation {
     pub pixel: [u32; 2],
     /// The lecture's (qu, qv): the position from (0, 0) at the lower left corner to (1, 1).
     pub q: Vec2,
+    /// The camera, with the basis u, v, w and the view rectangle.
+    #[doc(hidden)]
+    pub camera: Camera,
     /// The eye ray: the lecture's origin **o** and direction **d**. The point **q** of the view
     /// rectangle is o + d.
     #[doc(hidden)]
@@ -90,6 +93,8 @@ pub struct ShadedHit {
 /// The contribution of one light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightContribution {
+    /// The light.
+    pub light: Light,
     /// The lecture's direction **l** to the light and n.l, the distance, and the light that arrives
     /// if nothing blocks it.
     pub incidence: Incidence,
@@ -105,7 +110,7 @@ impl LightContribution {
     }
 
     /// Returns the arriving light, or black if it is blocked or the surface faces away from it.
-    pub fn light(&self) -> LinearRgb {
+    pub fn arriving(&self) -> LinearRgb {
         if self.faces() && self.blocker.is_none() { self.incidence.light } else { LinearRgb::BLACK }
     }
 }
@@ -120,7 +125,7 @@ impl LightContribution {
 /// let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Sphere(center: (0, 0, 0), radius: 1)])";
 /// let scene = Scene::from_ron("ball.ron", text)?;
 /// let explanation = explain(&scene, scene.camera(), Resolution::new(81, 81)?, [40, 40]);
-/// assert!(explanation.lines().iter().any(|line| line == "in front: #1 sphere, t = 4.0000"));
+/// assert!(explanation.lines().iter().any(|line| line == "closest hit: sphere #1, t = 4.0000"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -136,6 +141,7 @@ pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u
         resolution,
         pixel,
         q: trace.q,
+        camera: *camera,
         ray: trace.ray,
         nodes: recorder.nodes,
         tested: recorder.tested(scene, &trace.ray),
@@ -171,6 +177,7 @@ fn light_contribution(scene: &Scene, light: &Light, point: &SurfacePoint) -> Lig
         .then(|| hit::any_hit_observed(scene, &ray, light.in_the_way(), &mut TestRecorder::default()))
         .flatten();
     LightContribution {
+        light: *light,
         incidence,
         blocker: blocker.map(|hit| (SurfaceName::of(scene, hit.object, hit.primitive), hit.t)),
     }

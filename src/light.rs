@@ -36,6 +36,13 @@ pub trait LightSource: InSceneFile + Copy {
     // It includes the factor 1/pi of diffuse reflection, so that no later step needs pi.
     fn irradiance<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3];
 
+    /// Returns the formula of the [irradiance](Self::irradiance), for explanations.
+    ///
+    /// V is the visibility, I the [`color`](Self::color) and D the distance.
+    fn formula(&self) -> &'static str {
+        "V I max(0, n.l)"
+    }
+
     /// Returns the light's colour, multiplied by its intensity.
     fn color(&self) -> LinearRgb;
 
@@ -90,6 +97,13 @@ macro_rules! lights {
             pub fn irradiance<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3] {
                 match self {
                     $($(#[$on])* Self::$name(light) => light.irradiance(l, distance_squared, cosine),)*
+                }
+            }
+
+            /// Returns the formula of the arriving light, by [`LightSource::formula`].
+            pub(crate) fn formula(&self) -> &'static str {
+                match self {
+                    $($(#[$on])* Self::$name(light) => light.formula(),)*
                 }
             }
 

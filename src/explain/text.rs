@@ -1,6 +1,7 @@
 //! Explanations as text: short lines in the lecture's symbols, for a panel or a file.
 
 use super::{Equation, Explanation, LightContribution, ShadedHit, Step, TestedSurface};
+use crate::camera::Basis;
 use crate::capabilities::CellMode;
 use crate::color::LinearRgb;
 use crate::scene::{Scene, ToneCurve};
@@ -36,8 +37,8 @@ impl fmt::Display for SurfaceName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { object, kind, face } = self;
         match face {
-            Some(face) => write!(f, "#{object} {kind} {face}"),
-            None => write!(f, "#{object} {kind}"),
+            Some(face) => write!(f, "{kind} {face} of #{object}"),
+            None => write!(f, "{kind} #{object}"),
         }
     }
 }
@@ -56,19 +57,50 @@ impl Explanation {
         let [i, j] = self.pixel;
         let mut lines = vec![
             format!("(i, j) = ({i}, {j}) of {}x{}", self.resolution.width(), self.resolution.height()),
+            // The result first, because a small panel shows it without scrolling.
+            match &self.hit {
+                Some(shaded) => format!("closest hit: {}, t = {}", shaded.name, number(shaded.hit.t).trim_start()),
+                None => "no hit: L = background".to_owned(),
+            },
             format!("(q_u, q_v) = ({:.4}, {:.4})", self.q.x, self.q.y),
-            vector("q", self.q_in_space()),
-            vector("o", self.ray.origin),
-            vector("d", self.ray.direction),
         ];
+        self.add_camera(&mut lines);
         self.add_tests(&mut lines);
         match &self.hit {
             Some(shaded) => self.add_hit(shaded, &mut lines),
-            None => lines.extend([String::new(), "nothing in front: background".to_owned()]),
+            None => lines.push(String::new()),
         }
         lines.push(light("L", self.light));
         self.add_tone(&mut lines);
         lines
+    }
+
+    /// Adds lines with the basis, the view rectangle and the ray.
+    // The lecture's w and h, the sides of the rectangle, are spelt out: w is a vector of the basis already.
+    fn add_camera(&self, lines: &mut Vec<String>) {
+        let (Basis { u, v, w }, rays) = (self.camera.basis(), self.camera.eye_rays(self.resolution.aspect_ratio()));
+        let corner = |qu, qv| rays.through(qu, qv).at(1.0);
+        let [width, height] = [corner(1.0, 0.0), corner(0.0, 1.0)].map(|end| end.distance(corner(0.0, 0.0)));
+        lines.extend([
+            String::new(),
+            "o = eye".to_owned(),
+            vector("o", self.ray.origin),
+            "w = (eye - target) / |eye - target|".to_owned(),
+            vector("w", w),
+            "u = up x w / |up x w|".to_owned(),
+            vector("u", u),
+            "v = w x u".to_owned(),
+            vector("v", v),
+            String::new(),
+            "view rectangle at distance 1".to_owned(),
+            format!("width {} height {}", number(width), number(height)),
+            "q0 = its lower left corner".to_owned(),
+            vector("q0", corner(0.0, 0.0)),
+            "q = q0 + width q_u u + height q_v v".to_owned(),
+            vector("q", self.q_in_space()),
+            "d = q - o".to_owned(),
+            vector("d", self.ray.direction),
+        ]);
     }
 
     /// Adds lines with the tested surfaces and their roots. The closest hit is marked.
@@ -76,6 +108,7 @@ impl Explanation {
         let count = |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
         let nodes = count(self.nodes as usize, "node");
         lines.push(String::new());
+        lines.push("t of o + t d on the surfaces".to_owned());
         lines.push(format!("tested: {}, {nodes}", count(self.tested.len(), "surface")));
         for (at, tested) in self.tested.iter().enumerate() {
             let mark = if at == 0 && tested.t.is_some() { '>' } else { ' ' };
@@ -85,7 +118,7 @@ impl Explanation {
 
     fn add_hit(&self, shaded: &ShadedHit, lines: &mut Vec<String>) {
         lines.push(String::new());
-        lines.push(format!("in front: {}, t = {}", shaded.name, number(shaded.hit.t).trim_start()));
+        lines.push(format!("crossing with {}", shaded.name));
         if let Some(closest) = self.tested.first() {
             add_equation(&closest.equation, lines);
         }
@@ -94,16 +127,22 @@ impl Explanation {
             Side::Back => "back",
         };
         lines.extend([
+            "p = o + t d".to_owned(),
             vector("p", shaded.point.position),
+            format!("n = unit normal, {side} side"),
             vector("n", shaded.point.shading_normal),
-            format!("seen from the {side}"),
         ]);
         for (number, contribution) in (1..).zip(&shaded.lights) {
             add_light(number, contribution, lines);
         }
         lines.push(String::new());
-        lines.extend([light("ambient", shaded.ambient), light("sum", shaded.arriving)]);
-        lines.push(light("reflected", shaded.reflectance));
+        lines.extend([
+            "E = ambient + all lights".to_owned(),
+            light("ambient", shaded.ambient),
+            light("E", shaded.arriving),
+            "L = R E with the reflectance R".to_owned(),
+            light("R", shaded.reflectance),
+        ]);
     }
 
     fn add_tone(&self, lines: &mut Vec<String>) {
@@ -112,8 +151,8 @@ impl Explanation {
             ToneCurve::Reinhard => "Reinhard",
             ToneCurve::Filmic => "Filmic",
         };
+        lines.push(format!("tone: exposure {}, {curve}", self.exposure));
         lines.push(light("shown", self.shown));
-        lines.push(format!("  by exposure {}, {curve}", self.exposure));
         let [r, g, b] = [self.bytes.r, self.bytes.g, self.bytes.b];
         lines.push(format!("sRGB {r} {g} {b}  #{r:02x}{g:02x}{b:02x}"));
     }
@@ -149,7 +188,7 @@ fn crossings(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
 
 fn add_equation(equation: &Equation, lines: &mut Vec<String>) {
     lines.extend(equation.steps.iter().map(|step| match step {
-        Step::Value(what, value) => format!("  {what:<20}{}", number(*value as f32)),
+        Step::Value(what, value) => format!("  {what:<21}{}", number(*value as f32)),
         Step::Text(text) => format!("  {text}"),
         Step::Values(before, between, values) => {
             let values: Vec<_> = values.iter().map(|&value| number(value as f32)).collect();
@@ -161,17 +200,20 @@ fn add_equation(equation: &Equation, lines: &mut Vec<String>) {
 fn add_light(at: usize, contribution: &LightContribution, lines: &mut Vec<String>) {
     let incidence = &contribution.incidence;
     lines.push(String::new());
-    lines.push(match incidence.distance {
-        f32::INFINITY => format!("light {at}: infinitely far"),
-        distance => format!("light {at}: distance {}", number(distance).trim_start()),
+    lines.push(format!("light {at}: {}", contribution.light.formula()));
+    lines.push(match contribution.blocker {
+        _ if !contribution.faces() => "V = 0, faces away".to_owned(),
+        Some((name, _)) => format!("V = 0, behind {name}"),
+        None => "V = 1, lit".to_owned(),
     });
+    lines.push(light("I", contribution.light.color()));
     lines.push(vector("l", incidence.l));
-    let n_l = number(incidence.cosine);
-    match contribution.blocker {
-        _ if !contribution.faces() => lines.push(format!("n.l{n_l}, faces away")),
-        Some((name, _)) => lines.extend([format!("n.l{n_l}, in the shadow of"), format!("  {name}")]),
-        None => lines.extend([format!("n.l{n_l}, lit"), light("+", contribution.light())]),
-    }
+    lines.push(format!("n.l  {}", number(incidence.cosine)));
+    lines.push(match incidence.distance {
+        f32::INFINITY => "D         infinite".to_owned(),
+        distance => format!("D    {}", number(distance)),
+    });
+    lines.push(light("=", contribution.arriving()));
 }
 
 fn vector(name: &str, Vec3 { x, y, z }: Vec3) -> String {

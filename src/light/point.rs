@@ -94,6 +94,13 @@ impl LightSource for PointLight {
         [N::splat(r) * weakening, N::splat(g) * weakening, N::splat(b) * weakening]
     }
 
+    fn formula(&self) -> &'static str {
+        match self.falloff {
+            Falloff::InverseSquare => "V I max(0, n.l) / D^2",
+            Falloff::None => "V I max(0, n.l)",
+        }
+    }
+
     fn color(&self) -> LinearRgb {
         self.intensity
     }

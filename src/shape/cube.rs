@@ -67,7 +67,7 @@ impl Described for Cube {
         Equation {
             steps: vec![Step::Values("t = ", " or ", roots.clone())],
             roots,
-            without_root: "no root",
+            without_root: "miss",
             is_outside: false,
         }
     }

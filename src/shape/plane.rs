@@ -166,6 +166,7 @@ impl Described for Plane {
         let (above, below) = ((a - o).dot(n), d.dot(n));
         let t = finite_quotient(above, below);
         let steps = vec![
+            Step::Text("(o + t d - a).n = 0"),
             Step::Value("(a-o).n", above),
             Step::Value("d.n", below),
             Step::Value("t = (a-o).n / d.n", t.unwrap_or_default()),

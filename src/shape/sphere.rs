@@ -210,22 +210,24 @@ impl Described for Sphere {
         format!("a {color} sphere of radius {}", number(self.radius))
     }
 
-    /// Solves a t^2 + b t + c = 0.
+    /// Solves A t^2 + 2 B t + C = 0, as the lecture does.
     fn equation(&self, ray: &Ray) -> Equation {
         let (d, from_center) = (ray.direction.as_dvec3(), ray.origin.as_dvec3() - self.center.as_dvec3());
         let radius = f64::from(self.radius);
-        let (a, b, c) = (d.dot(d), 2.0 * from_center.dot(d), from_center.dot(from_center) - radius * radius);
-        let under_root = b * b - 4.0 * a * c;
-        let root = |sign: f64| (-b + sign * under_root.sqrt()) / (2.0 * a);
+        let (a, b, c) = (d.dot(d), from_center.dot(d), from_center.dot(from_center) - radius * radius);
+        let under_root = b * b - a * c;
+        let root = |sign: f64| (-b + sign * under_root.sqrt()) / a;
         let roots = if under_root >= 0.0 { vec![root(-1.0), root(1.0)] } else { Vec::new() };
         let steps = vec![
-            Step::Value("a = d.d", a),
-            Step::Value("b = 2 (o-c).d", b),
-            Step::Value("c = (o-c).(o-c)-rr", c),
-            Step::Text("t = (-b +- sqrt(bb - 4ac)) / 2a"),
+            Step::Text("|o + t d - c|^2 - r^2 = 0"),
+            Step::Text("A t^2 + 2 B t + C = 0"),
+            Step::Value("A = d.d", a),
+            Step::Value("B = (o-c).d", b),
+            Step::Value("C = (o-c).(o-c) - r^2", c),
+            Step::Text("t = (-B +- sqrt(B^2 - A C)) / A"),
             Step::Values("  = ", " or ", roots.clone()),
         ];
-        Equation { steps, roots, without_root: "no root", is_outside: false }
+        Equation { steps, roots, without_root: "miss", is_outside: false }
     }
 
     fn encloses(&self, point: Vec3) -> bool {

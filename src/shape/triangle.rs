@@ -406,8 +406,9 @@ impl Described for Triangle {
         Equation {
             is_outside: shares.iter().any(|&share| share < 0.0),
             steps: vec![
+                Step::Text("(o + t d - a).n = 0"),
                 Step::Value("t = (a-o).n / d.n", t.unwrap_or_default()),
-                Step::Text("shares of its corners"),
+                Step::Text("p = sum of share * corner; shares:"),
                 Step::Values("    ", "", shares),
             ],
             roots: t.into_iter().collect(),

@@ -103,9 +103,9 @@ fn the_text_is_scrolled_to_its_end() {
     let mut session = looking(size);
     session.send(b"x");
     session.wait_for_text("(i, j) = (40, 24) of 80x48");
-    session.send(b"\x1b[6~\x1b[6~\x1b[6~\x1b[6~\x1b[6~\x1b[6~");
+    session.send("\x1b[6~".repeat(10).as_bytes());
     session.wait_for_text("cell (40, 12), upper half");
-    session.send(b"\x1b[5~\x1b[5~\x1b[5~\x1b[5~\x1b[5~\x1b[5~");
+    session.send("\x1b[5~".repeat(10).as_bytes());
     session.wait_for_text("(i, j) = (40, 24) of 80x48");
     leave(&mut session);
 }

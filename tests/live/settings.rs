@@ -132,9 +132,9 @@ fn every_text_names_the_bound_keys() {
     session.send(b"\t");
     wait_for_last(&mut session, "orbit; F1 shows its keys");
     session.send(b"x");
-    session.wait_for_text(" of 40: PageUp Space ");
-    session.send(b"   ");
-    session.wait_for_text("-40 of 40: ");
+    session.wait_for_text(": PageUp Space ");
+    session.send(b"          ");
+    session.wait_for_text("cell (40, 12), ");
     leave_moved(&mut session, b"Q");
 }
 
@@ -199,7 +199,7 @@ fn below_40x12_panels_are_hidden_and_their_keys_off() {
     assert!(leave_moved(&mut session, b"q"));
     let mut session = looking(80, 24);
     session.send(b"x");
-    session.wait_for_text("in front:");
+    session.wait_for_text("closest hit:");
     session.send(b"\x1b[D");
     session.wait_for_rest();
     assert!(!leave_moved(&mut session, b"q"));
@@ -225,14 +225,14 @@ fn the_status_line_shows_the_mode_and_its_keys() {
 fn escape_closes_the_topmost_panel() {
     let mut session = looking(80, 24);
     session.send(b"x");
-    session.wait_for_text("in front:");
+    session.wait_for_text("closest hit:");
     session.send(b"?");
     session.wait_for_text("keys: explain, fly");
     session.send(b"\x1b");
     wait_for_no(&mut session, "keys: explain");
-    session.wait_for_text("in front:");
+    session.wait_for_text("closest hit:");
     session.send(b"\x1b");
-    wait_for_no(&mut session, "in front:");
+    wait_for_no(&mut session, "closest hit:");
     leave(&mut session);
 }
 

@@ -34,7 +34,7 @@ fn adds_up(scene: &Scene, explanation: &Explanation) {
     assert_eq!(closest, seen.as_ref().map(|seen| (seen.name, seen.hit.t)), "{explanation:?}");
     if let Some(seen) = seen {
         let sum = seen.lights.iter().filter(|lit| lit.faces() && lit.blocker.is_none());
-        let sum = sum.fold(seen.ambient, |sum, lit| sum + lit.light());
+        let sum = sum.fold(seen.ambient, |sum, lit| sum + lit.arriving());
         assert_eq!(sum, seen.arriving, "{explanation:?}");
         assert_eq!(sum * seen.reflectance, *light, "{explanation:?}");
     }
@@ -111,8 +111,8 @@ fn the_blocker_of_a_light_is_named() {
     let says = |words: &str| all.iter().filter(|it| it.lines().join("\n").contains(words)).count();
     assert!(says("in the shadow of\n  #2 sphere") > 5, "the ball's shadow on the floor");
     assert!(says("faces away") > 5, "the ball's lower half");
-    assert!(says("nothing in front: background") > 5);
-    assert!(says("in front: #1 plane") > 5 && says("in front: #2 sphere") > 5 && says("no root") > 5);
+    assert!(says("no hit: L = background") > 5);
+    assert!(says("closest hit: plane #1") > 5 && says("closest hit: sphere #2") > 5 && says("miss") > 5);
     let dark = all.iter().find(|it| it.lines().join("\n").contains("in the shadow of")).expect("it is there");
     assert_eq!(dark.light, LinearRgb::grey(0.1) * LinearRgb::grey(0.5), "ambient light is left");
 }

@@ -32,7 +32,7 @@ fn it_is_described_and_explained() {
     let text = describe("sun.ron", &scene, scene.camera(), Resolution::square(40, 40));
     assert!(text.contains("- white, from below\n"), "{text}");
     let explained = explain(&scene, scene.camera(), Resolution::square(9, 9), [4, 4]).lines().join("\n");
-    assert!(explained.contains("light 1: infinitely far"), "{explained}");
+    assert!(explained.contains("\nD         infinite\n"), "{explained}");
 }
 
 #[test]

@@ -6,10 +6,12 @@ fn the_quadratic_is_the_lectures() {
     let equation = |x| Sphere::unchecked(Vec3::new(x, 0.0, 0.0), 1.0).equation(&ray);
     let steps = |c, roots: &[f64]| {
         [
-            Step::Value("a = d.d", 4.0),
-            Step::Value("b = 2 (o-c).d", -20.0),
-            Step::Value("c = (o-c).(o-c)-rr", c),
-            Step::Text("t = (-b +- sqrt(bb - 4ac)) / 2a"),
+            Step::Text("|o + t d - c|^2 - r^2 = 0"),
+            Step::Text("A t^2 + 2 B t + C = 0"),
+            Step::Value("A = d.d", 4.0),
+            Step::Value("B = (o-c).d", -10.0),
+            Step::Value("C = (o-c).(o-c) - r^2", c),
+            Step::Text("t = (-B +- sqrt(B^2 - A C)) / A"),
             Step::Values("  = ", " or ", roots.to_vec()),
         ]
     };

@@ -41,7 +41,13 @@ pub(super) fn panel_area(screen: Rect, [column, row]: [u16; 2]) -> Rect {
 /// The inset's area is empty if there is no room for it.
 pub(super) fn split_panel(inside: Rect, lines: u16) -> [Rect; 2] {
     let [least, most] = INSET_HEIGHT;
-    let inset = if inside.height < 2 * least { 0 } else { inside.height.saturating_sub(lines + 1).clamp(least, most) };
+    // A drawing must not push out the last lines of a text that fits without it.
+    let fits_alone = (lines..=lines + least).contains(&inside.height);
+    let inset = if inside.height < 2 * least || fits_alone {
+        0
+    } else {
+        inside.height.saturating_sub(lines + 1).clamp(least, most)
+    };
     let text = Rect { height: inside.height - inset - u16::from(inset > 0), ..inside };
     [text, Rect { y: inside.bottom() - inset, height: inset, ..inside }]
 }
