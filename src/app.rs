@@ -14,10 +14,12 @@ use std::convert::Infallible;
 use std::{fmt, io};
 
 mod picture_export;
+mod session_recording;
 mod save_view;
 mod live;
 mod loading;
 mod renderer;
+mod large_picture;
 mod scenes;
 mod source;
 mod watching;

@@ -76,7 +76,7 @@
 //! | `backend` | the encoder as a backend of ratatui; includes `ratatui` | 33 |
 //! | `scrolling-regions` | the same beside ratatui's feature of this name; includes `backend` | 33 |
 //! | `serde` | cameras, colours, sizes, maps and samplings in the formats of serde, checked when they are read | 11 |
-//! | `live` | the live view, on Linux and macOS; includes all of the above but `gif`, `cast` and the last four | 92 |
+//! | `live` | the live view, on Linux and macOS; includes all of the above but `gif` and the last four | 92 |
 //! | `cli` | the program `termtrace`, by default | 108 |
 //!
 //! A program that uses only the library turns the default features off:

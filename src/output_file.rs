@@ -91,6 +91,35 @@ impl OutputFile {
         }
     }
 
+    /// Starts a file in a folder, for [`finish_unused`](Self::finish_unused).
+    ///
+    /// # Errors
+    /// If the folder does not allow a new file.
+    pub fn create_in(folder: &Path) -> io::Result<Self> {
+        // The target is chosen at the end; until then only its folder counts.
+        let target = folder.join("new");
+        let destination = Destination::NewOnly(Temporary::new_file(&target)?);
+        Ok(Self { target, destination })
+    }
+
+    /// Gives the file the first of these names that is unused, and returns it.
+    ///
+    /// # Errors
+    /// If the file cannot be written or renamed, or [`AlreadyExists`](io::ErrorKind::AlreadyExists) if all names are
+    /// used.
+    pub fn finish_unused(mut self, names: impl IntoIterator<Item = PathBuf>) -> io::Result<PathBuf> {
+        if let Destination::NewOnly(temporary) = &mut self.destination {
+            temporary.sync()?;
+            for name in names {
+                match rename_to_unused(temporary, &name) {
+                    Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                    done => return done.map(|()| name),
+                }
+            }
+        }
+        Err(io::Error::new(io::ErrorKind::AlreadyExists, "there are too many of that name"))
+    }
+
     /// Removes the temporary files that killed processes of this user left in the folder.
     ///
     /// Each call reads the whole folder, so a command that writes many files should call this once.

@@ -10,5 +10,7 @@ mod gif;
 
 #[cfg(feature = "cast")]
 pub use cast::Cast;
+#[cfg(feature = "live")]
+pub(crate) use cast::{write_event, write_header};
 #[cfg(feature = "gif")]
 pub use gif::Gif;

@@ -27,6 +27,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
+mod activity;
 mod requests;
 mod axes;
 mod caption;
@@ -69,6 +70,7 @@ mod tracked;
 mod warnings;
 mod wipe_commands;
 
+pub(crate) use activity::Activity;
 use caption::Caption;
 use display::Display;
 use error_panel::ErrorPanel;
@@ -116,6 +118,12 @@ pub(crate) enum Request {
     Copy(String),
     /// Write the shown picture into a file of this format.
     Export(crate::export::Format),
+    /// Write a large picture of the wanted view into a file.
+    ExportLarge,
+    /// Give up the large picture in progress.
+    CancelLarge,
+    /// Start or stop recording the session.
+    Record,
     /// Ask the user whether to write this camera into the scene's file, if it has one.
     ProposeView(Camera),
     /// Write the camera of the last [`Self::ProposeView`] into the scene's file.
@@ -230,7 +238,7 @@ impl Viewer {
     /// Forgets what the terminal shows.
     ///
     /// Everything is drawn anew, and the part outside the picture is cleared.
-    fn redraw(&mut self) {
+    pub(crate) fn redraw(&mut self) {
         let (size, window) = (self.display.size(), self.display.window_size());
         // The window is erased only if the picture leaves a part of it free: otherwise the next frame covers all of it,
         // and erasing first would flash.
@@ -489,6 +497,11 @@ impl Viewer {
     /// Returns the last frame.
     pub(crate) fn frame(&self) -> Option<&Frame> {
         self.screen.frame()
+    }
+
+    /// Returns the size of the terminal's window in cells.
+    pub(crate) fn window_size(&self) -> Size {
+        self.display.window_size()
     }
 
     pub(crate) fn capabilities(&self) -> &Capabilities {

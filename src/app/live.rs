@@ -4,18 +4,20 @@
 //! carries out the viewer's decisions. Frames are traced and scenes are read on other threads, so that keys and signals
 //! are handled meanwhile; only frames that take less time than waking a thread are traced by the loop itself.
 
+use super::large_picture::{LargePicture, Order};
 use super::loading::LoadEvent;
 use super::picture_export;
 use super::renderer::Renderer;
 use super::save_view::Proposal;
 use super::scenes::{SceneEvent, Scenes};
+use super::session_recording::SessionRecording;
 use super::source::SceneName;
 use super::{Ending, Error, Options};
 use crate::camera::Camera;
 use crate::export::Format;
 use crate::terminal::{self, Signals, StopTarget, Terminal};
 use crate::text::Notice;
-use crate::viewer::{DriverState, FIRST_FRAME_MOTION, Request, Step, Viewer};
+use crate::viewer::{Activity, DriverState, FIRST_FRAME_MOTION, Request, Step, Tracing, Viewer};
 use std::io;
 use std::panic::resume_unwind;
 use std::path::PathBuf;
@@ -47,6 +49,10 @@ pub(super) struct Live {
     names: Vec<SceneName>,
     /// The folder for exported pictures, if the user may export.
     exports: Option<PathBuf>,
+    /// The number of tracing threads; `None` for one per core.
+    threads: Option<usize>,
+    large_picture: Option<LargePicture>,
+    recording: Option<SessionRecording>,
     /// The view that the user was last asked to confirm.
     proposed: Option<Proposal>,
 }
@@ -63,11 +69,22 @@ impl Live {
     /// # Errors
     /// If the terminal is gone, or there is not enough memory for its window.
     pub(super) fn new(terminal: Terminal, options: Options, names: Vec<SceneName>) -> io::Result<Self> {
-        let exports = options.exports.clone();
+        let (exports, threads) = (options.exports.clone(), options.threads);
         let mut viewer = Viewer::new(options, terminal.window()?)?;
         viewer.set_names(names.iter().map(SceneName::short).collect());
         let clock = Clock { start: Instant::now() };
-        Ok(Self { viewer, terminal, clock, bytes: Vec::new(), names, exports, proposed: None })
+        Ok(Self {
+            viewer,
+            terminal,
+            clock,
+            bytes: Vec::new(),
+            names,
+            exports,
+            threads,
+            large_picture: None,
+            recording: None,
+            proposed: None,
+        })
     }
 
     /// Returns the camera if the user has moved it.
@@ -103,8 +120,13 @@ impl Live {
                 continue;
             }
             renderer.panic_if_asked();
+            if let Some(large_picture) = &self.large_picture {
+                // Not for refinements: at rest the large picture would wait for them, and they for it.
+                large_picture.set_paused(renderer.tracing() == Some(Tracing::NewView));
+            }
             self.wait(until, renderer, signals)?;
             let leaves = self.carry_out_requests(scenes, signals)?;
+            self.follow_large_picture();
             if let Some(signal) = signals.deadly() {
                 return Ok(Ending::Signal(signal));
             }
@@ -134,7 +156,9 @@ impl Live {
                 Step::GiveUp => renderer.cancel_refinements(),
                 Step::Draw => {
                     self.bytes.clear();
-                    self.viewer.draw(self.clock.now(), &mut self.bytes);
+                    let now = self.clock.now();
+                    self.viewer.draw(now, &mut self.bytes);
+                    self.record_frame(now);
                     self.viewer.end_frame(&mut self.bytes, self.clock.now());
                     self.terminal.send(&self.bytes)?;
                 }
@@ -209,6 +233,13 @@ impl Live {
                     );
                     self.viewer.show_note(note);
                 }
+                Request::ExportLarge => {
+                    if let Err(error) = self.start_large_picture(signals) {
+                        self.viewer.show_note(format!("could not write the picture: {error}"));
+                    }
+                }
+                Request::CancelLarge => self.large_picture.iter().for_each(LargePicture::cancel),
+                Request::Record => self.toggle_recording(),
                 Request::ProposeView(camera) => self.propose(camera),
                 Request::SaveView => {
                     if let Some(proposal) = self.proposed.take() {
@@ -232,6 +263,78 @@ impl Live {
         let stem = picture_export::file_stem(self.shown_name().map_or("scene", |scene| &scene.name));
         let contents = picture_export::contents(format, &frame.picture, self.viewer.capabilities())?;
         picture_export::write_new(folder, &stem, format, &contents)
+    }
+
+    /// Returns the folder for files that the user asks for, and the stem of their names.
+    fn export_place(&self) -> io::Result<(PathBuf, String)> {
+        let folder = self.exports.clone().ok_or_else(|| io::Error::other("there is no folder for it"))?;
+        Ok((folder, picture_export::file_stem(self.shown_name().map_or("scene", |scene| &scene.name))))
+    }
+
+    /// Starts the large picture of the wanted view.
+    fn start_large_picture(&mut self, signals: &Signals) -> io::Result<()> {
+        let Some((job, wipe)) = self.viewer.large_picture() else { return Ok(()) };
+        let ((folder, stem), waker) = (self.export_place()?, signals.waker()?);
+        let order = Order { job, wipe, folder, stem, threads: self.threads };
+        self.large_picture = Some(terminal::without_signals(|| LargePicture::start(order, waker))?);
+        self.show_activity();
+        Ok(())
+    }
+
+    /// Shows the progress of the large picture, if there is one, and its end.
+    fn follow_large_picture(&mut self) {
+        let Some(large_picture) = &self.large_picture else { return };
+        if let Some(ended) = large_picture.ended() {
+            self.large_picture = None;
+            self.viewer.show_note(match ended {
+                Ok(Some(name)) => format!("written: {name}"),
+                Ok(None) => "large picture cancelled".to_owned(),
+                Err(error) => format!("could not write the picture: {error}"),
+            });
+        }
+        self.show_activity();
+    }
+
+    /// Starts a recording of the session, or ends it.
+    fn toggle_recording(&mut self) {
+        let now = self.clock.now();
+        let note = if let Some(mut recording) = self.recording.take() {
+            match recording.finish(now) {
+                Ok(name) => format!("written: {name}"),
+                Err(error) => format!("could not write the recording: {error}"),
+            }
+        } else {
+            let size = self.viewer.window_size();
+            let started = self.export_place().and_then(|(folder, stem)| {
+                SessionRecording::start(&folder, &stem, size, now).map(|recording| self.recording = Some(recording))
+            });
+            match started {
+                Ok(()) => "recording the session; the same key stops".to_owned(),
+                Err(error) => format!("could not start a recording: {error}"),
+            }
+        };
+        // The first frame of a recording is whole.
+        if self.recording.is_some() {
+            self.viewer.redraw();
+        }
+        self.viewer.show_note(note);
+        self.show_activity();
+    }
+
+    /// Adds the bytes of a frame to the recording, if there is one.
+    fn record_frame(&mut self, now: Duration) {
+        let Some(recording) = &mut self.recording else { return };
+        if let Err(error) = recording.add(&self.bytes, self.viewer.window_size(), now) {
+            self.recording = None;
+            self.viewer.show_note(format!("the recording ended and was not kept: {error}"));
+            self.show_activity();
+        }
+    }
+
+    /// Shows whether the session is recorded, and the progress of the large picture.
+    fn show_activity(&mut self) {
+        let picture = self.large_picture.as_ref().map(LargePicture::percent);
+        self.viewer.show_activity(Activity { records: self.recording.is_some(), picture });
     }
 
     /// Asks the user whether to write `camera` into the scene's file, if it has one.
@@ -289,6 +392,9 @@ impl Live {
         }
         // This waits for the foreground, that is, until the shell has handed over the terminal.
         self.terminal.take_again(signals)?;
+        if let Some(recording) = &mut self.recording {
+            recording.skip(now, self.clock.now());
+        }
         // The queries are sent again, because replies to the earlier ones may be lost.
         self.terminal.send(&self.viewer.queries(self.clock.now()))?;
         self.viewer.resize(self.terminal.window()?)?;

@@ -35,28 +35,25 @@ pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabil
     }
 }
 
-/// Writes a new file named after `stem` and `format`, with a number if that name exists. Returns
-/// its name.
+/// Writes a new file named after `stem` and `format`, with the first unused number if that name
+/// exists. Returns its name.
 pub(super) fn write_new(folder: &Path, stem: &str, format: Format, contents: &[u8]) -> io::Result<String> {
-    for number in 1..=MAX_NUMBERED_NAMES {
-        let number = if number == 1 { String::new() } else { format!("-{number}") };
-        let name = format!("{stem}{number}.{}", format.extension());
-        match write_unused(&folder.join(&name), contents) {
-            Ok(()) => return Ok(name),
-            // Creating the file fails if it exists, so that two programs never write the same file. The next number is
-            // tried.
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-            Err(error) => return Err(error),
-        }
-    }
-    Err(io::Error::new(io::ErrorKind::AlreadyExists, "there are too many of that name"))
-}
-
-fn write_unused(path: &Path, contents: &[u8]) -> io::Result<()> {
-    let mut file = OutputFile::create_new(path)?;
+    let mut file = OutputFile::create_in(folder)?;
     file.remove_stale();
     file.write_all(contents)?;
-    file.finish()
+    finish_new(file, folder, stem, format.extension())
+}
+
+/// Gives a complete file a name after `stem`, with the first unused number if that name exists.
+/// Returns the name.
+// Created exclusively instead of looked for first, so that two programs never write one file.
+pub(super) fn finish_new(file: OutputFile, folder: &Path, stem: &str, extension: &str) -> io::Result<String> {
+    let name = |number: u32| {
+        let number = if number == 1 { String::new() } else { format!("-{number}") };
+        folder.join(format!("{stem}{number}.{extension}"))
+    };
+    let path = file.finish_unused((1..=MAX_NUMBERED_NAMES).map(name))?;
+    Ok(path.file_name().unwrap_or_default().to_string_lossy().into_owned())
 }
 
 /// Returns the stem of an export's file name.

@@ -204,7 +204,7 @@ impl Drop for Renderer {
 type TraceTask = Box<dyn FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send>;
 
 /// Returns the frame of a job: `trace_map` traces each of its maps, which are then combined.
-fn frame_of(
+pub(super) fn frame_of(
     job: &Job,
     mut trace_map: impl FnMut(Map, Resolution) -> Result<TracedMap, Cancelled>,
 ) -> Result<Frame, Cancelled> {

@@ -50,6 +50,10 @@ pub enum Command {
     LastScene,
     /// Asks for a format and exports the picture to a file.
     Export,
+    /// Exports a large, smooth picture to a file in the background.
+    ExportLarge,
+    /// Starts or stops recording the session to a file.
+    Record,
     /// Copies the camera to the clipboard, as a line of a scene file.
     CopyCamera,
     /// Asks whether to save the view to the `views` of the scene file.
@@ -211,6 +215,8 @@ commands! {
     [Command::NextScene] "NextScene", "next scene";
     [Command::LastScene] "LastScene", "previous scene";
     [Command::Export] "Export", "save picture";
+    [Command::ExportLarge] "ExportLarge", "save large picture";
+    [Command::Record] "Record", "record session or stop";
     [Command::CopyCamera] "CopyCamera", "copy camera";
     [Command::KeepView] "KeepView", "save view to scene file";
     [Command::Explain] "Explain", "explain a pixel";

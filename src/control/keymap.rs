@@ -183,6 +183,8 @@ const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Always, &[letter('n')], Command::NextScene),
     (KeyMode::Always, &[letter('p')], Command::LastScene),
     (KeyMode::Always, &[letter('o')], Command::Export),
+    (KeyMode::Always, &[letter('O')], Command::ExportLarge),
+    (KeyMode::Always, &[letter('R')], Command::Record),
     (KeyMode::Always, &[letter('y')], Command::CopyCamera),
     (KeyMode::Always, &[letter('Y')], Command::KeepView),
     (KeyMode::Always, &[letter('x')], Command::Explain),

@@ -60,8 +60,7 @@ impl<W: Write> Cast<W> {
     /// # Errors
     /// If writing fails.
     pub fn begin(mut out: W, size: Size, encoder: Encoder, frames_per_second: u32) -> io::Result<Self> {
-        let Size { columns, rows } = size;
-        writeln!(out, r#"{{"version":2,"width":{columns},"height":{rows}}}"#)?;
+        write_header(&mut out, size)?;
         Ok(Self {
             out,
             encoder,
@@ -133,9 +132,22 @@ impl<W: Write> Cast<W> {
 
     fn write_last(&mut self) -> io::Result<()> {
         let Some((_, bytes)) = self.last.take() else { return Ok(()) };
-        let mut line = serde_json::to_vec(&(self.time(), "o", String::from_utf8_lossy(&bytes)))?;
-        line.push(b'\n');
+        let time = self.time();
         self.frame += 1;
-        self.out.write_all(&line)
+        write_event(&mut self.out, time, "o", &String::from_utf8_lossy(&bytes))
     }
+}
+
+/// Writes the first line of an asciicast of a terminal of this size.
+pub(crate) fn write_header(out: &mut impl Write, Size { columns, rows }: Size) -> io::Result<()> {
+    writeln!(out, r#"{{"version":2,"width":{columns},"height":{rows}}}"#)
+}
+
+/// Writes a line with an event: its time, its kind and its text.
+///
+/// The kind is `o` for output and `r` for a new size.
+pub(crate) fn write_event(out: &mut impl Write, seconds: f64, kind: &str, text: &str) -> io::Result<()> {
+    let mut line = serde_json::to_vec(&(seconds, kind, text))?;
+    line.push(b'\n');
+    out.write_all(&line)
 }

@@ -160,6 +160,8 @@ impl Viewer {
             Command::LastScene => self.requests.push_back(Request::SwitchScene(-1)),
             Command::CopyCamera => self.copy_camera(),
             Command::Export => self.ask_export(),
+            Command::ExportLarge => self.ask_large_picture(),
+            Command::Record => self.toggle_recording(),
             Command::KeepView => self.requests.extend(self.eye.camera().map(Request::ProposeView)),
             Command::Status => self.toggle_status(),
             Command::Help => self.open_help(),
@@ -203,14 +205,15 @@ impl Viewer {
     }
 
     /// Closes the help if it is open; otherwise releases the held light, if any; otherwise closes
-    /// the explanation.
+    /// the explanation; otherwise cancels the large picture.
     fn close_topmost(&mut self) {
         // This is the order of the layers, from the topmost.
         if self.screen.close::<HelpPanel>().is_none()
             && !self.release_light()
             && self.screen.close::<ExplainPanel>().is_none()
+            && self.screen.close::<Metadata>().is_none()
         {
-            self.screen.close::<Metadata>();
+            self.cancel_large_picture();
         }
     }
 }

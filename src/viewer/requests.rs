@@ -1,10 +1,23 @@
 //! Commands that the driver has to carry out: copying the camera, exporting the picture, and saving
 //! a view to the file.
 
+use super::activity::Activity;
 use super::dialog::{Answer, Dialog};
-use super::{Request, Viewer};
+use super::{Job, Request, Shot, Viewer};
 use crate::camera::Camera;
 use crate::control::Command;
+use crate::framebuffer::Resolution;
+use crate::render::Sampling;
+
+/// The width of a large picture in pixels, and its height if the window is higher than wide.
+const LARGE_SIDE: u32 = 1920;
+
+/// Returns the size of a large picture, of square pixels, in the shape of the shown one.
+fn large(shown: Resolution) -> Resolution {
+    let aspect = shown.aspect_ratio();
+    let scaled = |by: f32| ((LARGE_SIDE as f32 * by).round() as u32).clamp(1, LARGE_SIDE);
+    Resolution::square(scaled(aspect), scaled(1.0 / aspect))
+}
 
 impl Viewer {
     /// Requests that the camera is copied to the clipboard, as a line of a scene file.
@@ -21,6 +34,46 @@ impl Viewer {
         if self.options.exports.is_some() && self.screen.frame().is_some() {
             self.screen.open(Dialog::Export);
         }
+    }
+
+    /// Requests a large picture of the wanted view, if there is a folder for it.
+    pub(super) fn ask_large_picture(&mut self) {
+        if self.options.exports.is_none() {
+            return;
+        }
+        if self.screen.awaits_scene() {
+            self.show_note("the scene is still loading");
+        } else if self.screen.get::<Activity>().is_some_and(|activity| activity.picture.is_some()) {
+            self.show_note("a large picture is being made; Esc cancels it");
+        } else if self.screen.frame().is_some() {
+            self.requests.push_back(Request::ExportLarge);
+        }
+    }
+
+    /// Requests to cancel the large picture, if one is in progress.
+    pub(super) fn cancel_large_picture(&mut self) {
+        if self.screen.get::<Activity>().is_some_and(|activity| activity.picture.is_some()) {
+            self.requests.push_back(Request::CancelLarge);
+        }
+    }
+
+    /// Requests to start or to stop recording the session, if there is a folder for it.
+    pub(super) fn toggle_recording(&mut self) {
+        if self.options.exports.is_some() {
+            self.requests.push_back(Request::Record);
+        }
+    }
+
+    /// Shows what goes on besides the view.
+    pub(crate) fn show_activity(&mut self, activity: Activity) {
+        self.screen.set(Some(activity).filter(|activity| activity.is_any()));
+    }
+
+    /// Returns the large picture of the wanted view, and the position of the line between two maps.
+    pub(crate) fn large_picture(&self) -> Option<(Job, f32)> {
+        let (scene, shot) = self.scene().zip(self.wanted_shot())?;
+        let shot = Shot { resolution: large(shot.resolution), ..shot };
+        Some((Job { scene, shot, sampling: Sampling::BEST, refines: false }, self.screen.wipe()))
     }
 
     /// Opens the question whether to write the proposed camera into the scene file of this name.

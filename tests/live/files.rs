@@ -180,3 +180,121 @@ fn a_built_in_scene_saves_no_view() {
     session.wait_for_text("this scene has no scene file to save views to");
     leave(&mut session);
 }
+
+/// Returns the width and height of a PNG, from its header.
+fn size_of_png(png: &[u8]) -> [u32; 2] {
+    assert!(png.starts_with(b"\x89PNG"));
+    [16, 20].map(|at| u32::from_be_bytes(png[at..at + 4].try_into().expect("four bytes")))
+}
+
+/// The large picture is the wanted view in the window's shape, and has a new name each time.
+#[test]
+fn a_large_picture_is_written_in_the_background() {
+    let folder = folder();
+    let mut session = looking(&folder);
+    for name in ["ball.png", "ball-2.png"] {
+        session.send(b"O");
+        session.wait_for_text("Esc cancels");
+        session.wait_for_text(&format!("written: {name}"));
+        session.wait_for("no progress", SOON, |seen| !seen.screen().text().concat().contains("Esc cancels"));
+    }
+    let png = fs::read(folder.path().join("ball.png")).expect("it is there");
+    // 80 by 24 cells of aspect 2.
+    assert_eq!(size_of_png(&png), [1920, 1152]);
+    let program = env!("CARGO_BIN_EXE_termtrace");
+    let flags = "frame ball.ron --pixels 1920x1152 --samples best -o same.png";
+    let script = format!("cd '{}' && '{program}' {flags}", folder.path().display());
+    assert_eq!(Start::shell(&script).spawn().wait_exit(SOON).code(), Some(0));
+    assert!(png == fs::read(folder.path().join("same.png")).expect("it is there"), "the same picture as a frame's");
+    leave(&mut session);
+}
+
+/// A scene whose large picture takes long: many lights, and shadows of many balls.
+fn slow_text() -> String {
+    let lights: Vec<_> = (0..60).map(|i| format!("Point(position: ({i}, 9, 5), intensity: 1)")).collect();
+    let balls: Vec<_> =
+        (0..400).map(|i| format!("Sphere(center: ({}, {}, 0), radius: 0.2)", i % 20 - 10, i / 20 - 10)).collect();
+    format!(
+        "(camera: (eye: (0, 0, 20), target: (0, 0, 0)), lights: [{}], objects: [{}])",
+        lights.join(", "),
+        balls.join(", ")
+    )
+}
+
+/// Keys are answered while a large picture is traced. Esc cancels it, and quitting leaves no file.
+#[test]
+fn a_large_picture_can_be_cancelled() {
+    let folder = folder();
+    fs::write(folder.path().join("slow.ron"), slow_text()).expect("a file can be written");
+    let mut session = started(&folder, "slow.ron --reduced-motion");
+    session.wait_for("the picture", SOON, |seen| seen.screen().text().concat().contains('▄'));
+    session.send(b"O");
+    session.wait_for_text("large picture");
+    session.send(b"O");
+    session.wait_for_text("a large picture is being made");
+    session.send(b"v");
+    session.wait_for_text("lambert: n.l");
+    session.send(b"\x1b");
+    session.wait_for_text("large picture cancelled");
+    session.send(b"vvvvvvvvO");
+    session.wait_for_text("large picture");
+    leave(&mut session);
+    let mut names: Vec<_> = fs::read_dir(folder.path())
+        .expect("the folder is there")
+        .map(|entry| entry.expect("it can be read").file_name())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["ball.ron", "slow.ron"]);
+}
+
+/// A recording has the screens of the session, from a whole first one to the shown cursor.
+#[test]
+fn the_session_is_recorded() {
+    let folder = folder();
+    let mut session = looking(&folder);
+    session.send(b"R");
+    session.wait_for_text("recording the session");
+    session.send(b"i");
+    session.wait_for_text("rays/s");
+    session.send(b"R");
+    session.wait_for_text("written: ball.cast");
+    let cast = read(&folder, "ball.cast");
+    let mut terminal = avt::Terminal::new(80, 24).expect("a screen has cells");
+    let mut lines = cast.lines();
+    assert_eq!(lines.next(), Some(r#"{"version":2,"width":80,"height":24}"#));
+    let (mut last, mut output) = (0.0, String::new());
+    for line in lines {
+        let (time, kind, text): (f64, String, String) = serde_json::from_str(line).expect("an event");
+        assert!(time >= last && kind == "o", "{line}");
+        (last, output) = (time, text);
+        terminal.feed(&output);
+        assert!(!output.contains("\x1b[c") && !output.contains("$p"), "no queries: {output:?}");
+    }
+    assert_eq!(output, "\x1b[m\x1b[?25h");
+    let row = |row| terminal.screen().line(row).expect("a row").cells().iter().map(avt::Cell::char).collect::<String>();
+    let shown: Vec<_> = (0..24).map(row).collect();
+    assert!(shown[0].contains("REC") && shown.concat().contains("rays/s"), "{shown:#?}");
+    assert!(shown[12].contains('▄'), "{shown:#?}");
+    // A signal ends a recording as the key does.
+    session.send(b"R");
+    session.wait_for_text("recording the session");
+    session.signal(rustix::process::Signal::TERM);
+    session.wait_exit(SOON);
+    assert!(read(&folder, "ball-2.cast").ends_with("\"\\u001b[m\\u001b[?25h\"]\n"));
+    assert_eq!(fs::read_dir(folder.path()).expect("the folder is there").count(), 3);
+}
+
+/// A full disk ends a recording with a message, and leaves nothing.
+#[test]
+fn a_full_disk_ends_a_recording() {
+    let folder = folder();
+    let program = env!("CARGO_BIN_EXE_termtrace");
+    let limits = "trap '' XFSZ && ulimit -f 4";
+    let script = format!("cd '{}' && {limits} && exec '{program}' ball.ron", folder.path().display());
+    let mut session = Start::shell(&script).spawn();
+    sees_all(&mut session, TEXT);
+    session.send(b"R");
+    session.wait_for_text("the recording ended and was not kept: File too large");
+    assert_eq!(fs::read_dir(folder.path()).expect("the folder is there").count(), 1);
+    leave(&mut session);
+}

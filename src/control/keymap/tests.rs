@@ -73,7 +73,7 @@ fn keys_mean_what_the_table_says() {
     assert_eq!(fast(KeyCode::Char('/')), Some((Command::Help, false)), "a terminal that tells only where the key is");
     assert_eq!(meant(&press('/')), None);
     assert_eq!(fast(KeyCode::Char('y')), Some((Command::KeepView, false)));
-    assert_eq!(meant(&press('R')), None, "a capital that moves nothing is free");
+    assert_eq!(meant(&press('Q')), None, "a capital that moves nothing is free");
     for modifiers in [KeyModifiers::SUPER, KeyModifiers::HYPER, KeyModifiers::META] {
         assert_eq!(meant(&KeyEvent { modifiers, ..press('q') }), None, "the window manager's");
     }

@@ -32,7 +32,8 @@ impl Group {
             C::NextMap | C::LastMap | C::Compare | C::Wipe(_) | C::Wireframe => Self::Maps,
             C::Explain | C::Point(_) | C::ScrollUp | C::ScrollDown => Self::Maps,
             C::Light | C::MoveLight(_) | C::LightNearer | C::LightFarther | C::LightBack => Self::Light,
-            C::NextScene | C::LastScene | C::Export | C::CopyCamera | C::KeepView => Self::Files,
+            C::NextScene | C::LastScene | C::Export | C::ExportLarge | C::Record => Self::Files,
+            C::CopyCamera | C::KeepView => Self::Files,
             C::Write(_) | C::Yes | C::No => Self::Files,
             C::Caption | C::Metadata | C::Status | C::Help | C::Close | C::Redraw | C::Suspend | C::Quit => {
                 Self::Program

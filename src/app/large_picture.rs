@@ -1,0 +1,179 @@
+//! The large picture, traced and written on a thread of its own while the live view goes on.
+
+use super::picture_export;
+use super::renderer::frame_of;
+use crate::export::{Format, png};
+use crate::maps::{self, Map, TracedMap};
+use crate::memory;
+use crate::progress::{Cancellation, Cancelled};
+use crate::render::{Cost, Executor, Render};
+use crate::terminal::Waker;
+use crate::tone::tone;
+use crate::viewer::Job;
+use std::any::Any;
+use std::io;
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+
+/// The memory of a picture in bytes per pixel: samples, light, colours and the file.
+const BYTES_PER_PIXEL: usize = 160;
+
+/// The name of the written file; `None` if it was cancelled.
+type Written = io::Result<Option<String>>;
+
+/// A large picture in progress. Dropping it cancels it, and leaves no file.
+pub(super) struct LargePicture {
+    shared: Arc<Shared>,
+    ended: Receiver<Result<Written, Box<dyn Any + Send>>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// The state that the loop shares with the thread.
+#[derive(Default)]
+struct Shared {
+    token: Cancellation,
+    /// The percentage done.
+    percent: AtomicU32,
+    /// Whether the thread is to wait, because the live view traces a frame.
+    is_paused: Mutex<bool>,
+    resumed: Condvar,
+}
+
+/// The contents of a large picture, and the place to write it.
+pub(super) struct Order {
+    pub(super) job: Job,
+    /// The position of the line between two maps.
+    pub(super) wipe: f32,
+    pub(super) folder: PathBuf,
+    /// The stem of the file's name.
+    pub(super) stem: String,
+    /// The number of tracing threads of the live view; `None` for one per core.
+    pub(super) threads: Option<usize>,
+}
+
+impl LargePicture {
+    /// Starts to trace a picture.
+    ///
+    /// `waker` wakes the loop whenever the percentage changes, and at the end.
+    ///
+    /// # Errors
+    /// If there is not enough memory, or the system gives no thread.
+    pub(super) fn start(order: Order, mut waker: Waker) -> io::Result<Self> {
+        memory::check(BYTES_PER_PIXEL * order.job.shot.resolution.pixel_count())?;
+        let shared = Arc::new(Shared::default());
+        let (done, ended) = channel();
+        let of_thread = Arc::clone(&shared);
+        let for_progress = Mutex::new(waker.try_clone()?);
+        let thread = thread::Builder::new().name("large picture".to_owned()).spawn(move || {
+            let work = AssertUnwindSafe(|| of_thread.write(&order, &for_progress));
+            let _ = done.send(catch_unwind(work));
+            waker.wake();
+        })?;
+        Ok(Self { shared, ended, thread: Some(thread) })
+    }
+
+    /// Returns the percentage done.
+    pub(super) fn percent(&self) -> u32 {
+        self.shared.percent.load(Ordering::Relaxed)
+    }
+
+    /// Makes the thread wait, or lets it go on.
+    pub(super) fn set_paused(&self, is_paused: bool) {
+        *self.shared.is_paused.lock().unwrap_or_else(PoisonError::into_inner) = is_paused;
+        if !is_paused {
+            self.shared.resumed.notify_all();
+        }
+    }
+
+    /// Cancels the picture, which ends within milliseconds.
+    pub(super) fn cancel(&self) {
+        self.shared.token.cancel();
+        self.set_paused(false);
+    }
+
+    /// Returns the outcome once the picture has ended.
+    ///
+    /// # Panics
+    /// With the payload of a panic in the thread.
+    pub(super) fn ended(&self) -> Option<Written> {
+        let ended = self.ended.try_recv().ok()?;
+        Some(ended.unwrap_or_else(|panic| resume_unwind(panic)))
+    }
+}
+
+impl Drop for LargePicture {
+    fn drop(&mut self) {
+        self.cancel();
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Shared {
+    fn write(&self, order: &Order, waker: &Mutex<Waker>) -> Written {
+        let Some(picture) = self.traced(order, waker) else { return Ok(None) };
+        let file = png(&picture, 1.0, 1).map_err(io::Error::other)?;
+        // The last moment to cancel: writing takes a few milliseconds.
+        if self.token.is_cancelled() {
+            return Ok(None);
+        }
+        picture_export::write_new(&order.folder, &order.stem, Format::Png, &file).map(Some)
+    }
+
+    /// Returns the picture; `None` if it was cancelled.
+    fn traced(&self, order: &Order, waker: &Mutex<Waker>) -> Option<crate::tone::Picture> {
+        let shot = &order.job.shot;
+        let (mut part, parts) = (0, shot.layout.parts(shot.resolution).len());
+        let mut frame = frame_of(&order.job, |map, resolution| {
+            let report = |share: f32| {
+                self.wait_while_paused();
+                self.set_progress((part as f32 + share) / parts as f32, waker);
+                ControlFlow::Continue(())
+            };
+            let scene = &order.job.scene;
+            let picture = if map == Map::Shaded {
+                let render = Render::new(scene).camera(&shot.camera).resolution(resolution);
+                let render = render.threads(order.thread_count()).cancelled_by(&self.token).on_progress(report);
+                TracedMap { picture: tone(&render.run()?, scene), cost: Cost::default() }
+            } else {
+                self.wait_while_paused();
+                let executor = Executor::Cancellable(&self.token);
+                maps::trace(map, executor, scene, &shot.camera, resolution, order.job.sampling)?
+            };
+            part += 1;
+            Ok::<_, Cancelled>(picture)
+        });
+        if let Ok(frame) = &mut frame {
+            frame.wipe(order.wipe);
+        }
+        frame.ok().map(|frame| frame.picture)
+    }
+
+    fn wait_while_paused(&self) {
+        let is_paused = self.is_paused.lock().unwrap_or_else(PoisonError::into_inner);
+        drop(self.resumed.wait_while(is_paused, |is_paused| *is_paused));
+    }
+
+    /// Sets the share done, and wakes the loop if the percentage changes.
+    fn set_progress(&self, share: f32, waker: &Mutex<Waker>) {
+        let percent = (100.0 * share) as u32;
+        if self.percent.swap(percent, Ordering::Relaxed) != percent {
+            waker.lock().unwrap_or_else(PoisonError::into_inner).wake();
+        }
+    }
+}
+
+impl Order {
+    /// Returns the number of threads: all but one, which is left to the live view.
+    fn thread_count(&self) -> usize {
+        let cores = || thread::available_parallelism().map_or(1, NonZeroUsize::get);
+        self.threads.unwrap_or_else(cores).saturating_sub(1).max(1)
+    }
+}

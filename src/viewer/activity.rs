@@ -1,0 +1,44 @@
+//! A line about what goes on besides the view: a recording, and a large picture in progress.
+
+use super::layers::{Canvas, Layer, Level};
+use super::legend;
+use ratatui_core::layout::Rect;
+
+/// The activities, in the upper right corner.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Activity {
+    /// Whether the session is recorded.
+    pub(crate) records: bool,
+    /// The percentage of the large picture that is done; `None` if there is none.
+    pub(crate) picture: Option<u32>,
+}
+
+impl Activity {
+    /// Returns whether there is anything to show.
+    pub(super) fn is_any(self) -> bool {
+        self != Self::default()
+    }
+
+    /// Returns the line, with all its hints or in as few words as possible.
+    fn text(self, is_short: bool) -> String {
+        let picture = self.picture.map(|percent| match is_short {
+            true => format!("{percent}%"),
+            false => format!("large picture {percent} %, Esc cancels"),
+        });
+        let records = self.records.then(|| "REC".to_owned());
+        records.into_iter().chain(picture).collect::<Vec<_>>().join("  ")
+    }
+}
+
+impl Layer for Activity {
+    fn level(&self) -> Level {
+        Level::Note
+    }
+
+    fn draw(&mut self, canvas: &mut Canvas<'_>) {
+        let (screen, text) = (canvas.screen(), self.text(!canvas.has_room()));
+        let width = (text.len() as u16 + 2).min(screen.width);
+        let corner = Rect { x: screen.right() - width, width, height: screen.height.min(1), ..screen };
+        canvas.lay(corner, |theme, area, buffer| legend::draw(&text, theme, area, buffer));
+    }
+}
