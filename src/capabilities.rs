@@ -2,6 +2,7 @@
 //!
 //! Capabilities are detected from the environment, the window and the terminal's replies.
 
+mod known_terminals;
 mod replies;
 mod detection;
 mod findings;

@@ -7,7 +7,7 @@ use crate::color::LinearRgb;
 use crate::framebuffer::Resolution;
 use crate::lanes::Vector;
 use crate::light::Light;
-use crate::scene::{Background, Scene};
+use crate::scene::{Background, Object, Scene};
 use crate::shape::Shape;
 use crate::text::listed;
 use crate::text::number;
@@ -55,6 +55,13 @@ pub fn describe(name: &str, scene: &Scene, camera: &Camera, resolution: Resoluti
         }
     }
     text
+}
+
+/// Returns the colour and kind of an object, such as `red sphere`.
+#[cfg_attr(not(feature = "live"), allow(dead_code, reason = "only the live view names objects by themselves"))]
+pub(crate) fn short_name(object: &Object) -> String {
+    let color = object.material.described(color).map(|color| color + " ").unwrap_or_default();
+    color + object.shape.kind()
 }
 
 /// The inputs of a description, with a method for each part of its text.

@@ -50,6 +50,7 @@ mod layers;
 mod legend;
 mod light_commands;
 mod lights;
+mod lost;
 mod theme;
 mod light_marker;
 mod camera_commands;
@@ -196,6 +197,24 @@ impl Viewer {
     /// Sets the names of the scenes, which the status line shows.
     pub(crate) fn set_names(&mut self, names: Vec<String>) {
         self.names = names;
+    }
+
+    /// Notes once, when the replies to the queries are here, that there are only 256 colours.
+    ///
+    /// The note lies above the welcome while that is shown.
+    fn note_few_colors(&mut self) {
+        let colors = self.display.capabilities().cell_mode.colors;
+        if self.display.queries().is_open() {
+            return;
+        }
+        let Some(text) = self.options.few_colors.take() else { return };
+        if self.options.hints.suspects_truecolor(colors) {
+            let note = match self.screen.close::<Note>() {
+                Some(welcome) => welcome.below(text),
+                None => Note::new(text),
+            };
+            self.screen.open(note);
+        }
     }
 
     fn set_time(&mut self, now: Duration) {
@@ -352,6 +371,7 @@ impl Viewer {
         // Only frames in motion count for the frame rate: refinements at rest would raise it.
         let moving = self.is_in_motion().then_some(self.now);
         self.screen.take_frame(frame, moving);
+        self.note_lost();
     }
 
     /// Returns the driver's next action.
@@ -361,6 +381,7 @@ impl Viewer {
         self.eye.advance(now);
         self.screen.set_moving(self.eye.mode());
         self.mark_light();
+        self.note_few_colors();
         let fades_at = self.screen.fade_note(now);
         match decide(&self.facts(busy), now) {
             Action::GiveUp => Step::GiveUp,

@@ -117,6 +117,12 @@ impl Hints {
         self.colors(Some(true)).value != self.colors(None).value
     }
 
+    /// Returns whether `colors` are 256 by detection alone, so that the terminal may have more.
+    pub fn suspects_truecolor(&self, colors: Colors) -> bool {
+        let is_chosen = self.color != ColorChoice::Auto || self.color_variable().is_some();
+        colors == Colors::Indexed256 && !is_chosen
+    }
+
     /// Returns whether colours would be used if the terminal confirmed truecolor.
     pub fn allows_color(&self) -> bool {
         self.colors(Some(true)).value != Colors::None
@@ -160,7 +166,7 @@ pub struct Findings {
 impl Findings {
     /// Combines the user's choices, the environment, the window and the replies.
     pub fn new(hints: &Hints, window: CellShape, replies: &Replies) -> Self {
-        let colors = with_replied_palette(hints.colors(replies.truecolor), replies);
+        let colors = with_replied_palette(hints.colors(replies.supports_truecolor()), replies);
         let answered = |answer: Option<bool>| found(answer, Source::Reply, false);
         let of_window = |value| Detected { value, source: Source::Window };
         let cell_aspect = hints

@@ -1,5 +1,6 @@
 //! A terminal's replies to queries, as plain values.
 
+use super::known_terminals::{attributes_imply_truecolor, name_implies_truecolor};
 use crate::color::{LinearRgb, Srgb8};
 
 /// The replies received so far. A field is `None` until the terminal has replied.
@@ -7,6 +8,8 @@ use crate::color::{LinearRgb, Srgb8};
 pub struct Replies {
     /// Whether the terminal kept [`TEST_COLOR`] as the background colour (DECRQSS of SGR).
     pub truecolor: Option<bool>,
+    /// Whether the terminal identified itself as one that supports truecolor (XTVERSION or DA2).
+    pub is_known_for_truecolor: bool,
     /// Whether the terminal supports synchronized output (DECRQM of mode 2026).
     pub synchronized_output: Option<bool>,
     /// Whether the terminal supports the kitty keyboard protocol.
@@ -56,12 +59,18 @@ impl Replies {
         }
     }
 
-    /// Records whether the reported SGR attributes, such as `1$r0;48:2::1:2:3m`, contain
-    /// [`TEST_COLOR`].
+    /// Records what a device control string says about truecolor.
+    ///
+    /// It is either the terminal's name, such as `>|kitty(0.26.5)`, or the reported SGR attributes, such as
+    /// `1$r0;48:2::1:2:3m`, which contain [`TEST_COLOR`] or not.
     ///
     /// A reply that the query is invalid (`0$r`) records nothing.
     pub fn take_dcs(&mut self, text: &[u8]) {
-        let rendition = std::str::from_utf8(text).ok().and_then(|text| text.strip_prefix("1$r")?.strip_suffix('m'));
+        let Ok(text) = std::str::from_utf8(text) else { return };
+        if let Some(name) = text.strip_prefix(">|") {
+            self.is_known_for_truecolor |= name_implies_truecolor(name);
+        }
+        let rendition = text.strip_prefix("1$r").and_then(|text| text.strip_suffix('m'));
         if let Some(rendition) = rendition {
             let Srgb8 { r, g, b } = TEST_COLOR;
             // Terminals separate numbers by semicolons or colons, and may insert an empty colour space, which is
@@ -69,6 +78,17 @@ impl Replies {
             let numbers: Vec<u8> = rendition.split([';', ':']).filter_map(|number| number.parse().ok()).collect();
             self.truecolor = Some(numbers.windows(5).any(|numbers| numbers == [48, 2, r, g, b]));
         }
+    }
+
+    /// Records whether the terminal's type and version (DA2) imply truecolor.
+    pub fn take_secondary_attributes(&mut self, attributes: &[u16]) {
+        self.is_known_for_truecolor |= attributes_imply_truecolor(attributes);
+    }
+
+    /// Returns whether the terminal supports truecolor; `None` if no reply says so.
+    // The name outweighs the SGR attributes, in which some terminals report the nearest palette colour.
+    pub fn supports_truecolor(&self) -> Option<bool> {
+        if self.is_known_for_truecolor { Some(true) } else { self.truecolor }
     }
 
     /// Records the width of a half block, given the cursor's column (from 1) after one is printed

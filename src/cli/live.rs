@@ -96,6 +96,8 @@ impl ViewArgs {
         options.exports = Some(PathBuf::from("."));
         options.welcome = settings.hint().then(|| hint(&keymap, occasion));
         options.tour = if let Occasion::Tour(scenes) = occasion { Some(scenes) } else { None };
+        options.few_colors =
+            settings.hint().then(|| "256 colours; --color truecolor if your terminal has it".to_owned());
         options.keymap = keymap;
         options
     }

@@ -50,6 +50,7 @@ impl InitialQueries {
             bytes.extend_from_slice(MOUSE_AND_KEYBOARD);
             bytes.extend_from_slice(CELL_PIXELS);
             if truecolor {
+                bytes.extend_from_slice(IDENTITY);
                 bytes.extend(truecolor_query());
             }
             if palette {
@@ -99,6 +100,7 @@ impl InitialQueries {
             Reply::KeyboardFlags(_) => replies.kitty_keyboard = Some(true),
             Reply::Osc(text) => replies.take_osc(text),
             Reply::Dcs(text) => replies.take_dcs(text),
+            Reply::SecondaryAttributes(attributes) => replies.take_secondary_attributes(attributes),
             _ => {}
         }
         false
@@ -112,6 +114,8 @@ const BACKGROUND: &[u8] = b"\x1b]11;?\x1b\\";
 const SYNCHRONIZED: &[u8] = b"\x1b[?2026$p";
 const MOUSE_AND_KEYBOARD: &[u8] = b"\x1b[?1006$p\x1b[?1016$p\x1b[?u";
 const CELL_PIXELS: &[u8] = b"\x1b[16t";
+/// The queries for name and version (XTVERSION), and for type and version (DA2).
+const IDENTITY: &[u8] = b"\x1b[>q\x1b[>c";
 
 /// Returns the bytes that set a 24-bit background, query the current SGR attributes (DECRQSS), and
 /// reset them.

@@ -1,6 +1,7 @@
 //! Commands that move the camera at once. Held keys move it continuously, in `eye`.
 
 use super::Viewer;
+use super::lost::{Hiding, LostNotice};
 use crate::control::Command;
 use crate::framebuffer::Resolution;
 use crate::hit::closest_hit;
@@ -12,6 +13,20 @@ use glam::Vec3;
 pub(super) const ZOOM_FACTOR: f32 = 1.1;
 
 impl Viewer {
+    /// Says so if the user has moved the eye to where nothing of the scene is visible.
+    pub(super) fn note_lost(&mut self) {
+        // Never of the scene's own view: its author has chosen it.
+        let frame = self.screen.frame().filter(|_| self.eye.moved().is_some());
+        let aspect_ratio = self.map_resolution().aspect_ratio();
+        let hiding = frame.and_then(|frame| Hiding::find(&frame.scene, frame.camera(), aspect_ratio));
+        let modes = self.screen.modes(self.size());
+        let key = |(command, does): (Command, &str)| Some(format!("{} {does}", self.keymap().key_of(&modes, command)?));
+        let keys: Vec<_> =
+            [(Command::Reset, "first view"), (Command::FrameAll, "frame all")].into_iter().filter_map(key).collect();
+        let notice = hiding.map(|hiding| LostNotice::new(&hiding, &keys.join(", ")));
+        self.screen.set(notice);
+    }
+
     /// Switches between flight and orbit about the point in the middle of the picture.
     pub(super) fn change_mode(&mut self) {
         // Computed from the shown frame, which may be older than the camera.

@@ -2,7 +2,9 @@
 
 use super::layers::{Canvas, Layer, Level};
 use super::legend;
+use ratatui_core::layout::Rect;
 use std::time::Duration;
+use unicode_width::UnicodeWidthStr;
 
 /// Time for which a note is shown.
 // A line of 80 characters is read in four seconds.
@@ -11,6 +13,8 @@ pub(super) const NOTE_TIME: Duration = Duration::from_secs(5);
 /// A line of text.
 pub(super) struct Note {
     text: String,
+    /// A line above it.
+    above: Option<String>,
     /// Whether it stays until the next key.
     lasts: bool,
     /// Time at which it fades; `None` before it was shown.
@@ -20,12 +24,17 @@ pub(super) struct Note {
 impl Note {
     /// Returns a note that fades.
     pub(super) fn new(text: impl Into<String>) -> Self {
-        Self { text: text.into(), lasts: false, fades_at: None }
+        Self { text: text.into(), above: None, lasts: false, fades_at: None }
     }
 
     /// Returns a note that stays until the next key.
     pub(super) fn lasting(text: impl Into<String>) -> Self {
         Self { lasts: true, ..Self::new(text) }
+    }
+
+    /// Returns the note with another line above it.
+    pub(super) fn below(self, text: String) -> Self {
+        Self { above: Some(text), ..self }
     }
 
     /// Returns the time at which the note fades, which begins with the first call.
@@ -42,6 +51,10 @@ impl Layer for Note {
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
-        canvas.lay(canvas.foot(0), |theme, area, buffer| legend::draw(&self.text, theme, area, buffer));
+        for (below, text) in (0..).zip([Some(&self.text), self.above.as_ref()].into_iter().flatten()) {
+            let row = canvas.foot(below);
+            let width = (text.width() as u16 + 2).min(row.width);
+            canvas.lay(Rect { width, ..row }, |theme, area, buffer| legend::draw(text, theme, area, buffer));
+        }
     }
 }

@@ -46,6 +46,9 @@ pub struct Options {
     /// The number of scenes of a tour, whose captions are shown. `None`: no tour.
     #[doc(hidden)]
     pub tour: Option<usize>,
+    /// A note shown once where 256 colours were found and not asked for.
+    #[doc(hidden)]
+    pub few_colors: Option<String>,
     /// The first map to show.
     pub map: Map,
     /// The commands that keys are bound to.
@@ -77,6 +80,7 @@ impl Options {
             exports: None,
             welcome: None,
             tour: None,
+            few_colors: None,
             map: Map::Shaded,
             keymap: Keymap::default(),
         }

@@ -61,3 +61,32 @@ fn settings_and_bindings_hold_for_the_hint() {
     assert!(!session.seen().screen().text().concat().contains("q quit"));
     leave(session);
 }
+
+const FEW_COLORS: &str = "256 colours; --color truecolor if your terminal has it";
+
+/// Over ssh only `TERM` is set: the terminal is known by its replies, and where it is not, a line
+/// says which flag to try.
+#[test]
+fn truecolor_is_found_by_the_terminals_name_or_the_flag_is_named() {
+    for (replies, is_known) in [
+        // Alacritty, kitty, tmux, and a terminal that identifies itself in no way.
+        (&b"\x1b[>0;1100;1c"[..], true),
+        (b"\x1bP>|kitty(0.26.5)\x1b\\\x1b[>1;4000;26c", true),
+        (b"\x1bP>|tmux 3.3a\x1b\\\x1b[>84;0;0c", false),
+        (b"", false),
+    ] {
+        let start = start("corridor", Size::cells(80, 24)).env("COLORTERM", "").mute();
+        let mut session = start.spawn();
+        session.wait_for("the queries", SOON, |seen| seen.has(b"\x1b[>q\x1b[>c") && seen.has(b"\x1b[c"));
+        session.wait_for_text(HINT);
+        session.send(&[replies, b"\x1b[?62c"].concat());
+        if is_known {
+            session.wait_for("24-bit colours", SOON, |seen| seen.has(b"38;2;"));
+            assert!(!session.seen().screen().text().concat().contains("256 colours"));
+        } else {
+            session.wait_for_text(FEW_COLORS);
+            session.wait_for_text(HINT);
+        }
+        leave(session);
+    }
+}

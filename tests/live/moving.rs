@@ -178,6 +178,21 @@ fn help_shows_every_group_is_filtered_and_goes_away() {
     leave(&mut session);
 }
 
+/// Inside an object every pixel has its colour: a line says why, and which keys help.
+#[test]
+fn a_line_says_when_nothing_is_visible() {
+    let mut session = looking(termtrace().arg("--reduced-motion"));
+    // Ten steps of a tenth of the way to the middle of the ball.
+    session.send(b"wwwwwwwwww");
+    session.wait_for_text("inside object ");
+    session.wait_for_text("): r first view, f frame all");
+    session.send(b"r");
+    wait_for_picture(&mut session, Size::cells(80, 24));
+    session.send(b"k".repeat(12).as_slice());
+    session.wait_for_text("nothing in view: r first view, f frame all");
+    leave(&mut session);
+}
+
 #[test]
 fn the_status_line_shows_size_and_eye() {
     let mut session = looking(termtrace());

@@ -24,14 +24,14 @@ fn a_batch_ends_with_its_fence_and_holds_one() {
 
 #[test]
 fn each_terminal_gets_the_queries_that_it_understands() {
-    let parts: [&[u8]; 7] =
-        [b"\x1b[6n", b"\x1b]11;?", b"?2026$p", b"?1006$p", b"\x1b[16t", b"\x1bP$qm", b"\x1b]4;15;?"];
+    let parts: [&[u8]; 8] =
+        [b"\x1b[6n", b"\x1b]11;?", b"?2026$p", b"?1006$p", b"\x1b[16t", b"\x1b[>q\x1b[>c", b"\x1bP$qm", b"\x1b]4;15;?"];
     for (term, expected) in [
-        ("xterm", [true; 7]),
-        ("tmux-256color", [true, true, true, false, false, false, false]),
-        ("screen", [true, false, false, false, false, false, false]),
-        ("linux", [true, false, false, false, false, false, false]),
-        ("dumb", [false; 7]),
+        ("xterm", [true; 8]),
+        ("tmux-256color", [true, true, true, false, false, false, false, false]),
+        ("screen", [true, false, false, false, false, false, false, false]),
+        ("linux", [true, false, false, false, false, false, false, false]),
+        ("dumb", [false; 8]),
     ] {
         let queries = InitialQueries::all(&hints(term, ""));
         assert_eq!(parts.map(|part| has(&queries, part)), expected, "{term}");
@@ -42,7 +42,7 @@ fn each_terminal_gets_the_queries_that_it_understands() {
 #[test]
 fn known_facts_are_not_queried() {
     let queries = InitialQueries::needed(&hints("xterm", "truecolor"));
-    assert!(!has(&queries, b"$qm") && !has(&queries, b"\x1b]4;"));
+    assert!(!has(&queries, b"$qm") && !has(&queries, b"\x1b[>") && !has(&queries, b"\x1b]4;"));
     assert!(has(&InitialQueries::needed(&hints("xterm", "")), b"$qm"));
     assert!(has(&InitialQueries::needed(&hints("xterm-16color", "")), b"\x1b]4;0;?"));
 }
@@ -71,6 +71,24 @@ fn replies_count_up_to_the_fence() {
     assert!(!queries.take(&Reply::CursorPosition { row: 1, column: 3 }));
     assert!(!queries.take(&Reply::DeviceAttributes(vec![62])));
     assert_eq!(queries.replies(), &replies);
+}
+
+/// Alacritty replies to the second query only, tmux to both, for itself.
+#[test]
+fn a_terminal_is_known_by_its_name_or_type() {
+    let truecolor = |replies: &[Reply]| {
+        let mut queries = InitialQueries::needed(&hints("xterm-256color", ""));
+        assert!(!replies.iter().any(|reply| queries.take(reply)));
+        queries.replies().supports_truecolor()
+    };
+    let refusal = Reply::Dcs(b"1$r48;5;16m".to_vec());
+    let named = |name: &str| Reply::Dcs(format!(">|{name}").into_bytes());
+    let typed = |attributes: &[u16]| Reply::SecondaryAttributes(attributes.to_vec());
+    assert_eq!(truecolor(&[typed(&[0, 1100, 1])]), Some(true));
+    assert_eq!(truecolor(&[named("kitty(0.26.5)")]), Some(true));
+    assert_eq!(truecolor(&[named("Konsole 22.12"), refusal.clone()]), Some(true));
+    assert_eq!(truecolor(&[named("tmux 3.3a"), typed(&[84, 0, 0])]), None);
+    assert_eq!(truecolor(&[named("XTerm(379)"), typed(&[41, 379, 0]), refusal]), Some(false));
 }
 
 #[test]

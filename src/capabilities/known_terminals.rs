@@ -1,0 +1,49 @@
+//! Terminals that are known to support truecolor, by the replies that identify them.
+//!
+//! Over ssh the environment has `TERM` alone, which most of them share. Multiplexers reply for themselves and are not
+//! listed: whether tmux and GNU screen pass 24-bit colours on depends on their configuration. Nor is xterm, which
+//! replies to the query about colours, nor Terminal.app and PuTTY, which had no truecolor for long.
+
+/// Beginnings of the names that terminals reply to XTVERSION, in lower case.
+const NAMES: [&str; 11] = [
+    "alacritty",
+    "contour",
+    "foot",
+    "ghostty",
+    "iterm2",
+    "kitty",
+    "konsole",
+    "mintty",
+    "vte",
+    "wezterm",
+    "windows terminal",
+];
+
+/// Returns whether a terminal with this name and version (XTVERSION) supports truecolor.
+pub(super) fn name_implies_truecolor(name: &str) -> bool {
+    let name = name.to_lowercase();
+    NAMES.iter().any(|known| name.strip_prefix(known).is_some_and(|rest| !rest.starts_with(char::is_alphabetic)))
+}
+
+/// Returns whether a terminal with these secondary device attributes (DA2) supports truecolor.
+// For terminals that do not reply to XTVERSION: type, version, and a third number.
+pub(super) fn attributes_imply_truecolor(attributes: &[u16]) -> bool {
+    match *attributes {
+        // Alacritty from 0.5 on: 100 times the minor version plus the patch.
+        [0, 500..=u16::MAX, 1] => true,
+        // Windows Terminal, and the console of Windows 10.
+        [0, 10, 1] => true,
+        // xterm.js, in Visual Studio Code and others.
+        [0, 276, 0] => true,
+        // Konsole.
+        [0 | 1, 115, 0] => true,
+        // VTE (GNOME Terminal, Xfce Terminal, Tilix) from 0.36 on: 100 times the minor version plus the patch.
+        [61 | 65, 3600..=u16::MAX, 1] => true,
+        // mintty.
+        [77, ..] => true,
+        _ => false,
+    }
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;
