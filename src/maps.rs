@@ -7,6 +7,7 @@
 use crate::camera::{Camera, Pose};
 use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::Resolution;
+use crate::hit::Hit;
 use crate::progress::Cancelled;
 use crate::render::{Cost, Executor, GBufferSample, Sampling, TraceDepth, trace_g_buffer_partial};
 use crate::scene::Scene;
@@ -62,7 +63,9 @@ pub enum Map {
     ///
     /// Each ray is traced singly. Colours go from blue over green to red and white, one for each power of four.
     Cost,
-    /// The visible side of the surface: front or back.
+    /// The visible side of the surface, front or back, darker where it is seen at a slant.
+    ///
+    /// Planes are left out.
     Facing,
     /// The light in black and white, with lines between objects of the same colour.
     ///
@@ -268,11 +271,7 @@ fn trace_partial(
             None => NO_HIT,
         }),
         Map::Cost => of_surfaces(&|sample| colors::heat(cost::tests(scene, sample))),
-        Map::Facing => of_surfaces(&|sample| match sample.surface(scene).map(|surface| surface.side) {
-            None => NO_HIT,
-            Some(Side::Front) => FRONT,
-            Some(Side::Back) => BACK,
-        }),
+        Map::Facing => of_surfaces(&|sample| facing(scene, sample)),
         Map::Wire => of_surfaces(&|sample| wire::color(scene, camera, resolution, sample).unwrap_or(NO_HIT)),
         Map::Contrast => contrast::trace(executor, scene, camera, resolution, sampling),
     }
@@ -283,6 +282,20 @@ fn lambert(scene: &Scene, sample: &GBufferSample) -> Srgb8 {
     let Some(surface) = sample.surface(scene) else { return NO_HIT };
     let cosine = |light| shade::incidence(light, &surface).map_or(0.0, |incidence| incidence.cosine);
     Srgb8::from_linear(LinearRgb::grey(scene.lights().iter().map(cosine).sum()))
+}
+
+/// Returns the colour of the visible side, times the cosine between the normal and the ray.
+///
+/// A plane, which has no end, is left out: it would fill the picture with one colour.
+fn facing(scene: &Scene, sample: &GBufferSample) -> Srgb8 {
+    let is_bounded = |hit: Hit| scene.objects()[hit.object as usize].shape.bounds().is_some();
+    let Some(surface) = sample.surface(scene).filter(|_| sample.hit.is_some_and(is_bounded)) else { return NO_HIT };
+    let side = match surface.side {
+        Side::Front => FRONT,
+        Side::Back => BACK,
+    };
+    let cosine = surface.shading_normal.dot(sample.ray.direction).abs() / sample.ray.direction.length();
+    Srgb8::from_linear(LinearRgb::from_srgb8(side) * cosine)
 }
 
 /// Returns the distance from the eye to the target.
