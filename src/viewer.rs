@@ -79,6 +79,7 @@ pub use extent::MAX_PIXELS;
 use eye::Eye;
 pub(crate) use eye::FIRST_FRAME_MOTION;
 pub(crate) use frame::{Frame, Job, Shot};
+use metadata::Metadata;
 use note::Note;
 pub use options::Options;
 use pacing::Pacing;
@@ -303,6 +304,11 @@ impl Viewer {
         if let Some(mesh) = scene.mesh().filter(|mesh| mesh.is_guess) {
             let turn = self.hint(Command::TurnMesh, "turns it");
             self.warn(format!("{} is up in this {} (a guess){turn}", mesh.up.name(), mesh.format));
+        }
+        // The facts of an open panel are those of the scene before, or of the mesh before it was turned.
+        if self.screen.get::<Metadata>().is_some() {
+            let name = self.names.get(index).cloned().unwrap_or_default();
+            self.screen.open(Metadata::of(&scene, name));
         }
         let caption = self.captions.then(|| self.caption(&scene, index)).flatten();
         self.screen.set(caption);
