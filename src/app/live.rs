@@ -309,7 +309,7 @@ impl Live {
                 SessionRecording::start(&folder, &stem, size, now).map(|recording| self.recording = Some(recording))
             });
             match started {
-                Ok(()) => "recording the session; the same key stops".to_owned(),
+                Ok(()) => "recording the session; same key ends".to_owned(),
                 Err(error) => format!("could not start a recording: {error}"),
             }
         };

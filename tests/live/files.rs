@@ -255,7 +255,7 @@ fn the_session_is_recorded() {
     session.send(b"R");
     session.wait_for_text("recording the session");
     session.send(b"i");
-    session.wait_for_text("rays/s");
+    session.wait_for_text("samples");
     session.send(b"R");
     session.wait_for_text("written: ball.cast");
     let cast = read(&folder, "ball.cast");
@@ -273,7 +273,7 @@ fn the_session_is_recorded() {
     assert_eq!(output, "\x1b[m\x1b[?25h");
     let row = |row| terminal.screen().line(row).expect("a row").cells().iter().map(avt::Cell::char).collect::<String>();
     let shown: Vec<_> = (0..24).map(row).collect();
-    assert!(shown[0].contains("REC") && shown.concat().contains("rays/s"), "{shown:#?}");
+    assert!(shown[0].contains("REC") && shown.concat().contains("samples"), "{shown:#?}");
     assert!(shown[12].contains('▄'), "{shown:#?}");
     // A signal ends a recording as the key does.
     session.send(b"R");
