@@ -13,7 +13,9 @@ mod folder;
 mod frame;
 mod help;
 mod deferred_args;
+mod json;
 mod live;
+mod manual;
 mod map;
 mod new;
 mod suggestions;
@@ -83,14 +85,9 @@ Examples:
   termtrace config                         the effective settings
   generate_scene | termtrace -             read the scene from standard input";
 
-const EXIT_STATUS: &str = "Exit status:
-  0  success
-  1  failure, or a difference found by frame --check
-  2  wrong arguments or a faulty scene";
-
 /// Returns the help text below the options of `--help`.
 fn after_options() -> String {
-    format!("{}\n\n{}\n\n{EXAMPLES}\n\n{EXIT_STATUS}", help::KEYS, settings::SETTINGS_HELP)
+    format!("{}\n\n{}\n\n{EXAMPLES}\n\n{}", help::KEYS, settings::SETTINGS_HELP, help::EXIT_STATUS)
 }
 
 /// Returns the list of commands for `--help`.

@@ -10,12 +10,11 @@ use crate::light::Light;
 use crate::scene::{Background, Object, Scene};
 use crate::shape::Shape;
 use crate::text::listed;
-use crate::text::number;
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use survey::{Coverage, Survey};
-use words::{color, distance, percent, points, position};
+use words::{color, distance, number, percent, points, position};
 
 mod survey;
 mod words;
@@ -77,7 +76,7 @@ impl Description<'_> {
         let Pose { eye, target, .. } = self.camera.pose();
         let degrees = self.camera.rectangle().vertical_fov().to_degrees();
         format!(
-            "{name}: {} and {}, seen from {} towards {}; the view is {} degrees high.\n",
+            "{name}: {} and {}, seen from {} towards {}; {} degree vertical field of view.\n",
             counted(self.scene.objects().len(), "object"),
             counted(self.scene.lights().len(), "light"),
             points(eye),

@@ -172,6 +172,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
             cand --strict 'Refuse a mesh whose materials or textures are missing, instead of a warning'
+            cand --json 'Print JSON'
             cand --no-config 'no-config'
         }
         &'termtrace;check'= {
@@ -197,6 +198,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
             cand --strict 'Refuse a mesh whose materials or textures are missing, instead of a warning'
+            cand --json 'Print JSON'
             cand --no-config 'no-config'
         }
         &'termtrace;bench'= {
@@ -209,6 +211,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
             cand --no-shadow 'Trace no shadow rays'
+            cand --json 'Print JSON'
             cand --no-config 'no-config'
         }
         &'termtrace;doctor'= {
@@ -218,6 +221,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
             cand --no-config 'Ignore config.ron and keys.ron'
+            cand --json 'Print JSON'
         }
         &'termtrace;config'= {
             cand --color 'Colours to draw with [default: auto]'
@@ -236,6 +240,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --help 'Print help; -h prints a summary'
             cand --no-config 'Ignore config.ron and keys.ron'
             cand --keys 'Print the keys instead, in the form of keys.ron'
+            cand --json 'Print JSON'
         }
         &'termtrace;completions'= {
             cand -h 'Print help; -h prints a summary'

@@ -2,6 +2,7 @@
 
 mod generated;
 
+use super::json;
 use super::outcome::{CommandResult, Failure, usage, write_stdout};
 use super::picture::{check_pixel_count, parse_size};
 use super::scene_args::CameraArgs;
@@ -9,6 +10,7 @@ use super::scene_source::SceneSource;
 use super::threads::on_threads;
 use clap::{Args, ValueEnum};
 use generated::Generated;
+use serde_json::{Value, json};
 use std::fmt::Write;
 use std::num::NonZeroU32;
 use std::path::PathBuf;
@@ -56,6 +58,12 @@ pub(super) struct BenchArgs {
     /// Trace no shadow rays
     #[arg(long)]
     no_shadow: bool,
+    /// Print JSON
+    ///
+    /// The fields are "scene", "build_seconds", "tree_bytes", and "rounds", each with "rays", "hits",
+    /// "lit", "depths", "trace_seconds", "frame_seconds" and "hash".
+    #[arg(long)]
+    json: bool,
 }
 
 /// The values of `--kernel`: a [`Kernel`] with help for each.
@@ -109,9 +117,17 @@ pub(super) fn run(args: &BenchArgs) -> CommandResult {
     // The trees are built in the same pool, so that `--threads` also applies to the measured time of the build.
     on_threads(args.threads, || {
         let (name, scene) = args.scene()?;
-        write_stdout(tree_line(&name, &scene).as_bytes())?;
+        let (built, bytes) = build(&scene);
+        let samples = NonZeroU32::new(args.samples).unwrap_or(NonZeroU32::MIN);
+        if args.json {
+            let round = || Round::measured(args.kernel.kernel(), &scene, resolution, samples).as_json();
+            let rounds: Vec<_> = (0..args.rounds).map(|_| round()).collect();
+            return json::print(
+                &json!({ "scene": name, "build_seconds": built, "tree_bytes": bytes, "rounds": rounds }),
+            );
+        }
+        write_stdout(format!("{name}: built in {built:.3} s, {bytes} bytes\n").as_bytes())?;
         for number in 1..=args.rounds {
-            let samples = NonZeroU32::new(args.samples).unwrap_or(NonZeroU32::MIN);
             // Each round is printed as soon as it ends, so that an interrupted bench has shown its results so far.
             let round = Round::measured(args.kernel.kernel(), &scene, resolution, samples);
             write_stdout(round.line(number).as_bytes())?;
@@ -120,14 +136,13 @@ pub(super) fn run(args: &BenchArgs) -> CommandResult {
     })?
 }
 
-/// Returns the line about the scene's trees: the time of a build and their size.
-fn tree_line(name: &str, scene: &Scene) -> String {
+/// Builds the scene's trees, and returns the time in seconds and their size in bytes.
+fn build(scene: &Scene) -> (f64, usize) {
     // The trees are built a second time to be timed: loading the scene includes parsing it.
     let objects = scene.objects().to_vec();
     let start = Instant::now();
     let again = Scene::new(*scene.camera(), objects);
-    let built = start.elapsed();
-    format!("{name}: built in {:.3} s, {} bytes\n", built.as_secs_f64(), again.tree_bytes())
+    (start.elapsed().as_secs_f64(), again.tree_bytes())
 }
 
 /// The ray counts and times of one round.
@@ -148,6 +163,15 @@ impl Round {
         // Without the black box the optimiser removes the tone mapping, whose result is not used.
         std::hint::black_box(tone(&light, scene));
         Self { counts, trace, frame: start.elapsed(), hash: light.hash() }
+    }
+
+    fn as_json(&self) -> Value {
+        let Counts { rays, hits, lit, depths } = self.counts;
+        let (trace, frame) = (self.trace.as_secs_f64(), self.frame.as_secs_f64());
+        json!({
+            "rays": rays, "hits": hits, "lit": lit, "depths": depths,
+            "trace_seconds": trace, "frame_seconds": frame, "hash": format!("{:016x}", self.hash),
+        })
     }
 
     fn line(&self, number: u32) -> String {

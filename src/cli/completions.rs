@@ -8,6 +8,8 @@ mod values;
 mod zsh;
 
 use super::Cli;
+use super::help;
+use super::manual;
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 use termtrace::internals::text::closest;
@@ -65,10 +67,8 @@ pub(super) fn man(args: &ManArgs) -> CommandResult {
     let page = command_named(Cli::command(), args.command.as_deref())?;
     // What the summary leaves out has no text otherwise.
     let page = page.mut_args(|arg| arg.hide_short_help(false));
-    let mut roff = Vec::new();
-    let written = clap_mangen::Man::new(page).render(&mut roff);
-    written.map_err(|error| Failure::runtime("the man page", reason(&error)))?;
-    write_stdout(&roff)
+    let roff = manual::page(page, help::EXIT_STATUS);
+    write_stdout(&roff.map_err(|error| Failure::runtime("the man page", reason(&error)))?)
 }
 
 /// Returns the command of this name with all its arguments; without a name, the whole program.

@@ -1,12 +1,16 @@
 //! `termtrace config`: prints every setting with its effective value and its source, or the keys.
 
+use super::json;
 use super::outcome::{CommandResult, write_stdout};
 use super::settings::files::path_of;
 use super::settings::{EffectiveSetting, NoConfig, SettingArgs, Settings, keys};
 use clap::{ArgMatches, Args};
+use serde_json::{Map, Value, json};
 use std::fmt::Write;
 use termtrace::internals::text::visible_lines;
 use unicode_width::UnicodeWidthStr;
+
+const USER_FILES: [&str; 2] = ["config.ron", "keys.ron"];
 
 const EXAMPLES: &str = "\
 Examples:
@@ -27,6 +31,11 @@ pub(super) struct ConfigArgs {
     /// Print the keys instead, in the form of keys.ron
     #[arg(long, help_heading = None)]
     keys: bool,
+    /// Print JSON
+    ///
+    /// "settings" has each setting's "value" and "source", "files" each file's "path" and "status".
+    #[arg(long, help_heading = None, conflicts_with = "keys")]
+    json: bool,
 }
 
 pub(super) fn run(args: &ConfigArgs, given: &ArgMatches) -> CommandResult {
@@ -36,6 +45,9 @@ pub(super) fn run(args: &ConfigArgs, given: &ArgMatches) -> CommandResult {
         return write_stdout(keymap.to_ron().as_bytes());
     }
     let settings = Settings::gather(given)?;
+    if args.json {
+        return json::print(&as_json(&settings, no_config));
+    }
     // The width is in terminal columns, because a value from the environment may contain wide characters.
     let width = settings.effective.iter().map(|held| held.value.width()).max().unwrap_or(0);
     let mut text = String::new();
@@ -43,7 +55,7 @@ pub(super) fn run(args: &ConfigArgs, given: &ArgMatches) -> CommandResult {
         let _ = writeln!(text, "{name:<16}{value:<width$}  {source}");
     }
     text.push('\n');
-    for name in ["config.ron", "keys.ron"] {
+    for name in USER_FILES {
         let _ = writeln!(text, "{name:<16}{}", status(name, no_config));
     }
     // Made printable, because paths and environment variables may contain escape sequences.
@@ -61,4 +73,14 @@ fn status(name: &str, is_ignored: bool) -> String {
         false => "does not exist",
     };
     format!("{} ({found})", path.display())
+}
+
+fn as_json(settings: &Settings, no_config: bool) -> Value {
+    let held = settings.effective.iter();
+    let held = held.map(|held| (held.name.clone(), json!({ "value": held.value, "source": held.source.to_string() })));
+    let files = USER_FILES.map(|name| {
+        let path = path_of(name).map(|path| path.to_string_lossy().into_owned());
+        (name.to_owned(), json!({ "path": path, "status": status(name, no_config) }))
+    });
+    json!({ "settings": held.collect::<Map<_, _>>(), "files": Map::from_iter(files) })
 }

@@ -1,9 +1,11 @@
 //! `termtrace describe`: describes a picture in words, for people who cannot see it.
 
+use super::json;
 use super::outcome::{CommandResult, write_stdout};
 use super::picture::{check_pixel_count, parse_size};
 use super::scene_args::SceneArgs;
 use clap::Args;
+use serde_json::json;
 use termtrace::internals::text::visible;
 use termtrace::{Resolution, describe};
 
@@ -25,6 +27,12 @@ pub(super) struct DescribeArgs {
     /// The size of the screen, in cells
     #[arg(long, help_heading = "Picture", value_name = "COLSxROWS", default_value = "80x24", value_parser = parse_size)]
     size: (u32, u32),
+    /// Print JSON
+    ///
+    /// The fields are "scene", "camera" (eye, target, up), "objects" and "lights" (their numbers),
+    /// and "lines", the description.
+    #[arg(long, help_heading = None)]
+    json: bool,
 }
 
 pub(super) fn run(args: &DescribeArgs) -> CommandResult {
@@ -36,5 +44,13 @@ pub(super) fn run(args: &DescribeArgs) -> CommandResult {
     let scene = args.scene.load()?;
     let name = visible(&args.scene.name());
     let text = args.scene.on_threads(|| describe(&name, &scene, scene.camera(), resolution))?;
+    if args.json {
+        let lines: Vec<_> = text.lines().collect();
+        let (objects, lights) = (scene.objects().len(), scene.lights().len());
+        let camera = json::camera(scene.camera());
+        return json::print(
+            &json!({ "scene": name, "camera": camera, "objects": objects, "lights": lights, "lines": lines }),
+        );
+    }
     write_stdout(text.as_bytes())
 }

@@ -4,6 +4,7 @@
 mod card;
 mod report;
 
+use super::json;
 use super::outcome::{CommandResult, Failure, reason, write_stdout};
 use super::settings::{NoConfig, Settings, TerminalArgs};
 use clap::{ArgMatches, Args};
@@ -24,6 +25,11 @@ pub(super) struct DoctorArgs {
     _terminal: TerminalArgs,
     #[command(flatten)]
     _no_config: NoConfig,
+    /// Print JSON
+    ///
+    /// The fields are "term", "version" and "capabilities", each with "name", "value" and "source".
+    #[arg(long = "json", id = "json", help_heading = None)]
+    _json: bool,
 }
 
 /// Time limit for the terminal's replies. It is long because the command should also show the
@@ -49,6 +55,9 @@ pub(super) fn run(given: &ArgMatches) -> CommandResult {
     let findings = Findings::new(&hints, cell, questions.replies());
     let report =
         Report { settings: &settings, hints: &hints, findings: &findings, replies: questions.replies(), outcome };
+    if given.get_flag("json") {
+        return json::print(&report::as_json(&report));
+    }
     write_stdout(report::text(&report).as_bytes())?;
     // The test card consists of escape sequences, which only a terminal draws.
     if is_terminal { write_stdout(&card::bytes(&findings.capabilities())) } else { Ok(()) }

@@ -1,11 +1,13 @@
 //! `termtrace explain`: explains how the colour of one pixel is computed.
 
+use super::json;
 use super::outcome::{CommandResult, usage, write_stdout};
 use super::picture::SizeArgs;
 use super::scene_args::SceneArgs;
 use clap::Args;
+use serde_json::{Value, json};
 use termtrace::internals::explain::cell_of_pixel;
-use termtrace::{CellMode, explain};
+use termtrace::{CellMode, Explanation, explain};
 
 const MEANING: &str = "\
 The explanation uses the symbols of the lecture: the eye ray o + t d through the
@@ -31,6 +33,12 @@ pub(super) struct ExplainArgs {
     pixel: [u32; 2],
     #[command(flatten)]
     size: SizeArgs,
+    /// Print JSON
+    ///
+    /// The fields are "pixel", "resolution", "q", "origin" and "direction" of the ray, "hit" (t,
+    /// point, normal; null for the background), "light" (linear), "color" (8 bits), and "lines".
+    #[arg(long, help_heading = None)]
+    json: bool,
 }
 
 pub(super) fn run(args: &ExplainArgs) -> CommandResult {
@@ -45,7 +53,32 @@ pub(super) fn run(args: &ExplainArgs) -> CommandResult {
     let scene = args.scene.load()?;
     let explanation = explain(&scene, scene.camera(), resolution, args.pixel);
     let lines = explanation.lines().into_iter().chain([cell_of_pixel(args.pixel, mode)]);
+    if args.json {
+        return json::print(&as_json(&explanation, &lines.collect::<Vec<_>>()));
+    }
     write_stdout(lines.map(|line| line + "\n").collect::<String>().as_bytes())
+}
+
+fn as_json(explanation: &Explanation, lines: &[String]) -> Value {
+    let (ray, bytes) = (&explanation.ray, explanation.bytes);
+    let hit = explanation.hit.as_ref().map(|hit| {
+        json!({
+            "t": json::number(hit.hit.t),
+            "point": json::vector(hit.point.position),
+            "normal": json::vector(hit.point.shading_normal),
+        })
+    });
+    json!({
+        "pixel": explanation.pixel,
+        "resolution": [explanation.resolution.width(), explanation.resolution.height()],
+        "q": explanation.q.to_array().map(json::number),
+        "origin": json::vector(ray.origin),
+        "direction": json::vector(ray.direction),
+        "hit": hit,
+        "light": json::light(explanation.light),
+        "color": [bytes.r, bytes.g, bytes.b],
+        "lines": lines,
+    })
 }
 
 /// Parses a pixel's column and row, such as `40,24`.

@@ -1,6 +1,7 @@
 //! `termtrace frame`: one frame without a terminal. It reads nothing from the environment.
 
 mod golden;
+mod screen;
 
 use super::cells::CellArgs;
 use super::help::capitalized;
@@ -12,6 +13,7 @@ use super::scene_args::SceneArgs;
 use super::scene_source::warn_of_darkness;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use screen::Screen;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use termtrace::export::Format;
@@ -24,8 +26,9 @@ use termtrace::{CellMode, Colors};
 const DEFAULT: Format = Format::Text;
 
 const FILES: &str = "\
-A frame does not depend on the terminal or the environment: auto means the
-ramp without colours for text, and truecolor half blocks for ANSI, SVG and HTML.
+On a terminal a frame without --format fills the window, in the colours that the
+environment allows. Elsewhere it depends on neither: auto means the ramp without
+colours for text, and truecolor half blocks for ANSI, SVG and HTML.
 A golden frame (--check) of any format has 80x24 cells and one sample per pixel,
 unless flags say otherwise.";
 
@@ -81,12 +84,18 @@ fn format_parser() -> impl TypedValueParser<Value = Format> {
 }
 
 impl FrameArgs {
+    /// Returns the terminal to print on, if no flag decides the format or its file.
+    fn screen(&self) -> Option<Screen> {
+        let is_plain = self.format.is_none() && self.output.is_none() && self.check.is_none();
+        Screen::of_stdout(&self.cells).filter(|_| is_plain)
+    }
+
     /// Returns the format: from `--format`, or else from the extension of the file's name.
     fn format(&self) -> Result<Format, Failure> {
         match (self.format, self.output().or(self.check.as_deref())) {
             (Some(format), _) => Ok(format),
             (None, Some(path)) => format_by_ending(path),
-            (None, None) => Ok(DEFAULT),
+            (None, None) => Ok(self.screen().map_or(DEFAULT, |_| Format::Ansi)),
         }
     }
 
@@ -133,9 +142,11 @@ impl FrameArgs {
     /// Traces the frame and returns its bytes in `format`.
     fn contents(&self, format: Format) -> Result<Vec<u8>, Failure> {
         let scene = self.scene.load()?;
-        let mode = self.cell_mode(format);
+        let screen = self.screen();
+        let mode = screen.map_or_else(|| self.cell_mode(format), |screen| screen.mode);
         let kind = if self.check.is_some() { FrameKind::Cells } else { FrameKind::of(format) };
-        let resolution = self.picture.resolution(mode, kind)?;
+        let cells = screen.map(|screen| (screen.cells, screen.cell_aspect));
+        let resolution = self.picture.resolution(mode, kind, cells)?;
         // Only pictures have a scale: a grid of cells may have more pixels on the screen than a picture in memory.
         if format.has_pixels() {
             self.picture.check_scaled_pixel_count(resolution)?;

@@ -17,6 +17,12 @@ Keys (termtrace config --keys prints all of them):
   o                    save the picture to a file
   ?, q                 all keys, quit";
 
+/// The exit codes, with their heading.
+pub(super) const EXIT_STATUS: &str = "Exit status:
+  0  success
+  1  failure, or a difference found by frame --check
+  2  wrong arguments or a faulty scene";
+
 const EXAMPLES: &str = "\
 Examples:
   termtrace help frame

@@ -77,15 +77,20 @@ pub(super) struct PictureArgs {
 
 impl SizeArgs {
     pub(super) fn resolution(&self, mode: CellMode) -> Result<Resolution, Failure> {
+        self.resolution_in((80, 24), self.cell_aspect, mode)
+    }
+
+    /// Returns the resolution, by default that of a screen of this number of cells.
+    fn resolution_in(&self, screen: (u32, u32), cell_aspect: f32, mode: CellMode) -> Result<Resolution, Failure> {
         let (across, down) = mode.pixels_per_cell();
-        let (columns, rows) = self.size.unwrap_or((80, 24));
+        let (columns, rows) = self.size.unwrap_or(screen);
         let (width, height) = self.pixels.unwrap_or((columns.saturating_mul(across), rows.saturating_mul(down)));
         // The numbers of columns and rows of a `Grid` are u16.
         let limit = u32::from(u16::MAX);
         if width > across * limit || height > down * limit {
             return Err(too_large(width.into(), height.into()));
         }
-        let pixel_aspect = self.cell_aspect * across as f32 / down as f32;
+        let pixel_aspect = cell_aspect * across as f32 / down as f32;
         let resolution = Resolution::new(width, height).and_then(|square| square.with_pixel_aspect(pixel_aspect));
         resolution.map_err(|_| too_large(width.into(), height.into()))
     }
@@ -93,7 +98,19 @@ impl SizeArgs {
 
 impl PictureArgs {
     /// Returns the size of a frame of this kind.
-    pub(super) fn resolution(&self, mode: CellMode, kind: FrameKind) -> Result<Resolution, Failure> {
+    ///
+    /// The default is that of `screen`, if given: its columns and rows, and the height of a cell over its width.
+    pub(super) fn resolution(
+        &self,
+        mode: CellMode,
+        kind: FrameKind,
+        screen: Option<((u32, u32), f32)>,
+    ) -> Result<Resolution, Failure> {
+        if let Some((cells, aspect)) = screen {
+            let given = self.size.cell_aspect;
+            let aspect = if given == USUAL_CELL_ASPECT { aspect } else { given };
+            return self.size.resolution_in(cells, aspect, mode);
+        }
         let is_default = self.size.size.is_none() && self.size.pixels.is_none() && self.scale.is_none();
         // The default size is one of square pixels, for which the shape of cells has no meaning.
         kind.resolution().filter(|_| is_default).map_or_else(|| self.size.resolution(mode), Ok)

@@ -125,7 +125,7 @@ impl RecordArgs {
             self.scene.refuse_overwriting(&[&self.path], output)?;
         }
         let kind = format.kind();
-        let resolution = self.picture.resolution(CellMode::HALF_BLOCK, kind)?;
+        let resolution = self.picture.resolution(CellMode::HALF_BLOCK, kind, None)?;
         let fps = self.fps.unwrap_or(if kind == FrameKind::Gif { GIF_FPS } else { CAST_FPS });
         self.check_flags(&format, resolution, fps)?;
         let scene = self.scene.load()?;

@@ -2,7 +2,6 @@
 
 use super::survey::PictureRect;
 use crate::color::{LinearRgb, Oklab, Srgb8};
-use crate::text::number;
 use glam::Vec3;
 
 /// Colours that have a common English name.
@@ -55,19 +54,22 @@ pub(super) fn color(light: LinearRgb) -> &'static str {
     nearest.map_or("", |(name, _)| name)
 }
 
+/// Formats a number as prose does: without an exponent.
+pub(super) fn number(value: f32) -> String {
+    let text = crate::text::number(value);
+    // The standard library's own format has no exponents.
+    text.parse::<f64>().map_or(text, |number| number.to_string())
+}
+
 /// Formats a point as a scene file writes it.
 pub(super) fn points(point: Vec3) -> String {
     format!("({}, {}, {})", number(point.x), number(point.y), number(point.z))
 }
 
-/// Describes a range of distances: "from 2 away on" if the farthest is over 1.5 times as far,
+/// Describes a range of distances: "nearest 2" if the farthest is over 1.5 times as far,
 /// otherwise "2 away".
 pub(super) fn distance(nearest: f32, farthest: f32) -> String {
-    if farthest > 1.5 * nearest {
-        format!("from {} away on", number(nearest))
-    } else {
-        format!("{} away", number(nearest))
-    }
+    if farthest > 1.5 * nearest { format!("nearest {}", number(nearest)) } else { format!("{} away", number(nearest)) }
 }
 
 /// Formats `part` out of `of` as a percentage.

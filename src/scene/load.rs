@@ -52,7 +52,7 @@ impl Scene {
     /// use termtrace::Scene;
     ///
     /// let error = Scene::from_bytes("photo.png", b"\x89PNG\r\n\x1a\n\0\0").unwrap_err();
-    /// assert!(error.to_string().contains("not a text file"));
+    /// assert!(error.to_string().contains("not a format termtrace reads"));
     /// ```
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 //!
 //! Bytes that are not text are a fault.
 
+use super::foreign;
 use super::parser::parse_or_cancel;
 use super::{Fault, Faults, MAX_TEXT_BYTES, SceneError, Span, SyntaxNode};
 use crate::progress::{Meter, Reporter, Unfinished};
@@ -55,6 +56,9 @@ pub(crate) fn read_or_cancel<'a, T>(
 /// # Errors
 /// If there are more than [`MAX_TEXT_BYTES`], or they are not UTF-8, or contain a NUL.
 pub fn text_from<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, SceneError> {
+    if let Some(message) = foreign::message(name, bytes) {
+        return Err(SceneError::new(name, "", fault_at(0, message)));
+    }
     decode(bytes).map_err(|fault| {
         // A file that is not text from its first byte on has no line that would help in a message.
         let shown = if fault.span.start == 0 { &[] } else { bytes };

@@ -107,5 +107,7 @@ fn bounds_of(mesh: &Mesh) -> Bounds {
 /// Returns the size of a box along each axis, in words.
 pub(super) fn size_in_words(bounds: &Bounds) -> String {
     let Vec3 { x, y, z } = bounds.extent();
-    format!("{} by {} by {} in x, y and z", number(x), number(y), number(z))
+    // Prose has no exponents, and neither does the standard library's format.
+    let [wide, high, deep] = [x, y, z].map(|side| number(side).parse::<f64>().unwrap_or(f64::from(side)));
+    format!("{wide} wide, {high} high, {deep} deep")
 }

@@ -316,7 +316,9 @@ fn meant_field(name: &str, known: &[&'static str]) -> Option<&'static str> {
         ("color", "material"),
         ("color", "reflectance"),
     ];
-    closest(name, known.iter().copied()).or_else(|| {
+    // `pos` for `position`. A letter or two begin too many names.
+    let longer = || known.iter().find(|known| name.len() >= 3 && known.starts_with(name)).copied();
+    closest(name, known.iter().copied()).or_else(longer).or_else(|| {
         let meant = ALSO_CALLED.iter().filter(|(other, _)| *other == name).map(|&(_, meant)| meant);
         meant.into_iter().find(|meant| known.contains(meant))
     })

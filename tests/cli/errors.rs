@@ -69,6 +69,36 @@ fn files_that_are_no_scenes_are_errors() {
     }
 }
 
+#[test]
+fn formats_that_are_not_read_are_named() {
+    let folder = Folder::new();
+    folder.write("a.fbx", b"Kaydara FBX Binary  \0");
+    folder.write("b.3mf", b"PK\x03\x04\0\0");
+    folder.write("c.off", "OFF\n3 1 0\n");
+    folder.write("blend", b"BLENDER-v300");
+    folder.write("cow", "v 1 2 3\nf 1 1 1\n");
+    for (file, told) in [
+        ("a.fbx", "FBX: not a format termtrace reads; it reads RON, OBJ, STL, PLY, glTF and GLB"),
+        ("b.3mf", "3MF: not a format"),
+        ("c.off", "OFF: not a format"),
+        ("blend", "Blender: not a format"),
+        ("cow", "this looks like OBJ, which is read from files whose names end in .obj"),
+    ] {
+        folder.run(&format!("check {file}")).fails_in_a_line(2, told);
+    }
+    folder.write("scene.off", BALL);
+    folder.run("check scene.off").done();
+}
+
+#[test]
+fn the_start_of_a_name_is_enough_for_a_suggestion() {
+    let folder = Folder::new();
+    folder.write("a.ron", BALL.replace("position:", "pos:"));
+    let run = folder.run("check a.ron");
+    run.fails(2, "unknown field \"pos\"; did you mean \"position\"?");
+    assert!(!run.stderr.contains("has no position") && run.stderr.lines().count() == 3, "one error: {}", run.stderr);
+}
+
 /// A file without permission to read is an error. Root may read every file, and cannot test this.
 #[test]
 fn files_without_read_permission_are_errors() {
@@ -209,6 +239,19 @@ fn on_a_terminal(folder: &Folder, arguments: &str) -> (String, Vec<String>) {
     session.wait_exit(std::time::Duration::from_secs(60));
     let seen = session.seen();
     (String::from_utf8_lossy(seen.bytes()).into_owned(), seen.screen().text())
+}
+
+/// One row is left for the prompt.
+#[test]
+fn a_frame_fills_a_terminal_in_color() {
+    let folder = Folder::new();
+    let (bytes, screen) = on_a_terminal(&folder, "termtrace frame ball.ron");
+    assert!(bytes.contains("\x1b[38;2;") && bytes.matches('\n').count() == 23, "{bytes:?}");
+    assert!(screen[22].contains('▄') && screen[23].trim().is_empty(), "{screen:?}");
+    let (bytes, _) = on_a_terminal(&folder, "termtrace frame ball.ron --format text");
+    assert!(!bytes.contains('\x1b'), "{bytes:?}");
+    let (bytes, _) = on_a_terminal(&folder, "termtrace frame ball.ron | cat");
+    assert!(!bytes.contains('\x1b'), "{bytes:?}");
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod explain;
 mod formats;
 mod golden;
 mod inputs;
+mod json;
 mod maps;
 mod meshes;
 mod outputs;

@@ -137,7 +137,10 @@ fn zsh_completes_files_options_and_values() {
 fn the_manual_has_a_page_for_each_command() {
     let folder = Folder::new();
     let page = folder.run("man").text();
-    assert!(page.contains(".TH termtrace 1") && page.contains("Exit status"), "{page}");
+    assert!(page.contains(".TH termtrace 1"), "{page}");
+    for section in ["OPTIONS", "CAMERA", "KEYS", "FILES", "ENVIRONMENT", "EXAMPLES", "EXIT STATUS"] {
+        assert!(page.contains(&format!("\n.SH {section}\n")), "{section}: {page}");
+    }
     for command in COMMANDS {
         assert!(page.contains(&format!("termtrace\\-{command}(1)")), "{command}: {page}");
         let page = folder.run(&format!("man {command}")).text();
@@ -145,6 +148,25 @@ fn the_manual_has_a_page_for_each_command() {
     }
     folder.run("man fram").fails_in_a_line(2, "there is no command \"fram\"; did you mean \"frame\"?");
     folder.run("man nothing").fails_in_a_line(2, "there is no command \"nothing\"");
+}
+
+/// The pages have no fault that `man --warnings` reports.
+#[test]
+fn man_formats_each_page_without_warnings() {
+    if !is_installed("man") {
+        return;
+    }
+    let folder = Folder::new();
+    for command in COMMANDS.into_iter().chain([""]) {
+        let name = format!("termtrace{command}.1");
+        folder.write(&name, folder.run(&format!("man {command}")).done());
+        let mut man = Command::new("man");
+        man.args(["--warnings", "-E", "UTF-8", "-Tutf8", "-Z", "-l", &name])
+            .env("LC_ALL", "C.UTF-8")
+            .env("MANWIDTH", "80");
+        let run = finish(man.current_dir(folder.path(".")));
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{command}");
+    }
 }
 
 /// A link that leads nowhere, or in a circle, is in its folder, but is no file to suggest.

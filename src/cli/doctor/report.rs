@@ -1,6 +1,7 @@
 //! The table of what was detected about the terminal.
 
 use crate::cli::settings::Settings;
+use serde_json::{Value, json};
 use std::fmt::Write;
 use std::time::Duration;
 use termtrace::Colors;
@@ -36,6 +37,17 @@ pub(super) fn text(report: &Report<'_>) -> String {
     }
     // Made printable, because TERM and the locale come from the environment and may contain escape sequences.
     visible_lines(&text)
+}
+
+/// Returns the table as JSON.
+pub(super) fn as_json(report: &Report<'_>) -> Value {
+    let rows = report.rows().into_iter();
+    let rows = rows.map(|(name, value, source)| json!({ "name": name, "value": value, "source": source }));
+    json!({
+        "term": report.hints.variable("TERM"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "capabilities": rows.collect::<Vec<_>>(),
+    })
 }
 
 /// A row of the table: a capability, its value, and the source that decided the value.
