@@ -45,8 +45,10 @@ pub type GlyphChoice = Option<Glyphs>;
 
 /// Returns the colours to use.
 ///
-/// The first source with a value decides: the flag; `NO_COLOR`; `COLORTERM`; the terminal's reply; terminfo's truecolor
-/// flags; the name in `TERM`, if it implies truecolor; terminfo's number; the name. `CLICOLOR_FORCE`, `FORCE_COLOR` and
+/// The first source with a value decides: the user's choice; `NO_COLOR`; `COLORTERM`; the terminal's reply; terminfo's
+/// truecolor
+/// flags; the name in `TERM`, if it implies truecolor; terminfo's number of colours; the name. `CLICOLOR_FORCE`,
+/// `FORCE_COLOR` and
 /// `--color=always` set a minimum.
 // `COLORTERM` precedes the reply, because it is known before the first frame. The reply precedes terminfo, because many
 // terminals with truecolor use the entry `xterm-256color`.
@@ -64,9 +66,10 @@ pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {
     least.filter(|least| least.value > found.value).unwrap_or(found)
 }
 
-/// Returns the glyphs to use.
+/// Returns the glyphs to use: the user's choice, if there is one, else half blocks or letter
+/// shapes.
 ///
-/// They are half blocks, unless the locale cannot encode them or there are no colours.
+/// The shapes are for locales that cannot encode half blocks, and for terminals without colours.
 pub fn glyphs(choice: GlyphChoice, colors: Detected<Colors>, clues: &Clues<'_>) -> Detected<Glyphs> {
     if let Some(value) = choice {
         return Detected { value, source: Source::User };

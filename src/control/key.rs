@@ -46,7 +46,7 @@ impl Key {
         Self { code: KeyCode::Char(c), ctrl: true }
     }
 
-    /// Returns a key that types no character.
+    /// Returns the key with this code, without Ctrl.
     pub const fn named(code: KeyCode) -> Self {
         Self { code, ctrl: false }
     }

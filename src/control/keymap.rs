@@ -216,8 +216,8 @@ impl Keymap {
         self.bindings.iter().filter(move |row| row.mode == mode)
     }
 
-    /// Binds a key to a command in a mode instead of its previous one; with `None`, unbinds the
-    /// key.
+    /// Binds a key to a command in a mode, instead of the key's previous command; `None` unbinds
+    /// it.
     pub fn bind(&mut self, mode: KeyMode, key: Key, command: Option<Command>) {
         for row in self.bindings.iter_mut().filter(|row| row.mode == mode) {
             row.keys.retain(|bound| *bound != key);

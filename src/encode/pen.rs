@@ -164,8 +164,10 @@ impl Pen {
         underline + if codes == 0 { 0 } else { 2 + codes }
     }
 
-    /// Switches to the pen `wanted`: appends one sequence, and another if the underline's colour
-    /// changes.
+    /// Switches to the pen `wanted`: appends a reset if that is the default pen, else sequences for
+    /// the differences.
+    ///
+    /// The underline's colour has a sequence of its own.
     pub(super) fn switch_to(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
         if *self != wanted && wanted == Self::default() {
             bytes.extend_from_slice(SGR_RESET);

@@ -12,8 +12,8 @@ use std::time::Duration;
 
 /// Greatest number of queries that are kept after their timeout, because late replies may arrive
 /// for them.
-// While the first picture is on its way through a very slow link, a query is sent every 150 to 200 ms for 10 s, and all
-// of them may be answered late.
+// While the first picture is on its way through a very slow link, a query is sent every 150 to 200 ms for 10 s. These
+// are 50 to 67 queries, all of which may be answered late. (If 67 are sent, the oldest three are forgotten.)
 const MAX_TIMED_OUT_QUERIES: usize = 64;
 
 /// The kind of query that ends a frame.
@@ -142,7 +142,7 @@ impl Ledger {
         self.queries.iter().any(|query| query.timed_out && query.query.is_counted())
     }
 
-    /// Returns the time at which the last query was sent.
+    /// Returns the time at which the newest unanswered query was sent; `None` if there is none.
     pub(super) fn last_sent(&self) -> Option<Duration> {
         self.queries.back().map(|query| query.sent)
     }

@@ -164,10 +164,12 @@ impl ExplainPanel {
     }
 }
 
-/// Returns lines on why the frame's colour at pixel `[x, y]` differs from the explained ray's;
-/// empty if it does not.
+/// Returns lines on why the shaded picture's colour at pixel `[x, y]` differs from the explained
+/// ray's.
+///
+/// Empty if the colours are equal, and for a frame with any other map.
 fn notes(frame: &Frame, [x, y]: [u32; 2], explanation: &Explanation) -> Vec<String> {
-    // Frames of maps have legends, and show the explained ray's value rather than a mean.
+    // Frames of maps have legends. A map's value is that of a single ray, so no mean is to be explained.
     if !frame.legends.is_empty() {
         return Vec::new();
     }

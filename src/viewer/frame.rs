@@ -53,7 +53,7 @@ pub(crate) struct Frame {
     // Empty for one map and for two side by side, to save memory.
     pub(crate) parts: Vec<Picture>,
     pub(crate) sampling: Sampling,
-    /// The legends of the maps, from left to right; empty where the picture shows light.
+    /// The legends of the maps, from left to right; empty for the shaded picture alone.
     pub(crate) legends: Vec<String>,
     /// Whether this frame has the same shot as the frame before, with more samples.
     pub(crate) refines: bool,

@@ -1,11 +1,11 @@
-//! The mouse pointer, and what it drags.
+//! The mouse pointer, and the thing that a drag moves.
 
 use crate::control::{Gesture, Pointer};
 use crossterm::event::MouseEvent;
 use glam::Vec2;
 use std::time::Duration;
 
-/// The mouse pointer, and what the current or last drag moves.
+/// The mouse pointer, and the thing that the current or last drag moves.
 #[derive(Default)]
 pub(super) struct PointerState {
     pointer: Pointer,
@@ -16,14 +16,14 @@ pub(super) struct PointerState {
     object: Option<u32>,
 }
 
-/// The thing that a drag moves.
+/// The thing that moves while the mouse is dragged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum DragTarget {
     #[default]
     View,
-    /// The line between the two maps of a wipe.
+    /// The line between the two maps of a wipe, which can be moved to the left and right.
     Line,
-    /// The cursor of the explanation.
+    /// The cursor that marks the explained pixel; it follows the pointer.
     Cursor,
     Light,
 }

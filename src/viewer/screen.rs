@@ -269,8 +269,8 @@ impl Screen {
         self.get::<ProgressPanel>().is_some()
     }
 
-    /// Returns whether a screen of this size can be drawn: the last frame has this size, or a scene
-    /// is loading.
+    /// Returns whether a screen of this size can be drawn: the last frame has this size, or there
+    /// is no frame and a scene is loading.
     ///
     /// Without any frame, panels about the loading are drawn on black.
     fn can_show(&self, size: Size) -> bool {

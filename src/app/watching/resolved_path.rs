@@ -117,7 +117,7 @@ impl Name {
     }
 }
 
-/// Returns the components of a path in reverse order.
+/// Returns the components of a path as a stack to pop from: the path's first component is on top.
 fn components_reversed(path: &Path) -> Vec<Name> {
     let name = |part: Component<'_>| match part {
         Component::RootDir => Some(Name::Root),
@@ -125,6 +125,6 @@ fn components_reversed(path: &Path) -> Vec<Name> {
         Component::Normal(name) => Some(Name::In(name.to_owned())),
         Component::CurDir | Component::Prefix(_) => None,
     };
-    // The last component comes first, so that the list is a stack onto which the target of a link is pushed.
+    // When a link is resolved, the components of its target are pushed onto the stack.
     path.components().rev().filter_map(name).collect()
 }
