@@ -200,7 +200,7 @@ impl fmt::Debug for Painter {
 impl Painter {
     /// Returns a painter for a terminal with light text on a dark background.
     pub fn new(mode: CellMode) -> Self {
-        Self { mode, light_background: false, inks: InkConverter::of(mode.colors) }
+        Self { mode, light_background: false, inks: InkConverter::for_colors(mode.colors) }
     }
 
     /// Sets whether the terminal's background is light.

@@ -40,7 +40,7 @@ const MAX_LISTED: usize = 10;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn describe(name: &str, scene: &Scene, camera: &Camera, resolution: Resolution) -> String {
-    let description = Description { scene, camera, survey: Survey::of(scene, camera, resolution) };
+    let description = Description { scene, camera, survey: Survey::of_picture(scene, camera, resolution) };
     let mut text = description.introduction(name);
     for part in [
         description.visible_objects(resolution),

@@ -227,7 +227,7 @@ impl Encoder {
     ///
     /// Returns the cursor's position, or `None` where terminals differ about it.
     fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<CellPosition> {
-        let Some(caps) = lossy::QualityCaps::of(allowance.quality) else { return self.draw(wanted, bytes) };
+        let Some(caps) = lossy::QualityCaps::for_quality(allowance.quality) else { return self.draw(wanted, bytes) };
         self.change_times.record(wanted, allowance.now);
         let known = self.take_state(wanted.size(), bytes);
         let has_waited = |at| self.change_times.exact_at(at) <= allowance.now;

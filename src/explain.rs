@@ -159,7 +159,7 @@ fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit) -> ShadedHit {
     let point = hit.surface(scene).at_crossing(&trace.ray, hit.t);
     ShadedHit {
         hit,
-        name: SurfaceName::of(scene, hit.object, hit.primitive),
+        name: SurfaceName::of_primitive(scene, hit.object, hit.primitive),
         point,
         ambient: scene.ambient(),
         lights: scene.lights().iter().map(|light| light_contribution(scene, light, &point)).collect(),
@@ -179,7 +179,7 @@ fn light_contribution(scene: &Scene, light: &Light, point: &SurfacePoint) -> Lig
     LightContribution {
         light: *light,
         incidence,
-        blocker: blocker.map(|hit| (SurfaceName::of(scene, hit.object, hit.primitive), hit.t)),
+        blocker: blocker.map(|hit| (SurfaceName::of_primitive(scene, hit.object, hit.primitive), hit.t)),
     }
 }
 
@@ -209,7 +209,7 @@ impl TestRecorder {
         tests.sort_by(|a, b| t(a).total_cmp(&t(b)).then(order(a).cmp(&order(b))));
         let tested = |PrimitiveTest { object, primitive, t }| {
             let equation = scene.objects()[object as usize].shape.primitive(primitive).equation(ray);
-            TestedSurface { name: SurfaceName::of(scene, object, primitive), t, equation }
+            TestedSurface { name: SurfaceName::of_primitive(scene, object, primitive), t, equation }
         };
         tests.into_iter().map(tested).collect()
     }

@@ -143,7 +143,7 @@ impl Parser {
         // One byte at a time, so that the result cannot depend on how the bytes are split. Speed does not matter: input
         // is rare and short.
         for &byte in bytes {
-            self.take(byte, out);
+            self.take_byte(byte, out);
         }
     }
 
@@ -181,7 +181,7 @@ impl Parser {
         }
     }
 
-    fn take(&mut self, byte: u8, out: &mut Vec<Input>) {
+    fn take_byte(&mut self, byte: u8, out: &mut Vec<Input>) {
         if self.late.is_some() && !self.continues_late_sequence(byte) {
             self.reset();
         }

@@ -166,12 +166,12 @@ impl Link {
     pub fn free_at(&self, now: Duration) -> Duration {
         // A query without a frame measures the link's round trip, so it is not sent while other bytes may be queued.
         let free_at = if self.replies.is_probe_due(now) { self.drained_at } else { self.free_at };
-        free_at.max(self.has_room_at(now))
+        free_at.max(self.next_frame_allowed_at(now))
     }
 
     /// Returns the time from which the state of the replies allows another frame, if no reply
     /// arrives before.
-    fn has_room_at(&self, now: Duration) -> Duration {
+    fn next_frame_allowed_at(&self, now: Duration) -> Duration {
         match self.replies.state {
             State::Resyncing { .. } if self.replies.lacks_rate() => self.replies.initial_window.opens_at(true),
             State::Unqueried | State::Silent | State::Resyncing { .. } => Duration::ZERO,

@@ -177,8 +177,8 @@ pub trait SoaLeaf: Copy {
     /// Packs up to eight surfaces.
     fn of(shapes: &[Self::Shape]) -> Self;
 
-    /// Loads the surface of each lane, for tests against one ray in all lanes.
-    fn load<N: Lanes>(&self) -> Self::Of<N>;
+    /// Returns the up to eight surfaces, one per lane, for tests against one ray in all lanes.
+    fn one_per_lane<N: Lanes>(&self) -> Self::Of<N>;
 
     /// Returns the surface of `lane` in all lanes, for tests against eight rays.
     fn splat<N: Lanes>(&self, lane: usize) -> Self::Of<N>;

@@ -1,7 +1,7 @@
 //! The build of the tree: a binary tree from the root down, which is then collapsed into nodes with
 //! eight children.
 
-use super::cut::{Around, Halves, Item, cut, item};
+use super::cut::{Halves, Item, ItemBounds, cut, item};
 use super::wide::{BinaryNode, Wide};
 use super::{Bvh, Leaves};
 use crate::bounds::Bounds;
@@ -19,8 +19,8 @@ pub(super) fn build<E: Send>(boxes: &[Bounds], report: Report<'_, E>) -> Result<
         return Ok((Bvh::default(), Leaves::default()));
     }
     let mut items: Vec<Item> = (0..).zip(boxes).map(item).collect();
-    let around = Around::of(&items);
-    let pairs = build_subtree(&mut items, &around, Place { first: 0, depth: 0 }, report)?;
+    let bounds = ItemBounds::of(&items);
+    let pairs = build_subtree(&mut items, &bounds, Place { first: 0, depth: 0 }, report)?;
     let mut wide = Wide::of(&pairs);
     let root = Some(wide.append_node(0));
     // The items were partitioned in place, so they are in the order of the leaves.
@@ -43,52 +43,52 @@ impl Place {
     }
 }
 
-/// Returns the binary tree over `items`, whose bounds are `around`.
+/// Returns the binary tree over `items`, whose bounds are `bounds`.
 // Large halves are built in parallel. They can be joined unchanged, as a node stores the distance to its second child,
 // not the child's index.
 fn build_subtree<E: Send>(
     items: &mut [Item],
-    around: &Around,
+    bounds: &ItemBounds,
     at: Place,
     report: Report<'_, E>,
 ) -> Result<Vec<BinaryNode>, E> {
     if items.len() < MIN_TASK_ITEMS {
         let mut nodes = Vec::with_capacity(items.len());
-        append_subtree(items, around, at, &mut nodes);
+        append_subtree(items, bounds, at, &mut nodes);
         return report(items.len()).map(|()| nodes);
     }
     // A report without progress, so that a large build can be cancelled between subtrees.
     report(0)?;
-    let bounds = around.boxes.bounds();
-    let Halves { cut, around } = cut(items, around, at.depth).unwrap_or_else(|| Halves::at(items.len() / 2, items));
+    let node_bounds = bounds.boxes.bounds();
+    let Halves { cut, bounds } = cut(items, bounds, at.depth).unwrap_or_else(|| Halves::at(items.len() / 2, items));
     let (left, right) = items.split_at_mut(cut);
     let [at_left, at_right] = at.halves(cut);
     let (left, right) = threads::join(
-        || build_subtree(left, &around[0], at_left, report),
-        || build_subtree(right, &around[1], at_right, report),
+        || build_subtree(left, &bounds[0], at_left, report),
+        || build_subtree(right, &bounds[1], at_right, report),
     );
     let (left, right) = (left?, right?);
     let mut nodes = Vec::with_capacity(1 + left.len() + right.len());
-    nodes.push(BinaryNode { bounds, count: 0, at: 1 + left.len() as u32 });
+    nodes.push(BinaryNode { bounds: node_bounds, count: 0, at: 1 + left.len() as u32 });
     nodes.extend(left);
     nodes.extend(right);
     Ok(nodes)
 }
 
 /// Appends the binary tree over `items` to `nodes`, on one thread.
-fn append_subtree(items: &mut [Item], around: &Around, at: Place, nodes: &mut Vec<BinaryNode>) {
-    let bounds = around.boxes.bounds();
-    let Some(Halves { cut, around }) = cut(items, around, at.depth) else {
-        nodes.push(BinaryNode { bounds, count: items.len() as u32, at: at.first as u32 });
+fn append_subtree(items: &mut [Item], bounds: &ItemBounds, at: Place, nodes: &mut Vec<BinaryNode>) {
+    let node_bounds = bounds.boxes.bounds();
+    let Some(Halves { cut, bounds }) = cut(items, bounds, at.depth) else {
+        nodes.push(BinaryNode { bounds: node_bounds, count: items.len() as u32, at: at.first as u32 });
         return;
     };
     let number = nodes.len();
-    nodes.push(BinaryNode { bounds, count: 0, at: 0 });
+    nodes.push(BinaryNode { bounds: node_bounds, count: 0, at: 0 });
     let (left, right) = items.split_at_mut(cut);
     let [at_left, at_right] = at.halves(cut);
-    append_subtree(left, &around[0], at_left, nodes);
+    append_subtree(left, &bounds[0], at_left, nodes);
     nodes[number].at = (nodes.len() - number) as u32;
-    append_subtree(right, &around[1], at_right, nodes);
+    append_subtree(right, &bounds[1], at_right, nodes);
 }
 
 #[cfg(all(test, unit_tests))]

@@ -67,21 +67,21 @@ const FREE_DEPTH: usize = MAX_DEPTH - 34;
 
 /// The bounds of some items.
 #[derive(Clone, Copy)]
-pub(super) struct Around {
+pub(super) struct ItemBounds {
     pub(super) boxes: Rows,
     /// The bounds of the items' centers, times two.
     middles: Rows,
 }
 
-impl Around {
+impl ItemBounds {
     const NOTHING: Self = Self { boxes: Rows::EMPTY, middles: Rows::EMPTY };
 
     pub(super) fn of(items: &[Item]) -> Self {
-        let mut around = Self::NOTHING;
+        let mut bounds = Self::NOTHING;
         for item in items {
-            around.grow(item);
+            bounds.grow(item);
         }
-        around
+        bounds
     }
 
     #[inline(always)]
@@ -95,21 +95,21 @@ impl Around {
 /// A cut: the number of items before it, and the bounds of the items on each side.
 pub(super) struct Halves {
     pub(super) cut: usize,
-    pub(super) around: [Around; 2],
+    pub(super) bounds: [ItemBounds; 2],
 }
 
 impl Halves {
     pub(super) fn at(cut: usize, items: &[Item]) -> Self {
-        Self { cut, around: [Around::of(&items[..cut]), Around::of(&items[cut..])] }
+        Self { cut, bounds: [ItemBounds::of(&items[..cut]), ItemBounds::of(&items[cut..])] }
     }
 }
 
 /// Chooses a cut and partitions the items by it; `None` if they fit into a leaf.
-pub(super) fn cut(items: &mut [Item], around: &Around, depth: usize) -> Option<Halves> {
+pub(super) fn cut(items: &mut [Item], bounds: &ItemBounds, depth: usize) -> Option<Halves> {
     if items.len() <= MAX_LEAF_BOXES {
         return None;
     }
-    let plane = if depth < FREE_DEPTH { Cut::cheapest(items, &around.middles) } else { None };
+    let plane = if depth < FREE_DEPTH { Cut::cheapest(items, &bounds.middles) } else { None };
     // There is no plane if all centers coincide or the node is too deep. Any half of the items will do then.
     let Some(Cut { bin, before, .. }) = plane else { return Some(Halves::at(items.len() / 2, items)) };
     Some(partition(items, |item| bin.index_of(item) < before))
@@ -120,7 +120,7 @@ pub(super) fn cut(items: &mut [Item], around: &Around, depth: usize) -> Option<H
 // dragon's tree of 871 k triangles took 1.01 times as long.
 fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> Halves {
     let (mut start, mut end) = (0, items.len());
-    let [mut first, mut last] = [Around::NOTHING; 2];
+    let [mut first, mut last] = [ItemBounds::NOTHING; 2];
     while start < end {
         let item = items[start];
         if is_first(&item) {
@@ -132,7 +132,7 @@ fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> Halves {
             items.swap(start, end);
         }
     }
-    Halves { cut: start, around: [first, last] }
+    Halves { cut: start, bounds: [first, last] }
 }
 
 /// The largest number of bins per axis: the usual 16 (Wald 2007).
@@ -154,7 +154,7 @@ struct Bin {
 impl Bin {
     fn along(axis: usize, middles: &Rows, bins: usize) -> Option<Self> {
         let extent = middles.max[axis] - middles.min[axis];
-        // A little less than the number of bins, so that the largest center falls into the last bin; `min` in `of`
+        // A little less than the number of bins, so that the largest center falls into the last bin; `min` in `index_of`
         // guards against rounding.
         let scale = bins as f32 * 0.999 / extent;
         let start = middles.min[axis];

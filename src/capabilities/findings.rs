@@ -167,7 +167,7 @@ impl Findings {
     /// Combines the user's choices, the environment, the window and the replies.
     pub fn new(hints: &Hints, window: CellShape, replies: &Replies) -> Self {
         let colors = with_replied_palette(hints.colors(replies.supports_truecolor()), replies);
-        let answered = |answer: Option<bool>| found(answer, Source::Reply, false);
+        let answered = |answer: Option<bool>| detected_or(answer, Source::Reply, false);
         let of_window = |value| Detected { value, source: Source::Window };
         let cell_aspect = hints
             .cell_aspect
@@ -179,13 +179,13 @@ impl Findings {
             glyphs: with_replied_width(hints.evaluate(None, |clues| glyphs(hints.glyphs, colors, clues)), replies),
             cell_aspect: cell_aspect
                 .or(by_pixels)
-                .unwrap_or_else(|| found(replied_aspect(replies), Source::Reply, USUAL_CELL_ASPECT)),
+                .unwrap_or_else(|| detected_or(replied_aspect(replies), Source::Reply, USUAL_CELL_ASPECT)),
             // The window's size, if reported, is preferred because it is current, whereas the reply is from the start.
             half_blocks: if window.aspect.is_some() {
                 Detected { value: window.half_blocks, source: Source::Window }
             } else {
                 let replied = replies.cell_pixels.map(|(_, height)| HalfBlocks::of_cell_height(height));
-                found(replied, Source::Reply, HalfBlocks::Lower)
+                detected_or(replied, Source::Reply, HalfBlocks::Lower)
             },
             light_background: answered(replies.light_background()),
             synchronized_output: answered(replies.synchronized_output),
@@ -207,7 +207,7 @@ impl Findings {
     }
 }
 
-fn found<T>(answer: Option<T>, source: Source, otherwise: T) -> Detected<T> {
+fn detected_or<T>(answer: Option<T>, source: Source, otherwise: T) -> Detected<T> {
     match answer {
         Some(value) => Detected { value, source },
         None => Detected { value: otherwise, source: Source::Assumed },

@@ -16,7 +16,7 @@ pub(super) enum InkConverter {
 }
 
 impl InkConverter {
-    pub(super) fn of(colors: Colors) -> Self {
+    pub(super) fn for_colors(colors: Colors) -> Self {
         match colors {
             Colors::None => Self::Monochrome(Palette::from_colors(&[Srgb8::new(0, 0, 0), Srgb8::new(255, 255, 255)])),
             Colors::Indexed16(values) => Self::Indexed(Palette::from_colors(&values), 0),

@@ -49,15 +49,17 @@ const CACHE_LEVELS: usize = 32;
 impl Palette {
     /// Returns the palette of the 240 colours that themes leave alone.
     pub(super) fn cube() -> Self {
-        Self::of(Candidates::Cube(Cube::new()))
+        Self::with_empty_cache(Candidates::Cube(Cube::new()))
     }
 
     /// Returns a palette of these colours. A colour's palette index is its position in the list.
     pub(super) fn from_colors(colors: &[Srgb8]) -> Self {
-        Self::of(Candidates::List((0..).zip(colors).map(|(index, &color)| Candidate::new(index, color)).collect()))
+        Self::with_empty_cache(Candidates::List(
+            (0..).zip(colors).map(|(index, &color)| Candidate::new(index, color)).collect(),
+        ))
     }
 
-    fn of(candidates: Candidates) -> Self {
+    fn with_empty_cache(candidates: Candidates) -> Self {
         Self { candidates, mixes: vec![None; CACHE_LEVELS * CACHE_LEVELS * CACHE_LEVELS] }
     }
 
@@ -70,13 +72,13 @@ impl Palette {
         let steps = [color.r, color.g, color.b].map(step);
         let candidates = &self.candidates;
         let mix = self.mixes[(steps[0] * CACHE_LEVELS + steps[1]) * CACHE_LEVELS + steps[2]]
-            .get_or_insert_with(|| candidates.mix(steps));
+            .get_or_insert_with(|| candidates.mix_for_levels(steps));
         mix[usize::from(threshold(x, y)) * mix.len() / 256]
     }
 }
 
 impl Candidates {
-    fn mix(&self, steps: [usize; 3]) -> Mix {
+    fn mix_for_levels(&self, steps: [usize; 3]) -> Mix {
         let [r, g, b] = steps.map(|step| linear_from_srgb(step as f64 / (CACHE_LEVELS - 1) as f64) as f32);
         let light = LinearRgb::new(r, g, b);
         match self {

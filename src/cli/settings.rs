@@ -176,9 +176,9 @@ impl Settings {
         let effective: Vec<_> = command
             .get_arguments()
             .map(|setting| {
-                let said = by_flag(setting, given)
-                    .or_else(|| by_environment(setting))
-                    .or_else(|| by_file(setting, &entries, file.as_ref()?))
+                let said = value_from_flag(setting, given)
+                    .or_else(|| value_from_environment(setting))
+                    .or_else(|| value_from_file(setting, &entries, file.as_ref()?))
                     .unwrap_or_else(|| {
                         (defaults::of_setting(setting.get_id().as_str()).to_owned(), SettingSource::Default)
                     });
@@ -212,9 +212,9 @@ fn command() -> Command {
     SettingArgs::augment_args(Command::new("termtrace").no_binary_name(true))
 }
 
-type Given = (String, SettingSource);
+type GivenValue = (String, SettingSource);
 
-fn by_flag(setting: &Arg, given: &ArgMatches) -> Option<Given> {
+fn value_from_flag(setting: &Arg, given: &ArgMatches) -> Option<GivenValue> {
     let id = setting.get_id().as_str();
     // The result is `None` if the command has no such flag: `doctor` has only those of the terminal.
     let text = given.try_get_raw(id).ok()??.next()?.to_string_lossy().into_owned();
@@ -224,7 +224,7 @@ fn by_flag(setting: &Arg, given: &ArgMatches) -> Option<Given> {
 
 /// Returns the setting's value from its variable `TERMTRACE_...` or, for colours, from a common one
 /// such as `NO_COLOR`.
-fn by_environment(setting: &Arg) -> Option<Given> {
+fn value_from_environment(setting: &Arg) -> Option<GivenValue> {
     let name = format!("TERMTRACE_{}", setting.get_id().as_str().to_uppercase());
     // An empty variable counts as unset, as for `NO_COLOR`.
     if let Some(text) = std::env::var_os(&name).filter(|text| !text.is_empty()) {
@@ -235,7 +235,7 @@ fn by_environment(setting: &Arg) -> Option<Given> {
     Some(("auto".to_owned(), SettingSource::Variable(name.to_owned())))
 }
 
-fn by_file(setting: &Arg, entries: &[Entry], file: &UserFile) -> Option<Given> {
+fn value_from_file(setting: &Arg, entries: &[Entry], file: &UserFile) -> Option<GivenValue> {
     let entry = entries.iter().find(|entry| setting.get_id() == entry.name.as_str())?;
     Some((entry.text.clone(), SettingSource::File(file.path.clone(), entry.line)))
 }

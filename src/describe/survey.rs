@@ -1,4 +1,5 @@
-//! A survey of a picture: the part that each object covers, and the objects behind it.
+//! A survey of a picture: the part of it that each object covers, and the objects that each object
+//! hides there.
 
 use crate::camera::Camera;
 use crate::color::LinearRgb;
@@ -18,14 +19,14 @@ struct PixelContent {
     /// The distance from the eye to the hit, in world units.
     distance: f32,
     reflectance: LinearRgb,
-    /// The next objects behind the visible one, nearest first.
+    /// The next objects behind `object` on the pixel's ray, nearest first.
     behind: [Option<u32>; MAX_OCCLUDED],
 }
 
 /// The pixels of the picture that an object covers, in sums and extremes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Coverage {
-    /// The number of pixels.
+    /// The number of pixels that show the object.
     pub(super) pixels: usize,
     /// The distance from the eye to the nearest visible point, in world units.
     pub(super) nearest: f32,
@@ -47,7 +48,7 @@ pub(super) struct PictureRect {
     /// The mean position of the covered pixels.
     // Not the rectangle's centre, which one thin part that sticks out moves far away from most pixels.
     pub(super) middle: [f32; 2],
-    /// The width and height.
+    /// The width and height of the rectangle.
     pub(super) extent: [f32; 2],
 }
 
@@ -92,14 +93,14 @@ pub(super) struct Survey {
     hides: BTreeMap<(u32, u32), usize>,
     /// The number of pixels without a hit.
     pub(super) background_pixels: usize,
-    /// The number of all pixels.
+    /// The number of all pixels of the picture.
     pub(super) pixels: usize,
 }
 
 impl Survey {
-    pub(super) fn of(scene: &Scene, camera: &Camera, resolution: Resolution) -> Self {
+    pub(super) fn of_picture(scene: &Scene, camera: &Camera, resolution: Resolution) -> Self {
         let one = Sampling::Each(NonZeroU32::MIN);
-        let see = |sample: &GBufferSample| content(scene, sample);
+        let see = |sample: &GBufferSample| pixel_content(scene, sample);
         let contents =
             trace_g_buffer_partial(Executor::Pool, scene, camera, resolution, one, TraceDepth::Surfaces, see).pixels;
         let mut survey =
@@ -144,7 +145,7 @@ impl Survey {
     }
 }
 
-fn content(scene: &Scene, sample: &GBufferSample) -> Option<PixelContent> {
+fn pixel_content(scene: &Scene, sample: &GBufferSample) -> Option<PixelContent> {
     let (hit, surface) = (sample.hit?, sample.surface(scene)?);
     let own = hit.surface(scene).own_reflectance(surface.uv);
     Some(PixelContent {

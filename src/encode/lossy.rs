@@ -25,7 +25,7 @@ pub(super) struct QualityCaps {
 }
 
 impl QualityCaps {
-    pub(super) fn of(quality: Quality) -> Option<Self> {
+    pub(super) fn for_quality(quality: Quality) -> Option<Self> {
         match quality {
             Quality::Exact => None,
             // The mean squares correspond to signal-to-noise ratios of 44 and 41 decibels.

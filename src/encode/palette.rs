@@ -16,7 +16,7 @@ use std::mem;
 /// With [`HalfBlocks::Either`] a pair of colours counts as the same pair in either order. The pen's colours are also
 /// candidates for the palette.
 pub(super) fn snap_to_palette(cells: &mut [&mut Halves], pen: [Ink; 2], tolerance: Tolerance, half_blocks: HalfBlocks) {
-    let table = ColorTable::of(cells, pen);
+    let table = ColorTable::from_cells_and_pen(cells, pen);
     let choices = table.choices(tolerance);
     let wanted: Vec<[usize; 2]> = cells.iter().map(|cell| cell.map(|color| table.index(color))).collect();
     let pairs = pairs(&wanted, &choices, half_blocks);
@@ -50,7 +50,7 @@ const MAX_CHOICES: usize = 4;
 const LIGHTNESS_NEIGHBOURS: usize = 24;
 
 impl ColorTable {
-    fn of(cells: &[&mut Halves], pen: [Ink; 2]) -> Self {
+    fn from_cells_and_pen(cells: &[&mut Halves], pen: [Ink; 2]) -> Self {
         let of_pen = pen.into_iter().filter_map(|ink| if let Ink::Rgb(color) = ink { Some((color, 0)) } else { None });
         let of_cells = cells.iter().flat_map(|cell| cell.map(|color| (color, 1)));
         let mut all: Vec<(Srgb8, usize)> = of_cells.chain(of_pen).collect();

@@ -24,7 +24,7 @@ pub struct SurfaceName {
 }
 
 impl SurfaceName {
-    pub(super) fn of(scene: &Scene, object: u32, primitive: u32) -> Self {
+    pub(super) fn of_primitive(scene: &Scene, object: u32, primitive: u32) -> Self {
         let (kind, face) = match &scene.objects()[object as usize].shape {
             Shape::Mesh(_) => ("face", Some(primitive + 1)),
             shape => (shape.kind(), None),

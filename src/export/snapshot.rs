@@ -72,14 +72,14 @@ pub fn framed(grid: &Grid) -> String {
 /// ```
 pub fn styled(grid: &Grid) -> String {
     let mut out = framed(grid);
-    let legend = Legend::of(grid);
+    let legend = Legend::of_grid(grid);
     for row in grid.rows() {
         let codes: String = row.iter().map(|cell| legend.code(cell)).collect();
         let _ = writeln!(out, "|{codes}|");
     }
     out.push_str(&border(usize::from(grid.size().columns) * legend.code_len));
     for (number, style) in legend.styles.iter().enumerate() {
-        let _ = writeln!(out, "{}: {}", legend.code_of(number), style.description());
+        let _ = writeln!(out, "{}: {}", legend.style_code(number), style.description());
     }
     out
 }
@@ -103,13 +103,13 @@ struct CellStyle {
 }
 
 impl CellStyle {
-    fn of(cell: &Cell) -> Self {
+    fn of_cell(cell: &Cell) -> Self {
         let &Cell { fg, bg, underline, attributes, .. } = cell;
         Self { fg, bg, underline, attributes, is_foreign: cell.glyph == Glyph::Foreign }
     }
 
     fn is_plain(self) -> bool {
-        self == Self::of(&Cell::BLANK)
+        self == Self::of_cell(&Cell::BLANK)
     }
 
     fn description(self) -> String {
@@ -162,9 +162,9 @@ struct Legend {
 }
 
 impl Legend {
-    fn of(grid: &Grid) -> Self {
+    fn of_grid(grid: &Grid) -> Self {
         let (mut styles, mut numbers) = (Vec::new(), HashMap::new());
-        for style in grid.cells().iter().map(CellStyle::of).filter(|style| !style.is_plain()) {
+        for style in grid.cells().iter().map(CellStyle::of_cell).filter(|style| !style.is_plain()) {
             numbers.entry(style).or_insert_with(|| {
                 styles.push(style);
                 styles.len() - 1
@@ -177,12 +177,15 @@ impl Legend {
     }
 
     fn code(&self, cell: &Cell) -> String {
-        self.numbers.get(&CellStyle::of(cell)).map_or_else(|| ".".repeat(self.code_len), |&number| self.code_of(number))
+        self.numbers
+            .get(&CellStyle::of_cell(cell))
+            .map_or_else(|| ".".repeat(self.code_len), |&number| self.style_code(number))
     }
 
-    fn code_of(&self, number: usize) -> String {
-        let digit =
-            |digit_index: usize| CODE_LETTERS[number / CODE_LETTERS.len().pow(digit_index as u32) % CODE_LETTERS.len()];
+    fn style_code(&self, style_number: usize) -> String {
+        let digit = |digit_index: usize| {
+            CODE_LETTERS[style_number / CODE_LETTERS.len().pow(digit_index as u32) % CODE_LETTERS.len()]
+        };
         (0..self.code_len).rev().map(|digit_index| char::from(digit(digit_index))).collect()
     }
 }

@@ -347,7 +347,7 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, 
     fn visit_leaf(&mut self, leaf: usize) {
         let shapes = &self.tree.leaves[leaf];
         let min = N::splat(self.rays.within.min);
-        let boxes = shapes.load::<N>().boxes();
+        let boxes = shapes.one_per_lane::<N>().boxes();
         let [starts, ends] = self.packet.crossed(boxes, [min, N::splat(self.max_t_max())]);
         let boxes_hit = starts.le(ends).bits();
         if boxes_hit == 0 {

@@ -108,7 +108,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
     /// Tests the primitives of a leaf.
     #[inline(always)]
     fn test_leaf<S: SoaLeaf>(&mut self, rays: &Rays<N>, leaf: usize, tree: &Tree<S>) {
-        let shapes = tree.leaves[leaf].load::<N>();
+        let shapes = tree.leaves[leaf].one_per_lane::<N>();
         let crossing = shapes.first_crossing(rays, N::splat(self.within.min));
         if W::ENABLED {
             self.report_tests(tree.primitives(leaf), crossing);

@@ -115,7 +115,7 @@ impl<T: Copy> Attribute<T> {
     }
 
     /// Frees unused capacity, and all values if no triangle refers to one.
-    pub(super) fn shrink(&mut self) {
+    pub(super) fn shrink_to_fit(&mut self) {
         match &mut self.corners {
             CornerIndices::Absent => self.values = Vec::new(),
             CornerIndices::OfPositions => {}

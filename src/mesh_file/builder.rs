@@ -67,7 +67,7 @@ impl MeshBuilder {
         if self.triangles.is_empty() {
             return Err(MeshFault::of_file(format!("there are no triangles in this file: {nothing}")));
         }
-        self.shrink();
+        self.shrink_to_fit();
         let Self { positions, triangles, normals, texture_coordinates, colors, materials, material_runs } = self;
         let mesh = MeshFile { positions, triangles, normals, texture_coordinates, colors, materials, material_runs };
         // Readers have already checked all this, and reported faults with their positions; this is the last line of
@@ -81,12 +81,12 @@ impl MeshBuilder {
 
     /// Frees unused capacity: a mesh lives as long as its scene, and a vector that grew is up to
     /// twice as large.
-    fn shrink(&mut self) {
+    fn shrink_to_fit(&mut self) {
         self.positions.shrink_to_fit();
         self.triangles.shrink_to_fit();
-        self.normals.shrink();
-        self.texture_coordinates.shrink();
-        self.colors.shrink();
+        self.normals.shrink_to_fit();
+        self.texture_coordinates.shrink_to_fit();
+        self.colors.shrink_to_fit();
     }
 }
 

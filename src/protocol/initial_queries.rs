@@ -22,15 +22,15 @@ impl InitialQueries {
     /// environment.
     pub fn needed(hints: &Hints) -> Self {
         let needed = [hints.needs_truecolor_reply(), hints.needs_palette_reply(), hints.needs_block_width_reply()];
-        Self::of(hints.safe_queries(), needed)
+        Self::batch(hints.safe_queries(), needed)
     }
 
     /// Returns all queries that the terminal is known to tolerate.
     pub fn all(hints: &Hints) -> Self {
-        Self::of(hints.safe_queries(), [hints.allows_color(), true, true])
+        Self::batch(hints.safe_queries(), [hints.allows_color(), true, true])
     }
 
-    fn of(safe_queries: SafeQueries, [truecolor, palette, blocks]: [bool; 3]) -> Self {
+    fn batch(safe_queries: SafeQueries, [truecolor, palette, blocks]: [bool; 3]) -> Self {
         let mut bytes = Vec::new();
         if safe_queries == SafeQueries::None {
             return Self::default();

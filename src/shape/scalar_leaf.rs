@@ -19,7 +19,7 @@ impl<S: Surface + Copy + Sync> SoaLeaf for ScalarLeaf<S> {
     }
 
     #[inline(always)]
-    fn load<N: Lanes>(&self) -> Self {
+    fn one_per_lane<N: Lanes>(&self) -> Self {
         *self
     }
 

@@ -163,7 +163,7 @@ impl SoaLeaf for SphereN<F32x8> {
     }
 
     #[inline(always)]
-    fn load<N: Lanes>(&self) -> SphereN<N> {
+    fn one_per_lane<N: Lanes>(&self) -> SphereN<N> {
         SphereN { center: self.center.load(), radius: N::load(&self.radius) }
     }
 
@@ -174,7 +174,7 @@ impl SoaLeaf for SphereN<F32x8> {
 
     #[inline(always)]
     fn gather<N: Lanes>(&self, lanes: N) -> SphereN<N> {
-        let SphereN { center, radius } = self.load::<N>();
+        let SphereN { center, radius } = self.one_per_lane::<N>();
         SphereN { center: center.gather(lanes), radius: radius.gather(lanes) }
     }
 

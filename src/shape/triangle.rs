@@ -265,7 +265,7 @@ impl SoaLeaf for TriangleN<F32x8> {
 
     #[inline(always)]
     fn edge_functions<N: Lanes>(&self, common_origin: &CommonOrigin<N>) -> Option<EdgeFunctions> {
-        Some(self.load::<N>().edge_functions(common_origin))
+        Some(self.one_per_lane::<N>().edge_functions(common_origin))
     }
 
     fn of(shapes: &[Triangle]) -> Self {
@@ -275,7 +275,7 @@ impl SoaLeaf for TriangleN<F32x8> {
     }
 
     #[inline(always)]
-    fn load<N: Lanes>(&self) -> TriangleN<N> {
+    fn one_per_lane<N: Lanes>(&self) -> TriangleN<N> {
         TriangleN([self.0[0].load(), self.0[1].load(), self.0[2].load()])
     }
 
@@ -287,7 +287,7 @@ impl SoaLeaf for TriangleN<F32x8> {
 
     #[inline(always)]
     fn gather<N: Lanes>(&self, lanes: N) -> TriangleN<N> {
-        let [a, b, c] = self.load::<N>().0;
+        let [a, b, c] = self.one_per_lane::<N>().0;
         TriangleN([a.gather(lanes), b.gather(lanes), c.gather(lanes)])
     }
 

@@ -1,5 +1,5 @@
 use super::*;
-use crate::bvh::cut::{Around, Item, item};
+use crate::bvh::cut::{Item, ItemBounds, item};
 use glam::Vec3;
 
 /// Returns a binary tree over pseudo-random boxes, whose leaves have one box each.
@@ -23,7 +23,7 @@ fn binary_tree(boxes: usize, seed: u32) -> Vec<BinaryNode> {
 /// Appends a binary tree whose leaves have one box each; `build::append_subtree` stops at leaves of
 /// eight.
 fn append_single_boxes(items: &mut [Item], first: usize, nodes: &mut Vec<BinaryNode>) {
-    let bounds = Around::of(items).boxes.bounds();
+    let bounds = ItemBounds::of(items).boxes.bounds();
     let at = nodes.len();
     if items.len() == 1 {
         return nodes.push(BinaryNode { bounds, count: 1, at: first as u32 });
