@@ -121,8 +121,8 @@ macro_rules! accelerator {
             /// Visits all lists, then all trees, each in the order of the table.
             #[inline(always)]
             pub(crate) fn visit<'a>(&'a self, visitor: &mut impl Visitor<'a>) {
-                $($(#[$on])* { only! { list in $group visitor.list(&self.$name); } })*
-                $($(#[$on])* { only! { tree in $group visitor.tree(&self.$name); } })*
+                $($(#[$on])* { only! { list in $group visitor.visit_list(&self.$name); } })*
+                $($(#[$on])* { only! { tree in $group visitor.visit_tree(&self.$name); } })*
             }
 
             /// Returns whether any tree has nodes.
@@ -171,13 +171,13 @@ macro_rules! accelerator {
                 let (mut built, mut end) = (Accelerator { bounds, ..Accelerator::default() }, 0);
                 $($(#[$on])* { only! { list in $group
                     built.$name = List { first: end, primitives: self.$name };
-                    end = built.$name.end();
+                    end = built.$name.end_index();
                 } })*
                 // The indices of a leaf start at a multiple of eight, so that index % 8 is the lane.
                 end = end.next_multiple_of(LANES as u32);
                 $($(#[$on])* { only! { tree in $group
                     built.$name = self.$name.build(end, report)?;
-                    end = built.$name.end();
+                    end = built.$name.end_index();
                 } })*
                 Ok(built)
             }
@@ -190,10 +190,10 @@ surfaces! { accelerator }
 /// A visitor of all lists and trees.
 pub(crate) trait Visitor<'a> {
     /// Visits the unbounded primitives of one kind.
-    fn list<S: Endless>(&mut self, list: &'a List<S>);
+    fn visit_list<S: Endless>(&mut self, list: &'a List<S>);
 
     /// Visits the tree of the bounded primitives of one kind.
-    fn tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>);
+    fn visit_tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>);
 }
 
 /// The unbounded primitives of one kind.
@@ -212,14 +212,14 @@ impl<S> Default for List<S> {
 
 impl<S> List<S> {
     /// Returns the index after the last primitive.
-    fn end(&self) -> u32 {
+    fn end_index(&self) -> u32 {
         self.first + self.primitives.len() as u32
     }
 
     /// Returns whether a primitive is in the list.
     #[inline(always)]
     pub(crate) fn contains(&self, primitive: u32) -> bool {
-        (self.first..self.end()).contains(&primitive)
+        (self.first..self.end_index()).contains(&primitive)
     }
 
     /// Returns a primitive by its index.
@@ -281,7 +281,7 @@ impl Accelerator {
         report: &(dyn Fn(Progress) -> Result<(), E> + Sync),
     ) -> Result<Self, E> {
         #[cfg(all(test, unit_tests))]
-        builds::count();
+        builds::count_build();
         let (mut lists, mut has_smooth) = (PrimitiveLists::default(), false);
         for (object, shape) in (0..).zip(shapes) {
             has_smooth |= matches!(shape, Shape::Mesh(mesh) if mesh.is_smooth());
@@ -307,11 +307,11 @@ impl Accelerator {
     pub(crate) fn bytes(&self) -> usize {
         struct Sum(usize);
         impl<'a> Visitor<'a> for Sum {
-            fn list<S: Endless>(&mut self, list: &'a List<S>) {
+            fn visit_list<S: Endless>(&mut self, list: &'a List<S>) {
                 self.0 += size_of_val(&list.primitives[..]);
             }
 
-            fn tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>) {
+            fn visit_tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>) {
                 self.0 += tree.bytes();
             }
         }
@@ -326,14 +326,14 @@ impl Accelerator {
         struct Find(u32, PrimitiveId);
         impl<'a> Visitor<'a> for Find {
             #[inline(always)]
-            fn list<S: Endless>(&mut self, list: &'a List<S>) {
+            fn visit_list<S: Endless>(&mut self, list: &'a List<S>) {
                 if list.contains(self.0) {
                     self.1 = list.get(self.0).0;
                 }
             }
 
             #[inline(always)]
-            fn tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>) {
+            fn visit_tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>) {
                 if tree.contains(self.0) {
                     self.1 = tree.id(self.0);
                 }
@@ -376,14 +376,14 @@ impl<S> Tree<S> {
 
     /// Returns the index after the last leaf.
     #[inline(always)]
-    pub(crate) fn end(&self) -> u32 {
+    pub(crate) fn end_index(&self) -> u32 {
         self.first + (self.leaves.len() * LANES) as u32
     }
 
     /// Returns whether a primitive is in one of the leaves.
     #[inline(always)]
     pub(crate) fn contains(&self, primitive: u32) -> bool {
-        (self.first..self.end()).contains(&primitive)
+        (self.first..self.end_index()).contains(&primitive)
     }
 
     /// Returns whether the tree has nodes, and so can cull.

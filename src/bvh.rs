@@ -127,7 +127,7 @@ const SLAB_SLACK: f32 = 128.0 / 16_777_216.0;
 
 impl<N: Lanes> Slabs<N> {
     #[inline(always)]
-    fn of(rays: &Rays<N>) -> Self {
+    fn from_rays(rays: &Rays<N>) -> Self {
         let (origin, inverse) = (rays.origin, rays.inverse);
         let (less, more, zero) = (N::splat(SLAB_SLACK - 1.0), N::splat(-1.0 - SLAB_SLACK), N::splat(0.0));
         // Written out for each axis, because closures are compiled without the caller's target features.
@@ -232,7 +232,7 @@ impl Bvh {
         stack: &mut RayStack,
         visitor: &mut impl LeafVisitor,
     ) {
-        let slabs = Slabs::of(rays);
+        let slabs = Slabs::from_rays(rays);
         stack.len = 0;
         let mut child = from;
         loop {

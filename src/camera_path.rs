@@ -184,10 +184,10 @@ impl KeyframeInterval<'_> {
     /// At the ends of the path the keyframe itself replaces the missing one. The velocity is zero if a neighbouring
     /// keyframe has the same value.
     // The zero prevents a value that rests between two keyframes from overshooting.
-    fn velocity<T: Interpolated>(&self, at: usize, quantity: impl Fn(&Camera) -> T) -> T {
-        let value = |at: usize| quantity(&self.keyframes[at].camera);
-        let (before, after) = (at.saturating_sub(1), (at + 1).min(self.keyframes.len() - 1));
-        let rests = [before, after].into_iter().any(|other| other != at && value(other) == value(at));
+    fn velocity<T: Interpolated>(&self, keyframe: usize, quantity: impl Fn(&Camera) -> T) -> T {
+        let value = |index: usize| quantity(&self.keyframes[index].camera);
+        let (before, after) = (keyframe.saturating_sub(1), (keyframe + 1).min(self.keyframes.len() - 1));
+        let rests = [before, after].into_iter().any(|other| other != keyframe && value(other) == value(keyframe));
         let way = value(after) - value(before);
         let rate = if rests { 0.0 } else { 1.0 / (self.keyframes[after].time - self.keyframes[before].time) };
         way * rate

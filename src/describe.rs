@@ -136,16 +136,16 @@ impl Description<'_> {
         }
         let list = |objects: Vec<u32>| {
             let objects: Vec<_> = objects.into_iter().filter(|other| !is_unbounded(other)).collect();
-            (!objects.is_empty()).then(|| numbers(&objects))
+            (!objects.is_empty()).then(|| listed_objects(&objects))
         };
-        let before = list(self.survey.behind(object)).map(|others| format!("; in front of {others}"));
-        let after = list(self.survey.before(object)).map(|others| format!("; partly behind {others}"));
+        let before = list(self.survey.objects_behind(object)).map(|others| format!("; in front of {others}"));
+        let after = list(self.survey.objects_before(object)).map(|others| format!("; partly behind {others}"));
         let relations: String = [before, after].into_iter().flatten().collect();
-        relations + self.enclosing(object)
+        relations + self.enclosing_remark(object)
     }
 
     /// Returns a remark if the eye is inside the object, otherwise an empty string.
-    fn enclosing(&self, object: u32) -> &'static str {
+    fn enclosing_remark(&self, object: u32) -> &'static str {
         let shape = &self.scene.objects()[object as usize].shape;
         if shape.encloses(self.camera.pose().eye) { "; the eye is inside it" } else { "" }
     }
@@ -170,9 +170,9 @@ impl Description<'_> {
 
     /// Returns the reason why an object is not in the picture.
     fn reason_hidden(&self, object: u32, resolution: Resolution) -> String {
-        let before = self.survey.before(object);
+        let before = self.survey.objects_before(object);
         if !before.is_empty() {
-            return format!("hidden behind {}", numbers(&before));
+            return format!("hidden behind {}", listed_objects(&before));
         }
         let Some(middle) = middle(&self.scene.objects()[object as usize].shape) else {
             return "no part of it is in front of the eye".to_owned();
@@ -301,7 +301,7 @@ fn counted(count: usize, what: &str) -> String {
 
 /// Lists objects by their numbers in the scene file, from 1. Those after the fourth are called
 /// "others".
-fn numbers(objects: &[u32]) -> String {
+fn listed_objects(objects: &[u32]) -> String {
     const MAX_NUMBERS: usize = 4;
     let names: Vec<_> = objects.iter().take(MAX_NUMBERS).map(|object| format!("object {}", object + 1)).collect();
     let mut words: Vec<_> = names.iter().map(String::as_str).collect();

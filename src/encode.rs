@@ -201,7 +201,7 @@ impl Encoder {
     pub fn encode(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) {
         let start = bytes.len();
         self.draw(wanted, bytes);
-        self.bracket(start, bytes);
+        self.enclose_in_synchronized(start, bytes);
     }
 
     /// Writes the bytes that make the terminal show `wanted` exactly; nothing if it does already.
@@ -220,7 +220,7 @@ impl Encoder {
     pub fn encode_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) {
         let start = bytes.len();
         self.draw_within(wanted, allowance, bytes);
-        self.bracket(start, bytes);
+        self.enclose_in_synchronized(start, bytes);
     }
 
     /// Appends a lossy frame without the marks of a synchronized update.
@@ -242,12 +242,12 @@ impl Encoder {
         let max_bytes = allowance.max_bytes.unwrap_or(usize::MAX);
         let usual = max_bytes.min(TMUX_BYTES_PER_CELL * wanted.size().cell_count());
         let refines_from = plan.min_writes(true);
-        let mut writes = plan.writes();
+        let mut writes = plan.write_count();
         let start = bytes.len();
         let (next, cursor) = loop {
             let mut next = known.clone();
             let cursor = self.write(&plan.grid(writes), &mut next, bytes);
-            let taken = bytes.len() - start + self.bracket_len();
+            let taken = bytes.len() - start + self.synchronized_len();
             let refines = writes > refines_from;
             let (limit, fewest) = if refines { (usual, refines_from) } else { (max_bytes, plan.min_writes(false)) };
             // At least one cell is written, or all might wait for ever.
@@ -261,11 +261,11 @@ impl Encoder {
             // to 87.3 %.
             writes = (writes * limit / taken * 31 / 32).clamp(fewest, writes - 1);
         };
-        let is_cut = writes < plan.writes();
+        let is_cut = writes < plan.write_count();
         // All inexact cells are made exact at once, at the latest time of any of them. Each at its own time took a
         // dozen frames of a few scattered cells after each movement: 1.40 full frames of bytes (orbit, 80x24) instead
         // of 1.14.
-        let refines = plan.inexact(&next.shown).map(|at| self.change_times.exact_at(at)).max();
+        let refines = plan.inexact_cells(&next.shown).map(|at| self.change_times.exact_at(at)).max();
         self.due = if is_cut { Some(allowance.now) } else { refines };
         self.known = Some(next);
         cursor
@@ -304,7 +304,7 @@ impl Encoder {
     }
 
     /// Encloses the bytes from `start` in synchronized output, if there are any.
-    fn bracket(&self, start: usize, bytes: &mut Vec<u8>) {
+    fn enclose_in_synchronized(&self, start: usize, bytes: &mut Vec<u8>) {
         if self.synchronized && bytes.len() > start {
             bytes.extend_from_slice(BEGIN_SYNCHRONIZED);
             // Only now is it known that the frame is not empty, so the beginning sequence is appended and rotated to
@@ -314,8 +314,8 @@ impl Encoder {
         }
     }
 
-    /// Returns the number of bytes that [`bracket`](Self::bracket) adds.
-    fn bracket_len(&self) -> usize {
+    /// Returns the number of bytes that [`Self::enclose_in_synchronized`] adds.
+    fn synchronized_len(&self) -> usize {
         if self.synchronized { BEGIN_SYNCHRONIZED.len() + END_SYNCHRONIZED.len() } else { 0 }
     }
 
@@ -330,19 +330,19 @@ impl Encoder {
     /// Appends the bytes that change the `known` grid to `wanted`. Returns the cursor's position,
     /// or `None` where terminals differ about it.
     fn write(&self, wanted: &Grid, known: &mut TerminalState, bytes: &mut Vec<u8>) -> Option<CellPosition> {
-        let changed = update(&mut known.shown, wanted);
+        let changed = update_grid(&mut known.shown, wanted);
         let strokes = match self.order {
-            Order::Raster => strokes::choose(wanted, &changed, self.half_blocks, known.pen),
+            Order::Raster => strokes::choose_strokes(wanted, &changed, self.half_blocks, known.pen),
             Order::Color => {
                 let order = by_color::order(wanted, &changed, self.half_blocks, known.pen);
-                let mut strokes = strokes::choose(wanted, &order, self.half_blocks, known.pen);
+                let mut strokes = strokes::choose_strokes(wanted, &order, self.half_blocks, known.pen);
                 // Done in this order only: in raster order it saves less than it costs, because a compressor then finds
                 // fewer repetitions.
                 strokes::share_next_fg(wanted, &mut strokes);
                 strokes
             }
         };
-        strokes::write(wanted, &strokes, self.half_blocks, &mut known.pen, bytes)
+        strokes::write_strokes(wanted, &strokes, self.half_blocks, &mut known.pen, bytes)
     }
 }
 
@@ -350,7 +350,7 @@ impl Encoder {
 ///
 /// Covered and foreign cells are never written.
 // The grid is updated in place, which saves copying it for each frame.
-fn update(shown: &mut Grid, wanted: &Grid) -> Vec<CellPosition> {
+fn update_grid(shown: &mut Grid, wanted: &Grid) -> Vec<CellPosition> {
     let mut changed = Vec::new();
     for ((shown, wanted), row) in shown.rows_mut().zip(wanted.rows()).zip(0..) {
         update_row(shown, wanted, |column| changed.push(CellPosition { column, row }));

@@ -144,7 +144,7 @@ pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u
         camera: *camera,
         ray: trace.ray,
         nodes: recorder.nodes,
-        tested: recorder.tested(scene, &trace.ray),
+        tested: recorder.tested_surfaces(scene, &trace.ray),
         hit: trace.hit.map(|hit| shaded_hit(scene, &trace, hit)),
         light: trace.light,
         exposure: scene.exposure(),
@@ -202,7 +202,7 @@ impl Observer for TestRecorder {
 
 impl TestRecorder {
     /// Returns the tested surfaces, in the order of [`Explanation::tested`].
-    fn tested(self, scene: &Scene, ray: &Ray) -> Vec<TestedSurface> {
+    fn tested_surfaces(self, scene: &Scene, ray: &Ray) -> Vec<TestedSurface> {
         let mut tests = self.tests;
         let order = |test: &PrimitiveTest| (test.object, test.primitive);
         let t = |test: &PrimitiveTest| test.t.unwrap_or(f32::INFINITY);

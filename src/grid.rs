@@ -412,36 +412,35 @@ impl Grid {
         }
     }
 
-    /// Moves the contents of the rows `region` up by `by` rows; the rows at the bottom become
-    /// blank.
+    /// Moves the contents of rows `region` up by `line_count` rows; blank rows follow at the
+    /// bottom.
     ///
     /// Rows outside the grid are ignored.
     #[cfg(feature = "backend")]
-    pub(crate) fn scroll_up(&mut self, region: Range<u16>, by: u16) {
-        let (cells, shift) = self.region(region, by);
+    pub(crate) fn scroll_up(&mut self, region: Range<u16>, line_count: u16) {
+        let (cells, shift) = self.region_and_shift(region, line_count);
         cells.rotate_left(shift);
         let kept = cells.len() - shift;
         cells[kept..].fill(Cell::BLANK);
     }
 
-    /// Moves the contents of the rows `region` down by `by` rows; the rows at the top become blank.
+    /// Moves the contents of rows `region` down by `line_count` rows; blank rows are put on top.
     ///
     /// Rows outside the grid are ignored.
     #[cfg(feature = "scrolling-regions")]
-    pub(crate) fn scroll_down(&mut self, region: Range<u16>, by: u16) {
-        let (cells, shift) = self.region(region, by);
+    pub(crate) fn scroll_down(&mut self, region: Range<u16>, line_count: u16) {
+        let (cells, shift) = self.region_and_shift(region, line_count);
         cells.rotate_right(shift);
         cells[..shift].fill(Cell::BLANK);
     }
 
-    /// Returns the cells of the rows `region`, and the number of cells in `by` rows, at most all of
-    /// them.
+    /// Returns the cells of rows `region`, and how many of them `line_count` rows have.
     #[cfg(feature = "backend")]
-    fn region(&mut self, region: Range<u16>, by: u16) -> (&mut [Cell], usize) {
+    fn region_and_shift(&mut self, region: Range<u16>, line_count: u16) -> (&mut [Cell], usize) {
         let end = region.end.min(self.size.rows);
         let start = region.start.min(end);
         let cells_of = |rows: u16| Size { rows, ..self.size }.cell_count();
-        let (cells, shift) = (cells_of(start)..cells_of(end), cells_of(by.min(end - start)));
+        let (cells, shift) = (cells_of(start)..cells_of(end), cells_of(line_count.min(end - start)));
         (&mut self.cells[cells], shift)
     }
 

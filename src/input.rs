@@ -168,7 +168,7 @@ impl Parser {
         self.release_escape(out);
         match self.state {
             State::Escape if self.key_encoding == KeyEncoding::Legacy => {
-                out.push(key::escape().into());
+                out.push(key::escape_key().into());
                 self.reset();
             }
             State::Escape | State::Ss3 | State::Csi | State::Text(_) | State::TextEscape(_) => {
@@ -245,12 +245,12 @@ impl Parser {
     /// Reports an additional ESC before the current sequence, if there is one, as the Escape key.
     fn release_escape(&mut self, out: &mut Vec<Input>) {
         if std::mem::take(&mut self.escaped) {
-            out.push(key::escape().into());
+            out.push(key::escape_key().into());
         }
     }
 
     /// Appends a byte to the current sequence or string, unless that has `limit` bytes already.
-    fn keep(&mut self, byte: u8, limit: usize) {
+    fn keep_byte(&mut self, byte: u8, limit: usize) {
         if self.text.len() < limit {
             self.text.push(byte);
         } else {
@@ -309,7 +309,7 @@ impl Parser {
 
     fn take_ss3(&mut self, byte: u8, out: &mut Vec<Input>) {
         match byte {
-            b'0'..=b'9' | b';' => self.keep(byte, MAX_SEQUENCE_BYTES),
+            b'0'..=b'9' | b';' => self.keep_byte(byte, MAX_SEQUENCE_BYTES),
             0x20..=0x7e => {
                 let meaning = key::from_ss3(&self.text, byte).map_or(Meaning::Nothing, Meaning::Key);
                 self.finish(meaning, out);
@@ -323,7 +323,7 @@ impl Parser {
             return self.drop_and_parse(byte, out);
         }
         if (0x20..=0x7e).contains(&byte) {
-            self.keep(byte, MAX_SEQUENCE_BYTES);
+            self.keep_byte(byte, MAX_SEQUENCE_BYTES);
         }
         let mut meaning = None;
         for token in self.tokeniser.take(byte, &self.text) {
@@ -340,7 +340,7 @@ impl Parser {
 
     fn take_linux_function(&mut self, byte: u8, out: &mut Vec<Input>) {
         match byte {
-            b'A'..=b'E' => self.finish(Meaning::Key(key::function(byte - b'A' + 1)), out),
+            b'A'..=b'E' => self.finish(Meaning::Key(key::function_key(byte - b'A' + 1)), out),
             0x20..=0x7e => self.finish(Meaning::Nothing, out),
             _ => self.drop_and_parse(byte, out),
         }
@@ -351,7 +351,7 @@ impl Parser {
         if byte < 0x20 {
             return self.drop_and_parse(byte, out);
         }
-        self.keep(byte, MAX_SEQUENCE_BYTES);
+        self.keep_byte(byte, MAX_SEQUENCE_BYTES);
         if let [button, column, row] = self.text[..] {
             let event = mouse::from_bytes(button, column, row);
             self.finish(event.map_or(Meaning::Nothing, Meaning::Event), out);
@@ -369,7 +369,7 @@ impl Parser {
             CAN | SUB => self.drop_and_parse(byte, out),
             // Control characters do not occur in strings from terminals, and are ignored.
             0..0x20 => {}
-            _ => self.keep(byte, MAX_STRING_BYTES),
+            _ => self.keep_byte(byte, MAX_STRING_BYTES),
         }
     }
 

@@ -177,7 +177,7 @@ impl Map {
         let meaning = match self {
             Self::Shaded => return self.name().to_owned(),
             Self::Lambert => "n.l, no shadows".to_owned(),
-            Self::Depth => format!("white 0, grey {}, black far", colors::short(distance(camera))),
+            Self::Depth => format!("white 0, grey {}, black far", colors::short(target_distance(camera))),
             Self::Normal => "red x, green y, blue z".to_owned(),
             Self::Object => format!("{} colours", scene.objects().len()),
             Self::Shadow => format!("white lit by {}, dark by 0", scene.lights().len()),
@@ -257,9 +257,9 @@ fn trace_partial(
     let of_surfaces = |paint: &(dyn Fn(&GBufferSample) -> Srgb8 + Sync)| traced_to(TraceDepth::Surfaces, paint);
     match map {
         Map::Shaded => shaded::trace(executor, scene, camera, resolution, sampling),
-        Map::Lambert => of_surfaces(&|sample| lambert(scene, sample)),
+        Map::Lambert => of_surfaces(&|sample| lambert_color(scene, sample)),
         Map::Depth => {
-            let middle = distance(camera);
+            let middle = target_distance(camera);
             of_surfaces(&|sample| sample.hit.map_or(NO_HIT, |hit| colors::depth(hit.t, middle)))
         }
         Map::Normal => of_surfaces(&|sample| {
@@ -270,7 +270,7 @@ fn trace_partial(
             Some(_) => colors::share(sample.lit_by.count_ones(), scene.lights().len().min(32) as u32),
             None => NO_HIT,
         }),
-        Map::Cost => of_surfaces(&|sample| colors::heat(cost::tests(scene, sample))),
+        Map::Cost => of_surfaces(&|sample| colors::heat(cost::test_count(scene, sample))),
         Map::Facing => of_surfaces(&|sample| facing(scene, sample)),
         Map::Wire => of_surfaces(&|sample| wire::color(scene, camera, resolution, sample).unwrap_or(NO_HIT)),
         Map::Contrast => contrast::trace(executor, scene, camera, resolution, sampling),
@@ -278,7 +278,7 @@ fn trace_partial(
 }
 
 /// Returns the colour of a sample in the map `Lambert`: the sum of n.l over all lights, as a grey.
-fn lambert(scene: &Scene, sample: &GBufferSample) -> Srgb8 {
+fn lambert_color(scene: &Scene, sample: &GBufferSample) -> Srgb8 {
     let Some(surface) = sample.surface(scene) else { return NO_HIT };
     let cosine = |light| shade::incidence(light, &surface).map_or(0.0, |incidence| incidence.cosine);
     Srgb8::from_linear(LinearRgb::grey(scene.lights().iter().map(cosine).sum()))
@@ -299,7 +299,7 @@ fn facing(scene: &Scene, sample: &GBufferSample) -> Srgb8 {
 }
 
 /// Returns the distance from the eye to the target.
-fn distance(camera: &Camera) -> f32 {
+fn target_distance(camera: &Camera) -> f32 {
     let Pose { eye, target, .. } = camera.pose();
     eye.distance(target)
 }

@@ -172,10 +172,10 @@ impl MeshFile {
         self.normals = self.normals.map(|normal| unit_or_zero(turn * (normal / scale)));
         // A mirror image reverses the orientation of every triangle.
         if scale.x * scale.y * scale.z < 0.0 {
-            attribute::turn(&mut self.triangles);
-            self.normals = self.normals.turned();
-            self.texture_coordinates = self.texture_coordinates.turned();
-            self.colors = self.colors.turned();
+            attribute::reverse_orientation(&mut self.triangles);
+            self.normals = self.normals.with_reversed_triangles();
+            self.texture_coordinates = self.texture_coordinates.with_reversed_triangles();
+            self.colors = self.colors.with_reversed_triangles();
         }
         self.is_valid().then_some(self)
     }

@@ -20,7 +20,7 @@ use plain::{open, wait_until_readable};
 #[cfg(feature = "live")]
 use posix::{open, wait_until_readable};
 pub use refusal::reason;
-use refusal::refused;
+use refusal::refusal_error;
 
 /// The kinds of files that [`read`] accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,7 +90,7 @@ fn too_large(max_len: usize) -> io::Error {
         _ if max_len.is_multiple_of(1 << 10) => format!("{} KiB", max_len >> 10),
         _ => format!("{max_len} bytes"),
     };
-    refused(ErrorKind::FileTooLarge, format!("the file is larger than {size}, too large to be read"))
+    refusal_error(ErrorKind::FileTooLarge, format!("the file is larger than {size}, too large to be read"))
 }
 
 #[cfg(all(test, unit_tests))]

@@ -190,8 +190,8 @@ fn ratatui_from_cell(cell: &Cell) -> ratatui_core::buffer::Cell {
 
 /// Sets the colour of a ratatui cell's underline.
 #[cfg(feature = "underline-color")]
-fn set_underline(to: &mut ratatui_core::buffer::Cell, underline: Ink) {
-    to.underline_color = underline.into();
+fn set_underline(cell: &mut ratatui_core::buffer::Cell, underline: Ink) {
+    cell.underline_color = underline.into();
 }
 
 #[cfg(not(feature = "underline-color"))]

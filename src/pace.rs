@@ -264,7 +264,7 @@ impl Link {
         self.replies.check_timeouts(now);
         let mut bytes = Vec::new();
         if self.replies.is_probe_due(now) {
-            self.replies.probe(&mut bytes, now);
+            self.replies.append_probe(&mut bytes, now);
             self.record_sent(bytes.len(), now);
         }
         bytes

@@ -24,7 +24,7 @@ thread_local! {
 }
 
 /// Counts the build of a scene's trees on the current thread.
-pub(super) fn count() {
+pub(super) fn count_build() {
     BUILDS.set(BUILDS.get() + 1);
 }
 
@@ -40,7 +40,7 @@ const SPHERES: &str = r#"(
 
 /// Returns how many times `work` builds a scene's trees, on the threads of a separate pool.
 #[cfg(feature = "parallel")]
-fn builds(work: impl FnOnce() + Send) -> u32 {
+fn builds_during(work: impl FnOnce() + Send) -> u32 {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads can be started");
     pool.install(work);
     pool.broadcast(|_| BUILDS.get()).into_iter().sum()
@@ -48,7 +48,7 @@ fn builds(work: impl FnOnce() + Send) -> u32 {
 
 /// Returns how many times `work` builds a scene's trees.
 #[cfg(not(feature = "parallel"))]
-fn builds(work: impl FnOnce() + Send) -> u32 {
+fn builds_during(work: impl FnOnce() + Send) -> u32 {
     let before = BUILDS.get();
     work();
     BUILDS.get() - before
@@ -56,17 +56,17 @@ fn builds(work: impl FnOnce() + Send) -> u32 {
 
 #[test]
 fn every_way_to_make_a_scene_builds_its_trees_once() {
-    assert_eq!(builds(|| drop(Scene::from_ron("x", SPHERES).expect("a scene"))), 1);
+    assert_eq!(builds_during(|| drop(Scene::from_ron("x", SPHERES).expect("a scene"))), 1);
     let draft = || Draft::from_bytes("x", SPHERES.as_bytes(), &Reporter::silent()).expect("a scene");
-    assert_eq!(builds(|| drop(draft())), 0);
-    assert_eq!(builds(|| drop(draft().finish())), 1);
+    assert_eq!(builds_during(|| drop(draft())), 0);
+    assert_eq!(builds_during(|| drop(draft().finish())), 1);
 }
 
 #[test]
 fn no_picture_builds_a_tree() {
     let scene = &Scene::from_ron("x", SPHERES).expect("a scene");
     let (camera, resolution) = (scene.camera(), Resolution::square(40, 24));
-    let built = builds(|| {
+    let built = builds_during(|| {
         let light = render::render(scene, camera, resolution, Sampling::BEST);
         tone(&light, scene);
         ProgressiveRender::new(camera, resolution);
@@ -88,7 +88,7 @@ fn no_picture_builds_a_tree() {
 #[test]
 fn a_scene_with_another_camera_or_light_keeps_its_trees() {
     let scene = &Scene::from_ron("x", SPHERES).expect("a scene");
-    let built = builds(|| {
+    let built = builds_during(|| {
         let pose = Pose { eye: Vec3::X * 9.0, ..scene.camera().pose() };
         let other = scene.clone().with_camera(scene.camera().with_pose(pose).expect("a pose"));
         let other = other

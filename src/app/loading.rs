@@ -254,7 +254,7 @@ fn load<'p, E: Send>(
     };
     let needed = Mutex::new(Vec::new());
     let on_dependency = |file: &Path| {
-        let file = Dependency::now(file);
+        let file = Dependency::in_current_state(file);
         if file.is_other() {
             hand_over_queue();
         }

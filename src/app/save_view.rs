@@ -82,7 +82,7 @@ impl ProposedView {
     /// Returns a proposal to write a view into `file`, or `None` if that is a pipe, device or
     /// folder.
     pub(super) fn new(file: &Path, camera: Camera) -> Option<Self> {
-        Some(Dependency::now(file)).filter(|file| !file.is_other()).map(|file| Self { file, camera })
+        Some(Dependency::in_current_state(file)).filter(|file| !file.is_other()).map(|file| Self { file, camera })
     }
 
     /// Adds the view to the file, which is replaced atomically and keeps all other text.

@@ -106,7 +106,9 @@ impl Watching {
         };
         if has_changed {
             // The new states are recorded, because one change may cause several events but is reported once.
-            self.dependencies.iter_mut().for_each(|dependency| *dependency = Dependency::now(dependency.path()));
+            self.dependencies
+                .iter_mut()
+                .for_each(|dependency| *dependency = Dependency::in_current_state(dependency.path()));
         }
         has_changed
     }

@@ -21,7 +21,7 @@ pub(super) fn build<E: Send>(boxes: &[Bounds], report: Report<'_, E>) -> Result<
     let mut items: Vec<Item> = (0..).zip(boxes).map(item).collect();
     let bounds = ItemBounds::of(&items);
     let pairs = build_subtree(&mut items, &bounds, Place { first: 0, depth: 0 }, report)?;
-    let mut wide = Wide::of(&pairs);
+    let mut wide = Wide::from_binary(&pairs);
     let root = Some(wide.append_node(0));
     // The items were partitioned in place, so they are in the order of the leaves.
     let order = items.iter().map(|item| item.min[3].to_bits()).collect();
@@ -37,7 +37,7 @@ struct Place {
 
 impl Place {
     /// Returns the positions of both children, of which the first has `cut` items.
-    fn halves(self, cut: usize) -> [Self; 2] {
+    fn children(self, cut: usize) -> [Self; 2] {
         let depth = self.depth + 1;
         [Self { depth, ..self }, Self { first: self.first + cut, depth }]
     }
@@ -49,20 +49,20 @@ impl Place {
 fn build_subtree<E: Send>(
     items: &mut [Item],
     bounds: &ItemBounds,
-    at: Place,
+    place: Place,
     report: Report<'_, E>,
 ) -> Result<Vec<BinaryNode>, E> {
     if items.len() < MIN_TASK_ITEMS {
         let mut nodes = Vec::with_capacity(items.len());
-        append_subtree(items, bounds, at, &mut nodes);
+        append_subtree(items, bounds, place, &mut nodes);
         return report(items.len()).map(|()| nodes);
     }
     // A report without progress, so that a large build can be cancelled between subtrees.
     report(0)?;
     let node_bounds = bounds.boxes.bounds();
-    let Halves { cut, bounds } = cut(items, bounds, at.depth).unwrap_or_else(|| Halves::at(items.len() / 2, items));
+    let Halves { cut, bounds } = cut(items, bounds, place.depth).unwrap_or_else(|| Halves::at(items.len() / 2, items));
     let (left, right) = items.split_at_mut(cut);
-    let [at_left, at_right] = at.halves(cut);
+    let [at_left, at_right] = place.children(cut);
     let (left, right) = threads::join(
         || build_subtree(left, &bounds[0], at_left, report),
         || build_subtree(right, &bounds[1], at_right, report),
@@ -76,16 +76,16 @@ fn build_subtree<E: Send>(
 }
 
 /// Appends the binary tree over `items` to `nodes`, on one thread.
-fn append_subtree(items: &mut [Item], bounds: &ItemBounds, at: Place, nodes: &mut Vec<BinaryNode>) {
+fn append_subtree(items: &mut [Item], bounds: &ItemBounds, place: Place, nodes: &mut Vec<BinaryNode>) {
     let node_bounds = bounds.boxes.bounds();
-    let Some(Halves { cut, bounds }) = cut(items, bounds, at.depth) else {
-        nodes.push(BinaryNode { bounds: node_bounds, count: items.len() as u32, at: at.first as u32 });
+    let Some(Halves { cut, bounds }) = cut(items, bounds, place.depth) else {
+        nodes.push(BinaryNode { bounds: node_bounds, count: items.len() as u32, at: place.first as u32 });
         return;
     };
     let number = nodes.len();
     nodes.push(BinaryNode { bounds: node_bounds, count: 0, at: 0 });
     let (left, right) = items.split_at_mut(cut);
-    let [at_left, at_right] = at.halves(cut);
+    let [at_left, at_right] = place.children(cut);
     append_subtree(left, &bounds[0], at_left, nodes);
     nodes[number].at = (nodes.len() - number) as u32;
     append_subtree(right, &bounds[1], at_right, nodes);

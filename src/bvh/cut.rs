@@ -154,8 +154,8 @@ struct Bin {
 impl Bin {
     fn along(axis: usize, middles: &Rows, bins: usize) -> Option<Self> {
         let extent = middles.max[axis] - middles.min[axis];
-        // A little less than the number of bins, so that the largest center falls into the last bin; `min` in `index_of`
-        // guards against rounding.
+        // A little less than the number of bins, so that the largest center falls into the last bin; `min` in
+        // `index_of` guards against rounding.
         let scale = bins as f32 * 0.999 / extent;
         let start = middles.min[axis];
         (extent > 0.0 && scale.is_finite()).then_some(Self { axis, start, scale, last: bins - 1 })

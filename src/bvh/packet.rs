@@ -77,12 +77,12 @@ fn total_range<N: Lanes>([low, high]: [N; 2]) -> [N; 2] {
 impl<N: Lanes> AxisRanges<N> {
     /// Returns the sign of the directions, the ranges of each group, and the ranges of all rays.
     #[inline(always)]
-    fn of(origin: [N; GROUPS], inverse: [N; GROUPS]) -> (DirectionSign, [Self; 2]) {
+    fn sign_and_ranges(origin: [N; GROUPS], inverse: [N; GROUPS]) -> (DirectionSign, [Self; 2]) {
         let origin = group_ranges(origin);
         let [low, high] = group_ranges(inverse);
         // The range of all rays follows from the groups' ranges, without another pass over the rays.
         let (all_origin, all_inverse) = (total_range(origin), total_range([low, high]));
-        let sign = DirectionSign::of(all_inverse);
+        let sign = DirectionSign::of_range(all_inverse);
         if sign == DirectionSign::Mixed {
             let (plus, minus) = (N::splat(f32::INFINITY), N::splat(f32::NEG_INFINITY));
             let zero = N::splat(0.0);
@@ -146,7 +146,7 @@ impl<N: Lanes> AxisRanges<N> {
 impl DirectionSign {
     /// Classifies the range of a packet's inverse directions along an axis.
     #[inline(always)]
-    fn of<N: Lanes>([low, high]: [N; 2]) -> Self {
+    fn of_range<N: Lanes>([low, high]: [N; 2]) -> Self {
         let (least, ratio, greatest) = (N::splat(MIN_INVERSE), N::splat(MAX_INVERSE_RATIO), N::splat(f32::MAX / 2.0));
         if (least.le(low) & high.le(low * ratio) & high.le(greatest)).all() {
             Self::Forward
@@ -170,9 +170,9 @@ impl<N: Lanes> Packet<N> {
             }
         }
         let [ox, oy, oz, ix, iy, iz] = columns;
-        let (x, [groups_x, all_x]) = AxisRanges::of(ox, ix);
-        let (y, [groups_y, all_y]) = AxisRanges::of(oy, iy);
-        let (z, [groups_z, all_z]) = AxisRanges::of(oz, iz);
+        let (x, [groups_x, all_x]) = AxisRanges::sign_and_ranges(ox, ix);
+        let (y, [groups_y, all_y]) = AxisRanges::sign_and_ranges(oy, iy);
+        let (z, [groups_z, all_z]) = AxisRanges::sign_and_ranges(oz, iz);
         Self { signs: [x, y, z], groups: [groups_x, groups_y, groups_z], all: [all_x, all_y, all_z] }
     }
 

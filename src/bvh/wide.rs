@@ -25,12 +25,12 @@ pub(super) struct Wide<'p> {
 }
 
 impl<'p> Wide<'p> {
-    pub(super) fn of(pairs: &'p [BinaryNode]) -> Self {
+    pub(super) fn from_binary(pairs: &'p [BinaryNode]) -> Self {
         Self { pairs, fillings: fillings(pairs), nodes: Vec::new(), leaves: Vec::new() }
     }
 
-    pub(super) fn append_node(&mut self, at: usize) -> Child {
-        let BinaryNode { count, at: first, .. } = self.pairs[at];
+    pub(super) fn append_node(&mut self, index: usize) -> Child {
+        let BinaryNode { count, at: first, .. } = self.pairs[index];
         if count > 0 {
             self.leaves.push(first..first + count);
             return Child::leaf(self.leaves.len() as u32 - 1);
@@ -38,7 +38,7 @@ impl<'p> Wide<'p> {
         let number = self.nodes.len();
         self.nodes.push(Node::EMPTY);
         let mut children = Children::default();
-        self.gather_children(at, LANES, &mut children);
+        self.gather_children(index, LANES, &mut children);
         for (lane, &pair) in children.pairs[..children.count].iter().enumerate() {
             let child = self.append_node(pair);
             let bounds = &self.pairs[pair].bounds;
@@ -52,15 +52,15 @@ impl<'p> Wide<'p> {
         Child::node(number as u32)
     }
 
-    /// Adds the binary nodes that represent node `at` in at most `slots` slots of a wide node.
-    fn gather_children(&self, at: usize, slots: usize, children: &mut Children) {
-        let left = usize::from(self.fillings[at][slots - 1]);
+    /// Adds the binary nodes that represent node `index` in at most `slots` slots of a wide node.
+    fn gather_children(&self, index: usize, slots: usize, children: &mut Children) {
+        let left = usize::from(self.fillings[index][slots - 1]);
         if left == WHOLE {
-            children.pairs[children.count] = at;
+            children.pairs[children.count] = index;
             children.count += 1;
         } else {
-            self.gather_children(at + 1, left, children);
-            self.gather_children(at + self.pairs[at].at as usize, slots - left, children);
+            self.gather_children(index + 1, left, children);
+            self.gather_children(index + self.pairs[index].at as usize, slots - left, children);
         }
     }
 }

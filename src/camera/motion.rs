@@ -167,9 +167,9 @@ impl Camera {
     }
 
     /// Returns the camera with eye and target moved by the same vector.
-    pub(super) fn shifted(&self, by: Vec3) -> Self {
+    pub(super) fn shifted(&self, offset: Vec3) -> Self {
         let Pose { eye, target, up } = self.pose;
-        self.with_valid_pose(Pose { eye: eye + by, target: target + by, up })
+        self.with_valid_pose(Pose { eye: eye + offset, target: target + offset, up })
     }
 
     /// Returns the camera at another pose, or unchanged if the pose is invalid.

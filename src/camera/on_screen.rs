@@ -1,7 +1,7 @@
 //! Camera motions by positions in the picture, for the mouse.
 //!
-//! Positions and distances (`by`) are fractions of the picture's width and height, to the right and down. Positions are
-//! relative to the upper left corner.
+//! Positions and distances (`shares`) are fractions of the picture's width and height, to the right and down.
+//! Positions are relative to the upper left corner.
 
 use super::{Camera, Pose};
 use glam::{Vec2, Vec3};
@@ -47,21 +47,21 @@ impl Camera {
 
     /// Returns the camera shifted with its target by a drag of the picture to the right and down.
     // The shift is the distance of the drag at the target's depth, so that the target stays under the pointer.
-    pub(crate) fn panned(&self, by: Vec2, aspect_ratio: f32) -> Self {
-        let across = self.on_view_plane(by, aspect_ratio);
+    pub(crate) fn panned(&self, shares: Vec2, aspect_ratio: f32) -> Self {
+        let across = self.on_view_plane(shares, aspect_ratio);
         self.shifted(self.target_distance() * (across.y * self.basis.v - across.x * self.basis.u))
     }
 
     /// Returns the camera turned about its target by a drag of the scene to the right and down.
-    pub(crate) fn dragged_around(&self, by: Vec2, aspect_ratio: f32) -> Self {
-        let turn = ORBIT_PER_HEIGHT * Vec2::new(by.x * aspect_ratio, by.y);
+    pub(crate) fn dragged_around(&self, shares: Vec2, aspect_ratio: f32) -> Self {
+        let turn = ORBIT_PER_HEIGHT * Vec2::new(shares.x * aspect_ratio, shares.y);
         self.orbited(-turn.x, turn.y)
     }
 
     /// Returns the camera turned about its eye by a drag of the scene to the right and down.
     #[cfg(feature = "live")]
-    pub(crate) fn dragged_view(&self, by: Vec2, aspect_ratio: f32) -> Self {
-        let turn = self.on_view_plane(by, aspect_ratio);
+    pub(crate) fn dragged_view(&self, shares: Vec2, aspect_ratio: f32) -> Self {
+        let turn = self.on_view_plane(shares, aspect_ratio);
         self.turned(-turn.x, turn.y)
     }
 
@@ -105,8 +105,8 @@ impl Camera {
     }
 
     /// Converts a distance in the picture to one on the plane at distance 1 from the eye.
-    fn on_view_plane(&self, by: Vec2, aspect_ratio: f32) -> Vec2 {
+    fn on_view_plane(&self, shares: Vec2, aspect_ratio: f32) -> Vec2 {
         let (width, height, _) = self.rectangle.fitted_to(aspect_ratio);
-        by * Vec2::new(width, height)
+        shares * Vec2::new(width, height)
     }
 }

@@ -62,7 +62,7 @@ pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {
             forced => forced,
         },
     };
-    let found = colorterm(clues).or_else(|| replied(clues)).unwrap_or_else(|| by_term(clues));
+    let found = colorterm(clues).or_else(|| replied_truecolor(clues)).unwrap_or_else(|| by_term(clues));
     least.filter(|least| least.value > found.value).unwrap_or(found)
 }
 
@@ -88,27 +88,28 @@ pub fn glyphs(choice: GlyphChoice, colors: Detected<Colors>, clues: &Clues<'_>) 
 }
 
 /// Returns the variable's value, if it is set and not empty.
-fn value(clues: &Clues<'_>, name: &str) -> Option<String> {
+fn non_empty_variable(clues: &Clues<'_>, name: &str) -> Option<String> {
     (clues.variable)(name).filter(|value| !value.is_empty())
 }
 
 /// Returns the colours that the user's environment variables request; a forced level is a minimum.
 pub(super) fn requested_by_variable(clues: &Clues<'_>) -> Option<Detected<Colors>> {
-    refused(clues).or_else(|| forced(clues))
+    refused_by_variable(clues).or_else(|| forced_by_variable(clues))
 }
 
 /// Returns [`Colors::None`] if `NO_COLOR` is set and not empty, by the convention of no-color.org.
-fn refused(clues: &Clues<'_>) -> Option<Detected<Colors>> {
-    value(clues, "NO_COLOR").map(|_| Detected { value: Colors::None, source: Source::Variable("NO_COLOR") })
+fn refused_by_variable(clues: &Clues<'_>) -> Option<Detected<Colors>> {
+    non_empty_variable(clues, "NO_COLOR")
+        .map(|_| Detected { value: Colors::None, source: Source::Variable("NO_COLOR") })
 }
 
 /// Returns the colours that `CLICOLOR_FORCE` or `FORCE_COLOR` requests.
 ///
 /// The first follows bixense.com/clicolors, where any value but 0 requests colour; the second follows Node, with levels
 /// 0 to 3.
-fn forced(clues: &Clues<'_>) -> Option<Detected<Colors>> {
+fn forced_by_variable(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let found = |value, name| Some(Detected { value, source: Source::Variable(name) });
-    if value(clues, "CLICOLOR_FORCE").is_some_and(|force| force != "0") {
+    if non_empty_variable(clues, "CLICOLOR_FORCE").is_some_and(|force| force != "0") {
         return found(Colors::SIXTEEN, "CLICOLOR_FORCE");
     }
     let value = match (clues.variable)("FORCE_COLOR")?.as_str() {
@@ -123,14 +124,14 @@ fn forced(clues: &Clues<'_>) -> Option<Detected<Colors>> {
 /// Returns truecolor if `COLORTERM` is `truecolor` or `24bit`.
 // Other values announce colours, but not their number.
 pub(super) fn colorterm(clues: &Clues<'_>) -> Option<Detected<Colors>> {
-    let colorterm = value(clues, "COLORTERM")?.to_ascii_lowercase();
+    let colorterm = non_empty_variable(clues, "COLORTERM")?.to_ascii_lowercase();
     let is_truecolor = colorterm == "truecolor" || colorterm == "24bit";
     is_truecolor.then_some(Detected { value: Colors::Truecolor, source: Source::Variable("COLORTERM") })
 }
 
 /// Returns truecolor if the terminal replied that it kept the test colour.
 // If it did not, it may have any smaller number of colours, so later sources decide.
-fn replied(clues: &Clues<'_>) -> Option<Detected<Colors>> {
+fn replied_truecolor(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let kept = clues.truecolor_reply?;
     kept.then_some(Detected { value: Colors::Truecolor, source: Source::Reply })
 }
@@ -146,14 +147,14 @@ fn by_term(clues: &Clues<'_>) -> Detected<Colors> {
 }
 
 fn by_terminfo(clues: &Clues<'_>) -> Option<Detected<Colors>> {
-    let value = (clues.terminfo)(&value(clues, "TERM")?)?;
+    let value = (clues.terminfo)(&non_empty_variable(clues, "TERM")?)?;
     Some(Detected { value, source: Source::Terminfo })
 }
 
 /// Returns the colours that the name in `TERM` implies.
 // Unknown names imply 256 colours, which every emulator of the last twenty years has.
 fn by_name(clues: &Clues<'_>) -> Detected<Colors> {
-    let Some(term) = value(clues, "TERM") else {
+    let Some(term) = non_empty_variable(clues, "TERM") else {
         return Detected { value: Colors::Indexed256, source: Source::Assumed };
     };
     let term = term.to_ascii_lowercase();
@@ -175,7 +176,7 @@ fn by_name(clues: &Clues<'_>) -> Detected<Colors> {
 /// Returns the environment variable that sets the locale's character set, and its value.
 // The first one that is set and not empty counts, in the order of POSIX.
 pub(super) fn locale(clues: &Clues<'_>) -> Option<(&'static str, String)> {
-    ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(|name| Some((name, value(clues, name)?)))
+    ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(|name| Some((name, non_empty_variable(clues, name)?)))
 }
 
 fn is_utf8(locale: &str) -> bool {

@@ -82,8 +82,8 @@ impl Candidates {
         let [r, g, b] = steps.map(|step| linear_from_srgb(step as f64 / (CACHE_LEVELS - 1) as f64) as f32);
         let light = LinearRgb::new(r, g, b);
         match self {
-            Self::Cube(cube) => mix(light, &cube.neighbours(light)),
-            Self::List(candidates) => mix(light, candidates),
+            Self::Cube(cube) => dithered_mix(light, &cube.neighbours(light)),
+            Self::List(candidates) => dithered_mix(light, candidates),
         }
     }
 }
@@ -95,7 +95,7 @@ impl Candidates {
 const ERROR_FEEDBACK: f32 = 0.6;
 
 /// Returns a mix whose mean is near the wanted light.
-fn mix(light: LinearRgb, candidates: &[Candidate]) -> Mix {
+fn dithered_mix(light: LinearRgb, candidates: &[Candidate]) -> Mix {
     let mut error = LinearRgb::BLACK;
     let mut chosen = [candidates[0]; 16];
     for slot in &mut chosen {

@@ -21,7 +21,7 @@ pub(super) fn brightness(picture: &Picture) -> Picture {
 pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u32), inks: &mut InkConverter) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
-            let color = at_full_brightness(mean(picture, pixels_per_cell, column, row));
+            let color = at_full_brightness(cell_mean(picture, pixels_per_cell, column, row));
             let cell = grid.cell_mut(column, row);
             cell.bg = inks.background();
             // Blanks keep their colour, because it is invisible and each change of colour takes bytes.
@@ -33,7 +33,7 @@ pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u3
 }
 
 /// Returns the mean of a cell's pixels, taken in linear light.
-fn mean(picture: &Picture, (across, down): (u32, u32), column: u16, row: u16) -> Srgb8 {
+fn cell_mean(picture: &Picture, (across, down): (u32, u32), column: u16, row: u16) -> Srgb8 {
     let (left, top) = (u32::from(column) * across, u32::from(row) * down);
     let (right, bottom) = ((left + across).min(picture.width), (top + down).min(picture.height));
     let mut light = LinearRgb::BLACK;

@@ -59,7 +59,7 @@ impl Keymap {
                 let entry = format!("{}: {},", keys_as_ron(&row.keys), row.command.name());
                 let _ = writeln!(text, "        {entry:<36}// {}", row.command.description());
             }
-            for key in self.freed(mode) {
+            for key in self.unbound_keys(mode) {
                 let _ = writeln!(text, "        {}: None,", keys_as_ron(&[key]));
             }
             text.push_str("    },\n");
@@ -68,7 +68,7 @@ impl Keymap {
     }
 
     /// Returns the keys that the built-in keymap binds in `mode` and this one does not.
-    fn freed(&self, mode: KeyMode) -> Vec<Key> {
+    fn unbound_keys(&self, mode: KeyMode) -> Vec<Key> {
         let bound: HashSet<_> = self.of(mode).flat_map(|row| &row.keys).copied().collect();
         let built_in = Self::default();
         built_in.of(mode).flat_map(|row| row.keys.clone()).filter(|key| !bound.contains(key)).collect()

@@ -120,7 +120,7 @@ impl Survey {
     }
 
     /// Returns the objects that `object` hides at least partly.
-    pub(super) fn behind(&self, object: u32) -> Vec<u32> {
+    pub(super) fn objects_behind(&self, object: u32) -> Vec<u32> {
         let of_object = self.hides.range((object, 0)..=(object, u32::MAX));
         of_object
             .filter(|&(&(_, behind), &pixels)| self.is_significant(behind, pixels))
@@ -129,7 +129,7 @@ impl Survey {
     }
 
     /// Returns the objects that hide `object` at least partly.
-    pub(super) fn before(&self, object: u32) -> Vec<u32> {
+    pub(super) fn objects_before(&self, object: u32) -> Vec<u32> {
         let of_object = self
             .hides
             .iter()
@@ -152,7 +152,7 @@ fn pixel_content(scene: &Scene, sample: &GBufferSample) -> Option<PixelContent> 
         object: hit.object,
         distance: hit.t * sample.ray.direction.length(),
         reflectance: own.unwrap_or(Material::DEFAULT_REFLECTANCE),
-        behind: behind(scene, *sample),
+        behind: objects_behind(scene, *sample),
     })
 }
 
@@ -164,7 +164,7 @@ const MAX_OCCLUDED: usize = 3;
 const MAX_LAYERS: usize = 12;
 
 /// Returns the objects behind the visible one along a sample's ray, the nearest first.
-fn behind(scene: &Scene, mut sample: GBufferSample) -> [Option<u32>; MAX_OCCLUDED] {
+fn objects_behind(scene: &Scene, mut sample: GBufferSample) -> [Option<u32>; MAX_OCCLUDED] {
     let seen = sample.hit.map(|hit| hit.object);
     let (mut found, mut count) = ([None; MAX_OCCLUDED], 0);
     for _ in 0..MAX_LAYERS {

@@ -72,9 +72,9 @@ pub(super) fn distance(nearest: f32, farthest: f32) -> String {
     if farthest > 1.5 * nearest { format!("nearest {}", number(nearest)) } else { format!("{} away", number(nearest)) }
 }
 
-/// Formats `part` out of `of` as a percentage.
-pub(super) fn percent(part: usize, of: usize) -> String {
-    match 100 * part / of.max(1) {
+/// Formats `part` out of `whole` as a percentage.
+pub(super) fn percent(part: usize, whole: usize) -> String {
+    match 100 * part / whole.max(1) {
         0 => "less than 1%".to_owned(),
         share => format!("{share}%"),
     }
@@ -86,7 +86,7 @@ pub(super) fn position(rect: PictureRect) -> &'static str {
     /// Returns the place along one axis: 0 for left or top, 1 for the middle, 2 for right or
     /// bottom, 3 for the full extent.
     // Only the middle sixth of the picture counts as the middle, so that the side of an object is mentioned more often.
-    fn third(middle: f32, extent: f32) -> usize {
+    fn third_index(middle: f32, extent: f32) -> usize {
         match middle {
             _ if extent > FULL_EXTENT => 3,
             m if m < 0.42 => 0,
@@ -101,7 +101,7 @@ pub(super) fn position(rect: PictureRect) -> &'static str {
         ["all along the left", "from top to bottom in the middle", "all along the right", "all over the picture"],
     ];
     let PictureRect { middle, extent } = rect;
-    POSITIONS[third(middle[1], extent[1])][third(middle[0], extent[0])]
+    POSITIONS[third_index(middle[1], extent[1])][third_index(middle[0], extent[0])]
 }
 
 #[cfg(all(test, unit_tests))]

@@ -145,7 +145,7 @@ impl<W> EncoderBackend<W> {
     /// ```
     pub fn with_encoder(mut self, encoder: Encoder) -> Self {
         self.encoder = encoder;
-        self.forget();
+        self.forget_screen_and_cursor();
         self
     }
 
@@ -253,7 +253,7 @@ impl<W> EncoderBackend<W> {
     }
 
     /// Forgets the state of the screen and of the cursor.
-    fn forget(&mut self) {
+    fn forget_screen_and_cursor(&mut self) {
         self.encoder.forget();
         self.shown_cursor = Cursor::default();
     }
@@ -265,7 +265,7 @@ impl<W> EncoderBackend<W> {
         self.wanted = Grid::foreign(grid::Size::new(width, height));
         self.cursor.position = None;
         self.is_frame_open = false;
-        self.forget();
+        self.forget_screen_and_cursor();
     }
 
     /// Returns the position on the screen that is nearest to the given one.
@@ -299,7 +299,7 @@ impl<W> EncoderBackend<W> {
 
     /// Sets the cells at these indices, row by row, to blanks that the next frame sends even over
     /// known blanks.
-    fn blank(&mut self, cells: Range<usize>) {
+    fn blank_cells(&mut self, cells: Range<usize>) {
         let columns = usize::from(self.window.columns_rows.width);
         for at in cells.start..cells.end.min(self.wanted.cells().len()) {
             let (column, row) = ((at % columns) as u16, (at / columns) as u16);
@@ -323,7 +323,7 @@ impl<W: Write> EncoderBackend<W> {
     }
 
     /// Returns the cursor's wanted or shown position; if both are unknown, queries it.
-    fn locate(&mut self) -> io::Result<Position> {
+    fn known_or_queried_position(&mut self) -> io::Result<Position> {
         if self.cursor.position.or(self.shown_cursor.position).is_none()
             && let Some(ask) = &self.ask_position
         {
@@ -335,7 +335,7 @@ impl<W: Write> EncoderBackend<W> {
 
     /// Returns the bytes that make the terminal show the wanted grid and cursor; exactly, if
     /// `limits` is `None`.
-    fn frame(&mut self, limits: Option<&mut Limits>) -> Vec<u8> {
+    fn encode_frame(&mut self, limits: Option<&mut Limits>) -> Vec<u8> {
         self.is_frame_open = false;
         let mut bytes = Vec::new();
         let end = match limits {
@@ -351,7 +351,7 @@ impl<W: Write> EncoderBackend<W> {
         self.encoder.reset_pen(&mut bytes);
         self.shown_cursor.position = end.map(|CellPosition { column, row }| Position::new(column, row));
         self.shown_cursor.switch_to(self.cursor, &mut bytes);
-        self.encoder.bracket(0, &mut bytes);
+        self.encoder.enclose_in_synchronized(0, &mut bytes);
         bytes
     }
 
@@ -359,12 +359,12 @@ impl<W: Write> EncoderBackend<W> {
     /// colours.
     // To be sent before sequences such as scrolling, which fill blank rows with the pen's background.
     fn unsent_bytes(&mut self) -> Vec<u8> {
-        if self.is_frame_open || !self.encoder.knows_screen() { self.frame(None) } else { Vec::new() }
+        if self.is_frame_open || !self.encoder.knows_screen() { self.encode_frame(None) } else { Vec::new() }
     }
 
     fn send_frame(&mut self) -> io::Result<()> {
         let mut limits = self.limits.take();
-        let bytes = self.frame(limits.as_mut());
+        let bytes = self.encode_frame(limits.as_mut());
         if let Some(limits) = &mut limits {
             limits.record_sent(bytes.len());
         }
@@ -374,7 +374,7 @@ impl<W: Write> EncoderBackend<W> {
 
     /// Sends all drawn cells that are not sent yet, with exact colours.
     fn send_exactly(&mut self) -> io::Result<()> {
-        let bytes = self.frame(None);
+        let bytes = self.encode_frame(None);
         self.send(&bytes)
     }
 
@@ -414,7 +414,7 @@ impl<W: Write> EncoderBackend<W> {
     ///
     /// Rows that leave the screen at the top enter the scrollback.
     fn feed_lines(&mut self, lines: u16) -> io::Result<()> {
-        let Position { x, y } = self.locate()?;
+        let Position { x, y } = self.known_or_queried_position()?;
         self.put_cursor(Position::new(x, y));
         let mut bytes = self.unsent_bytes();
         self.shown_cursor.switch_to(self.cursor, &mut bytes);
@@ -428,18 +428,18 @@ impl<W: Write> EncoderBackend<W> {
         self.send(&bytes)
     }
 
-    /// Records that rows `region` have been scrolled by `by` rows, and that the cursor is at the
-    /// top left.
+    /// Records that rows `region` were scrolled by `line_count` rows; the cursor is at the top
+    /// left.
     #[cfg(feature = "scrolling-regions")]
-    fn record_scrolled(&mut self, region: Range<u16>, by: u16, direction: regions::ScrollDirection) {
+    fn record_scrolled(&mut self, region: Range<u16>, line_count: u16, direction: regions::ScrollDirection) {
         match direction {
             regions::ScrollDirection::Up => {
-                self.encoder.scroll_up(region.clone(), by);
-                self.wanted.scroll_up(region, by);
+                self.encoder.scroll_up(region.clone(), line_count);
+                self.wanted.scroll_up(region, line_count);
             }
             regions::ScrollDirection::Down => {
-                self.encoder.scroll_down(region.clone(), by);
-                self.wanted.scroll_down(region, by);
+                self.encoder.scroll_down(region.clone(), line_count);
+                self.wanted.scroll_down(region, line_count);
             }
         }
         self.position = Position::ORIGIN;

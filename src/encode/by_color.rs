@@ -25,7 +25,7 @@ pub(super) fn order(wanted: &Grid, changed: &[CellPosition], half_blocks: HalfBl
     let pen = last.map_or(pen, |position| pen.pen_for(wanted.cell(position.column, position.row)));
     let mut tour = Tour::new(wanted, &picture, half_blocks, pen);
     tour.cursor = last.and_then(|position| cursor_after(wanted, position));
-    tour.walk(&mut order);
+    tour.visit_all(&mut order);
     order
 }
 
@@ -142,11 +142,11 @@ impl<'a> Tour<'a> {
     }
 
     /// Visits all pairs, and appends the positions of their cells to `order`.
-    fn walk(&mut self, order: &mut Vec<CellPosition>) {
+    fn visit_all(&mut self, order: &mut Vec<CellPosition>) {
         for next in 0..self.pairs.len() {
             while !self.pairs[next].visited {
                 let pair = self.cheapest_pair(next);
-                self.visit(pair, order);
+                self.visit_pair(pair, order);
             }
         }
     }
@@ -202,11 +202,10 @@ impl<'a> Tour<'a> {
         if flip { flipped } else { plain }
     }
 
-    /// Appends the cells of the pair at index `at` to `order`, and updates pen and cursor to those
-    /// after writing them.
-    fn visit(&mut self, at: usize, order: &mut Vec<CellPosition>) {
-        self.pen = self.pair_pen(&self.pairs[at]);
-        let pair = &mut self.pairs[at];
+    /// Appends the cells of pair `index` to `order`, and sets pen and cursor to those after them.
+    fn visit_pair(&mut self, index: usize, order: &mut Vec<CellPosition>) {
+        self.pen = self.pair_pen(&self.pairs[index]);
+        let pair = &mut self.pairs[index];
         pair.visited = true;
         let [a, b] = pair.colors;
         self.pen_colors = if a == b {
@@ -216,7 +215,7 @@ impl<'a> Tour<'a> {
         } else {
             [Some(b), Some(a)]
         };
-        for &color in distinct(&pair.colors) {
+        for &color in distinct_colors(&pair.colors) {
             self.colors[color].unvisited -= 1;
         }
         let positions = &self.positions[pair.positions.clone()];
@@ -229,7 +228,7 @@ impl<'a> Tour<'a> {
 fn pairs_by_color(sort_keys: &[u32], pairs: &[Pair]) -> (Vec<Color>, Vec<usize>) {
     let mut colors: Vec<Color> =
         sort_keys.iter().map(|&sort_key| Color { sort_key, pairs: 0..0, unvisited: 0 }).collect();
-    for color in pairs.iter().flat_map(|pair| distinct(&pair.colors)) {
+    for color in pairs.iter().flat_map(|pair| distinct_colors(&pair.colors)) {
         colors[*color].unvisited += 1;
     }
     let mut end = 0;
@@ -239,7 +238,7 @@ fn pairs_by_color(sort_keys: &[u32], pairs: &[Pair]) -> (Vec<Color>, Vec<usize>)
     }
     let mut neighbours = vec![0; end];
     for (at, pair) in pairs.iter().enumerate().rev() {
-        for &color in distinct(&pair.colors) {
+        for &color in distinct_colors(&pair.colors) {
             let end = &mut colors[color].pairs.end;
             neighbours[*end] = at;
             *end += 1;
@@ -249,7 +248,7 @@ fn pairs_by_color(sort_keys: &[u32], pairs: &[Pair]) -> (Vec<Color>, Vec<usize>)
 }
 
 /// Returns the two colours of a pair, or one if they are equal.
-fn distinct(colors: &[usize; 2]) -> &[usize] {
+fn distinct_colors(colors: &[usize; 2]) -> &[usize] {
     if colors[0] == colors[1] { &colors[..1] } else { colors }
 }
 

@@ -39,8 +39,8 @@ impl ChangeTimes {
         }
     }
 
-    /// Returns the time at which the cell at index `at` is to be made exact.
-    pub(super) fn exact_at(&self, at: usize) -> Duration {
-        self.since[at].saturating_add(EXACT_AFTER)
+    /// Returns the time at which the cell at index `cell_index` is to be made exact.
+    pub(super) fn exact_at(&self, cell_index: usize) -> Duration {
+        self.since[cell_index].saturating_add(EXACT_AFTER)
     }
 }

@@ -32,19 +32,19 @@ impl Encoder {
         }
     }
 
-    /// Records that the contents of `region` have moved up by `by` rows.
+    /// Records that the contents of `region` have moved up by `line_count` rows.
     // Requires a reset before scrolling: many terminals fill the new rows with the pen's background.
-    pub(super) fn scroll_up(&mut self, region: Range<u16>, by: u16) {
+    pub(super) fn scroll_up(&mut self, region: Range<u16>, line_count: u16) {
         if let Some(known) = &mut self.known {
-            known.shown.scroll_up(region, by);
+            known.shown.scroll_up(region, line_count);
         }
     }
 
-    /// Records that the contents of `region` have moved down by `by` rows.
+    /// Records that the contents of `region` have moved down by `line_count` rows.
     #[cfg(feature = "scrolling-regions")]
-    pub(super) fn scroll_down(&mut self, region: Range<u16>, by: u16) {
+    pub(super) fn scroll_down(&mut self, region: Range<u16>, line_count: u16) {
         if let Some(known) = &mut self.known {
-            known.shown.scroll_down(region, by);
+            known.shown.scroll_down(region, line_count);
         }
     }
 }

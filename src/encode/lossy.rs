@@ -124,7 +124,7 @@ impl<'a> Plan<'a> {
         const HISTOGRAM_LEN: usize = 1024;
         let mut counts = [0_usize; HISTOGRAM_LEN];
         for difference in &self.differences {
-            let squares = difference.shown.map_or([u32::MAX; 2], |shown| squares(shown, difference.wanted));
+            let squares = difference.shown.map_or([u32::MAX; 2], |shown| squared_differences(shown, difference.wanted));
             for square in squares {
                 counts[(square as usize).min(HISTOGRAM_LEN - 1)] += 1;
             }
@@ -150,7 +150,7 @@ impl<'a> Plan<'a> {
     fn rank_differences(&mut self) {
         for difference in &mut self.differences {
             let Some(shown) = difference.shown else { continue };
-            let square = squares(shown, difference.wanted).into_iter().fold(0, u32::max);
+            let square = squared_differences(shown, difference.wanted).into_iter().fold(0, u32::max);
             let is_near = (0..2).all(|half| self.tolerance.allows(shown[half], difference.wanted[half]));
             difference.urgency = match (is_near, (self.frame.has_waited)(difference.at)) {
                 (false, _) => Urgency::Differs(square),
@@ -167,7 +167,7 @@ impl<'a> Plan<'a> {
     }
 
     /// Returns the number of picture cells to write.
-    pub(super) fn writes(&self) -> usize {
+    pub(super) fn write_count(&self) -> usize {
         self.writes
     }
 
@@ -182,13 +182,14 @@ impl<'a> Plan<'a> {
     /// urgent picture cells.
     pub(super) fn grid(&self, writes: usize) -> Grid {
         let (written, left) = self.differences.split_at(writes);
-        let left: u64 = left.iter().filter_map(|left| Some(sum(squares(left.shown?, left.wanted)))).sum();
+        let left: u64 = left.iter().filter_map(|left| Some(sum(squared_differences(left.shown?, left.wanted)))).sum();
         let max_squares =
             if writes < self.min_writes(true) { f64::INFINITY } else { self.square_budget() - left as f64 };
         let mut tolerance = self.tolerance;
         let snapped = loop {
             let snapped = self.snapped_halves(written, tolerance);
-            let squares = snapped.iter().zip(written).map(|(&snapped, write)| sum(squares(snapped, write.wanted)));
+            let squares =
+                snapped.iter().zip(written).map(|(&snapped, write)| sum(squared_differences(snapped, write.wanted)));
             let squares = squares.sum::<u64>() as f64;
             if squares <= max_squares || tolerance.square == 0 {
                 break snapped;
@@ -224,14 +225,14 @@ impl<'a> Plan<'a> {
     }
 
     /// Returns the indices of the picture cells that differ between `grid` and the wanted grid.
-    pub(super) fn inexact(&self, grid: &Grid) -> impl Iterator<Item = usize> {
+    pub(super) fn inexact_cells(&self, grid: &Grid) -> impl Iterator<Item = usize> {
         let is_inexact =
             |difference: &&Difference| picture_halves(&grid.cells()[difference.at]) != Some(difference.wanted);
         self.differences.iter().filter(is_inexact).map(|difference| difference.at)
     }
 }
 
-fn squares(a: Halves, b: Halves) -> [u32; 2] {
+fn squared_differences(a: Halves, b: Halves) -> [u32; 2] {
     [squared_difference(a[0], b[0]), squared_difference(a[1], b[1])]
 }
 

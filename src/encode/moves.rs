@@ -79,7 +79,7 @@ impl Move {
     pub(super) fn write(self, bytes: &mut Vec<u8>) {
         match self {
             Self::To(CellPosition { column: 0, row: 0 }) => bytes.extend_from_slice(b"\x1b[H"),
-            Self::To(CellPosition { column: 0, row }) => sequence(bytes, row + 1, b'H'),
+            Self::To(CellPosition { column: 0, row }) => write_sequence(bytes, row + 1, b'H'),
             Self::To(CellPosition { column, row }) => {
                 bytes.extend_from_slice(b"\x1b[");
                 write_number(row + 1, bytes);
@@ -113,14 +113,14 @@ impl Along {
             Self::Start => bytes.push(b'\r'),
             Self::Left(columns) => bytes.extend(std::iter::repeat_n(b'\x08', columns.into())),
             Self::Right(1) => bytes.extend_from_slice(b"\x1b[C"),
-            Self::Right(columns) => sequence(bytes, columns, b'C'),
-            Self::Column(column) => sequence(bytes, column + 1, b'G'),
+            Self::Right(columns) => write_sequence(bytes, columns, b'C'),
+            Self::Column(column) => write_sequence(bytes, column + 1, b'G'),
         }
     }
 }
 
 /// Appends a CSI sequence with the parameter `number` and the final byte `last`.
-fn sequence(bytes: &mut Vec<u8>, number: u16, last: u8) {
+fn write_sequence(bytes: &mut Vec<u8>, number: u16, last: u8) {
     bytes.extend_from_slice(b"\x1b[");
     write_number(number, bytes);
     bytes.push(last);

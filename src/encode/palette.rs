@@ -17,9 +17,9 @@ use std::mem;
 /// candidates for the palette.
 pub(super) fn snap_to_palette(cells: &mut [&mut Halves], pen: [Ink; 2], tolerance: Tolerance, half_blocks: HalfBlocks) {
     let table = ColorTable::from_cells_and_pen(cells, pen);
-    let choices = table.choices(tolerance);
+    let choices = table.choices_by_color(tolerance);
     let wanted: Vec<[usize; 2]> = cells.iter().map(|cell| cell.map(|color| table.index(color))).collect();
-    let pairs = pairs(&wanted, &choices, half_blocks);
+    let pairs = choose_pairs(&wanted, &choices, half_blocks);
     for ((cell, wanted), pair) in cells.iter_mut().zip(wanted).zip(pairs) {
         let [a, b] = pair.map(|index| table.colors[index]);
         let fits = |pair: [usize; 2]| (0..2).all(|half| choices[wanted[half]].contains(&pair[half]));
@@ -68,8 +68,8 @@ impl ColorTable {
 
     /// Returns for each colour the palette colours that may replace it, those that replace the most
     /// half cells first.
-    fn choices(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
-        let exchangeable = self.exchangeable(tolerance);
+    fn choices_by_color(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
+        let exchangeable = self.exchangeable_by_color(tolerance);
         let mut choices: Vec<Vec<usize>> = vec![Vec::new(); self.colors.len()];
         for color in greedy_cover(&exchangeable, &self.halves) {
             for &half in &exchangeable[color] {
@@ -83,7 +83,7 @@ impl ColorTable {
 
     /// Returns for each colour the colours within the tolerance, including itself.
     // OKLab distance is at least the difference in lightness, so only neighbours in an order by lightness are compared.
-    fn exchangeable(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
+    fn exchangeable_by_color(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
         let mut order: Vec<usize> = (0..self.colors.len()).collect();
         order.sort_unstable_by(|&a, &b| self.oklab[a].l.total_cmp(&self.oklab[b].l));
         let mut exchangeable: Vec<Vec<usize>> = (0..order.len()).map(|color| vec![color]).collect();
@@ -104,7 +104,7 @@ impl ColorTable {
 
 /// Returns for each cell a pair out of the `choices` for its two `wanted` colours, using few
 /// distinct pairs.
-fn pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], half_blocks: HalfBlocks) -> Vec<[usize; 2]> {
+fn choose_pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], half_blocks: HalfBlocks) -> Vec<[usize; 2]> {
     let mut possible: Vec<([usize; 2], usize)> = Vec::new();
     for (cell, &[upper, lower]) in wanted.iter().enumerate() {
         for &a in &choices[upper] {
@@ -147,10 +147,10 @@ fn greedy_cover(sets: &[impl AsRef<[usize]>], weights: &[usize]) -> Vec<usize> {
     // Lazy evaluation: gains only shrink, so a set whose gain still equals that of its heap entry is the best (Minoux
     // 1978).
     let mut heap: BinaryHeap<(usize, Reverse<usize>)> =
-        sets.iter().enumerate().map(|(at, set)| (gain(set.as_ref(), &left), Reverse(at))).collect();
+        sets.iter().enumerate().map(|(at, set)| (remaining_weight(set.as_ref(), &left), Reverse(at))).collect();
     let mut chosen = Vec::new();
     while let Some((promised, Reverse(at))) = heap.pop() {
-        let added = gain(sets[at].as_ref(), &left);
+        let added = remaining_weight(sets[at].as_ref(), &left);
         if added == 0 {
             continue;
         }
@@ -166,6 +166,6 @@ fn greedy_cover(sets: &[impl AsRef<[usize]>], weights: &[usize]) -> Vec<usize> {
     chosen
 }
 
-fn gain(set: &[usize], left: &[usize]) -> usize {
-    set.iter().map(|&member| left[member]).sum()
+fn remaining_weight(set: &[usize], weights: &[usize]) -> usize {
+    set.iter().map(|&member| weights[member]).sum()
 }

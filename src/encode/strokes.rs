@@ -19,7 +19,12 @@ pub(super) struct Stroke {
 
 /// Returns the strokes that write the cells in `order` with the fewest bytes for changes of the
 /// pen.
-pub(super) fn choose(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, mut pen: Pen) -> Vec<Stroke> {
+pub(super) fn choose_strokes(
+    wanted: &Grid,
+    order: &[CellPosition],
+    half_blocks: HalfBlocks,
+    mut pen: Pen,
+) -> Vec<Stroke> {
     let forms = choose_forms(wanted, order, half_blocks, pen);
     let stroke = |(&position, form): (&CellPosition, BlockForm)| {
         pen = form.pen(wanted.cell(position.column, position.row), &pen);
@@ -45,7 +50,7 @@ pub(super) fn share_next_fg(wanted: &Grid, strokes: &mut [Stroke]) {
 /// Appends the strokes. Returns the cursor's position after them, or `None` where terminals differ
 /// about it.
 // The cursor's position is assumed unknown at first, because other output since the last frame may have moved it.
-pub(super) fn write(
+pub(super) fn write_strokes(
     wanted: &Grid,
     strokes: &[Stroke],
     half_blocks: HalfBlocks,
@@ -152,17 +157,19 @@ fn choose_forms(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, 
         if is_plain_space(cell) {
             // A space keeps the pen's glyph colour, so the two paths stay distinct.
             predecessors.push([0, 1]);
-            paths =
-                [paths[0].step(pens[0], pens[0].ink_lens(), false), paths[1].step(pens[1], pens[1].ink_lens(), false)];
+            paths = [
+                paths[0].extended(pens[0], pens[0].ink_lens(), false),
+                paths[1].extended(pens[1], pens[1].ink_lens(), false),
+            ];
         } else if can_be_flipped(cell) {
             let lens = pens[0].ink_lens();
-            let (plain, from_plain) = cheaper(&paths, pens, lens, is_lower);
+            let (plain, from_plain) = cheaper_extension(&paths, pens, lens, is_lower);
             let flipped_pens = [swapped_colors(pens[0]), swapped_colors(pens[1])];
-            let (flipped, from_flipped) = cheaper(&paths, flipped_pens, [lens[1], lens[0]], !is_lower);
+            let (flipped, from_flipped) = cheaper_extension(&paths, flipped_pens, [lens[1], lens[0]], !is_lower);
             predecessors.push([from_plain, from_flipped]);
             paths = [plain, flipped];
         } else {
-            let (plain, from_plain) = cheaper(&paths, pens, pens[0].ink_lens(), is_lower);
+            let (plain, from_plain) = cheaper_extension(&paths, pens, pens[0].ink_lens(), is_lower);
             predecessors.push([from_plain; 2]);
             paths = [plain; 2];
         }
@@ -180,8 +187,13 @@ fn choose_forms(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, 
 
 /// Extends both paths by a cell, written with `pens`. Returns the cheaper one and its index, 0 or
 /// 1.
-fn cheaper(paths: &[SurvivorPath; 2], pens: [Pen; 2], lens: [usize; 2], is_lower: bool) -> (SurvivorPath, u8) {
-    let [first, second] = [paths[0].step(pens[0], lens, is_lower), paths[1].step(pens[1], lens, is_lower)];
+fn cheaper_extension(
+    paths: &[SurvivorPath; 2],
+    pens: [Pen; 2],
+    lens: [usize; 2],
+    is_lower: bool,
+) -> (SurvivorPath, u8) {
+    let [first, second] = [paths[0].extended(pens[0], lens, is_lower), paths[1].extended(pens[1], lens, is_lower)];
     if second.cost < first.cost { (second, 1) } else { (first, 0) }
 }
 
@@ -189,7 +201,7 @@ impl SurvivorPath {
     /// Returns the path extended by a cell that is written with `pen`.
     // Always inlined, as `cost_of_colors` is: a call would copy pens through memory.
     #[inline(always)]
-    fn step(&self, pen: Pen, lens: [usize; 2], is_lower: bool) -> Self {
+    fn extended(&self, pen: Pen, lens: [usize; 2], is_lower: bool) -> Self {
         Self {
             pen,
             cost: self.cost

@@ -77,16 +77,16 @@ type Row = Vec<(char, TextStyle)>;
 fn rows(text: &str) -> Vec<Row> {
     // Only one line feed is removed, because an empty last row counts as a row.
     let text = text.strip_suffix('\n').unwrap_or(text);
-    text.split('\n').map(sgr::row).collect()
+    text.split('\n').map(sgr::parse_row).collect()
 }
 
 /// Returns the width of a character, as a message shows it, in columns.
-fn columns(character: char) -> usize {
+fn char_width(character: char) -> usize {
     visible_char(character).width().unwrap_or(1)
 }
 
-fn width(row: &[(char, TextStyle)]) -> usize {
-    row.iter().map(|&(character, _)| columns(character)).sum()
+fn row_width(row: &[(char, TextStyle)]) -> usize {
+    row.iter().map(|&(character, _)| char_width(character)).sum()
 }
 
 /// Returns a line with a mark below each differing cell, and below the end of the shorter row.
@@ -94,7 +94,7 @@ fn marks(a: &Row, b: &Row) -> String {
     let mut marks = String::new();
     for (a, b) in a.iter().zip(b) {
         let mark = if a == b { ' ' } else { '^' };
-        marks.extend(std::iter::repeat_n(mark, columns(a.0).max(columns(b.0))));
+        marks.extend(std::iter::repeat_n(mark, char_width(a.0).max(char_width(b.0))));
     }
     if a.len() != b.len() {
         marks.push('^');
@@ -116,24 +116,24 @@ impl Difference {
     pub fn column(&self) -> usize {
         let (Some(a), Some(b)) = (self.expected.get(self.same), self.found.get(self.same)) else { return 0 };
         let same = a.iter().zip(b).take_while(|(a, b)| a == b).count();
-        width(&a[..same])
+        row_width(&a[..same])
     }
 
     /// Returns for each text the index of its first row that belongs to the equal rows at the
     /// bottom.
-    fn middle(&self) -> [usize; 2] {
+    fn equal_end_starts(&self) -> [usize; 2] {
         [&self.expected, &self.found].map(|rows| rows.len() - self.same_after)
     }
 
     /// Returns the indices of the differing rows, if both texts have equally many rows.
-    fn differing(&self) -> impl Iterator<Item = usize> {
+    fn differing_rows(&self) -> impl Iterator<Item = usize> {
         let pairs = self.expected.iter().zip(&self.found).enumerate();
         pairs.filter(|(_, (a, b))| a != b).map(|(row, _)| row)
     }
 
     /// Writes the sizes, if they differ, the number of differing rows, and the first difference.
     fn write_summary(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let size = |rows: &[Row]| (rows.iter().map(|row| width(row)).max().unwrap_or(0), rows.len());
+        let size = |rows: &[Row]| (rows.iter().map(|row| row_width(row)).max().unwrap_or(0), rows.len());
         let (expected, found) = (size(&self.expected), size(&self.found));
         // The report starts with the sizes if they differ, because that usually causes all other differences.
         if expected != found {
@@ -143,7 +143,7 @@ impl Difference {
         if expected.1 != found.1 {
             return writeln!(f, "the first difference: line {line}, column {column}");
         }
-        match self.differing().count() {
+        match self.differing_rows().count() {
             0 if self.ends[0] != self.ends[1] => {
                 let which = if self.ends[0] { "expected" } else { "found" };
                 writeln!(f, "only the text that was {which} ends with a line feed")
@@ -156,7 +156,7 @@ impl Difference {
 
     /// Writes each pair of differing rows, and a row of context before and after it.
     fn write_pairs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let differing: Vec<usize> = self.differing().take(MAX_SHOWN_ROWS).collect();
+        let differing: Vec<usize> = self.differing_rows().take(MAX_SHOWN_ROWS).collect();
         // One row of context on either side shows where in the picture a difference is.
         let is_near = |row: usize| differing.iter().any(|&other| row.abs_diff(other) <= 1);
         let mut last = None;
@@ -175,7 +175,7 @@ impl Difference {
                 self.write_marks(f, a, b)?;
             }
         }
-        match self.differing().count() - differing.len() {
+        match self.differing_rows().count() - differing.len() {
             0 => Ok(()),
             more => writeln!(f, "  ... and {more} more"),
         }
@@ -184,7 +184,7 @@ impl Difference {
     /// Writes the block of expected rows, and the block of found rows that replaces it, for texts
     /// with different numbers of rows.
     fn write_block(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [expected_end, found_end] = self.middle();
+        let [expected_end, found_end] = self.equal_end_starts();
         if let Some(before) = self.same.checked_sub(1) {
             self.write_row(f, ' ', before, &self.expected[before])?;
         }
@@ -203,7 +203,7 @@ impl Difference {
     }
 
     /// Returns the number of digits of the largest line number.
-    fn digits(&self) -> usize {
+    fn line_number_digits(&self) -> usize {
         self.expected.len().max(self.found.len()).to_string().len()
     }
 
@@ -215,13 +215,13 @@ impl Difference {
             '+' if f.alternate() => ("\x1b[32m", "\x1b[m"),
             _ => ("", ""),
         };
-        writeln!(f, "{on}{sign} {:digits$} |{text}|{off}", row + 1, digits = self.digits())
+        writeln!(f, "{on}{sign} {:digits$} |{text}|{off}", row + 1, digits = self.line_number_digits())
     }
 
     /// Writes the marks below a pair of differing rows; if only styles differ, also the first
     /// differing style.
     fn write_marks(&self, f: &mut fmt::Formatter<'_>, a: &Row, b: &Row) -> fmt::Result {
-        write!(f, "  {:digits$}  {}", "", marks(a, b), digits = self.digits())?;
+        write!(f, "  {:digits$}  {}", "", marks(a, b), digits = self.line_number_digits())?;
         let glyphs = |row: &Row| row.iter().map(|&(character, _)| character).collect::<Vec<_>>();
         // If all glyphs are equal, no difference is visible, so the first differing styles are described.
         if glyphs(a) == glyphs(b)

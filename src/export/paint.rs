@@ -79,7 +79,7 @@ fn areas(grid: &Grid) -> Vec<ColorArea> {
     // Only runs with the same columns and colour are merged, in one pass. Other merges would find few more rectangles
     // in pictures.
     let mut above: HashMap<(usize, usize, Srgb8), usize> = HashMap::new();
-    let half_rows = grid.rows().flat_map(|row| [0, 1].map(|half| row.iter().map(move |cell| halves(cell)[half])));
+    let half_rows = grid.rows().flat_map(|row| [0, 1].map(|half| row.iter().map(move |cell| half_colors(cell)[half])));
     for (y, colors) in half_rows.enumerate() {
         let colors: Vec<Srgb8> = colors.collect();
         let mut here = HashMap::new();
@@ -100,8 +100,8 @@ fn areas(grid: &Grid) -> Vec<ColorArea> {
 }
 
 /// Returns the colours of a cell's upper and lower half, with text left out.
-fn halves(cell: &Cell) -> [Srgb8; 2] {
-    let [fg, bg] = colors(cell);
+fn half_colors(cell: &Cell) -> [Srgb8; 2] {
+    let [fg, bg] = cell_colors(cell);
     match cell.glyph {
         Glyph::Char('▀') => [fg, bg],
         Glyph::Char('▄') => [bg, fg],
@@ -112,12 +112,12 @@ fn halves(cell: &Cell) -> [Srgb8; 2] {
 }
 
 /// Returns the colours of a cell's glyph and background.
-fn colors(cell: &Cell) -> [Srgb8; 2] {
-    let (fg, bg) = (color(cell.fg, DEFAULT_TEXT), color(cell.bg, DEFAULT_BACKGROUND));
+fn cell_colors(cell: &Cell) -> [Srgb8; 2] {
+    let (fg, bg) = (ink_color(cell.fg, DEFAULT_TEXT), ink_color(cell.bg, DEFAULT_BACKGROUND));
     if cell.attributes.contains(Attributes::REVERSED) { [bg, fg] } else { [fg, bg] }
 }
 
-fn color(ink: Ink, default: Srgb8) -> Srgb8 {
+fn ink_color(ink: Ink, default: Srgb8) -> Srgb8 {
     match ink {
         Ink::Default => default,
         Ink::Indexed(index) => xterm_color(index),
@@ -130,7 +130,7 @@ fn color(ink: Ink, default: Srgb8) -> Srgb8 {
 pub(super) fn text_runs(row: &[Cell]) -> Vec<TextRun> {
     let mut runs: Vec<TextRun> = Vec::new();
     for (column, cell) in row.iter().enumerate() {
-        let (color, attributes) = (colors(cell)[0], cell.attributes);
+        let (color, attributes) = (cell_colors(cell)[0], cell.attributes);
         let Some(text) = text_of(cell) else {
             if let Some(run) = runs.last_mut().filter(|run| cell.glyph == Glyph::Covered && run.end() == column) {
                 run.columns += 1;

@@ -15,13 +15,13 @@ pub(super) struct TextStyle {
 
 /// Returns the characters of a row of ANSI text, with the style of each.
 // Only SGR sequences are parsed; others stay characters, which the comparison shows.
-pub(super) fn row(text: &str) -> Vec<(char, TextStyle)> {
+pub(super) fn parse_row(text: &str) -> Vec<(char, TextStyle)> {
     let mut row = Vec::new();
     let mut style = TextStyle::default();
     let mut characters = text.chars();
     loop {
         if let Some(numbers) = take_sgr(&mut characters) {
-            style.apply(numbers);
+            style.apply_parameters(numbers);
         } else if let Some(character) = characters.next() {
             // The ESC of any other sequence counts as a character; `visible_char` replaces it in the output.
             row.push((character, style.clone()));
@@ -40,13 +40,13 @@ fn take_sgr<'a>(characters: &mut Chars<'a>) -> Option<&'a str> {
 }
 
 impl TextStyle {
-    fn apply(&mut self, numbers: &str) {
+    fn apply_parameters(&mut self, numbers: &str) {
         let mut numbers = numbers.split(';').peekable();
         while let Some(number) = numbers.next() {
             match number {
                 "" | "0" => *self = Self::default(),
-                "38" => self.fg = color("38", &mut numbers),
-                "48" => self.bg = color("48", &mut numbers),
+                "38" => self.fg = color_parameters("38", &mut numbers),
+                "48" => self.bg = color_parameters("48", &mut numbers),
                 "39" => self.fg.clear(),
                 "49" => self.bg.clear(),
                 // Reverse video is the only attribute that the encoder switches off without a reset.
@@ -62,7 +62,7 @@ impl TextStyle {
 }
 
 /// Returns the SGR parameters of a palette colour or a 24-bit colour, starting with `first`.
-fn color(first: &str, numbers: &mut Peekable<Split<'_, char>>) -> String {
+fn color_parameters(first: &str, numbers: &mut Peekable<Split<'_, char>>) -> String {
     let count = match numbers.peek() {
         Some(&"5") => 2,
         Some(&"2") => 4,

@@ -114,8 +114,8 @@ impl CellStyle {
 
     fn description(self) -> String {
         let mut words = match (self.fg, self.bg) {
-            (fg, Ink::Default) => ink(fg),
-            (fg, bg) => format!("{} on {}", ink(fg), ink(bg)),
+            (fg, Ink::Default) => ink_name(fg),
+            (fg, bg) => format!("{} on {}", ink_name(fg), ink_name(bg)),
         };
         for (attributes, name) in ATTRIBUTES {
             if self.attributes.contains(attributes) {
@@ -123,7 +123,7 @@ impl CellStyle {
             }
         }
         if self.underline != Ink::Default {
-            let _ = write!(words, ", line in {}", ink(self.underline));
+            let _ = write!(words, ", line in {}", ink_name(self.underline));
         }
         if self.is_foreign { words + ", left as it is" } else { words }
     }
@@ -142,7 +142,7 @@ const ATTRIBUTES: [(Attributes, &str); 9] = [
     (Attributes::CROSSED_OUT, "crossed out"),
 ];
 
-fn ink(ink: Ink) -> String {
+fn ink_name(ink: Ink) -> String {
     match ink {
         Ink::Default => "default".to_owned(),
         Ink::Indexed(index) => format!("color {index}"),

@@ -258,10 +258,10 @@ struct Trees<'a, 'p, N: Lanes, const ANY: bool> {
 
 impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Trees<'_, 'p, N, ANY> {
     #[inline(always)]
-    fn list<S: Endless>(&mut self, _: &'p List<S>) {}
+    fn visit_list<S: Endless>(&mut self, _: &'p List<S>) {}
 
     #[inline(always)]
-    fn tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
+    fn visit_tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
         self.rays.trace_tree(tree, &mut self.packet, self.stacks);
     }
 }
@@ -276,14 +276,14 @@ struct Unculled<'a, N: Lanes, const ANY: bool> {
 
 impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Unculled<'_, N, ANY> {
     #[inline(always)]
-    fn list<S: Endless>(&mut self, list: &'p List<S>) {
+    fn visit_list<S: Endless>(&mut self, list: &'p List<S>) {
         for (primitive, (_, surface)) in list.iter() {
             self.hits.record_closest(primitive, surface.splat().first_crossing(self.rays, self.min), self.accel);
         }
     }
 
     #[inline(always)]
-    fn tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
+    fn visit_tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
         self.hits.test_unculled(tree, self.rays, self.min, self.accel);
     }
 }

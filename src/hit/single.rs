@@ -154,12 +154,12 @@ struct AllPrimitives<'a, 'p, N: Lanes, const ANY: bool, W> {
 
 impl<'p, N: Lanes, const ANY: bool, W: Observer> Visitor<'p> for AllPrimitives<'_, 'p, N, ANY, W> {
     #[inline(always)]
-    fn list<S: Endless>(&mut self, list: &'p List<S>) {
+    fn visit_list<S: Endless>(&mut self, list: &'p List<S>) {
         self.ray.trace_list(list);
     }
 
     #[inline(always)]
-    fn tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
+    fn visit_tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
         self.ray.trace_tree(tree, self.stack);
     }
 }

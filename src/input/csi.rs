@@ -32,9 +32,9 @@ pub(super) fn meaning(params: &Params, marks: &[u8], ignored: bool, last: char, 
     let meaning = match marks {
         // There were more parameters or intermediates than `vte` stores, so the meaning is unknown.
         _ if ignored => None,
-        b"" => sequence.plain(),
-        b"?" => sequence.private().map(Meaning::Reply),
-        b"?$" if last == 'y' => sequence.mode().map(Meaning::Reply),
+        b"" => sequence.plain_meaning(),
+        b"?" => sequence.private_reply().map(Meaning::Reply),
+        b"?$" if last == 'y' => sequence.mode_reply().map(Meaning::Reply),
         b">" if last == 'c' => Some(Meaning::Reply(Reply::SecondaryAttributes(sequence.numbers()))),
         b"<" => sequence.sgr_mouse().map(Meaning::Event),
         _ => None,
@@ -66,7 +66,7 @@ impl Sequence<'_> {
         plain.then(|| self.numbers().try_into().ok()).flatten()
     }
 
-    fn plain(&self) -> Option<Meaning> {
+    fn plain_meaning(&self) -> Option<Meaning> {
         match self.last {
             '~' if self.params[0] == [200] => Some(Meaning::PasteStart),
             // The end of a paste whose start is missing or that has timed out.
@@ -84,7 +84,7 @@ impl Sequence<'_> {
             // `R` with parameters is a cursor report; without, it is F3.
             'R' if !self.is_bare() => self.cursor_position().map(Meaning::Reply),
             'n' => self.exactly().map(|[status]| Meaning::Reply(Reply::Status(status))),
-            't' => Some(Meaning::Reply(self.window())),
+            't' => Some(Meaning::Reply(self.window_reply())),
             _ => self.key().map(Meaning::Key),
         }
     }
@@ -104,7 +104,7 @@ impl Sequence<'_> {
         }
     }
 
-    fn private(&self) -> Option<Reply> {
+    fn private_reply(&self) -> Option<Reply> {
         match self.last {
             'c' => Some(Reply::DeviceAttributes(self.numbers())),
             'u' => self.exactly().map(|[flags]| Reply::KeyboardFlags(flags)),
@@ -119,11 +119,11 @@ impl Sequence<'_> {
         Some(Reply::CursorPosition { row, column })
     }
 
-    fn mode(&self) -> Option<Reply> {
+    fn mode_reply(&self) -> Option<Reply> {
         self.exactly().map(|[mode, state]| Reply::Mode { mode, state })
     }
 
-    fn window(&self) -> Reply {
+    fn window_reply(&self) -> Reply {
         match self.exactly() {
             Some([4, height, width]) => Reply::TextPixels { width, height },
             Some([6, height, width]) => Reply::CellPixels { width, height },

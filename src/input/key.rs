@@ -3,12 +3,12 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyEventState, KeyModifiers, MediaKeyCode, ModifierKeyCode};
 
 /// Returns the Escape key.
-pub(super) fn escape() -> KeyEvent {
+pub(super) fn escape_key() -> KeyEvent {
     KeyCode::Esc.into()
 }
 
 /// Returns function key `number`.
-pub(super) fn function(number: u8) -> KeyEvent {
+pub(super) fn function_key(number: u8) -> KeyEvent {
     KeyCode::F(number).into()
 }
 
@@ -166,10 +166,10 @@ pub(super) fn from_kitty(params: &[&[u16]]) -> Option<KeyEvent> {
     if params.len() > 3 {
         return None;
     }
-    if let Some(key) = functional(code) {
+    if let Some(key) = functional_key(code) {
         return Some(press.press(key, KeyModifiers::NONE));
     }
-    if let Some(key) = keypad(code) {
+    if let Some(key) = keypad_key(code) {
         let mut event = press.press(key, KeyModifiers::NONE);
         event.state |= KeyEventState::KEYPAD;
         return Some(event);
@@ -289,7 +289,7 @@ fn state_from_mask(mask: u16) -> KeyEventState {
 }
 
 /// Returns the keypad key with a functional key code of the kitty protocol.
-fn keypad(code: u16) -> Option<KeyCode> {
+fn keypad_key(code: u16) -> Option<KeyCode> {
     const NAMED: [KeyCode; 19] = [
         KeyCode::Char('.'),
         KeyCode::Char('/'),
@@ -320,7 +320,7 @@ fn keypad(code: u16) -> Option<KeyCode> {
 
 /// Returns the lock, function (F13 and up), media or modifier key with a functional key code of the
 /// kitty protocol.
-fn functional(code: u16) -> Option<KeyCode> {
+fn functional_key(code: u16) -> Option<KeyCode> {
     const LOCKS: [KeyCode; 6] =
         [KeyCode::CapsLock, KeyCode::ScrollLock, KeyCode::NumLock, KeyCode::PrintScreen, KeyCode::Pause, KeyCode::Menu];
     const MEDIA: [MediaKeyCode; 13] = [

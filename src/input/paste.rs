@@ -33,13 +33,13 @@ impl Paste {
         if byte != END[self.matched] {
             // The partly matched bytes belong to the paste. A new match can begin only at this byte, because ESC occurs
             // in END only at the start.
-            self.keep(&END[..self.matched]);
+            self.keep_bytes(&END[..self.matched]);
             self.matched = 0;
         }
         if byte == END[self.matched] {
             self.matched += 1;
         } else {
-            self.keep(&[byte]);
+            self.keep_bytes(&[byte]);
         }
         self.matched == END.len()
     }
@@ -57,7 +57,7 @@ impl Paste {
         Event::Paste(String::from_utf8_lossy(&paste.text).into_owned())
     }
 
-    fn keep(&mut self, bytes: &[u8]) {
+    fn keep_bytes(&mut self, bytes: &[u8]) {
         let room = MAX_PASTE_BYTES - self.text.len();
         self.text.extend_from_slice(&bytes[..bytes.len().min(room)]);
     }

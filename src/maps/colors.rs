@@ -28,11 +28,11 @@ pub(super) fn normal(n: Vec3) -> Srgb8 {
     Srgb8::new(r, g, b)
 }
 
-/// Returns the grey for `count` out of `of`: dark grey for 0, white for all.
-pub(super) fn share(count: u32, of: u32) -> Srgb8 {
+/// Returns the grey for `count` out of `total`: dark grey for 0, white for all.
+pub(super) fn share(count: u32, total: u32) -> Srgb8 {
     // Not black, so that shadows differ from the colour of pixels without a hit.
     const MIN_GREY: f32 = 0.22;
-    grey(MIN_GREY + (1.0 - MIN_GREY) * count.min(of) as f32 / of.max(1) as f32)
+    grey(MIN_GREY + (1.0 - MIN_GREY) * count.min(total) as f32 / total.max(1) as f32)
 }
 
 /// Returns the colour for an object by its index.

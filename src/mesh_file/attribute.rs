@@ -26,7 +26,7 @@ enum CornerIndices {
 const NONE: [u32; 3] = [u32::MAX; 3];
 
 /// Exchanges the last two corners of each triangle, which turns it inside out.
-pub(super) fn turn(triangles: &mut [[u32; 3]]) {
+pub(super) fn reverse_orientation(triangles: &mut [[u32; 3]]) {
     for corners in triangles {
         corners.swap(1, 2);
     }
@@ -50,9 +50,9 @@ impl<T: Copy> Attribute<T> {
     }
 
     /// Returns the attribute of triangles whose last two corners are exchanged.
-    pub(super) fn turned(mut self) -> Self {
+    pub(super) fn with_reversed_triangles(mut self) -> Self {
         if let CornerIndices::Own(corners) = &mut self.corners {
-            turn(corners);
+            reverse_orientation(corners);
         }
         self
     }

@@ -29,7 +29,7 @@ impl MeshFile {
             let corners = corners.map(|corner| corner_of[corner as usize]);
             let [a, b, c] = corners;
             // Triangles with two corners in one cube are dropped, and so are duplicates, of which a fine mesh has many.
-            if a == b || b == c || c == a || !seen.insert(sorted(corners)) {
+            if a == b || b == c || c == a || !seen.insert(sorted_corners(corners)) {
                 continue;
             }
             self.push_like(index, corners, &mut mesh).ok()?;
@@ -87,7 +87,7 @@ impl MeshFile {
     }
 }
 
-fn sorted(mut corners: [u32; 3]) -> [u32; 3] {
+fn sorted_corners(mut corners: [u32; 3]) -> [u32; 3] {
     corners.sort_unstable();
     corners
 }

@@ -93,8 +93,8 @@ impl From<Cancelled> for MeshFault {
 
 /// Returns the line and column of a byte, counted from 1. Lines end with a line feed, a carriage
 /// return, or both.
-fn line_and_column(bytes: &[u8], at: usize) -> (usize, usize) {
-    let before = &bytes[..at.min(bytes.len())];
+fn line_and_column(bytes: &[u8], offset: usize) -> (usize, usize) {
+    let before = &bytes[..offset.min(bytes.len())];
     let ends_line =
         |&i: &usize| before[i] == b'\n' || (before[i] == b'\r' && bytes.get(i + 1).is_none_or(|&next| next != b'\n'));
     let line = 1 + (0..before.len()).filter(ends_line).count();

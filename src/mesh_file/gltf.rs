@@ -111,13 +111,13 @@ fn check_count(json: &[u8]) -> Result<(), MeshFault> {
 
 /// Converts a syntax error of the JSON: with line and column in a text file, with the byte offset
 /// in a GLB file.
-fn syntax_fault(error: &serde_json::Error, json: &[u8], text: &[u8], at: usize) -> MeshFault {
+fn syntax_fault(error: &serde_json::Error, json: &[u8], text: &[u8], offset: usize) -> MeshFault {
     let line_start = text.split_inclusive(|&byte| byte == b'\n').take(error.line().saturating_sub(1)).map(<[u8]>::len);
     let place = json.len() - text.len() + line_start.sum::<usize>() + error.column().saturating_sub(1);
     // serde_json ends its message with a position; the fault has a position of its own, in the whole file.
     let (full, told) = (error.to_string(), format!(" at line {} column {}", error.line(), error.column()));
     let message = format!("this is not JSON: {}", full.strip_suffix(&told).unwrap_or(&full));
-    if at == 0 { MeshFault::in_text(place, message) } else { MeshFault::at_byte(at + place, message) }
+    if offset == 0 { MeshFault::in_text(place, message) } else { MeshFault::at_byte(offset + place, message) }
 }
 
 fn check_version(root: Json<'_>) -> Result<(), MeshFault> {

@@ -35,7 +35,7 @@ fn read_body(header: &Header<'_>, mut rows: impl RowReader) -> Result<MeshFile, 
             ("tristrips", Some(at)) => read_strips(element, at, vertex_count, &mut rows, &mut mesh)?,
             // Rows without properties take no bytes and are not looped over: the header may claim 4 billion of them.
             _ if element.properties.is_empty() => {}
-            _ => each_row(element, &mut rows, |rows| skip(&element.properties, rows))?,
+            _ => each_row(element, &mut rows, |rows| skip_properties(&element.properties, rows))?,
         }
     }
     let is_cloud = !mesh.positions.is_empty();
@@ -49,14 +49,14 @@ fn each_row<R: RowReader>(
     mut read: impl FnMut(&mut R) -> Result<(), MeshFault>,
 ) -> Result<(), MeshFault> {
     for row in 0..element.count {
-        rows.begin(element, row)?;
+        rows.begin_row(element, row)?;
         read(rows)?;
-        rows.end(element)?;
+        rows.end_row(element)?;
     }
     Ok(())
 }
 
-fn skip(properties: &[Property<'_>], rows: &mut impl RowReader) -> Result<(), MeshFault> {
+fn skip_properties(properties: &[Property<'_>], rows: &mut impl RowReader) -> Result<(), MeshFault> {
     properties.iter().try_for_each(|property| match property.shape {
         PropertyType::Scalar(kind) => rows.skip(kind, 1),
         PropertyType::List { length, item } => {
@@ -110,7 +110,7 @@ fn read_vertices(element: &Element<'_>, rows: &mut impl RowReader, mesh: &mut Me
         for (property, &slot) in element.properties.iter().zip(&slots) {
             match property.shape {
                 PropertyType::Scalar(kind) if slot < NOTHING => values[slot] = rows.number(kind)?,
-                _ => skip(std::slice::from_ref(property), rows)?,
+                _ => skip_properties(std::slice::from_ref(property), rows)?,
             }
         }
         let [x, y, z, nx, ny, nz, r, g, b, _] = values;
@@ -129,7 +129,7 @@ fn read_vertices(element: &Element<'_>, rows: &mut impl RowReader, mesh: &mut Me
 /// many as the rest of the file can hold.
 fn row_capacity(element: &Element<'_>, rows: &impl RowReader) -> usize {
     let least = rows.least_size(&element.properties).max(1);
-    (element.count as usize).min(rows.left() / least)
+    (element.count as usize).min(rows.bytes_left() / least)
 }
 
 /// Converts sRGB channels of a property type to linear light. Integers range from 0 to the type's
@@ -151,20 +151,20 @@ fn color(channels: [f32; 3], shape: PropertyType) -> LinearRgb {
     LinearRgb::new(r, g, b)
 }
 
-/// Reads faces. Property number `at` of the element lists the vertex indices of a face.
+/// Reads faces. Property number `list_index` of the element lists the vertex indices of a face.
 fn read_faces(
     element: &Element<'_>,
-    at: usize,
+    list_index: usize,
     vertex_count: u32,
     rows: &mut impl RowReader,
     mesh: &mut MeshBuilder,
 ) -> Result<(), MeshFault> {
-    let (before, indices, after) = split_at_property(element, at);
+    let (before, indices, after) = split_at_property(element, list_index);
     mesh.triangles.reserve(row_capacity(element, rows));
     // One list, reused for all faces, so that a face costs no allocation.
     let mut corners = Vec::new();
     each_row(element, rows, |rows| {
-        skip(before, rows)?;
+        skip_properties(before, rows)?;
         let start = rows.position();
         read_corners(indices, vertex_count, rows, &mut corners)?;
         if corners.len() < 3 {
@@ -174,15 +174,15 @@ fn read_faces(
         for triangle in polygon::triangulated(&corners, &mesh.positions) {
             push(mesh, triangle.map(|i| corners[i]))?;
         }
-        skip(after, rows)
+        skip_properties(after, rows)
     })
 }
 
 fn split_at_property<'a, 'b>(
     element: &'b Element<'a>,
-    at: usize,
+    index: usize,
 ) -> (&'b [Property<'a>], PropertyType, &'b [Property<'a>]) {
-    let (before, rest) = element.properties.split_at(at);
+    let (before, rest) = element.properties.split_at(index);
     (before, rest[0].shape, &rest[1..])
 }
 
@@ -215,19 +215,20 @@ fn no_such_vertex(index: i64, count: u32) -> String {
     }
 }
 
-/// Reads triangle strips, as in the older files of the Stanford repository. Property number `at`
-/// lists vertex indices, where -1 ends a strip.
+/// Reads triangle strips, as in the older files of the Stanford repository.
+///
+/// Property number `list_index` lists vertex indices, where -1 ends a strip.
 fn read_strips(
     element: &Element<'_>,
-    at: usize,
+    list_index: usize,
     vertex_count: u32,
     rows: &mut impl RowReader,
     mesh: &mut MeshBuilder,
 ) -> Result<(), MeshFault> {
-    let (before, indices, after) = split_at_property(element, at);
+    let (before, indices, after) = split_at_property(element, list_index);
     let PropertyType::List { length, item } = indices else { return Ok(()) };
     each_row(element, rows, |rows| {
-        skip(before, rows)?;
+        skip_properties(before, rows)?;
         let mut strip = Strip::default();
         for _ in 0..rows.length(length)? {
             let position = rows.position();
@@ -241,7 +242,7 @@ fn read_strips(
                 }
             }
         }
-        skip(after, rows)
+        skip_properties(after, rows)
     })
 }
 

@@ -60,9 +60,9 @@ pub(super) fn read_binary(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile
     mesh.finish("its count is 0")
 }
 
-/// Returns the vertex in twelve bytes. `at` is their offset in the file, for the message of a
+/// Returns the vertex in twelve bytes. `offset` is their offset in the file, for the message of a
 /// fault.
-fn vertex_from(bytes: &[u8], at: usize) -> Result<Vec3, MeshFault> {
+fn vertex_from(bytes: &[u8], offset: usize) -> Result<Vec3, MeshFault> {
     let coordinate = |axis: usize| f32::from_le_bytes(std::array::from_fn(|i| bytes[4 * axis + i]));
     let vertex = Vec3::new(coordinate(0), coordinate(1), coordinate(2));
     if vertex.is_finite() {
@@ -70,7 +70,7 @@ fn vertex_from(bytes: &[u8], at: usize) -> Result<Vec3, MeshFault> {
     }
     // The index of the first coordinate that is not finite.
     let axis = usize::from(vertex.x.is_finite()) * (1 + usize::from(vertex.y.is_finite()));
-    Err(MeshFault::at_byte(at + 4 * axis, format!("{} is not a finite number", coordinate(axis))))
+    Err(MeshFault::at_byte(offset + 4 * axis, format!("{} is not a finite number", coordinate(axis))))
 }
 
 /// Reads a text STL file, of one or several solids.
@@ -123,11 +123,11 @@ impl TextReader<'_> {
 
     /// Adds the triangles of a loop. The format allows only triangles, but some programs write
     /// larger polygons.
-    fn end_loop(&mut self, at: usize) -> Result<(), MeshFault> {
+    fn end_loop(&mut self, offset: usize) -> Result<(), MeshFault> {
         let corners: Vec<u32> = (self.open.take().unwrap_or_default()..self.mesh.positions.len() as u32).collect();
         if corners.len() < 3 {
             let message = format!("this loop has {} vertices; a facet has at least 3", corners.len());
-            return Err(MeshFault::in_text(at, message));
+            return Err(MeshFault::in_text(offset, message));
         }
         for triangle in polygon::triangulated(&corners, &self.mesh.positions) {
             self.mesh.push(TriangleIndices::new(triangle.map(|i| corners[i])))?;

@@ -20,9 +20,9 @@ impl<'a> TextCursor<'a> {
         Self { bytes, at }
     }
 
-    /// Returns a cursor at byte offset `at` of a text.
-    pub(super) fn starting_at(bytes: &'a [u8], at: usize) -> Self {
-        Self { bytes, at }
+    /// Returns a cursor at byte `offset` of a text.
+    pub(super) fn starting_at(bytes: &'a [u8], offset: usize) -> Self {
+        Self { bytes, at: offset }
     }
 
     /// Returns the position in bytes.
@@ -110,10 +110,10 @@ impl<'a> TextCursor<'a> {
         &self.bytes[start..self.at]
     }
 
-    fn is_word_end(&self, at: usize) -> bool {
-        match self.bytes.get(at) {
+    fn is_word_end(&self, offset: usize) -> bool {
+        match self.bytes.get(offset) {
             None | Some(b' ' | b'\t' | b'\n' | b'\r') => true,
-            Some(b'\\') => line_end(&self.bytes[at + 1..]) > 0,
+            Some(b'\\') => line_end(&self.bytes[offset + 1..]) > 0,
             _ => false,
         }
     }
@@ -124,9 +124,9 @@ impl<'a> TextCursor<'a> {
         self.is_word_end(self.at)
     }
 
-    /// Returns a cursor at byte offset `at` of the same text.
-    pub(super) fn cursor_at(&self, at: usize) -> Self {
-        Self { bytes: self.bytes, at }
+    /// Returns a cursor at byte `offset` of the same text.
+    pub(super) fn cursor_at(&self, offset: usize) -> Self {
+        Self { bytes: self.bytes, at: offset }
     }
 
     /// Reads a word that must be a finite number, correctly rounded.

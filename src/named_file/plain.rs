@@ -1,7 +1,7 @@
 //! Opening of plain files on any system; pipes are not supported.
 
 use super::Accepted;
-use super::refusal::refused;
+use super::refusal::refusal_error;
 use std::fs::{File, Metadata};
 use std::io::{self, ErrorKind};
 use std::path::Path;
@@ -24,7 +24,7 @@ fn check(data: &Metadata) -> io::Result<()> {
     } else if data.is_dir() {
         Err(ErrorKind::IsADirectory.into())
     } else {
-        Err(refused(ErrorKind::InvalidInput, "this is not a plain file".to_owned()))
+        Err(refusal_error(ErrorKind::InvalidInput, "this is not a plain file".to_owned()))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Opening of files and pipes on POSIX systems, without blocking.
 
 use super::Accepted;
-use super::refusal::refused;
+use super::refusal::refusal_error;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::OFlags;
 use std::fs::{File, Metadata, OpenOptions};
@@ -39,7 +39,7 @@ fn check(data: &Metadata, accepted: Accepted) -> io::Result<()> {
         _ => "a device",
     };
     let wanted = if with_pipes { "a file or a pipe" } else { "a plain file" };
-    Err(refused(ErrorKind::InvalidInput, format!("this is {what}, not {wanted}")))
+    Err(refusal_error(ErrorKind::InvalidInput, format!("this is {what}, not {wanted}")))
 }
 
 /// Returns whether the metadata is that of `/dev/null`, under any path.
@@ -54,7 +54,9 @@ pub(super) fn wait_until_readable(file: &File) -> io::Result<()> {
     loop {
         let left = Timespec::try_from(deadline.saturating_duration_since(Instant::now())).ok();
         match poll(&mut [PollFd::new(file, PollFlags::IN)], left.as_ref()) {
-            Ok(0) => return Err(refused(ErrorKind::TimedOut, "this pipe delivered nothing for a second".to_owned())),
+            Ok(0) => {
+                return Err(refusal_error(ErrorKind::TimedOut, "this pipe delivered nothing for a second".to_owned()));
+            }
             Err(rustix::io::Errno::INTR) => {}
             // If polling fails, reading reports the reason.
             _ => return Ok(()),

@@ -4,11 +4,11 @@ use std::fmt;
 use std::io::{self, ErrorKind};
 
 /// Returns an I/O error with a message of this module, which [`reason`] returns unchanged.
-pub(super) fn refused(kind: ErrorKind, message: String) -> io::Error {
+pub(super) fn refusal_error(kind: ErrorKind, message: String) -> io::Error {
     io::Error::new(kind, Refusal(message))
 }
 
-/// The payload of errors that [`refused`] returns.
+/// The payload of errors that [`refusal_error`] returns.
 // A distinct type, by which `reason` recognises messages that need no prefix.
 #[derive(Debug)]
 struct Refusal(String);

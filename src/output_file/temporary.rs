@@ -70,14 +70,14 @@ impl Temporary {
     }
 
     /// Gives the temporary file the owner and mode of another file.
-    pub(super) fn copy_owner_and_mode(&self, other: &Metadata) -> io::Result<()> {
+    pub(super) fn copy_owner_and_mode(&self, replaced: &Metadata) -> io::Result<()> {
         let own = self.file.metadata()?;
-        if (own.uid(), own.gid()) != (other.uid(), other.gid()) {
-            fchown(&self.file, Some(other.uid()), Some(other.gid()))?;
+        if (own.uid(), own.gid()) != (replaced.uid(), replaced.gid()) {
+            fchown(&self.file, Some(replaced.uid()), Some(replaced.gid()))?;
         }
         // The mode is set after the owner, because changing the owner clears the set-user-id bit.
-        if own.mode() != other.mode() {
-            self.file.set_permissions(other.permissions())?;
+        if own.mode() != replaced.mode() {
+            self.file.set_permissions(replaced.permissions())?;
         }
         Ok(())
     }

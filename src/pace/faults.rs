@@ -180,9 +180,9 @@ impl World {
     }
 
     /// Returns the longest time until the effect of a key is visible, for keys pressed between
-    /// `from` and `to`.
-    fn worst_key(&self, from: Duration, to: Duration) -> Duration {
-        let keys = (from.as_millis()..to.as_millis()).map(|at| ms(at as u64));
+    /// `start` and `end`.
+    fn worst_key(&self, start: Duration, end: Duration) -> Duration {
+        let keys = (start.as_millis()..end.as_millis()).map(|at| ms(at as u64));
         let mut frames: VecDeque<_> = self.frames.iter().collect();
         keys.map(|pressed| {
             while frames.front().is_some_and(|frame| frame.0 < pressed + self.round_trip / 2) {

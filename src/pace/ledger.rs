@@ -204,12 +204,12 @@ impl Ledger {
 
     /// Removes the query at this index and all older ones, whose replies are lost, and returns what
     /// its reply shows.
-    fn remove_through(&mut self, at: usize) -> Matched {
-        let InFlight { query, sent, bytes, first_sent, late, .. } = self.queries[at];
+    fn remove_through(&mut self, index: usize) -> Matched {
+        let InFlight { query, sent, bytes, first_sent, late, .. } = self.queries[index];
         let mut acked = (first_sent, bytes);
         let mut validity = if late { Validity::Spurious } else { Validity::Exact };
         let mut lost_probe = false;
-        for older in self.queries.drain(..=at).take(at) {
+        for older in self.queries.drain(..=index).take(index) {
             lost_probe |= older.bytes == 0;
             if !older.timed_out {
                 acked = (acked.0.min(older.first_sent), acked.1 + older.bytes);

@@ -161,7 +161,7 @@ impl ReplyTracker {
     }
 
     /// Appends a query without a frame, whose round trip is the link's own, and records it.
-    pub(super) fn probe(&mut self, bytes: &mut Vec<u8>, now: Duration) {
+    pub(super) fn append_probe(&mut self, bytes: &mut Vec<u8>, now: Duration) {
         self.last_probe = Some(now);
         self.append_query(bytes, false, now);
     }

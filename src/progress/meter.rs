@@ -23,13 +23,13 @@ impl<'a> Meter<'a> {
         Self { reporter, name, total, next: 0 }
     }
 
-    /// Moves the parser's position to byte `at`, and reports it if a report is due.
+    /// Moves the parser's position to byte `position`, and reports it if a report is due.
     ///
     /// # Errors
     /// [`Cancelled`], if the work is cancelled.
     #[inline]
-    pub(crate) fn advance_to(&mut self, at: usize) -> Result<(), Cancelled> {
-        if at < self.next { Ok(()) } else { self.report(at, self.total) }
+    pub(crate) fn advance_to(&mut self, position: usize) -> Result<(), Cancelled> {
+        if position < self.next { Ok(()) } else { self.report(position, self.total) }
     }
 
     /// Reports progress without a position, for a parser that reads its file in any order.

@@ -53,32 +53,32 @@ impl TerminalMode {
         Self::MouseSgr,
     ];
 
-    fn on(self) -> String {
+    fn on_sequence(self) -> String {
         match self {
-            Self::AlternateScreen => ansi(terminal::EnterAlternateScreen),
+            Self::AlternateScreen => ansi_sequence(terminal::EnterAlternateScreen),
             // Frames set colours themselves, so only switching off needs bytes.
             Self::Colors => String::new(),
-            Self::HiddenCursor => ansi(cursor::Hide),
-            Self::BracketedPaste => ansi(event::EnableBracketedPaste),
-            Self::FocusChange => ansi(event::EnableFocusChange),
+            Self::HiddenCursor => ansi_sequence(cursor::Hide),
+            Self::BracketedPaste => ansi_sequence(event::EnableBracketedPaste),
+            Self::FocusChange => ansi_sequence(event::EnableFocusChange),
             Self::Mouse => "\x1b[?1002h".to_owned(),
             Self::MouseSgr => "\x1b[?1006h".to_owned(),
             Self::MousePixels => "\x1b[?1016h".to_owned(),
-            Self::Keyboard => ansi(event::PushKeyboardEnhancementFlags(KEYBOARD)) + KEYBOARD_QUERY,
+            Self::Keyboard => ansi_sequence(event::PushKeyboardEnhancementFlags(KEYBOARD)) + KEYBOARD_QUERY,
         }
     }
 
-    fn off(self) -> String {
+    fn off_sequence(self) -> String {
         match self {
-            Self::AlternateScreen => ansi(terminal::LeaveAlternateScreen),
-            Self::Colors => ansi(style::ResetColor),
-            Self::HiddenCursor => ansi(cursor::Show),
-            Self::BracketedPaste => ansi(event::DisableBracketedPaste),
-            Self::FocusChange => ansi(event::DisableFocusChange),
+            Self::AlternateScreen => ansi_sequence(terminal::LeaveAlternateScreen),
+            Self::Colors => ansi_sequence(style::ResetColor),
+            Self::HiddenCursor => ansi_sequence(cursor::Show),
+            Self::BracketedPaste => ansi_sequence(event::DisableBracketedPaste),
+            Self::FocusChange => ansi_sequence(event::DisableFocusChange),
             Self::Mouse => "\x1b[?1002l".to_owned(),
             Self::MouseSgr => "\x1b[?1006l".to_owned(),
             Self::MousePixels => "\x1b[?1016l".to_owned(),
-            Self::Keyboard => ansi(event::PopKeyboardEnhancementFlags),
+            Self::Keyboard => ansi_sequence(event::PopKeyboardEnhancementFlags),
         }
     }
 }
@@ -98,7 +98,7 @@ impl TerminalModes {
     pub fn switch_on(&mut self, mode: TerminalMode, bytes: &mut Vec<u8>) {
         if !self.is_on(mode) {
             self.on.push(mode);
-            bytes.extend_from_slice(mode.on().as_bytes());
+            bytes.extend_from_slice(mode.on_sequence().as_bytes());
         }
     }
 
@@ -111,13 +111,13 @@ impl TerminalModes {
     pub fn switch_all_off(&mut self, bytes: &mut Vec<u8>) {
         // In reverse order, so that each mode is switched off in the state in which it was switched on.
         for mode in self.on.drain(..).rev() {
-            bytes.extend_from_slice(mode.off().as_bytes());
+            bytes.extend_from_slice(mode.off_sequence().as_bytes());
         }
     }
 }
 
 /// Returns the escape sequence of a crossterm command.
-fn ansi(command: impl Command) -> String {
+fn ansi_sequence(command: impl Command) -> String {
     let mut text = String::new();
     command.write_ansi(&mut text).expect("writing to memory does not fail");
     text

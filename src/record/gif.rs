@@ -54,7 +54,7 @@ impl<W: Write> Gif<W> {
     pub fn begin(out: W, resolution: Resolution, scale: u32, frames_per_second: u32) -> io::Result<Self> {
         let size = match resolution.size_in_square_pixels(scale).map(u16::try_from) {
             [Ok(width), Ok(height)] => (width, height),
-            _ => return Err(invalid("a GIF has at most 65535 pixels each way")),
+            _ => return Err(invalid_input("a GIF has at most 65535 pixels each way")),
         };
         let mut encoder = gif::Encoder::new(out, size.0, size.1, &[]).map_err(io_error)?;
         encoder.set_repeat(Repeat::Infinite).map_err(io_error)?;
@@ -68,7 +68,7 @@ impl<W: Write> Gif<W> {
     pub fn frame(&mut self, picture: &Picture) -> io::Result<()> {
         let [width, height] = [self.resolution.width(), self.resolution.height()];
         if (picture.width, picture.height, picture.pixels.len()) != (width, height, self.resolution.pixel_count()) {
-            return Err(invalid("all frames of a film have one size"));
+            return Err(invalid_input("all frames of a film have one size"));
         }
         let mut frame = self.quantised(picture);
         // Enlarged to square pixels here, because viewers ignore a GIF's pixel aspect. The colours are chosen before,
@@ -83,9 +83,9 @@ impl<W: Write> Gif<W> {
 
     /// Returns the frame of a picture, not enlarged: pixels that keep their colour are transparent.
     fn quantised(&mut self, picture: &Picture) -> gif::Frame<'static> {
-        let stays = self.kept(picture);
+        let stays = self.kept_pixels(picture);
         let pixels = || picture.pixels.iter().copied().zip(&stays);
-        let palette = Palette::of(pixels().filter(|(_, stays)| !**stays).map(|(pixel, _)| pixel));
+        let palette = Palette::from_pixels(pixels().filter(|(_, stays)| !**stays).map(|(pixel, _)| pixel));
         self.shown.resize(picture.pixels.len(), Srgb8::default());
         let index = |((pixel, stays), shown): ((Srgb8, &bool), &mut Srgb8)| {
             if *stays {
@@ -104,7 +104,7 @@ impl<W: Write> Gif<W> {
     }
 
     /// Returns whether each pixel keeps the colour that a viewer shows.
-    fn kept(&self, picture: &Picture) -> Vec<bool> {
+    fn kept_pixels(&self, picture: &Picture) -> Vec<bool> {
         let mut kept = vec![false; picture.pixels.len()];
         // Without a frame before this one there is nothing to keep.
         for (at, (&shown, &wanted)) in self.shown.iter().zip(&picture.pixels).enumerate() {
@@ -156,7 +156,7 @@ struct Palette {
 
 impl Palette {
     /// Returns the palette of these pixels: all their colours, if they are few enough.
-    fn of(pixels: impl Iterator<Item = Srgb8> + Clone) -> Self {
+    fn from_pixels(pixels: impl Iterator<Item = Srgb8> + Clone) -> Self {
         let mut few = BTreeSet::new();
         let is_few = pixels.clone().all(|pixel| {
             few.insert(pixel);
@@ -189,7 +189,7 @@ fn sampling_step(pixels: usize) -> i32 {
     i32::try_from(pixels / 50_000).map_or(30, |sampling_step| sampling_step.clamp(1, 30))
 }
 
-fn invalid(why: &str) -> io::Error {
+fn invalid_input(why: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, why)
 }
 

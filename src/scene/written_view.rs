@@ -125,8 +125,8 @@ fn items<'n, 'a>(node: &'n SyntaxNode<'a>) -> Option<&'n [SyntaxNode<'a>]> {
 }
 
 /// Returns the blanks at the start of the line that contains a byte.
-fn indent_of(text: &str, at: usize) -> &str {
-    let start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
+fn indent_of(text: &str, offset: usize) -> &str {
+    let start = text[..offset].rfind('\n').map_or(0, |newline| newline + 1);
     let line = &text[start..];
     &line[..line.len() - line.trim_start_matches([' ', '\t']).len()]
 }
@@ -136,20 +136,20 @@ fn line_end(text: &str) -> &'static str {
     if text.contains("\r\n") { "\r\n" } else { "\n" }
 }
 
-/// Returns the index of the first byte from `at` on that is neither white space nor in a comment.
+/// Returns the index of the first byte from `offset` on outside white space and comments.
 ///
 /// The text has been parsed, so every comment ends.
-fn skip_blanks(text: &str, mut at: usize) -> usize {
+fn skip_blanks(text: &str, mut offset: usize) -> usize {
     loop {
-        let rest = &text[at..];
+        let rest = &text[offset..];
         let blanks = rest.len() - rest.trim_start().len();
         let rest = &rest[blanks..];
         let comment = match rest.get(..2) {
             Some("//") => rest.find('\n').unwrap_or(rest.len()),
             Some("/*") => block_comment_length(rest),
-            _ => return at + blanks,
+            _ => return offset + blanks,
         };
-        at += blanks + comment;
+        offset += blanks + comment;
     }
 }
 

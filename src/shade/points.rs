@@ -126,7 +126,7 @@ struct SurfacesOfPrimitive<'h, N: Lanes> {
 
 impl<'a, N: Lanes> Visitor<'a> for SurfacesOfPrimitive<'_, N> {
     #[inline(always)]
-    fn list<S: Endless>(&mut self, list: &'a List<S>) {
+    fn visit_list<S: Endless>(&mut self, list: &'a List<S>) {
         if list.contains(self.primitive) {
             let (id, surface) = list.get(self.primitive);
             let found = surface.splat().points_at(&Rays::<N>::load(self.rays, false), N::load(&self.hits.t));
@@ -135,9 +135,10 @@ impl<'a, N: Lanes> Visitor<'a> for SurfacesOfPrimitive<'_, N> {
     }
 
     #[inline(always)]
-    fn tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>) {
+    fn visit_tree<S: SoaLeaf>(&mut self, tree: &'a Tree<S>) {
         if tree.contains(self.primitive) {
-            self.found = surfaces_in_tree(tree, self.rays, self.hits, self.hits.mask_of_range(tree.first, tree.end()));
+            self.found =
+                surfaces_in_tree(tree, self.rays, self.hits, self.hits.mask_of_range(tree.first, tree.end_index()));
         }
     }
 }
@@ -175,15 +176,15 @@ fn surfaces_in_tree<N: Lanes, S: SoaLeaf>(
 /// Replaces positions and shading normals by those of the smooth surface that a mesh's triangles
 /// approximate.
 // Works lane by lane, because few meshes have vertex normals, which are stored by triangle.
-fn interpolate_normals(scene: &Scene, at: &mut EightPoints) {
-    for lane in set_bits(at.hit_mask) {
-        let PrimitiveId { object, index } = at.ids.id(lane);
+fn interpolate_normals(scene: &Scene, points: &mut EightPoints) {
+    for lane in set_bits(points.hit_mask) {
+        let PrimitiveId { object, index } = points.ids.id(lane);
         if let Primitive::Facet(facet) = scene.objects()[object as usize].shape.primitive(index)
             && let Some((position, normal)) =
-                facet.smooth(at.position.of_lane(lane), at.geometric_normal.of_lane(lane), at.uv(lane))
+                facet.smooth(points.position.of_lane(lane), points.geometric_normal.of_lane(lane), points.uv(lane))
         {
-            at.position.put(lane, position);
-            at.shading_normal.put(lane, normal);
+            points.position.put(lane, position);
+            points.shading_normal.put(lane, normal);
         }
     }
 }

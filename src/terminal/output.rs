@@ -67,7 +67,7 @@ impl Output {
         while self.is_pending() {
             match self.write() {
                 Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
-                Ok(count) => self.advance(count),
+                Ok(count) => self.record_written(count),
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => return fault_injection::reach("frame"),
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => return Err(error),
@@ -87,7 +87,7 @@ impl Output {
         self.file.write(bytes)
     }
 
-    fn advance(&mut self, count: usize) {
+    fn record_written(&mut self, count: usize) {
         self.written += count;
         if self.written == self.pending.len() {
             self.pending.clear();
@@ -102,7 +102,7 @@ impl Output {
         let boundary = next_boundary(&self.pending, self.written);
         let rest = self.pending.split_off(boundary);
         self.pending.extend(sequences(&rest).filter(|sequence| !belongs_to_frame(sequence)).flatten());
-        self.advance(0);
+        self.record_written(0);
     }
 
     /// Writes all pending bytes until the deadline, and returns whether the terminal accepts more,

@@ -17,7 +17,7 @@ pub fn hold_panic_messages() {
     let before = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         if HELD.load(Ordering::SeqCst) {
-            keep(panic);
+            keep_message(panic);
         } else {
             before(panic);
         }
@@ -34,7 +34,7 @@ pub(super) fn set_held(is_held: bool) {
     HELD.store(is_held, Ordering::SeqCst);
 }
 
-fn keep(panic: &PanicHookInfo<'_>) {
+fn keep_message(panic: &PanicHookInfo<'_>) {
     let thread = std::thread::current();
     let message = format!("thread '{}' {panic}", thread.name().unwrap_or("without a name"));
     if let Ok(mut messages) = MESSAGES.lock() {

@@ -72,9 +72,9 @@ impl Viewer {
 
     /// Moves the held light right and down by shares of the picture's width and height, at constant
     /// depth.
-    pub(super) fn drag_light(&mut self, by: Vec2) {
+    pub(super) fn drag_light(&mut self, shares: Vec2) {
         let aspect_ratio = self.map_resolution().aspect_ratio();
-        self.move_light(|camera, from| camera.point_dragged(from, by, aspect_ratio));
+        self.move_light(|camera, from| camera.point_dragged(from, shares, aspect_ratio));
     }
 
     /// Moves the held light away from the eye by notches of the mouse wheel; negative notches move
@@ -92,12 +92,12 @@ impl Viewer {
         }
     }
 
-    fn move_light(&mut self, to: impl FnOnce(&Camera, Vec3) -> Vec3) {
+    fn move_light(&mut self, moved: impl FnOnce(&Camera, Vec3) -> Vec3) {
         if let Some(camera) = self.eye.camera()
             && let Some(lights) = self.scenes.lights_mut()
             && let Some(from) = lights.held_position()
         {
-            lights.move_held(to(&camera, from));
+            lights.move_held(moved(&camera, from));
         }
     }
 }

@@ -64,11 +64,11 @@ impl Lights {
     }
 
     /// Moves the held light, if any, to this position, unless that is infinite.
-    pub(super) fn move_held(&mut self, to: Vec3) {
+    pub(super) fn move_held(&mut self, position: Vec3) {
         // A drag near the horizon may move the light to infinity.
-        if let Some(held) = self.held.filter(|_| to.is_finite()) {
+        if let Some(held) = self.held.filter(|_| position.is_finite()) {
             let mut lights = self.all().to_vec();
-            lights[held] = lights[held].moved_to(to);
+            lights[held] = lights[held].moved_to(position);
             // Cloning is cheap, because clones of a scene share its objects and trees.
             self.scene = self.scene.clone().with_lights(lights);
             self.moves += 1;

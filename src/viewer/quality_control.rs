@@ -95,7 +95,7 @@ impl QualityControl {
     /// Returns whether the refinements of the last picture are expected to take at most `time` in
     /// total.
     pub(super) fn ends_within(&self, time: Duration) -> bool {
-        self.last.is_some_and(|last| self.predicted(last, MAX_MOTION_LEVEL) <= time.as_secs_f64())
+        self.last.is_some_and(|last| self.predicted_time(last, MAX_MOTION_LEVEL) <= time.as_secs_f64())
     }
 
     /// Records the time that tracing a picture of a new view took, and updates the level of the
@@ -111,10 +111,10 @@ impl QualityControl {
         let at_last = (level, time.as_secs_f64());
         self.update_cost_ratio(at_last);
         let finest = |limit: f64| {
-            (0..=MAX_MOTION_LEVEL).rev().find(|&level| self.predicted(at_last, level) <= limit).unwrap_or(0)
+            (0..=MAX_MOTION_LEVEL).rev().find(|&level| self.predicted_time(at_last, level) <= limit).unwrap_or(0)
         };
         let (fits, has_room) = (finest(most), finest(FINER_LEVEL_SHARE * most));
-        let is_very_late = self.predicted(at_last, self.level) > 2.0 * most;
+        let is_very_late = self.predicted_time(at_last, self.level) > 2.0 * most;
         self.late_frames = if fits < self.level { self.late_frames + 1 } else { 0 };
         self.frames_with_room = if has_room > self.level { self.frames_with_room + 1 } else { 0 };
         if self.late_frames >= LATE_FRAMES_BEFORE_COARSER || is_very_late {
@@ -145,7 +145,7 @@ impl QualityControl {
 
     /// Returns the predicted seconds that a picture takes at `level`, if one at level `last` took
     /// `time` seconds.
-    fn predicted(&self, (last, time): (usize, f64), level: usize) -> f64 {
+    fn predicted_time(&self, (last, time): (usize, f64), level: usize) -> f64 {
         let growth = |levels: std::ops::Range<usize>| levels.map(|level| self.cost_ratios[level + 1]).product::<f64>();
         if level >= last { time * growth(last..level) } else { time / growth(level..last) }
     }

@@ -80,8 +80,8 @@ impl SceneState {
 
     /// Returns the surface point seen in a cell, or a point at the target's distance if there is
     /// none.
-    fn point_at(&self, scene: &Scene, at: Position) -> Option<Vec3> {
-        let ray = self.ray_through(at)?;
+    fn point_at(&self, scene: &Scene, position: Position) -> Option<Vec3> {
+        let ray = self.ray_through(position)?;
         // Eye rays have a component of 1 along -w, so t is the depth, as the target's distance is.
         Some(ray.at(closest_hit(scene, &ray).map_or(self.camera().target_distance(), |hit| hit.t)))
     }

@@ -177,14 +177,15 @@ impl SceneState {
     }
 
     /// Returns the eye ray through the middle of a cell of the last picture.
-    pub(super) fn ray_through(&self, at: Position) -> Option<Ray> {
+    pub(super) fn ray_through(&self, position: Position) -> Option<Ray> {
         let (RenderedShot { shot, .. }, part) = (self.shown.as_ref()?, self.covered_area()?);
-        if !part.contains(at) {
+        if !part.contains(position) {
             return None;
         }
         // The ray passes through the middle of the cell, so that `cell_of` maps the point that it hits to this cell.
         let share = |at: u16, of: u16| (f32::from(at) + 0.5) / f32::from(of);
-        let (qu, qv) = (share(at.x - part.x, shot.size.columns), 1.0 - share(at.y - part.y, shot.size.rows));
+        let (qu, qv) =
+            (share(position.x - part.x, shot.size.columns), 1.0 - share(position.y - part.y, shot.size.rows));
         Some(shot.camera.eye_rays(shot.resolution.aspect_ratio()).through(qu, qv))
     }
 

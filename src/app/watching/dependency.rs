@@ -34,7 +34,7 @@ enum State {
 pub(super) type Identity = (u64, u64);
 
 impl State {
-    fn of(path: &Path) -> Self {
+    fn read(path: &Path) -> Self {
         match fs::metadata(path) {
             Ok(data) if data.is_file() => Self::Plain {
                 identity: identity(&data),
@@ -54,8 +54,8 @@ pub(super) fn identity(data: &Metadata) -> Identity {
 
 impl Dependency {
     /// Returns the file at `path` with its current state.
-    pub(in crate::app) fn now(path: &Path) -> Self {
-        Self { path: path.to_owned(), state: State::of(path) }
+    pub(in crate::app) fn in_current_state(path: &Path) -> Self {
+        Self { path: path.to_owned(), state: State::read(path) }
     }
 
     pub(in crate::app) fn path(&self) -> &Path {
@@ -73,7 +73,7 @@ impl Dependency {
     /// A missing file does not count as changed, because an event reports when it comes back.
     pub(in crate::app) fn has_changed(&self) -> bool {
         // Some editors replace a file in two steps, between which it is missing.
-        let now = State::of(&self.path);
+        let now = State::read(&self.path);
         now != State::Missing && now != self.state
     }
 }

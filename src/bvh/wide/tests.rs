@@ -68,7 +68,7 @@ fn cost_and_boxes(wide: &Wide<'_>, at: usize) -> (f64, usize) {
 fn wide_nodes_are_the_cheapest_of_all_distributions() {
     for seed in 0..6 {
         let pairs = binary_tree(14, seed);
-        let (cost, boxes) = cost_and_boxes(&Wide::of(&pairs), 0);
+        let (cost, boxes) = cost_and_boxes(&Wide::from_binary(&pairs), 0);
         let least = least_cost(&pairs, 0, 1);
         assert_eq!(boxes, 14, "seed {seed}");
         assert!((cost - least).abs() < 1e-4 * least, "seed {seed}: {cost}, but {least} is possible");

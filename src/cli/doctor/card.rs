@@ -97,18 +97,18 @@ impl CardPoint {
         let [gradient, stripes, end] = [GRADIENT, STRIPES, COLUMNS].map(f32::from);
         let gap = f32::from(GAP);
         if self.column < gradient - gap {
-            self.disc(cell_aspect)
+            self.disc_color(cell_aspect)
         } else if (gradient..stripes - gap).contains(&self.column) {
-            self.shade((self.column - gradient) / (stripes - gap - gradient))
+            self.gradient_color((self.column - gradient) / (stripes - gap - gradient))
         } else if (stripes..end).contains(&self.column) {
-            self.stripe()
+            self.stripe_color()
         } else {
             Srgb8::new(0, 0, 0)
         }
     }
 
     /// Returns the colour of the pixel in the disc's part of the card.
-    fn disc(&self, cell_aspect: f32) -> Srgb8 {
+    fn disc_color(&self, cell_aspect: f32) -> Srgb8 {
         // All lengths here are in cell widths, as the disc must be round on the screen.
         let (width, height) = (f32::from(GRADIENT - GAP), f32::from(ROWS) * cell_aspect);
         // The edge is smoothed by 4 x 4 samples per pixel: jagged, it would not show whether the disc is round.
@@ -125,13 +125,13 @@ impl CardPoint {
 
     /// Returns the gradient's colour; `along` is 0 at its left end and 1 at the right. Its steps
     /// are so small that a terminal with few colours shows bands.
-    fn shade(&self, along: f32) -> Srgb8 {
+    fn gradient_color(&self, along: f32) -> Srgb8 {
         let down = self.row / f32::from(ROWS);
         Srgb8::new((50.0 + 110.0 * along) as u8, (70.0 + 80.0 * down) as u8, (150.0 - 90.0 * along) as u8)
     }
 
     /// Returns the colour of the stripes: each is half a cell high, alternately dark and light.
-    fn stripe(&self) -> Srgb8 {
+    fn stripe_color(&self) -> Srgb8 {
         let level = if ((self.row * 2.0) as u32).is_multiple_of(2) { 40 } else { 230 };
         Srgb8::new(level, level, level)
     }

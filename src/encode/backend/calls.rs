@@ -47,7 +47,7 @@ impl<W: Write> Backend for EncoderBackend<W> {
     /// Returns the cursor's last position; if it is unknown, the one that the terminal reports.
     fn get_cursor_position(&mut self) -> io::Result<Position> {
         self.follow_window()?;
-        self.locate()
+        self.known_or_queried_position()
     }
 
     /// Moves the cursor: at once, or if a frame is open, with that frame.
@@ -61,16 +61,16 @@ impl<W: Write> Backend for EncoderBackend<W> {
 
     fn clear_region(&mut self, clear_type: ClearType) -> io::Result<()> {
         self.follow_window()?;
-        let Position { x, y } = self.locate()?;
+        let Position { x, y } = self.known_or_queried_position()?;
         if clear_type == ClearType::All {
-            self.forget();
+            self.forget_screen_and_cursor();
         }
         // Clearing writes blanks over the region, after which the cursor has to return to its position.
         self.put_cursor(Position::new(x, y));
         let columns = usize::from(self.window.columns_rows.width);
         let (line, next_line) = (usize::from(y) * columns, (usize::from(y) + 1) * columns);
         let at = line + usize::from(x);
-        self.blank(match clear_type {
+        self.blank_cells(match clear_type {
             ClearType::All => 0..usize::MAX,
             ClearType::AfterCursor => at..usize::MAX,
             ClearType::BeforeCursor => 0..at + 1,

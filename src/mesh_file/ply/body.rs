@@ -9,9 +9,9 @@ use crate::progress::Meter;
 /// trait object, so that reading a number is inlined: a body has millions.
 pub(super) trait RowReader {
     /// Starts reading row number `row` of the element, counted from 0.
-    fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault>;
+    fn begin_row(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault>;
     /// Checks that a row ends after its last number.
-    fn end(&mut self, element: &Element<'_>) -> Result<(), MeshFault>;
+    fn end_row(&mut self, element: &Element<'_>) -> Result<(), MeshFault>;
     /// Reads a number, which must be finite.
     fn number(&mut self, kind: ScalarType) -> Result<f32, MeshFault>;
     /// Reads an integer of a type that is not a float.
@@ -23,7 +23,7 @@ pub(super) trait RowReader {
     /// Returns a fault at a byte offset that [`position`](Self::position) has returned.
     fn fault(&self, position: usize, message: String) -> MeshFault;
     /// Returns the number of bytes of the body that are not read yet.
-    fn left(&self) -> usize;
+    fn bytes_left(&self) -> usize;
     /// Returns the fewest bytes that a row of these properties can take.
     fn least_size(&self, properties: &[Property<'_>]) -> usize;
 
@@ -49,7 +49,7 @@ impl<'a> AsciiRows<'a> {
 
 impl RowReader for AsciiRows<'_> {
     #[inline]
-    fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault> {
+    fn begin_row(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault> {
         if self.text.go_to_statement() {
             return Ok(self.meter.advance_to(self.text.at())?);
         }
@@ -61,7 +61,7 @@ impl RowReader for AsciiRows<'_> {
     }
 
     #[inline]
-    fn end(&mut self, element: &Element<'_>) -> Result<(), MeshFault> {
+    fn end_row(&mut self, element: &Element<'_>) -> Result<(), MeshFault> {
         if self.text.is_at_line_end() {
             self.text.skip_line();
             return Ok(());
@@ -99,7 +99,7 @@ impl RowReader for AsciiRows<'_> {
         MeshFault::in_text(text.at(), message)
     }
 
-    fn left(&self) -> usize {
+    fn bytes_left(&self) -> usize {
         self.text.left()
     }
 
@@ -153,7 +153,7 @@ impl<'a, const BIG_ENDIAN: bool> BinaryRows<'a, BIG_ENDIAN> {
 
 impl<const BIG_ENDIAN: bool> RowReader for BinaryRows<'_, BIG_ENDIAN> {
     #[inline]
-    fn begin(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault> {
+    fn begin_row(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault> {
         if self.at < self.bytes.len() {
             return Ok(self.meter.advance_to(self.at)?);
         }
@@ -162,7 +162,7 @@ impl<const BIG_ENDIAN: bool> RowReader for BinaryRows<'_, BIG_ENDIAN> {
     }
 
     #[inline]
-    fn end(&mut self, _element: &Element<'_>) -> Result<(), MeshFault> {
+    fn end_row(&mut self, _element: &Element<'_>) -> Result<(), MeshFault> {
         Ok(())
     }
 
@@ -208,7 +208,7 @@ impl<const BIG_ENDIAN: bool> RowReader for BinaryRows<'_, BIG_ENDIAN> {
         MeshFault::at_byte(position, message)
     }
 
-    fn left(&self) -> usize {
+    fn bytes_left(&self) -> usize {
         self.bytes.len() - self.at
     }
 

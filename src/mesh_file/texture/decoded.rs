@@ -76,7 +76,7 @@ fn decode_png(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String>
         2 => samples.chunks_exact(2).map(|s| Srgb8::new(s[0], s[0], s[0])).collect(),
         n => samples.chunks_exact(n).map(|s| Srgb8::new(s[0], s[1], s[2])).collect(),
     };
-    complete(width, height, texels, "PNG")
+    checked_texture(width, height, texels, "PNG")
 }
 
 fn decode_jpeg(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String> {
@@ -94,7 +94,7 @@ fn decode_jpeg(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String
     check_plausible(width * height, bytes, 8 * 64, "JPEG")?;
     let samples = decoder.decode().map_err(|error| say(&error))?;
     let texels = samples.chunks_exact(3).map(|s| Srgb8::new(s[0], s[1], s[2])).collect();
-    complete(width as u32, height as u32, texels, "JPEG") // sizes of JPEG have 16 bits
+    checked_texture(width as u32, height as u32, texels, "JPEG") // sizes of JPEG have 16 bits
 }
 
 /// Refuses a file too short for the texels that it claims, before they cost time and memory.
@@ -112,7 +112,7 @@ fn cut_short(format: &str) -> String {
 
 /// Returns the texture, after checking that the decoder returned `width * height` texels: indexing
 /// relies on it.
-fn complete(width: u32, height: u32, texels: Vec<Srgb8>, format: &str) -> Result<Texture, String> {
+fn checked_texture(width: u32, height: u32, texels: Vec<Srgb8>, format: &str) -> Result<Texture, String> {
     if texels.len() != width as usize * height as usize {
         return Err(cut_short(format));
     }

@@ -10,7 +10,7 @@ fn modes_are_switched_off_in_reverse_order() {
         modes.switch_on(mode, &mut on);
     }
     modes.switch_all_off(&mut off);
-    let expected: String = all.iter().rev().map(|mode| mode.off()).collect();
+    let expected: String = all.iter().rev().map(|mode| mode.off_sequence()).collect();
     assert_eq!(String::from_utf8_lossy(&off), expected);
     assert_eq!(modes, TerminalModes::default());
 }
