@@ -248,7 +248,7 @@ pub(crate) struct Tree<S> {
     // Stored apart from the leaves, as only hits need them: a leaf of triangles has 288 bytes instead of 352, and
     // incoherent rays are 1 to 5 % faster.
     ids: Vec<PrimitiveIds<F32x8>>,
-    /// The index of the first primitive.
+    /// The index of the tree's first primitive.
     pub(crate) first: u32,
     /// The number of primitives if the tree is a single leaf, which culls nothing; else 0.
     pub(crate) single_leaf_count: usize,

@@ -236,7 +236,7 @@ const BUCKET_COUNT: usize = 1 << 16;
 
 /// Tables of the transfer function.
 struct Transfer {
-    /// The light of each 8-bit code.
+    /// The linear light of each 8-bit sRGB code.
     linear_from_srgb8: [f32; 256],
     /// The bits of the least light that rounds to code `k + 1`, at index `k`; `u32::MAX` at 255.
     // The bits of positive floats are ordered as the floats are, and the bucket is computed from the bits anyway.

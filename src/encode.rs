@@ -87,10 +87,9 @@ pub struct Allowance {
     /// The largest number of bytes that the frame should take; `None` for no limit.
     ///
     /// Above the limit, the cells with the smallest errors wait for a later frame, even if they exceed the quality's
-    /// caps.
-    /// Cells that are only made exact also wait above 8 bytes per cell of the screen. Text, picture cells that replace
-    /// text
-    /// or unknown contents, and the cell with the largest error never wait; with [`Quality::Exact`] no cell does.
+    /// caps. Cells that are only made exact also wait above 8 bytes per cell of the screen. Text, picture cells that
+    /// replace text or unknown contents, and the cell with the largest error never wait; with [`Quality::Exact`] no
+    /// cell does.
     pub max_bytes: Option<usize>,
 }
 

@@ -266,7 +266,7 @@ impl Parser {
             self.state = State::Escape;
             return;
         }
-        let tokens = self.tokeniser.take(byte, &[]);
+        let tokens = self.tokeniser.tokens_after(byte, &[]);
         // A leading byte of UTF-8 leaves the character unfinished; a continuation byte does unless the tokeniser
         // returns a token.
         let unfinished = match byte {
@@ -326,7 +326,7 @@ impl Parser {
             self.keep_byte(byte, MAX_SEQUENCE_BYTES);
         }
         let mut meaning = None;
-        for token in self.tokeniser.take(byte, &self.text) {
+        for token in self.tokeniser.tokens_after(byte, &self.text) {
             match token {
                 Token::Csi(csi) => meaning = Some(csi),
                 other => self.report_plain(&other, false, out),

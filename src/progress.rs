@@ -32,11 +32,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct Progress {
-    /// The operation.
+    /// The operation in progress.
     pub work: Work,
     /// The amount done: bytes of a file, or bounding boxes of a tree.
     pub done: usize,
-    /// The total amount; 0 if unknown.
+    /// The amount to be done in total, in the same unit; 0 if unknown.
     pub total: usize,
 }
 

@@ -29,13 +29,13 @@ impl Ray {
 /// One ray or eight rays, with values that tests against all shapes share, computed once per ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Rays<N: Number> {
-    /// The origins.
+    /// The origins of the rays.
     pub origin: Vector<N>,
-    /// The directions; not zero.
+    /// The directions of the rays; none is zero.
     pub direction: Vector<N>,
     /// The reciprocal of each coordinate of the direction; infinite where that is zero.
     pub inverse: Vector<N>,
-    /// The squared length of the direction.
+    /// The squared length of each direction.
     pub squared_length: N,
     /// The reciprocal of `squared_length`.
     pub inverse_squared_length: N,
@@ -99,9 +99,9 @@ impl<N: Lanes> Rays<N> {
 /// Up to eight rays in SoA layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EightRays {
-    /// The origins.
+    /// The origins of the rays.
     pub origin: Vector<F32x8>,
-    /// The directions; not zero.
+    /// The directions of the rays; none is zero.
     pub direction: Vector<F32x8>,
     /// The active mask, lane 0 lowest.
     ///
@@ -273,9 +273,9 @@ impl<M: LaneMask> DominantAxis<M> {
 /// A closed interval of t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// The lower end.
+    /// The lower end of the interval.
     pub min: f32,
-    /// The upper end.
+    /// The upper end of the interval.
     pub max: f32,
 }
 

@@ -72,7 +72,7 @@ pub struct Rendered {
 pub struct Cost {
     /// The number of rays traced: eye rays and shadow rays.
     pub rays: u64,
-    /// The time spent, summed over all threads.
+    /// The time spent on tracing, summed over all threads.
     pub work: Duration,
 }
 

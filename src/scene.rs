@@ -346,9 +346,9 @@ impl Scene {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
-    /// The surface.
+    /// The surface of the object.
     pub shape: Shape,
-    /// The material.
+    /// The material of the object.
     pub material: Material,
 }
 

@@ -37,9 +37,9 @@ pub use parser::parse;
 /// A range of bytes in the text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Span {
-    /// The index of the first byte.
+    /// The index of the span's first byte.
     pub start: u32,
-    /// Index after the last byte.
+    /// The index after the span's last byte.
     pub end: u32,
 }
 

@@ -12,7 +12,7 @@ use crate::threads;
 pub struct Picture {
     pub(crate) width: u32,
     pub(crate) height: u32,
-    /// `width * height`, row by row from the top.
+    /// The `width * height` pixels, row by row from the top.
     pub(crate) pixels: Vec<Srgb8>,
 }
 

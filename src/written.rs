@@ -19,7 +19,7 @@ use std::fmt::Debug;
 /// A value and its span.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spanned<T> {
-    /// The value.
+    /// The value as written.
     pub value: T,
     /// The range of the value in the text.
     pub span: Span,
@@ -31,9 +31,9 @@ pub type WrittenNumber = Spanned<f64>;
 /// Three finite numbers: a point or a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenVector {
-    /// x, y and z.
+    /// The coordinates x, y and z.
     pub components: [WrittenNumber; 3],
-    /// The range of the whole value.
+    /// The range of the whole vector in the text.
     pub span: Span,
 }
 

@@ -208,7 +208,7 @@ impl Cut {
         for before in 1..bins.len() {
             sum.0.grow(&bins[before - 1].0);
             sum.1 += bins[before - 1].1;
-            // A side without items would become a child without boxes.
+            // A cut with all items on one side would make a child without boxes.
             if sum.1 == 0 || behind[before].1 == 0 {
                 continue;
             }

@@ -5,9 +5,9 @@ use super::{ColorChoice, Colors, Glyphs};
 /// A detected value and its source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Detected<T> {
-    /// The value.
+    /// The detected value.
     pub value: T,
-    /// The source.
+    /// The source that the value comes from.
     pub source: Source,
 }
 
@@ -46,10 +46,8 @@ pub type GlyphChoice = Option<Glyphs>;
 /// Returns the colours to use.
 ///
 /// The first source with a value decides: the user's choice; `NO_COLOR`; `COLORTERM`; the terminal's reply; terminfo's
-/// truecolor
-/// flags; the name in `TERM`, if it implies truecolor; terminfo's number of colours; the name. `CLICOLOR_FORCE`,
-/// `FORCE_COLOR` and
-/// `--color=always` set a minimum.
+/// truecolor flags; the name in `TERM`, if it implies truecolor; terminfo's number of colours; the name.
+/// `CLICOLOR_FORCE`, `FORCE_COLOR` and `--color=always` set a minimum.
 // `COLORTERM` precedes the reply, because it is known before the first frame. The reply precedes terminfo, because many
 // terminals with truecolor use the entry `xterm-256color`.
 pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {

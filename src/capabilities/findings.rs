@@ -36,7 +36,7 @@ pub enum SafeQueries {
     Screen,
     /// Queries that tmux answers itself: all except those about cell size and colours.
     Tmux,
-    /// All queries.
+    /// All queries that the program sends.
     All,
 }
 

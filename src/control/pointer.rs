@@ -98,7 +98,7 @@ impl Pointer {
         // `clicked` is the previous click. A panning click neither completes nor starts a double click.
         let clicked = self.clicked.replace((now, at)).filter(|_| !pans);
         if clicked.is_some_and(is_same) {
-            // Cleared, so that a third click starts a new double click instead of completing a second one.
+            // Without this the third of three clicks would complete a second double click instead of starting one.
             self.clicked = None;
             return Gesture::DoubleClick;
         }

@@ -175,8 +175,8 @@ impl<W> EncoderBackend<W> {
     /// Limits the bytes per second of frames with [`Quality::Equal`] or [`Quality::Fast`].
     ///
     /// Above the limit, the picture cells with the smallest errors wait for a later frame. Text never waits, nor do
-    /// cells
-    /// that replace text or unknown contents. Without [`with_quality`](Self::with_quality) the limit has no effect.
+    /// cells that replace text or unknown contents. Without [`with_quality`](Self::with_quality) the limit has no
+    /// effect.
     ///
     /// ```
     /// use std::time::Instant;

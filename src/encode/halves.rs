@@ -6,7 +6,7 @@ use crate::grid::{Cell, Glyph, Ink};
 /// The largest allowed difference between the shown and the wanted colour of a half cell.
 #[derive(Clone, Copy)]
 pub(super) struct Tolerance {
-    /// The largest distance in OKLab.
+    /// The largest distance of the two colours in OKLab.
     pub(super) distance: f32,
     /// The largest squared difference in 8-bit sRGB, summed over the channels.
     // There are two measures because OKLab bounds the visible difference in a cell, and sRGB the signal-to-noise ratio

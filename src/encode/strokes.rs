@@ -85,9 +85,9 @@ fn write_cell(wanted: &Grid, stroke: &Stroke, bytes: &mut Vec<u8>) {
 /// The form in which a half-block cell is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum BlockForm {
-    /// With the glyph of the wanted grid.
+    /// The cell is written with the glyph of the wanted grid.
     AsWanted,
-    /// With the other half block, and the two colours exchanged.
+    /// The cell is written with the other half block and exchanged colours, and looks the same.
     Flipped,
 }
 

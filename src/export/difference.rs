@@ -63,7 +63,7 @@ pub fn compare(expected: &str, found: &str) -> Option<Difference> {
 pub struct Difference {
     expected: Vec<Row>,
     found: Vec<Row>,
-    /// The number of equal rows at the top.
+    /// The number of rows at the top that are equal in both texts.
     same: usize,
     /// The number of equal rows at the bottom; 0 if both texts have equally many rows.
     same_after: usize,

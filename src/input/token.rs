@@ -35,9 +35,8 @@ impl Tokeniser {
     /// Returns the tokens that `byte` completes.
     ///
     /// There are two if the byte also shows that the bytes before it are an invalid character. `text` contains the
-    /// bytes
-    /// since `ESC [`, including this one.
-    pub(super) fn take(&mut self, byte: u8, text: &[u8]) -> Vec<Token> {
+    /// bytes since `ESC [`, including this one.
+    pub(super) fn tokens_after(&mut self, byte: u8, text: &[u8]) -> Vec<Token> {
         let mut performer = Tokens { tokens: Vec::new(), text };
         self.0.advance(&mut performer, &[byte]);
         performer.tokens

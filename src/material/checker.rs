@@ -11,7 +11,7 @@ use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor, W
 pub struct Checker {
     /// The reflectance of the square that starts at the pattern's origin.
     a: LinearRgb,
-    /// The reflectance of its neighbours.
+    /// The reflectance of the squares that share a side with one of reflectance `a`.
     b: LinearRgb,
     /// The side of a square in world units, greater than 0.
     size: f32,
@@ -70,7 +70,7 @@ impl Reflecting for Checker {
 pub struct WrittenChecker {
     /// The reflectance of the first square; `"#dddddd"` if not given.
     pub a: Option<WrittenColor>,
-    /// The reflectance of the others; `"#333333"` if not given.
+    /// The reflectance of the other half of the squares; `"#333333"` if not given.
     pub b: Option<WrittenColor>,
     /// The side of a square; 1 if not given.
     pub size: Option<WrittenNumber>,

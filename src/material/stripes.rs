@@ -11,7 +11,7 @@ use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor};
 pub struct Stripes {
     /// The reflectance of the stripe that starts at the pattern's origin.
     pub a: LinearRgb,
-    /// The reflectance of its neighbours.
+    /// The reflectance of the stripes next to one of reflectance `a`.
     pub b: LinearRgb,
 }
 

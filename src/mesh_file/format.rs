@@ -53,7 +53,7 @@ pub(super) fn recognised(name: &str, bytes: &[u8]) -> Result<MeshFormat, MeshFau
     if let Some(format) = by_content(bytes, text) {
         return Ok(format);
     }
-    // Checked before the extension is used: a compressed file may still be named `.stl`.
+    // These other formats are tested before the extension is used: a compressed file may still be named `.stl`.
     if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
         return Err(MeshFault::of_file(format!("this {what}")));
     }

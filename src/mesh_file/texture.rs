@@ -22,7 +22,7 @@ pub struct Texture {
 /// A texture and its placement on a surface, over which the image repeats without end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TexturePlacement {
-    /// The image.
+    /// The image that is placed on the surface.
     pub texture: Arc<Texture>,
     /// The transform from the mesh's texture coordinates (u, v) to the image's (u', v'): the dot
     /// products of the two vectors with (u, v, 1). All numbers are finite.

@@ -24,7 +24,7 @@ const MAX_NAME_ATTEMPTS: u32 = 1000;
 /// A locked temporary file, which is removed when dropped.
 #[derive(Debug)]
 pub(super) struct Temporary {
-    /// The path; `None` after a rename.
+    /// The path of the temporary file; `None` once it has been renamed to its target.
     path: Option<PathBuf>,
     file: File,
 }
@@ -51,7 +51,7 @@ impl Temporary {
                         return Ok(temporary);
                     }
                 }
-                // The name is used by a leftover, or by a process with the same number in another container.
+                // A file has this name: a leftover, or that of a process with the same number in another container.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }

@@ -34,7 +34,7 @@ const MIN_SAMPLE_BYTES: f64 = 512.0;
 pub(super) struct RoundTrip {
     /// The shortest round trip of the previous age and of the current one.
     shortest: [Option<Duration>; 2],
-    /// Start of the current age.
+    /// Time at which the current age began.
     since: Duration,
     /// The last estimate before [`invalidate`](Self::invalidate).
     before: Duration,

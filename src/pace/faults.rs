@@ -55,12 +55,12 @@ struct World {
     rate: f64,
     round_trip: Duration,
     fault: Fault,
-    /// Number of the faulty reply, from 1.
+    /// Number of the reply that is the first faulty one, from 1.
     at: usize,
-    /// Number of replies so far.
+    /// Number of replies that the terminal has sent so far.
     replies: usize,
     now: Duration,
-    /// Time of the last frame.
+    /// Time at which the last frame was sent.
     begun: Duration,
     /// Time at which the link has transmitted all bytes.
     free_at: Duration,

@@ -40,7 +40,7 @@ pub(super) struct World {
     /// Share of the link's limit that frames use.
     pub(super) utilisation: f64,
     pub(super) now: Duration,
-    /// Time of the last frame.
+    /// Time at which the last frame was sent.
     pub(super) begun: Duration,
     pub(super) sent: Vec<Sent>,
     /// Arrival times of replies, with the bytes that they confirm.

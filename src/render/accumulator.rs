@@ -7,7 +7,7 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FirstSample {
     pub(super) light: LinearRgb,
-    /// The object's index plus 1; 0 without a hit.
+    /// The index of the object hit, plus 1; 0 without a hit.
     object: u32,
     /// The shading normal. Unit length, or zero without a hit.
     normal: Vec3,

@@ -47,7 +47,7 @@ impl GBufferSample {
 pub struct PixelValues<T> {
     /// One value per pixel, row by row from the top.
     pub pixels: Vec<T>,
-    /// The cost of tracing them.
+    /// The cost of tracing the values.
     pub cost: Cost,
 }
 

@@ -19,9 +19,9 @@ const MIN_REPORT_STEP: f32 = 0.005;
 pub struct Report<'a> {
     callback: &'a (dyn Fn(f32) -> ControlFlow<()> + Sync),
     token: Cancellation,
-    /// The total number of progress units.
+    /// The number of progress units of the whole render.
     total: u64,
-    /// The finished work.
+    /// The progress units finished so far.
     // It is locked during a report, so that reports from several threads come one at a time and in order.
     done: Mutex<Done>,
 }

@@ -15,7 +15,7 @@ use std::ops::Range;
 /// The stages are in order, and each includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Stage {
-    /// The closest hits.
+    /// The closest hits of the eye rays.
     Hits,
     /// The surface points of the hits.
     Points,

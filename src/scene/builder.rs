@@ -101,7 +101,7 @@ impl SceneBuilder {
             if let Some(pattern) = material.pattern()
                 && !shape.has_coordinates()
             {
-                // Counted from 1, as in descriptions and explanations.
+                // Objects are counted from 1, as in descriptions and explanations.
                 return Err(SceneFault::new(format!("object {}", at + 1), without_coordinates(pattern, shape.owner())));
             }
         }

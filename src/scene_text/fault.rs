@@ -81,11 +81,11 @@ pub struct SceneError {
 /// A fault prepared for display, with all control characters replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Report {
-    /// The line, counted from 1.
+    /// The line of the fault, counted from 1.
     pub line: usize,
-    /// The column, in characters, counted from 1.
+    /// The column of the fault, in characters, counted from 1.
     pub column: usize,
-    /// The message.
+    /// The message about the fault.
     pub message: String,
     /// The span that the message refers to.
     pub span: Span,

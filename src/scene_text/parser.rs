@@ -213,7 +213,7 @@ impl<'a> Parser<'a, '_> {
     }
 
     fn open_bracket(&mut self) -> Parsed<()> {
-        // Checked where brackets open, so that every path of the recursion is bounded.
+        // The depth is checked where brackets open, so that every path of the recursion is bounded.
         if self.open.len() == MAX_NESTING {
             return Err(self.fault_here(format!("brackets are nested more than {MAX_NESTING} deep")));
         }

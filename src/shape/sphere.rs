@@ -112,7 +112,7 @@ impl<N: Number> Crossable<N> for SphereN<N> {
         let under_root = squared_radius - to_line.dot(to_line);
         // Comparisons with NaN are false, so NaN counts as a miss.
         let crosses = zero.le(under_root);
-        // Returns before the square root and the division, which take longer than the rest.
+        // Without a hit the square root and the division are skipped: they take longer than the rest.
         if !crosses.any() {
             return None;
         }

@@ -73,7 +73,7 @@ impl Viewer {
                 Input::Reply(reply) => self.take_reply(reply)?,
                 Input::Event(_) => {}
             }
-            // Keys typed after Ctrl-Z are meant for the shell.
+            // Keys typed after Ctrl-Z are meant for the shell, so the program does not act on them.
             if matches!(self.requests.back(), Some(Request::Leave | Request::Suspend)) {
                 break;
             }

@@ -7,7 +7,7 @@ use crate::mesh_file::text::TextCursor;
 pub(super) struct Header<'a> {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element<'a>>,
-    /// The byte offset of the body.
+    /// The offset in bytes of the body, which follows the header.
     pub(super) end: usize,
 }
 
