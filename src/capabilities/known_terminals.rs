@@ -2,7 +2,7 @@
 //!
 //! Over ssh the environment has `TERM` alone, which most of them share. Multiplexers reply for themselves and are not
 //! listed: whether tmux and GNU screen pass 24-bit colours on depends on their configuration. Nor is xterm, which
-//! replies to the query about colours, nor Terminal.app and PuTTY, which had no truecolor for long.
+//! replies to the query about colours, nor Terminal.app and `PuTTY`, which had no truecolor for long.
 
 /// Beginnings of the names that terminals reply to XTVERSION, in lower case.
 const NAMES: [&str; 11] = [
@@ -29,18 +29,12 @@ pub(super) fn name_implies_truecolor(name: &str) -> bool {
 // For terminals that do not reply to XTVERSION: type, version, and a third number.
 pub(super) fn attributes_imply_truecolor(attributes: &[u16]) -> bool {
     match *attributes {
-        // Alacritty from 0.5 on: 100 times the minor version plus the patch.
-        [0, 500..=u16::MAX, 1] => true,
-        // Windows Terminal, and the console of Windows 10.
-        [0, 10, 1] => true,
-        // xterm.js, in Visual Studio Code and others.
-        [0, 276, 0] => true,
-        // Konsole.
-        [0 | 1, 115, 0] => true,
-        // VTE (GNOME Terminal, Xfce Terminal, Tilix) from 0.36 on: 100 times the minor version plus the patch.
-        [61 | 65, 3600..=u16::MAX, 1] => true,
-        // mintty.
-        [77, ..] => true,
+        // Alacritty from 0.5 on, and VTE (GNOME Terminal, Xfce Terminal, Tilix) from 0.36 on: 100 times the minor
+        // version plus the patch.
+        [0, version, 1] if version >= 500 => true,
+        [61 | 65, version, 1] => version >= 3600,
+        // Windows Terminal and the console of Windows 10; xterm.js, in Visual Studio Code and others; Konsole; mintty.
+        [0, 10, 1] | [0, 276, 0] | [0 | 1, 115, 0] | [77, ..] => true,
         _ => false,
     }
 }

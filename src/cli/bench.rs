@@ -62,6 +62,7 @@ pub(super) struct BenchArgs {
     ///
     /// The fields are "scene", "build_seconds", "tree_bytes", and "rounds", each with "rays", "hits",
     /// "lit", "depths", "trace_seconds", "frame_seconds" and "hash".
+    #[allow(clippy::doc_markdown, reason = "the help shows these texts as they are")]
     #[arg(long)]
     json: bool,
 }

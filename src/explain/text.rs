@@ -59,7 +59,7 @@ impl Explanation {
             format!("(i, j) = ({i}, {j}) of {}x{}", self.resolution.width(), self.resolution.height()),
             // The result first, because a small panel shows it without scrolling.
             match &self.hit {
-                Some(shaded) => format!("closest hit: {}, t = {}", shaded.name, number(shaded.hit.t).trim_start()),
+                Some(shaded) => format!("closest hit: {}", shaded.name),
                 None => "no hit: L = background".to_owned(),
             },
             format!("(q_u, q_v) = ({:.4}, {:.4})", self.q.x, self.q.y),

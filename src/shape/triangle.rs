@@ -408,7 +408,7 @@ impl Described for Triangle {
             steps: vec![
                 Step::Text("(o + t d - a).n = 0"),
                 Step::Value("t = (a-o).n / d.n", t.unwrap_or_default()),
-                Step::Text("p = sum of share * corner; shares:"),
+                Step::Text("p = sum of share * corner, with"),
                 Step::Values("    ", "", shares),
             ],
             roots: t.into_iter().collect(),

@@ -21,9 +21,8 @@ impl Activity {
 
     /// Returns the line, with all its hints or in as few words as possible.
     fn text(self, is_short: bool) -> String {
-        let picture = self.picture.map(|percent| match is_short {
-            true => format!("{percent}%"),
-            false => format!("large picture {percent} %, Esc cancels"),
+        let picture = self.picture.map(|percent| {
+            if is_short { format!("{percent}%") } else { format!("large picture {percent} %, Esc cancels") }
         });
         let records = self.records.then(|| "REC".to_owned());
         records.into_iter().chain(picture).collect::<Vec<_>>().join("  ")

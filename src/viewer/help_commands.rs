@@ -33,7 +33,7 @@ impl Viewer {
     /// Returns words on the current state, each with the command that changes it.
     fn states(&self) -> Vec<(Command, String)> {
         let on = |is_on: bool| if is_on { "on" } else { "off" }.to_owned();
-        let maps: Vec<_> = self.layout.maps().map(|map| map.name()).collect();
+        let maps: Vec<_> = self.layout.maps().map(crate::maps::Map::name).collect();
         let moving = if self.eye.mode() == KeyMode::Orbit { "orbit" } else { "fly" };
         vec![
             (Command::ChangeMode, moving.to_owned()),

@@ -1,6 +1,6 @@
 //! The user's own settings and keys in the live view, and the texts about keys.
 
-use crate::pty::{SOON, Session, Size, Start};
+use crate::pty::{SOON, Session, Size, Start, without_colors};
 use std::fs;
 use tempfile::TempDir;
 
@@ -90,7 +90,7 @@ fn a_wrong_settings_file_is_reported_first() {
     let mut session = start(&home, &[]);
     assert_eq!(session.wait_exit(SOON).code(), Some(2));
     session.assert_clean();
-    let said = String::from_utf8_lossy(session.seen().bytes()).into_owned();
+    let said = without_colors(session.seen().bytes());
     assert!(said.contains("config.ron:2:5: unknown setting \"mpa\"; did you mean \"map\"?"), "{said}");
     assert!(said.contains("config.ron:3:10: expected frames per second"), "{said}");
     assert!(!said.contains('\x1b'), "{said}");
@@ -107,11 +107,14 @@ fn user_keys_work_and_are_shown_in_the_help() {
     session.send(b"\x1bOP");
     session.wait_for("its help", SOON, |seen| {
         let text = seen.screen().text();
-        let forward = text.iter().any(|row| row.contains("8 a s d") && row.contains(" move "));
-        forward && text.iter().any(|row| row.contains("F1") && row.contains("this help"))
+        text.iter().any(|row| row.contains("8 a s d") && row.contains(" move "))
+    });
+    session.send(b" ");
+    session.wait_for("its second page", SOON, |seen| {
+        seen.screen().text().iter().any(|row| row.contains("F1") && row.contains("this help"))
     });
     session.send(b"\x1b");
-    wait_for_no(&mut session, "8 a s d");
+    wait_for_no(&mut session, "this help");
     session.wait_for_text("eye 0.00 2.10 6.30");
     session.send(b"8");
     session.wait_for_text("eye 0.00 1.98 5.67");
@@ -143,7 +146,7 @@ fn wrong_keys_are_reported_first() {
     let home = user(&[("keys.ron", "(fly: { \"Up\": MovForward })")]);
     let mut session = start(&home, &[]);
     assert_eq!(session.wait_exit(SOON).code(), Some(2));
-    let said = String::from_utf8_lossy(session.seen().bytes()).into_owned();
+    let said = without_colors(session.seen().bytes());
     assert!(said.contains("keys.ron:1:15: there is no command MovForward; did you mean MoveForward?"), "{said}");
     assert!(!said.contains('\x1b'), "{said}");
 }

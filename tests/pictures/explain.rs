@@ -109,10 +109,10 @@ fn the_blocker_of_a_light_is_named() {
     .expect("a scene");
     let all: Vec<_> = pixels().map(|pixel| explain(&scene, scene.camera(), SIZE, pixel)).collect();
     let says = |words: &str| all.iter().filter(|it| it.lines().join("\n").contains(words)).count();
-    assert!(says("in the shadow of\n  #2 sphere") > 5, "the ball's shadow on the floor");
+    assert!(says("V = 0, behind sphere #2") > 5, "the ball's shadow on the floor");
     assert!(says("faces away") > 5, "the ball's lower half");
     assert!(says("no hit: L = background") > 5);
     assert!(says("closest hit: plane #1") > 5 && says("closest hit: sphere #2") > 5 && says("miss") > 5);
-    let dark = all.iter().find(|it| it.lines().join("\n").contains("in the shadow of")).expect("it is there");
+    let dark = all.iter().find(|it| it.lines().join("\n").contains("V = 0, behind")).expect("it is there");
     assert_eq!(dark.light, LinearRgb::grey(0.1) * LinearRgb::grey(0.5), "ambient light is left");
 }

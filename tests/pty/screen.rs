@@ -116,3 +116,19 @@ fn whole_characters(bytes: &[u8]) -> usize {
         None => bytes.len(),
     }
 }
+
+/// Returns the text of these bytes without SGR sequences.
+///
+/// An error message may have no other sequences.
+pub(crate) fn without_colors(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    let mut parts = text.split("\x1b[");
+    let mut plain = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        match part.split_once('m') {
+            Some((codes, rest)) if codes.bytes().all(|code| code.is_ascii_digit() || code == b';') => plain += rest,
+            _ => plain = plain + "\x1b[" + part,
+        }
+    }
+    plain
+}

@@ -27,14 +27,37 @@ impl Group {
         match command {
             C::Move(_) | C::Around(_) | C::Nearer | C::Farther | C::ChangeMode | C::Turntable => Self::Move,
             C::Look(_) | C::Narrower | C::Wider => Self::Look,
-            C::Front | C::FromRight | C::FromAbove | C::TurnMesh | C::Axes => Self::Views,
-            C::FrameAll | C::View(_) | C::SaveView | C::Reset | C::ViewBack | C::ViewForward => Self::Views,
-            C::NextMap | C::LastMap | C::Compare | C::Wipe(_) | C::Wireframe => Self::Maps,
-            C::Explain | C::Point(_) | C::ScrollUp | C::ScrollDown => Self::Maps,
+            C::Front
+            | C::FromRight
+            | C::FromAbove
+            | C::TurnMesh
+            | C::Axes
+            | C::FrameAll
+            | C::View(_)
+            | C::SaveView
+            | C::Reset
+            | C::ViewBack
+            | C::ViewForward => Self::Views,
+            C::NextMap
+            | C::LastMap
+            | C::Compare
+            | C::Wipe(_)
+            | C::Wireframe
+            | C::Explain
+            | C::Point(_)
+            | C::ScrollUp
+            | C::ScrollDown => Self::Maps,
             C::Light | C::MoveLight(_) | C::LightNearer | C::LightFarther | C::LightBack => Self::Light,
-            C::NextScene | C::LastScene | C::Export | C::ExportLarge | C::Record => Self::Files,
-            C::CopyCamera | C::KeepView => Self::Files,
-            C::Write(_) | C::Yes | C::No => Self::Files,
+            C::NextScene
+            | C::LastScene
+            | C::Export
+            | C::ExportLarge
+            | C::Record
+            | C::CopyCamera
+            | C::KeepView
+            | C::Write(_)
+            | C::Yes
+            | C::No => Self::Files,
             C::Caption | C::Metadata | C::Status | C::Help | C::Close | C::Redraw | C::Suspend | C::Quit => {
                 Self::Program
             }
