@@ -176,7 +176,7 @@ fn help_shows_every_group_is_filtered_and_goes_away() {
     session.send(b"q");
     wait_for_picture(&mut session, Size::cells(80, 24));
     session.send(b"?");
-    session.wait_for_text("quit");
+    session.wait_for_text("first view");
     session.send(b"\x1b");
     wait_for_picture(&mut session, Size::cells(80, 24));
     leave(&mut session);
