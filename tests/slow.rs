@@ -348,7 +348,7 @@ fn a_saved_mesh_is_shown_once_it_is_built() {
 /// Returns the coordinates of the eye in the figures that `i` shows.
 fn eye(seen: &Seen) -> Option<String> {
     let text = seen.screen().text();
-    text.iter().find_map(|line| Some(line.split_once("  eye ")?.1.trim_end().to_owned()))
+    text.iter().find_map(|line| Some(line.split_once("· eye ")?.1.trim_end().to_owned()))
 }
 
 /// Returns the time until the slowest key press is seen, with faults of replies up to the `last`

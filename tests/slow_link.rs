@@ -61,7 +61,10 @@ const HOME_EYE: [f64; 3] = [0.0, 1.0, 5.0];
 /// The keys that move the eye down and up an axis.
 const AXES: [(usize, [&[u8]; 2]); 2] = [(0, [b"a", b"d"]), (2, [b"w", b"s"])];
 
-/// Presses keys that change the direction of the movement, and returns how long each takes to be
+/// The time between two repeats of a held key.
+const HELD_KEY_INTERVAL: Duration = Duration::from_millis(100);
+
+/// Holds keys that change the direction of the movement, and returns how long each takes to be
 /// seen.
 ///
 /// The intervals are irregular. Each key is along another axis than the one before, and leads home: elsewhere a frame
@@ -75,17 +78,25 @@ fn walk(relay: &mut Relay, keys: usize) -> Vec<Duration> {
             let before = relay.frames.len();
             let is_above =
                 relay.frames.last().and_then(|frame| eye(&frame.status)).is_none_or(|e| e[axis] >= HOME_EYE[axis]);
-            relay.press(if is_above { down } else { up });
+            let key = if is_above { down } else { up };
+            relay.press(key);
             let mut shown = None;
-            relay.run(ms(20_000), |relay| {
+            let mut is_shown = |relay: &Relay| {
                 let frames = relay.frames[before - 1..].windows(2);
                 let mut steps = frames
                     .filter(|pair| eye(&pair[0].status).map(|e| e[axis]) != eye(&pair[1].status).map(|e| e[axis]));
                 shown = steps.next().map(|pair| pair[1].at);
                 shown.is_some()
-            });
+            };
+            let deadline = pressed + ms(20_000);
+            while !relay.run(HELD_KEY_INTERVAL, &mut is_shown) && relay.now() < deadline {
+                relay.press(key);
+            }
             chance = chance.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            relay.run(ms(50 + (chance >> 33) % 200), |_| false);
+            relay.press(key);
+            relay.run(ms(50 + (chance >> 33) % 100), |_| false);
+            relay.press(key);
+            relay.run(ms(50 + (chance >> 43) % 100), |_| false);
             shown.expect("the key is shown").saturating_sub(pressed)
         })
         .collect()
