@@ -17,6 +17,7 @@
 //!   at the first fault, while 31 of the 79 faulty scenes of the tests have several.
 
 mod fault;
+#[cfg(feature = "ron")]
 mod foreign;
 #[cfg(feature = "ron")]
 mod parser;

@@ -137,6 +137,7 @@ impl Camera {
     /// Returns the camera on the way to `end`: this one at `share` 0, exactly `end` at 1.
     ///
     /// The direction of view turns evenly, about the target or about the eye, whichever of them moves less.
+    #[cfg(feature = "live")]
     pub(crate) fn on_the_way_to(&self, end: &Self, share: f32) -> Self {
         if share >= 1.0 {
             return *end;
