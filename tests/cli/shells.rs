@@ -114,7 +114,11 @@ fn zsh_completes_files_options_and_values() {
     );
     session.wait_for_text("ready");
     session.send(format!("{start}; clear; echo set up\r").as_bytes());
-    session.wait_for("the set-up", SOON, |seen| seen.screen().text()[0].starts_with("set up"));
+    // Until the prompt is back, the terminal's own line discipline would take Ctrl-U and Ctrl-D.
+    session.wait_for("the prompt after the set-up", SOON, |seen| {
+        let rows = seen.screen().text();
+        rows[0].starts_with("set up") && rows[1].starts_with("ready")
+    });
     for (line, offered, other) in COMPLETED {
         // Ctrl-U and Ctrl-L remove the line and list before.
         session.send(b"\x15\x0c");
