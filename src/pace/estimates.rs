@@ -168,6 +168,14 @@ impl Rates {
         }
     }
 
+    /// Lowers all samples to at most this many bytes per second.
+    pub(super) fn cap(&mut self, bytes_per_second: f64) {
+        for (_, rate) in &mut self.rates {
+            rate.bytes_per_second = rate.bytes_per_second.min(bytes_per_second);
+        }
+        self.last = Default::default();
+    }
+
     /// Returns the highest sample in bytes per second that was the link's limit; infinite if there
     /// is none.
     ///

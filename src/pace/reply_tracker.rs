@@ -59,6 +59,10 @@ const MAX_ROUND_TRIP: Duration = Duration::from_secs(1);
 // Until then frames are sent at the old rate. With 50 ms, recovery from a tenfold drop takes 1.65 to 1.87 s of
 // simulated time; with 100 ms it took 1.73 to 1.94 s.
 const LATE_REPLY_MARGIN: Duration = Duration::from_millis(50);
+/// Least rate in bytes per second that is assumed after the first resync.
+// After a pause, the bytes that have arrived since the first query show too low a rate. This one allows a frame of
+// about 200 bytes every 28 ms, the least that shows the rate to be too low.
+const MIN_RESYNC_RATE: f64 = 7_500.0;
 /// Number of replies that must arrive in order after a resync until several queries may be in
 /// flight again.
 ///
@@ -95,6 +99,8 @@ pub(super) struct ReplyTracker {
     /// Number of bytes known to have arrived since the estimates were dropped last, which limits
     /// the window (slow start).
     pub(super) delivered: f64,
+    /// Time of the first query since then.
+    begun: Option<Duration>,
     /// Whether the link was slow when the last limit was computed.
     slow: bool,
     pub(super) initial_window: InitialWindow,
@@ -147,6 +153,7 @@ impl ReplyTracker {
             rates: Rates::default(),
             busy_period: BusyPeriod::default(),
             delivered: 0.0,
+            begun: None,
             slow: false,
             initial_window: InitialWindow::default(),
         }
@@ -258,6 +265,7 @@ impl ReplyTracker {
         if let Query::Counted | Query::Both(_) = query {
             bytes.extend_from_slice(FENCE);
         }
+        self.begun.get_or_insert(now);
         self.ledger.record(query, if is_frame { bytes.len() } else { 0 }, now);
     }
 
@@ -325,7 +333,7 @@ impl ReplyTracker {
     /// grow from zero.
     fn restart_slow_start(&mut self) {
         self.round_trip.invalidate();
-        self.delivered = 0.0;
+        (self.delivered, self.begun) = (0.0, None);
     }
 
     /// Records a reply to DECRQM with the number of a mode.
@@ -435,8 +443,16 @@ impl ReplyTracker {
         self.ledger.clear();
         self.alignment = Alignment::default();
         if self.slow {
-            self.serial_replies = SERIAL_REPLIES;
             self.rates.keep_limits();
+            if self.serial_replies == 0 && self.delivered < MIN_DELIVERED_BYTES {
+                // If the first reply is lost, the reply to the first picture counts as that to the first query. The
+                // round trip then seems longer by the picture's transmission, so the rate of 50 KB/s was estimated as
+                // 137, each resync kept that, and keys took up to 1.4 s for good. The link has been idle for half of
+                // the time since the first query at most, waiting for replies, so it transmits twice of what arrived.
+                let arrived = self.delivered / now.saturating_sub(self.begun.unwrap_or_default()).as_secs_f64();
+                self.rates.cap((2.0 * arrived).max(MIN_RESYNC_RATE));
+            }
+            self.serial_replies = SERIAL_REPLIES;
         } else {
             (self.rates, self.initial_window) = Default::default();
             self.restart_slow_start();
