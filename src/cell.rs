@@ -2,16 +2,23 @@
 //!
 //! A glyph kind is one file of this folder, with its `mod` line, and one row of the table of [`Glyphs`].
 
+use crate::camera::Camera;
 use crate::color::Srgb8;
 use crate::framebuffer::{Resolution, ResolutionError};
 use crate::grid::{Grid, Size};
+use crate::maps::{self, Map, TracedMap};
+use crate::progress::Cancelled;
+use crate::render::{Executor, Geometry, Sampling};
+use crate::scene::Scene;
 use crate::text::{ParseError, named};
 use crate::tone::Picture;
 use glyph_kind::{Fill, GlyphKind};
 use ink_converter::InkConverter;
+use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
+mod ascii;
 mod blue_noise;
 mod colors;
 #[cfg(all(test, unit_tests))]
@@ -54,6 +61,8 @@ crate::table::table! {
         /// The printable ASCII character whose ink is distributed most like the light of a cell's
         /// eight pixels.
         Shape = shape::KIND;
+        /// ASCII characters that draw outlines, and fill each object by its own shading.
+        Ascii = ascii::KIND;
         /// One of ten ASCII characters, by the mean lightness of a cell's two pixels.
         Ramp = ramp::KIND;
         /// A dot for each light pixel. This kind exists in tests only.
@@ -146,6 +155,25 @@ impl CellMode {
         self.glyphs.row().pixels_per_cell
     }
 
+    /// Returns whether the glyphs show [`Geometry`], which is then traced with the picture.
+    pub(crate) const fn shows_geometry(self) -> bool {
+        matches!(self.glyphs.row().fill, Fill::Geometry(_))
+    }
+
+    /// Traces the picture of a map, and the geometry if the glyphs show it.
+    pub(crate) fn trace(
+        self,
+        map: Map,
+        executor: Executor<'_>,
+        scene: &Scene,
+        camera: &Camera,
+        resolution: Resolution,
+        sampling: Sampling,
+    ) -> Result<TracedMap, Cancelled> {
+        let trace = if self.shows_geometry() { maps::trace_with_geometry } else { maps::trace };
+        trace(map, executor, scene, camera, resolution, sampling)
+    }
+
     /// Returns the mode without colours that has the same number of pixels per cell.
     #[doc(hidden)]
     pub fn plain(self) -> Self {
@@ -224,31 +252,61 @@ impl Painter {
     /// # Panics
     /// If the picture needs more than 65,535 columns or rows.
     pub fn grid(&mut self, picture: &Picture) -> Grid {
+        self.grid_with(picture, None)
+    }
+
+    /// Returns the cells of a picture and its geometry.
+    pub(crate) fn grid_with(&mut self, picture: &Picture, geometry: Option<&Geometry>) -> Grid {
         let mut grid = Grid::new(Size::new(0, 0));
-        self.paint(picture, &mut grid);
+        self.paint(picture, geometry, &mut grid);
         grid
+    }
+
+    /// Returns the cells of a traced map.
+    pub(crate) fn grid_of(&mut self, traced: &TracedMap) -> Grid {
+        self.grid_with(&traced.picture, traced.geometry.as_deref())
+    }
+
+    /// Traces a map on the current rayon pool, and returns its cells.
+    #[doc(hidden)]
+    pub fn trace(
+        &mut self,
+        map: Map,
+        scene: &Scene,
+        camera: &Camera,
+        resolution: Resolution,
+        sampling: impl Into<Sampling>,
+    ) -> Grid {
+        let traced = self.mode.trace(map, Executor::Pool, scene, camera, resolution, sampling.into());
+        self.grid_of(&traced.expect("only a token cancels, and the pool has none"))
     }
 
     /// Fills a grid as [`grid`](Self::grid) does, reusing its memory.
     ///
+    /// Kinds of glyphs that show geometry draw a picture without any as a single surface.
+    ///
     /// # Panics
     /// If the picture needs more than 65,535 columns or rows.
     #[doc(hidden)]
-    pub fn paint(&mut self, picture: &Picture, grid: &mut Grid) {
+    pub fn paint(&mut self, picture: &Picture, geometry: Option<&Geometry>, grid: &mut Grid) {
         let pixels_per_cell = self.mode.pixels_per_cell();
         grid.clear(size_in_cells(picture, pixels_per_cell));
-        // Only default colours are inverted for a light background: with other colours, glyphs are drawn on black.
         let has_colors = self.mode.colors != Colors::None;
-        let negative = (self.light_background && !has_colors).then(|| negative(picture));
-        let picture = negative.as_ref().unwrap_or(picture);
+        // Only default colours are inverted for a light background: with other colours, glyphs are drawn on black.
+        let negative = || (self.light_background && !has_colors).then(|| negative(picture));
         // One call by function pointer per frame. The loop over the cells is inside the function, so that it is
         // compiled for the glyph kind.
         match self.mode.glyphs.row().fill {
-            Fill::Colored(fill) => fill(grid, picture, &mut self.inks),
-            Fill::Lightness(fill) if !has_colors => fill(grid, picture),
+            Fill::Colored(fill) => fill(grid, negative().as_ref().unwrap_or(picture), &mut self.inks),
+            Fill::Lightness(fill) if !has_colors => fill(grid, negative().as_ref().unwrap_or(picture)),
             Fill::Lightness(fill) => {
                 fill(grid, &tint::brightness(picture));
                 tint::fill(grid, picture, pixels_per_cell, &mut self.inks);
+            }
+            Fill::Geometry(fill) => {
+                let unknown = || Geometry::of_one_surface(picture.width, picture.height);
+                let geometry = geometry.map_or_else(|| Cow::Owned(unknown()), Cow::Borrowed);
+                fill(grid, picture, &geometry, self.light_background, &mut self.inks);
             }
         }
     }

@@ -30,12 +30,11 @@ pub use svg::svg;
 pub use text::text;
 
 use crate::capabilities::{CellMode, USUAL_CELL_ASPECT};
-use crate::cell;
+use crate::cell::{self, Painter};
 use crate::grid::{Grid, Size};
-use crate::render::render;
+use crate::maps::Map;
 use crate::scene::Scene;
 use crate::text::{ParseError, named};
-use crate::tone::tone;
 use format_row::FormatRow;
 use std::fmt;
 use std::num::NonZeroU32;
@@ -206,8 +205,7 @@ pub fn frame_grid(scene: &Scene, cell_mode: CellMode, size: Size, cell_aspect: f
     // These are the steps of the live view and of `termtrace frame`, so that a snapshot shows what users see.
     let resolution =
         cell::resolution(cell_mode, size, cell_aspect).expect("a size and an aspect that pictures can have");
-    let picture = tone(&render(scene, scene.camera(), resolution, NonZeroU32::MIN), scene);
-    cell::grid_from_picture(cell_mode, &picture)
+    Painter::new(cell_mode).trace(Map::Shaded, scene, scene.camera(), resolution, NonZeroU32::MIN)
 }
 
 #[cfg(all(test, unit_tests))]

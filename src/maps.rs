@@ -9,7 +9,9 @@ use crate::color::{LinearRgb, Srgb8};
 use crate::framebuffer::Resolution;
 use crate::hit::Hit;
 use crate::progress::Cancelled;
-use crate::render::{Cost, Executor, GBufferSample, Sampling, TraceDepth, trace_g_buffer_partial};
+use crate::render::{
+    Cost, Executor, GBufferSample, Geometry, Sampling, TraceDepth, trace_g_buffer_partial, trace_geometry,
+};
 use crate::scene::Scene;
 use crate::shade;
 use crate::shape::Side;
@@ -17,6 +19,7 @@ use crate::text::{ParseError, named};
 use crate::tone::Picture;
 use std::fmt;
 use std::str::FromStr;
+use std::sync::Arc;
 
 mod colors;
 mod contrast;
@@ -89,8 +92,20 @@ const BACK: Srgb8 = Srgb8::new(235, 80, 50);
 pub struct TracedMap {
     /// The picture.
     pub picture: Picture,
+    /// The surfaces that the picture shows, if they were asked for.
+    pub geometry: Option<Arc<Geometry>>,
     /// The cost of tracing, which has no influence on the picture.
     pub cost: Cost,
+}
+
+impl TracedMap {
+    pub(crate) fn new(picture: Picture, cost: Cost) -> Self {
+        Self { picture, geometry: None, cost }
+    }
+
+    pub(crate) fn with_geometry(self, geometry: impl Into<Arc<Geometry>>) -> Self {
+        Self { geometry: Some(geometry.into()), ..self }
+    }
 }
 
 impl Map {
@@ -239,6 +254,29 @@ pub fn trace(
     executor.unless_cancelled(trace_partial(map, executor, scene, camera, resolution, sampling))
 }
 
+/// Traces the picture of a map with two by four pixels per cell, and the geometry that it shows.
+///
+/// # Errors
+/// [`Cancelled`], if the executor's token is cancelled.
+pub fn trace_with_geometry(
+    map: Map,
+    executor: Executor<'_>,
+    scene: &Scene,
+    camera: &Camera,
+    resolution: Resolution,
+    sampling: Sampling,
+) -> Result<TracedMap, Cancelled> {
+    let traced = if map == Map::Shaded {
+        shaded::trace_with_geometry(executor, scene, camera, resolution, sampling)
+    } else {
+        let (geometry, cost) = trace_geometry(executor, scene, camera, resolution, sampling);
+        let mut traced = trace_partial(map, executor, scene, camera, resolution, sampling);
+        traced.cost += cost;
+        traced.with_geometry(geometry)
+    };
+    executor.unless_cancelled(traced)
+}
+
 /// Traces the picture of a map; if the executor's token is cancelled, returns an incomplete
 /// picture.
 fn trace_partial(
@@ -252,7 +290,7 @@ fn trace_partial(
     let traced_to = |depth, paint: &(dyn Fn(&GBufferSample) -> Srgb8 + Sync)| {
         let traced = trace_g_buffer_partial(executor, scene, camera, resolution, sampling, depth, paint);
         let [width, height] = [resolution.width(), resolution.height()];
-        TracedMap { picture: Picture { width, height, pixels: traced.pixels }, cost: traced.cost }
+        TracedMap::new(Picture { width, height, pixels: traced.pixels }, traced.cost)
     };
     let of_surfaces = |paint: &(dyn Fn(&GBufferSample) -> Srgb8 + Sync)| traced_to(TraceDepth::Surfaces, paint);
     match map {

@@ -453,7 +453,8 @@ impl Viewer {
     fn wanted_shot(&self) -> Option<Shot> {
         let (lights, camera) = (self.scenes.lights()?, self.eye.camera()?);
         let (scene, resolution) = (self.scenes.count(), self.display.resolution());
-        Some(Shot { scene, lights: lights.moves(), camera, resolution, layout: self.layout })
+        let geometry = self.display.capabilities().cell_mode.shows_geometry();
+        Some(Shot { scene, lights: lights.moves(), camera, resolution, layout: self.layout, geometry })
     }
 
     /// Returns the sampling of the shown frame's next refinement, or `None` if it cannot be

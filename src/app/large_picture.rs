@@ -141,7 +141,7 @@ impl Shared {
             let picture = if map == Map::Shaded {
                 let render = Render::new(scene).camera(&shot.camera).resolution(resolution);
                 let render = render.threads(order.thread_count()).cancelled_by(&self.token).on_progress(report);
-                TracedMap { picture: tone(&render.run()?, scene), cost: Cost::default() }
+                TracedMap::new(tone(&render.run()?, scene), Cost::default())
             } else {
                 self.wait_while_paused();
                 let executor = Executor::Cancellable(&self.token);

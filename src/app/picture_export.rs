@@ -1,10 +1,11 @@
 //! Export of the shown picture into a new file.
 
 use crate::capabilities::{Capabilities, CellMode, Colors};
-use crate::cell;
+use crate::cell::{self, Painter};
 use crate::export::{Contents, Format};
-use crate::grid::Size;
+use crate::grid::{Grid, Size};
 use crate::output_file::OutputFile;
+use crate::render::Geometry;
 use crate::tone::Picture;
 use std::io::{self, Write};
 use std::path::Path;
@@ -20,7 +21,12 @@ const MAX_NUMBERED_NAMES: u32 = 9999;
 /// Returns the contents of a file with the picture, without panels.
 ///
 /// The cells have the glyphs that the terminal shows; they are in truecolor if the format has colours.
-pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabilities) -> io::Result<Vec<u8>> {
+pub(super) fn contents(
+    format: Format,
+    picture: &Picture,
+    geometry: Option<&Geometry>,
+    capabilities: &Capabilities,
+) -> io::Result<Vec<u8>> {
     let Capabilities { cell_mode, cell_aspect, .. } = *capabilities;
     match format.contents() {
         Contents::Pixels(write) => {
@@ -30,7 +36,9 @@ pub(super) fn contents(format: Format, picture: &Picture, capabilities: &Capabil
         Contents::Cells { has_colors, write } => {
             // Truecolor even if the terminal has 16 colours, because the file may be viewed elsewhere.
             let mode = if has_colors { CellMode { colors: Colors::Truecolor, ..cell_mode } } else { cell_mode.plain() };
-            Ok(write(&cell::grid_from_picture(mode, picture), mode.colors, cell_aspect))
+            let mut grid = Grid::new(Size::new(0, 0));
+            Painter::new(mode).paint(picture, geometry, &mut grid);
+            Ok(write(&grid, mode.colors, cell_aspect))
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::maps::{self, Map, TracedMap};
 use crate::progress::{Cancellation, Cancelled};
-use crate::render::{Cost, Executor, ProgressiveRender, Sampling};
+use crate::render::{Cost, Executor, Geometry, ProgressiveRender, Sampling, trace_geometry};
 use crate::scene::Scene;
 use crate::terminal::{self, Waker};
 use crate::tone::tone;
@@ -17,6 +17,7 @@ use std::collections::VecDeque;
 use std::io;
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
@@ -107,7 +108,7 @@ impl Renderer {
             // again in little time.
             let one = Sampling::Each(NonZeroU32::MIN);
             let trace_map =
-                |map, part| maps::trace(map, Executor::CurrentThread, &job.scene, &job.shot.camera, part, one);
+                |map, part| trace(&job.shot)(map, Executor::CurrentThread, &job.scene, &job.shot.camera, part, one);
             return frame_of(&job, trace_map).ok().map(|frame| self.record_time(frame));
         }
         let work = PendingJob { refines: job.refines, token: Cancellation::default() };
@@ -211,11 +212,13 @@ pub(super) fn frame_of(
     let start = Instant::now();
     let Job { scene, shot, sampling, refines } = job.clone();
     let mut cost = Cost::default();
-    let mut parts = Vec::new();
+    let (mut parts, mut geometry) = (Vec::new(), None);
     for (map, resolution) in shot.layout.parts(shot.resolution) {
         let seen = trace_map(map, resolution)?;
         cost += seen.cost;
         parts.push(seen.picture);
+        // Two views side by side meet within a cell, so they are drawn without geometry.
+        geometry = seen.geometry.filter(|_| resolution == shot.resolution);
     }
     let combined = shot.layout.combined(&parts, INITIAL_WIPE).or_else(|| parts.pop());
     let picture = combined.expect("at least one picture is shown");
@@ -223,7 +226,7 @@ pub(super) fn frame_of(
         parts.clear();
     }
     let legends = shot.layout.legends(&scene, &shot.camera);
-    Ok(Frame { scene, shot, picture, parts, sampling, legends, refines, cost, trace: start.elapsed() })
+    Ok(Frame { scene, shot, picture, geometry, parts, sampling, legends, refines, cost, trace: start.elapsed() })
 }
 
 /// The state of the tracing thread.
@@ -239,12 +242,13 @@ struct RefinablePicture {
     scene: Scene,
     view: (Camera, Resolution),
     picture: ProgressiveRender,
+    geometry: Option<Arc<Geometry>>,
 }
 
 impl RefinablePicture {
     fn new(Job { scene, shot, .. }: &Job, resolution: Resolution) -> Self {
         let picture = ProgressiveRender::new(&shot.camera, resolution);
-        Self { scene: scene.clone(), view: (shot.camera, resolution), picture }
+        Self { scene: scene.clone(), view: (shot.camera, resolution), picture, geometry: None }
     }
 
     fn has_view_of(&self, Job { scene, shot, .. }: &Job, resolution: Resolution) -> bool {
@@ -276,15 +280,36 @@ impl Tracer {
         let samples = match job.sampling {
             Sampling::UpTo(samples) if map.refines() => samples,
             sampling => {
-                return maps::trace(map, Executor::Cancellable(token), scene, &shot.camera, resolution, sampling);
+                return trace(shot)(map, Executor::Cancellable(token), scene, &shot.camera, resolution, sampling);
             }
         };
         let mut kept = kept.unwrap_or_else(|| RefinablePicture::new(job, resolution));
         let cost = kept.picture.refine_or_cancel(token, scene, samples)?;
-        let light = self.kept.insert(kept).picture.framebuffer();
-        Ok(TracedMap { picture: tone(&light, scene), cost })
+        let mut traced = TracedMap::new(tone(&kept.picture.framebuffer(), scene), cost);
+        if shot.geometry {
+            let geometry = kept.geometry.get_or_insert_with(|| {
+                let executor = Executor::Cancellable(token);
+                let (geometry, cost) = trace_geometry(executor, scene, &shot.camera, resolution, job.sampling);
+                traced.cost += cost;
+                geometry.into()
+            });
+            traced = traced.with_geometry(geometry.clone());
+        }
+        if token.is_cancelled() {
+            return Err(Cancelled);
+        }
+        self.kept = Some(kept);
+        Ok(traced)
     }
 }
+
+/// Returns the function that traces what a shot shows.
+fn trace(shot: &Shot) -> TraceMap {
+    if shot.geometry { maps::trace_with_geometry } else { maps::trace }
+}
+
+/// A function that traces a map.
+type TraceMap = fn(Map, Executor<'_>, &Scene, &Camera, Resolution, Sampling) -> Result<TracedMap, Cancelled>;
 
 /// Returns whether each pixel gets exactly one sample.
 fn has_one_sample(sampling: Sampling) -> bool {

@@ -3,6 +3,7 @@
 use super::Glyphs;
 use super::ink_converter::InkConverter;
 use crate::grid::Grid;
+use crate::render::Geometry;
 use crate::tone::Picture;
 
 /// A row of the table of glyph kinds: all properties of one kind.
@@ -26,4 +27,7 @@ pub(super) enum Fill {
     Colored(fn(&mut Grid, &Picture, &mut InkConverter)),
     /// Sets glyphs by lightness; [`tint`](super::tint) then adds the colours.
     Lightness(fn(&mut Grid, &Picture)),
+    /// Sets glyphs and colours from the picture and the surfaces that it shows; the flag is whether
+    /// the background is light.
+    Geometry(fn(&mut Grid, &Picture, &Geometry, bool, &mut InkConverter)),
 }

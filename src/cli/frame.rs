@@ -17,10 +17,10 @@ use screen::Screen;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use termtrace::export::Format;
-use termtrace::internals::cell;
 use termtrace::internals::export::Contents;
+use termtrace::internals::maps;
 use termtrace::internals::text::{any_of, listed};
-use termtrace::{CellMode, Colors};
+use termtrace::{CellMode, Colors, Painter};
 
 /// The format if neither `--format` nor the extension of a file name decides.
 const DEFAULT: Format = Format::Text;
@@ -155,14 +155,15 @@ impl FrameArgs {
         let map = self.map.map();
         warn_of_darkness(map, &scene);
         // Only tracing runs in the pool of `--threads`; the file is encoded on one thread.
-        let picture = self
-            .scene
-            .on_threads(|| termtrace::internals::maps::picture(map, &scene, scene.camera(), resolution, samples))?;
         match format.contents() {
-            Contents::Pixels(write) => write(&picture, resolution.pixel_aspect(), self.picture.scale())
-                .map_err(|error| Failure::runtime(format.name().to_uppercase(), error)),
+            Contents::Pixels(write) => {
+                let trace = || maps::picture(map, &scene, scene.camera(), resolution, samples);
+                write(&self.scene.on_threads(trace)?, resolution.pixel_aspect(), self.picture.scale())
+                    .map_err(|error| Failure::runtime(format.name().to_uppercase(), error))
+            }
             Contents::Cells { write, .. } => {
-                let grid = cell::grid_from_picture(mode, &picture);
+                let trace = || Painter::new(mode).trace(map, &scene, scene.camera(), resolution, samples);
+                let grid = self.scene.on_threads(trace)?;
                 Ok(write(&grid, mode.colors, self.picture.cell_aspect()))
             }
         }

@@ -19,9 +19,9 @@ use termtrace::internals::capabilities::USUAL_CELL_ASPECT;
 use termtrace::internals::control::{Command, Direction, KeyMode, Keymap};
 use termtrace::internals::mesh_file::is_mesh;
 use termtrace::internals::terminal::die_of;
-use termtrace::internals::{app, cell, maps};
+use termtrace::internals::{app, cell};
 use termtrace::live::{Ending, Options, Outcome, Signals, Source};
-use termtrace::{Colors, Sampling, Size, export};
+use termtrace::{Colors, Painter, Sampling, Size, export};
 
 /// The occasion on which the live view opens, which decides what it shows first.
 #[derive(Clone, Copy)]
@@ -146,9 +146,8 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
     let sampling = settings.samples.unwrap_or(Sampling::Each(NonZeroU32::MIN));
     let map = settings.map.map();
     warn_of_darkness(map, &scene);
-    let picture =
-        on_threads(args.camera_args.threads, || maps::picture(map, &scene, scene.camera(), resolution, sampling))?;
-    let grid = cell::grid_from_picture(cell_mode, &picture);
+    let trace = || Painter::new(cell_mode).trace(map, &scene, scene.camera(), resolution, sampling);
+    let grid = on_threads(args.camera_args.threads, trace)?;
     write_stdout(&export::ansi_or_text(&grid, cell_mode.colors))
 }
 

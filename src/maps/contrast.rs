@@ -39,7 +39,7 @@ pub(super) fn trace(
         });
     let mut cost = light.cost;
     cost += objects.cost;
-    TracedMap { picture: outlined(&light.picture, &objects.pixels), cost }
+    TracedMap::new(outlined(&light.picture, &objects.pixels), cost)
 }
 
 /// Returns the picture in black and white, with lines between pixels whose elements of `objects`

@@ -3,7 +3,7 @@
 use super::TracedMap;
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
-use crate::render::{Executor, Sampling, render_partial};
+use crate::render::{Executor, Sampling, render_partial, render_with_geometry};
 use crate::scene::Scene;
 use crate::tone::tone;
 
@@ -16,5 +16,17 @@ pub(super) fn trace(
     sampling: Sampling,
 ) -> TracedMap {
     let rendered = render_partial(executor, scene, camera, resolution, sampling);
-    TracedMap { picture: tone(&rendered.framebuffer, scene), cost: rendered.cost }
+    TracedMap::new(tone(&rendered.framebuffer, scene), rendered.cost)
+}
+
+/// Renders the light as [`trace`] does, with the geometry of the cells.
+pub(super) fn trace_with_geometry(
+    executor: Executor<'_>,
+    scene: &Scene,
+    camera: &Camera,
+    resolution: Resolution,
+    sampling: Sampling,
+) -> TracedMap {
+    let (rendered, geometry) = render_with_geometry(executor, scene, camera, resolution, sampling);
+    TracedMap::new(tone(&rendered.framebuffer, scene), rendered.cost).with_geometry(geometry)
 }

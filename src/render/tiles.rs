@@ -62,6 +62,12 @@ impl Tiles {
         [tile % self.tiles_per_row() * SIDE, tile / self.tiles_per_row() * SIDE]
     }
 
+    /// Returns the column and row of a pixel of a tile in the picture.
+    pub(super) fn position(&self, tile: usize, pixel: u8) -> [u32; 2] {
+        let ([left, top], [x, y]) = (self.corner(tile), coordinates(pixel.into()));
+        [left + x, top + y]
+    }
+
     /// Splits a picture's pixels by tiles: each tile gets its parts of the rows that it covers.
     // So several threads can write to the picture at the same time, without a copy and without unsafe code.
     pub(super) fn split<'p, T>(&self, pixels: &'p mut [T]) -> Vec<Vec<&'p mut [T]>> {

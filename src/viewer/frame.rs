@@ -3,9 +3,10 @@
 use super::view_layout::ViewLayout;
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
-use crate::render::{Cost, Sampling};
+use crate::render::{Cost, Geometry, Sampling};
 use crate::scene::Scene;
 use crate::tone::Picture;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Everything that determines what a frame shows. Equal shots have equal pictures.
@@ -18,6 +19,8 @@ pub(crate) struct Shot {
     pub(crate) camera: Camera,
     pub(crate) resolution: Resolution,
     pub(crate) layout: ViewLayout,
+    /// Whether the cells show geometry, which is traced besides the picture.
+    pub(crate) geometry: bool,
 }
 
 impl Shot {
@@ -48,6 +51,8 @@ pub(crate) struct Frame {
     pub(crate) scene: Scene,
     pub(crate) shot: Shot,
     pub(crate) picture: Picture,
+    /// The geometry that the cells show; `None` for other glyphs and for two views side by side.
+    pub(crate) geometry: Option<Arc<Geometry>>,
     /// The two maps that `picture` is combined from in a wipe, so that moving the line traces
     /// nothing.
     // Empty for one map and for two side by side, to save memory.

@@ -72,7 +72,7 @@ impl Viewer {
     /// Returns the large picture of the wanted view, and the position of the line between two maps.
     pub(crate) fn large_picture(&self) -> Option<(Job, f32)> {
         let (scene, shot) = self.scene().zip(self.wanted_shot())?;
-        let shot = Shot { resolution: large(shot.resolution), ..shot };
+        let shot = Shot { resolution: large(shot.resolution), geometry: false, ..shot };
         Some((Job { scene, shot, sampling: Sampling::BEST, refines: false }, self.screen.wipe()))
     }
 

@@ -299,7 +299,7 @@ impl Screen {
         let content = self.content.quietly();
         let grid = &mut self.grid;
         match &content.frame {
-            Some(frame) => self.painter.paint(&frame.picture, grid),
+            Some(frame) => self.painter.paint(&frame.picture, frame.geometry.as_deref(), grid),
             None => grid.clear(size),
         }
         let area = theme::area(grid.size());

@@ -4,11 +4,11 @@ use crate::camera::Camera;
 use crate::cell::{self, CellMode, Painter};
 use crate::framebuffer::{Resolution, ResolutionError};
 use crate::grid::Size;
-use crate::maps::{self, Map};
+use crate::maps::{Map, TracedMap};
 use crate::progress::{Cancellation, Cancelled};
 use crate::render::{Executor, ProgressiveRender, Sampling};
 use crate::scene::Scene;
-use crate::tone::{Picture, tone};
+use crate::tone::tone;
 use ratatui_core::buffer::Buffer;
 use std::num::NonZeroU32;
 
@@ -78,9 +78,9 @@ pub(super) struct Tracer {
 impl Tracer {
     /// Traces a shot.
     pub(super) fn trace(&mut self, shot: Shot) -> RenderedShot {
-        let Options { map, sampling, .. } = shot.options;
-        let picture = maps::picture(map, &shot.scene, &shot.camera, shot.resolution, sampling);
-        self.rendered(shot, &picture, true)
+        // Only a token cancels, and this one is new.
+        let seen = traced(&shot, shot.options.sampling, &Cancellation::default()).expect("not cancelled");
+        self.rendered(shot, &seen, true)
     }
 
     /// Traces a shot and passes to `deliver` one picture, or two of which the first has one sample
@@ -96,26 +96,39 @@ impl Tracer {
         token: &Cancellation,
         mut deliver: impl FnMut(RenderedShot),
     ) -> Result<(), Cancelled> {
-        let Shot { scene, camera, options, .. } = &shot;
         let Some(samples) = shot.refinement_samples() else {
-            let Options { map, sampling, .. } = *options;
-            let seen = maps::trace(map, Executor::Cancellable(token), scene, camera, shot.resolution, sampling)?;
-            deliver(self.rendered(shot, &seen.picture, true));
+            let seen = traced(&shot, shot.options.sampling, token)?;
+            deliver(self.rendered(shot, &seen, true));
             return Ok(());
         };
+        if shot.options.cells.shows_geometry() {
+            for (sampling, is_final) in [(Sampling::Each(NonZeroU32::MIN), false), (shot.options.sampling, true)] {
+                let seen = traced(&shot, sampling, token)?;
+                deliver(self.rendered(shot.clone(), &seen, is_final));
+            }
+            return Ok(());
+        }
+        let Shot { scene, camera, .. } = &shot;
         let mut picture = ProgressiveRender::new(camera, shot.resolution);
         for (samples, is_final) in [(NonZeroU32::MIN, false), (samples, true)] {
-            picture.refine_or_cancel(token, scene, samples)?;
-            deliver(self.rendered(shot.clone(), &tone(&picture.framebuffer(), scene), is_final));
+            let cost = picture.refine_or_cancel(token, scene, samples)?;
+            let seen = TracedMap::new(tone(&picture.framebuffer(), scene), cost);
+            deliver(self.rendered(shot.clone(), &seen, is_final));
         }
         Ok(())
     }
 
-    fn rendered(&mut self, shot: Shot, picture: &Picture, is_final: bool) -> RenderedShot {
+    fn rendered(&mut self, shot: Shot, seen: &TracedMap, is_final: bool) -> RenderedShot {
         let mode = shot.options.cells;
         // A painter's cache is valid for its mode only.
         let painter = self.painter.take().filter(|painter| painter.mode() == mode);
-        let grid = self.painter.insert(painter.unwrap_or_else(|| Painter::new(mode))).grid(picture);
+        let grid = self.painter.insert(painter.unwrap_or_else(|| Painter::new(mode))).grid_of(seen);
         RenderedShot { shot, cells: Buffer::from(&grid), is_final }
     }
+}
+
+/// Traces what a shot shows.
+fn traced(shot: &Shot, sampling: Sampling, token: &Cancellation) -> Result<TracedMap, Cancelled> {
+    let Shot { scene, camera, resolution, options, .. } = shot;
+    options.cells.trace(options.map, Executor::Cancellable(token), scene, camera, *resolution, sampling)
 }

@@ -12,7 +12,7 @@ fn three_spheres() -> Scene {
 }
 
 fn shot(camera: Camera, resolution: Resolution) -> Shot {
-    Shot { scene: 1, lights: 0, camera, resolution, layout: ViewLayout::default() }
+    Shot { scene: 1, lights: 0, camera, resolution, layout: ViewLayout::default(), geometry: false }
 }
 
 fn frame(refines: bool) -> Frame {
@@ -22,6 +22,7 @@ fn frame(refines: bool) -> Frame {
         scene: three_spheres(),
         shot: shot(Camera::new(pose, rectangle).expect("a pose"), Resolution::square(0, 0)),
         picture: Picture { width: 0, height: 0, pixels: Vec::new() },
+        geometry: None,
         parts: Vec::new(),
         sampling: Sampling::BEST,
         legends: Vec::new(),

@@ -26,8 +26,16 @@ fn the_order_is_the_links() {
     let light = crate::render::render(&scene, scene.camera(), resolution, NonZeroU32::MIN);
     let frame = || Frame {
         scene: scene.clone(),
-        shot: Shot { scene: 0, lights: 0, camera: *scene.camera(), resolution, layout: ViewLayout::default() },
+        shot: Shot {
+            scene: 0,
+            lights: 0,
+            camera: *scene.camera(),
+            resolution,
+            layout: ViewLayout::default(),
+            geometry: false,
+        },
         picture: tone(&light, &scene),
+        geometry: None,
         parts: Vec::new(),
         legends: Vec::new(),
         cost: Cost::default(),

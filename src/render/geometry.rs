@@ -1,0 +1,311 @@
+//! The geometry of a picture: the surface that each eye ray meets, for glyphs with outlines.
+//!
+//! A cell has two by four rays, those of its light, and four by eight more where surfaces meet: outlines then have the
+//! precision of an eighth of a cell, for one and a half times the rays.
+
+use super::sampling::SampleBatches;
+use super::steps::{Buffers, RenderJob, Stage};
+use super::tiles::{PIXELS, Tiles};
+use super::{Cost, Executor, Rendered, Sampling, render_partial};
+use crate::camera::Camera;
+use crate::color::LinearRgb;
+use crate::framebuffer::{Framebuffer, Resolution};
+use crate::lanes::LANES;
+use crate::scene::Scene;
+use crate::shade;
+use glam::Vec3;
+use std::num::NonZeroU32;
+
+/// The pixels of a cell, across and down.
+const CELL: [usize; 2] = [2, 4];
+/// The fine samples of a cell, across and down.
+const FINE: [usize; 2] = [2 * CELL[0], 2 * CELL[1]];
+
+/// The surface that an eye ray meets.
+// Twelve bytes: with a normal of three floats, a frame of 200x60 cells would move twice the memory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Facet {
+    /// The depth of the hit, or infinity.
+    pub depth: f32,
+    /// The object's index, plus 1; 0 without a hit.
+    pub object: u32,
+    /// The shading normal, in units of 1/127.
+    normal: [i8; 3],
+    /// The extent of the object.
+    pub extent: Extent,
+}
+
+/// The extent of the object that an eye ray meets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Extent {
+    /// No object: the background.
+    Nothing,
+    /// A bounded object.
+    Bounded,
+    /// A plane that is rather level: a floor or a ceiling.
+    Level,
+    /// A plane that is rather upright: a wall.
+    Upright,
+}
+
+impl Facet {
+    /// The background.
+    pub(crate) const NOTHING: Self = Self { depth: f32::INFINITY, object: 0, normal: [0; 3], extent: Extent::Nothing };
+
+    /// Returns the facet of a hit at `depth` on the object with this index.
+    fn of_hit(scene: &Scene, object: u32, normal: Vec3, depth: f32) -> Self {
+        let extent = match scene.objects()[object as usize].shape.bounds() {
+            Some(_) => Extent::Bounded,
+            None if normal.y.abs() > 0.6 => Extent::Level,
+            None => Extent::Upright,
+        };
+        let normal = normal.to_array().map(|coordinate| (coordinate * 127.0) as i8);
+        Self { depth, object: object + 1, normal, extent }
+    }
+
+    /// Returns whether an edge separates this facet from a neighbouring one.
+    fn may_border(&self, other: &Self) -> bool {
+        self.object != other.object || self.extent == Extent::Bounded && self.cosine(other) < CREASE_COSINE
+    }
+
+    /// Returns the cosine of the angle between the normals of two facets, to two digits.
+    pub(crate) fn cosine(&self, other: &Self) -> f32 {
+        let products = self.normal.iter().zip(other.normal).map(|(&a, b)| i32::from(a) * i32::from(b));
+        products.sum::<i32>() as f32 / (127.0 * 127.0)
+    }
+}
+
+/// The facets of a picture with two by four pixels per cell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Geometry {
+    /// The picture's width in pixels.
+    width: usize,
+    /// The facet of each pixel's first ray.
+    facets: Vec<Facet>,
+    /// The constant part of the least jump of the depth at a crease.
+    least_jump: f32,
+    /// For each cell, the index in `fine`, or [`NOT_FINE`].
+    fine_indices: Vec<u32>,
+    /// The facets of cells with four by eight more rays, row by row.
+    fine: Vec<[Facet; FINE[0] * FINE[1]]>,
+}
+
+/// The index of cells without more rays.
+const NOT_FINE: u32 = u32::MAX;
+
+impl Geometry {
+    /// Returns the geometry of a picture of a single surface.
+    pub(crate) fn of_one_surface(width: u32, height: u32) -> Self {
+        let facet = Facet { depth: 1.0, object: 1, extent: Extent::Bounded, ..Facet::NOTHING };
+        let facets = vec![facet; width as usize * height as usize];
+        Self::new(Resolution::square(width, height), facets, 0.0)
+    }
+
+    fn new(resolution: Resolution, facets: Vec<Facet>, least_jump: f32) -> Self {
+        let mut geometry =
+            Self { width: resolution.width() as usize, facets, least_jump, fine_indices: Vec::new(), fine: Vec::new() };
+        geometry.fine_indices = vec![NOT_FINE; geometry.columns() * geometry.rows()];
+        geometry
+    }
+
+    /// Returns the number of cells in a row.
+    pub(crate) fn columns(&self) -> usize {
+        self.width.div_ceil(CELL[0])
+    }
+
+    /// Returns the number of rows of cells.
+    pub(crate) fn rows(&self) -> usize {
+        self.height().div_ceil(CELL[1])
+    }
+
+    fn height(&self) -> usize {
+        self.facets.len() / self.width.max(1)
+    }
+
+    /// Returns the facet of a pixel; beyond the picture's edge, of the last one.
+    fn pixel(&self, x: usize, y: usize) -> &Facet {
+        &self.facets[y.min(self.height() - 1) * self.width + x.min(self.width - 1)]
+    }
+
+    /// Returns whether surfaces meet in or beside a cell, so that it has more rays.
+    pub(crate) fn has_edge(&self, column: usize, row: usize) -> bool {
+        self.fine_indices[row * self.columns() + column] != NOT_FINE
+    }
+
+    /// Returns the facet at a position in quarters of a cell's width and eighths of its height.
+    pub(crate) fn at(&self, x: usize, y: usize) -> &Facet {
+        let index = self.fine_indices[y / FINE[1] * self.columns() + x / FINE[0]];
+        match self.fine.get(index as usize) {
+            Some(facets) => &facets[y % FINE[1] * FINE[0] + x % FINE[0]],
+            None => self.pixel(x / 2, y / 2),
+        }
+    }
+
+    /// Returns whether the depth jumps at the middle one of three facets in a row.
+    pub(crate) fn jumps(&self, [before, middle, after]: [&Facet; 3]) -> bool {
+        let bend = before.depth - 2.0 * middle.depth + after.depth;
+        bend.abs() > 0.03 * middle.depth + self.least_jump
+    }
+
+    /// Returns the mask of cells that an edge may cross.
+    fn crossed_cells(&self) -> Vec<bool> {
+        let mut crossed = vec![false; self.fine_indices.len()];
+        let (width, height, columns) = (self.width, self.height(), self.columns());
+        let mut mark = |x: usize, y: usize| crossed[y / CELL[1] * columns + x / CELL[0]] = true;
+        for y in 0..height {
+            for x in 0..width {
+                let facet = self.pixel(x, y);
+                for (right, down) in [(1, 0), (0, 1)] {
+                    if x + right >= width || y + down >= height {
+                        continue;
+                    }
+                    let next = self.pixel(x + right, y + down);
+                    let bends = || {
+                        facet.extent == Extent::Bounded
+                            && x >= right
+                            && y >= down
+                            && self.jumps([self.pixel(x - right, y - down), facet, next])
+                    };
+                    if facet.may_border(next) || bends() {
+                        mark(x, y);
+                        mark(x + right, y + down);
+                    }
+                }
+            }
+        }
+        crossed
+    }
+}
+
+/// The cosine of the least angle between the normals at a crease, 40 degrees.
+pub(crate) const CREASE_COSINE: f32 = 0.766;
+
+/// Renders a picture with two by four pixels per cell, and its geometry.
+///
+/// If `executor` is cancelled, both are incomplete.
+pub(crate) fn render_with_geometry(
+    executor: Executor<'_>,
+    scene: &Scene,
+    camera: &Camera,
+    resolution: Resolution,
+    sampling: Sampling,
+) -> (Rendered, Geometry) {
+    let scale = if sampling == Sampling::Coarse { 2 } else { 1 };
+    if let Sampling::Coarse | Sampling::Each(NonZeroU32::MIN) | Sampling::UpTo(NonZeroU32::MIN) = sampling {
+        // One ray serves for both light and geometry.
+        let tiles = Tiles::new(camera, resolution, scale);
+        let (pixels, mut cost) = trace_facets(executor, scene, &tiles, Stage::Reflected);
+        let mut framebuffer = Framebuffer::new(resolution);
+        framebuffer.pixels_mut().iter_mut().zip(&pixels).for_each(|(light, &(traced, _))| *light = traced);
+        let (geometry, more) = with_fine_facets(executor, scene, camera, &tiles, pixels);
+        cost += more;
+        return (Rendered { framebuffer, cost }, geometry);
+    }
+    let mut rendered = render_partial(executor, scene, camera, resolution, sampling);
+    let (geometry, cost) = trace_geometry(executor, scene, camera, resolution, sampling);
+    rendered.cost += cost;
+    (rendered, geometry)
+}
+
+/// Traces the geometry of a picture with two by four pixels per cell.
+///
+/// If `executor` is cancelled, it is incomplete.
+pub(crate) fn trace_geometry(
+    executor: Executor<'_>,
+    scene: &Scene,
+    camera: &Camera,
+    resolution: Resolution,
+    sampling: Sampling,
+) -> (Geometry, Cost) {
+    let tiles = Tiles::new(camera, resolution, if sampling == Sampling::Coarse { 2 } else { 1 });
+    let (pixels, mut cost) = trace_facets(executor, scene, &tiles, Stage::Points);
+    let (geometry, more) = with_fine_facets(executor, scene, camera, &tiles, pixels);
+    cost += more;
+    (geometry, cost)
+}
+
+/// Traces the first ray of each pixel: its light, if `last_stage` includes that, and its facet.
+fn trace_facets(
+    executor: Executor<'_>,
+    scene: &Scene,
+    tiles: &Tiles,
+    last_stage: Stage,
+) -> (Vec<(LinearRgb, Facet)>, Cost) {
+    let mut pixels = vec![(LinearRgb::BLACK, Facet::NOTHING); tiles.resolution.pixel_count()];
+    let batches = SampleBatches::of(0..1);
+    let job = RenderJob::new(scene, tiles, last_stage);
+    let cost = executor.trace(&job, tiles.split(&mut pixels), |tile, mut part| {
+        tile.trace(&batches, |buffers, _, _| {
+            for (ray, &pixel) in buffers.pixels.iter().enumerate() {
+                // Added to zero as in `uniform`, so that the light has the same bits.
+                let light = buffers
+                    .lights
+                    .get(ray / LANES)
+                    .map_or(LinearRgb::BLACK, |lights| LinearRgb::BLACK + shade::lane_light(lights, ray % LANES));
+                tiles.write(pixel, (light, facet(scene, buffers, ray)), &mut part);
+            }
+        });
+    });
+    (pixels, cost)
+}
+
+/// Returns the facet of a ray of the last batch.
+fn facet(scene: &Scene, Buffers { points, hits, .. }: &Buffers, ray: usize) -> Facet {
+    let (group, lane) = (ray / LANES, ray % LANES);
+    points[group]
+        .object_and_normal(lane)
+        .map_or(Facet::NOTHING, |(object, normal)| Facet::of_hit(scene, object, normal, hits[group].t.0[lane]))
+}
+
+/// Returns the geometry of traced pixels, with more rays in cells that an edge may cross.
+fn with_fine_facets(
+    executor: Executor<'_>,
+    scene: &Scene,
+    camera: &Camera,
+    coarse: &Tiles,
+    pixels: Vec<(LinearRgb, Facet)>,
+) -> (Geometry, Cost) {
+    let resolution = coarse.resolution;
+    let facets = pixels.into_iter().map(|(_, facet)| facet).collect();
+    let mut geometry = Geometry::new(resolution, facets, 0.012 * camera.pose().eye.distance(camera.pose().target));
+    // Coarse pictures are those of machines that are too slow for more rays.
+    if coarse.scale > 1 {
+        return (geometry, Cost::default());
+    }
+    let crossed = geometry.crossed_cells();
+    let (columns, fine_size) = (geometry.columns(), [2 * resolution.width(), 2 * resolution.height()]);
+    let fine =
+        Resolution::new(fine_size[0], fine_size[1]).and_then(|size| size.with_pixel_aspect(resolution.pixel_aspect()));
+    // A picture whose fine samples would be too large has none.
+    let Ok(fine) = fine else { return (geometry, Cost::default()) };
+    let tiles = Tiles::new(camera, fine, 1);
+    let mut traced = vec![Vec::new(); tiles.count()];
+    let batches = SampleBatches::of(0..1);
+    let job = RenderJob::new(scene, &tiles, Stage::Points);
+    let cost = executor.trace(&job, traced.iter_mut().collect(), |tile, facets: &mut Vec<Facet>| {
+        let number = tile.number;
+        tile.buffers.active.retain(|&pixel| {
+            let [x, y] = tiles.position(number, pixel).map(|at| at as usize);
+            crossed[y / FINE[1] * columns + x / FINE[0]]
+        });
+        if tile.buffers.active.is_empty() {
+            return;
+        }
+        facets.resize(PIXELS, Facet::NOTHING);
+        tile.trace(&batches, |buffers, _, _| {
+            for (ray, &pixel) in buffers.pixels.iter().enumerate() {
+                facets[usize::from(pixel)] = facet(scene, buffers, ray);
+            }
+        });
+    });
+    for cell in (0..crossed.len()).filter(|&cell| crossed[cell]) {
+        let (left, top) = (cell % columns * FINE[0], cell / columns * FINE[1]);
+        geometry.fine_indices[cell] = geometry.fine.len() as u32;
+        geometry.fine.push(std::array::from_fn(|at| {
+            let (x, y) = ((left + at % FINE[0]) as u32, (top + at / FINE[0]) as u32);
+            let (tile, pixel) = tiles.tile_and_index([x.min(fine_size[0] - 1), y.min(fine_size[1] - 1)]);
+            traced[tile].get(pixel).copied().unwrap_or(Facet::NOTHING)
+        }));
+    }
+    (geometry, cost)
+}
