@@ -26,6 +26,8 @@ mod dots;
 mod glyph_kind;
 mod half;
 mod ink_converter;
+mod lit;
+mod mixes;
 mod pair;
 mod palette;
 mod ramp;

@@ -47,7 +47,7 @@ impl LinearRgb {
     /// Returns the light of an 8-bit sRGB colour, each channel in 0..=1.
     #[doc(hidden)]
     pub fn from_srgb8(color: Srgb8) -> Self {
-        // A table saves three powers per pixel of a texture or a dithered picture.
+        // A table saves three powers per pixel of a texture.
         let table = &TRANSFER.linear_from_srgb8;
         Self::new(table[usize::from(color.r)], table[usize::from(color.g)], table[usize::from(color.b)])
     }
@@ -192,9 +192,14 @@ pub struct Oklab {
 }
 
 impl Oklab {
-    /// Converts an sRGB colour to OKLab, with the matrices of the source.
+    /// Converts an sRGB colour to OKLab.
     pub fn from_srgb8(color: Srgb8) -> Self {
-        let LinearRgb { r, g, b } = LinearRgb::from_srgb8(color);
+        Self::from_linear(LinearRgb::from_srgb8(color))
+    }
+
+    /// Converts light to OKLab, with the matrices of the source.
+    pub(crate) fn from_linear(light: LinearRgb) -> Self {
+        let LinearRgb { r, g, b } = light;
         // `libm` instead of the platform's `cbrt`, so that the encoder's choices, and so its bytes, are the same on
         // every machine.
         let l = libm::cbrtf(0.412_221_46 * r + 0.536_332_55 * g + 0.051_445_995 * b);

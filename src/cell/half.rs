@@ -3,8 +3,8 @@
 use super::Glyphs;
 use super::glyph_kind::{Fill, GlyphKind};
 use super::ink_converter::InkConverter;
+use super::lit::is_lit;
 use super::pair;
-use super::palette::Palette;
 use crate::grid::{Cell, Grid, Ink};
 use crate::tone::Picture;
 
@@ -24,8 +24,8 @@ pub(super) const KIND: GlyphKind = GlyphKind {
 // is visible. At even heights the encoder mixes them to save bytes. If both halves are equal the glyph is a space,
 // because full blocks show hairlines in some fonts.
 fn fill(grid: &mut Grid, picture: &Picture, inks: &mut InkConverter) {
-    if let InkConverter::Monochrome(palette) = inks {
-        return fill_without_colors(grid, picture, palette);
+    if matches!(inks, InkConverter::Monochrome) {
+        return fill_without_colors(grid, picture);
     }
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
@@ -45,13 +45,13 @@ fn fill(grid: &mut Grid, picture: &Picture, inks: &mut InkConverter) {
 
 /// Sets each cell to the space or block whose halves are filled where the dithered pixels are
 /// light.
-fn fill_without_colors(grid: &mut Grid, picture: &Picture, palette: &mut Palette) {
+fn fill_without_colors(grid: &mut Grid, picture: &Picture) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
             let (upper, lower) = pair::pixels(picture, column, row);
             let (x, y) = (usize::from(column), 2 * usize::from(row));
-            let upper = palette.index(upper, x, y) > 0;
-            let lower = lower.is_some_and(|lower| palette.index(lower, x, y + 1) > 0);
+            let upper = is_lit(upper, x, y);
+            let lower = lower.is_some_and(|lower| is_lit(lower, x, y + 1));
             let glyph = match (upper, lower) {
                 (false, false) => ' ',
                 (false, true) => '▄',

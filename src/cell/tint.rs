@@ -26,7 +26,7 @@ pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u3
             cell.bg = inks.background();
             // Blanks keep their colour, because it is invisible and each change of colour takes bytes.
             if cell.glyph != ' ' {
-                cell.fg = inks.ink_at(color, column.into(), row.into());
+                cell.fg = inks.flat_ink(color);
             }
         }
     }

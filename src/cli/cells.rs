@@ -30,10 +30,10 @@ enum ColorArg {
     Never,
     /// 24-bit colours
     Truecolor,
-    /// 256 colours, dithered
+    /// 256 colours, mixed in pairs
     #[value(name = "256")]
     Indexed256,
-    /// 16 colours, dithered
+    /// 16 colours, mixed in pairs
     #[value(name = "16")]
     Indexed16,
 }

@@ -84,21 +84,65 @@ fn oklab([r, g, b]: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// Returns the mean difference of two pictures in OKLab, times 100.
-///
-/// Their light is blurred by 1.5 pixels.
-fn difference(a: &Picture, b: &Picture) -> f64 {
-    let seen = |picture: &Picture| {
-        let bands = [|c: Srgb8| linear(c.r), |c: Srgb8| linear(c.g), |c: Srgb8| linear(c.b)];
-        bands.map(|band| Plane::of(picture, band).blurred(1.5).values)
+/// Differences of a picture in few colours from the picture itself, in OKLab.
+#[derive(Debug)]
+struct Figures {
+    /// The mean difference after a blur of 1.5 pixels, times 100.
+    error: f64,
+    /// The mean chroma of details that the picture does not have, times 100: confetti.
+    noise: f64,
+    /// The mean lightness of such details, times 100: dots.
+    grain: f64,
+    /// The share of pixels of a hue more than 60 degrees off, or of a hue where the picture is
+    /// grey.
+    wrong_hue: f64,
+    /// The share of the coloured pixels that keep less than a third of their chroma after the blur.
+    lost: f64,
+}
+
+/// Returns the colours of all pixels in OKLab, as they are and after a blur of their light.
+fn seen(picture: &Picture) -> [Vec<[f64; 3]>; 2] {
+    let bands = [|c: Srgb8| linear(c.r), |c: Srgb8| linear(c.g), |c: Srgb8| linear(c.b)];
+    let light = bands.map(|band| Plane::of(picture, band));
+    let blurred = light.clone().map(|plane| plane.blurred(1.5));
+    [light, blurred]
+        .map(|bands| (0..bands[0].values.len()).map(|at| oklab([0, 1, 2].map(|band| bands[band].values[at]))).collect())
+}
+
+/// Returns the mean detail in chroma and in lightness: the picture less its own blur, in OKLab.
+fn details(colors: &[[f64; 3]], width: usize) -> [f64; 2] {
+    let high = [0, 1, 2].map(|band| {
+        let plane = Plane { width, values: colors.iter().map(|color| color[band]).collect() };
+        let blurred = plane.blurred(1.5).values;
+        plane.values.iter().zip(blurred).map(|(value, blurred)| value - blurred).collect::<Vec<_>>()
+    });
+    let mean = |detail: &dyn Fn(usize) -> f64| 100.0 * (0..colors.len()).map(detail).sum::<f64>() / colors.len() as f64;
+    [mean(&|at| libm::hypot(high[1][at], high[2][at])), mean(&|at| high[0][at].abs())]
+}
+
+fn chroma(color: [f64; 3]) -> f64 {
+    libm::hypot(color[1], color[2])
+}
+
+fn figures(shown: &Picture, wanted: &Picture) -> Figures {
+    let width = wanted.width() as usize;
+    let ([near, far], [wanted_near, wanted_far]) = (seen(shown), seen(wanted));
+    let distance = |(a, b): (&[f64; 3], &[f64; 3])| a.iter().zip(b).map(|(a, b)| square(a - b)).sum::<f64>().sqrt();
+    let is_wrong = |(&a, &b): (&[f64; 3], &[f64; 3])| {
+        let turn = libm::atan2(a[1] * b[2] - a[2] * b[1], a[1] * b[1] + a[2] * b[2]).abs().to_degrees();
+        (turn > 60.0 && chroma(a) > 0.04 && chroma(b) > 0.02) || (chroma(a) > 0.06 && chroma(b) <= 0.02)
     };
-    let (a, b) = (seen(a), seen(b));
-    let pixels = a[0].len();
-    let distance = |at: usize| {
-        let [a, b] = [&a, &b].map(|bands| oklab([bands[0][at], bands[1][at], bands[2][at]]));
-        a.iter().zip(b).map(|(a, b)| square(a - b)).sum::<f64>().sqrt()
-    };
-    100.0 * (0..pixels).map(distance).sum::<f64>() / pixels as f64
+    let colored: Vec<_> = far.iter().zip(&wanted_far).filter(|(_, wanted)| chroma(**wanted) > 0.05).collect();
+    let lost = colored.iter().filter(|(shown, wanted)| chroma(**shown) < chroma(**wanted) / 3.0).count();
+    let ([noise, grain], [own_noise, own_grain]) = (details(&near, width), details(&wanted_near, width));
+    let pixels = near.len() as f64;
+    Figures {
+        error: 100.0 * far.iter().zip(&wanted_far).map(distance).sum::<f64>() / pixels,
+        noise: noise - own_noise,
+        grain: grain - own_grain,
+        wrong_hue: near.iter().zip(&wanted_near).filter(|&pair| is_wrong(pair)).count() as f64 / pixels,
+        lost: lost as f64 / colored.len() as f64,
+    }
 }
 
 /// Returns the colour that xterm shows for an index.
@@ -138,22 +182,28 @@ fn nearest(picture: &Picture, indices: std::ops::RangeInclusive<u8>) -> Picture 
     Picture::from_pixels(picture.width(), picture.height(), pixels).expect("all its pixels")
 }
 
+/// Checks all figures at once, because a grey picture has no noise either.
 #[test]
-fn few_colours_resemble_the_picture_at_a_distance() {
-    for (colors, indices, most, naive) in
-        [(Colors::Indexed256, 16..=255, 1.0, 2.0), (Colors::SIXTEEN, 0..=15, 3.1, 8.0)]
-    {
-        let pictures = SCENES.map(|scene| picture(scene, 60, 40));
-        let mean = |show: &dyn Fn(&Picture) -> Picture| {
-            pictures.iter().map(|picture| difference(&show(picture), picture)).sum::<f64>() / pictures.len() as f64
-        };
-        let mode = CellMode { glyphs: Glyphs::Half, colors };
-        let ours = mean(&|picture| pixels(&grid_from_picture(mode, picture)));
-        let nearest = mean(&|picture| nearest(picture, indices.clone()));
-        println!("{} colours: {ours:.2}, nearest {nearest:.2}", indices.len());
-        assert!(ours <= most, "{indices:?}: {ours}");
-        assert!(nearest >= naive, "the measure sees nothing: {nearest}");
+fn few_colours_are_calm_and_near_to_the_picture() {
+    let wanted = picture("three_spheres", 60, 40);
+    for (colors, indices, most) in [
+        (Colors::Indexed256, 16..=255, Figures { error: 2.5, noise: 0.6, grain: 0.5, wrong_hue: 0.0, lost: 0.0 }),
+        (Colors::SIXTEEN, 0..=15, Figures { error: 5.2, noise: 0.8, grain: 6.0, wrong_hue: 0.0, lost: 0.02 }),
+    ] {
+        let ours = figures(&pixels(&grid_from_picture(CellMode { glyphs: Glyphs::Half, colors }, &wanted)), &wanted);
+        println!("{} colours: {ours:?}", indices.len());
+        assert!(ours.error <= most.error && ours.noise <= most.noise && ours.grain <= most.grain, "{ours:?}");
+        assert!(ours.wrong_hue <= most.wrong_hue && ours.lost <= most.lost, "{ours:?}");
+        let nearest = figures(&nearest(&wanted, indices), &wanted);
+        assert!(nearest.wrong_hue > 0.01, "the measure sees nothing: {nearest:?}");
     }
+    let confetti = wanted.pixels().iter().enumerate().map(|(at, &pixel)| match at % 5 {
+        0 => Srgb8::new(pixel.b, pixel.r, pixel.g),
+        _ => pixel,
+    });
+    let confetti = Picture::from_pixels(60, 40, confetti.collect()).expect("all its pixels");
+    let seen = figures(&confetti, &wanted);
+    assert!(seen.noise > 1.0 && seen.wrong_hue > 0.02, "the measure sees nothing: {seen:?}");
 }
 
 /// Returns the coverage of each pixel of the characters, drawn by a terminal in cells of 10x20
