@@ -32,6 +32,7 @@ mod pair;
 mod palette;
 mod ramp;
 mod shape;
+mod spaces;
 mod tint;
 
 pub use colors::Colors;
@@ -67,6 +68,8 @@ crate::table::table! {
         Ascii = ascii::KIND;
         /// One of ten ASCII characters, by the mean lightness of a cell's two pixels.
         Ramp = ramp::KIND;
+        /// A space on the mean colour of a cell's two pixels.
+        Spaces = spaces::KIND;
         /// A dot for each light pixel. This kind exists in tests only.
         #[cfg(all(test, unit_tests))]
         Dots = dots::KIND;

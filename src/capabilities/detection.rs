@@ -64,10 +64,10 @@ pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {
     least.filter(|least| least.value > found.value).unwrap_or(found)
 }
 
-/// Returns the glyphs to use: the user's choice, if there is one, else half blocks or letter
-/// shapes.
+/// Returns the glyphs to use: the user's choice, if there is one, else half blocks, spaces or
+/// letter shapes.
 ///
-/// The shapes are for locales that cannot encode half blocks, and for terminals without colours.
+/// Spaces are for locales that cannot encode half blocks, shapes for terminals without colours.
 pub fn glyphs(choice: GlyphChoice, colors: Detected<Colors>, clues: &Clues<'_>) -> Detected<Glyphs> {
     if let Some(value) = choice {
         return Detected { value, source: Source::User };
@@ -77,7 +77,7 @@ pub fn glyphs(choice: GlyphChoice, colors: Detected<Colors>, clues: &Clues<'_>) 
     }
     match locale(clues) {
         Some((name, locale)) => {
-            let value = if is_utf8(&locale) { Glyphs::Half } else { Glyphs::Shape };
+            let value = if is_utf8(&locale) { Glyphs::Half } else { Glyphs::Spaces };
             Detected { value, source: Source::Variable(name) }
         }
         // Without a locale, as in many containers and ssh sessions, UTF-8 is assumed, which all current terminals show.

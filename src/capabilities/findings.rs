@@ -224,13 +224,13 @@ fn with_replied_palette(mut found: Detected<Colors>, replies: &Replies) -> Detec
     found
 }
 
-/// Replaces half blocks by ASCII if the terminal shows them wider than one column, unless the user
+/// Replaces half blocks by spaces if the terminal shows them wider than one column, unless the user
 /// chose them.
 // In some East Asian locales blocks are two columns wide; a terminal without UTF-8 shows three characters for one.
 fn with_replied_width(glyphs: Detected<Glyphs>, replies: &Replies) -> Detected<Glyphs> {
     let is_broken = glyphs.value == Glyphs::Half && replies.block_width.is_some_and(|width| width != 1);
     if is_broken && glyphs.source != Source::User {
-        return Detected { value: Glyphs::Shape, source: Source::Reply };
+        return Detected { value: Glyphs::Spaces, source: Source::Reply };
     }
     glyphs
 }

@@ -24,7 +24,7 @@ pub(super) const KIND: GlyphKind = GlyphKind {
 pub const RAMP: &[u8; 10] = b" .:-=+*#%@";
 
 /// Fills each cell with the character of its pixels' mean luminance.
-fn fill(grid: &mut Grid, picture: &Picture) {
+pub(super) fn fill(grid: &mut Grid, picture: &Picture) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
             let (upper, lower) = pair::pixels(picture, column, row);

@@ -33,7 +33,7 @@ pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u3
 }
 
 /// Returns the mean of a cell's pixels, taken in linear light.
-fn cell_mean(picture: &Picture, (across, down): (u32, u32), column: u16, row: u16) -> Srgb8 {
+pub(super) fn cell_mean(picture: &Picture, (across, down): (u32, u32), column: u16, row: u16) -> Srgb8 {
     let (left, top) = (u32::from(column) * across, u32::from(row) * down);
     let (right, bottom) = ((left + across).min(picture.width), (top + down).min(picture.height));
     let mut light = LinearRgb::BLACK;

@@ -41,7 +41,7 @@ enum ColorArg {
 /// The value of `--color` and `--glyphs` that leaves the choice to the terminal or the file format.
 const AUTO: &str = "auto";
 const AUTO_HELP: &str =
-    "Half blocks; shape if there is no colour, the locale is not UTF-8, or a block is not one column wide";
+    "Half blocks; shape if there is no colour, spaces if the locale is not UTF-8 or a block is not one column wide";
 
 fn glyph_parser() -> impl TypedValueParser<Value = GlyphChoice> {
     let kinds = Glyphs::ALL.iter().map(|glyphs| PossibleValue::new(glyphs.name()).help(capitalized(glyphs.help())));

@@ -106,7 +106,7 @@ fn flags_without_effect_on_a_format_are_rejected() {
         folder.run(&format!("frame ball.ron -o ball.png {flags}")).fails_in_a_line(2, "a PNG consists of pixels");
     }
     folder.run("ball.ron --color 88").is_misused("auto, always, never, truecolor, 256, 16");
-    folder.run("frame ball.ron --glyphs octants").is_misused("auto, half, shape, ramp");
+    folder.run("frame ball.ron --glyphs octants").is_misused("auto, half, shape, ascii, ramp, spaces");
 }
 
 /// A cell of shapes has two by four pixels.

@@ -565,8 +565,8 @@ fn without_colour_no_sgr_is_sent() {
 }
 
 #[test]
-fn without_utf8_the_picture_is_coloured_characters() {
-    let mut session = assert_cells(&[("LC_ALL", "C")], &[], Glyphs::Shape, Colors::Truecolor);
+fn without_utf8_the_picture_is_coloured_spaces() {
+    let mut session = assert_cells(&[("LC_ALL", "C")], &[], Glyphs::Spaces, Colors::Truecolor);
     assert!(session.seen().bytes().is_ascii());
     assert!(has_sgr(session.seen().bytes()));
     leave(&mut session);

@@ -233,7 +233,7 @@ fn forged_replies_change_nothing() {
 #[test]
 fn blocks_that_are_not_one_column_wide_are_not_used() {
     for (answer, glyphs) in
-        [(&b"\x1b[1;2R"[..], Glyphs::Half), (b"\x1b[1;3R", Glyphs::Shape), (b"\x1b[1;4R", Glyphs::Shape)]
+        [(&b"\x1b[1;2R"[..], Glyphs::Half), (b"\x1b[1;3R", Glyphs::Spaces), (b"\x1b[1;4R", Glyphs::Spaces)]
     {
         let mut session = looking(live());
         session.send(answer);

@@ -143,7 +143,7 @@ fn pixels_of_shapes() {
 /// Returns all cell modes.
 fn modes() -> impl Iterator<Item = CellMode> {
     let colors = [Colors::None, Colors::SIXTEEN, Colors::Indexed256, Colors::Truecolor];
-    let glyphs = [Glyphs::Half, Glyphs::Shape, Glyphs::Ramp];
+    let glyphs = [Glyphs::Half, Glyphs::Shape, Glyphs::Ramp, Glyphs::Spaces];
     glyphs.into_iter().flat_map(move |glyphs| colors.map(|colors| CellMode { glyphs, colors }))
 }
 
@@ -235,6 +235,22 @@ fn few_colours_of_flat_pictures() {
     let mut turned = [Srgb8::new(0, 0, 0); 16];
     turned[3] = Srgb8::new(255, 255, 255);
     assert_eq!(indices(Colors::Indexed16(turned), 255), [3].into());
+}
+
+/// A cell of spaces has the colour of its two pixels' mean light.
+///
+/// Half of white light is the sRGB code 188.
+#[test]
+fn spaces_are_as_bright_as_half_blocks() {
+    let mode = CellMode { glyphs: Glyphs::Spaces, colors: Colors::Truecolor };
+    let grid = grid_from_picture(mode, &picture(&["bwr", "wwr", "rbw"]));
+    let space = |color| Cell::new(' ', Ink::Default, Ink::Rgb(color));
+    assert_eq!(*grid.cell(0, 0), space(Srgb8::new(188, 188, 188)));
+    assert_eq!(*grid.cell(1, 0), space(color('w')));
+    assert_eq!(*grid.cell(2, 0), space(color('r')));
+    assert_eq!(*grid.cell(0, 1), space(color('r')), "an odd row is the upper pixel alone");
+    let plain = CellMode { colors: Colors::None, ..mode };
+    assert_eq!(grid_from_picture(plain, &confetti(1)), grid_from_picture(CellMode::RAMP, &confetti(1)));
 }
 
 /// With only the terminal's own colours, dark on light, light pixels are blank.

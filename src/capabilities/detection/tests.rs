@@ -73,7 +73,7 @@ fn the_first_source_with_a_value_decides_the_colours() {
 
 #[test]
 fn half_blocks_need_colour_and_utf8() {
-    use Glyphs::{Half, Ramp, Shape};
+    use Glyphs::{Half, Ramp, Shape, Spaces};
     let utf8 = ("LANG", "en_US.UTF-8");
     let variable = Source::Variable;
     for (choice, colors, environment, value, source) in [
@@ -82,10 +82,10 @@ fn half_blocks_need_colour_and_utf8() {
         (None, NoColors, &[utf8], Shape, Source::Terminfo),
         (None, Truecolor, &[], Half, Source::Assumed),
         (None, Truecolor, &[("LANG", "C.utf8")], Half, variable("LANG")),
-        (None, Truecolor, &[("LANG", "C")], Shape, variable("LANG")),
-        (None, Truecolor, &[("LC_ALL", "POSIX"), utf8], Shape, variable("LC_ALL")),
+        (None, Truecolor, &[("LANG", "C")], Spaces, variable("LANG")),
+        (None, Truecolor, &[("LC_ALL", "POSIX"), utf8], Spaces, variable("LC_ALL")),
         (None, Truecolor, &[("LC_ALL", ""), utf8], Half, variable("LANG")),
-        (None, Truecolor, &[("LC_CTYPE", "de_DE.ISO-8859-1"), utf8], Shape, variable("LC_CTYPE")),
+        (None, Truecolor, &[("LC_CTYPE", "de_DE.ISO-8859-1"), utf8], Spaces, variable("LC_CTYPE")),
         (Some(Half), NoColors, &[("LC_ALL", "C")], Half, Source::User),
         (Some(Ramp), Truecolor, &[utf8], Ramp, Source::User),
     ] {

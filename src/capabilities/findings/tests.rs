@@ -81,8 +81,8 @@ fn replies_replace_assumptions() {
 fn broken_blocks_are_not_used_unless_the_user_says_so() {
     for (choice, width, expected) in [
         (None, Some(1), Detected { value: Glyphs::Half, source: Source::Variable("LANG") }),
-        (None, Some(2), Detected { value: Glyphs::Shape, source: Source::Reply }),
-        (None, Some(3), Detected { value: Glyphs::Shape, source: Source::Reply }),
+        (None, Some(2), Detected { value: Glyphs::Spaces, source: Source::Reply }),
+        (None, Some(3), Detected { value: Glyphs::Spaces, source: Source::Reply }),
         (None, None, Detected { value: Glyphs::Half, source: Source::Variable("LANG") }),
         (Some(Glyphs::Half), Some(2), Detected { value: Glyphs::Half, source: Source::User }),
         (Some(Glyphs::Ramp), Some(2), Detected { value: Glyphs::Ramp, source: Source::User }),
