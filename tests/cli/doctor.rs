@@ -56,7 +56,7 @@ fn doctor_reports_other_environments_and_flags() {
     assert!(said.contains("\nlocale                not set: UTF-8 assumed        assumed\n"), "{said}");
     let said = doctor("", &[("TERM", "some-terminal"), ("LC_ALL", "C")]).text();
     assert!(said.contains("\ncolours               256                           TERM\n"), "{said}");
-    assert!(said.contains("\ncells                 characters by shape           LC_ALL\n"), "{said}");
+    assert!(said.contains("\ncells                 coloured spaces               LC_ALL\n"), "{said}");
 }
 
 #[test]
