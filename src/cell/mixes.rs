@@ -21,7 +21,7 @@ pub(super) struct Mix {
 /// The mixes of a palette, in the order of their lightness.
 pub(super) struct Mixes {
     colors: Vec<Oklab>,
-    mixes: Vec<Mix>,
+    sorted: Vec<Mix>,
     rules: &'static Rules,
 }
 
@@ -70,7 +70,7 @@ const FEW: Rules = Rules {
     chroma_error: 1.5,
     lightness_contrast: 0.075,
     chroma_contrast: 0.4,
-    hue_cosine: 0.707_107, // of 45 degrees
+    hue_cosine: std::f32::consts::FRAC_1_SQRT_2, // of 45 degrees
     grey: 0.03,
     // The blacks and whites of themes are tinted. Without them a black would be shown by the theme's middle grey.
     neutral: 0.07,
@@ -111,12 +111,12 @@ impl Mixes {
             }
         }
         mixes.sort_by(|a, b| a.mean.l.total_cmp(&b.mean.l));
-        Self { colors, mixes, rules }
+        Self { colors, sorted: mixes, rules }
     }
 
     /// Returns the mix with this number.
     pub(super) fn get(&self, number: usize) -> Mix {
-        self.mixes[number]
+        self.sorted[number]
     }
 
     /// Returns the numbers of the mixes that are a single palette colour, and its position in the
@@ -124,7 +124,7 @@ impl Mixes {
     pub(super) fn flat(&self) -> impl Iterator<Item = (usize, usize)> {
         let flat =
             |(number, mix): (usize, &Mix)| (mix.lighter_quarters == 0).then(|| (number, usize::from(mix.colors[0])));
-        self.mixes.iter().enumerate().filter_map(flat)
+        self.sorted.iter().enumerate().filter_map(flat)
     }
 
     /// Returns the number of the mix with the least cost for a colour.
@@ -134,7 +134,7 @@ impl Mixes {
         let wanted = Oklab::from_srgb8(color);
         let mut best = (f32::INFINITY, 0);
         let mut improves = |number: usize| {
-            let mix = &self.mixes[number];
+            let mix = &self.sorted[number];
             let lightness = square(mix.mean.l - wanted.l);
             let mut cost = lightness + self.rules.chroma_error * chroma_difference(mix.mean, wanted) + mix.contrast;
             if cost < best.0 {
@@ -145,8 +145,8 @@ impl Mixes {
             }
             lightness < best.0
         };
-        let middle = self.mixes.partition_point(|mix| mix.mean.l < wanted.l);
-        let _ = (middle..self.mixes.len()).all(&mut improves);
+        let middle = self.sorted.partition_point(|mix| mix.mean.l < wanted.l);
+        let _ = (middle..self.sorted.len()).all(&mut improves);
         let _ = (0..middle).rev().all(&mut improves);
         best.1
     }
