@@ -139,7 +139,7 @@ impl fmt::Display for CameraError {
 impl std::error::Error for CameraError {}
 
 /// The default vertical field of view, in degrees.
-const DEFAULT_FOV_DEGREES: f64 = 45.0;
+pub(crate) const DEFAULT_FOV_DEGREES: f64 = 45.0;
 
 impl Camera {
     /// Returns the camera at `eye` that looks at `target`, with +y up.

@@ -25,7 +25,7 @@ pub use draft::Draft;
 pub use load::LoadError;
 pub use of_mesh::MeshOrigin;
 #[cfg(feature = "ron")]
-pub use written_view::with_view;
+pub use written_view::{count_views, with_view};
 
 use crate::accel::Accelerator;
 use crate::bounds::Bounds;

@@ -3,7 +3,7 @@
 use super::watching::Dependency;
 use crate::camera::Camera;
 use crate::output_file::OutputFile;
-use crate::scene::with_view;
+use crate::scene::{count_views, with_view};
 use crate::text::visible;
 use std::fs;
 use std::io::{self, Write};
@@ -53,7 +53,7 @@ impl Proposal {
     pub(super) fn carry_out(&self) -> String {
         match self {
             Self::View(view) => match view.write() {
-                Ok(()) => "view saved to the scene file".to_owned(),
+                Ok(number) => format!("saved as view {number} in {}", visible(&self.file_name())),
                 Err(error) => format!("scene file left unchanged: {error}"),
             },
             Self::Scene(path, text) => match write_new(path, text) {
@@ -85,12 +85,12 @@ impl ProposedView {
         Some(Dependency::in_current_state(file)).filter(|file| !file.is_other()).map(|file| Self { file, camera })
     }
 
-    /// Adds the view to the file, which is replaced atomically and keeps all other text.
+    /// Adds the view to the file, which is replaced atomically and keeps all other text. Returns the view's number.
     ///
     /// # Errors
     /// If the file cannot be written, is not a scene file, or has changed since the user was asked; it is then left as
     /// it was.
-    pub(super) fn write(&self) -> io::Result<()> {
+    pub(super) fn write(&self) -> io::Result<usize> {
         let path = self.file.path();
         let text = fs::read_to_string(path)?;
         let written = with_view(&text, &self.camera).ok_or_else(|| io::Error::other("this is not a scene file"))?;
@@ -101,7 +101,8 @@ impl ProposedView {
         if self.file.has_changed() || fs::read_to_string(path)? != text {
             return Err(io::Error::other("it has changed in the meantime"));
         }
-        file.finish()
+        file.finish()?;
+        Ok(count_views(&written).unwrap_or_default())
     }
 }
 

@@ -11,6 +11,7 @@ use super::settings::{SettingArgs, Settings, keys};
 use super::shipped::ShippedScene;
 use super::threads::on_threads;
 use clap::{ArgMatches, Args};
+use glam::Vec3;
 use std::io::{self, IsTerminal};
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -21,7 +22,7 @@ use termtrace::internals::mesh_file::is_mesh;
 use termtrace::internals::terminal::die_of;
 use termtrace::internals::{app, cell};
 use termtrace::live::{Ending, Options, Outcome, Signals, Source};
-use termtrace::{Colors, Painter, Sampling, Size, export};
+use termtrace::{Camera, Colors, Painter, Pose, Sampling, Size, export};
 
 /// The occasion on which the live view opens, which decides what it shows first.
 #[derive(Clone, Copy)]
@@ -187,10 +188,20 @@ pub(super) fn open_view(
         die_of(signal);
     }
     match moved {
-        // With the comma, the printed camera is a complete line of a scene file.
-        Some(camera) if heard && !args.quiet => write_stdout(format!("{},\n", camera.to_ron()).as_bytes()),
+        Some(camera) if heard && !args.quiet => write_stdout(last_view(&camera.rounded()).as_bytes()),
         _ => Ok(()),
     }
+}
+
+/// Returns the text about the camera on exit: a line of a scene file, and the same as flags.
+// The rest is comments of such a file, so that all three lines can be pasted.
+fn last_view(camera: &Camera) -> String {
+    let Pose { eye, target, up } = camera.pose();
+    let point = |Vec3 { x, y, z }: Vec3| format!("{x},{y},{z}");
+    let up = if up == Vec3::Y { String::new() } else { format!(" --up {}", point(up)) };
+    let degrees = (100.0 * camera.rectangle().vertical_fov().to_degrees()).round() / 100.0;
+    let flags = format!("--eye {} --target {}{up} --fov {degrees}", point(eye), point(target));
+    format!("// your last view, for a scene file or as flags:\n{},\n// {flags}\n", camera.to_ron())
 }
 
 /// Returns the scenes to show. Standard input is read here, before raw mode, because the user may

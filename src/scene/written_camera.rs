@@ -1,17 +1,18 @@
 //! Formatting of cameras as text for a scene file.
 
-use crate::camera::{Camera, ViewRectangle, radians};
-use glam::Vec3;
+use crate::camera::{Camera, DEFAULT_FOV_DEGREES, Pose, ViewRectangle, radians};
+use glam::{Vec2, Vec3};
 
 impl Camera {
     /// Returns the camera as text for a scene file: `camera: (eye: ..., target: ..., ...)`.
     ///
-    /// Each number has the fewest digits that are read back with the same bits.
+    /// Each number has the fewest digits that are read back with the same bits. Fields with their default values are
+    /// left out.
     ///
     /// ```
     /// use termtrace::Scene;
     ///
-    /// let line = "camera: (eye: (0, 1.5, 6), target: (0, 0.7, 0), up: (0, 1, 0), vertical_fov: 40)";
+    /// let line = "camera: (eye: (0, 1.5, 6), target: (0, 0.7, 0), vertical_fov: 40)";
     /// let scene = Scene::from_ron("x.ron", &format!("({line})"))?;
     /// assert_eq!(scene.camera().to_ron(), line);
     /// # Ok::<(), termtrace::SceneError>(())
@@ -23,18 +24,47 @@ impl Camera {
 
     /// Returns the value of the field `camera` as text: `(eye: ..., target: ..., ...)`.
     pub(super) fn value_to_ron(&self) -> String {
-        let pose = self.pose();
-        let [eye, target, up] = [pose.eye, pose.target, pose.up].map(vector_text);
+        let Pose { eye, target, up } = self.pose();
         let rectangle = self.rectangle();
-        let lens = lens_fields(&rectangle);
+        let mut fields = vec![format!("eye: {}", vector_text(eye)), format!("target: {}", vector_text(target))];
+        if up != Vec3::Y {
+            fields.push(format!("up: {}", vector_text(up)));
+        }
+        fields.extend(lens_fields(&rectangle));
         let shift = rectangle.shift();
-        let shift = if shift == glam::Vec2::ZERO {
-            String::new()
-        } else {
-            format!(", shift: ({}, {})", number_text(shift.x), number_text(shift.y))
-        };
-        format!("(eye: {eye}, target: {target}, up: {up}, {lens}{shift})")
+        if shift != Vec2::ZERO {
+            fields.push(format!("shift: ({}, {})", number_text(shift.x), number_text(shift.y)));
+        }
+        format!("({})", fields.join(", "))
     }
+
+    /// Returns the camera with its numbers rounded to what a picture resolves.
+    ///
+    /// In a picture of a thousand rows, eye and target move by less than a tenth of a pixel at the distance of the
+    /// target. A camera that cannot be rounded is returned as it is.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn rounded(&self) -> Self {
+        let (pose, rectangle) = (self.pose(), self.rectangle());
+        let pixel = 1e-3 * f64::from(rectangle.height()) * f64::from(pose.eye.distance(pose.target));
+        let digits = -libm::floor(libm::log10(0.1 * pixel));
+        let point = |v: Vec3| Vec3::from_array(v.to_array().map(|x| rounded(x.into(), digits) as f32));
+        let up = Vec3::from_array(pose.up.to_array().map(|x| rounded(x.into(), 4.0) as f32));
+        let camera = self.with_pose(Pose { eye: point(pose.eye), target: point(pose.target), up }).unwrap_or(*self);
+        // Of a rectangle with a width the author has chosen the shape.
+        let angle = rounded(approximate_degrees(&rectangle), 2.0);
+        match rectangle.with_vertical_fov(radians(angle)) {
+            Ok(rounded) if rectangle.width().is_none() => camera.with_rectangle(rounded),
+            _ => camera,
+        }
+    }
+}
+
+/// Returns `x` rounded to this number of decimals.
+fn rounded(x: f64, digits: f64) -> f64 {
+    // Adding 0 turns -0 into 0. A power of ten with a negative exponent would not be exact.
+    let scale = libm::pow(10.0, digits.clamp(0.0, 20.0));
+    (x * scale).round() / scale + 0.0
 }
 
 pub(super) fn vector_text(v: Vec3) -> String {
@@ -55,13 +85,13 @@ fn reads_as(text: &str, is_right: impl Fn(f64) -> bool) -> bool {
 }
 
 /// Returns the fields of the lens: an angle in degrees if it gives the same bits, otherwise the
-/// lecture's f, w and h with f = 1.
-fn lens_fields(rectangle: &ViewRectangle) -> String {
+/// lecture's f, w and h with f = 1. `None` for the default angle.
+fn lens_fields(rectangle: &ViewRectangle) -> Option<String> {
     let Some(width) = rectangle.width() else {
         let degrees = degrees(rectangle).unwrap_or_else(|| approximate_degrees(rectangle).to_string());
-        return format!("vertical_fov: {degrees}");
+        return (degrees != DEFAULT_FOV_DEGREES.to_string()).then(|| format!("vertical_fov: {degrees}"));
     };
-    match (degrees(rectangle), aspect_ratio(rectangle, width)) {
+    Some(match (degrees(rectangle), aspect_ratio(rectangle, width)) {
         // If the angle or the ratio needs more digits, the author probably gave f, w and h.
         (Some(degrees), Some(ratio)) if degrees.len() <= 6 && ratio.len() <= 9 => {
             format!("vertical_fov: {degrees}, aspect_ratio: {ratio}")
@@ -70,7 +100,7 @@ fn lens_fields(rectangle: &ViewRectangle) -> String {
             let (width, height) = (number_text(width), number_text(rectangle.height()));
             format!("focal_length: 1, width: {width}, height: {height}")
         }
-    }
+    })
 }
 
 fn approximate_degrees(rectangle: &ViewRectangle) -> f64 {

@@ -21,7 +21,7 @@ use crate::scene_text::{Body, Faults, Field, SyntaxNode, Value, parse};
 ///     // From in front.
 ///     camera: (eye: (0, 0, 5), target: (0, 0, 0)),
 ///     views: [
-///         (eye: (3, 1, 2), target: (0, 0, 0), up: (0, 1, 0), vertical_fov: 45),
+///         (eye: (3, 1, 2), target: (0, 0, 0)),
 ///     ],
 /// )
 /// ");
@@ -98,7 +98,7 @@ fn with_insertions(text: &str, additions: Vec<Addition>) -> String {
 }
 
 /// Returns the number of views in the text of a scene file, or `None` if it does not parse.
-fn count_views(text: &str) -> Option<usize> {
+pub fn count_views(text: &str) -> Option<usize> {
     let root = parse(text).ok()?;
     Some(SceneFile::read(&root, &Reporter::silent(), &mut Faults::default()).views.len())
 }

@@ -162,7 +162,7 @@ impl Viewer {
             Command::Export => self.ask_export(),
             Command::ExportLarge => self.ask_large_picture(),
             Command::Record => self.toggle_recording(),
-            Command::KeepView => self.requests.extend(self.eye.camera().map(Request::ProposeView)),
+            Command::KeepView => self.propose_view(),
             Command::Status => self.toggle_status(),
             Command::Help => self.open_help(),
             Command::Close => self.close_topmost(),

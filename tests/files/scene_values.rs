@@ -84,9 +84,8 @@ fn views_default_to_the_camera() {
 /// A view in the form that the live view writes is the camera.
 #[test]
 fn a_camera_can_be_written_as_a_view() {
-    let line = "camera: (eye: (0, 1.5, 6), target: (0, 0.7, 0), up: (0, 1, 0), vertical_fov: 40)";
-    let view =
-        "(eye: (1, 0, 5), target: (0, 1, 0), up: (0, 1, 0), focal_length: 1, width: 1.5, height: 1, shift: (0, 0.5))";
+    let line = "camera: (eye: (0, 1.5, 6), target: (0, 0.7, 0), vertical_fov: 40)";
+    let view = "(eye: (1, 0, 5), target: (0, 1, 0), focal_length: 1, width: 1.5, height: 1, shift: (0, 0.5))";
     let scene = Scene::from_ron("views.ron", &format!("({line}, views: [{view}])")).unwrap();
     assert_eq!(scene.views()[0].to_ron(), format!("camera: {view}"));
 }

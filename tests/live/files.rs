@@ -131,7 +131,7 @@ fn a_view_is_written_into_the_scene_after_a_yes() {
     session.send(b"Y");
     session.wait_for_text("  yes");
     session.send(b"y");
-    session.wait_for_text("view saved to the scene file");
+    session.wait_for_text("saved as view 1 in ball.ron");
     let scene = Scene::load(&folder.path().join("ball.ron")).expect("it is a scene");
     assert_eq!(scene.views().len(), 1);
     assert_eq!(scene.views()[0].pose().eye, glam::Vec3::new(2.0, 1.0, 4.0));

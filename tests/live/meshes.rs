@@ -148,7 +148,7 @@ fn a_click_sets_the_centre_of_the_orbit_and_a_double_click_frames_the_object() {
     let found = camera(&mut session).expect("it was moved");
     let target = found.pose().target;
     assert!((target.distance(Vec3::new(2.0, 1.0, 0.0)) - 0.5).abs() < 0.01, "{target} is on the sphere");
-    assert!(found.basis().w.abs_diff_eq(scene.camera().basis().w, 1e-4), "it looks the same way");
+    assert!(found.basis().w.abs_diff_eq(scene.camera().basis().w, 5e-4), "it looks the same way");
 
     let mut session = looking(path, &[]);
     session.send((click(at) + &click(at)).as_bytes());
@@ -184,7 +184,7 @@ fn a_scene_is_written_around_a_mesh_and_never_over_a_file() {
     assert_eq!(fs::read_to_string(folder.path().join("a.ron")).expect("it is there"), "mine");
     let (written, mesh) =
         (Scene::load(&folder.path().join("a-2.ron")).expect("a scene"), load(path.to_str().expect("UTF-8")));
-    assert_eq!(written.camera(), mesh.camera());
+    assert_eq!(*written.camera(), mesh.camera().rounded());
     assert_eq!((written.lights(), written.ambient()), (mesh.lights(), mesh.ambient()));
     assert_eq!(written.objects(), mesh.objects());
     assert_eq!(written.background(), mesh.background());

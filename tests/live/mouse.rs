@@ -52,7 +52,7 @@ fn the_left_button_orbits_a_mesh() {
     for (to, steps) in [([32, 6], -10.0), ([8, 6], 10.0)] {
         let pose = after(TEAPOT, &drag(LEFT, [20, 6], to)).pose();
         assert_near(pose.eye, start.target + turned(way, steps));
-        assert_eq!(pose.target, start.target);
+        assert_near(pose.target, start.target);
     }
     let pose = after(TEAPOT, &drag(LEFT, [20, 6], [20, 7])).pose();
     assert!(pose.eye.y > start.eye.y && (pose.eye.distance(start.target) - way.length()).abs() < 1e-3, "{pose:?}");
@@ -75,7 +75,7 @@ fn the_other_buttons_and_shift_shift_the_picture() {
             let start = *load(scene).camera();
             let found = after(scene, &drag(button, [10, 3], [14, 6]));
             let at = found.project(start.pose().target, ASPECT_RATIO).expect("it is in front of the eye");
-            assert!(at.abs_diff_eq(Vec2::new(0.6, 0.75), 1e-4), "{button} {at}");
+            assert!(at.abs_diff_eq(Vec2::new(0.6, 0.75), 5e-4), "{button} {at}");
             assert_near(found.basis().w, start.basis().w);
         }
     }
@@ -90,7 +90,7 @@ fn the_wheel_moves_towards_the_point_under_the_pointer() {
     let middle = start.project(Vec3::new(0.0, 1.0, 1.0), ASPECT_RATIO).expect("in front");
     assert!(middle.abs_diff_eq(Vec2::splat(0.5), 1e-6));
     assert!((nearer.eye.z - (1.0 + 4.0 * 0.88 * 0.88)).abs() < 0.02, "{nearer:?}");
-    assert!((nearer.eye.distance(nearer.target) - 5.0).abs() < 1e-4, "in flight the target goes with the eye");
+    assert!((nearer.eye.distance(nearer.target) - 5.0).abs() < 1e-3, "in flight the target goes with the eye");
     // The pointer is on the floor, lower left: its point stays where it is in the picture.
     let at = [8, 10];
     let place = Vec2::new(8.5 / 40.0, 10.5 / 12.0);

@@ -127,6 +127,9 @@ fn a_press_moves_the_eye_for_its_time_and_the_camera_is_printed() {
     // `i` ends the motion soon after its start.
     assert!(eye[2] < 5.0 - 0.9 * moved && eye[2] > 4.5, "{said}");
     assert_eq!([eye[0], eye[1]], [0.0, 1.0]);
+    // The same as flags, in a comment, so that all of it can be pasted into a scene file.
+    assert!(said.contains("// your last view, for a scene file or as flags:"), "{said}");
+    assert!(said.contains(&format!("// --eye 0,1,{} --target 0,1,", eye[2])) && said.contains(" --fov 45"), "{said}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Checking of cameras: converts degrees to radians, and reports poses without a basis u, v, w.
 
-use crate::camera::{Camera, CameraError, Pose, ViewRectangle, radians};
+use crate::camera::{Camera, CameraError, DEFAULT_FOV_DEGREES, Pose, ViewRectangle, radians};
 use crate::checks;
 use crate::scene_file::{WrittenCamera, WrittenLens};
 use crate::scene_text::Span;
@@ -100,7 +100,7 @@ impl Validator<'_> {
             WrittenLens::FieldOfView { vertical_fov, aspect_ratio } => {
                 let rectangle = match vertical_fov {
                     Some(degrees) => self.rectangle_from_degrees(degrees, ViewRectangle::from_vertical_fov),
-                    None => ViewRectangle::from_vertical_fov(radians(45.0)).ok(),
+                    None => ViewRectangle::from_vertical_fov(radians(DEFAULT_FOV_DEGREES)).ok(),
                 };
                 match aspect_ratio {
                     Some(ratio) => {

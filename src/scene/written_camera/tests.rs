@@ -11,7 +11,7 @@ fn read_back(camera: &Camera) -> Camera {
 #[test]
 fn a_written_camera_reads_back_equal() {
     for lens in [
-        "vertical_fov: 45",
+        "vertical_fov: 44",
         "vertical_fov: 12.5",
         "vertical_fov: 40, aspect_ratio: 1.5",
         "focal_length: 1, width: 1.8, height: 1.2",
@@ -21,6 +21,34 @@ fn a_written_camera_reads_back_equal() {
         let line = format!("camera: (eye: (0.1, -3e-20, 4), target: (1000000, 0, 0), up: (0, 0.3, 0), {lens})");
         let scene = Scene::from_ron("x", &format!("({line})")).unwrap();
         assert_eq!(scene.camera().to_ron(), line);
+    }
+}
+
+#[test]
+fn defaults_are_left_out() {
+    let line = "camera: (eye: (0, 1, 5), target: (0, 0, 0))";
+    let full = line.replace("0))", "0), up: (0, 1, 0), vertical_fov: 45)");
+    assert_eq!(Scene::from_ron("x", &format!("({full})")).unwrap().camera().to_ron(), line);
+}
+
+#[test]
+fn a_rounded_camera_has_few_digits_and_shows_the_same_picture() {
+    let text = "(camera: (eye: (-1.23456789, 1.5000001, 6), target: (-0.17689514, 0.8999982, 0.0024704933),
+        vertical_fov: 39.284))";
+    let camera = *Scene::from_ron("x", text).unwrap().camera();
+    let line = "camera: (eye: (-1.2346, 1.5, 6), target: (-0.1769, 0.9, 0.0025), vertical_fov: 39.28)";
+    assert_eq!(camera.rounded().to_ron(), line);
+    for digit in [1e-3, 1.0, 1e4, 1e7] {
+        let pose = camera.pose();
+        let far = camera.with_pose(Pose { eye: pose.eye * digit, target: pose.target * digit, ..pose }).unwrap();
+        let rounded = far.rounded();
+        assert_eq!(rounded.rounded(), rounded, "{digit}");
+        let points = [[0.0, 0.0], [0.3, 0.9], [1.0, 1.0]]
+            .map(|[x, y]| far.eye_rays(1.5).through(x, y).at(far.target_distance()));
+        for point in points {
+            let moved = [far, rounded].map(|camera| camera.project(point, 1.5).unwrap());
+            assert!(moved[0].distance(moved[1]) < 1.0 / 1000.0, "{digit}: {moved:?}");
+        }
     }
 }
 
@@ -43,6 +71,14 @@ fn rectangle() -> impl Strategy<Value = ViewRectangle> {
 }
 
 proptest! {
+    #[test]
+    fn every_camera_can_be_rounded(eye in point(), target in point(), rectangle in rectangle()) {
+        let pose = Pose { eye, target, up: Vec3::new(0.3, 1.0, -0.1) };
+        prop_assume!(Camera::new(pose, rectangle).is_ok());
+        let rounded = Camera::new(pose, rectangle).unwrap().rounded();
+        prop_assert_eq!(read_back(&rounded), rounded);
+    }
+
     #[test]
     fn every_camera_is_read_back_bit_for_bit(eye in point(), target in point(), rectangle in rectangle()) {
         let pose = Pose { eye, target, up: Vec3::new(0.3, 1.0, -0.1) };

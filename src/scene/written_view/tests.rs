@@ -1,7 +1,7 @@
 use super::*;
 use crate::scene::Scene;
 
-const VIEW: &str = "(eye: (3, 1, 2), target: (0, 0, 0), up: (0, 1, 0), vertical_fov: 45)";
+const VIEW: &str = "(eye: (3, 1, 2), target: (0, 0, 0))";
 
 /// Adds a view to the scene `text`, in which `C` stands for a camera, `V` for a view, and `+` for
 /// the added view.
