@@ -5,7 +5,9 @@ use super::light_marker::LightMarker;
 use super::lights::Lights;
 use crate::camera::Camera;
 use crate::control::{Command, Toward};
+use crate::hit::closest_hit;
 use crate::light::Light;
+use crate::ray::Ray;
 use glam::{Vec2, Vec3};
 
 /// Distance that a key press moves the light, as a share of the picture's height.
@@ -39,7 +41,12 @@ impl Viewer {
 
     /// Opens the marker of the held light, or closes it if none is held.
     pub(super) fn mark_light(&mut self) {
-        self.screen.set(self.held_light().map(LightMarker));
+        let scene = self.scenes.lights().map(Lights::scene);
+        let marker = self.held_light().zip(scene).map(|(light, scene)| {
+            let down = Ray { origin: light, direction: Vec3::NEG_Y };
+            LightMarker { light, below: closest_hit(scene, &down).map(|hit| down.at(hit.t)) }
+        });
+        self.screen.set(marker);
     }
 
     fn held_light(&self) -> Option<Vec3> {

@@ -2,15 +2,20 @@
 
 use super::frame::Frame;
 use super::layers::{Canvas, Layer, Level};
-use super::theme::Theme;
+use crate::camera::Camera;
 use crate::control::KeyMode;
-use glam::Vec3;
-use ratatui_core::buffer::Buffer;
+use glam::{Vec2, Vec3};
 use ratatui_core::layout::Rect;
 
-/// The marker of a light at this position in world space.
+/// The marker of a light.
 #[derive(PartialEq)]
-pub(super) struct LightMarker(pub(super) Vec3);
+pub(super) struct LightMarker {
+    /// The light's position in world space.
+    pub(super) light: Vec3,
+    /// The surface point straight below the light, if there is one.
+    // A position on the screen alone does not tell how far away the light is.
+    pub(super) below: Option<Vec3>,
+}
 
 impl Layer for LightMarker {
     fn level(&self) -> Level {
@@ -22,37 +27,126 @@ impl Layer for LightMarker {
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
-        let screen = canvas.screen();
-        if let Some(area) = canvas.frame.and_then(|frame| marker_area(self.0, frame, screen)) {
-            canvas.lay(area, draw);
+        let Some(frame) = canvas.frame else { return };
+        let (screen, camera) = (canvas.screen(), frame.camera());
+        let picture = PictureOnScreen::of(frame, screen);
+        let line = self.below.map_or_else(Vec::new, |below| picture.line(camera, self.light, below));
+        // The marks are ASCII, so that every terminal can show them. A small screen has no room for the line.
+        let dots = line.into_iter().filter(|_| canvas.has_room()).map(|dot| (".".to_owned(), dot));
+        let mut marks: Vec<_> = dots.collect();
+        // The lowest rows may be covered by the status line and notes.
+        let free = Rect { height: screen.height.saturating_sub(canvas.status_rows.max(1)), ..screen };
+        marks.push(match picture.cell_of(camera, self.light) {
+            Some(cell) if picture.contains(cell) => ("(*)".to_owned(), centred_area(screen, cell, 3)),
+            _ => picture.arrow(camera, self.light, free),
+        });
+        for (text, area) in marks.into_iter().filter(|(_, area)| !area.is_empty()) {
+            canvas.lay(area, |theme, area, buffer| {
+                buffer.set_stringn(area.x, area.y, text, area.width.into(), theme.mark());
+            });
         }
     }
 }
 
-/// Returns the area of a light's marker on the screen, or `None` if the light is behind the eye.
-///
-/// With two maps side by side, the marker is on the left one.
-fn marker_area(light: Vec3, frame: &Frame, screen: Rect) -> Option<Rect> {
-    let (part, _) = frame.part_at([0, 0]);
-    let place = frame.camera().project(light, part.aspect_ratio())?;
-    let columns = f32::from(screen.width) * part.width() as f32 / frame.resolution().width() as f32;
-    Some(centred_area(screen, place.x * columns, place.y * f32::from(screen.height)))
+/// The picture that the marker is on: of two maps side by side the left one.
+struct PictureOnScreen {
+    aspect_ratio: f32,
+    /// The size in cells.
+    cells: Vec2,
+    screen: Rect,
 }
 
-// The marker is ASCII, so that every terminal can show it.
-const MARKER: &str = "(*)";
-const MARKER_WIDTH: u16 = MARKER.len() as u16;
+impl PictureOnScreen {
+    fn of(frame: &Frame, screen: Rect) -> Self {
+        let (part, _) = frame.part_at([0, 0]);
+        let columns = f32::from(screen.width) * part.width() as f32 / frame.resolution().width() as f32;
+        Self { aspect_ratio: part.aspect_ratio(), cells: Vec2::new(columns, screen.height.into()), screen }
+    }
 
-/// Returns the area of a marker centred at a column and row, moved onto the screen if it would be
-/// outside.
-fn centred_area(screen: Rect, column: f32, row: f32) -> Rect {
+    fn contains(&self, cell: Vec2) -> bool {
+        cell.cmpge(Vec2::ZERO).all() && cell.cmplt(self.cells).all()
+    }
+
+    /// Returns the column and row of a point, or `None` if it is behind the eye.
+    fn cell_of(&self, camera: &Camera, point: Vec3) -> Option<Vec2> {
+        Some(camera.project(point, self.aspect_ratio)? * self.cells)
+    }
+
+    /// Returns an arrow at the edge towards a light outside the picture, with its distance from the
+    /// eye, and its area.
+    fn arrow(&self, camera: &Camera, light: Vec3, free: Rect) -> (String, Rect) {
+        let (basis, way) = (camera.basis(), light - camera.pose().eye);
+        let middle = 0.5 * self.cells;
+        let (towards, behind) = match self.cell_of(camera, light) {
+            Some(cell) => (cell - middle, ""),
+            // Cells are about twice as high as wide.
+            None => (Vec2::new(2.0 * way.dot(basis.u), -way.dot(basis.v)), " behind"),
+        };
+        let [across, down] = [middle.x / towards.x.abs(), middle.y / towards.y.abs()];
+        let distance = way.length();
+        let distance = if distance < 99.95 { format!("{distance:.1}") } else { format!("{distance:.0}") };
+        let text = match (across < down, towards.x < 0.0, towards.y < 0.0) {
+            (true, true, _) => format!("< {distance}{behind}"),
+            (true, false, _) => format!("{distance}{behind} >"),
+            (false, _, true) => format!("^ {distance}{behind}"),
+            (false, _, false) => format!("v {distance}{behind}"),
+        };
+        let cell = middle + towards * across.min(down).min(f32::MAX);
+        let area = centred_area(free, cell, text.len() as u16);
+        (text, area)
+    }
+
+    /// Returns the cells of a dotted line between two points, as areas on the screen.
+    fn line(&self, camera: &Camera, from: Vec3, to: Vec3) -> Vec<Rect> {
+        let ends = clipped_to_front(camera, [from, to]).map(|ends| ends.map(|end| self.cell_of(camera, end)));
+        let Some([Some(from), Some(to)]) = ends else { return Vec::new() };
+        let Some([from, to]) = clipped_to_box([from, to], self.cells) else { return Vec::new() };
+        // A dot in every second cell, from the surface on.
+        let share = 2.0 / (to - from).abs().max_element().max(1.0);
+        let dot = |at: u16| {
+            let cell = to.lerp(from, share * f32::from(at));
+            Rect::new(cell.x as u16, cell.y as u16, 1, 1).intersection(self.screen)
+        };
+        (0..=(1.0 / share) as u16).map(dot).filter(|dot| !dot.is_empty()).collect()
+    }
+}
+
+/// Returns the part of a line that is in front of the eye.
+fn clipped_to_front(camera: &Camera, ends: [Vec3; 2]) -> Option<[Vec3; 2]> {
+    let (eye, w) = (camera.pose().eye, camera.basis().w);
+    let depths = ends.map(|end| (eye - end).dot(w));
+    // Nearer points are projected to huge columns and rows.
+    let near = 1e-3 * depths[0].abs().max(depths[1].abs());
+    let at_front = |behind: usize| {
+        let (other, depth) = (1 - behind, depths[behind]);
+        let share = (near - depth) / (depths[other] - depth);
+        if depth < near { ends[behind].lerp(ends[other], share) } else { ends[behind] }
+    };
+    depths.iter().any(|&depth| depth > near).then(|| [at_front(0), at_front(1)])
+}
+
+/// Returns the part of a line that is within a box from (0, 0) to `size`.
+fn clipped_to_box([from, to]: [Vec2; 2], size: Vec2) -> Option<[Vec2; 2]> {
+    let way = to - from;
+    let (mut first, mut last) = (0.0_f32, 1.0_f32);
+    for (start, way, end) in [(from.x, way.x, size.x), (from.y, way.y, size.y)] {
+        if way == 0.0 && !(0.0..=end).contains(&start) {
+            return None;
+        }
+        if way != 0.0 {
+            let [a, b] = [-start / way, (end - start) / way];
+            (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
+        }
+    }
+    (first <= last).then(|| [from + first * way, from + last * way])
+}
+
+/// Returns the area of a mark of this width centred at a column and row, moved into `screen` if it
+/// would be outside.
+fn centred_area(screen: Rect, cell: Vec2, width: u16) -> Rect {
     let within = |at: f32, size: u16, of: u16| at.clamp(0.0, f32::from(of.saturating_sub(size))) as u16;
-    let x = within(column.floor() - f32::from(MARKER_WIDTH / 2), MARKER_WIDTH, screen.width);
-    Rect { x, y: within(row, 1, screen.height), width: MARKER_WIDTH, height: 1 }.intersection(screen)
-}
-
-fn draw(theme: Theme, area: Rect, buffer: &mut Buffer) {
-    buffer.set_stringn(area.x, area.y, MARKER, area.width.into(), theme.mark());
+    let x = within(cell.x.floor() - f32::from(width / 2), width, screen.width);
+    Rect { x, y: within(cell.y, 1, screen.height), width, height: 1 }.intersection(screen)
 }
 
 #[cfg(all(test, unit_tests))]

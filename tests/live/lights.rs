@@ -32,8 +32,8 @@ fn arrows_move_the_light_that_g_takes() {
     let mut session = looking(BALL, &[]);
     session.send(b"g");
     session.wait_for_text("light 1 of 1");
-    // The light is far outside of the picture, up and to the right.
-    session.wait_for("its mark", SOON, |seen| seen.screen().text()[0].ends_with("(*)"));
+    // The light is far outside of the picture, up and to the right, and 5.1 from the eye.
+    session.wait_for("its arrow", SOON, |seen| seen.screen().text()[0].contains("^ 5.1"));
     session.send(b"\x1b[D\x1b[D\x1b[B\x1b");
     let step = 1.0 / 32.0;
     wait_for_light(&mut session, dragged(Vec2::new(-2.0 * step / ASPECT_RATIO, step)));
@@ -55,7 +55,7 @@ fn a_drag_moves_the_light_and_the_wheel_its_distance() {
     let start = load(BALL).lights()[0].position().expect("a point light");
     let mut session = looking(BALL, &[]);
     session.send(b"g");
-    session.wait_for_text("(*)");
+    session.wait_for_text("^ 5.1");
     session.send(format!("{}\x1b", drag(0, [30, 2], [20, 5])).as_bytes());
     wait_for_light(&mut session, dragged(Vec2::new(-0.25, 0.25)));
     session.send(format!("gr{}\x1b", report(64, [5, 5], 'M')).as_bytes());
