@@ -100,9 +100,9 @@ pub enum Command {
     Quit,
     /// Moves the cursor that selects the pixel to explain.
     Point(Toward),
-    /// Scrolls the explanation up.
+    /// Shows the previous page of the explanation.
     ScrollUp,
-    /// Scrolls the explanation down.
+    /// Shows the next page of the explanation.
     ScrollDown,
     /// Answers the dialog of the export: write this format.
     Write(Format),
@@ -246,8 +246,8 @@ commands! {
     [Command::Point(Toward::Right)] "PointRight", "cursor to the right";
     [Command::Point(Toward::Up)] "PointUp", "cursor up";
     [Command::Point(Toward::Down)] "PointDown", "cursor down";
-    [Command::ScrollUp] "ScrollUp", "scroll up";
-    [Command::ScrollDown] "ScrollDown", "scroll down";
+    [Command::ScrollUp] "ScrollUp", "previous page";
+    [Command::ScrollDown] "ScrollDown", "next page";
     [Command::Yes] "Yes", "yes";
     [Command::No] "No", "cancel";
 }

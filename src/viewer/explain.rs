@@ -37,8 +37,8 @@ pub(super) struct ExplainPanel {
     /// Lines on how the shown pixel's colour differs from that of the explained ray, because it is
     /// a mean of more rays.
     notes: Vec<String>,
-    /// Index of the first visible line.
-    scrolled: usize,
+    /// The shown page of the text, from 0.
+    page: usize,
 }
 
 impl Layer for ExplainPanel {
@@ -70,10 +70,10 @@ impl Layer for ExplainPanel {
         let (screen, mode) = (canvas.screen(), canvas.cell_mode);
         // The panel leaves the lowest row and the rows of the status line free.
         let above = Rect { height: screen.height - canvas.status_rows.saturating_sub(1), ..screen };
-        let scroll = help::key_names(canvas.keymap, canvas.modes, &[Command::ScrollUp, Command::ScrollDown]);
-        let scroll = scroll.unwrap_or_default();
+        let keys = help::key_names(canvas.keymap, canvas.modes, &[Command::ScrollUp, Command::ScrollDown]);
+        let keys = keys.unwrap_or_default();
         canvas.lay(panel_area(above, self.cell(mode)), |theme, panel, buffer| {
-            self.paint(&scroll, theme, mode, panel, buffer);
+            self.paint(&keys, theme, mode, panel, buffer);
         });
         for mark in marks(self, canvas.theme(), mode, screen) {
             overlay::lay_over(canvas.grid, &mark);
@@ -88,7 +88,7 @@ impl ExplainPanel {
         (width > 0 && height > 0).then(|| Self::at_pixel(frame, [width / 2, height / 2], 0))
     }
 
-    fn at_pixel(frame: &Frame, pixel: [u32; 2], scrolled: usize) -> Self {
+    fn at_pixel(frame: &Frame, pixel: [u32; 2], page: usize) -> Self {
         let (resolution, part) = frame.part_at(pixel);
         let explanation = explain(&frame.scene, frame.camera(), resolution, part);
         let inset = Inset::of(&frame.scene, frame.camera(), &explanation);
@@ -98,7 +98,7 @@ impl ExplainPanel {
             inset,
             notes: notes(frame, pixel, &explanation),
             explanation,
-            scrolled,
+            page,
         }
     }
 
@@ -112,13 +112,13 @@ impl ExplainPanel {
     pub(super) fn move_to(&mut self, frame: &Frame, [x, y]: [u32; 2]) {
         let [width, height] = [frame.resolution().width(), frame.resolution().height()];
         if width > 0 && height > 0 {
-            *self = Self::at_pixel(frame, [x.min(width - 1), y.min(height - 1)], self.scrolled);
+            *self = Self::at_pixel(frame, [x.min(width - 1), y.min(height - 1)], self.page);
         }
     }
 
-    /// Scrolls by this number of lines; negative numbers scroll back.
-    pub(super) fn scroll(&mut self, by: isize) {
-        self.scrolled = self.scrolled.saturating_add_signed(by);
+    /// Turns this number of pages; negative numbers turn back.
+    pub(super) fn turn_pages(&mut self, by: isize) {
+        self.page = self.page.saturating_add_signed(by);
     }
 
     /// Returns the column and row of the cell that contains the pixel.
@@ -140,25 +140,25 @@ impl ExplainPanel {
         lines
     }
 
-    /// Draws the panel: the text, with the keys `scroll` that scroll it, and below it the side
+    /// Draws the panel: a page of the text, with the `keys` that turn pages, and below it the side
     /// view.
-    fn paint(&mut self, scroll: &str, theme: Theme, mode: CellMode, area: Rect, buffer: &mut Buffer) {
+    fn paint(&mut self, keys: &str, theme: Theme, mode: CellMode, area: Rect, buffer: &mut Buffer) {
         let lines = self.lines(mode);
         let inside = area.inner(Margin::new(2, 1));
         let [text, inset] = placement::split_panel(inside, lines.len() as u16);
-        // The scroll position is clamped here and not on the key press, because its limit depends on the pixel and the
-        // panel's height.
-        self.scrolled = self.scrolled.min(lines.len().saturating_sub(text.height.into()));
-        let last = lines.len().min(self.scrolled + usize::from(text.height));
+        let rows = usize::from(text.height).max(1);
+        let pages = lines.len().div_ceil(rows);
+        // The page is clamped here and not on the key press, because the last one depends on the pixel and the panel's
+        // height.
+        self.page = self.page.min(pages.saturating_sub(1));
         Clear.render(area, buffer);
         // The keys are shown in the lower border, because a line of their own would take one from the text.
         let mut block = Block::bordered().border_set(theme.border()).style(theme.style()).title(" explain ");
-        if usize::from(text.height) < lines.len() {
-            let first = self.scrolled + 1;
-            block = block.title_bottom(format!(" {first}-{last} of {}: {scroll} ", lines.len()));
+        if pages > 1 {
+            block = block.title_bottom(format!(" page {} of {pages}: {keys} ", self.page + 1));
         }
         block.render(area, buffer);
-        let seen: Vec<_> = lines.into_iter().skip(self.scrolled).map(Line::from).collect();
+        let seen: Vec<_> = lines.into_iter().skip(self.page * rows).map(Line::from).collect();
         Paragraph::new(seen).style(theme.style()).render(text, buffer);
         self.inset.draw(theme, mode, self.resolution, inset, buffer);
     }

@@ -9,10 +9,6 @@ use crate::control::Toward;
 // Ten presses cross a picture of 80 columns.
 const SHIFT_CURSOR_PIXELS: i32 = 8;
 
-/// Lines that the panel scrolls per page.
-// Less than the 13 lines visible at 80x24, so that some lines stay in view.
-const PAGE_LINES: isize = 10;
-
 impl Viewer {
     /// Starts or ends the explanation of a pixel.
     pub(super) fn toggle_explaining(&mut self) {
@@ -34,8 +30,8 @@ impl Viewer {
         self.screen.explain(|panel, frame| panel.step(frame, step));
     }
 
-    /// Scrolls the explanation by pages.
-    pub(super) fn scroll(&mut self, pages: isize) {
-        self.screen.explain(|panel, _| panel.scroll(pages * PAGE_LINES));
+    /// Turns pages of the explanation; negative numbers turn back.
+    pub(super) fn turn_explanation(&mut self, pages: isize) {
+        self.screen.explain(|panel, _| panel.turn_pages(pages));
     }
 }

@@ -311,7 +311,7 @@ fn status_line_keys(mode: KeyMode) -> &'static [(&'static [Command], &'static st
         ],
         KeyMode::Explain => &[
             (POINT, "move cursor"),
-            (&[Command::ScrollUp, Command::ScrollDown], "scroll"),
+            (&[Command::ScrollUp, Command::ScrollDown], "turn pages"),
             (&[Command::Close], "close"),
         ],
         KeyMode::Light => &[

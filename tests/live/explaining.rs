@@ -98,11 +98,15 @@ fn the_explained_pixel_is_not_covered() {
 }
 
 #[test]
-fn the_text_is_scrolled_to_its_end() {
+fn pages_of_the_text_are_turned_to_its_end() {
     let size = Size::cells(80, 24);
     let mut session = looking(size);
     session.send(b"x");
     session.wait_for_text("(i, j) = (40, 24) of 80x48");
+    session.wait_for_text("page 1 of");
+    session.send(b"\x1b[6~");
+    session.wait_for_text("page 2 of");
+    session.wait_for_text("o eye q rectangle p hit lit");
     session.send("\x1b[6~".repeat(10).as_bytes());
     session.wait_for_text("cell (40, 12), upper half");
     session.send("\x1b[5~".repeat(10).as_bytes());

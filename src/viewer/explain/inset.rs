@@ -13,9 +13,10 @@ use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
 use ratatui_core::style::{Color, Style};
 use ratatui_core::symbols::Marker;
-use ratatui_core::text::Line as Text;
+use ratatui_core::text::{Line as Text, Span};
 use ratatui_core::widgets::Widget;
 use ratatui_widgets::canvas::{Canvas, Circle, Line};
+use ratatui_widgets::paragraph::Paragraph;
 
 /// The geometry of the drawing, projected onto the plane through the eye along -w and v.
 ///
@@ -79,6 +80,9 @@ impl Inset {
         if area.is_empty() {
             return;
         }
+        let foot = Rect { y: area.bottom() - 1, height: 1, ..area };
+        Paragraph::new(self.legend(mode.colors)).style(theme.style()).render(foot, buffer);
+        let area = Rect { height: area.height - 1, ..area };
         let (across, down) = mode.pixels_per_cell();
         let cell_aspect = resolution.pixel_aspect() * down as f32 / across as f32;
         let [x, y] = self.bounds(f32::from(area.width), f32::from(area.height) * cell_aspect);
@@ -110,6 +114,26 @@ impl Inset {
         });
         canvas.render(area, buffer);
         buffer.set_style(area, Style { fg: None, ..style });
+    }
+
+    /// Returns the legend: the meaning of the letters and, if there are colours, of the lines.
+    fn legend(&self, colors: Colors) -> Text<'static> {
+        let lit = self.lights.iter().any(|&(_, is_seen)| is_seen);
+        let hidden = self.lights.iter().any(|&(_, is_seen)| !is_seen);
+        let has_colors = colors != Colors::None;
+        let words = [
+            (true, "o eye", Color::Reset),
+            (true, "q rectangle", Color::LightBlue),
+            (self.has_hit, "p hit", Color::Reset),
+            (has_colors && lit, "lit", Color::LightYellow),
+            (has_colors && hidden, "shadow", Color::DarkGray),
+        ];
+        let words = words.into_iter().filter(|&(is_shown, ..)| is_shown);
+        let spans = words.flat_map(|(_, word, color)| {
+            let style = if has_colors && color != Color::Reset { Style::new().fg(color) } else { Style::new() };
+            [Span::styled(word, style), Span::raw(" ")]
+        });
+        Text::from_iter(spans)
     }
 
     /// Returns the ranges of x and y to draw in a room of this width and height, both in units of a

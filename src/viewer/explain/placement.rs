@@ -17,8 +17,8 @@ const RESERVED_ROWS: u16 = 2;
 
 /// Least and greatest height of the inset within the panel, in rows.
 // With fewer rows the letters o, q and p of the drawing overlap; more rows would show nothing more and leave the text
-// less room.
-const INSET_HEIGHT: [u16; 2] = [6, 16];
+// less room. The last row is the legend.
+const INSET_HEIGHT: [u16; 2] = [7, 17];
 
 /// Returns the panel's area, on the half of the screen that does not contain the cell at this
 /// column and row.

@@ -85,7 +85,7 @@ fn shared_rows() -> Vec<(Vec<Command>, &'static str)> {
         (vec![Command::NextMap, Command::LastMap], "next, previous map"),
         (vec![Command::Wipe(Side::Left), Command::Wipe(Side::Right)], "divider left, right"),
         (toward(Command::Point), "move the cursor"),
-        (vec![Command::ScrollUp, Command::ScrollDown], "scroll"),
+        (vec![Command::ScrollUp, Command::ScrollDown], "turn pages"),
         (toward(Command::MoveLight), "move the light"),
         (vec![Command::LightNearer, Command::LightFarther], "closer, farther"),
         (vec![Command::NextScene, Command::LastScene], "next, previous scene"),

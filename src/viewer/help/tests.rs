@@ -148,5 +148,5 @@ fn the_line_has_as_much_as_fits() {
     assert_eq!(status_line(&keymap, &fly, 80), whole);
     assert_eq!(status_line(&keymap, &fly, 40), " fly   ? help   q quit   Tab orbit");
     let explain = status_line(&keymap, &[KeyMode::Explain, KeyMode::Orbit, KeyMode::Always], 80);
-    assert_eq!(explain, " explain   ? help   q quit   arrows move cursor   PageUp PageDown scroll");
+    assert_eq!(explain, " explain   ? help   q quit   arrows move cursor   PageUp PageDown turn pages");
 }

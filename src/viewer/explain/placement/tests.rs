@@ -21,8 +21,8 @@ fn the_panel_is_never_on_the_cursor() {
 #[test]
 fn the_inset_is_as_high_as_the_text_lets_it() {
     let heights = |inside, lines| split_panel(Rect::new(2, 1, 35, inside), lines).map(|area| area.height);
-    assert_eq!(heights(20, 40), [13, 6]);
-    assert_eq!(heights(56, 30), [39, 16]);
+    assert_eq!(heights(20, 40), [12, 7]);
+    assert_eq!(heights(56, 30), [38, 17]);
     assert_eq!(heights(44, 30), [30, 13]);
     assert_eq!(heights(6, 40), [6, 0]);
 }
