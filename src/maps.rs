@@ -228,6 +228,11 @@ impl FromStr for Map {
     }
 }
 
+/// Returns the colour of the map `Cost` for this number of tests.
+pub fn cost_color(tests: u32) -> Srgb8 {
+    colors::heat(tests)
+}
+
 /// Returns the [picture](Map::picture) of a map, traced on the current rayon pool.
 pub fn picture(
     map: Map,

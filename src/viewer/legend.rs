@@ -2,8 +2,12 @@
 
 use super::layers::{Canvas, Layer, Level};
 use super::theme::Theme;
+use crate::capabilities::Colors;
+use crate::color::Srgb8;
+use crate::maps::cost_color;
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
+use ratatui_core::style::{Color, Style};
 use ratatui_core::widgets::Widget;
 use ratatui_widgets::paragraph::Paragraph;
 
@@ -19,7 +23,13 @@ impl Layer for Legends {
         let Some(frame) = canvas.frame.filter(|_| canvas.has_room()) else { return };
         let line = if frame.shot.layout.is_wipe() { canvas.wipe } else { 0.5 };
         for (text, area) in legend_areas(&frame.legends, line, canvas.foot(canvas.status_rows)) {
-            canvas.lay(area, |theme, area, buffer| draw(text, theme, area, buffer));
+            let colors = canvas.cell_mode.colors;
+            canvas.lay(area, |theme, area, buffer| {
+                draw(text, theme, area, buffer);
+                if text.starts_with("cost:") {
+                    draw_cost_bar(colors, area, buffer);
+                }
+            });
         }
     }
 }
@@ -46,6 +56,39 @@ fn legend_areas(texts: &[String], line: f32, row: Rect) -> Vec<(&str, Rect)> {
             left.into_iter().chain(right.map(|text| (text, at_the_edge(text)))).collect()
         }
         _ => Vec::new(),
+    }
+}
+
+/// The numbers of tests in the colour bar of the map `cost`, four columns for each.
+const COSTS: &str = "1   4   16  64  256 1024";
+
+/// Replaces the names of the colours in the legend of the map `cost` by a bar of them.
+///
+/// Two columns of the bar are a factor of two. Where 16 colours or none can be shown, the names stay.
+fn draw_cost_bar(colors: Colors, area: Rect, buffer: &mut Buffer) {
+    let ink = |Srgb8 { r, g, b }: Srgb8| match colors {
+        Colors::Truecolor => Some(Color::Rgb(r, g, b)),
+        // The nearest colour of the cube, whose levels are about 51 apart.
+        Colors::Indexed256 => {
+            let [r, g, b] = [r, g, b].map(|channel| (u16::from(channel) + 25) / 51);
+            Some(Color::Indexed((16 + 36 * r + 6 * g + b) as u8))
+        }
+        Colors::Indexed16(_) | Colors::None => None,
+    };
+    let start = area.x + " cost: ".len() as u16;
+    for (column, number) in (0_u16..).zip(COSTS.chars()) {
+        let color = cost_color(libm::exp2f(0.5 * f32::from(column)).round() as u32);
+        let luma = 3 * u32::from(color.r) + 6 * u32::from(color.g) + u32::from(color.b);
+        let text = if luma > 1280 { Color::Black } else { Color::White };
+        if let Some(background) = ink(color)
+            && let Some(cell) = buffer.cell_mut((start + column, area.y))
+        {
+            cell.set_char(number).set_fg(text).set_bg(background);
+        }
+    }
+    if matches!(colors, Colors::Truecolor | Colors::Indexed256) {
+        let rest = area.right().saturating_sub(start + COSTS.len() as u16);
+        buffer.set_stringn(start + COSTS.len() as u16, area.y, " tests   ", rest.into(), Style::new());
     }
 }
 

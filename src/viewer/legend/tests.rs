@@ -1,4 +1,5 @@
 use super::*;
+use crate::capabilities::CellMode;
 use crate::viewer::theme::foot;
 
 #[test]
@@ -16,4 +17,27 @@ fn each_map_has_its_legend_in_its_corner() {
     assert_eq!(foot(screen, 1).y, 22, "above the status line");
     let narrow = Rect::new(0, 5, 20, 1);
     assert_eq!(legend_areas(&texts[1..], 0.5, narrow), [(&*texts[1], narrow)]);
+}
+
+#[test]
+fn the_cost_map_has_a_color_bar() {
+    let text = "cost: blue 1, green 16, red 256 tests";
+    let area = Rect::new(0, 5, text.len() as u16 + 2, 1);
+    let drawn = |colors| {
+        let mode = CellMode { colors, ..CellMode::HALF_BLOCK };
+        let mut buffer = Buffer::empty(area);
+        draw(text, Theme::of(mode), area, &mut buffer);
+        draw_cost_bar(colors, area, &mut buffer);
+        buffer
+    };
+    let symbols = |buffer: &Buffer| buffer.content.iter().map(|cell| cell.symbol()).collect::<String>();
+    let bar = drawn(Colors::Truecolor);
+    assert_eq!(symbols(&bar), " cost: 1   4   16  64  256 1024 tests  ");
+    // Each number is on the colour of that number of tests.
+    for (column, tests) in [(7, 1), (11, 4), (15, 16), (19, 64), (23, 256), (27, 1024)] {
+        let Srgb8 { r, g, b } = cost_color(tests);
+        assert_eq!(bar[(column, 5)].bg, Color::Rgb(r, g, b), "{tests}");
+    }
+    assert_eq!(symbols(&drawn(Colors::Indexed256)), symbols(&bar));
+    assert_eq!(symbols(&drawn(Colors::None)), format!(" {text} "));
 }
