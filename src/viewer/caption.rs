@@ -70,9 +70,10 @@ impl Caption {
     }
 }
 
-/// Returns the number of rows that leave the middle of the screen and the lowest row free.
+/// Returns the number of rows: an eighth of the screen, which covers no object that the picture is
+/// about, and at least three.
 fn rows(screen: Rect) -> usize {
-    usize::from(screen.height * 5 / 12).saturating_sub(1)
+    usize::from(screen.height / 8).max(3)
 }
 
 impl Layer for Caption {
