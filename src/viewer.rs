@@ -297,7 +297,7 @@ impl Viewer {
     }
 
     fn open(&mut self, scene: Scene, index: usize, orbits: bool) {
-        let (before, written) = (self.scenes.shown(), scene.views().to_vec());
+        let (before, shown) = (self.scenes.shown(), scene.clone());
         if let Some(darkness) = scene.darkness() {
             self.warn(darkness.to_owned());
         }
@@ -320,7 +320,7 @@ impl Viewer {
         }
         self.screen.set_name(self.names.get(index).map_or("", String::as_str));
         // Also for a scene whose view is kept: its file may have got other views.
-        self.eye.set_written(written);
+        self.eye.set_scene(&shown);
     }
 
     /// Opens the panel with the error that ended the loading of a scene.

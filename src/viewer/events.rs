@@ -4,7 +4,6 @@ use super::camera_commands::ZOOM_FACTOR;
 use super::dialog::Dialog;
 use super::explain::ExplainPanel;
 use super::help::HelpPanel;
-use super::lights::Lights;
 use super::metadata::Metadata;
 use super::note::Note;
 use super::status::StatusLine;
@@ -130,7 +129,7 @@ impl Viewer {
             return;
         }
         // The eye comes first, so that the motion up to now happens before the command changes the camera.
-        self.eye.take_key(key, meant, self.scenes.lights().map(Lights::scene), self.now);
+        self.eye.take_key(key, meant, self.now);
         if let Some((command, more)) = meant
             && (is_press || key.kind == KeyEventKind::Repeat && command.repeats())
         {

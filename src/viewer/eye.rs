@@ -3,7 +3,7 @@
 use super::jump::{Jump, JumpHistory};
 use crate::camera::{Camera, Pose};
 use crate::control::{self, AGAIN_TIME, Command, KeyMode, KeySpeed, Motion};
-use crate::hit::any_hit;
+use crate::hit::{any_hit, closest_hit};
 use crate::ray::{Interval, Ray};
 use crate::scene::Scene;
 use crossterm::event::{KeyEvent, KeyEventKind};
@@ -29,6 +29,10 @@ pub(super) struct Eye {
     moved_until: Option<Duration>,
     /// Whether motion is reduced: each press is one step at once, and nothing moves by itself.
     reduced_motion: bool,
+    /// The shown scene, whose surfaces stop the eye.
+    scene: Option<Scene>,
+    /// The time at which a surface stopped the held keys; `None` once they are released.
+    stopped_at: Option<Duration>,
 }
 
 /// The user's view of one scene: its camera, saved views and way of moving.
@@ -91,10 +95,13 @@ impl Eye {
         self.view.replace(view)
     }
 
-    /// Replaces the views that the scene file stores.
-    pub(super) fn set_written(&mut self, views: Vec<Camera>) {
+    /// Sets the scene whose surfaces stop the eye, and the views that its file stores.
+    ///
+    /// The scene is not part of the view, because the views of scenes that were left are kept.
+    pub(super) fn set_scene(&mut self, scene: &Scene) {
+        self.scene = Some(scene.clone());
         if let Some(view) = &mut self.view {
-            view.written = views;
+            view.written = scene.views().to_vec();
         }
     }
 
@@ -132,7 +139,15 @@ impl Eye {
         }
         // A key that is held goes on where a jump has ended.
         let since = jump.map_or(since, |jump| since.max(jump.end()).min(now));
-        view.camera = self.motion.step(&view.camera, view.speed, since, now);
+        let moved = self.motion.step(&view.camera, view.speed, since, now);
+        let short = self.scene.as_ref().and_then(|scene| short_of_surface(scene, view, &moved));
+        if short.is_some() {
+            self.stopped_at.get_or_insert(now);
+        } else if !self.motion.is_moving(now) {
+            self.stopped_at = None;
+        }
+        let passes = self.stopped_at.is_some_and(|stopped| now >= stopped + PASSING_TIME);
+        view.camera = short.filter(|_| !passes).unwrap_or(moved);
         if self.turntable {
             view.camera = control::on_turntable(&view.camera, now.saturating_sub(since).as_secs_f32());
         }
@@ -254,27 +269,24 @@ impl Eye {
 
     /// Carries out the motion so far, then passes the key to it. A press ends a jump at its view.
     ///
-    /// The motion of a tap never passes a surface of `scene`, so that it neither sinks through a floor nor enters an
-    /// object; a key that is held does.
-    pub(super) fn take_key(
-        &mut self,
-        key: &KeyEvent,
-        meant: Option<(Command, bool)>,
-        scene: Option<&Scene>,
-        now: Duration,
-    ) {
+    /// The motion of a tap never passes a surface of the scene, so that it neither sinks through a floor nor enters an
+    /// object. A key that is held stops at a surface for [`PASSING_TIME`].
+    pub(super) fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) {
         if self.reduced_motion {
             self.take_step(key, meant);
             return;
         }
         self.advance(now);
+        if !self.motion.is_moving(now) {
+            self.stopped_at = None;
+        }
         if key.kind == KeyEventKind::Press {
             self.end_jump();
         }
         // Any movement key stops the turntable, which would otherwise fight against it.
         self.turntable &= key.kind == KeyEventKind::Release || !meant.is_some_and(|(command, _)| command.moves());
         self.motion.take_key(key, meant, now);
-        if let (Some(scene), Some(view)) = (scene, &self.view) {
+        if let (Some(scene), Some(view)) = (&self.scene, &self.view) {
             self.motion.shorten_taps(now, |motion| is_free(motion, view, scene, now));
         }
         self.start_motion(now);
@@ -287,7 +299,11 @@ impl Eye {
         let mut motion = self.motion.clone();
         motion.set_reports_releases(true);
         motion.take_key(&KeyEvent { kind: KeyEventKind::Press, ..*key }, meant, Duration::ZERO);
-        view.camera = motion.step(&view.camera, view.speed, Duration::ZERO, REDUCED_MOTION_STEP);
+        let moved = motion.step(&view.camera, view.speed, Duration::ZERO, REDUCED_MOTION_STEP);
+        let short = self.scene.as_ref().and_then(|scene| short_of_surface(scene, view, &moved));
+        // A surface stops one step; the next one starts close to it and passes it.
+        let way = |camera: &Camera| camera.pose().eye.distance(view.camera.pose().eye);
+        view.camera = short.filter(|short| way(short) > LEAST_STEP * way(&moved)).unwrap_or(moved);
     }
 
     /// Ends the motion by keys, as if all keys were released.
@@ -333,7 +349,27 @@ fn is_free(motion: &Motion, view: &ViewState, scene: &Scene, now: Duration) -> b
     origin == end || !any_hit(scene, &Ray { origin, direction: end - origin }, within)
 }
 
-/// The way that has to be free of surfaces for a tap, as a multiple of its motion.
+/// Returns the camera short of the first surface on the eye's way to `moved`, or `None` if the way
+/// is free.
+fn short_of_surface(scene: &Scene, view: &ViewState, moved: &Camera) -> Option<Camera> {
+    let (origin, pose) = (view.camera.pose().eye, moved.pose());
+    let way = pose.eye - origin;
+    let t = (way != Vec3::ZERO).then(|| closest_hit(scene, &Ray { origin, direction: way }))??.t;
+    let back = ((t + 1.0 - SURFACE_MARGIN).max(0.0) - 1.0) * way;
+    let pose = Pose { eye: pose.eye + back, target: pose.target + back, ..pose };
+    // An eye that orbits stays where it is: its target must not move.
+    let short = if view.orbits { view.camera } else { moved.with_pose(pose).unwrap_or(view.camera) };
+    (t < SURFACE_MARGIN).then_some(short)
+}
+
+/// Time for which a surface stops a held key, which passes it after that.
+// Longer than a press that is meant as a tap, even with Shift; short enough not to seem an end.
+const PASSING_TIME: Duration = Duration::from_millis(500);
+
+/// The least part of a step of reduced motion that a surface may leave of it.
+const LEAST_STEP: f32 = 0.05;
+
+/// The way that has to be free of surfaces for a motion, as a multiple of it.
 // The way of an orbit is longer than the line that is tested.
 const SURFACE_MARGIN: f32 = 1.1;
 

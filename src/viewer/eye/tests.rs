@@ -10,7 +10,10 @@ fn ms(milliseconds: u64) -> Duration {
 fn press(eye: &mut Eye, key: impl Into<KeyEvent>, scene: Option<&Scene>, now: Duration) {
     let key = key.into();
     let meant = Keymap::default().command(&[eye.mode(), KeyMode::Always], &key);
-    eye.take_key(&key, meant, scene, now);
+    if let Some(scene) = scene {
+        eye.set_scene(scene);
+    }
+    eye.take_key(&key, meant, now);
 }
 
 /// Returns every shipped scene and mesh with its name.
@@ -62,7 +65,7 @@ fn assert_passes_nothing(eye: &mut Eye, scene: &Scene, what: &str) {
     }
 }
 
-/// Many taps stop before a surface; a key that is held passes it.
+/// Many taps stop before a surface; a key that is held passes it after a stop.
 #[test]
 fn taps_never_pass_a_surface_and_held_keys_do() {
     let scene = Scene::load(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron").as_ref()).unwrap();
@@ -74,10 +77,51 @@ fn taps_never_pass_a_surface_and_held_keys_do() {
     }
     let height = eye.camera().unwrap().pose().eye.y;
     assert!(height > 0.0 && height < 0.1, "{height}");
-    for repeat in 0..20 {
+    for repeat in 0..40 {
         press(&mut eye, KeyCode::Char('c'), Some(&scene), ms(60_000 + 40 * repeat));
     }
     assert!(eye.camera().unwrap().pose().eye.y < -1.0);
+}
+
+/// Where releases are reported, a key that is held with Shift stops at the floor, and then passes it.
+#[test]
+fn a_held_key_stops_at_a_surface_for_half_a_second() {
+    let (mut eye, _) = looking_at_spheres(false);
+    eye.set_scene(&Scene::load(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron").as_ref()).unwrap());
+    eye.set_reports_releases(true, ms(0));
+    let key = KeyEvent::new(KeyCode::Char('c'), KeyModifiers::SHIFT);
+    let height_at = |eye: &mut Eye, from: u64, to: u64| {
+        (from..to).step_by(16).for_each(|at| eye.advance(ms(at)));
+        eye.camera().unwrap().pose().eye.y
+    };
+    press(&mut eye, key, None, ms(1_000));
+    let height = height_at(&mut eye, 1_000, 1_600);
+    assert!(height > 0.0 && height < 0.1, "{height}");
+    press(&mut eye, KeyEvent { kind: KeyEventKind::Release, ..key }, None, ms(1_600));
+    let height = height_at(&mut eye, 1_600, 2_900);
+    assert!(height > 0.0 && height < 0.1 && !eye.is_moving(), "{height}");
+    // Every press stops anew, and one that goes on passes the floor.
+    press(&mut eye, key, None, ms(3_000));
+    assert!(height_at(&mut eye, 3_000, 3_400) > 0.0);
+    assert!(height_at(&mut eye, 3_400, 4_000) < -1.0);
+}
+
+#[test]
+fn a_step_of_reduced_motion_stops_at_a_surface_and_the_next_one_passes_it() {
+    let scene = Scene::from_ron(
+        "wall",
+        "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Plane(point: (0, 0, 4.5), normal: (0, 0, 1))])",
+    );
+    let scene = scene.unwrap();
+    let mut eye = Eye::new(KeySpeed::default(), true);
+    eye.open(ViewState::initial(&scene, false));
+    let key = KeyEvent::new(KeyCode::Char('w'), KeyModifiers::SHIFT);
+    press(&mut eye, key, Some(&scene), ms(0));
+    let z = eye.camera().unwrap().pose().eye.z;
+    assert!(z > 4.5 && z < 4.8, "{z}");
+    press(&mut eye, key, None, ms(0));
+    let z = eye.camera().unwrap().pose().eye.z;
+    assert!(z < 4.0, "{z}");
 }
 
 fn looking_at_spheres(reduced_motion: bool) -> (Eye, Camera) {
