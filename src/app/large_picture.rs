@@ -20,6 +20,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
 /// The memory of a picture in bytes per pixel: samples, light, colours and the file.
 const BYTES_PER_PIXEL: usize = 160;
@@ -40,9 +41,16 @@ struct Shared {
     token: Cancellation,
     /// The percentage done.
     percent: AtomicU32,
-    /// Whether the thread is to wait, because the live view traces a frame.
-    is_paused: Mutex<bool>,
+    pause: Mutex<Pause>,
     resumed: Condvar,
+}
+
+/// Whether the thread is to wait, because the live view traces a frame.
+#[derive(Default)]
+struct Pause {
+    is_on: bool,
+    /// The end of the thread's last pause.
+    ended: Option<Instant>,
 }
 
 /// The contents of a large picture, and the place to write it.
@@ -71,6 +79,7 @@ impl LargePicture {
         let of_thread = Arc::clone(&shared);
         let for_progress = Mutex::new(waker.try_clone()?);
         let thread = thread::Builder::new().name("large picture".to_owned()).spawn(move || {
+            yield_to_live_view();
             let work = AssertUnwindSafe(|| of_thread.write(&order, &for_progress));
             let _ = done.send(catch_unwind(work));
             waker.wake();
@@ -85,7 +94,7 @@ impl LargePicture {
 
     /// Makes the thread wait, or lets it go on.
     pub(super) fn set_paused(&self, is_paused: bool) {
-        *self.shared.is_paused.lock().unwrap_or_else(PoisonError::into_inner) = is_paused;
+        self.shared.pause.lock().unwrap_or_else(PoisonError::into_inner).is_on = is_paused;
         if !is_paused {
             self.shared.resumed.notify_all();
         }
@@ -156,9 +165,14 @@ impl Shared {
         frame.ok().map(|frame| frame.picture)
     }
 
+    /// Waits while the live view traces a frame, at most as long as the thread has worked since its
+    /// last pause.
+    // In an endless motion the live view traces without end, and a picture that waited for it would never be finished.
     fn wait_while_paused(&self) {
-        let is_paused = self.is_paused.lock().unwrap_or_else(PoisonError::into_inner);
-        drop(self.resumed.wait_while(is_paused, |is_paused| *is_paused));
+        let pause = self.pause.lock().unwrap_or_else(PoisonError::into_inner);
+        let worked = pause.ended.map_or(Duration::ZERO, |ended| ended.elapsed());
+        let waited = self.resumed.wait_timeout_while(pause, worked, |pause| pause.is_on);
+        waited.unwrap_or_else(PoisonError::into_inner).0.ended = Some(Instant::now());
     }
 
     /// Sets the share done, and wakes the loop if the percentage changes.
@@ -170,6 +184,14 @@ impl Shared {
     }
 }
 
+/// Lowers the priority of this thread, and of those that it will start, so that the live view gets
+/// the processors first.
+fn yield_to_live_view() {
+    // Only Linux has priorities of threads: elsewhere the whole process would be slower. A failure does no harm.
+    #[cfg(target_os = "linux")]
+    let _ = rustix::process::setpriority_process(None, 10);
+}
+
 impl Order {
     /// Returns the number of threads: all but one, which is left to the live view.
     fn thread_count(&self) -> usize {
@@ -177,3 +199,6 @@ impl Order {
         self.threads.unwrap_or_else(cores).saturating_sub(1).max(1)
     }
 }
+
+#[cfg(all(test, unit_tests))]
+mod tests;
