@@ -55,7 +55,7 @@ impl Layer for Dialog {
             let area = self.area(keymap, canvas.screen());
             canvas.lay(area, |theme, area, buffer| self.paint(keymap, theme, area, buffer));
         } else {
-            canvas.write_line(&self.line(keymap), canvas.foot(0));
+            canvas.write_line(&self.line(keymap, canvas.screen().width.into()), canvas.foot(0));
         }
     }
 }
@@ -115,15 +115,25 @@ impl Dialog {
         self.answers(keymap).map(Binding::label).collect::<Vec<_>>().join(" ")
     }
 
-    /// Returns the question as one line for small screens: a word and the keys that answer it.
-    fn line(&self, keymap: &Keymap) -> String {
+    /// Returns the question as one line for small screens: a word and the keys that answer it, with
+    /// their meanings if they fit into `width` columns.
+    fn line(&self, keymap: &Keymap, width: usize) -> String {
         let word = match self {
             Self::Export => "save:",
-            Self::SaveToFile(_) => "save?",
-            Self::NewScene(_) => "write?",
+            Self::SaveToFile(_) => "save view to file?",
+            Self::NewScene(_) => "write scene?",
             Self::Save => return "save view as 1-9?".to_owned(),
         };
-        format!("{word} {}", self.keys(keymap))
+        let meaning = |row: &Binding| match row.command {
+            Command::Write(format) => format.name().to_owned(),
+            command => command.description().to_owned(),
+        };
+        // Any key without a meaning here dismisses the question, so that its key need not be shown.
+        let answers = self.answers(keymap).filter(|row| row.command != Command::No);
+        let answers: Vec<_> =
+            answers.filter_map(|row| Some(format!("{} {}", row.keys.first()?, meaning(row)))).collect();
+        let line = format!("{word} {}", answers.join(" "));
+        if line.width() <= width { line } else { format!("{word} {}", self.keys(keymap)) }
     }
 
     /// Returns the panel's area: the lower left corner, above the lowest row, where it hides little

@@ -192,6 +192,10 @@ fn below_40x12_panels_are_hidden_and_their_keys_off() {
     wait_for_no(&mut session, "view");
     session.send(b"o");
     wait_for_last(&mut session, "save: p a t s h Esc");
+    // A wider line has the meanings, too.
+    session.resize(Size::cells(60, 10));
+    wait_for_last(&mut session, "save: p png a ansi t text s svg h html");
+    session.resize(Size::cells(20, 10));
     session.send(b"\x1b");
     wait_for_no(&mut session, "save:");
     // The cursor of an explanation that cannot be seen takes no key: the eye looks to the left.
