@@ -224,7 +224,7 @@ fn the_status_line_shows_the_mode_and_its_keys() {
     session.send(b"\t");
     row(&mut session, " orbit   ? help   q quit   Tab fly   arrows turn   ws distance   x explain");
     session.send(b"x");
-    row(&mut session, " explain   ? help   q quit   arrows move cursor   PageUp PageDown scroll");
+    row(&mut session, " explain   ? help   q quit   arrows move cursor   PageUp PageDown turn pages");
     leave(&mut session);
 }
 
