@@ -38,7 +38,9 @@ use modes::Modes;
 pub use output::stderr_accepts_message;
 use output::{Output, timespec};
 pub use panics::{hold_panic_messages, take_panic_messages};
-pub use signals::{Signals, StopTarget, Waker, before_death, die_of, fail_large_writes, without_signals};
+pub use signals::{
+    Signals, StopTarget, Waker, before_death, die_of, fail_large_writes, without_signals, yield_to_other_threads,
+};
 
 /// A terminal in raw mode with the alternate screen: its input, output, modes and window size.
 pub struct Terminal {

@@ -7,7 +7,7 @@ use crate::maps::{self, Map, TracedMap};
 use crate::memory;
 use crate::progress::{Cancellation, Cancelled};
 use crate::render::{Cost, Executor, Render};
-use crate::terminal::Waker;
+use crate::terminal::{self, Waker};
 use crate::tone::tone;
 use crate::viewer::Job;
 use std::any::Any;
@@ -79,7 +79,7 @@ impl LargePicture {
         let of_thread = Arc::clone(&shared);
         let for_progress = Mutex::new(waker.try_clone()?);
         let thread = thread::Builder::new().name("large picture".to_owned()).spawn(move || {
-            yield_to_live_view();
+            terminal::yield_to_other_threads();
             let work = AssertUnwindSafe(|| of_thread.write(&order, &for_progress));
             let _ = done.send(catch_unwind(work));
             waker.wake();
@@ -182,14 +182,6 @@ impl Shared {
             waker.lock().unwrap_or_else(PoisonError::into_inner).wake();
         }
     }
-}
-
-/// Lowers the priority of this thread, and of those that it will start, so that the live view gets
-/// the processors first.
-fn yield_to_live_view() {
-    // Only Linux has priorities of threads: elsewhere the whole process would be slower. A failure does no harm.
-    #[cfg(target_os = "linux")]
-    let _ = rustix::process::setpriority_process(None, 10);
 }
 
 impl Order {

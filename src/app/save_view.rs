@@ -85,7 +85,9 @@ impl ProposedView {
         Some(Dependency::in_current_state(file)).filter(|file| !file.is_other()).map(|file| Self { file, camera })
     }
 
-    /// Adds the view to the file, which is replaced atomically and keeps all other text. Returns the view's number.
+    /// Adds the view to the file and returns the view's number.
+    ///
+    /// The file is replaced atomically and keeps all other text.
     ///
     /// # Errors
     /// If the file cannot be written, is not a scene file, or has changed since the user was asked; it is then left as

@@ -333,6 +333,13 @@ pub fn without_signals<T>(work: impl FnOnce() -> T) -> T {
     with_blocked(&SigSet::all(), work)
 }
 
+/// Lowers the priority of this thread, and of those that it will start, below that of all others.
+// Only Linux has priorities of threads: elsewhere the whole process would be slower. A failure does no harm.
+pub fn yield_to_other_threads() {
+    #[cfg(target_os = "linux")]
+    let _ = rustix::process::setpriority_process(None, 10);
+}
+
 /// Stops the process group by SIGTTOU, and returns whether it could: `false` if SIGTTOU is ignored.
 ///
 /// The kernel does the same when a background process changes its terminal. But it restarts the interrupted call after

@@ -83,7 +83,7 @@ fn taps_never_pass_a_surface_and_held_keys_do() {
     assert!(eye.camera().unwrap().pose().eye.y < -1.0);
 }
 
-/// Where releases are reported, a key that is held with Shift stops at the floor, and then passes it.
+/// Where releases are reported, a key held with Shift stops at the floor, and then passes it.
 #[test]
 fn a_held_key_stops_at_a_surface_for_half_a_second() {
     let (mut eye, _) = looking_at_spheres(false);
