@@ -133,7 +133,7 @@ impl Inset {
             let style = if has_colors && color != Color::Reset { Style::new().fg(color) } else { Style::new() };
             [Span::styled(word, style), Span::raw(" ")]
         });
-        Text::from_iter(spans)
+        spans.collect()
     }
 
     /// Returns the ranges of x and y to draw in a room of this width and height, both in units of a
