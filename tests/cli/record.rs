@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::Stdio;
 use termtrace::internals::cell::grid_from_picture;
 use termtrace::internals::color::Oklab;
-use termtrace::{Camera, CameraPath, CellMode, Grid, Ink, Picture, Resolution, Scene, Srgb8, render, tone};
+use termtrace::{Camera, CameraPath, CellMode, Gif, Grid, Ink, Picture, Resolution, Scene, Srgb8, render, tone};
 
 /// Three keyframes, the first of them twice: a film that stands still at first.
 const FLIGHT: &str = "(keyframes: [
@@ -370,6 +370,24 @@ fn a_gif_shows_each_frame() {
         let mean = squares as f64 / f64::from(3 * 240 * 144);
         assert!(mean < 12.0, "PSNR {:.1}", 10.0 * libm::log10(255.0 * 255.0 / mean));
     }
+}
+
+/// A small difference is kept for a few frames, which saves bytes, but not for ever: what has moved
+/// on would stay as a ghost.
+#[test]
+fn a_gif_keeps_no_ghost() {
+    let grey = |value| Picture::from_pixels(2, 1, vec![Srgb8::new(value, value, value); 2]).expect("two pixels");
+    let mut gif = Gif::begin(Vec::new(), Resolution::square(2, 1), 1, 25).expect("a GIF");
+    for value in [100].into_iter().chain([107; 10]) {
+        gif.frame(&grey(value)).expect("a frame");
+    }
+    let bytes = gif.end().expect("the end");
+    let (_, frames) = gif_frames(&bytes);
+    let is_new: Vec<_> = frames.iter().map(|frame| frame.buffer[3] > 0).collect();
+    assert_eq!(is_new.iter().filter(|&&is_new| is_new).count(), 2, "the first frame, and one more: {is_new:?}");
+    let last = is_new.iter().rposition(|&is_new| is_new).expect("a frame");
+    assert!((2..9).contains(&last), "{is_new:?}");
+    assert_eq!(frames[last].buffer[..3], [107; 3]);
 }
 
 /// In a viewer's square pixels a ball is as wide as high, whatever the terminal's cells were.
