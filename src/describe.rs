@@ -16,8 +16,11 @@ use std::fmt::Write;
 use survey::{Coverage, Survey};
 use words::{color, distance, number, percent, points, position};
 
+mod facts;
 mod survey;
 mod words;
+
+pub use facts::{Facts, LightFacts, ObjectFacts, SeenFacts};
 
 /// The largest number of objects, and of lights, that are described one by one.
 // Descriptions are read aloud by screen readers, which takes about a minute for ten lines.
@@ -54,6 +57,12 @@ pub fn describe(name: &str, scene: &Scene, camera: &Camera, resolution: Resoluti
         }
     }
     text
+}
+
+/// Returns the facts that [`describe`] puts into words, about all objects and lights.
+#[doc(hidden)]
+pub fn facts(scene: &Scene, camera: &Camera, resolution: Resolution) -> Facts {
+    Description { scene, camera, survey: Survey::of_picture(scene, camera, resolution) }.facts(resolution)
 }
 
 /// Returns the colour and kind of an object, such as `red sphere`.
@@ -121,10 +130,12 @@ impl Description<'_> {
 
     /// Returns the name of an object: its colour, kind and size.
     fn name_of(&self, object: u32, part: &Coverage) -> String {
-        let object = &self.scene.objects()[object as usize];
+        self.scene.objects()[object as usize].shape.described(&self.color_of(object, part))
+    }
+
+    fn color_of(&self, object: u32, part: &Coverage) -> String {
         let own = || color(part.mean_reflectance()).to_owned();
-        let color = object.material.described(color).unwrap_or_else(own);
-        object.shape.described(&color)
+        self.scene.objects()[object as usize].material.described(color).unwrap_or_else(own)
     }
 
     /// Describes which objects are in front of an object, and which are behind it.
@@ -204,14 +215,22 @@ impl Description<'_> {
         if share == 0 {
             return String::new();
         }
-        let colors = match self.scene.background() {
+        format!(
+            "The background, {}, is seen in {} of the picture.\n",
+            self.background_colors(),
+            percent(share, self.survey.pixels)
+        )
+    }
+
+    /// Returns the background's colours in words.
+    fn background_colors(&self) -> String {
+        match self.scene.background() {
             Background::Color(light) => color(light * self.scene.exposure()).to_owned(),
             Background::Gradient { bottom, top } => {
                 let [bottom, top] = [bottom, top].map(|light| color(light * self.scene.exposure()));
                 format!("{bottom} below and {top} above")
             }
-        };
-        format!("The background, {}, is seen in {} of the picture.\n", colors, percent(share, self.survey.pixels))
+        }
     }
 
     /// Describes the lights, the strongest first.
@@ -230,18 +249,11 @@ impl Description<'_> {
         }
         let mut text = if lights.is_empty() { "No lights.\n" } else { "Lights, the strongest first:\n" }.to_owned();
         for light in lights.iter().take(MAX_LISTED) {
-            let light_color = light.color();
-            let brightest = light_color.r.max(light_color.g).max(light_color.b).max(f32::MIN_POSITIVE);
             let to_light = Vec3::from(light.to_light(Vector::<f32>::splat(target)));
             let distance = light.position().map(|position| position.distance(target));
             let distance =
                 distance.map_or_else(String::new, |distance| format!(", {} from the target", number(distance)));
-            let _ = writeln!(
-                text,
-                "- {}, {}{distance}",
-                color(light_color * (1.0 / brightest)),
-                self.direction_of(to_light)
-            );
+            let _ = writeln!(text, "- {}, {}{distance}", Self::light_color(light), self.direction_of(to_light));
         }
         if lights.len() > MAX_LISTED {
             let _ = writeln!(text, "- and {} more", lights.len() - MAX_LISTED);
@@ -253,6 +265,13 @@ impl Description<'_> {
             text += "Nothing casts a shadow.\n";
         }
         text
+    }
+
+    /// Returns the name of a light's colour, whatever its intensity.
+    fn light_color(light: &Light) -> &'static str {
+        let light = light.color();
+        let brightest = light.r.max(light.g).max(light.b).max(f32::MIN_POSITIVE);
+        color(light * (1.0 / brightest))
     }
 
     /// Describes a direction from the target as seen from the eye, such as "from above and the

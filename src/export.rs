@@ -21,7 +21,7 @@ pub use ansi::ansi;
 pub use ansi::ansi_or_text;
 pub use difference::{Difference, compare};
 #[doc(hidden)]
-pub use format_row::Contents;
+pub use format_row::{Contents, GoldenDifference};
 pub use html::html;
 #[cfg(feature = "png")]
 pub use png::{ExportError, png};
@@ -124,9 +124,9 @@ impl Format {
         matches!(self.contents(), Contents::Pixels(_))
     }
 
-    /// Returns the difference of a file from the golden file, as lines of text for a person.
+    /// Returns the difference of a file from the golden file, for a person.
     #[doc(hidden)]
-    pub fn difference(self, golden: &[u8], file: &[u8]) -> String {
+    pub fn difference(self, golden: &[u8], file: &[u8]) -> GoldenDifference {
         (self.row().difference)(golden, file)
     }
 }

@@ -83,14 +83,10 @@ pub use attribute::Attribute;
 pub use limits::{MAX_MESH_BYTES, MAX_TEXELS, MAX_TRIANGLES};
 pub use mesh_error::{FilePosition, MeshError};
 #[cfg(feature = "mesh")]
-pub(crate) use read::format_name;
-#[cfg(feature = "mesh")]
-pub use read::is_mesh;
+pub use read::{format_name, is_mesh};
 pub use texture::{Texture, TexturePlacement};
 #[cfg(all(feature = "ron", not(feature = "mesh")))]
-pub(crate) use unread::format_name;
-#[cfg(all(feature = "ron", not(feature = "mesh")))]
-pub use unread::is_mesh;
+pub use unread::{format_name, is_mesh};
 pub use up::UpAxis;
 #[cfg(feature = "ron")]
 pub(crate) use up::guessed;

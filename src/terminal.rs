@@ -67,8 +67,8 @@ impl Terminal {
     /// is not a terminal. A process in the background waits here until it is in the foreground.
     ///
     /// # Errors
-    /// If standard output is no terminal, or if there is no terminal for keys or it cannot be set up; it is then in its
-    /// original state.
+    /// If standard output is not a terminal, or if there is no terminal for keys or it cannot be set up; it is then in
+    /// its original state.
     pub fn take(signals: &Signals) -> io::Result<Self> {
         let output = Output::open()?;
         let mut terminal = Self { keys: keys_file()?, output, modes: Modes::default() };

@@ -32,6 +32,7 @@ _termtrace() {
         case ${COMP_WORDS[1]} in scenes|tour|new|frame|record|explain|check|describe|bench|doctor|config|completions|man|help|version) command=${COMP_WORDS[1]} ;; esac
     fi
     case $flag in
+        --as) _termtrace_words "obj stl ply gltf glb"; return ;;
         --cell-aspect) return ;;
         --check) _termtrace_files; return ;;
         --color) _termtrace_words "auto always never truecolor 256 16"; return ;;
@@ -39,7 +40,7 @@ _termtrace() {
         --format) _termtrace_words "text ansi svg html png"; return ;;
         --fov) return ;;
         --fps) return ;;
-        --glyphs) _termtrace_words "auto half shape ascii ramp spaces"; return ;;
+        --glyphs) _termtrace_words "auto half shape ascii ramp"; return ;;
         --hint) _termtrace_words "true false"; return ;;
         --kernel) _termtrace_words "auto single packet scalar"; return ;;
         --map) _termtrace_words "shaded lambert depth normal object shadow cost facing contrast wire"; return ;;
@@ -68,11 +69,11 @@ _termtrace() {
         scenes) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
         tour) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order -h --help --compressed-link --quiet"; else :; fi ;;
         new) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order -h --help --compressed-link --quiet"; else _termtrace_files; :; fi ;;
-        frame) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --threads --size --pixels --cell-aspect --samples --scale --map --color --glyphs --format -o --output --check -h --help --strict --bless"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
-        record) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --threads --path --seconds --fps --size --pixels --cell-aspect --samples --scale --map --order --quality --max-rate -o --output -h --help --strict --compressed-link"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
-        explain) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --threads --pixel --size --pixels --cell-aspect -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
-        check) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --threads -h --help --strict"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
-        describe) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --threads --size -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        frame) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --as --threads --size --pixels --cell-aspect --samples --scale --map --color --glyphs --format -o --output --check -h --help --strict --bless"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        record) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --as --threads --path --seconds --fps --size --pixels --cell-aspect --samples --scale --map --order --quality --max-rate -o --output -h --help --strict --compressed-link"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        explain) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --as --threads --pixel --size --pixels --cell-aspect -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        check) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --as --threads -h --help --strict"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        describe) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --as --threads --size -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
         bench) if [[ $cur == -* ]]; then _termtrace_words "--scene --pixels --samples --threads --kernel --rounds -h --help --no-shadow --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
         doctor) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect -h --help --no-config --json"; else :; fi ;;
         config) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint -h --help --no-config --keys --json"; else :; fi ;;
@@ -80,7 +81,7 @@ _termtrace() {
         man) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes tour new frame record explain check describe bench doctor config completions man help version"; :; fi ;;
         help) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes tour new frame record explain check describe bench doctor config completions man help version"; :; fi ;;
         version) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
-        *) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --threads --color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order --strict --compressed-link --quiet --no-config -h --help -V --version"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi
+        *) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --as --threads --color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order --strict --compressed-link --quiet --no-config -h --help -V --version"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi
             ((COMP_CWORD > 1)) || _termtrace_words "scenes tour new frame record explain check describe bench doctor config completions man help version" ;;
     esac
 }

@@ -261,8 +261,13 @@ impl Live {
         let nothing = || io::Error::other("there is no picture, or no folder for it");
         let (frame, folder) = self.viewer.frame().zip(self.exports.as_deref()).ok_or_else(nothing)?;
         let stem = picture_export::file_stem(self.shown_name().map_or("scene", |scene| &scene.name));
-        let contents =
-            picture_export::contents(format, &frame.picture, frame.geometry.as_deref(), self.viewer.capabilities())?;
+        let contents = picture_export::contents(
+            format,
+            &stem,
+            &frame.picture,
+            frame.geometry.as_deref(),
+            self.viewer.capabilities(),
+        )?;
         picture_export::write_new(folder, &stem, format, &contents)
     }
 

@@ -18,11 +18,13 @@ const PNG_SCALE: u32 = 8;
 /// busy.
 const MAX_NUMBERED_NAMES: u32 = 9999;
 
-/// Returns the contents of a file with the picture, without panels.
+/// Returns the contents of a file with the picture, without panels. Formats with a title get
+/// `name`.
 ///
 /// The cells have the glyphs that the terminal shows; they are in truecolor if the format has colours.
 pub(super) fn contents(
     format: Format,
+    name: &str,
     picture: &Picture,
     geometry: Option<&Geometry>,
     capabilities: &Capabilities,
@@ -38,7 +40,7 @@ pub(super) fn contents(
             let mode = if has_colors { CellMode { colors: Colors::Truecolor, ..cell_mode } } else { cell_mode.plain() };
             let mut grid = Grid::new(Size::new(0, 0));
             Painter::new(mode).paint(picture, geometry, &mut grid);
-            Ok(write(&grid, mode.colors, cell_aspect))
+            Ok(write(&grid, mode.colors, cell_aspect, name))
         }
     }
 }

@@ -15,7 +15,7 @@ Examples:
 #[derive(Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct CheckArgs {
-    /// The scene file or mesh; - reads the scene from standard input
+    /// The scene file or mesh; - is standard input
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
     #[command(flatten)]
@@ -26,7 +26,7 @@ pub(super) struct CheckArgs {
 pub(super) fn run(args: &CheckArgs) -> CommandResult {
     // A missing texture is a fault here, whatever the other commands make of it.
     let strict = CameraArgs { strict: true, ..args.camera_args.clone() };
-    let scene = strict.load(&SceneSource::from_path(&args.scene)?)?;
+    let scene = strict.load(&SceneSource::from_path(&args.scene, strict.mesh_format)?)?;
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let objects = count(scene.objects().len(), "object");
     let lights = count(scene.lights().len(), "light");

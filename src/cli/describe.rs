@@ -5,9 +5,10 @@ use super::outcome::{CommandResult, write_stdout};
 use super::picture::{check_pixel_count, parse_size};
 use super::scene_args::SceneArgs;
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
+use termtrace::internals::describe::{Facts, ObjectFacts, facts};
 use termtrace::internals::text::visible;
-use termtrace::{Resolution, describe};
+use termtrace::{Camera, Resolution, describe};
 
 const EXAMPLES: &str = "\
 The text lists the visible objects, the largest first: kind, colour and size,
@@ -29,8 +30,9 @@ pub(super) struct DescribeArgs {
     size: (u32, u32),
     /// Print JSON
     ///
-    /// The fields are "scene", "camera" (eye, target, up), "objects" and "lights" (their numbers),
-    /// and "lines", the description.
+    /// The fields are "scene", "camera" (eye, target, up), "objects" (each with number, kind, color,
+    /// name, visible, and either position, share, nearest and farthest or reason; in_front_of,
+    /// behind, eye_is_inside), "lights" (color, direction, position) and "background" (color, share).
     #[arg(long, help_heading = None)]
     json: bool,
 }
@@ -43,14 +45,47 @@ pub(super) fn run(args: &DescribeArgs) -> CommandResult {
     let resolution = Resolution::square(width, height);
     let scene = args.scene.load()?;
     let name = visible(&args.scene.name());
-    let text = args.scene.on_threads(|| describe(&name, &scene, scene.camera(), resolution))?;
     if args.json {
-        let lines: Vec<_> = text.lines().collect();
-        let (objects, lights) = (scene.objects().len(), scene.lights().len());
-        let camera = json::camera(scene.camera());
-        return json::print(
-            &json!({ "scene": name, "camera": camera, "objects": objects, "lights": lights, "lines": lines }),
-        );
+        let facts = args.scene.on_threads(|| facts(&scene, scene.camera(), resolution))?;
+        return json::print(&as_json(&name, scene.camera(), &facts));
     }
+    let text = args.scene.on_threads(|| describe(&name, &scene, scene.camera(), resolution))?;
     write_stdout(text.as_bytes())
+}
+
+fn as_json(name: &str, camera: &Camera, facts: &Facts) -> Value {
+    let lights = facts.lights.iter().map(|light| {
+        let position = light.position.map(json::vector);
+        json!({ "color": light.color, "direction": light.direction, "position": position })
+    });
+    json!({
+        "scene": name,
+        "camera": json::camera(camera),
+        "objects": facts.objects.iter().map(object_as_json).collect::<Vec<_>>(),
+        "lights": lights.collect::<Vec<_>>(),
+        "background": { "color": facts.background, "share": json::number(facts.background_share) },
+    })
+}
+
+fn object_as_json(object: &ObjectFacts) -> Value {
+    let mut fields = json!({
+        "number": object.number,
+        "kind": object.kind,
+        "color": object.color,
+        "name": object.name,
+        "visible": object.seen.is_ok(),
+        "in_front_of": object.in_front_of,
+        "behind": object.behind,
+        "eye_is_inside": object.eye_is_inside,
+    });
+    match &object.seen {
+        Ok(seen) => {
+            fields["position"] = seen.position.into();
+            fields["share"] = json::number(seen.share);
+            fields["nearest"] = json::number(seen.nearest);
+            fields["farthest"] = json::number(seen.farthest);
+        }
+        Err(reason) => fields["reason"] = reason.as_str().into(),
+    }
+    fields
 }

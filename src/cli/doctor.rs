@@ -27,7 +27,7 @@ pub(super) struct DoctorArgs {
     _no_config: NoConfig,
     /// Print JSON
     ///
-    /// The fields are "term", "version" and "capabilities", each with "name", "value" and "source".
+    /// The fields are "verdict", "term", "version" and "capabilities", each with "name", "value" and "source".
     #[arg(long = "json", id = "json", help_heading = None)]
     _json: bool,
 }

@@ -6,7 +6,7 @@ use super::picture::SizeArgs;
 use super::scene_args::SceneArgs;
 use clap::Args;
 use serde_json::{Value, json};
-use termtrace::internals::explain::cell_of_pixel;
+use termtrace::internals::explain::{ShadedHit, cell_of_pixel};
 use termtrace::{CellMode, Explanation, explain};
 
 const MEANING: &str = "\
@@ -35,8 +35,9 @@ pub(super) struct ExplainArgs {
     size: SizeArgs,
     /// Print JSON
     ///
-    /// The fields are "pixel", "resolution", "q", "origin" and "direction" of the ray, "hit" (t,
-    /// point, normal; null for the background), "light" (linear), "color" (8 bits), and "lines".
+    /// The fields are "pixel", "cell", "resolution", "camera", "q", "origin" and "direction" of the
+    /// ray, "tested" (name, t), "hit" (name, t, point, normal, lights, ambient, arriving,
+    /// reflectance; null for the background), "light" (linear) and "color" (8 bits).
     #[arg(long, help_heading = None)]
     json: bool,
 }
@@ -52,32 +53,52 @@ pub(super) fn run(args: &ExplainArgs) -> CommandResult {
     }
     let scene = args.scene.load()?;
     let explanation = explain(&scene, scene.camera(), resolution, args.pixel);
-    let lines = explanation.lines().into_iter().chain([cell_of_pixel(args.pixel, mode)]);
     if args.json {
-        return json::print(&as_json(&explanation, &lines.collect::<Vec<_>>()));
+        return json::print(&as_json(&explanation, mode));
     }
+    let lines = explanation.lines().into_iter().chain([cell_of_pixel(args.pixel, mode)]);
     write_stdout(lines.map(|line| line + "\n").collect::<String>().as_bytes())
 }
 
-fn as_json(explanation: &Explanation, lines: &[String]) -> Value {
+fn as_json(explanation: &Explanation, mode: CellMode) -> Value {
     let (ray, bytes) = (&explanation.ray, explanation.bytes);
-    let hit = explanation.hit.as_ref().map(|hit| {
-        json!({
-            "t": json::number(hit.hit.t),
-            "point": json::vector(hit.point.position),
-            "normal": json::vector(hit.point.shading_normal),
-        })
+    let tested = explanation.tested.iter().map(|surface| {
+        let t = surface.t.map(json::number);
+        json!({ "name": surface.name.to_string(), "t": t })
     });
     json!({
         "pixel": explanation.pixel,
+        "cell": cell_of_pixel(explanation.pixel, mode),
         "resolution": [explanation.resolution.width(), explanation.resolution.height()],
+        "camera": json::camera(&explanation.camera),
         "q": explanation.q.to_array().map(json::number),
         "origin": json::vector(ray.origin),
         "direction": json::vector(ray.direction),
-        "hit": hit,
+        "tested": tested.collect::<Vec<_>>(),
+        "hit": explanation.hit.as_ref().map(hit_as_json),
         "light": json::light(explanation.light),
         "color": [bytes.r, bytes.g, bytes.b],
-        "lines": lines,
+    })
+}
+
+fn hit_as_json(shaded: &ShadedHit) -> Value {
+    let lights = shaded.lights.iter().map(|light| {
+        json!({
+            "direction": json::vector(light.incidence.l),
+            "cosine": json::number(light.incidence.cosine),
+            "blocker": light.blocker.map(|(name, _)| name.to_string()),
+            "arriving": json::light(light.arriving()),
+        })
+    });
+    json!({
+        "name": shaded.name.to_string(),
+        "t": json::number(shaded.hit.t),
+        "point": json::vector(shaded.point.position),
+        "normal": json::vector(shaded.point.shading_normal),
+        "lights": lights.collect::<Vec<_>>(),
+        "ambient": json::light(shaded.ambient),
+        "arriving": json::light(shaded.arriving),
+        "reflectance": json::light(shaded.reflectance),
     })
 }
 

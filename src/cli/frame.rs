@@ -61,7 +61,7 @@ pub(super) struct FrameArgs {
     output: Option<PathBuf>,
     /// Compare with the frame in a file, and print a diff
     ///
-    /// The exit code is 1 if they differ.
+    /// The exit code is 1 if they differ; of PNG files, NAME.diff.png then shows where.
     #[arg(long, help_heading = "Output", value_name = "GOLDEN")]
     check: Option<PathBuf>,
     /// With --check: write the golden frame instead of comparing
@@ -164,7 +164,9 @@ impl FrameArgs {
             Contents::Cells { write, .. } => {
                 let trace = || Painter::new(mode).trace(map, &scene, scene.camera(), resolution, samples);
                 let grid = self.scene.on_threads(trace)?;
-                Ok(write(&grid, mode.colors, self.picture.cell_aspect()))
+                let (aspect, name) = (self.picture.cell_aspect(), self.scene.name());
+                let title = Path::new(&name).file_stem().unwrap_or_default().to_string_lossy();
+                Ok(write(&grid, mode.colors, aspect, &title))
             }
         }
     }

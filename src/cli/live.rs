@@ -18,7 +18,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use termtrace::internals::capabilities::USUAL_CELL_ASPECT;
 use termtrace::internals::control::{Command, Direction, KeyMode, Keymap};
-use termtrace::internals::mesh_file::is_mesh;
 use termtrace::internals::terminal::die_of;
 use termtrace::internals::{app, cell};
 use termtrace::live::{Ending, Options, Outcome, Signals, Source};
@@ -139,7 +138,7 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
         );
         return Err(Failure::Usage(message));
     }
-    let source = SceneSource::from_argument(scenes.first().map(PathBuf::as_path))?;
+    let source = SceneSource::from_argument(scenes.first().map(PathBuf::as_path), args.camera_args.mesh_format)?;
     let scene = args.camera_args.load(&source)?;
     let cell_aspect = settings.terminal.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
     let cell_mode = settings.terminal.cells.mode_for_file(Colors::None);
@@ -208,18 +207,19 @@ fn last_view(camera: &Camera) -> String {
 /// type it.
 fn sources(args: &LiveArgs) -> Result<Vec<Source<Failure>>, Failure> {
     if args.scenes.is_empty() {
-        return Ok(vec![live_source(SceneSource::from_argument(None)?, &args.camera_args)]);
+        return Ok(vec![live_source(SceneSource::from_argument(None, None)?, &args.camera_args)]);
     }
     let scenes = folder::expanded(&args.scenes)?;
-    scenes.iter().map(|path| SceneSource::from_path(path).map(|scene| live_source(scene, &args.camera_args))).collect()
+    let source = |path: &PathBuf| SceneSource::from_path(path, args.camera_args.mesh_format);
+    scenes.iter().map(|path| source(path).map(|scene| live_source(scene, &args.camera_args))).collect()
 }
 
 /// Returns the source of a scene for the live view.
 pub(super) fn live_source(scene: SceneSource, camera_args: &CameraArgs) -> Source<Failure> {
     let file = if let SceneSource::File(path) = &scene { Some(path.clone()) } else { None };
     let (name, camera_args) = (scene.to_string(), camera_args.clone());
-    // Decided by the name alone, because the file is read later, on another thread.
-    let is_mesh = is_mesh(&name, &[]);
+    // A file is read later, on another thread, so that its name alone decides.
+    let is_mesh = scene.is_mesh();
     let source = Source::turnable(name, move |watcher, up| camera_args.draft(&scene, up, watcher));
     let source = if is_mesh { source.orbited() } else { source };
     file.into_iter().fold(source, Source::with_file)

@@ -46,7 +46,7 @@ impl SceneArgs {
 
     /// Loads the scene, with the camera changed by the flags.
     pub(super) fn load(&self) -> Result<Scene, Failure> {
-        self.camera_args.load(&SceneSource::from_argument(self.scene.as_deref())?)
+        self.camera_args.load(&SceneSource::from_argument(self.scene.as_deref(), self.camera_args.mesh_format)?)
     }
 
     /// Runs `work` in a pool with the number of threads given by `--threads`.
@@ -75,6 +75,10 @@ pub(super) struct CameraArgs {
     #[arg(long, value_name = "AXIS", value_parser = up_axis_parser(), allow_hyphen_values = true)]
     #[arg(help_heading = "Mesh", hide_short_help = true)]
     pub(super) mesh_up: Option<UpAxis>,
+    /// Format of a mesh on standard input [default: by its content]
+    #[arg(long = "as", value_name = "FORMAT", value_parser = mesh_format_parser())]
+    #[arg(help_heading = "Mesh", hide_short_help = true)]
+    pub(super) mesh_format: Option<&'static str>,
     /// Refuse a mesh whose materials or textures are missing, instead of a warning
     #[arg(long, help_heading = "Mesh", hide_short_help = true)]
     pub(super) strict: bool,
@@ -117,6 +121,10 @@ impl CameraArgs {
     }
 
     fn read(&self, source: &SceneSource, up: Option<UpAxis>, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
+        if self.mesh_format.is_some() && !matches!(source, SceneSource::Stdin(..)) {
+            let message = "--as is for a mesh on standard input (-); the format of a file is recognised";
+            return Err(Failure::Usage(format!("{source}: {message}")));
+        }
         let draft = if self.strict { source.draft(up, &reporter.strict()) } else { source.draft(up, reporter) }?;
         // An ignored flag would look like a fault of the program.
         if self.mesh_up.is_some() && draft.mesh().is_none() {
@@ -137,6 +145,14 @@ impl CameraArgs {
             None => Ok(camera),
         }
     }
+}
+
+/// The extensions of the mesh formats, as `--as` takes them.
+const MESH_FORMATS: [&str; 5] = ["obj", "stl", "ply", "gltf", "glb"];
+
+fn mesh_format_parser() -> impl TypedValueParser<Value = &'static str> {
+    let known = |name: String| MESH_FORMATS.into_iter().find(|format| *format == name).unwrap_or_default();
+    PossibleValuesParser::new(MESH_FORMATS).map(known)
 }
 
 fn up_axis_parser() -> impl TypedValueParser<Value = UpAxis> {

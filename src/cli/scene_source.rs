@@ -6,28 +6,32 @@ use super::suggestions;
 use std::fmt;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use termtrace::internals::mesh_file::UpAxis;
+use termtrace::internals::mesh_file::{MAX_MESH_BYTES, UpAxis, format_name, is_mesh};
 use termtrace::internals::progress::{Reporter, Unfinished};
 use termtrace::internals::scene::Draft;
+use termtrace::internals::scene_text::MAX_TEXT_BYTES;
 use termtrace::internals::text::closest;
 use termtrace::{LoadError, Map, Scene, SceneError};
+
+/// The name of standard input in messages.
+const STDIN: &str = "standard input";
 
 /// The source of a scene, which can be loaded repeatedly.
 #[derive(Clone)]
 pub(super) enum SceneSource {
     File(PathBuf),
-    /// The contents of standard input.
-    Stdin(Vec<u8>),
+    /// The contents of standard input, and the extension of the mesh format that `--as` states.
+    Stdin(Vec<u8>, Option<&'static str>),
     /// A scene embedded in the program.
     Shipped(&'static ShippedScene),
 }
 
 impl SceneSource {
     /// Returns the source that a command line argument names. Standard input (`-`) is read here,
-    /// before raw mode, because it may be the terminal.
-    pub(super) fn from_path(path: &Path) -> Result<Self, Failure> {
+    /// before raw mode, because it may be the terminal; `stated` is the format that `--as` states for it.
+    pub(super) fn from_path(path: &Path, stated: Option<&'static str>) -> Result<Self, Failure> {
         if path == Path::new("-") {
-            return read_stdin().map(Self::Stdin);
+            return read_stdin(stated).map(|bytes| Self::Stdin(bytes, stated));
         }
         // A file takes precedence over a shipped scene of the same name, even a file that cannot be read.
         let shipped = ShippedScene::named(path).filter(|_| path.symlink_metadata().is_err());
@@ -36,8 +40,19 @@ impl SceneSource {
 
     /// Returns the source that an optional command line argument names; the default scene if there
     /// is none.
-    pub(super) fn from_argument(path: Option<&Path>) -> Result<Self, Failure> {
-        path.map_or_else(|| Ok(Self::Shipped(ShippedScene::default_scene())), Self::from_path)
+    pub(super) fn from_argument(path: Option<&Path>, stated: Option<&'static str>) -> Result<Self, Failure> {
+        let default = || Ok(Self::Shipped(ShippedScene::default_scene()));
+        path.map_or_else(default, |path| Self::from_path(path, stated))
+    }
+
+    /// Returns whether the source is meant to be a mesh: by its name, or by the bytes of standard
+    /// input.
+    pub(super) fn is_mesh(&self) -> bool {
+        match self {
+            Self::File(path) => is_mesh(&path.to_string_lossy(), &[]),
+            Self::Stdin(bytes, stated) => stated.is_some() || !format_name(STDIN, None, bytes).is_empty(),
+            Self::Shipped(_) => false,
+        }
     }
 
     /// Loads the scene without building its trees, until the reporter cancels.
@@ -46,7 +61,11 @@ impl SceneSource {
     pub(super) fn draft(&self, up: Option<UpAxis>, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
         match self {
             Self::File(path) => Draft::load_turned(path, up, reporter).map_err(|error| not_loaded(path, error)),
-            Self::Stdin(text) => Draft::from_bytes("standard input", text, reporter).map_err(wrong),
+            Self::Stdin(bytes, stated) if self.is_mesh() => {
+                let draft = Draft::from_mesh_bytes(STDIN, *stated, bytes, up, reporter);
+                draft.map_err(usage)
+            }
+            Self::Stdin(text, _) => Draft::from_bytes(STDIN, text, reporter).map_err(wrong),
             Self::Shipped(scene) => {
                 Draft::from_embedded(scene.name, scene.text.as_bytes(), scene.meshes, reporter).map_err(wrong)
             }
@@ -58,7 +77,7 @@ impl fmt::Display for SceneSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(path) => path.display().fmt(f),
-            Self::Stdin(_) => f.write_str("standard input"),
+            Self::Stdin(..) => f.write_str(STDIN),
             Self::Shipped(scene) => f.write_str(scene.name),
         }
     }
@@ -96,11 +115,19 @@ pub(super) fn warn_of_darkness(map: Map, scene: &Scene) {
     }
 }
 
-/// Reads standard input, up to one byte more than a scene may have. With that byte the scene's
+/// Reads standard input, up to one byte more than a scene or mesh may have. With that byte the
 /// parser reports that the input is too large.
-fn read_stdin() -> Result<Vec<u8>, Failure> {
+fn read_stdin(stated: Option<&str>) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
-    let limit = termtrace::internals::scene_text::MAX_TEXT_BYTES as u64 + 1;
-    let read = io::stdin().lock().take(limit).read_to_end(&mut bytes);
-    read.map(|_| bytes).map_err(|error| Failure::runtime("standard input", reason(&error)))
+    let mut stdin = io::stdin().lock();
+    let mut read_up_to = |bytes: &mut Vec<u8>, most: usize| {
+        let left = (most + 1).saturating_sub(bytes.len()) as u64;
+        stdin.by_ref().take(left).read_to_end(bytes).map_err(|error| Failure::runtime(STDIN, reason(&error)))
+    };
+    read_up_to(&mut bytes, MAX_TEXT_BYTES)?;
+    // Only a mesh may be larger than a scene.
+    if bytes.len() > MAX_TEXT_BYTES && (stated.is_some() || !format_name(STDIN, None, &bytes).is_empty()) {
+        read_up_to(&mut bytes, MAX_MESH_BYTES)?;
+    }
+    Ok(bytes)
 }

@@ -1,5 +1,6 @@
 //! Comparison of two frames as text, row by row.
 
+use super::format_row::GoldenDifference;
 use super::sgr::{self, TextStyle};
 use crate::text::visible_char;
 use std::fmt;
@@ -241,11 +242,11 @@ impl fmt::Display for Difference {
 }
 
 /// Returns the difference of a text file from the golden file, row by row, for a person.
-pub(super) fn by_rows(golden: &[u8], file: &[u8]) -> String {
+pub(super) fn by_rows(golden: &[u8], file: &[u8]) -> GoldenDifference {
     let [expected, found] = [golden, file].map(String::from_utf8_lossy);
     // The texts may be equal although the bytes differ, because a golden file may contain invalid UTF-8.
-    compare(&expected, &found)
-        .map_or_else(|| "only bytes that are not text differ\n".to_owned(), |difference| difference.to_string())
+    let difference = compare(&expected, &found).map(|difference| difference.to_string());
+    difference.unwrap_or_else(|| "only bytes that are not text differ\n".to_owned()).into()
 }
 
 #[cfg(all(test, unit_tests))]

@@ -18,8 +18,23 @@ pub(super) struct FormatRow {
     pub(super) command: &'static str,
     pub(super) title: &'static str,
     pub(super) contents: Contents,
-    /// Describes the difference of the second file from the first, the golden file.
-    pub(super) difference: fn(&[u8], &[u8]) -> String,
+    /// Returns the difference of the second file from the first, the golden file.
+    pub(super) difference: fn(&[u8], &[u8]) -> GoldenDifference,
+}
+
+/// The difference of a file from a golden file, for a person.
+pub struct GoldenDifference {
+    /// The difference as lines of text.
+    pub text: String,
+    /// A picture file in the golden file's format that shows where the files differ, if both are
+    /// pictures of one size.
+    pub picture: Option<Vec<u8>>,
+}
+
+impl From<String> for GoldenDifference {
+    fn from(text: String) -> Self {
+        Self { text, picture: None }
+    }
 }
 
 /// The input of a format, pixels or cells, with the function that makes a file of it.
@@ -33,7 +48,8 @@ pub enum Contents {
     Cells {
         /// Whether the format has colours.
         has_colors: bool,
-        /// Makes the file from a grid, the colours of its cells, and their aspect (height / width).
-        write: fn(&Grid, Colors, f32) -> Vec<u8>,
+        /// Makes the file from a grid, the colours of its cells, their aspect (height / width), and
+        /// the name of the scene.
+        write: fn(&Grid, Colors, f32, &str) -> Vec<u8>,
     },
 }

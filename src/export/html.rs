@@ -2,7 +2,7 @@
 
 use super::difference;
 use super::format_row::{Contents, FormatRow};
-use super::paint::{paths, text_runs};
+use super::paint::{escaped, paths, text_runs};
 use crate::grid::{Grid, Size};
 use std::fmt::Write;
 
@@ -13,7 +13,10 @@ pub(super) const KIND: FormatRow = FormatRow {
     key: 'h',
     command: "WriteHtml",
     title: "HTML page",
-    contents: Contents::Cells { has_colors: true, write: |grid, _, aspect| html(grid, aspect).into_bytes() },
+    contents: Contents::Cells {
+        has_colors: true,
+        write: |grid, _, aspect, name| page(grid, aspect, name).into_bytes(),
+    },
     difference: difference::by_rows,
 };
 
@@ -32,6 +35,11 @@ pub(super) const KIND: FormatRow = FormatRow {
 /// # Ok::<(), &str>(())
 /// ```
 pub fn html(grid: &Grid, cell_aspect: f32) -> String {
+    page(grid, cell_aspect, "termtrace")
+}
+
+/// Returns the grid as an HTML page, in the middle of the window, with this title.
+fn page(grid: &Grid, cell_aspect: f32, title: &str) -> String {
     let Size { columns, rows } = grid.size();
     // All lengths are multiples of the font's `ch`, so that the shape is right with any font and zoom.
     let half_rows = 2 * u32::from(rows);
@@ -42,9 +50,9 @@ pub fn html(grid: &Grid, cell_aspect: f32) -> String {
         r#"<!DOCTYPE html>
 <html lang="en">
 <meta charset="utf-8">
-<title>termtrace</title>
+<title>{}</title>
 <style>
-body{{margin:0;background:#000;color:#fff;font:16px monospace}}
+body{{margin:0;background:#000;color:#fff;font:16px monospace;display:grid;min-height:100vh;place-content:safe center}}
 div{{position:relative;width:{columns}ch;height:calc({rows}ch*{cell_aspect})}}
 svg,pre{{position:absolute;width:100%;height:100%;margin:0;font:inherit;line-height:calc(1ch*{cell_aspect})}}
 </style>
@@ -54,6 +62,7 @@ svg,pre{{position:absolute;width:100%;height:100%;margin:0;font:inherit;line-hei
 {text}</div>
 </html>
 "#,
+        escaped(title),
         paths(grid)
     )
 }

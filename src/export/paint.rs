@@ -47,8 +47,13 @@ impl TextRun {
 
     /// Returns the run's text with the special characters of SVG and HTML escaped.
     pub(super) fn escaped(&self) -> String {
-        self.text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+        escaped(&self.text)
     }
+}
+
+/// Returns the text with the special characters of SVG and HTML escaped.
+pub(super) fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// Returns the backgrounds and half blocks as SVG paths, one per colour.

@@ -1,6 +1,7 @@
 //! Export of a picture as PNG.
 
-use super::format_row::{Contents, FormatRow};
+use super::format_row::{Contents, FormatRow, GoldenDifference};
+use crate::color::Srgb8;
 use crate::framebuffer::{Resolution, ResolutionError};
 use crate::tone::Picture;
 use std::{fmt, io};
@@ -72,36 +73,64 @@ impl std::error::Error for ExportError {
     }
 }
 
-/// Returns a text with the number of differing pixels, the largest difference, and the first
-/// differing pixel.
-fn difference(golden: &[u8], frame: &[u8]) -> String {
+/// Returns the number of differing pixels, the largest difference, the first differing pixel, and a
+/// picture of the differences.
+fn difference(golden: &[u8], frame: &[u8]) -> GoldenDifference {
     let (golden, frame) = match (decoded(golden), decoded(frame)) {
         (Ok(golden), Ok(frame)) => (golden, frame),
-        (Err(error), _) | (_, Err(error)) => return format!("the golden frame is not a PNG of 8-bit RGB: {error}\n"),
+        (Err(error), _) | (_, Err(error)) => {
+            return format!("the golden frame is not a PNG of 8-bit RGB: {error}\n").into();
+        }
     };
     if (golden.width, golden.height) != (frame.width, frame.height) {
-        return format!(
-            "the golden frame has {}x{} pixels, this frame {}x{}\n",
-            golden.width, golden.height, frame.width, frame.height
-        );
+        let size = |picture: &Decoded| format!("{}x{}", picture.width, picture.height);
+        return format!("the golden frame has {} pixels, this frame {}\n", size(&golden), size(&frame)).into();
     }
-    let pixels = || golden.rgb.chunks_exact(3).zip(frame.rgb.chunks_exact(3)).enumerate();
+    let pixels = || golden.pixels().zip(frame.pixels()).enumerate();
     let count = pixels().filter(|(_, (a, b))| a != b).count();
-    let largest = golden.rgb.iter().zip(&frame.rgb).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+    let largest = pixels().map(|(_, (a, b))| distance(a, b)).max().unwrap_or(0);
     let Some((first, (a, b))) = pixels().find(|(_, (a, b))| a != b) else {
-        return "the pixels are equal; only what the files say beside them differs\n".to_owned();
+        return "the pixels are equal; only what the files say beside them differs\n".to_owned().into();
     };
     let (x, y) = (first % golden.width, first / golden.width);
-    format!(
+    let text = format!(
         "{count} of {} pixels differ, by at most {largest} of 255\nfirst: pixel ({x}, {y}) was {a:?}, is {b:?}\n",
         golden.width * golden.height
-    )
+    );
+    let marked = pixels().map(|(_, (a, b))| marked(a, b)).collect();
+    let picture = Picture::from_pixels(golden.width as u32, golden.height as u32, marked);
+    GoldenDifference { text, picture: picture.and_then(|picture| png(&picture, 1.0, 1).ok()) }
+}
+
+/// Returns the largest difference of a channel.
+fn distance(a: [u8; 3], b: [u8; 3]) -> u8 {
+    a.into_iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
+}
+
+/// Returns a pixel of the picture of differences: dim grey for equal pixels, otherwise red.
+///
+/// The larger the difference, the brighter the red.
+fn marked(a: [u8; 3], b: [u8; 3]) -> Srgb8 {
+    match distance(a, b) {
+        0 => {
+            let grey = (a.iter().map(|&channel| u16::from(channel)).sum::<u16>() / 6) as u8;
+            Srgb8::new(grey, grey, grey)
+        }
+        // Even the smallest difference is seen.
+        distance => Srgb8::new(160 + (distance / 3).min(95), 0, 0),
+    }
 }
 
 struct Decoded {
     width: usize,
     height: usize,
     rgb: Vec<u8>,
+}
+
+impl Decoded {
+    fn pixels(&self) -> impl Iterator<Item = [u8; 3]> {
+        self.rgb.as_chunks().0.iter().copied()
+    }
 }
 
 fn decoded(bytes: &[u8]) -> Result<Decoded, String> {

@@ -42,22 +42,39 @@ const OTHERS: [(&[u8], &str); 17] = [
 
 const READ: &str = "OBJ, STL, PLY, glTF and GLB files are read";
 
+impl MeshFormat {
+    /// Returns the name of the format, for people. In lower case, it is the extension of its files.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Obj => "OBJ",
+            Self::StlText | Self::StlBinary => "STL",
+            Self::Ply => "PLY",
+            Self::Gltf => "glTF",
+            Self::Glb => "GLB",
+        }
+    }
+}
+
 /// Returns the format of the bytes. The file name's extension counts only if the content does not
 /// decide, because downloads are often misnamed.
-pub(super) fn recognised(name: &str, bytes: &[u8]) -> Result<MeshFormat, MeshFault> {
+///
+/// `stated` is the extension of the format that the user states, which takes precedence over both.
+pub(super) fn recognised(name: &str, stated: Option<&str>, bytes: &[u8]) -> Result<MeshFormat, MeshFault> {
     // A text may start with a byte order mark and blank lines.
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     if text.is_empty() {
         return Err(MeshFault::of_file(format!("the file is empty; {READ}")));
     }
-    if let Some(format) = by_content(bytes, text) {
+    // The content tells the two kinds of STL apart, whether STL is stated or not.
+    let is_possible = |format: &MeshFormat| stated.is_none_or(|stated| format.name().eq_ignore_ascii_case(stated));
+    if let Some(format) = by_content(bytes, text).filter(is_possible) {
         return Ok(format);
     }
     // These other formats are tested before the extension is used: a compressed file may still be named `.stl`.
     if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
         return Err(MeshFault::of_file(format!("this {what}")));
     }
-    by_ending(name).ok_or_else(|| MeshFault::of_file(not_known(name, bytes)))
+    stated.map_or_else(|| by_ending(name), of_ending).ok_or_else(|| MeshFault::of_file(not_known(name, bytes)))
 }
 
 fn by_content(bytes: &[u8], text: &[u8]) -> Option<MeshFormat> {
@@ -96,8 +113,11 @@ fn first_word(line: &[u8]) -> &[u8] {
 
 /// Returns the format by the file name's extension, in upper or lower case.
 pub(super) fn by_ending(name: &str) -> Option<MeshFormat> {
-    let ending = Path::new(name).extension()?.to_str()?.to_ascii_lowercase();
-    Some(match ending.as_str() {
+    of_ending(&Path::new(name).extension()?.to_str()?.to_ascii_lowercase())
+}
+
+fn of_ending(ending: &str) -> Option<MeshFormat> {
+    Some(match ending {
         "obj" => MeshFormat::Obj,
         "stl" => MeshFormat::StlBinary,
         "ply" => MeshFormat::Ply,

@@ -21,16 +21,17 @@ impl MeshFile {
         bytes: &[u8],
         open: &mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     ) -> Result<Self, MeshError> {
-        Self::parse(name, bytes, open, &Reporter::silent()).map_err(Unfinished::failure)
+        Self::parse(name, None, bytes, open, &Reporter::silent()).map_err(Unfinished::failure)
     }
 
     fn parse(
         name: &str,
+        stated: Option<&str>,
         bytes: &[u8],
         open: &mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
         reporter: &Reporter<'_>,
     ) -> Result<Self, Unfinished<MeshError>> {
-        read(name, bytes, &mut SideFiles::new(name, open, reporter), reporter)
+        read(name, stated, bytes, &mut SideFiles::new(name, open, reporter), reporter)
             .map_err(|fault| fault.into_error(name, bytes))
     }
 
@@ -75,19 +76,24 @@ impl MeshFile {
         let bytes = read.map_err(|error| {
             Unfinished::Failed(MeshError::of_file(&path.to_string_lossy(), &named_file::reason(&error)))
         })?;
-        Self::of_file(path, &bytes, reporter)
+        Self::of_file(path, None, &bytes, reporter)
     }
 
     /// Returns the mesh of these bytes of the file at `path`. Side files are read from the same
-    /// folder.
-    pub(crate) fn of_file(path: &Path, bytes: &[u8], reporter: &Reporter<'_>) -> Result<Self, Unfinished<MeshError>> {
+    /// folder. `stated` is the extension of the format if the user states it.
+    pub(crate) fn of_file(
+        path: &Path,
+        stated: Option<&str>,
+        bytes: &[u8],
+        reporter: &Reporter<'_>,
+    ) -> Result<Self, Unfinished<MeshError>> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut open = |relative: &Path| {
             let path = folder.join(relative);
             reporter.report_dependency(&path);
             named_file::read(&path, Accepted::Files, |_| MAX_MESH_BYTES, reporter)
         };
-        Self::parse(&path.to_string_lossy(), bytes, &mut open, reporter)
+        Self::parse(&path.to_string_lossy(), stated, bytes, &mut open, reporter)
     }
 }
 
@@ -97,20 +103,14 @@ pub fn is_mesh(name: &str, bytes: &[u8]) -> bool {
 }
 
 /// Returns the name of the format of these bytes, for people; empty if they are no mesh.
-pub(crate) fn format_name(name: &str, bytes: &[u8]) -> &'static str {
-    match format::recognised(name, bytes) {
-        Ok(MeshFormat::Obj) => "OBJ",
-        Ok(MeshFormat::StlText | MeshFormat::StlBinary) => "STL",
-        Ok(MeshFormat::Ply) => "PLY",
-        Ok(MeshFormat::Gltf) => "glTF",
-        Ok(MeshFormat::Glb) => "GLB",
-        Err(_) => "",
-    }
+pub fn format_name(name: &str, stated: Option<&str>, bytes: &[u8]) -> &'static str {
+    format::recognised(name, stated, bytes).map_or("", MeshFormat::name)
 }
 
 /// Recognises the format and reads the mesh.
 fn read(
     name: &str,
+    stated: Option<&str>,
     bytes: &[u8],
     side_files: &mut SideFiles<'_>,
     reporter: &Reporter<'_>,
@@ -122,7 +122,7 @@ fn read(
     // A failed allocation aborts the process and leaves the terminal in raw mode, so memory is checked beforehand.
     // Fallible allocations would need a `Result` in every signature of the readers and the tree builder.
     has_memory(bytes.len() * PEAK_PER_BYTE, "to read it")?;
-    let mesh = match format::recognised(name, bytes)? {
+    let mesh = match format::recognised(name, stated, bytes)? {
         MeshFormat::Obj => obj::read(bytes, side_files, meter),
         MeshFormat::StlText => stl::read_text(bytes, meter),
         MeshFormat::StlBinary => stl::read_binary(bytes, meter),

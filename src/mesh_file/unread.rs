@@ -9,18 +9,23 @@ use std::path::Path;
 impl MeshFile {
     /// Always fails.
     pub(crate) fn read_whole(path: &Path, _: Accepted, reporter: &Reporter<'_>) -> Result<Self, Unfinished<MeshError>> {
-        Self::of_file(path, &[], reporter)
+        Self::of_file(path, None, &[], reporter)
     }
 
     /// Always fails.
-    pub(crate) fn of_file(path: &Path, _: &[u8], _: &Reporter<'_>) -> Result<Self, Unfinished<MeshError>> {
+    pub(crate) fn of_file(
+        path: &Path,
+        _: Option<&str>,
+        _: &[u8],
+        _: &Reporter<'_>,
+    ) -> Result<Self, Unfinished<MeshError>> {
         let message = "meshes are read with the feature `mesh` of the crate termtrace, which is off in this program";
         Err(Unfinished::Failed(MeshError::of_file(&path.to_string_lossy(), message)))
     }
 }
 
 /// Returns an empty name: without readers no format is known.
-pub(crate) fn format_name(_: &str, _: &[u8]) -> &'static str {
+pub fn format_name(_: &str, _: Option<&str>, _: &[u8]) -> &'static str {
     ""
 }
 

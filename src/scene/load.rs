@@ -137,6 +137,23 @@ impl Draft {
         Self::load_turned(path, None, reporter)
     }
 
+    /// Reads the bytes of a mesh as [`Draft::load_turned`] does. `name` is used in messages.
+    ///
+    /// The content decides the format, unless `stated` is the extension of another one. Side files are read from the
+    /// working directory.
+    ///
+    /// # Errors
+    /// As [`Draft::load`].
+    pub fn from_mesh_bytes(
+        name: &str,
+        stated: Option<&str>,
+        bytes: &[u8],
+        up: Option<UpAxis>,
+        reporter: &Reporter<'_>,
+    ) -> Result<Self, Unfinished<LoadError>> {
+        draft_around_mesh(Path::new(name), stated, bytes, up, reporter)
+    }
+
     /// Loads as [`Draft::load`] does, with a mesh turned so that the axis `up` points up.
     ///
     /// `None` stands for the axis that the format states, or else a guess.
@@ -163,7 +180,7 @@ fn load(path: &Path, up: Option<UpAxis>, reporter: &Reporter<'_>) -> Result<Draf
     let max_bytes = |bytes: &[u8]| if is_mesh(bytes) { mesh_file::MAX_MESH_BYTES } else { MAX_TEXT_BYTES };
     let bytes = read_bytes(path, max_bytes, reporter)?;
     if is_mesh(&bytes) {
-        return draft_around_mesh(path, &bytes, up, reporter);
+        return draft_around_mesh(path, None, &bytes, up, reporter);
     }
     // Without this check, a failed allocation would abort the process and leave the terminal in raw mode.
     memory::check(bytes.len() * PEAK_PER_TEXT_BYTE)
@@ -341,12 +358,14 @@ impl From<SceneError> for LoadError {
 /// that its axis `up` points up.
 fn draft_around_mesh(
     path: &Path,
+    stated: Option<&str>,
     bytes: &[u8],
     up: Option<UpAxis>,
     reporter: &Reporter<'_>,
 ) -> Result<Draft, Unfinished<LoadError>> {
-    let mesh = MeshFile::of_file(path, bytes, reporter).map_err(|unfinished| unfinished.map(LoadError::Mesh))?;
-    let format = mesh_file::format_name(&path.to_string_lossy(), bytes);
+    let mesh =
+        MeshFile::of_file(path, stated, bytes, reporter).map_err(|unfinished| unfinished.map(LoadError::Mesh))?;
+    let format = mesh_file::format_name(&path.to_string_lossy(), stated, bytes);
     // Neither format states the axis: STL files come mostly from programs for parts, in which +z points up.
     let usual = match format {
         "STL" => Some(UpAxis::Z),
@@ -383,7 +402,7 @@ impl shape::Meshes for Meshes<'_> {
             return Ok(mesh.clone());
         }
         let mesh = if let Some((_, bytes)) = self.embedded.iter().find(|(embedded, _)| *embedded == name) {
-            MeshFile::of_file(&path, bytes, self.reporter)
+            MeshFile::of_file(&path, None, bytes, self.reporter)
         } else {
             self.reporter.report_dependency(&path);
             // Pipes are not accepted, as they can be read only once, and a scene is loaded again when it changes.

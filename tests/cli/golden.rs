@@ -111,6 +111,11 @@ fn a_difference_of_png_names_the_pixel() {
     let (x, y) = (differing[0] % 60, differing[0] / 60);
     assert!(diff.contains(&format!("{} of 2400 pixels differ", differing.len())), "{diff}");
     assert!(diff.contains(&format!("pixel ({x}, {y})")), "{diff}");
+    // The picture beside it is red where the frames differ, and grey elsewhere.
+    assert!(diff.ends_with("a picture of the difference: ball.diff.png\n"), "{diff}");
+    let marks = decoded(&folder.read("ball.diff.png"));
+    let red: Vec<_> = (0..60 * 40).filter(|&i| marks[3 * i] > marks[3 * i + 1]).collect();
+    assert_eq!(red, differing);
 }
 
 fn decoded(bytes: &[u8]) -> Vec<u8> {

@@ -23,14 +23,27 @@ fn assert_fields(value: &Value, fields: &[&str]) {
 fn results_have_their_fields() {
     let folder = Folder::new();
     let described = json(&folder, "describe ball.ron");
-    assert_fields(&described, &["scene", "camera", "objects", "lights", "lines"]);
+    assert_fields(&described, &["scene", "camera", "objects", "lights", "background"]);
     assert_eq!(described["camera"]["eye"], serde_json::json!([1.0, 1.5, 6.0]));
-    assert_eq!((described["objects"].as_u64(), described["lights"].as_u64()), (Some(2), Some(1)));
+    let [objects, lights] = ["objects", "lights"].map(|field| described[field].as_array().expect("a list"));
+    assert_eq!((objects.len(), lights.len()), (2, 1));
+    let of_all = ["number", "kind", "color", "name", "visible", "in_front_of", "behind", "eye_is_inside"];
+    assert_fields(&objects[0], &[&of_all[..], &["position", "share", "nearest", "farthest"]].concat());
+    assert_eq!((&objects[0]["number"], &objects[0]["kind"]), (&1.into(), &"sphere".into()));
+    assert_fields(&lights[0], &["color", "direction", "position"]);
+    assert_fields(&described["background"], &["color", "share"]);
+    let away = json(&folder, "describe ball.ron --target 1,1.5,60");
+    assert_fields(&away["objects"][0], &[&of_all[..], &["reason"]].concat());
+    assert_eq!(away["objects"][0]["reason"], "behind the eye");
 
     let pixel = json(&folder, "explain ball.ron --pixel 40,24");
-    let fields = ["pixel", "resolution", "q", "origin", "direction", "hit", "light", "color", "lines"];
+    let fields =
+        ["pixel", "cell", "resolution", "camera", "q", "origin", "direction", "tested", "hit", "light", "color"];
     assert_fields(&pixel, &fields);
-    assert_fields(&pixel["hit"], &["t", "point", "normal"]);
+    let of_hit = ["name", "t", "point", "normal", "lights", "ambient", "arriving", "reflectance"];
+    assert_fields(&pixel["hit"], &of_hit);
+    assert_fields(&pixel["hit"]["lights"][0], &["direction", "cosine", "blocker", "arriving"]);
+    assert_fields(&pixel["tested"][0], &["name", "t"]);
     assert!(json(&folder, "explain ball.ron --pixel 0,0")["hit"].is_null(), "the background");
 
     let bench = json(&folder, "bench --pixels 64x64 --rounds 2");
@@ -39,7 +52,7 @@ fn results_have_their_fields() {
     assert_fields(&bench["rounds"][0], &["rays", "hits", "lit", "depths", "trace_seconds", "frame_seconds", "hash"]);
 
     let doctor = json(&folder, "doctor");
-    assert_fields(&doctor, &["term", "version", "capabilities"]);
+    assert_fields(&doctor, &["verdict", "term", "version", "capabilities"]);
     assert_fields(&doctor["capabilities"][0], &["name", "value", "source"]);
 
     let config = json(&folder, "config --fps 30");

@@ -66,6 +66,26 @@ fn a_minus_reads_the_scene_from_standard_input() {
     }
 }
 
+/// A mesh on standard input is recognised, or read as the format that `--as` states.
+#[test]
+fn a_mesh_on_standard_input() {
+    let folder = Folder::new();
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    folder.write("x.obj", triangle);
+    let expected = folder.frame("x.obj");
+    assert!(folder.run_on("frame -", triangle).done() == expected, "by its content");
+    assert!(folder.run_on("-", triangle).done() == expected, "without a command");
+    assert!(folder.run_on("frame - --as obj", triangle).done() == expected);
+    // The content of this one does not tell the format.
+    let unknown = format!("%%% exported\n{triangle}");
+    folder.run_on("frame -", &unknown).fails(2, "standard input:1:1");
+    folder.write("unknown.obj", &unknown);
+    assert!(folder.run_on("frame - --as obj", &unknown).stdout == folder.run("frame unknown.obj").stdout);
+    folder.run_on("frame - --as ply", triangle).fails(2, "standard input");
+    folder.run_on("frame - --as fbx", triangle).is_misused("possible values: obj, stl, ply, gltf, glb");
+    folder.run("frame ball.ron --as obj").fails_in_a_line(2, "--as is for a mesh on standard input");
+}
+
 /// A folder as standard input, or a closed one, is an error.
 #[test]
 fn standard_input_that_cannot_be_read() {

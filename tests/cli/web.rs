@@ -57,6 +57,14 @@ fn frames_for_the_web_load_nothing() {
     assert_eq!(shown.lines().collect::<Vec<_>>(), trimmed);
 }
 
+#[test]
+fn a_page_is_named_after_its_scene_and_in_the_middle() {
+    let folder = Folder::new();
+    folder.write("a<b.ron", super::BALL);
+    let page = folder.run("frame a<b.ron --format html --size 8x4").text();
+    assert!(page.contains("<title>a&lt;b</title>") && page.contains("place-content:safe center"), "{page}");
+}
+
 /// The drawing has the width and height of its cells.
 #[test]
 fn frames_for_the_web_have_the_right_shape() {

@@ -26,11 +26,11 @@ fn the_shown_picture_is_written_in_each_format() {
         light_background: false,
         synchronized_output: false,
     };
-    let written = |format| contents(format, &picture, None, &capabilities).expect("written");
+    let written = |format| contents(format, "ball", &picture, None, &capabilities).expect("written");
     assert_eq!(String::from_utf8_lossy(&written(Format::Text)), "@@\n");
     assert_eq!(String::from_utf8_lossy(&written(Format::Tally)), "@ 2\n");
     let dots = CellMode { glyphs: Glyphs::Dots, ..CellMode::HALF_BLOCK };
-    let in_dots = contents(Format::Text, &picture, None, &Capabilities { cell_mode: dots, ..capabilities });
+    let in_dots = contents(Format::Text, "ball", &picture, None, &Capabilities { cell_mode: dots, ..capabilities });
     assert_eq!(String::from_utf8_lossy(&in_dots.expect("written")), "oo\noo\n");
     for &format in Format::ALL {
         assert!(!written(format).is_empty(), "{format:?}");

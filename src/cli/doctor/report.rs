@@ -4,9 +4,9 @@ use crate::cli::settings::Settings;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::time::Duration;
-use termtrace::Colors;
 use termtrace::internals::capabilities::{Detected, Findings, HalfBlocks, Hints, Replies, SafeQueries, Source};
 use termtrace::internals::text::visible_lines;
+use termtrace::{CellMode, Colors};
 
 /// The outcome of the queries to the terminal.
 #[derive(Clone, Copy)]
@@ -31,7 +31,8 @@ pub(super) struct Report<'a> {
 pub(super) fn text(report: &Report<'_>) -> String {
     let term = report.hints.variable("TERM").unwrap_or_default();
     let version = env!("CARGO_PKG_VERSION");
-    let mut text = format!("This terminal (TERM={term}): capabilities and their sources; termtrace {version}\n");
+    let mut text = format!("{}\n", report.verdict());
+    let _ = writeln!(text, "This terminal (TERM={term}): capabilities and their sources; termtrace {version}");
     for (what, value, source) in report.rows() {
         let _ = writeln!(text, "{what:<20}  {value:<28}  {source}");
     }
@@ -44,6 +45,7 @@ pub(super) fn as_json(report: &Report<'_>) -> Value {
     let rows = report.rows().into_iter();
     let rows = rows.map(|(name, value, source)| json!({ "name": name, "value": value, "source": source }));
     json!({
+        "verdict": report.verdict(),
         "term": report.hints.variable("TERM"),
         "version": env!("CARGO_PKG_VERSION"),
         "capabilities": rows.collect::<Vec<_>>(),
@@ -54,6 +56,34 @@ pub(super) fn as_json(report: &Report<'_>) -> Value {
 type ReportRow = (&'static str, String, String);
 
 impl Report<'_> {
+    /// Returns whether the program works well here, and otherwise its limits, in a sentence.
+    fn verdict(&self) -> String {
+        if matches!(self.outcome, QueryOutcome::NoTerminal) {
+            return "Not a terminal: this is what the environment and flags say.".to_owned();
+        }
+        let findings = self.findings;
+        let few = |count| format!("{count} colours (--color truecolor if it can show more)");
+        let limits = [
+            match findings.colors.value {
+                Colors::None => Some("no colours".to_owned()),
+                Colors::Indexed16(_) => Some(few("16")),
+                Colors::Indexed256 => Some(few("256")),
+                Colors::Truecolor => None,
+            },
+            (findings.glyphs.value != CellMode::HALF_BLOCK.glyphs).then(|| "no half blocks".to_owned()),
+            // Without measured cells a circle may be an ellipse.
+            (findings.cell_aspect.source == Source::Assumed)
+                .then(|| "the cell's shape is a guess (--cell-aspect sets it)".to_owned()),
+            (!findings.kitty_keyboard.value).then(|| "no key releases, so that a tap is a small step".to_owned()),
+            (self.replies.sgr_mouse != Some(true)).then(|| "the mouse is not reported for certain".to_owned()),
+        ];
+        let limits: Vec<_> = limits.into_iter().flatten().collect();
+        if limits.is_empty() {
+            return "All is well: truecolor, half blocks, a known cell shape, key releases, the mouse.".to_owned();
+        }
+        format!("Works, with limits: {}.", limits.join("; "))
+    }
+
     fn rows(&self) -> Vec<ReportRow> {
         let findings = self.findings;
         vec![

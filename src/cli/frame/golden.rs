@@ -1,9 +1,11 @@
 //! `frame --check`: compares the frame with a file and prints a diff if they differ.
 
 use crate::cli::outcome::{CommandResult, Failure, write_stdout};
+use crate::cli::outputs;
 use std::io;
 use std::path::Path;
 use termtrace::export::Format;
+use termtrace::internals::export::GoldenDifference;
 use termtrace::internals::named_file::{self, Accepted};
 use termtrace::internals::progress::Reporter;
 use termtrace::internals::text::visible;
@@ -28,7 +30,12 @@ pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> CommandResult 
         return Ok(());
     }
     let name = visible(&path.display().to_string());
-    let difference = format.difference(&golden, frame);
-    write_stdout(format!("{name}: the frame differs\n{difference}").as_bytes())?;
+    let GoldenDifference { mut text, picture } = format.difference(&golden, frame);
+    if let Some(picture) = picture {
+        let beside = path.with_extension(format!("diff.{}", format.extension()));
+        outputs::write(&beside, &picture)?;
+        text += &format!("a picture of the difference: {}\n", visible(&beside.display().to_string()));
+    }
+    write_stdout(format!("{name}: the frame differs\n{text}").as_bytes())?;
     Err(Failure::Reported(1))
 }
