@@ -40,7 +40,7 @@ _termtrace() {
         --format) _termtrace_words "text ansi svg html png"; return ;;
         --fov) return ;;
         --fps) return ;;
-        --glyphs) _termtrace_words "auto half shape ascii ramp"; return ;;
+        --glyphs) _termtrace_words "auto half shape ascii ramp spaces"; return ;;
         --hint) _termtrace_words "true false"; return ;;
         --kernel) _termtrace_words "auto single packet scalar"; return ;;
         --map) _termtrace_words "shaded lambert depth normal object shadow cost facing contrast wire"; return ;;
