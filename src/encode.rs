@@ -224,7 +224,8 @@ impl Encoder {
 
     /// Appends a lossy frame without the marks of a synchronized update.
     ///
-    /// Returns the cursor's position, or `None` where terminals differ about it.
+    /// Returns the cursor's position after the frame, or `None` if it depends on the terminal: in the last column, and
+    /// after a cluster.
     fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let Some(caps) = lossy::QualityCaps::for_quality(allowance.quality) else { return self.draw(wanted, bytes) };
         self.change_times.record(wanted, allowance.now);
@@ -293,7 +294,7 @@ impl Encoder {
 
     /// Appends an exact frame without the marks of a synchronized update.
     ///
-    /// Returns the cursor's position, or `None` where terminals differ about it.
+    /// Returns the cursor's position after the frame, or `None` if it depends on the terminal.
     fn draw(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let mut known = self.take_state(wanted.size(), bytes);
         let cursor = self.write(wanted, &mut known, bytes);
@@ -326,8 +327,8 @@ impl Encoder {
         writer.write_all(bytes).and_then(|()| writer.flush()).inspect_err(|_| self.forget())
     }
 
-    /// Appends the bytes that change the `known` grid to `wanted`. Returns the cursor's position,
-    /// or `None` where terminals differ about it.
+    /// Appends the bytes that change the `known` grid to `wanted`. Returns the cursor's position
+    /// after them, or `None` if it depends on the terminal.
     fn write(&self, wanted: &Grid, known: &mut TerminalState, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let changed = update_grid(&mut known.shown, wanted);
         let strokes = match self.order {

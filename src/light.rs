@@ -74,7 +74,8 @@ macro_rules! lights {
         }
 
         impl Light {
-            /// Returns [`LightSource::IN_THE_WAY`] of the light's kind.
+            /// Returns the interval of a shadow ray's t in which an object blocks the light, by
+            /// [`LightSource::IN_THE_WAY`].
             #[doc(hidden)]
             pub fn in_the_way(&self) -> Interval {
                 match self {

@@ -34,7 +34,7 @@ use std::path::{Path, PathBuf};
 pub use target::open_stream;
 use temporary::Temporary;
 
-/// An output file that gets its final name when it is finished.
+/// An output file whose contents appear at its path only when it is finished.
 #[derive(Debug)]
 pub struct OutputFile {
     /// The path of the file to write, after symbolic links are followed.

@@ -84,11 +84,11 @@ const FRAME_TIME: Duration = Duration::from_micros(16_667);
 // Without replies nothing shows whether the terminal keeps up, so it gets half as many frames.
 const SILENT_FRAME_TIME: Duration = Duration::from_micros(33_334);
 
-/// Congestion window in bytes on a slow link after a resync, until the round trip is known: 80 ms
-/// of 50 KB/s.
+/// Congestion window in bytes on a slow link after a resync (a pause in the queries, because
+/// replies were lost), until the round trip is known: 80 ms of 50 KB/s.
 ///
-/// The estimated rate may be wrong after a resync. With a window computed from it, a key after a lost first reply was
-/// visible after 3.2 s instead of 1.4 s.
+/// The rate estimated before the resync may be wrong. With a window computed from it, the effect of a key was visible
+/// after 3.2 s instead of 1.4 s if the first reply was lost.
 const RESYNC_WINDOW: f64 = 4_000.0;
 
 /// A link to a terminal: what its replies show, and when it may be sent more bytes.

@@ -70,7 +70,7 @@ impl<'w> Reporter<'w> {
 
     /// Returns the reporter with a callback that gets the path of each file before the file is
     /// opened.
-    // It is called before, so that a live view also watches for a missing file to be created.
+    // The callback also gets files that turn out to be missing, so that a live view notices when they are created.
     pub fn with_dependencies(self, on_dependency: &'w (dyn Fn(&Path) + Sync)) -> Self {
         Self { on_dependency: Some(on_dependency), ..self }
     }

@@ -383,7 +383,7 @@ impl Viewer {
     /// Returns the driver's next action.
     pub(crate) fn step(&mut self, busy: DriverState, now: Duration) -> Step {
         self.set_time(now);
-        // The eye moves first, so that the decision is about the view at `now` and not at the last wake-up.
+        // Moves the eye to its place at `now` first, because `decide` compares the picture with the eye's current view.
         self.eye.advance(now);
         self.screen.set_moving(self.eye.mode());
         self.mark_light();

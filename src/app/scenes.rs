@@ -114,7 +114,7 @@ impl<E: Send + 'static> Scenes<E> {
     /// Cancels the load in progress and starts one of the current scene.
     fn read_again(&mut self) -> io::Result<()> {
         if let (Some(source), Some(loader)) = (self.sources.get(self.wanted), &self.loader) {
-            // The new load will report the scene's files again.
+            // Forgets the files that are not watched yet, because the new load reports the scene's files again.
             self.unwatched = None;
             self.loading = loader.load(source.clone())?;
         }

@@ -227,7 +227,7 @@ impl Shared {
 fn file_change(kind: EventKind, path: &Path) -> FileChange {
     match kind {
         EventKind::Remove(_) | EventKind::Modify(ModifyKind::Name(RenameMode::From)) => FileChange::Gone,
-        // Only for plain files, because writing to a pipe does not change the scene.
+        // Only for plain files: a scene that was read from a named pipe does not change when the pipe is written to.
         EventKind::Access(AccessKind::Close(AccessMode::Write)) | EventKind::Modify(ModifyKind::Name(_))
             if path.is_file() =>
         {

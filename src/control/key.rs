@@ -101,14 +101,13 @@ impl Key {
         KeyEvent::new(self.code, if self.ctrl { KeyModifiers::CONTROL } else { KeyModifiers::NONE })
     }
 
-    /// Returns the key of an event, with Shift applied to its character: `/` with Shift is `?`.
+    /// Returns the key of an event. If the terminal reports a character and Shift separately, the
+    /// result is the shifted character: the capital letter, or `?` for `/`, as on most layouts.
     pub(super) fn typed(event: &KeyEvent) -> Self {
         let shift = event.modifiers.contains(KeyModifiers::SHIFT);
         let ctrl = event.modifiers.contains(KeyModifiers::CONTROL);
         let code = match event.code {
             KeyCode::Char(c) if ctrl => KeyCode::Char(c.to_ascii_lowercase()),
-            // Some terminals report the base key and Shift instead of the shifted character. Most layouts have `?` on
-            // `/`.
             KeyCode::Char('/') if shift => KeyCode::Char('?'),
             KeyCode::Char(c) if shift => KeyCode::Char(c.to_ascii_uppercase()),
             code => code,

@@ -75,7 +75,7 @@ impl Move {
         }
     }
 
-    /// Appends the move's sequence to `bytes`.
+    /// Appends the escape sequence or line feeds that move the cursor to `bytes`.
     pub(super) fn write(self, bytes: &mut Vec<u8>) {
         match self {
             Self::To(CellPosition { column: 0, row: 0 }) => bytes.extend_from_slice(b"\x1b[H"),

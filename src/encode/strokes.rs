@@ -47,8 +47,8 @@ pub(super) fn share_next_fg(wanted: &Grid, strokes: &mut [Stroke]) {
     }
 }
 
-/// Appends the strokes. Returns the cursor's position after them, or `None` where terminals differ
-/// about it.
+/// Appends the strokes. Returns the cursor's position after them, or `None` if it depends on the
+/// terminal.
 // The cursor's position is assumed unknown at first, because other output since the last frame may have moved it.
 pub(super) fn write_strokes(
     wanted: &Grid,

@@ -14,7 +14,7 @@ pub(super) struct TextStyle {
 }
 
 /// Returns the characters of a row of ANSI text, with the style of each.
-// Only SGR sequences are parsed; others stay characters, which the comparison shows.
+// Other sequences than SGR stay characters, so that a comparison with a golden frame shows them.
 pub(super) fn parse_row(text: &str) -> Vec<(char, TextStyle)> {
     let mut row = Vec::new();
     let mut style = TextStyle::default();

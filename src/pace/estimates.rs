@@ -4,11 +4,11 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Length of an age: the shortest round trip is the minimum over the current age and the one
-/// before.
-// BBR keeps its minimum for 10 s. An outdated minimum delays keys, so ages are short; but while frames follow each
-// other, only one round trip a second is measured without a queue, and an age should contain several: five.
-const ROUND_TRIP_AGE: Duration = Duration::from_secs(5);
+/// Length of the intervals that the shortest round trip is taken from: the current interval and
+/// the one before.
+// BBR keeps its minimum for 10 s. An outdated minimum delays keys, so the intervals are short; but while frames follow
+// each other, only one round trip a second is measured without a queue, and an interval should contain several: five.
+const ROUND_TRIP_INTERVAL: Duration = Duration::from_secs(5);
 /// Age at which a sample of the rate is dropped when a newer one is recorded.
 // The estimate is the maximum of the samples, which ignores frames that were delayed elsewhere. A real drop of the rate
 // is noticed at once nevertheless: the first late reply drops all higher samples.
@@ -32,9 +32,9 @@ const MIN_SAMPLE_BYTES: f64 = 512.0;
 /// The estimate of the shortest round trip.
 #[derive(Default)]
 pub(super) struct RoundTrip {
-    /// The shortest round trip of the previous age and of the current one.
+    /// The shortest round trip of the previous interval and of the current one.
     shortest: [Option<Duration>; 2],
-    /// Time at which the current age began.
+    /// Time at which the current interval began.
     since: Duration,
     /// The last estimate before [`invalidate`](Self::invalidate).
     before: Duration,
@@ -44,11 +44,11 @@ impl RoundTrip {
     /// Records a round trip. `is_own` is whether the link transmitted the query at once, so that it
     /// is the link's own.
     ///
-    /// Only such a round trip starts a new age. Otherwise, if only replies to frames arrived during an age, the
-    /// transmission time of frames would be taken for a part of the link's round trip, and the rate for a very high
-    /// one.
+    /// Only such a round trip starts a new interval. Otherwise, if only replies to frames arrived during an interval,
+    /// the transmission time of frames would be taken for a part of the link's round trip, and the rate for a very
+    /// high one.
     pub(super) fn record(&mut self, round_trip: Duration, is_own: bool, now: Duration) {
-        if is_own && now.saturating_sub(self.since) >= ROUND_TRIP_AGE {
+        if is_own && now.saturating_sub(self.since) >= ROUND_TRIP_INTERVAL {
             self.shortest = [self.shortest[1], None];
             self.since = now;
         }

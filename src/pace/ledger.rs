@@ -45,8 +45,8 @@ impl Query {
 pub(super) struct InFlight {
     pub(super) query: Query,
     pub(super) sent: Duration,
-    /// Number of bytes sent since the previous query, up to this one; 0 for a query without a
-    /// frame.
+    /// Number of bytes from the end of the previous query to the end of this one; 0 for a query
+    /// without a frame.
     pub(super) bytes: usize,
     /// Time at which the first of these bytes was sent.
     pub(super) first_sent: Duration,

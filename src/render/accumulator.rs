@@ -104,7 +104,8 @@ const RANGE_SAMPLES: u32 = 16;
 
 /// The relative difference among [`RANGE_SAMPLES`] samples from which on their mean may be visibly
 /// wrong.
-// Four times the contrast of an edge, because the mean of 16 samples deviates a quarter as much as a single sample.
+// Compared with the difference between single samples. The error of the mean of 16 samples is a quarter of theirs, so
+// at four times `EDGE_CONTRAST` it is about the contrast of a visible edge.
 const NOISE_CONTRAST: f32 = 0.2;
 
 /// Returns whether two lights differ in a channel by more than the fraction `share` of the greater

@@ -47,7 +47,7 @@ impl GBufferSample {
 pub struct PixelValues<T> {
     /// One value per pixel, row by row from the top.
     pub pixels: Vec<T>,
-    /// The cost of tracing the values.
+    /// The number of rays traced for `pixels`, and the time spent on tracing them.
     pub cost: Cost,
 }
 

@@ -15,7 +15,7 @@ pub fn parse(text: &str) -> Result<SyntaxNode<'_>, Fault> {
     parse_or_cancel(text, Meter::new(&Reporter::silent(), "", text.len())).map_err(Unfinished::failure)
 }
 
-/// Parses as [`parse`] does, unless the meter's reporter cancels it.
+/// Parses as [`parse`] does, and reports progress to `meter`, whose callback may cancel the work.
 pub(super) fn parse_or_cancel<'a>(text: &'a str, meter: Meter<'_>) -> Parsed<SyntaxNode<'a>> {
     let mut tokens = Tokens::new(text);
     tokens.skip_attributes()?;

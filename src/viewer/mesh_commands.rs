@@ -49,14 +49,14 @@ impl Viewer {
         }
     }
 
-    /// Opens or closes the facts about the scene; the driver knows its name.
+    /// Opens or closes the panel of facts about the scene, whose name the driver knows.
     pub(super) fn toggle_metadata(&mut self) {
         if self.screen.close::<Metadata>().is_none() {
             self.requests.push_back(super::Request::ShowMetadata);
         }
     }
 
-    /// Shows the facts about the scene of this name.
+    /// Opens the panel of facts about the shown scene; `name` is the scene's name in the panel.
     pub(crate) fn show_metadata(&mut self, name: String) {
         if let Some(scene) = self.scene() {
             self.screen.open(Metadata::of(&scene, name));

@@ -15,7 +15,7 @@ fn the_quadratic_is_the_lectures() {
             Step::Values("  = ", " or ", roots.to_vec()),
         ]
     };
-    // 4 t^2 - 20 t + 24 = 0 has the roots 2 and 3.
+    // The ray through the center: 4 t^2 - 20 t + 24 = 0 has the roots 2 and 3. The explanation prints the `steps`.
     assert_eq!(equation(0.0).steps, steps(24.0, &[2.0, 3.0]));
     assert_eq!(equation(0.0).roots, [2.0, 3.0]);
     assert_eq!((equation(3.0).steps, equation(3.0).roots), (steps(33.0, &[]).to_vec(), vec![]));
