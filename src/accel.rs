@@ -127,10 +127,10 @@ macro_rules! accelerator {
 
             /// Returns whether any tree has nodes.
             #[inline(always)]
-            pub(crate) fn has_trees(&self) -> bool {
-                let mut has_trees = false;
-                $($(#[$on])* { only! { tree in $group has_trees |= self.$name.has_tree(); } })*
-                has_trees
+            pub(crate) fn has_tree_nodes(&self) -> bool {
+                let mut has_tree_nodes = false;
+                $($(#[$on])* { only! { tree in $group has_tree_nodes |= self.$name.has_nodes(); } })*
+                has_tree_nodes
             }
 
             /// Returns whether rays need their [shear](crate::ray::Rays::shear).
@@ -386,9 +386,9 @@ impl<S> Tree<S> {
         (self.first..self.end_index()).contains(&primitive)
     }
 
-    /// Returns whether the tree has nodes, and so can cull.
+    /// Returns whether the tree has nodes, and so can cull. Without nodes it is a single leaf, or empty.
     #[inline(always)]
-    pub(crate) fn has_tree(&self) -> bool {
+    pub(crate) fn has_nodes(&self) -> bool {
         !self.bvh.is_leaf()
     }
 

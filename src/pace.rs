@@ -148,13 +148,13 @@ impl Link {
     }
 
     /// Returns the least time between two frames.
-    pub fn frame_time(&self) -> Duration {
+    pub fn min_frame_interval(&self) -> Duration {
         if self.replies.is_responsive() { self.frame } else { self.frame.max(SILENT_FRAME_TIME) }
     }
 
     /// Returns the number of frames per second that are sent on a slow link.
     fn frames_per_second(&self) -> f64 {
-        SLOW_LINK_FRAME_RATE.min(1.0 / self.frame_time().as_secs_f64())
+        SLOW_LINK_FRAME_RATE.min(1.0 / self.min_frame_interval().as_secs_f64())
     }
 
     /// Returns the bytes that a frame on a slow link of this rate may have.
@@ -206,8 +206,10 @@ impl Link {
     /// `screen` bytes.
     pub fn limit(&mut self, screen: usize, now: Duration) -> Option<Limit> {
         self.replies.check_timeouts(now);
-        let initial =
-            self.replies.lacks_rate().then(|| Limit { rate: None, max_bytes: self.replies.initial_window.max_bytes() });
+        let initial = self
+            .replies
+            .lacks_rate()
+            .then(|| Limit { rate: None, max_bytes: self.replies.initial_window.next_frame_max_bytes() });
         self.slow_limit(screen).or(initial)
     }
 
@@ -247,7 +249,7 @@ impl Link {
     /// Records that a frame is sent now, and appends the query that it is to end with, if any.
     pub fn send(&mut self, frame: &mut Vec<u8>, now: Duration) {
         self.replies.check_timeouts(now);
-        if self.replies.queries_frames() {
+        if self.replies.frame_ends_with_query() {
             self.replies.append_query(frame, true, now);
         } else if self.replies.state == State::Steady {
             self.replies.ledger.record_unqueried(frame.len(), now);

@@ -373,7 +373,7 @@ impl Primitive<'_> {
     /// `None` if the file has no colours, and for other shapes.
     pub fn own_reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
         match self {
-            Self::Facet(facet) => facet.reflectance(uv),
+            Self::Facet(facet) => facet.file_reflectance(uv),
             _ => None,
         }
     }

@@ -409,7 +409,7 @@ impl Viewer {
             holds_first_back: !self.screen.has_shown() && self.pacing.ends_within(FIRST_REFINEMENT),
             begun: self.pacing.begun_at(),
             moved_until: self.eye.moved_until(),
-            frame_time: self.pacing.frame_time(),
+            min_frame_interval: self.pacing.min_frame_interval(),
             link_free_at: self.pacing.free_at(self.now),
             is_changed: self.screen.is_changed(size),
             improvable_at: self.screen.improvable_at(size),

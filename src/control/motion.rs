@@ -92,8 +92,8 @@ fn physical_key(key: &KeyEvent) -> PhysicalKey {
 pub const TAP_TIME: Duration = Duration::from_millis(150);
 /// Time after a press of a key within which another press of it continues the motion instead of
 /// starting a new one.
-// The eye moves for this long after a tap (`TAP_TIME` of full speed, while slowing down), so quick taps make one motion. A
-// held key repeats at least every 40 ms.
+// The eye moves for this long after a tap, at a falling speed, so quick taps make one motion. A held key repeats at
+// least every 40 ms.
 pub const AGAIN_TIME: Duration = Duration::from_millis(300);
 /// Duration of the motion after the last repeat of a key.
 // Repeats are 33 to 40 ms apart; three may be lost or late on a slow link without a visible stop.

@@ -89,17 +89,17 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
         // An inactive group is replaced by an active one, so that it does not widen the packet's bounds.
         let Some(one) = rays.iter().find(|rays| rays.active != 0) else { return self.reset(0..GROUPS) };
         let accel = self.accel;
-        let (has_trees, needs_shear) = (accel.has_trees(), accel.needs_shear());
+        let (has_tree_nodes, needs_shear) = (accel.has_tree_nodes(), accel.needs_shear());
         for (group, group_rays) in rays.iter().enumerate() {
             let active = group_rays.active;
             let rays = Rays::load(if active == 0 { one } else { group_rays }, needs_shear);
             let hits = self.test_unculled(&rays, active);
             (self.t[group], self.primitive[group]) = (hits.t, hits.primitive);
-            if has_trees {
+            if has_tree_nodes {
                 self.groups[group] = rays;
             }
         }
-        if has_trees {
+        if has_tree_nodes {
             self.reset(rays.len()..GROUPS);
             self.group_t_max = N::max_of_each(&self.t).store();
             for group in rays.len()..GROUPS {
@@ -142,7 +142,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     #[inline(always)]
     fn trace_tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>, packet: &mut Option<Packet<N>>, stacks: &mut Stacks) {
         self.update_packet_t_max();
-        if tree.has_tree() && self.packet_t_max >= self.within.min {
+        if tree.has_nodes() && self.packet_t_max >= self.within.min {
             let packet = match packet {
                 Some(packet) => packet,
                 None => packet.insert(Packet::of(&self.groups)),

@@ -36,7 +36,7 @@ impl InitialWindow {
     /// Returns the greatest number of bytes of the next frame.
     ///
     /// This is half of the budget that is left, so that the frames of later keys get some of it too.
-    pub(super) fn max_bytes(&self) -> usize {
+    pub(super) fn next_frame_max_bytes(&self) -> usize {
         if self.is_spent() { REFILL_BYTES } else { self.left / 2 }
     }
 

@@ -174,7 +174,7 @@ impl ReplyTracker {
     }
 
     /// Returns whether a frame sent now ends with a query.
-    pub(super) fn queries_frames(&self) -> bool {
+    pub(super) fn frame_ends_with_query(&self) -> bool {
         match self.state {
             State::Unanswered | State::Recovering { .. } => true,
             State::Steady => self.may_query(),

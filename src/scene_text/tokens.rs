@@ -119,7 +119,7 @@ impl<'a> Tokens<'a> {
             self.at += 1;
         }
         let text = &self.text[start..self.at];
-        number_from(text).map(Token::Number).ok_or_else(|| Fault {
+        parse_number(text).map(Token::Number).ok_or_else(|| Fault {
             message: format!("{} is not a number", quoted(text)),
             span: Span::new(start, self.at),
         })
@@ -265,11 +265,11 @@ fn is_prefixed(number: &str) -> bool {
 const SUFFIXES: [&str; 12] = ["f32", "f64", "i8", "i16", "i32", "i64", "i128", "u8", "u16", "u32", "u64", "u128"];
 
 /// Parses a number: decimal or with a base prefix, with underscores and Rust's suffixes.
-fn number_from(text: &str) -> Option<f64> {
-    if is_prefixed(text) {
-        return prefixed_number(text);
+fn parse_number(token: &str) -> Option<f64> {
+    if is_prefixed(token) {
+        return prefixed_number(token);
     }
-    let digits = SUFFIXES.iter().find_map(|suffix| text.strip_suffix(suffix)).unwrap_or(text);
+    let digits = SUFFIXES.iter().find_map(|suffix| token.strip_suffix(suffix)).unwrap_or(token);
     digits.replace('_', "").parse().ok()
 }
 

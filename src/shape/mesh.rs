@@ -168,7 +168,7 @@ impl Facet<'_> {
 
     /// Returns the product of the colours that the file has for a point: of the material, the
     /// texture and the corners.
-    pub(super) fn reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
+    pub(super) fn file_reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
         let (file, index) = (&self.mesh.file, self.index as usize);
         let material = file.material_of(index).map(|index| &file.materials()[index]);
         let colors = file.colors_of(index).map(|colors| interpolate(colors, uv));

@@ -2,7 +2,7 @@
 //! reverse order.
 
 use super::output::Output;
-use super::replies::{await_last_reply, is_in_background};
+use super::replies::{is_in_background, read_until_last_reply};
 use super::{Signals, fault_injection, panics, signals};
 use crate::input::Input;
 use crate::protocol::{self, FENCE, Receiver, TerminalMode};
@@ -88,7 +88,7 @@ impl Modes {
         let is_drained = output.drain(deadline);
         // A terminal that has stopped reading does not reply either.
         if let Some((receiver, now)) = receiver.filter(|_| is_drained) {
-            let read = await_last_reply(keys, receiver, now, deadline);
+            let read = read_until_last_reply(keys, receiver, now, deadline);
             if let Some(typed) = &mut typed {
                 typed.extend(read);
             }

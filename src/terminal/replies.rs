@@ -10,45 +10,43 @@ use std::fs::File;
 use std::io::Read;
 use std::time::{Duration, Instant};
 
-/// Reads input until the last outstanding reply or the deadline, and returns the input.
+/// Reads the terminal until the last outstanding reply or the deadline, and returns the keys,
+/// mouse events and replies that it has read.
 ///
-/// Otherwise the shell would take these replies for typed text, as it does if they arrive after the deadline.
-pub(super) fn await_last_reply(keys: &File, receiver: &mut Receiver, now: Duration, deadline: Instant) -> Vec<Input> {
-    let mut inputs = Vec::new();
-    if !is_in_background(keys) {
-        read_up_to_last_reply(keys, receiver, now, deadline, &mut inputs);
-    }
-    inputs
-}
-
-fn read_up_to_last_reply(
-    mut keys: &File,
+/// Otherwise the shell would take these replies for typed text, as it does if they arrive after the deadline. `now` is
+/// the receiver's time at the call.
+pub(super) fn read_until_last_reply(
+    mut tty: &File,
     receiver: &mut Receiver,
     now: Duration,
     deadline: Instant,
-    inputs: &mut Vec<Input>,
-) {
+) -> Vec<Input> {
+    let mut inputs = Vec::new();
+    if is_in_background(tty) {
+        return inputs;
+    }
     let start = Instant::now();
     let mut buffer = [0; 4096];
     while let Some(reply_time_left) = receiver.reply_time_left(now + start.elapsed()) {
         let left = deadline.saturating_duration_since(Instant::now()).min(reply_time_left);
         if left.is_zero() {
-            return;
+            break;
         }
-        match poll(&mut [PollFd::new(&keys, PollFlags::IN)], Some(&timespec(left))) {
+        match poll(&mut [PollFd::new(&tty, PollFlags::IN)], Some(&timespec(left))) {
             Ok(0) | Err(rustix::io::Errno::INTR) => continue,
             Ok(_) => {}
-            Err(_) => return,
+            Err(_) => break,
         }
-        match keys.read(&mut buffer) {
+        match tty.read(&mut buffer) {
             Ok(count) if count > 0 => {
                 fault_injection::count_read(count);
                 inputs.extend(receiver.receive(&buffer[..count], now + start.elapsed()));
             }
             // The terminal has hung up.
-            _ => return,
+            _ => break,
         }
     }
+    inputs
 }
 
 /// Returns whether this process is in the background, so that reading the terminal would stop it.

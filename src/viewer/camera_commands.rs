@@ -17,9 +17,9 @@ impl Viewer {
     pub(super) fn note_lost(&mut self) {
         // Never of the scene's own view: its author has chosen it.
         let frame = self.screen.frame().filter(|_| self.eye.moved().is_some());
-        let aspect_ratio = self.map_resolution().aspect_ratio();
+        let aspect_ratio = self.first_map_resolution().aspect_ratio();
         let hiding = frame.and_then(|frame| Hiding::find(&frame.scene, frame.camera(), aspect_ratio));
-        let modes = self.screen.modes(self.size());
+        let modes = self.screen.active_modes(self.size());
         let key = |(command, does): (Command, &str)| Some(format!("{} {does}", self.keymap().key_of(&modes, command)?));
         let keys: Vec<_> =
             [(Command::Reset, "first view"), (Command::FrameAll, "frame all")].into_iter().filter_map(key).collect();
@@ -40,7 +40,7 @@ impl Viewer {
     ///
     /// Empty if no key is bound to `command`.
     pub(super) fn hint(&self, command: Command, does: &str) -> String {
-        let key = self.keymap().key_of(&self.screen.modes(self.size()), command);
+        let key = self.keymap().key_of(&self.screen.active_modes(self.size()), command);
         key.map_or_else(String::new, |key| format!("; {key} {does}"))
     }
 
@@ -58,7 +58,7 @@ impl Viewer {
             self.show_note("nothing finite to fit in view");
             return;
         };
-        let aspect_ratio = self.map_resolution().aspect_ratio();
+        let aspect_ratio = self.first_map_resolution().aspect_ratio();
         self.eye.jump(self.now, |camera| camera.framing(&bounds, aspect_ratio));
     }
 
@@ -71,7 +71,7 @@ impl Viewer {
 
     /// Returns the size in pixels of one map: the whole picture, or the left one of two maps side
     /// by side.
-    pub(super) fn map_resolution(&self) -> Resolution {
+    pub(super) fn first_map_resolution(&self) -> Resolution {
         let whole = self.resolution();
         self.layout.parts(whole).first().map_or(whole, |(_, part)| *part)
     }

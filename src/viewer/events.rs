@@ -117,7 +117,7 @@ impl Viewer {
             self.screen.close::<Note>();
             self.screen.close::<Warnings>();
         }
-        let meant = self.keymap().command(&self.screen.modes(self.size()), key);
+        let meant = self.keymap().command(&self.screen.active_modes(self.size()), key);
         // The help lies over everything. Releases go on: keys may have been pressed before it was opened.
         let is_ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
         if key.kind != KeyEventKind::Release && !is_ctrl && self.take_help_key(key, meant) {

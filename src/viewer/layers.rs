@@ -94,15 +94,15 @@ impl Layers {
 
     /// Returns the modes of the keymap that are in force on a screen of this size, topmost first.
     ///
-    /// `moving` is the mode of the movement keys, which comes after the modes of the layers.
-    pub(super) fn modes(&self, screen: Rect, moving: KeyMode) -> Vec<KeyMode> {
+    /// `movement_mode` is that of the movement keys, which comes after the modes of the layers.
+    pub(super) fn active_modes(&self, screen: Rect, movement_mode: KeyMode) -> Vec<KeyMode> {
         // A question excludes the mode of the movement keys, so that a key that does not answer only dismisses it.
         if let Some(question) = self.stack.iter().find(|layer| layer.takes_all_keys()) {
             return question.mode(screen).into_iter().chain([KeyMode::Always]).collect();
         }
         // From the lowest layer up, so that keys of a mark on the picture take precedence over those of a panel.
         let layers = self.stack.iter().filter_map(|layer| layer.mode(screen));
-        layers.chain([moving, KeyMode::Always]).collect()
+        layers.chain([movement_mode, KeyMode::Always]).collect()
     }
 
     /// Updates all layers for a new frame.

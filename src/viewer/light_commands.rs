@@ -20,7 +20,7 @@ impl Viewer {
     /// Takes hold of the light nearest to the pointer on the screen, or of the next one if a light
     /// is held.
     pub(super) fn take_light(&mut self) {
-        let (camera, aspect_ratio) = (self.eye.camera(), self.map_resolution().aspect_ratio());
+        let (camera, aspect_ratio) = (self.eye.camera(), self.first_map_resolution().aspect_ratio());
         // Before the first mouse event, the middle of the screen counts as the pointer.
         let pointer = self.pointer.at().unwrap_or(Vec2::splat(0.5));
         let nearest = |lights: &[Light]| nearest_light(lights, &camera?, pointer, aspect_ratio);
@@ -74,13 +74,13 @@ impl Viewer {
         };
         let step = if faster { LIGHT_SHIFT_FACTOR * LIGHT_STEP } else { LIGHT_STEP };
         // The step is a share of the picture's height, but `drag_light` counts horizontally in shares of its width.
-        self.drag_light(step * Vec2::new(across / self.map_resolution().aspect_ratio(), down));
+        self.drag_light(step * Vec2::new(across / self.first_map_resolution().aspect_ratio(), down));
     }
 
     /// Moves the held light right and down by shares of the picture's width and height, at constant
     /// depth.
     pub(super) fn drag_light(&mut self, shares: Vec2) {
-        let aspect_ratio = self.map_resolution().aspect_ratio();
+        let aspect_ratio = self.first_map_resolution().aspect_ratio();
         self.move_light(|camera, from| camera.point_dragged(from, shares, aspect_ratio));
     }
 

@@ -33,7 +33,7 @@ impl Viewer {
             self.show_note("nothing finite to fit in view");
             return;
         };
-        let aspect_ratio = self.map_resolution().aspect_ratio();
+        let aspect_ratio = self.first_map_resolution().aspect_ratio();
         self.eye.jump(self.now, |camera| {
             let target = bounds.min + 0.5 * bounds.extent();
             // Any distance: framing changes it.
@@ -92,7 +92,7 @@ impl Viewer {
     pub(super) fn frame_object(&mut self, object: Option<u32>) {
         match object.and_then(|object| self.bounds_of(object)) {
             Some(bounds) => {
-                let aspect_ratio = self.map_resolution().aspect_ratio();
+                let aspect_ratio = self.first_map_resolution().aspect_ratio();
                 self.eye.jump(self.now, |camera| camera.framing(&bounds, aspect_ratio));
             }
             None => self.frame_everything(),

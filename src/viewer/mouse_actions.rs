@@ -32,7 +32,7 @@ impl Viewer {
     /// Carries out a mouse event. An open question is answered by keys only.
     pub(super) fn take_mouse(&mut self, event: MouseEvent) {
         let at = self.screen_position(event);
-        let modes = self.screen.modes(self.size());
+        let modes = self.screen.active_modes(self.size());
         let Some(gesture) = self.pointer.take(event, at, self.now).filter(|_| modes.contains(&self.eye.mode())) else {
             return;
         };
@@ -99,7 +99,7 @@ impl Viewer {
             DragTarget::Light => self.drag_light(self.to_map_shares(to - from)),
             DragTarget::View if from == to => {}
             DragTarget::View => {
-                let (by, aspect_ratio) = (self.to_map_shares(to - from), self.map_resolution().aspect_ratio());
+                let (by, aspect_ratio) = (self.to_map_shares(to - from), self.first_map_resolution().aspect_ratio());
                 let mode = self.eye.mode();
                 let drag = |camera: &_, _| control::dragged(camera, mode, grip, by, aspect_ratio);
                 self.eye.change(self.now, drag);
@@ -121,7 +121,7 @@ impl Viewer {
 
     /// Converts a displacement in shares of the screen to shares of one map's width and height.
     fn to_map_shares(&self, displacement: Vec2) -> Vec2 {
-        displacement * Vec2::new(self.resolution().width() as f32 / self.map_resolution().width() as f32, 1.0)
+        displacement * Vec2::new(self.resolution().width() as f32 / self.first_map_resolution().width() as f32, 1.0)
     }
 
     /// Returns the pixel of the picture at a position in shares of the screen.

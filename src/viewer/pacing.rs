@@ -68,13 +68,13 @@ impl Pacing {
     pub(super) fn record_frame(&mut self, frame: &Frame) {
         // A refinement reuses the samples of the frame before, so its time says little about that of a new picture.
         if !frame.refines {
-            self.quality.record_time(frame.sampling, frame.trace, self.link.frame_time());
+            self.quality.record_time(frame.sampling, frame.trace, self.link.min_frame_interval());
         }
     }
 
     /// Returns the least time between two frames.
-    pub(super) fn frame_time(&self) -> Duration {
-        self.link.frame_time()
+    pub(super) fn min_frame_interval(&self) -> Duration {
+        self.link.min_frame_interval()
     }
 
     /// Returns the time at which the link takes the next bytes, if no reply arrives before.

@@ -49,7 +49,7 @@ pub(super) struct Facts {
     /// Time up to which the eye has moved; `None` at rest.
     pub(super) moved_until: Option<Duration>,
     /// Least time between two frames.
-    pub(super) frame_time: Duration,
+    pub(super) min_frame_interval: Duration,
     /// Time at which the link takes the next bytes.
     pub(super) link_free_at: Duration,
     /// Whether the content of the screen has changed since it was drawn last.
@@ -128,7 +128,7 @@ impl Facts {
         if self.perfects_first() {
             return Duration::ZERO;
         }
-        let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + self.frame_time);
+        let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + self.min_frame_interval);
         // If the view has changed, its frame is due a frame time after the last one was begun. If the eye is moving,
         // its next step also waits for a further frame time of motion, or the loop would spin.
         let at = if self.picture == PictureState::Stale {

@@ -68,8 +68,8 @@ struct Content {
 
 impl Content {
     /// Returns the modes of the keymap that are in force on a screen of this size, topmost first.
-    fn modes(&self, size: Size) -> Vec<KeyMode> {
-        self.layers.modes(theme::area(size), self.moving)
+    fn active_modes(&self, size: Size) -> Vec<KeyMode> {
+        self.layers.active_modes(theme::area(size), self.moving)
     }
 }
 
@@ -193,7 +193,7 @@ impl Screen {
 
     /// Passes a key to the open help.
     pub(super) fn take_help_key(&mut self, key: HelpKey, keymap: &Keymap, size: Size) {
-        let (modes, screen) = (self.modes(size), theme::area(size));
+        let (modes, screen) = (self.active_modes(size), theme::area(size));
         if let Some(help) = self.content.layers.get_mut::<HelpPanel>()
             && !help.take(key, keymap, &modes, screen)
         {
@@ -202,8 +202,8 @@ impl Screen {
     }
 
     /// Returns the modes of the keymap that are in force on a screen of this size, topmost first.
-    pub(super) fn modes(&self, size: Size) -> Vec<KeyMode> {
-        self.content.modes(size)
+    pub(super) fn active_modes(&self, size: Size) -> Vec<KeyMode> {
+        self.content.active_modes(size)
     }
 
     /// Sets whether the eye flies or orbits.
@@ -304,7 +304,7 @@ impl Screen {
         }
         let area = theme::area(grid.size());
         let status_rows = content.layers.get::<StatusLine>().map_or(0, |_| StatusLine::rows(area));
-        let modes = content.modes(grid.size());
+        let modes = content.active_modes(grid.size());
         content.layers.draw(&mut Canvas {
             grid: &mut *grid,
             cell_mode,

@@ -56,7 +56,7 @@ fn layers_are_drawn_by_their_level_whenever_they_were_opened() {
 fn a_question_takes_all_keys_and_others_lie_over_movement() {
     let (screen, mut layers) = (Rect::new(0, 0, 80, 24), Layers::default());
     layers.open(Letter::<'L'>(Level::Mark));
-    assert_eq!(layers.modes(screen, KeyMode::Fly), [KeyMode::Light, KeyMode::Fly, KeyMode::Always]);
+    assert_eq!(layers.active_modes(screen, KeyMode::Fly), [KeyMode::Light, KeyMode::Fly, KeyMode::Always]);
     layers.open(Letter::<'?'>(Level::Question));
-    assert_eq!(layers.modes(screen, KeyMode::Fly), [KeyMode::Always]);
+    assert_eq!(layers.active_modes(screen, KeyMode::Fly), [KeyMode::Always]);
 }

@@ -13,7 +13,7 @@ const AT_REST: Facts = Facts {
     holds_first_back: false,
     begun: Some(Duration::from_secs(1)),
     moved_until: None,
-    frame_time: FRAME,
+    min_frame_interval: FRAME,
     link_free_at: Duration::from_secs(2),
     is_changed: false,
     improvable_at: None,
@@ -103,9 +103,9 @@ prop_compose! {
         link_free_at in time(),
         improvable_at in option::of(time()),
     ) -> Facts {
-        let (moved_until, frame_time) = (moves.then_some(NOW), FRAME);
+        let (moved_until, min_frame_interval) = (moves.then_some(NOW), FRAME);
         Facts {
-            busy, picture, holds_first_back, begun, moved_until, frame_time, link_free_at, is_changed,
+            busy, picture, holds_first_back, begun, moved_until, min_frame_interval, link_free_at, is_changed,
             improvable_at,
         }
     }
