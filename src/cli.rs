@@ -127,7 +127,7 @@ enum Command {
     Scenes(DeferredArgs<shipped::ScenesArgs>),
     /// Lead through the built-in scenes, with a caption for each
     Tour(DeferredArgs<tour::TourArgs>),
-    /// Write a commented scene to start from, and open it
+    /// Write a commented starter scene and view it
     New(DeferredArgs<new::NewArgs>),
     /// Print one frame, or compare it with a golden frame
     Frame(DeferredArgs<frame::FrameArgs>),

@@ -60,8 +60,9 @@ pub(super) struct BenchArgs {
     no_shadow: bool,
     /// Print JSON
     ///
-    /// The fields are "scene", "build_seconds", "tree_bytes", and "rounds", each with "rays", "hits",
-    /// "lit", "depths", "trace_seconds", "frame_seconds" and "hash".
+    /// The fields are "scene", "build_seconds", "tree_bytes" and "rounds". Each round has "rays",
+    /// "hits", "lit" (pairs of a hit and a light that reaches it), "depths" (the sum of the hits'
+    /// depths), "trace_seconds", "frame_seconds" and "hash".
     #[allow(clippy::doc_markdown, reason = "the help shows these texts as they are")]
     #[arg(long)]
     json: bool,

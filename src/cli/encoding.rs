@@ -20,9 +20,10 @@ pub(super) struct OrderArgs {
     /// slow]
     #[arg(long, value_name = "ORDER", conflicts_with = "compressed_link", hide_short_help = true)]
     order: Option<OrderArg>,
-    /// The link compresses, as ssh -C does; the same as --order raster
+    /// The link compresses, as ssh -C does: send cells row by row (--order raster)
     ///
-    /// The program cannot see whether ssh compresses.
+    /// Rows compress best, because each frame resembles the last. The program cannot see whether
+    /// ssh compresses.
     #[arg(long, hide_short_help = true)]
     compressed_link: bool,
 }
@@ -35,7 +36,7 @@ pub(super) struct LossArgs {
     #[arg(help = defaults::help("quality", "Fidelity of the picture while it moves: lower sends fewer bytes"))]
     quality: Option<QualityArg>,
     #[arg(long, value_name = "BYTES", value_parser = parse_rate, hide_short_help = true)]
-    #[arg(help = defaults::help("max_rate", "Average bandwidth cap in bytes per second, such as 50k or 2M"))]
+    #[arg(help = defaults::help("max_rate", "Limit on the average number of bytes sent per second, such as 50k or 2M"))]
     max_rate: Option<u32>,
 }
 

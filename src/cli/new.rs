@@ -1,4 +1,4 @@
-//! `termtrace new FILE`: writes a commented scene to start from, and opens it.
+//! `termtrace new FILE`: writes a commented starter scene and views it.
 
 use super::live::{Occasion, ViewArgs, live_source, open_view};
 use super::outcome::{CommandResult, Failure, reason, write_stdout};

@@ -62,7 +62,7 @@ pub(super) struct CameraArgs {
     /// Eye point, instead of the scene's
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true)]
     pub(super) eye: Option<Vec3>,
-    /// Target point, instead of the scene's
+    /// Point that the camera looks at, instead of the scene's target
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true, hide_short_help = true)]
     pub(super) target: Option<Vec3>,
     /// Up vector, vertical in the picture, instead of the scene's

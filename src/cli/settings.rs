@@ -89,7 +89,7 @@ pub(super) struct SettingArgs {
     #[arg(hide_possible_values = true, help_heading = "Motion", hide_short_help = true)]
     reduced_motion: Option<bool>,
     #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
-    #[arg(help = defaults::help("hint", "Show the keys to press in the lowest row until the first one"))]
+    #[arg(help = defaults::help("hint", "Show which keys to press, in the lowest row, until the first key press"))]
     #[arg(hide_possible_values = true, help_heading = None, hide_short_help = true)]
     hint: Option<bool>,
 }

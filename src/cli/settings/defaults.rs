@@ -7,7 +7,7 @@ const DEFAULTS: [(&str, &str); 12] = [
     ("glyphs", "auto"),
     ("map", "shaded"),
     ("quality", "exact; in casts, and live on a slow link, equal"),
-    ("max_rate", "what the link takes"),
+    ("max_rate", "the measured rate of the link"),
     ("cell_aspect", "as detected, or 2"),
     ("samples", "as many as the time allows; best at rest"),
     ("fps", "60"),
