@@ -4,7 +4,7 @@ use crate::lanes::{Number, Vector};
 use crate::ray::{Interval, Probe, Rays};
 use glam::Vec3;
 
-/// An axis-aligned box: all points from `min` to `max`. It may be flat, or a point.
+/// An axis-aligned box: all points from `min` to `max`. Its extent may be zero along any axis.
 ///
 /// ```
 /// use glam::Vec3;

@@ -43,7 +43,7 @@ const USAGE: &str = "\
 termtrace [OPTIONS] [SCENE]...
        termtrace COMMAND [OPTIONS] [SCENE]";
 
-/// The help of `-h`: what fits a screen of 80x24 cells.
+/// The commands and options that `-h` prints: a selection that fits on a screen of 80x24 cells.
 const SUMMARY: &str = "\
 Commands:
   tour, scenes, new           see or list the built-in scenes, write a scene
@@ -85,12 +85,12 @@ Examples:
   termtrace config                         the effective settings
   generate_scene | termtrace -             read the scene from standard input";
 
-/// Returns the help text below the options of `--help`.
+/// Returns the text that `--help` prints below the options.
 fn after_options() -> String {
     format!("{}\n\n{}\n\n{EXAMPLES}\n\n{}", help::KEYS, settings::SETTINGS_HELP, help::EXIT_STATUS)
 }
 
-/// Returns the list of commands for `--help`.
+/// Returns the commands with their descriptions, as `--help` lists them.
 fn commands() -> String {
     let program = Command::augment_subcommands(clap::Command::new(""));
     let line = |command: &clap::Command| {
@@ -191,10 +191,10 @@ pub(crate) fn main() -> ExitCode {
 }
 
 impl Cli {
-    /// Returns the command line as its help shows it.
+    /// Returns the definition of the command line from which its help is rendered.
     ///
-    /// The help lists the commands before the options itself, so clap's own list is hidden. `-h` shows no options but
-    /// those that [`SUMMARY`] names.
+    /// clap's list of commands is hidden, because `before_help` has one of its own. `-h` shows no options except those
+    /// that [`SUMMARY`] names.
     fn for_help() -> clap::Command {
         Self::command().mut_subcommands(|command| command.hide(true)).mut_args(|arg| arg.hide_short_help(true))
     }

@@ -1,4 +1,4 @@
-//! The large picture, traced and written on a thread of its own while the live view goes on.
+//! The export of a large picture, on a thread of its own while the live view goes on.
 
 use super::picture_export;
 use super::renderer::frame_of;
@@ -22,10 +22,10 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// The memory of a picture in bytes per pixel: samples, light, colours and the file.
+/// Estimated bytes of memory per pixel for a large picture: samples, light, colours and the file.
 const BYTES_PER_PIXEL: usize = 160;
 
-/// The name of the written file; `None` if it was cancelled.
+/// The name of the written file; `None` if the picture was cancelled.
 type Written = io::Result<Option<String>>;
 
 /// A large picture in progress. Dropping it cancels it, and leaves no file.
@@ -35,11 +35,11 @@ pub(super) struct LargePicture {
     thread: Option<JoinHandle<()>>,
 }
 
-/// The state that the loop shares with the thread.
+/// The state that the live view's loop shares with the thread that traces the picture.
 #[derive(Default)]
 struct Shared {
     token: Cancellation,
-    /// The percentage done.
+    /// The percentage of the picture that is done.
     percent: AtomicU32,
     pause: Mutex<Pause>,
     resumed: Condvar,
@@ -56,7 +56,7 @@ struct Pause {
 /// The contents of a large picture, and the place to write it.
 pub(super) struct Order {
     pub(super) job: Job,
-    /// The position of the line between two maps.
+    /// The position of the line between the two maps of a wipe, as a share of the width.
     pub(super) wipe: f32,
     pub(super) folder: PathBuf,
     /// The stem of the file's name.
@@ -71,7 +71,7 @@ impl LargePicture {
     /// `waker` wakes the loop whenever the percentage changes, and at the end.
     ///
     /// # Errors
-    /// If there is not enough memory, or the system gives no thread.
+    /// If there is not enough memory, or no thread can be started.
     pub(super) fn start(order: Order, mut waker: Waker) -> io::Result<Self> {
         memory::check(BYTES_PER_PIXEL * order.job.shot.resolution.pixel_count())?;
         let shared = Arc::new(Shared::default());
@@ -87,12 +87,12 @@ impl LargePicture {
         Ok(Self { shared, ended, thread: Some(thread) })
     }
 
-    /// Returns the percentage done.
+    /// Returns the percentage of the picture that is done.
     pub(super) fn percent(&self) -> u32 {
         self.shared.percent.load(Ordering::Relaxed)
     }
 
-    /// Makes the thread wait, or lets it go on.
+    /// Makes the tracing thread wait, or go on.
     pub(super) fn set_paused(&self, is_paused: bool) {
         self.shared.pause.lock().unwrap_or_else(PoisonError::into_inner).is_on = is_paused;
         if !is_paused {
@@ -106,7 +106,7 @@ impl LargePicture {
         self.set_paused(false);
     }
 
-    /// Returns the outcome once the picture has ended.
+    /// Returns the outcome if the picture is finished, cancelled or has failed; `None` before.
     ///
     /// # Panics
     /// With the payload of a panic in the thread.
@@ -129,14 +129,14 @@ impl Shared {
     fn write(&self, order: &Order, waker: &Mutex<Waker>) -> Written {
         let Some(picture) = self.traced(order, waker) else { return Ok(None) };
         let file = png(&picture, 1.0, 1).map_err(io::Error::other)?;
-        // The last moment to cancel: writing takes a few milliseconds.
+        // Writing takes only a few milliseconds, so it does not check for cancellation.
         if self.token.is_cancelled() {
             return Ok(None);
         }
         picture_export::write_new(&order.folder, &order.stem, Format::Png, &file).map(Some)
     }
 
-    /// Returns the picture; `None` if it was cancelled.
+    /// Traces the picture. Returns `None` if it was cancelled.
     fn traced(&self, order: &Order, waker: &Mutex<Waker>) -> Option<crate::tone::Picture> {
         let shot = &order.job.shot;
         let (mut part, parts) = (0, shot.layout.parts(shot.resolution).len());
@@ -175,7 +175,7 @@ impl Shared {
         waited.unwrap_or_else(PoisonError::into_inner).0.ended = Some(Instant::now());
     }
 
-    /// Sets the share done, and wakes the loop if the percentage changes.
+    /// Records the share of the picture that is done, and wakes the loop if the percentage changes.
     fn set_progress(&self, share: f32, waker: &Mutex<Waker>) {
         let percent = (100.0 * share) as u32;
         if self.percent.swap(percent, Ordering::Relaxed) != percent {
@@ -185,7 +185,7 @@ impl Shared {
 }
 
 impl Order {
-    /// Returns the number of threads: all but one, which is left to the live view.
+    /// Returns the number of threads that trace the picture: all but one, left to the live view.
     fn thread_count(&self) -> usize {
         let cores = || thread::available_parallelism().map_or(1, NonZeroUsize::get);
         self.threads.unwrap_or_else(cores).saturating_sub(1).max(1)

@@ -121,7 +121,7 @@ impl Live {
             }
             renderer.panic_if_asked();
             if let Some(large_picture) = &self.large_picture {
-                // Not for refinements: at rest the large picture would wait for them, and they for it.
+                // Refinements do not pause it: at rest one follows another, and the picture would wait for the last.
                 large_picture.set_paused(renderer.tracing() == Some(Tracing::NewView));
             }
             self.wait(until, renderer, signals)?;
@@ -271,7 +271,7 @@ impl Live {
         picture_export::write_new(folder, &stem, format, &contents)
     }
 
-    /// Returns the folder for files that the user asks for, and the stem of their names.
+    /// Returns the folder for exported pictures and recordings, and the stem of their file names.
     fn export_place(&self) -> io::Result<(PathBuf, String)> {
         let folder = self.exports.clone().ok_or_else(|| io::Error::other("there is no folder for it"))?;
         Ok((folder, picture_export::file_stem(self.shown_name().map_or("scene", |scene| &scene.name))))
@@ -319,7 +319,7 @@ impl Live {
                 Err(error) => format!("could not start a recording: {error}"),
             }
         };
-        // The first frame of a recording is whole.
+        // The recording starts with a complete frame, because a player has no earlier one to which changes could apply.
         if self.recording.is_some() {
             self.viewer.redraw();
         }

@@ -56,7 +56,7 @@ pub(super) fn write_new(folder: &Path, stem: &str, format: Format, contents: &[u
 
 /// Gives a complete file a name after `stem`, with the first unused number if that name exists.
 /// Returns the name.
-// Created exclusively instead of looked for first, so that two programs never write one file.
+// Each name is created exclusively. If it were only looked up first, two programs could write the same file.
 pub(super) fn finish_new(file: OutputFile, folder: &Path, stem: &str, extension: &str) -> io::Result<String> {
     let name = |number: u32| {
         let number = if number == 1 { String::new() } else { format!("-{number}") };

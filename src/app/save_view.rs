@@ -18,7 +18,7 @@ pub(super) enum Proposal {
 }
 
 impl Proposal {
-    /// Proposes to write a view into `file`. `None` if that is not a plain file.
+    /// Proposes to write a view into `file`. Returns `None` if `file` is not a regular file.
     pub(super) fn view(file: &Path, camera: Camera) -> Option<Self> {
         ProposedView::new(file, camera).map(Self::View)
     }
@@ -30,7 +30,7 @@ impl Proposal {
             1 => mesh.with_file_name(format!("{stem}.ron")),
             number => mesh.with_file_name(format!("{stem}-{number}.ron")),
         };
-        // Checked again when it is written: the name may be taken until then.
+        // `write_new` checks the name again, because another program may create the file until then.
         let path = (1..1000).map(name).find(|path| path.symlink_metadata().is_err()).unwrap_or_else(|| name(1000));
         Self::Scene(path, text)
     }
@@ -40,7 +40,7 @@ impl Proposal {
         matches!(self, Self::Scene(..))
     }
 
-    /// Returns the name without its folder of the file that would be written.
+    /// Returns the name, without its folder, of the file that would be written.
     pub(super) fn file_name(&self) -> String {
         let path = match self {
             Self::View(view) => view.file.path(),

@@ -93,7 +93,7 @@ impl<E: Send + 'static> Scenes<E> {
     /// Switches to the scene `steps` places further on in the cyclic list, starts to load it, and
     /// returns its index.
     pub(super) fn switch(&mut self, steps: isize) -> io::Result<usize> {
-        // With a single scene nothing is done, because that would only be loaded again.
+        // Switching from a single scene to itself would only load it again.
         if self.sources.len() < 2 {
             return Ok(self.wanted);
         }
@@ -103,7 +103,7 @@ impl<E: Send + 'static> Scenes<E> {
         Ok(self.wanted)
     }
 
-    /// Reads the current scene again, a mesh with this axis of its file up.
+    /// Reads the current scene again; if it is a mesh, with the axis `up` of its file pointing up.
     pub(super) fn turn_up(&mut self, up: UpAxis) -> io::Result<()> {
         if let Some(source) = self.sources.get_mut(self.wanted) {
             source.turn_up(up);

@@ -1,6 +1,6 @@
-//! A recording of the live session: what the terminal is sent, with times, as an asciicast.
+//! A recording of the live session: the bytes of its frames with their times, as an asciicast.
 //!
-//! Queries and modes are left out: a player's terminal would answer them, or be left in them.
+//! Queries and modes are not recorded: the terminal of a player would reply to the queries, and stay in the modes.
 
 use super::picture_export;
 use crate::grid::Size;
@@ -12,15 +12,15 @@ use std::time::Duration;
 
 /// Hides the cursor and clears the screen at the start of a recording.
 const BEGIN: &str = "\x1b[?25l\x1b[m\x1b[2J";
-/// Resets the colours and shows the cursor at its end.
+/// Resets the colours and shows the cursor at the end of a recording.
 const END: &str = "\x1b[m\x1b[?25h";
 
-/// A recording in progress. Dropping it finishes the file, so that a signal leaves a valid one.
+/// A recording in progress. Dropping it finishes the file, which is therefore valid after a signal.
 pub(super) struct SessionRecording {
-    /// `None` after the end, and after an error.
+    /// The temporary file; `None` once the recording has ended or an error has occurred.
     file: Option<BufWriter<OutputFile>>,
     folder: PathBuf,
-    /// The stem of the file's name.
+    /// The stem of the finished file's name.
     stem: String,
     start: Duration,
     /// The time of the last event, on the loop's clock.
@@ -33,7 +33,7 @@ impl SessionRecording {
     pub(super) fn start(folder: &Path, stem: &str, size: Size, now: Duration) -> io::Result<Self> {
         let file = OutputFile::create_in(folder)?;
         file.remove_stale();
-        // Written as it goes: memory does not grow with the length of the session.
+        // Events are written at once, so that memory does not grow with the length of the session.
         let mut file = BufWriter::new(file);
         write_header(&mut file, size)?;
         write_event(&mut file, 0.0, "o", BEGIN)?;
@@ -75,7 +75,7 @@ impl SessionRecording {
         let Some(file) = &mut self.file else { return Ok(()) };
         let written = write_event(file, seconds, kind, text);
         if written.is_err() {
-            // Taken apart, because a dropped buffer would try once more to write what it holds.
+            // `into_parts`, because a dropped `BufWriter` would try again to write its contents.
             self.file.take().map(BufWriter::into_parts);
         }
         written
@@ -85,7 +85,7 @@ impl SessionRecording {
 impl Drop for SessionRecording {
     fn drop(&mut self) {
         if self.file.is_some() {
-            // There is no one left to tell of an error: the loop is at its end.
+            // An error is ignored: the live view is ending and can no longer show a message.
             let _ = self.finish(self.now);
         }
     }

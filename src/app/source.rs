@@ -31,7 +31,7 @@ pub(super) struct SceneName {
 }
 
 impl SceneName {
-    /// Returns the name without its folders, safe to print.
+    /// Returns the last component of the name, without control characters.
     pub(super) fn short(&self) -> String {
         let name = self.name.rsplit('/').find(|part| !part.is_empty());
         visible(name.unwrap_or_default())
@@ -77,7 +77,7 @@ impl<E> Source<E> {
 
     /// Returns a source whose `read` also gets the axis of a mesh file that is to point up.
     ///
-    /// The axis is `None` until the user chooses one. All else is as for [`Source::new`].
+    /// The axis is `None` until the user chooses one. Otherwise the same as [`Source::new`].
     #[doc(hidden)]
     pub fn turnable(
         name: impl Into<String>,
@@ -87,7 +87,7 @@ impl<E> Source<E> {
         Self { named, up: None, read: Arc::new(read) }
     }
 
-    /// Turns the mesh so that this axis of its file points up.
+    /// Makes later readings of a mesh file turn it so that its axis `up` points up.
     pub(super) fn turn_up(&mut self, up: UpAxis) {
         self.up = Some(up);
     }

@@ -35,9 +35,9 @@ pub(super) struct Watching {
 /// The state that the event loop shares with the watching thread, which sets `change`.
 #[derive(Default)]
 struct Shared {
-    /// The folders and links on the paths to the scene's files.
+    /// The folders and symbolic links on the paths to the scene's files.
     steps: HashSet<PathBuf>,
-    /// The paths of the scene's files, without links.
+    /// The paths of the scene's files, with all symbolic links resolved.
     ends: HashSet<PathBuf>,
     change: FileChange,
 }
@@ -128,7 +128,7 @@ impl Watching {
             let paths = self.resolve_paths();
             self.share_paths(&paths);
             fresh.extend(self.watch_folders(&paths));
-            // If a link was replaced before its folder was watched, the paths have changed, and are watched anew.
+            // A link that was replaced before its folder was watched has changed the paths: they are watched anew then.
             if self.resolve_paths() == paths {
                 break;
             }

@@ -145,7 +145,7 @@ impl Camera {
         let [from, to] = [self.pose, end.pose];
         let [a, b] = [from, to].map(|pose| pose.target - pose.eye);
         let angle = libm::acosf(a.normalize_or_zero().dot(b.normalize_or_zero()).clamp(-1.0, 1.0));
-        // Between opposite directions the turn is horizontal.
+        // Opposite directions have no common normal: the camera turns about its v, that is, horizontally.
         let axis = a.cross(b).try_normalize().unwrap_or(self.basis.v);
         let even = |from: f32, to: f32| libm::powf(to / from, share);
         let view = rotated(a, axis, share * angle) * even(a.length(), b.length());

@@ -64,8 +64,7 @@ pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {
     least.filter(|least| least.value > found.value).unwrap_or(found)
 }
 
-/// Returns the glyphs to use: the user's choice, if there is one, else half blocks, spaces or
-/// letter shapes.
+/// Returns the glyphs to use: the user's choice, or else half blocks, spaces or letter shapes.
 ///
 /// Spaces are for locales that cannot encode half blocks, shapes for terminals without colours.
 pub fn glyphs(choice: GlyphChoice, colors: Detected<Colors>, clues: &Clues<'_>) -> Detected<Glyphs> {

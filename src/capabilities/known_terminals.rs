@@ -1,10 +1,10 @@
 //! Terminals that are known to support truecolor, by the replies that identify them.
 //!
-//! Over ssh the environment has `TERM` alone, which most of them share. Multiplexers reply for themselves and are not
-//! listed: whether tmux and GNU screen pass 24-bit colours on depends on their configuration. Nor is xterm, which
-//! replies to the query about colours, nor Terminal.app and `PuTTY`, which had no truecolor for long.
+//! Over ssh only `TERM` is passed on, whose value most terminals share. Not listed are: tmux and GNU screen, which
+//! reply themselves, and whose configuration decides whether 24-bit colours reach the terminal; xterm, which replies to
+//! the query about colours; Terminal.app and `PuTTY`, whose older versions had no truecolor.
 
-/// Beginnings of the names that terminals reply to XTVERSION, in lower case.
+/// Prefixes, in lower case, of the names that these terminals send in reply to XTVERSION.
 const NAMES: [&str; 11] = [
     "alacritty",
     "contour",
@@ -26,7 +26,7 @@ pub(super) fn name_implies_truecolor(name: &str) -> bool {
 }
 
 /// Returns whether a terminal with these secondary device attributes (DA2) supports truecolor.
-// For terminals that do not reply to XTVERSION: type, version, and a third number.
+// For terminals that do not reply to XTVERSION. DA2 reports the type, the version and a third number.
 pub(super) fn attributes_imply_truecolor(attributes: &[u16]) -> bool {
     match *attributes {
         // Alacritty from 0.5 on, and VTE (GNOME Terminal, Xfce Terminal, Tilix) from 0.36 on: 100 times the minor

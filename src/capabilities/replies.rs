@@ -59,12 +59,12 @@ impl Replies {
         }
     }
 
-    /// Records what a device control string says about truecolor.
+    /// Records whether a device control string shows that the terminal supports truecolor.
     ///
-    /// It is either the terminal's name, such as `>|kitty(0.26.5)`, or the reported SGR attributes, such as
-    /// `1$r0;48:2::1:2:3m`, which contain [`TEST_COLOR`] or not.
+    /// The string is either the terminal's name, such as `>|kitty(0.26.5)`, or the reported SGR attributes, such as
+    /// `1$r0;48:2::1:2:3m`. Attributes that contain [`TEST_COLOR`] show that 24-bit colours are kept.
     ///
-    /// A reply that the query is invalid (`0$r`) records nothing.
+    /// The string `0$r`, which rejects the query, records nothing.
     pub fn take_dcs(&mut self, text: &[u8]) {
         let Ok(text) = std::str::from_utf8(text) else { return };
         if let Some(name) = text.strip_prefix(">|") {
@@ -86,7 +86,8 @@ impl Replies {
     }
 
     /// Returns whether the terminal supports truecolor; `None` if no reply says so.
-    // The name outweighs the SGR attributes, in which some terminals report the nearest palette colour.
+    // The name takes precedence over the reported SGR attributes, in which some terminals with truecolor report the
+    // nearest palette colour.
     pub fn supports_truecolor(&self) -> Option<bool> {
         if self.is_known_for_truecolor { Some(true) } else { self.truecolor }
     }

@@ -24,7 +24,7 @@ pub(super) struct CheckArgs {
 
 /// Loads the scene and prints that it has no faults; otherwise the error lists every fault.
 pub(super) fn run(args: &CheckArgs) -> CommandResult {
-    // A missing texture is a fault here, whatever the other commands make of it.
+    // `check` fails on a missing texture, of which the other commands only warn.
     let strict = CameraArgs { strict: true, ..args.camera_args.clone() };
     let scene = strict.load(&SceneSource::from_path(&args.scene, strict.mesh_format)?)?;
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });

@@ -47,7 +47,7 @@ pub(super) struct ManArgs {
 /// Prints a completion script for the shell.
 pub(super) fn complete(args: &CompletionsArgs) -> CommandResult {
     let mut program = Cli::command();
-    // Lists the deferred arguments of all commands, which would be missing otherwise.
+    // Adds the deferred arguments of all commands, which the script would lack otherwise.
     program.build();
     let script = match args.shell {
         Shell::Bash => bash::script(&program),
@@ -65,7 +65,7 @@ pub(super) fn complete(args: &CompletionsArgs) -> CommandResult {
 /// Prints a man page, as roff.
 pub(super) fn man(args: &ManArgs) -> CommandResult {
     let page = command_named(Cli::command(), args.command.as_deref())?;
-    // What the summary leaves out has no text otherwise.
+    // clap_mangen writes no text for an option that `-h` hides.
     let page = page.mut_args(|arg| arg.hide_short_help(false));
     let roff = manual::page(page, help::EXIT_STATUS);
     write_stdout(&roff.map_err(|error| Failure::runtime("the man page", reason(&error)))?)
@@ -73,7 +73,7 @@ pub(super) fn man(args: &ManArgs) -> CommandResult {
 
 /// Returns the command of this name with all its arguments; without a name, the whole program.
 pub(super) fn command_named(mut program: clap::Command, name: Option<&str>) -> Result<clap::Command, Failure> {
-    // Adds the deferred arguments to all commands.
+    // Adds the deferred arguments of all commands.
     program.build();
     match name {
         None => Ok(program),
@@ -81,8 +81,8 @@ pub(super) fn command_named(mut program: clap::Command, name: Option<&str>) -> R
     }
 }
 
-/// Returns the error about a word that clap took for a scene though a command was meant: a misspelt
-/// command, or a known one after a flag, where clap expects a scene.
+/// Returns the error about a command `name` that clap took for a scene, because it is misspelt or
+/// follows a flag.
 pub(super) fn no_command(name: &str) -> Failure {
     // A known command is not misspelt; it was not recognised because of the flag before it.
     if Cli::command().find_subcommand(name).is_some() {

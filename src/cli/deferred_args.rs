@@ -34,7 +34,7 @@ fn keep_about(command: Command, list: fn(Command) -> Command) -> Command {
     let about = command.get_about().cloned().unwrap_or_default();
     let more = format!("termtrace {} --help lists all options, with examples.", command.get_name());
     let command = list(command).about(about).after_help(more);
-    // Every command accepts the flag, so that a script may add it to any; only those that read settings list it.
+    // Every command accepts `--no-config`, so that a script may add it to any; only those that read settings list it.
     if command.get_arguments().any(|arg| arg.get_id() == "no_config") {
         return command;
     }

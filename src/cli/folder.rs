@@ -1,4 +1,4 @@
-//! A folder in the place of a scene: its scenes and meshes, in the order of their names.
+//! A folder as an argument: it is replaced by the scenes and meshes in it, sorted by name.
 
 use super::outcome::{Failure, reason};
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ pub(super) fn expanded(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(scenes)
 }
 
-/// Returns whether a file with this name is taken for a scene or a mesh.
+/// Returns whether a file name has the extension of a scene or a mesh.
 pub(super) fn is_scene(name: &str) -> bool {
     is_mesh(name, &[]) || Path::new(name).extension().is_some_and(|ending| ending == "ron")
 }
@@ -33,7 +33,7 @@ fn scenes_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(scenes)
 }
 
-/// Returns whether a path names a scene or mesh that is not hidden.
+/// Returns whether a path has the extension of a scene or mesh and is not hidden (`.name`).
 fn names_scene(path: &Path) -> bool {
     path.file_name().and_then(|name| name.to_str()).is_some_and(|name| !name.starts_with('.') && is_scene(name))
 }

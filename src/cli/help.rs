@@ -1,11 +1,11 @@
-//! `termtrace help` and `termtrace version`, and the keys in the help.
+//! `termtrace help` and `termtrace version`, and the sections of `--help` on keys and exit codes.
 
 use super::Cli;
 use super::completions::command_named;
 use super::outcome::{CommandResult, write_help, write_stdout};
 use clap::Args;
 
-/// The most important keys.
+/// The section of `--help` with the most important keys.
 pub(super) const KEYS: &str = "\
 Keys (termtrace config --keys prints all of them):
   drag, WASD, arrows   look around and move; the wheel moves towards the pointer
@@ -17,7 +17,7 @@ Keys (termtrace config --keys prints all of them):
   o                    save the picture to a file
   ?, q                 all keys, quit";
 
-/// The exit codes, with their heading.
+/// The section of `--help` and of man pages with the exit codes.
 pub(super) const EXIT_STATUS: &str = "Exit status:
   0  success
   1  failure, or a difference found by frame --check
@@ -39,19 +39,19 @@ pub(super) struct HelpArgs {
 #[derive(Args)]
 pub(super) struct VersionArgs {}
 
-/// Returns the text with a capital at its start, as other help has it.
+/// Returns the text with its first letter in upper case, as sentences in clap's help start.
 pub(super) fn capitalized(text: &str) -> String {
     let (first, rest) = text.split_at(text.chars().next().map_or(0, char::len_utf8));
     first.to_uppercase() + rest
 }
 
-/// Prints the help of a command, as its `--help` does.
+/// Prints the same help of a command as its `--help`.
 pub(super) fn run(args: &HelpArgs) -> CommandResult {
     let mut command = command_named(Cli::for_help(), args.command.as_deref())?;
     write_help(&command.render_long_help().to_string())
 }
 
-/// Prints the version, as `--version` does.
+/// Prints the same line as `--version`.
 pub(super) fn version() -> CommandResult {
     write_stdout(concat!("termtrace ", env!("CARGO_PKG_VERSION"), "\n").as_bytes())
 }

@@ -23,7 +23,7 @@ use termtrace::internals::{app, cell};
 use termtrace::live::{Ending, Options, Outcome, Signals, Source};
 use termtrace::{Camera, Colors, Painter, Pose, Sampling, Size, export};
 
-/// The occasion on which the live view opens, which decides what it shows first.
+/// The command that opens the live view, which determines what the view shows first.
 #[derive(Clone, Copy)]
 pub(super) enum Occasion {
     /// The default scene, because none was named.
@@ -151,8 +151,8 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
     write_stdout(&export::ansi_or_text(&grid, cell_mode.colors))
 }
 
-/// Runs the live view of the scenes that `sources` returns. After its end, even by a panic, the
-/// terminal is restored before a message is printed.
+/// Runs the live view of the scenes that `sources` returns. The terminal is restored before any
+/// message is printed, even after a panic.
 pub(super) fn open_view(
     args: &ViewArgs,
     given: &ArgMatches,

@@ -1,4 +1,4 @@
-//! The man pages, as roff: clap's sections, and those that it has no names for.
+//! The man pages, as roff: the sections of `clap_mangen`, and others, such as keys, files and environment.
 
 use clap::Command;
 use clap_mangen::Man;
@@ -25,8 +25,8 @@ COLORTERM, TERM, TERM_PROGRAM
 LC_ALL, LC_CTYPE, LANG
     whether the locale is UTF-8, which half blocks need";
 
-/// Returns the page of a command whose deferred arguments were added; `exit_status` is its section
-/// of that name.
+/// Returns the man page of a command to which its deferred arguments were added. `exit_status` is
+/// the text of its section "Exit status".
 pub(super) fn page(command: Command, exit_status: &str) -> io::Result<Vec<u8>> {
     let has_commands = command.has_subcommands();
     let text = command.get_after_long_help().map(ToString::to_string).unwrap_or_default();
@@ -42,7 +42,7 @@ pub(super) fn page(command: Command, exit_status: &str) -> io::Result<Vec<u8>> {
     }
     let mut sections = String::new();
     for part in text.split("\n\n") {
-        // Exit codes are the last section of every page.
+        // The section on exit codes is added after all others, as the last one of every page.
         let (heading, body) =
             part.split_once(":\n").filter(|(heading, _)| !heading.contains('\n')).unwrap_or(("Notes", part));
         if !exit_status.starts_with(heading) && !heading.starts_with("Keys") {
@@ -60,17 +60,17 @@ pub(super) fn page(command: Command, exit_status: &str) -> io::Result<Vec<u8>> {
     Ok(page)
 }
 
-/// Adds a section whose lines stay as they are.
+/// Adds a section whose lines are not filled.
 fn section(page: &mut String, heading: &str, body: &str) {
     let _ = writeln!(page, ".SH {}\n.nf", heading.to_uppercase());
     for line in body.lines() {
-        // `\&` keeps a point or apostrophe at the start from being taken for a command.
+        // `\&` (no width) before a full stop or apostrophe, which would otherwise start a roff request.
         let _ = writeln!(page, "\\&{}", line.replace('\\', "\\e").replace('-', "\\-").replace('\'', "\\(aq"));
     }
     page.push_str(".fi\n");
 }
 
-/// Returns the built-in keys, mode by mode.
+/// Returns the text of the section on keys: the built-in bindings of each mode.
 fn keys() -> String {
     let keymap = Keymap::default();
     let mut text = String::from("The mouse: a drag turns the view, the wheel moves towards the pointer.");

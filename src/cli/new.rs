@@ -11,7 +11,7 @@ use termtrace::internals::mesh_file::is_mesh;
 use termtrace::internals::output_file::OutputFile;
 use termtrace::internals::text::visible;
 
-/// The scene that is written.
+/// The contents of the new scene file.
 const STARTER: &str = include_str!("starter.ron");
 
 const EXAMPLES: &str = "\
@@ -31,7 +31,7 @@ pub(super) struct NewArgs {
     view: ViewArgs,
 }
 
-/// Writes the scene and opens it.
+/// Writes the new scene file, and opens it if standard output is a terminal.
 pub(super) fn run(args: &NewArgs, given: &ArgMatches) -> CommandResult {
     let path = &args.file;
     if is_mesh(&path.to_string_lossy(), &[]) {

@@ -77,7 +77,7 @@ pub(super) fn print_clap_message(message: &clap::Error) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Writes help to standard output, coloured if that is a terminal.
+/// Writes a help text to standard output, coloured if that is a terminal.
 pub(super) fn write_help(text: &str) -> CommandResult {
     let text = if style::is_colored(&io::stdout()) { style::help(text) } else { text.to_owned() };
     write_stdout(text.as_bytes())

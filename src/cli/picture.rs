@@ -10,10 +10,10 @@ use termtrace::{CellMode, Resolution, Sampling};
 /// The use of a frame, which decides its size and samples where no flag does.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum FrameKind {
-    /// Cells, or a golden frame of any format.
+    /// A frame as cells, or a golden frame of any format.
     // The sizes of golden frames are promised: users' tests rely on them.
     Cells,
-    /// A file with a picture, to look at.
+    /// A picture file that is not a golden frame.
     Picture,
     /// An animated GIF.
     Gif,
@@ -25,7 +25,7 @@ impl FrameKind {
         if format.has_pixels() { Self::Picture } else { Self::Cells }
     }
 
-    /// Returns the default size in pixels; `None` for 80x24 cells.
+    /// Returns the default resolution; `None` if the default size is 80x24 cells.
     fn resolution(self) -> Option<Resolution> {
         match self {
             Self::Cells => None,
@@ -80,7 +80,7 @@ impl SizeArgs {
         self.resolution_in((80, 24), self.cell_aspect, mode)
     }
 
-    /// Returns the resolution, by default that of a screen of this number of cells.
+    /// Returns the resolution that the flags give, by default that of `screen`, in columns and rows.
     fn resolution_in(&self, screen: (u32, u32), cell_aspect: f32, mode: CellMode) -> Result<Resolution, Failure> {
         let (across, down) = mode.pixels_per_cell();
         let (columns, rows) = self.size.unwrap_or(screen);
@@ -112,7 +112,7 @@ impl PictureArgs {
             return self.size.resolution_in(cells, aspect, mode);
         }
         let is_default = self.size.size.is_none() && self.size.pixels.is_none() && self.scale.is_none();
-        // The default size is one of square pixels, for which the shape of cells has no meaning.
+        // The default resolution of a kind has square pixels, whatever the shape of a cell.
         kind.resolution().filter(|_| is_default).map_or_else(|| self.size.resolution(mode), Ok)
     }
 

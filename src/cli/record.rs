@@ -70,9 +70,10 @@ const MAX_FRAMES: usize = 100_000;
 /// Limit on the frame rate of a GIF. Delays between frames are in hundredths of a second, and
 /// viewers treat a delay of 1 as 10.
 const MAX_GIF_FPS: u32 = 50;
-/// Default frame rate of a GIF: smooth, and its delays are all the same.
+/// Default frame rate of a GIF. The delay, 4 hundredths of a second, is a whole number, so that all
+/// are equal.
 const GIF_FPS: u32 = 25;
-/// Default frame rate of an asciicast, and of numbered pictures.
+/// Default frame rate of an asciicast and of numbered PNG files.
 const CAST_FPS: u32 = 30;
 /// Default length of an orbit in seconds.
 const ORBIT_SECONDS: f64 = 8.0;
@@ -338,7 +339,7 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
     // `end` gives an asciicast or GIF its name, so an interrupted film leaves no file.
     film.written(0, sink.end())?;
     if let Some(summary) = film.summary(args.output.as_deref(), args.picture.scale()) {
-        // Not printed where the bar is hidden: what runs without a terminal is silent if all went well.
+        // Without a terminal, where the progress bar is hidden, a successful command prints nothing.
         let is_shown = !bar.is_hidden();
         bar.finish_and_clear();
         if is_shown {
@@ -348,7 +349,7 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
     Ok(())
 }
 
-/// Formats the size of a file in bytes with two digits or three, such as `6.6 MB`.
+/// Formats the size of a file in bytes with two or three digits, such as `6.6 MB`.
 fn file_size(bytes: u64) -> String {
     let (value, unit) = match bytes as f64 {
         v if v >= 999.5e6 => (v / 1e9, "GB"),

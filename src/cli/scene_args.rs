@@ -126,7 +126,7 @@ impl CameraArgs {
             return Err(Failure::Usage(format!("{source}: {message}")));
         }
         let draft = if self.strict { source.draft(up, &reporter.strict()) } else { source.draft(up, reporter) }?;
-        // An ignored flag would look like a fault of the program.
+        // An error, because a user would take a flag without any effect for a fault of the program.
         if self.mesh_up.is_some() && draft.mesh().is_none() {
             let message = "--mesh-up turns a mesh file; in a scene, write rotate: (-90, 0, 0) in the mesh";
             return Err(Failure::Usage(format!("{source}: {message}")));

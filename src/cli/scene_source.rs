@@ -108,7 +108,7 @@ fn shipped_like(name: &Path) -> Option<PathBuf> {
     closest(name.to_str()?, ShippedScene::names()).map(PathBuf::from)
 }
 
-/// Warns of a picture without any light. Maps need none.
+/// Warns of a scene whose shaded picture is black. Other maps need no light.
 pub(super) fn warn_of_darkness(map: Map, scene: &Scene) {
     if let Some(darkness) = scene.darkness().filter(|_| map == Map::Shaded) {
         warn(darkness);

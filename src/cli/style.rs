@@ -1,4 +1,4 @@
-//! Colours of help and errors on a terminal. A pipe gets plain text.
+//! Colours of help texts and error messages on a terminal. Text for a pipe or a file stays plain.
 
 use std::io::IsTerminal;
 
@@ -14,9 +14,9 @@ pub(super) fn is_colored(stream: &impl IsTerminal) -> bool {
     stream.is_terminal() && variable("NO_COLOR").is_empty() && variable("TERM") != "dumb"
 }
 
-/// Colours an error message: `error:`, tips and carets.
+/// Returns an error message with coloured `error:`, tips and carets.
 ///
-/// The message is coloured after its control characters were replaced, because it may quote arguments.
+/// `text` must contain no control characters of quoted arguments: the caller replaces them before.
 pub(super) fn error(text: &str) -> String {
     text.split_inclusive('\n').fold(String::new(), |colored, line| colored + &error_line(line))
 }
@@ -38,7 +38,7 @@ fn error_line(line: &str) -> String {
     }
 }
 
-/// Colours a help text: headings, flags and commands.
+/// Returns a help text with coloured headings, flags and commands.
 pub(super) fn help(text: &str) -> String {
     let mut is_in_commands = false;
     text.split_inclusive('\n').fold(String::new(), |colored, line| {
@@ -51,13 +51,13 @@ pub(super) fn help(text: &str) -> String {
     })
 }
 
-/// Colours the first column of a line, which two blanks end.
+/// Colours the first column of a help line: a flag or command, up to the first two spaces.
 fn literal(line: &str, text: &str) -> String {
     let column = text.split("  ").next().unwrap_or_default().trim_end();
     line.replacen(column, &format!("{CYAN}{column}{PLAIN}"), 1)
 }
 
-/// Colours a heading at the start of a line: a word or two up to a colon.
+/// Colours a heading at the start of a line: words up to a colon, such as `Usage:`.
 fn headed(line: &str) -> String {
     match line.split_once(':') {
         Some((head, rest)) if is_heading(head) && (rest.trim().is_empty() || matches!(head, "Usage" | "Keys")) => {

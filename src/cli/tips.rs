@@ -3,7 +3,7 @@
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue};
 
-/// Old and new names of renamed settings. Each is also the name of a flag.
+/// Old and new names of renamed settings. The flag of a setting has the same name.
 const RENAMED: [(&str, &str); 1] = [("view", "map")];
 
 /// Returns the new name of the setting `old`, if it was renamed.
@@ -11,7 +11,7 @@ pub(super) fn setting(old: &str) -> Option<&'static str> {
     RENAMED.iter().find(|(name, _)| *name == old).map(|(_, new)| *new)
 }
 
-/// Returns what to write instead of a flag that does not exist.
+/// Returns the tip for a flag that does not exist: which flag to write instead.
 fn tip(flag: &str) -> Option<String> {
     match flag {
         "-v" => Some("the version is printed by '-V'".to_owned()),
@@ -19,7 +19,7 @@ fn tip(flag: &str) -> Option<String> {
     }
 }
 
-/// Adds a tip to the error about a flag that does not exist.
+/// Adds the tip, if there is one, to the error about a flag that does not exist.
 pub(super) fn with_tip(mut error: clap::Error) -> clap::Error {
     if let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg)
         && let Some(tip) = tip(flag)

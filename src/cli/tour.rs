@@ -23,7 +23,7 @@ pub(super) struct TourArgs {
     view: ViewArgs,
 }
 
-/// Opens the tour; prints its captions if standard output is not a terminal.
+/// Opens the tour in the live view, or prints its captions if standard output is not a terminal.
 pub(super) fn run(args: &TourArgs, given: &ArgMatches) -> CommandResult {
     if !io::stdout().is_terminal() {
         return print_captions();

@@ -30,7 +30,7 @@ fn frames_are_events_with_their_times() {
     assert_eq!(lines(&folder.path().join("ball.cast")), expected);
 }
 
-/// A signal or an error elsewhere drops the recording, which then has a name and its end.
+/// A recording that a signal or another error drops still gets its name and its last event.
 #[test]
 fn a_dropped_recording_is_whole_and_replaces_nothing() {
     let folder = tempfile::tempdir().expect("a folder can be made");

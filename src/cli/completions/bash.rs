@@ -41,15 +41,15 @@ _termtrace() {
     case $flag in
 "#;
 
-/// Returns the script: first the values of all options, which are those of each command, then the
-/// options and other arguments of each command.
+/// Returns the script: first the values of the options of all commands, then the options and
+/// positional arguments of each command.
 pub(super) fn script(program: &Command) -> String {
     let endings = SCENE_ENDINGS.map(|ending| format!("*.{ending}|*.{}", ending.to_uppercase())).join("|");
     let names: Vec<_> = commands(program).into_iter().map(|(name, _)| name).collect();
     let mut script = HEAD.replace("ENDINGS", &endings).replace("COMMANDS", &names.join("|"));
     let mut values = BTreeMap::new();
     for command in program.get_subcommands().chain([program]) {
-        // An option whose value may be left out has it after a `=`, which is the case of `$cur` above.
+        // An optional value follows a `=`. `HEAD` sets `$cur` to the part after it.
         for arg in options(command).filter(|arg| takes_value(arg)) {
             values.insert(spellings(arg).join("|"), action(&Values::of(arg, program)));
         }
@@ -67,7 +67,8 @@ pub(super) fn script(program: &Command) -> String {
         + "    esac\n}\n\ncomplete -F _termtrace -o nosort termtrace 2>/dev/null || complete -F _termtrace termtrace\n"
 }
 
-/// Returns what completes a word that is no value of an option.
+/// Returns the shell commands that complete a word other than the value of an option: a flag or a
+/// positional argument.
 fn arguments(command: &Command, program: &Command) -> String {
     let flags: Vec<_> = options(command).flat_map(spellings).collect();
     let place = command.get_positionals().next().map(|arg| action(&Values::of(arg, program))).unwrap_or_default();

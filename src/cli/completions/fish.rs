@@ -24,7 +24,7 @@ end
 complete -c termtrace -f
 "#;
 
-/// Returns the script: commands, then the arguments of the live view and of each command.
+/// Returns the script: the commands, then the arguments of each command and of the live view.
 pub(super) fn script(program: &Command) -> String {
     let names: Vec<_> = commands(program).into_iter().map(|(name, _)| name).collect();
     let mut script = HEAD.replace("COMMANDS", &names.join(" ")).replace("ENDINGS", &SCENE_ENDINGS.join("|"));
@@ -52,7 +52,7 @@ fn option(arg: &Arg, program: &Command) -> String {
     let short = arg.get_short().map(|short| format!(" -s {short}")).unwrap_or_default();
     let long = arg.get_long().map(|long| format!(" -l {long}")).unwrap_or_default();
     let value = if takes_value(arg) { value(&Values::of(arg, program)) } else { String::new() };
-    // An option whose value may be left out does not take the next word.
+    // The value of an option with an optional value follows a `=`, never in the next word.
     let required = if takes_value(arg) && !arg.is_require_equals_set() { " -r" } else { "" };
     let no_files = if takes_value(arg) && !value.contains(" -F") { " -f" } else { "" };
     format!("{short}{long}{required}{no_files}{value} -d {}", quoted(&text(arg.get_help())))
@@ -63,9 +63,9 @@ fn value(values: &Values) -> String {
     if values.words.is_empty() { files.to_owned() } else { format!("{files} -a {}", offered(&values.words)) }
 }
 
-/// Returns words as fish offers them: each in a line, with a tab before its description.
+/// Returns words in fish's syntax for candidates: one a line, with a tab before its description.
 fn offered(words: &[Word]) -> String {
-    // fish reads the text twice: as a string, and then as a list of words in quotes.
+    // fish unquotes the text twice: first as a string, then as a list of quoted words.
     let line = |(word, help): &Word| format!("{word}\\t'{}'", help.replace(['"', '$', '\\'], "").replace('\'', "\\'"));
     format!("\"{}\"", words.iter().map(line).collect::<Vec<_>>().join("\n"))
 }

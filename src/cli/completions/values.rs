@@ -1,16 +1,16 @@
-//! The words and files that complete the value of an argument.
+//! The words and files that a shell offers to complete the value of an argument.
 
 use crate::cli::shipped::ShippedScene;
 use clap::builder::{PossibleValue, StyledStr};
 use clap::{Arg, ArgAction, Command};
 
-/// The endings of the scene and mesh files that are offered.
+/// The extensions of the scene and mesh files that are offered.
 pub(super) const SCENE_ENDINGS: [&str; 6] = ["ron", "obj", "stl", "ply", "gltf", "glb"];
 
 /// A word and its description, which may be empty.
 pub(super) type Word = (String, String);
 
-/// The files that are offered.
+/// The kind of files that are offered as the value of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Files {
     None,
@@ -19,15 +19,15 @@ pub(super) enum Files {
     Scenes,
 }
 
-/// The values of an argument.
+/// The words and files that are offered as the value of an argument.
 pub(super) struct Values {
     pub(super) words: Vec<Word>,
     pub(super) files: Files,
 }
 
 impl Values {
-    /// Returns what completes an argument of a command of `program`: its possible values, or else
-    /// what the name of its value says.
+    /// Returns the completions of the value of `arg`: its possible values, or else those that follow
+    /// from the value's name in the help, such as `orbit|FILE`.
     pub(super) fn of(arg: &Arg, program: &Command) -> Self {
         let (mut words, mut files) = (Vec::new(), Files::None);
         let possible = arg.get_possible_values();
@@ -44,20 +44,20 @@ impl Values {
                 word if word.starts_with(|c: char| c.is_ascii_lowercase()) => {
                     words.push((word.to_owned(), String::new()));
                 }
-                // A number or a vector: nothing to choose from.
+                // A number or a vector: there are no words to offer.
                 _ => (),
             }
         }
         Self { words, files }
     }
 
-    /// Returns the words without descriptions, with blanks between them.
+    /// Returns the words without descriptions, separated by spaces.
     pub(super) fn names(&self) -> String {
         self.words.iter().map(|(word, _)| word.as_str()).collect::<Vec<_>>().join(" ")
     }
 }
 
-/// Returns the commands of the program and their descriptions.
+/// Returns the names of the program's commands with their descriptions.
 pub(super) fn commands(program: &Command) -> Vec<Word> {
     program.get_subcommands().map(|command| (command.get_name().to_owned(), text(command.get_about()))).collect()
 }

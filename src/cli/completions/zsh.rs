@@ -1,6 +1,6 @@
 //! The completions of zsh.
 //!
-//! clap's own generator takes a scene in the place of a command for a command, and then completes nothing.
+//! Not by `clap_complete`: where a scene stands in the place of a command, its script completes nothing.
 
 use super::values::{Files, SCENE_ENDINGS, Values, Word, commands, options, spellings, takes_value, text};
 use clap::{Arg, Command};
@@ -30,7 +30,7 @@ else
 fi
 "#;
 
-/// Returns the script: the options and values of each command, and those of the live view.
+/// Returns the script: the options and their values of each command, then those of the live view.
 pub(super) fn script(program: &Command) -> String {
     let mut script = HEAD.replacen("_termtrace_first", &(lists(program) + "_termtrace_first"), 1);
     for command in program.get_subcommands() {
@@ -54,7 +54,7 @@ pub(super) fn script(program: &Command) -> String {
     script + TAIL
 }
 
-/// Returns the functions that offer commands and scenes.
+/// Returns the zsh functions that offer commands and scenes.
 fn lists(program: &Command) -> String {
     let scene = program.get_positionals().next().map(|arg| Values::of(arg, program));
     let scenes = scene.map(|values| values.words).unwrap_or_default();
@@ -80,7 +80,7 @@ fn specs(command: &Command, program: &Command) -> Vec<String> {
     options(command).map(|arg| option(arg, program)).chain(places).collect()
 }
 
-/// Returns an option as `_arguments` reads it: spellings, description, value.
+/// Returns an option as a spec of zsh's `_arguments`: its spellings, description and value.
 fn option(arg: &Arg, program: &Command) -> String {
     let names = spellings(arg);
     let help = text(arg.get_help()).replace('\\', "\\\\").replace('[', "\\[").replace(']', "\\]");
@@ -103,7 +103,7 @@ fn value(arg: &Arg, program: &Command) -> String {
         return String::new();
     }
     let name = arg.get_value_names().and_then(<[_]>::first).map(|name| name.replace(':', "\\:")).unwrap_or_default();
-    // A value that may be left out.
+    // Two colons: the value is optional.
     let colons = if arg.is_require_equals_set() { "::" } else { ":" };
     format!("{colons}{name}:{}", action(&Values::of(arg, program)))
 }

@@ -40,7 +40,7 @@ pub(super) fn text(report: &Report<'_>) -> String {
     visible_lines(&text)
 }
 
-/// Returns the table as JSON.
+/// Returns the rows of the report as JSON.
 pub(super) fn as_json(report: &Report<'_>) -> Value {
     let rows = report.rows().into_iter();
     let rows = rows.map(|(name, value, source)| json!({ "name": name, "value": value, "source": source }));
