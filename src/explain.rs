@@ -117,7 +117,7 @@ impl LightContribution {
 
 /// Explains a pixel of a picture of `scene`, given as column and row from the top left.
 ///
-/// Its light and its colour are those of a picture with one sample per pixel.
+/// The light and the colour of the pixel are those of a picture with one sample per pixel.
 ///
 /// ```
 /// use termtrace::{Resolution, Scene, explain};

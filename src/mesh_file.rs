@@ -179,11 +179,11 @@ impl MeshFile {
     /// Returns the mesh turned so that this axis of its file points along +y; `None` if a position
     /// exceeds the range of f32.
     pub fn turned_up(self, up: UpAxis) -> Option<Self> {
-        // Unturned it keeps the bits of its normals, which a rotation would normalise once more.
+        // A mesh that is not turned keeps the bits of its normals: `transformed` would normalise them once more.
         if up == UpAxis::Y { Some(self) } else { self.transformed(Vec3::ONE, up.turn(), Vec3::ZERO) }
     }
 
-    /// Returns whether the file gives colours: of materials, vertices or a texture.
+    /// Returns whether the mesh has colours of its own: of materials, vertices or a texture.
     pub(crate) fn has_colors(&self) -> bool {
         !self.materials.is_empty() || !self.colors.values().is_empty()
     }

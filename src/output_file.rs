@@ -96,13 +96,13 @@ impl OutputFile {
     /// # Errors
     /// If the folder does not allow a new file.
     pub fn create_in(folder: &Path) -> io::Result<Self> {
-        // The target is chosen at the end; until then only its folder counts.
+        // `finish_unused` chooses the name. Until then only the folder of the target matters.
         let target = folder.join("new");
         let destination = Destination::NewOnly(Temporary::new_file(&target)?);
         Ok(Self { target, destination })
     }
 
-    /// Gives the file the first of these names that is unused, and returns it.
+    /// Completes the file under the first path of `names` that does not exist, and returns that path.
     ///
     /// # Errors
     /// If the file cannot be written or renamed, or [`AlreadyExists`](io::ErrorKind::AlreadyExists) if all names are

@@ -75,15 +75,15 @@ impl<'w> Reporter<'w> {
         Self { on_dependency: Some(on_dependency), ..self }
     }
 
-    /// Returns the reporter with a callback that gets warnings about files that can be shown
-    /// nonetheless, each as a line.
+    /// Returns the reporter with a callback for warnings: faults of files despite which the scene
+    /// can be shown, each as one line.
     ///
-    /// Without it, what would be a warning is an error.
+    /// Without a callback these faults are errors.
     pub fn with_warnings(self, on_warning: &'w (dyn Fn(String) + Sync)) -> Self {
         Self { on_warning: Some(on_warning), ..self }
     }
 
-    /// Returns the reporter without a callback for warnings, which makes them errors.
+    /// Returns the reporter without a callback for warnings, so that they become errors.
     pub fn strict(&self) -> Self {
         Self { on_warning: None, cancellation: self.cancellation.clone(), ..*self }
     }
@@ -116,7 +116,8 @@ impl<'w> Reporter<'w> {
         }
     }
 
-    /// Reports a warning. Returns whether there is a callback for it: if not, it is an error.
+    /// Reports a warning. Returns false if there is no callback, so that the caller returns an
+    /// error.
     pub fn warn(&self, warning: impl FnOnce() -> String) -> bool {
         if let Some(on_warning) = self.on_warning {
             on_warning(warning());

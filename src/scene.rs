@@ -93,9 +93,9 @@ impl fmt::Debug for Scene {
 /// and camera.
 #[derive(Clone, Debug, PartialEq)]
 struct Checked {
-    /// Shared with the panel that shows it.
+    /// The caption, in an `Arc` because the panel that shows it shares it.
     caption: Option<Arc<str>>,
-    /// The mesh file around which the default scene was made.
+    /// The mesh file around which the scene was made; `None` for a scene read from a scene file.
     mesh: Option<MeshOrigin>,
     camera: Camera,
     views: Vec<Camera>,
@@ -174,7 +174,7 @@ impl Scene {
         self.checked.caption.as_ref()
     }
 
-    /// Returns the mesh file around which the scene was made; `None` for a scene of its own.
+    /// Returns the mesh file around which the scene was made; `None` for a scene with its own file.
     #[doc(hidden)]
     pub fn mesh(&self) -> Option<MeshOrigin> {
         self.checked.mesh

@@ -24,7 +24,7 @@ use crate::written::{Fields, NodeReader, Spanned, WrittenColor, WrittenNumber};
 /// A whole scene file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneFile {
-    /// The caption.
+    /// The caption, which says what the scene shows.
     pub caption: Option<String>,
     /// The camera.
     pub camera: Option<WrittenCamera>,

@@ -114,7 +114,7 @@ pub(crate) enum Request {
     SwitchScene(isize),
     /// Call [`Viewer::show_metadata`] with the name of the shown scene.
     ShowMetadata,
-    /// Read the mesh again with this axis of its file up.
+    /// Read the mesh file again, turned so that this axis of the file points up.
     TurnMesh(UpAxis),
     /// Copy this text to the user's clipboard.
     Copy(String),
@@ -122,7 +122,7 @@ pub(crate) enum Request {
     Export(crate::export::Format),
     /// Write a large picture of the wanted view into a file.
     ExportLarge,
-    /// Give up the large picture in progress.
+    /// Cancel the large picture in progress.
     CancelLarge,
     /// Start or stop recording the session.
     Record,
@@ -159,7 +159,7 @@ pub(crate) struct Viewer {
     captions: bool,
     pacing: Pacing,
     requests: VecDeque<Request>,
-    /// The names of the scenes, by number.
+    /// The names of the scenes, by the index of the scene.
     names: Vec<String>,
     /// The time of the last call.
     now: Duration,
@@ -200,9 +200,9 @@ impl Viewer {
         self.names = names;
     }
 
-    /// Notes once, when the replies to the queries are here, that there are only 256 colours.
+    /// Shows a note once if, after the replies to all queries, only 256 colours were found.
     ///
-    /// The note lies above the welcome while that is shown.
+    /// While the welcome is shown, the note is in the row above it.
     fn note_few_colors(&mut self) {
         let colors = self.display.capabilities().cell_mode.colors;
         if self.display.queries().is_open() {
@@ -305,7 +305,7 @@ impl Viewer {
             let turn = self.hint(Command::TurnMesh, "turns it");
             self.warn(format!("{} is up in this {} (a guess){turn}", mesh.up.name(), mesh.format));
         }
-        // The facts of an open panel are those of the scene before, or of the mesh before it was turned.
+        // An open panel of metadata still describes the scene before, or the mesh before it was turned.
         if self.screen.get::<Metadata>().is_some() {
             let name = self.names.get(index).cloned().unwrap_or_default();
             self.screen.open(Metadata::of(&scene, name));
@@ -334,7 +334,7 @@ impl Viewer {
         self.screen.open(Note::new(text));
     }
 
-    /// Replaces the warnings, before the scene that they are about is shown.
+    /// Replaces the shown warnings by those about the next scene, before that scene is shown.
     pub(crate) fn set_warnings(&mut self, warnings: Vec<String>) {
         self.screen.close::<Warnings>();
         for warning in warnings {
@@ -349,13 +349,13 @@ impl Viewer {
         self.screen.open(warnings);
     }
 
-    /// Returns the caption of scene number `of`, if it has one.
+    /// Returns the first page of the caption of `scene`, whose index is `of`, if it has a caption.
     fn caption(&self, scene: &Scene, of: usize) -> Option<Caption> {
         let place = self.options.tour.map(|count| (of + 1, count));
         Some(Caption::new(Arc::clone(scene.caption()?), place))
     }
 
-    /// Shows the caption of the scene, its next page, or hides it after the last one.
+    /// Shows the caption of the scene or its next page. After the last page, hides the caption.
     fn turn_caption(&mut self) {
         let next = if let Some(caption) = self.screen.close::<Caption>() {
             caption.next(theme::area(self.size()))

@@ -82,7 +82,7 @@ pub enum Command {
     FromRight,
     /// Looks at everything finite from above.
     FromAbove,
-    /// Shows the edges of triangles, or the shaded picture again.
+    /// Switches between the edges of triangles and the shaded picture.
     Wireframe,
     /// Shows or hides the directions of the axes.
     Axes,
@@ -90,7 +90,7 @@ pub enum Command {
     Metadata,
     /// Turns a mesh so that the next axis of its file points up.
     TurnMesh,
-    /// Shows the caption of the scene, turns its page, or hides it.
+    /// Shows the caption of the scene, its next page, or after the last page none.
     Caption,
     /// Redraws the whole screen, in case another program has written on it.
     Redraw,
@@ -252,10 +252,10 @@ commands! {
     [Command::No] "No", "cancel";
 }
 
-/// The description of the views from three sides, which the help lists in one row.
+/// The description of the three commands that look from a side, which share a row of the help.
 const A_SIDE: &str = "front, right, top view";
 
-/// The description of all nine view commands, which the help lists in one row.
+/// The description of the nine commands that show a stored view, which share a row of the help.
 const A_VIEW: &str = "go to view 1-9";
 
 impl Command {

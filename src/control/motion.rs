@@ -9,18 +9,20 @@ use std::time::Duration;
 
 /// The keys that are held, and the motion of the camera that they cause.
 ///
-/// A tap is a step: [`TAP_TIME`] of motion at full speed. A press runs at full speed while its key is held; the rest of
-/// the step after an earlier release is carried out at a speed that falls to 0.
+/// A tap moves the camera by a step, as far as [`TAP_TIME`] at full speed. While a key is held, the camera moves at
+/// full speed. If the key is released before the step is complete, the speed falls evenly to 0 over the rest of the
+/// step.
 ///
 /// With the kitty keyboard protocol the terminal reports releases, and each of any number of keys is held from its
 /// press to its release.
 ///
 /// A plain terminal reports a press, then after 250 to 660 ms repeats of the last key, some 25 a second, and no
-/// release. There a press counts as released at once. A repeat, or another press of the key within [`AGAIN_TIME`], runs
-/// at full speed for [`COAST_TIME`], which bridges the interval between repeats. Another key ends the motion at once.
+/// release. On such a terminal a press counts as a tap. A repeat, or another press of the key within [`AGAIN_TIME`],
+/// moves the camera at full speed for [`COAST_TIME`], which is longer than the interval between repeats. Another key
+/// ends the motion at once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// The keys that move the camera, and those pressed within [`AGAIN_TIME`].
+    /// The keys that move the camera now, and those last pressed less than [`AGAIN_TIME`] ago.
     held: Vec<Held>,
     /// Whether Shift is held.
     fast: bool,
@@ -53,15 +55,15 @@ struct Held {
     full_until: Duration,
     /// Time at which the speed, which falls evenly after `full_until`, is 0.
     ends: Duration,
-    /// Factor of the motion: 1, or less for a tap before a surface.
+    /// Factor of the motion: 1, or less for a tap that is shortened before a surface.
     share: f32,
 }
 
 impl Held {
-    /// Returns the time from `from` to `to` in seconds, weighted by the share of the full speed.
+    /// Returns the motion from time `from` to `to`, as seconds at full speed.
     fn seconds(&self, from: Duration, to: Duration) -> f32 {
         let full = to.min(self.full_until).saturating_sub(from);
-        // The way left at a time of an evenly falling speed is half of the time left times the speed at that time.
+        // The distance left while the speed falls evenly: half of the time left, times the speed at that time.
         let falls = self.ends.saturating_sub(self.full_until).as_secs_f32();
         let left = |at: Duration| {
             let left = self.ends.saturating_sub(at.max(self.full_until)).as_secs_f32();
@@ -70,7 +72,7 @@ impl Held {
         self.share * (full.as_secs_f32() + left(from) - left(to))
     }
 
-    /// Lets the key go at time `now`: the rest of its tap follows at a falling speed.
+    /// Releases the key at time `now`. The rest of its tap follows at a falling speed.
     fn release(&mut self, now: Duration) {
         let rest = TAP_TIME.saturating_sub(now.saturating_sub(self.pressed));
         self.full_until = now;
@@ -87,8 +89,9 @@ fn physical_key(key: &KeyEvent) -> PhysicalKey {
     (unshifted(key.code), key.state.contains(KeyEventState::KEYPAD))
 }
 
-/// Motion of a tap, as the time for which it would last at full speed.
-// A thirteenth of the way to the target, or seven degrees: small enough to place the eye with, and visible.
+/// Length of a tap's motion, as the time that it would take at full speed.
+// A thirteenth of the distance to the target, or seven degrees: small enough to place the eye precisely, large enough
+// to be visible.
 pub const TAP_TIME: Duration = Duration::from_millis(150);
 /// Time after a press of a key within which another press of it continues the motion instead of
 /// starting a new one.
@@ -150,7 +153,8 @@ impl Motion {
         // Plain terminals send repeats as presses.
         let is_again = |held: &Held| (held.key, held.command) == (key, command) && now <= held.pressed + AGAIN_TIME;
         let again = kind == KeyEventKind::Repeat || self.held.iter().any(is_again);
-        // A repeat must not begin a tap anew, which would go on after the release.
+        // A repeat keeps the time of the press. With its own time it would count as a new tap, whose rest follows the
+        // release.
         let is_held =
             |held: &&Held| kind == KeyEventKind::Repeat && held.key == key && held.full_until == Duration::MAX;
         let pressed = self.held.iter().find(is_held).map_or(now, |held| held.pressed);
@@ -160,7 +164,7 @@ impl Motion {
         self.fast = fast;
         let mut held = Held { key, command, pressed, full_until: Duration::MAX, ends: Duration::MAX, share: 1.0 };
         match (self.reports_releases, again) {
-            // A release will come, or the loss of the focus.
+            // The terminal reports the release, or that the window has lost the focus.
             (true, _) => {}
             (false, true) => (held.full_until, held.ends) = (now + COAST_TIME, now + COAST_TIME),
             (false, false) => held.release(now),
@@ -168,8 +172,8 @@ impl Motion {
         self.held.push(held);
     }
 
-    /// Halves the motion that taps have left at time `now` until `is_free` of the motion; after six
-    /// times, ends it.
+    /// Halves the motion that taps have left at time `now` until `is_free` returns true for it.
+    /// After six halvings, ends the motion.
     ///
     /// Does nothing while a key is held.
     pub fn shorten_taps(&mut self, now: Duration, is_free: impl Fn(&Self) -> bool) {
@@ -182,7 +186,7 @@ impl Motion {
             }
             self.held.iter_mut().for_each(|held| held.share *= 0.5);
         }
-        // The press stays recorded: another one soon means that the key is held.
+        // The key stays in `held`, because another press within `AGAIN_TIME` means that it is held.
         self.held.iter_mut().for_each(|held| held.share = 0.0);
     }
 

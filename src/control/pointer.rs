@@ -98,7 +98,7 @@ impl Pointer {
         // `clicked` is the previous click. A panning click neither completes nor starts a double click.
         let clicked = self.clicked.replace((now, at)).filter(|_| !pans);
         if clicked.is_some_and(is_same) {
-            // Without this the third of three clicks would complete a second double click instead of starting one.
+            // Forget the first click. Otherwise the third of three clicks would complete another double click.
             self.clicked = None;
             return Gesture::DoubleClick;
         }

@@ -19,11 +19,12 @@ struct PixelContent {
     /// The distance from the eye to the hit, in world units.
     distance: f32,
     reflectance: LinearRgb,
-    /// The next objects behind `object` on the pixel's ray, nearest first.
+    /// The objects that the pixel's ray hits behind `object`, nearest first.
     behind: [Option<u32>; MAX_OCCLUDED],
 }
 
-/// The pixels of the picture that an object covers, in sums and extremes.
+/// The part of the picture that an object covers: its number of pixels, its extent and its
+/// distance.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Coverage {
     /// The number of pixels that show the object.

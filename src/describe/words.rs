@@ -54,10 +54,10 @@ pub(super) fn color(light: LinearRgb) -> &'static str {
     nearest.map_or("", |(name, _)| name)
 }
 
-/// Formats a number as prose does: without an exponent.
+/// Formats a number without an exponent, as is usual in prose.
 pub(super) fn number(value: f32) -> String {
     let text = crate::text::number(value);
-    // The standard library's own format has no exponents.
+    // Formatted again as f64, because the standard library's `Display` writes no exponents.
     text.parse::<f64>().map_or(text, |number| number.to_string())
 }
 

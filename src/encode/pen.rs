@@ -167,7 +167,7 @@ impl Pen {
     /// Switches to the pen `wanted`: appends a reset if that is the default pen, else sequences for
     /// the differences.
     ///
-    /// The underline's colour has a sequence of its own.
+    /// The colour of underlines is not included: it has a sequence of its own.
     pub(super) fn switch_to(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
         if *self != wanted && wanted == Self::default() {
             bytes.extend_from_slice(SGR_RESET);

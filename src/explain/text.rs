@@ -57,7 +57,7 @@ impl Explanation {
         let [i, j] = self.pixel;
         let mut lines = vec![
             format!("(i, j) = ({i}, {j}) of {}x{}", self.resolution.width(), self.resolution.height()),
-            // The result first, because a small panel shows it without scrolling.
+            // The result comes first, so that a small panel shows it without scrolling.
             match &self.hit {
                 Some(shaded) => format!("closest hit: {}", shaded.name),
                 None => "no hit: L = background".to_owned(),
@@ -76,7 +76,8 @@ impl Explanation {
     }
 
     /// Adds lines with the basis, the view rectangle and the ray.
-    // The lecture's w and h, the sides of the rectangle, are spelt out: w is a vector of the basis already.
+    // The rectangle's sides, w and h in the lecture, are printed as "width" and "height", because w is a basis vector
+    // too.
     fn add_camera(&self, lines: &mut Vec<String>) {
         let (Basis { u, v, w }, rays) = (self.camera.basis(), self.camera.eye_rays(self.resolution.aspect_ratio()));
         let corner = |qu, qv| rays.through(qu, qv).at(1.0);

@@ -1,4 +1,4 @@
-//! The wire map: the edges of triangles over a plain shade.
+//! The wire map: the edges of triangles over surfaces in plain grey.
 
 use crate::camera::Camera;
 use crate::color::Srgb8;
@@ -12,8 +12,8 @@ use crate::shape::{Primitive, Triangle};
 const EDGE: [f32; 3] = [255.0, 208.0, 64.0];
 /// Half the width of a line, in pixels.
 const HALF_WIDTH: f32 = 0.6;
-/// The least height of a triangle, in pixels, whose edges are drawn in full. Those of smaller ones
-/// are fainter, because they would cover the whole surface.
+/// The least height, in pixels, of a triangle whose edges have their full colour. The edges of
+/// smaller triangles are fainter, because they would otherwise cover the whole surface.
 const FULL_HEIGHT: f32 = 5.0;
 
 /// Returns the colour of a pixel: a grey by the angle of the surface, and edges. `None` without a
@@ -35,11 +35,12 @@ pub(super) fn color(scene: &Scene, camera: &Camera, resolution: Resolution, samp
     Some(Srgb8::new(r, g, b))
 }
 
-/// Returns how strongly an edge of the triangle is drawn in the pixel of a ray, from 0 to 1. A
-/// pixel is `pixel` high where the ray hits.
+/// Returns the opacity, from 0 to 1, of the triangle's edges in the pixel of `ray`. `pixel` is the
+/// height of a pixel at the hit, in world units.
 fn strength(triangle: &Triangle, ray: &Ray, pixel: f32) -> f32 {
     let [a, b, c] = triangle.corners();
-    // The distance from the ray to an edge is that on the screen, however the triangle is tilted.
+    // The distance in space between the ray and the line of an edge, which unlike a distance within the triangle's plane
+    // corresponds to pixels even if the triangle is tilted.
     let distance = |from: glam::Vec3, to: glam::Vec3| {
         let normal = ray.direction.cross(to - from);
         (from - ray.origin).dot(normal).abs() / normal.length().max(f32::MIN_POSITIVE)

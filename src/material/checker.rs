@@ -13,7 +13,7 @@ pub struct Checker {
     a: LinearRgb,
     /// The reflectance of the squares that share a side with one of reflectance `a`.
     b: LinearRgb,
-    /// The side of a square in world units, greater than 0.
+    /// The side length of a square in world units, greater than 0.
     size: f32,
 }
 
@@ -72,7 +72,7 @@ pub struct WrittenChecker {
     pub a: Option<WrittenColor>,
     /// The reflectance of the other half of the squares; `"#333333"` if not given.
     pub b: Option<WrittenColor>,
-    /// The side of a square; 1 if not given.
+    /// The side length of a square in world units; 1 if not given.
     pub size: Option<WrittenNumber>,
 }
 

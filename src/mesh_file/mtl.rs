@@ -17,7 +17,7 @@ pub(super) struct Library {
     materials: Vec<MeshMaterial>,
     by_name: HashMap<Box<[u8]>, u32>,
     files: HashSet<PathBuf>,
-    /// Whether a file is missing, so that names may be unknown.
+    /// Whether an MTL file is missing, so that a material's name may be unknown.
     is_incomplete: bool,
     textures: HashMap<PathBuf, Arc<Texture>>,
     budget: TexelBudget,
@@ -32,18 +32,18 @@ impl Library {
         self.by_name.get(name).copied()
     }
 
-    /// Records that a file is missing.
+    /// Records that the MTL file at `path` is missing.
     pub(super) fn miss(&mut self, path: PathBuf) {
         self.files.insert(path);
         self.is_incomplete = true;
     }
 
-    /// Returns whether a file is missing.
+    /// Returns whether an MTL file is missing.
     pub(super) fn is_incomplete(&self) -> bool {
         self.is_incomplete
     }
 
-    /// Returns whether a file was read already, or is missing.
+    /// Returns whether the MTL file at `path` was already read, or is missing.
     pub(super) fn has_file(&self, path: &Path) -> bool {
         self.files.contains(path)
     }
@@ -128,7 +128,7 @@ impl MtlReader<'_, '_> {
         Ok(LinearRgb::new(r, self.text.number()?.clamp(0.0, 1.0), self.text.number()?.clamp(0.0, 1.0)))
     }
 
-    /// Reads the name of a texture, and the file; `None` if it is missing.
+    /// Reads the options and the name of a texture, then its file. `None` if the file is missing.
     fn texture(&mut self) -> Result<Option<TexturePlacement>, MeshFault> {
         let transform = self.options()?;
         let name = self.text.rest_of_line();

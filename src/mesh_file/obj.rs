@@ -211,7 +211,7 @@ impl ObjReader<'_, '_> {
         let at = self.text.at() - name.len();
         let material = match &self.library {
             Some(library) if !is_no_material(name) => match library.index_of(name) {
-                // It may be in a file that is missing.
+                // With all MTL files at hand, an unknown material is an error. Otherwise it may be in the missing file.
                 None if !library.is_incomplete() => {
                     let name = shown(name);
                     let message = format!("material {name} is not in any MTL file named above this line");

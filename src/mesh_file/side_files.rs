@@ -44,7 +44,8 @@ impl<'a> SideFiles<'a> {
 
     /// Returns the bytes of a side file that only adds colours, or the message of a fault.
     ///
-    /// `None` if it is missing and the reporter takes the warning; `what` says what is missing.
+    /// `None` if the file is missing and the reporter has a callback for warnings. `what` names the kind of file in the
+    /// warning.
     pub(super) fn read_colors(&mut self, path: &Path, what: &str) -> Result<Option<Vec<u8>>, String> {
         let opened = (self.open)(path);
         let is_missing = opened.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::NotFound);
@@ -54,9 +55,10 @@ impl<'a> SideFiles<'a> {
         self.taken(path, opened).map(Some)
     }
 
-    /// Warns of a missing file, once. Returns whether the reporter takes warnings.
+    /// Warns of a missing file, once per file. Returns whether the reporter has a callback for
+    /// warnings.
     fn warns(&mut self, path: &Path, what: &str) -> bool {
-        // A material library may name one texture a hundred times.
+        // Many materials of a library may name the same texture.
         if self.missing.contains(path) {
             return true;
         }
@@ -68,7 +70,7 @@ impl<'a> SideFiles<'a> {
         is_taken
     }
 
-    /// Counts the bytes of a file that was opened.
+    /// Returns the bytes of an opened side file, and counts them towards the limit of the mesh.
     fn taken(&mut self, path: &Path, opened: io::Result<Vec<u8>>) -> Result<Vec<u8>, String> {
         let name = self.name_of(path);
         let say = |what: &str| format!("{}: {what}", shown(name.as_bytes()));

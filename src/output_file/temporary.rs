@@ -51,7 +51,8 @@ impl Temporary {
                         return Ok(temporary);
                     }
                 }
-                // A file has this name: a leftover, or that of a process with the same number in another container.
+                // The name is taken, by a leftover file or by a process with the same id in another container: try the
+                // next name.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }

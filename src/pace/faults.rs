@@ -269,7 +269,8 @@ fn the_first_picture_of_a_slow_link_is_waited_for() {
     }
 }
 
-/// Returns whether a fault hides the rate of a slow link: silence from one of the first replies on.
+/// Returns whether a fault makes the rate of a slow link unmeasurable: replies stop, or come more
+/// than a second late, from one of the first on.
 fn hides_rate(fault: Fault) -> bool {
     matches!(fault, Fault::Held(late) if late > ms(1_000)) || fault == Fault::Stopped
 }

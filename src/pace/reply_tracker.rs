@@ -372,8 +372,8 @@ impl ReplyTracker {
         self.round_trip.is_implausible(now.saturating_sub(sent))
     }
 
-    /// Returns whether a reply that may be late is the one to the first picture rather than to the
-    /// last query.
+    /// Returns whether a reply, which may be late, answers the query after the first picture rather
+    /// than the last query.
     ///
     /// A local terminal replies to the last query at once; the reply to the first picture may take long on a slow link.
     fn is_reply_to_first_frame(&self, now: Duration) -> bool {

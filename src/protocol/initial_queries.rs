@@ -114,7 +114,7 @@ const BACKGROUND: &[u8] = b"\x1b]11;?\x1b\\";
 const SYNCHRONIZED: &[u8] = b"\x1b[?2026$p";
 const MOUSE_AND_KEYBOARD: &[u8] = b"\x1b[?1006$p\x1b[?1016$p\x1b[?u";
 const CELL_PIXELS: &[u8] = b"\x1b[16t";
-/// The queries for name and version (XTVERSION), and for type and version (DA2).
+/// The queries for the terminal's name and version (XTVERSION), and its type and version (DA2).
 const IDENTITY: &[u8] = b"\x1b[>q\x1b[>c";
 
 /// Returns the bytes that set a 24-bit background, query the current SGR attributes (DECRQSS), and

@@ -13,9 +13,10 @@ pub(super) fn leading_comment(file: &str) -> Option<String> {
     (!comment.is_empty()).then_some(comment)
 }
 
-/// Returns a caption as it is shown: each paragraph on one line, without control characters.
+/// Returns the caption `written` in a form to be shown: each paragraph on one line, without control
+/// characters.
 ///
-/// Blank lines separate paragraphs. `None` if nothing is left.
+/// Blank lines separate paragraphs. Returns `None` if the result is empty.
 pub(super) fn shown(written: &str) -> Option<Arc<str>> {
     let mut paragraphs = vec![String::new()];
     let mut bytes = 0;

@@ -26,7 +26,7 @@ impl Draft {
         &self.checked.camera
     }
 
-    /// Returns the mesh file around which the scene was made; `None` for a scene of its own.
+    /// Returns the mesh file around which the scene was made; `None` for a scene with its own file.
     pub fn mesh(&self) -> Option<MeshOrigin> {
         self.checked.mesh
     }

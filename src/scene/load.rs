@@ -156,7 +156,7 @@ impl Draft {
 
     /// Loads as [`Draft::load`] does, with a mesh turned so that the axis `up` points up.
     ///
-    /// `None` stands for the axis that the format states, or else a guess.
+    /// If `up` is `None`, it is the axis that the format defines, or else a guess.
     ///
     /// # Errors
     /// As [`Draft::load`].
@@ -189,7 +189,7 @@ fn load(path: &Path, up: Option<UpAxis>, reporter: &Reporter<'_>) -> Result<Draf
     parse_draft(&name, text, &[], reporter).map_err(|unfinished| unfinished.map(LoadError::Scene))
 }
 
-/// The example in the error about an empty file, which shows a lit ball.
+/// The example scene, a lit ball, in the error about an empty file.
 const SMALLEST_SCENE: &str = "scene that shows something is (camera: (eye: (0, 0, 5), target: (0, 0, 0)), \
                               ambient: 0.1, lights: [Point(position: (3, 4, 5), intensity: 40)], \
                               objects: [Sphere(center: (0, 0, 0), radius: 1)])";

@@ -51,8 +51,8 @@ const SQUARE: f32 = 0.2;
 
 /// Returns the ambient light by which a floor that no other light reaches is as bright as the
 /// background at the horizon.
-// Far away the lights fall on the floor at ever flatter angles, and only ambient light is left: with any other amount
-// there would be an edge at the horizon, mostly a black band.
+// Far from the mesh the lights reach the floor at grazing angles, so that only ambient light remains there. With
+// another amount of it the horizon would be a visible edge, mostly a black band.
 fn ambient() -> LinearRgb {
     let channel = |of: fn(LinearRgb) -> f32| {
         let [horizon, floor] = [BACKGROUND, FLOOR].map(|[a, b]| of(a) + of(b));
@@ -83,9 +83,10 @@ impl Scene {
         Draft::of_mesh(mesh).map(Draft::finish)
     }
 
-    /// Returns the text of a scene file with the same mesh, floor and lights, seen by `camera`.
+    /// Returns the text of a scene file with this scene's mesh, floor and lights, and `camera`.
     ///
-    /// `name` is the mesh's file, beside the scene file. `None` unless the scene was made around a mesh file.
+    /// `name` is the name of the mesh file, in the same folder as the scene file. Returns `None` unless the scene was
+    /// made around a mesh file.
     #[cfg(feature = "ron")]
     #[doc(hidden)]
     pub fn around_mesh_to_ron(&self, name: &str, camera: &Camera) -> Option<String> {

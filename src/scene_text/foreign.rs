@@ -1,9 +1,9 @@
-//! Formats that are not read, recognised so that a message can name them.
+//! Files in other formats than RON, recognised so that the error message can name the format.
 
 use std::ffi::OsStr;
 use std::path::Path;
 
-/// Formats with the endings of their files.
+/// Formats that termtrace does not read, with the extensions of their files.
 const ENDINGS: [(&str, &[&str]); 12] = [
     ("FBX", &["fbx"]),
     ("3MF", &["3mf"]),
@@ -19,7 +19,7 @@ const ENDINGS: [(&str, &[&str]); 12] = [
     ("a picture", &["png", "jpg", "jpeg", "gif", "webp", "bmp", "tga"]),
 ];
 
-/// Formats with the first bytes of their files.
+/// Formats that termtrace does not read, with the first bytes of their files.
 const STARTS: [(&str, &[u8]); 7] = [
     ("FBX", b"Kaydara FBX"),
     ("OFF", b"OFF\n"),
@@ -30,14 +30,15 @@ const STARTS: [(&str, &[u8]); 7] = [
     ("a ZIP archive", b"PK\x03\x04"),
 ];
 
-/// Formats that are read, but recognised only by the ending, with the first words of their files.
+/// Formats that termtrace reads, but recognises by the extension only, with the first words of
+/// their files.
 const NAMELESS: [(&str, &[u8]); 6] =
     [("OBJ", b"v "), ("OBJ", b"mtllib "), ("OBJ", b"o "), ("OBJ", b"g "), ("STL", b"solid "), ("OBJ", b"# Blender")];
 
 /// Returns the message about a file in another format than RON; `None` if it may be RON.
 pub(super) fn message(name: &str, bytes: &[u8]) -> Option<String> {
     let start = bytes.trim_ascii_start();
-    // A scene may have any name.
+    // Contents that may be RON are parsed, whatever the extension of the file.
     if start.is_empty() || start.starts_with(b"(") || start.starts_with(b"//") || start.starts_with(b"/*") {
         return None;
     }

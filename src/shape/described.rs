@@ -107,7 +107,7 @@ fn bounds_of(mesh: &Mesh) -> Bounds {
 /// Returns the size of a box along each axis, in words.
 pub(super) fn size_in_words(bounds: &Bounds) -> String {
     let Vec3 { x, y, z } = bounds.extent();
-    // Prose has no exponents, and neither does the standard library's format.
+    // Formatted again as f64 by the standard library, which writes no exponents: they do not belong in prose.
     let [wide, high, deep] = [x, y, z].map(|side| number(side).parse::<f64>().unwrap_or(f64::from(side)));
     format!("{wide} wide, {high} high, {deep} deep")
 }

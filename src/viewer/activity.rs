@@ -1,10 +1,10 @@
-//! A line about what goes on besides the view: a recording, and a large picture in progress.
+//! A line about work in the background: a recording of the session, and a large picture in progress.
 
 use super::layers::{Canvas, Layer, Level};
 use super::legend;
 use ratatui_core::layout::Rect;
 
-/// The activities, in the upper right corner.
+/// The work in the background, shown in the upper right corner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Activity {
     /// Whether the session is recorded.
@@ -19,7 +19,7 @@ impl Activity {
         self != Self::default()
     }
 
-    /// Returns the line, with all its hints or in as few words as possible.
+    /// Returns the line; with `is_short`, without hints on keys and in as few words as possible.
     fn text(self, is_short: bool) -> String {
         let picture = self.picture.map(|percent| {
             if is_short { format!("{percent}%") } else { format!("large picture {percent} %, Esc cancels") }

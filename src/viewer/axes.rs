@@ -1,4 +1,4 @@
-//! The directions of the axes, in the upper right corner.
+//! A drawing of the directions of the x, y and z axes, in the upper right corner.
 
 use super::layers::{Canvas, Layer, Level};
 use crate::capabilities::Colors;
@@ -6,12 +6,13 @@ use glam::{Mat3, Vec3};
 use ratatui_core::layout::Rect;
 use ratatui_core::style::{Color, Style};
 
-/// Columns from the middle to the end of an axis in the plane of the screen; half as many rows.
+/// Length in columns of an axis that is parallel to the screen. In rows it is half, as a cell is
+/// twice as high as wide.
 const REACH: f32 = 5.0;
-/// Points that an axis is drawn with, besides the letter at its end.
+/// Number of cells that an axis is drawn with: dots, and the letter at its end.
 const POINTS: u16 = 4;
 
-/// The axes of the world; of a mesh by itself, those of its file.
+/// The axes of the scene. For a mesh file without a scene, the axes of the file.
 pub(super) struct Axes;
 
 impl Layer for Axes {
@@ -29,7 +30,7 @@ impl Layer for Axes {
         let axes =
             [("x", Vec3::X, Color::LightRed), ("y", Vec3::Y, Color::LightGreen), ("z", Vec3::Z, Color::LightBlue)];
         let mut axes = axes.map(|(name, axis, color)| (name, turn * axis, color));
-        // The axis that points at the viewer last, over the others.
+        // Axes that point towards the viewer are drawn last, over the others.
         axes.sort_by(|a, b| a.1.dot(basis.w).total_cmp(&b.1.dot(basis.w)));
         for (name, axis, color) in axes {
             let (across, down) = (REACH * axis.dot(basis.u), -0.5 * REACH * axis.dot(basis.v));

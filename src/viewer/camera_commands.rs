@@ -13,9 +13,9 @@ use glam::Vec3;
 pub(super) const ZOOM_FACTOR: f32 = 1.1;
 
 impl Viewer {
-    /// Says so if the user has moved the eye to where nothing of the scene is visible.
+    /// Shows a notice if the user has moved the eye so that nothing of the scene is visible.
     pub(super) fn note_lost(&mut self) {
-        // Never of the scene's own view: its author has chosen it.
+        // No notice for the view that the scene's author has chosen.
         let frame = self.screen.frame().filter(|_| self.eye.moved().is_some());
         let aspect_ratio = self.first_map_resolution().aspect_ratio();
         let hiding = frame.and_then(|frame| Hiding::find(&frame.scene, frame.camera(), aspect_ratio));
@@ -62,7 +62,8 @@ impl Viewer {
         self.eye.jump(self.now, |camera| camera.framing(&bounds, aspect_ratio));
     }
 
-    /// Returns to the view before the last jump, or with `forward` to the one that this left.
+    /// Returns to the view before the last jump, or with `forward` to the one that the last return
+    /// left.
     pub(super) fn retrace_views(&mut self, forward: bool) {
         if !self.eye.retrace(forward, self.now) {
             self.show_note(if forward { "no view after this one" } else { "no view before this one" });

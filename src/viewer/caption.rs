@@ -36,7 +36,7 @@ impl Caption {
         (page < self.pages(screen).len()).then_some(Self { page, ..self })
     }
 
-    /// Returns the lines of each page on a screen of this size, without the row of keys.
+    /// Returns the lines of each page on a screen of this size. The row of keys is not included.
     fn pages(&self, screen: Rect) -> Vec<Vec<String>> {
         let width = usize::from(screen.width.min(MAX_COLUMNS).saturating_sub(2)).max(1);
         let rows = rows(screen).saturating_sub(1).max(1);
@@ -87,7 +87,7 @@ impl Layer for Caption {
             return;
         }
         let mut pages = self.pages(screen);
-        // A larger window may have left fewer pages.
+        // In a larger window there may be fewer pages than when the page was turned.
         let page = self.page.min(pages.len().saturating_sub(1));
         let is_last = page + 1 >= pages.len();
         let mut lines = if page < pages.len() { pages.swap_remove(page) } else { Vec::new() };

@@ -18,7 +18,7 @@ impl Viewer {
         }
     }
 
-    /// Moves the cursor by one pixel, or by several if `faster`.
+    /// Moves the cursor of the explanation by one pixel, or by several if `faster`.
     pub(super) fn point(&mut self, toward: Toward, faster: bool) {
         let pixels = if faster { SHIFT_CURSOR_PIXELS } else { 1 };
         let step = match toward {

@@ -130,14 +130,14 @@ impl Eye {
         let Some(since) = self.moved_until else { return };
         let jump = self.jump.take();
         self.jump = jump.filter(|jump| !jump.has_ended(now));
-        // Asked before the step, which may end the motion: the rest of it is carried out below.
+        // Determined before `Motion::step`: a motion that ends within this step has moved the eye as well.
         let moves = self.turntable || self.motion.is_moving(now) || self.jump.is_some();
         self.moved_until = moves.then_some(now);
         let Some(view) = &mut self.view else { return };
         if let Some(jump) = jump {
             view.camera = jump.camera(now);
         }
-        // A key that is held goes on where a jump has ended.
+        // After the end of a jump, a held key moves the eye from there.
         let since = jump.map_or(since, |jump| since.max(jump.end()).min(now));
         let moved = self.motion.step(&view.camera, view.speed, since, now);
         let short = self.scene.as_ref().and_then(|scene| short_of_surface(scene, view, &moved));
@@ -176,8 +176,8 @@ impl Eye {
         });
     }
 
-    /// Jumps to the view before the last jump, or with `forward` to the one left by that. Returns
-    /// whether there is one.
+    /// Jumps to the view before the last jump, or with `forward` to the one that the last such
+    /// return left. Returns whether there is such a view.
     pub(super) fn retrace(&mut self, forward: bool, now: Duration) -> bool {
         self.jump_with(now, |view| view.history.retrace(view.camera, forward))
     }
@@ -192,7 +192,8 @@ impl Eye {
         if self.reduced_motion {
             view.camera = to;
         } else if to != view.camera {
-            // The first frame already shows a part of the way, as with a key.
+            // The jump starts a little earlier, so that its first frame already differs, as the first frame of a key
+            // does.
             let start = now.saturating_sub(FIRST_FRAME_MOTION);
             self.jump = Some(Jump::new(view.camera, to, start));
             self.moved_until = Some(start);
@@ -295,7 +296,7 @@ impl Eye {
     /// Moves the camera by one step if the key was pressed or repeats; used with reduced motion.
     fn take_step(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>) {
         let Some(view) = self.view.as_mut().filter(|_| key.kind != KeyEventKind::Release) else { return };
-        // With reduced motion no key is held: steps are the only motion. Each is that of a held key.
+        // With reduced motion a press or a repeat moves as far as a key that is held for `REDUCED_MOTION_STEP`.
         let mut motion = self.motion.clone();
         motion.set_reports_releases(true);
         motion.take_key(&KeyEvent { kind: KeyEventKind::Press, ..*key }, meant, Duration::ZERO);
@@ -341,7 +342,7 @@ impl Eye {
     }
 }
 
-/// Returns whether the motion that taps have left leads past no surface and ends close before none.
+/// Returns whether the motion that taps have left neither passes a surface nor ends close to one.
 fn is_free(motion: &Motion, view: &ViewState, scene: &Scene, now: Duration) -> bool {
     let end = motion.step(&view.camera, view.speed, now.saturating_sub(FIRST_FRAME_MOTION), now + AGAIN_TIME);
     let (origin, end) = (view.camera.pose().eye, end.pose().eye);

@@ -24,18 +24,18 @@ const COLUMN_GAP: usize = 2;
 const PANEL_BORDER: (u16, u16) = (4, 2);
 
 /// Limit on the characters of the filter.
-// As many as fit into the title on the smallest screen with panels.
+// A filter of this length fits into the title on the smallest screen that shows panels.
 const MAX_FILTER: usize = 12;
 
-/// The open help, which takes the keys: characters filter its rows.
+/// The open help. Keys go to it first; characters filter its rows.
 pub(super) struct HelpPanel {
     page: usize,
     filter: String,
-    /// Words on the current state that follow the descriptions of commands.
+    /// Words on the current state, such as "on", that follow the description of a command.
     states: Vec<(Command, String)>,
 }
 
-/// The effect of a key on the help.
+/// The effect of a key press on the open help.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum HelpKey {
     /// Closes the help.
@@ -77,7 +77,7 @@ impl HelpPanel {
             }
             (KeyCode::PageUp | KeyCode::Left | KeyCode::Up, _) => HelpKey::Previous,
             (KeyCode::Backspace, _) => HelpKey::Delete,
-            // As pagers begin a search; the characters after it make up the filter.
+            // `/`, with which pagers start a search, is ignored: the characters after it are the filter.
             (KeyCode::Char('/'), _) => HelpKey::Nothing,
             (KeyCode::Char(c), _) if !c.is_control() => HelpKey::Type(c),
             _ => HelpKey::Nothing,
@@ -116,7 +116,7 @@ impl Layer for HelpPanel {
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         if canvas.has_room() {
             let help = self.laid_out(canvas.keymap, canvas.modes, canvas.screen());
-            // The last page, because a larger window may have left fewer.
+            // In a larger window there may be fewer pages than when the page was turned.
             let page = self.page.min(help.pages.len().saturating_sub(1));
             let area = help.area(page, canvas.screen());
             canvas.lay(area, |theme, area, buffer| help.draw(page, theme, area, buffer));
@@ -159,7 +159,7 @@ impl Help {
 
     /// Returns the line below the help: the keys that turn, filter and close it.
     ///
-    /// Of several lines the longest that fits into `room` columns.
+    /// Returns the longest version that fits into `room` columns.
     fn keys(&self, room: usize) -> &'static str {
         let lines: &[&str] = match (self.filter.is_empty(), self.pages.len() > 1) {
             (true, true) => &[" Space next page; type to filter; q close ", " Space next page; q close "],
@@ -201,9 +201,9 @@ impl Help {
     }
 }
 
-/// Breaks the lines into columns, and these into pages of as many as fit side by side.
+/// Breaks the lines into columns, and puts on each page as many columns as fit side by side.
 fn pages(lines: &[Line], [width_of_page, height]: [usize; 2]) -> Vec<Vec<Vec<Line>>> {
-    // A screen of three rows has none left beside the border.
+    // At least one row: the border takes all rows of a screen of three.
     let height = height.max(1);
     let paged = |height: usize| {
         let mut pages: Vec<Vec<Vec<Line>>> = Vec::new();
@@ -221,7 +221,7 @@ fn pages(lines: &[Line], [width_of_page, height]: [usize; 2]) -> Vec<Vec<Vec<Lin
         }
         pages
     };
-    // The least height with the same number of pages and columns: columns of about the same length.
+    // The least height that needs no more pages or columns, so that the columns are about equally long.
     let shape = |pages: &Vec<Vec<Vec<Line>>>| pages.iter().map(Vec::len).collect::<Vec<_>>();
     let full = paged(height);
     (1..height).map(paged).find(|pages| shape(pages) == shape(&full)).unwrap_or(full)
@@ -331,7 +331,7 @@ pub(super) fn key_names(keymap: &Keymap, modes: &[KeyMode], commands: &[Command]
     let keys = keys?;
     let names: Vec<_> = keys.iter().map(Key::to_string).collect();
     let is_short = names.iter().all(|name| name.width() == 1);
-    // "arrows" is shorter than four names, and says as much.
+    // "arrows" is shorter than the names of the four keys.
     Some(if is_arrows(&keys) { "arrows".to_owned() } else { names.join(if is_short { "" } else { " " }) })
 }
 

@@ -1,4 +1,4 @@
-//! Opening of the help, and the keys while it is open.
+//! Opening of the help, and handling of keys while it is open.
 
 use super::Viewer;
 use super::help::{HelpKey, HelpPanel};
@@ -22,7 +22,7 @@ impl Viewer {
     pub(super) fn take_help_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>) -> bool {
         let Some(help) = self.screen.get::<HelpPanel>() else { return false };
         let mut effect = help.effect(key.code, meant.map(|(command, _)| command));
-        // A key held too long would open and close the help 25 times a second.
+        // Repeats of the key that opens and closes the help would do so 25 times a second.
         if key.kind == KeyEventKind::Repeat && matches!(effect, HelpKey::Close | HelpKey::Turn | HelpKey::Clear) {
             effect = HelpKey::Nothing;
         }

@@ -1,9 +1,9 @@
-//! Jumps of the camera to a view, and the views that they have left.
+//! Animated jumps of the camera to another view, and the history of the views that jumps have left.
 
 use crate::camera::Camera;
 use std::time::Duration;
 
-/// Duration of a jump: long enough to see where the new view is, short enough not to be waited for.
+/// Duration of a jump: long enough to see where the new view lies, short enough not to delay work.
 pub(super) const JUMP_TIME: Duration = Duration::from_millis(200);
 
 /// Limit on the recorded views in each direction.
@@ -37,7 +37,8 @@ impl Jump {
         now >= self.end()
     }
 
-    /// Returns the camera at a time: the speed rises from 0 and falls to 0.
+    /// Returns the camera at time `now`. Its speed rises from 0 at the start and falls to 0 at the
+    /// end.
     pub(super) fn camera(&self, now: Duration) -> Camera {
         if self.has_ended(now) {
             return self.to;
@@ -47,12 +48,12 @@ impl Jump {
     }
 }
 
-/// The views that jumps have left, to return to.
+/// The views that jumps have left, to which the user can return.
 #[derive(Clone, Default)]
 pub(super) struct JumpHistory {
     /// Views before the current one, oldest first.
     before: Vec<Camera>,
-    /// Views that were left by going back, oldest first.
+    /// Views that were left by returning to earlier ones, oldest first.
     after: Vec<Camera>,
 }
 
@@ -63,8 +64,8 @@ impl JumpHistory {
         push(&mut self.before, camera);
     }
 
-    /// Returns the view before, or with `forward` the view after, and records `camera`, which is
-    /// left for it.
+    /// Returns the view before `camera` in the history, or with `forward` the view after it, and
+    /// records `camera` in the other direction.
     pub(super) fn retrace(&mut self, camera: Camera, forward: bool) -> Option<Camera> {
         let (from, to) =
             if forward { (&mut self.after, &mut self.before) } else { (&mut self.before, &mut self.after) };

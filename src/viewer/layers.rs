@@ -31,7 +31,7 @@ pub(super) enum Level {
     Error,
     /// A warning above the lowest row until the next key.
     Warning,
-    /// In the lowest row until the next key or for some seconds.
+    /// A note in the lowest row, until the next key or for some seconds.
     Note,
     /// A question that has to be answered.
     Question,
@@ -133,7 +133,7 @@ pub(super) struct Canvas<'a> {
     pub(super) frame: Option<&'a Frame>,
     /// The name of the scene.
     pub(super) name: &'a str,
-    /// Position of the line between two maps, as a share of the width.
+    /// Position of the line between the two maps of a wipe, as a share of the width.
     pub(super) wipe: f32,
     pub(super) figures: FrameStatistics,
     /// Number of rows that the status line takes at the bottom of the screen.

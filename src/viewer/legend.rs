@@ -36,10 +36,11 @@ impl Layer for Legends {
 
 /// Returns each text with its area, as wide as the text, so that the picture continues beside it.
 ///
-/// Of two texts, the right one ends at the right edge. `line` is the share of the width at which the pictures meet: of
-/// a text that is wider than its picture only the map's name is shown, or nothing, as it would cover the other picture.
+/// If there are two texts, the second one ends at the right edge. `line` is the position of the line between the two
+/// pictures, as a share of the width. A text that would cover the other picture is reduced to the map's name, or to
+/// nothing.
 fn legend_areas(texts: &[String], line: f32, row: Rect) -> Vec<(&str, Rect)> {
-    // Legends are ASCII, so that bytes are columns.
+    // Legends are ASCII, so a text has as many columns as bytes.
     let width = |text: &str| (text.len() as u16).saturating_add(2);
     let fitting = |text: &'_ str, room: u16| {
         let name = text.split(':').next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! A line that says when nothing of the scene can be seen, and which keys help.
+//! A notice that nothing of the scene is visible, with the keys that lead back.
 
 use super::layers::{Canvas, Layer, Level};
 use super::legend;
@@ -10,17 +10,17 @@ use crate::shape::{Side, Surface};
 use ratatui_core::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
-/// Columns and rows of the rays that look for something visible.
-// At 80x24 cells every second pixel. The first ray that sees something ends the search, so that it costs nothing as
-// long as the eye is not lost.
+/// Columns and rows of the grid of rays by which [`Hiding::find`] searches for something visible.
+// At 80x24 cells one ray for every second pixel in either direction. The first ray that hits the front of a surface
+// ends the search, so that it takes time only if nothing is visible.
 const RAYS: [u32; 2] = [40, 24];
 
-/// The line in its versions, longest first. The first one that fits is shown.
+/// The notice in several versions, longest first. The first one that fits into the row is shown.
 #[derive(PartialEq)]
 pub(super) struct LostNotice(Vec<String>);
 
 impl LostNotice {
-    /// Returns a notice of what hides the scene, and the keys that help.
+    /// Returns the notice for the reason `hiding`, followed by `keys`, the keys that lead back.
     pub(super) fn new(hiding: &Hiding, keys: &str) -> Self {
         let of_object = |is: &str, Hidden { number, name }: &Hidden| {
             vec![format!("{is} object {number} ({name})"), format!("{is} object {number}")]
@@ -66,7 +66,7 @@ pub(super) enum Hiding {
 pub(super) struct Hidden {
     /// Number of the object in the scene file, from 1.
     number: u32,
-    /// Colour and kind.
+    /// Colour and kind of the object, such as `red sphere`.
     name: String,
 }
 
@@ -96,7 +96,8 @@ impl Hiding {
 
     /// Returns the reason if only the back of `object` is visible.
     ///
-    /// `None` for a mesh whose box the eye is outside of: its triangles are wound the other way round.
+    /// `None` if the eye is outside the object's bounding box. The object is then visible after all: a mesh whose
+    /// triangles have the opposite winding order.
     fn by(scene: &Scene, Pose { eye, .. }: Pose, object: u32) -> Option<Self> {
         let of = &scene.objects()[object as usize];
         let hidden = Hidden { number: object + 1, name: short_name(of) };

@@ -1,4 +1,4 @@
-//! Commands for looking at a single object: its sides, its edges, its facts, and which axis is up.
+//! Commands for looking at a single object: views from its sides, its metadata, and the axis that is up.
 
 use super::Viewer;
 use super::axes::Axes;
@@ -9,8 +9,8 @@ use crate::control::{Command, KeyMode};
 use crate::hit::{Hit, closest_hit};
 use glam::{Vec2, Vec3};
 
-/// The direction of the eye for a view from above: 0.02 radians from the pole, where no direction
-/// of the picture would be vertical.
+/// The direction from the target to the eye in a view from above: 0.02 radians from the vertical,
+/// because exactly from above the up vector has no direction in the picture.
 const ABOVE: Vec3 = Vec3::new(0.0, 0.9998, 0.02);
 
 impl Viewer {
@@ -22,7 +22,8 @@ impl Viewer {
         }
     }
 
-    /// Looks at everything finite from the front, the right or above.
+    /// Looks at all bounded objects from the side that the command `side` names: front, right or
+    /// above.
     pub(super) fn look_from(&mut self, side: Command) {
         let direction = match side {
             Command::Front => Vec3::Z,
@@ -36,13 +37,13 @@ impl Viewer {
         let aspect_ratio = self.first_map_resolution().aspect_ratio();
         self.eye.jump(self.now, |camera| {
             let target = bounds.min + 0.5 * bounds.extent();
-            // Any distance: framing changes it.
+            // The distance does not matter, because `Camera::framing` replaces it.
             let pose = Pose { eye: target + direction * bounds.extent().length(), target, up: Vec3::Y };
             camera.with_pose(pose).map_or(*camera, |camera| camera.framing(&bounds, aspect_ratio))
         });
     }
 
-    /// Opens or closes the directions of the axes.
+    /// Shows or hides the drawing of the axes.
     pub(super) fn toggle_axes(&mut self) {
         if self.screen.close::<Axes>().is_none() {
             self.screen.open(Axes);
@@ -63,7 +64,7 @@ impl Viewer {
         }
     }
 
-    /// Returns what is seen at a position of the screen, with the point.
+    /// Returns the closest hit at a position of the screen, and the point that was hit.
     fn hit_at(&self, at: Vec2) -> Option<(Hit, Vec3)> {
         let ray = self.eye_ray_at(at)?;
         let hit = closest_hit(&self.screen.frame()?.scene, &ray)?;
@@ -75,9 +76,10 @@ impl Viewer {
         self.hit_at(at).map(|(hit, _)| hit.object)
     }
 
-    /// Makes the point at a position of the screen the target, in the middle of the picture.
+    /// Makes the surface point at a position of the screen the target, in the middle of the
+    /// picture.
     ///
-    /// Only in orbit, which goes around the target.
+    /// Does nothing except in orbit mode, in which the camera turns about the target.
     pub(super) fn centre_on(&mut self, at: Vec2) {
         if self.eye.mode() == KeyMode::Orbit
             && let Some((_, point)) = self.hit_at(at)
@@ -88,7 +90,7 @@ impl Viewer {
 
     /// Moves the eye until an object fills the picture.
     ///
-    /// Without an object, or with an endless one, everything finite fills it.
+    /// Without an object, or with an unbounded one, all bounded objects together fill it.
     pub(super) fn frame_object(&mut self, object: Option<u32>) {
         match object.and_then(|object| self.bounds_of(object)) {
             Some(bounds) => {
@@ -104,7 +106,7 @@ impl Viewer {
     }
 }
 
-/// Returns the camera shifted so that a point becomes the target, as far away as it is.
+/// Returns the camera shifted sideways so that `point` becomes the target, at an unchanged depth.
 fn centred_on(camera: &Camera, point: Vec3) -> Camera {
     let (pose, w) = (camera.pose(), camera.basis().w);
     let depth = (pose.eye - point).dot(w);

@@ -1,4 +1,4 @@
-//! The facts about a scene or mesh, in the upper left corner.
+//! The panel of metadata about a scene or mesh, such as its size, in the upper left corner.
 
 use super::layers::{Canvas, Layer, Level};
 use crate::scene::Scene;
@@ -12,11 +12,11 @@ use ratatui_widgets::clear::Clear;
 use ratatui_widgets::paragraph::Paragraph;
 use unicode_width::UnicodeWidthStr;
 
-/// Lines of facts.
+/// The lines of the panel.
 pub(super) struct Metadata(Vec<String>);
 
 impl Metadata {
-    /// Returns the facts about the scene of this name.
+    /// Returns the panel about `scene`, whose name is `name`.
     pub(super) fn of(scene: &Scene, name: String) -> Self {
         let mut lines = vec![name];
         let meshes = || {
@@ -37,7 +37,7 @@ impl Metadata {
             lines.push(format!("vertices   {}", grouped(meshes().map(|mesh| mesh.file().positions().len()).sum())));
         }
         if let Some(bounds) = scene.bounds() {
-            // In the axes of the file.
+            // The size along the axes of the mesh file, before it was turned.
             let turn = scene.mesh().map_or(glam::Mat3::IDENTITY, |mesh| mesh.up.turn());
             let size = (turn.transpose() * bounds.extent()).abs();
             lines.push(format!("size       {} x {} x {}", number(size.x), number(size.y), number(size.z)));
@@ -71,7 +71,7 @@ impl Layer for Metadata {
     }
 }
 
-/// Writes a number with a comma between groups of three digits.
+/// Formats a number with commas between groups of three digits, such as `69,451`.
 fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();

@@ -142,7 +142,7 @@ impl Viewer {
         Some(ray.at(t))
     }
 
-    /// Returns the eye ray through the pixel at a position.
+    /// Returns the eye ray through the pixel at a position of the screen.
     pub(super) fn eye_ray_at(&self, at: Vec2) -> Option<Ray> {
         let (frame, camera) = (self.screen.frame()?, self.eye.camera()?);
         let (part, [x, y]) = frame.part_at(self.pixel_at(at));

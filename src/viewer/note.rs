@@ -10,12 +10,12 @@ use unicode_width::UnicodeWidthStr;
 // A line of 80 characters is read in four seconds.
 pub(super) const NOTE_TIME: Duration = Duration::from_secs(5);
 
-/// A line of text.
+/// A note: a line of text, perhaps with another line above it.
 pub(super) struct Note {
     text: String,
-    /// A line above it.
+    /// The line above the text, if there is one.
     above: Option<String>,
-    /// Whether it stays until the next key.
+    /// Whether the note stays until the next key.
     lasts: bool,
     /// Time at which it fades; `None` before it was shown.
     fades_at: Option<Duration>,
@@ -37,7 +37,7 @@ impl Note {
         Self { above: Some(text), ..self }
     }
 
-    /// Returns the time at which the note fades, which begins with the first call.
+    /// Returns the time at which the note fades: [`NOTE_TIME`] after the first call.
     ///
     /// `None` if it stays until the next key.
     pub(super) fn fades_at(&mut self, now: Duration) -> Option<Duration> {

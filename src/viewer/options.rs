@@ -46,7 +46,7 @@ pub struct Options {
     /// The number of scenes of a tour, whose captions are shown. `None`: no tour.
     #[doc(hidden)]
     pub tour: Option<usize>,
-    /// A note shown once where 256 colours were found and not asked for.
+    /// The note that is shown once if 256 colours were detected, not chosen by the user.
     #[doc(hidden)]
     pub few_colors: Option<String>,
     /// The first map to show.

@@ -1,11 +1,11 @@
-//! The mouse pointer, and the thing that a drag moves.
+//! The state of the mouse pointer, and the target that a drag moves.
 
 use crate::control::{Gesture, Pointer};
 use crossterm::event::MouseEvent;
 use glam::Vec2;
 use std::time::Duration;
 
-/// The mouse pointer, and the thing that the current or last drag moves.
+/// The state of the mouse pointer, and the target that the current or last drag moves.
 #[derive(Default)]
 pub(super) struct PointerState {
     pointer: Pointer,
@@ -16,7 +16,7 @@ pub(super) struct PointerState {
     object: Option<u32>,
 }
 
-/// The thing that moves while the mouse is dragged.
+/// The thing that a drag with the mouse moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum DragTarget {
     #[default]
@@ -35,7 +35,7 @@ impl PointerState {
         self.pointer.take(&event, at, now)
     }
 
-    /// Starts a drag of a thing; `object` is under the pointer.
+    /// Starts a drag that moves `thing`. `object` is the object under the pointer, if any.
     pub(super) fn start_drag(&mut self, thing: DragTarget, object: Option<u32>) {
         (self.target, self.object, self.has_moved) = (thing, object, false);
     }
@@ -45,13 +45,13 @@ impl PointerState {
         self.has_moved = true;
     }
 
-    /// Returns whether the button was released on an object where it was pressed.
+    /// Returns whether the button was pressed on an object, and the pointer has not moved since.
     pub(super) fn is_click(&self) -> bool {
         !self.has_moved && self.object.is_some()
     }
 
     /// Returns the object that was under the pointer when the button was pressed.
-    // Not the one of a second click, because the first may have shifted the picture.
+    // After a double click it is the object of the first click, because that click may have shifted the picture.
     pub(super) fn object(&self) -> Option<u32> {
         self.object
     }

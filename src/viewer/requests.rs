@@ -9,7 +9,7 @@ use crate::control::Command;
 use crate::framebuffer::Resolution;
 use crate::render::Sampling;
 
-/// The width of a large picture in pixels, and its height if the window is higher than wide.
+/// The longer side of a large picture in pixels.
 const LARGE_SIDE: u32 = 1920;
 
 /// Returns the size of a large picture, of square pixels, in the shape of the shown one.
@@ -69,12 +69,13 @@ impl Viewer {
         }
     }
 
-    /// Shows what goes on besides the view.
+    /// Shows the work in the background, or hides the line about it if there is none.
     pub(crate) fn show_activity(&mut self, activity: Activity) {
         self.screen.set(Some(activity).filter(|activity| activity.is_any()));
     }
 
-    /// Returns the large picture of the wanted view, and the position of the line between two maps.
+    /// Returns the job that traces the large picture of the wanted view, and the position of the
+    /// line between the two maps of a wipe, as a share of the width.
     pub(crate) fn large_picture(&self) -> Option<(Job, f32)> {
         let (scene, shot) = self.scene().zip(self.wanted_shot())?;
         let shot = Shot { resolution: large(shot.resolution), geometry: false, ..shot };
@@ -91,8 +92,8 @@ impl Viewer {
         self.screen.open(Dialog::NewScene(file));
     }
 
-    /// Returns the text of a scene with the shown mesh, whose file is `name`, as it is lit now and
-    /// seen by `camera`. `None` for a scene of its own.
+    /// Returns the text of a scene file with the shown mesh, whose file is `name`, the current
+    /// lights and `camera`. `None` if the shown scene has its own file.
     pub(crate) fn scene_around_mesh(&self, name: &str, camera: &Camera) -> Option<String> {
         self.scene()?.around_mesh_to_ron(name, camera)
     }

@@ -24,7 +24,7 @@ const MAX_ACTIONS: usize = 5;
 
 /// Greatest number of wake-ups between the last event and rest.
 ///
-/// A lossy picture becomes exact in a few frames, and a tap of 60 frames a second ends within a second.
+/// A lossy picture becomes exact in a few frames, and the motion of a tap, at 60 frames a second, ends within a second.
 const MAX_WAKE_UPS: usize = 400;
 
 /// Limits on the bytes of a frame: per cell, and in addition per frame.

@@ -151,7 +151,7 @@ impl Screen {
         self.content.layers.close()
     }
 
-    /// Closes the note if its time is over; otherwise returns the time at which it will be.
+    /// Closes the note if its time is over; otherwise returns the time at which it fades.
     pub(super) fn fade_note(&mut self, now: Duration) -> Option<Duration> {
         let fades_at = self.content.quietly().layers.get_mut::<Note>()?.fades_at(now)?;
         if fades_at <= now {
@@ -191,7 +191,7 @@ impl Screen {
         self.drawn.is_some()
     }
 
-    /// Passes a key to the open help.
+    /// Passes a key to the open help, and closes the help if the key does.
     pub(super) fn take_help_key(&mut self, key: HelpKey, keymap: &Keymap, size: Size) {
         let (modes, screen) = (self.active_modes(size), theme::area(size));
         if let Some(help) = self.content.layers.get_mut::<HelpPanel>()
@@ -272,7 +272,7 @@ impl Screen {
     /// Returns whether a screen of this size can be drawn: the last frame has this size, or there
     /// is no frame and a scene is loading.
     ///
-    /// Without any frame, panels about the loading are drawn on black.
+    /// Before the first frame, the panels about loading are drawn on black.
     fn can_show(&self, size: Size) -> bool {
         let Some(frame) = self.frame() else { return self.awaits_scene() };
         // After a resize the old frame would be cut off, or would leave a part of the window empty.

@@ -1,4 +1,4 @@
-//! The status line: scene and statistics of the last frame, and above them the important keys.
+//! The status line: the scene and statistics of the last frame, and in a row above them the important keys.
 
 use super::help;
 use super::layers::{Canvas, FrameStatistics, Layer, Level};
@@ -60,12 +60,13 @@ struct Status<'a> {
 }
 
 impl Status<'_> {
-    /// Returns the items that fit into `width` columns: of all, the last ones.
+    /// Returns the items, separated by `separator`. If they do not fit into `width` columns, the
+    /// first ones are left out.
     fn text(&self, separator: &str, width: usize) -> String {
         let Self { name, cells, sampling, trace, figures, eye } = self;
         let FrameStatistics { encode, frames_per_second, slow } = *figures;
         let mut items = vec![(*name).to_owned(), format!("{}x{}", cells.columns, cells.rows), samples(*sampling)];
-        // The facts that limit the frame rate: on a slow link, tracing and encoding do not.
+        // The cause that limits the frame rate: a slow link, or else the time for tracing and encoding.
         items.push(match slow {
             Some(rate) => format!("slow link {}B/s", short(rate)),
             None => milliseconds(*trace + encode),

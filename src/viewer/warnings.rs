@@ -7,12 +7,12 @@ use ratatui_core::layout::Rect;
 /// Limit on the rows of all warnings.
 const MAX_ROWS: usize = 4;
 
-/// The faults of a scene that is shown nonetheless.
+/// The warnings about a scene: faults of its files despite which it is shown.
 #[derive(Default)]
 pub(super) struct Warnings(Vec<String>);
 
 impl Warnings {
-    /// Adds a warning, unless it is there already.
+    /// Adds a warning, unless the list already contains it.
     pub(super) fn add(&mut self, warning: String) {
         if !self.0.contains(&warning) {
             self.0.push(warning);
@@ -32,7 +32,7 @@ impl Layer for Warnings {
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
-        // The lowest row is that of notes, which are shown at the same time.
+        // At least one row above the lowest, in which a note may be shown at the same time.
         let row = canvas.foot(canvas.status_rows.max(1));
         let lines = self.lines(row.width);
         for (above, line) in (0..).zip(lines.iter().rev()).take_while(|&(above, _)| above < row.y) {

@@ -231,7 +231,7 @@ impl<'f> NodeReader<'f> {
         None
     }
 
-    /// Reads a text in quotes. `wanted` says what it is, for the fault.
+    /// Reads a quoted string. `wanted` describes it in the message of a fault.
     pub(crate) fn text(&mut self, node: &SyntaxNode<'_>, wanted: &str) -> Option<Spanned<String>> {
         let Value::String(text) = &node.value else {
             self.mismatch(node, wanted);
@@ -316,7 +316,8 @@ fn meant_field(name: &str, known: &[&'static str]) -> Option<&'static str> {
         ("color", "material"),
         ("color", "reflectance"),
     ];
-    // `pos` for `position`. A letter or two begin too many names.
+    // A name of three letters or more may be an abbreviation, such as `pos` for `position`. Shorter ones fit too many
+    // names.
     let longer = || known.iter().find(|known| name.len() >= 3 && known.starts_with(name)).copied();
     closest(name, known.iter().copied()).or_else(longer).or_else(|| {
         let meant = ALSO_CALLED.iter().filter(|(other, _)| *other == name).map(|&(_, meant)| meant);

@@ -26,8 +26,8 @@ pub(super) struct Values {
 }
 
 impl Values {
-    /// Returns the completions of the value of `arg`: its possible values, or else those that follow
-    /// from the value's name in the help, such as `orbit|FILE`.
+    /// Returns the completions of the value of `arg`: its possible values, or else those that
+    /// follow from the value's name in the help, such as `orbit|FILE`.
     pub(super) fn of(arg: &Arg, program: &Command) -> Self {
         let (mut words, mut files) = (Vec::new(), Files::None);
         let possible = arg.get_possible_values();

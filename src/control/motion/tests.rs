@@ -151,7 +151,7 @@ fn movement_is_per_second_not_per_step() {
     assert!(at_once.pose().target.abs_diff_eq(in_steps.pose().target, 1e-4));
 }
 
-/// Returns the way that the eye goes forward from time 0, with these events of `w` at times in ms.
+/// Returns how far the eye moves forward from time 0 to `end`, in ms, if the key `w` has `events`.
 fn way(motion: &mut Motion, events: &[(u64, KeyEventKind)], end: u64) -> f32 {
     let (mut camera, mut last) = (camera(), ms(0));
     for &(at, kind) in events {
@@ -181,7 +181,7 @@ fn without_releases_a_press_is_a_step_of_falling_speed() {
         4.0 - motion.step(&camera(), 1.0, ms(at), ms(at + 1)).pose().eye.z
     });
     assert!(speeds.is_sorted_by(|a, b| a > b) && speeds[0] > 0.99e-3 && speeds[3] == 0.0, "{speeds:?}");
-    // Another press after the first step is another step.
+    // A second press after the end of the first step is another step, not a held key.
     assert_way(&mut Motion::default(), &[(100, PRESS), (500, PRESS)], 0.3);
 }
 
@@ -196,7 +196,7 @@ fn without_releases_a_second_press_soon_and_a_repeat_run_at_full_speed() {
     assert!(motion.is_moving(ms(529)) && !motion.is_moving(ms(530)));
 }
 
-/// The first repeat after a long delay is a step like a press; the next ones come soon after it.
+/// A first repeat after a long delay counts as a tap; the later ones, 40 ms apart, continue it.
 #[test]
 fn without_releases_a_held_key_rests_until_its_repeats() {
     let mut motion = Motion::default();
@@ -219,7 +219,7 @@ fn without_releases_another_key_ends_a_step() {
     }
 }
 
-/// However short a press is, it moves by a step that is seen; a longer one ends with its release.
+/// A press shorter than a step still moves by a whole step; a longer one ends at its release.
 #[test]
 fn with_releases_a_tap_is_a_whole_step() {
     for (events, wanted) in [

@@ -24,9 +24,9 @@ pub(super) struct Buffers<'a, 'b> {
 /// The kind of data that a URI names.
 #[derive(Clone, Copy)]
 enum Resource {
-    /// A buffer, without which there is no shape.
+    /// A buffer. If its file is missing, the mesh has no shape: that is an error.
     Buffer,
-    /// A picture, without which there are no colours.
+    /// An image. If its file is missing, only colours are missing: that may be a warning.
     Picture,
 }
 
@@ -126,7 +126,7 @@ impl<'a, 'b> Buffers<'a, 'b> {
         Ok(bytes)
     }
 
-    /// Returns the bytes of a picture: `None` if it is a side file that is missing.
+    /// Returns the bytes of an image; `None` if its side file is missing.
     pub(super) fn picture(&mut self, uri: Json<'a>) -> Result<Option<Bytes<'a>>, MeshFault> {
         self.resource(uri, Resource::Picture)
     }

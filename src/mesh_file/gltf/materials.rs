@@ -46,7 +46,7 @@ impl<'a> MaterialReader<'_, 'a, '_> {
         }
         if let Some(info) = base.field(texture)? {
             let Some((placement, set)) = self.placement(info)? else {
-                // White stands for the colours of the texture, which is missing.
+                // White is the factor of a texture that is missing, not the colour of the surface.
                 if material.material.reflectance == white {
                     material.material.reflectance = CLAY;
                 }
@@ -75,7 +75,7 @@ impl<'a> MaterialReader<'_, 'a, '_> {
         Ok(Some((placement, set)))
     }
 
-    /// Returns a picture as a texture; `None` if its file is missing.
+    /// Returns an image as a texture; `None` if the image's file is missing.
     fn texture(&mut self, source: Json<'a>) -> Result<Option<Arc<Texture>>, MeshFault> {
         let (index, image) = source.item_of(self.buffers.root(), "images")?;
         if let Some(texture) = self.textures.get(&index) {

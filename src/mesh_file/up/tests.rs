@@ -1,6 +1,6 @@
 use super::*;
 
-/// Returns a cup: a square box without a lid, whose bottom is a square at 0 of an axis.
+/// Returns a cup: a box that is open at one end of an axis, with a square bottom at coordinate 0.
 fn cup(axis: usize) -> MeshFile {
     let point = |at: [f32; 3]| {
         let mut point = Vec3::ZERO;
@@ -24,7 +24,7 @@ fn a_thing_stands_on_its_flat_end() {
     for usual in [UpAxis::Y, UpAxis::Z] {
         assert_eq!(guessed(&cup(1), usual), UpAxis::Y);
         assert_eq!(guessed(&cup(2), usual), UpAxis::Z);
-        // Lying on its side, it tells nothing.
+        // A cup that lies on its side gives no evidence for either axis.
         assert_eq!(guessed(&cup(0), usual), usual);
     }
 }

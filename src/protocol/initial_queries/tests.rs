@@ -73,7 +73,7 @@ fn replies_count_up_to_the_fence() {
     assert_eq!(queries.replies(), &replies);
 }
 
-/// Alacritty replies to the second query only, tmux to both, for itself.
+/// Of the queries XTVERSION and DA2, Alacritty replies to DA2 only. tmux replies to both itself.
 #[test]
 fn a_terminal_is_known_by_its_name_or_type() {
     let truecolor = |replies: &[Reply]| {

@@ -52,7 +52,7 @@ fn no_tap_passes_a_surface_of_a_shipped_scene() {
     }
 }
 
-/// Follows the eye to its rest in steps of a frame.
+/// Steps the eye frame by frame until it rests, and asserts that it passes no surface.
 fn assert_passes_nothing(eye: &mut Eye, scene: &Scene, what: &str) {
     let mut last = *scene.camera();
     for at in (1_000..2_000).step_by(16) {
@@ -152,7 +152,7 @@ fn a_jump_is_eased_and_ends_exactly_at_its_view() {
     assert!(eye.camera() == Some(far) && !eye.is_moving());
 }
 
-/// A key acts at once, on the view that the jump leads to.
+/// A key pressed during a jump acts at once, on the view at the end of the jump.
 #[test]
 fn a_press_ends_a_jump_at_once_and_a_release_does_not() {
     let (mut eye, home) = looking_at_spheres(false);
@@ -166,7 +166,7 @@ fn a_press_ends_a_jump_at_once_and_a_release_does_not() {
     eye.jump(ms(2_000), |_| home);
     press(&mut eye, KeyCode::Char('w'), None, ms(2_050));
     assert!(eye.camera() == Some(home) && eye.is_moving());
-    // With reduced motion there is no way between.
+    // With reduced motion a jump has no frames in between.
     let (mut eye, _) = looking_at_spheres(true);
     eye.jump(ms(1_000), |_| far);
     assert!(eye.camera() == Some(far) && !eye.is_moving());
@@ -200,7 +200,7 @@ fn views_that_were_left_by_jumps_are_returned_to() {
         assert_eq!(eye.camera(), Some(camera));
     }
     assert!(!eye.retrace(false, at));
-    // A view that was composed by hand is returned to as well.
+    // A view that keys have changed is recorded too, when a jump leaves it.
     eye.change(at, |camera, _| camera.orbited(1.0, 0.0));
     let composed = eye.camera();
     eye.reset(at);

@@ -68,12 +68,13 @@ impl Group {
 /// The directions in the order of the keys `h` `j` `k` `l`.
 const HJKL: [Toward; 4] = [Toward::Left, Toward::Down, Toward::Up, Toward::Right];
 
-/// Commands that share a row if each has the same number of keys, and the row's description.
+/// Returns groups of commands, each with a description. The commands of a group share a row of the
+/// help if all have the same number of keys.
 fn shared_rows() -> Vec<(Vec<Command>, &'static str)> {
     use Direction::{Back, Down, Forward, Left, Right, Up};
     let toward = |command: fn(Toward) -> Command| HJKL.map(command).to_vec();
     vec![
-        // In the order in which the keys are read: W A S D.
+        // In the order in which the keys are usually named: W A S D.
         ([Forward, Left, Back, Right].map(Command::Move).to_vec(), "move"),
         ([Left, Right].map(Command::Move).to_vec(), "left, right"),
         ([Up, Down].map(Command::Move).to_vec(), "up, down"),
@@ -100,9 +101,10 @@ pub(super) struct Row {
     pub(super) does: String,
 }
 
-/// Returns the rows of all groups that contain `filter`, whatever its case.
+/// Returns the rows of all groups that contain `filter`, ignoring case.
 ///
-/// A key that a higher mode binds is left out below. `states` are the words that follow commands.
+/// A key that a mode binds is left out for the modes after it in `modes`. `states` has words on the current state,
+/// which follow the descriptions.
 pub(super) fn rows(keymap: &Keymap, modes: &[KeyMode], states: &[(Command, String)], filter: &str) -> Vec<Row> {
     let rows = [of_keys(keymap, modes, states), of_mouse(modes)].concat();
     let filter = filter.to_lowercase();
@@ -121,7 +123,7 @@ fn of_keys(keymap: &Keymap, modes: &[KeyMode], states: &[(Command, String)]) -> 
         Row { group: Group::of(commands[0]), keys, does }
     };
     let (mut listed, mut rows) = (HashSet::new(), Vec::new());
-    // Shift is no key of the keymap, but part of the meaning of movement keys.
+    // Shift has a row although the keymap does not bind it: it makes the movement keys faster.
     rows.push(Row { group: Group::Move, keys: "Shift".to_owned(), does: "hold: 4x faster".to_owned() });
     let shared = shared_rows();
     for (command, keys) in &bound {
@@ -140,14 +142,15 @@ fn of_keys(keymap: &Keymap, modes: &[KeyMode], states: &[(Command, String)]) -> 
         } else {
             let names = keys.iter().map(Key::to_string).collect::<Vec<_>>().join(" ");
             listed.insert(command.name());
-            // Commands of one description, such as digits of which one is bound otherwise, share a row, too.
+            // Other commands with the same description share a row too, such as the digits if one is bound to another
+            // command.
             match rows.iter_mut().find(|row| row.does == command.description()) {
                 Some(same) => same.keys = format!("{} {names}", same.keys),
                 None => rows.push(row(&[*command], names, command.description())),
             }
         }
     }
-    // After the keys that it makes faster.
+    // Moves the row of Shift behind those of the keys that it makes faster.
     let last = rows.iter().rposition(|row| row.group == Group::Move).unwrap_or(0);
     rows[..=last].rotate_left(1);
     rows
@@ -168,7 +171,8 @@ fn bound(keymap: &Keymap, modes: &[KeyMode]) -> Vec<(Command, Vec<Key>)> {
     bound
 }
 
-/// Returns the keys of several commands: first that of each command, then the next one of each.
+/// Returns the keys of several commands: the first key of each command, then the second of each,
+/// and so on.
 fn shared_label(keys: &[&[Key]]) -> String {
     let of = |at: usize| keys.iter().map(move |keys| keys[at]).collect::<Vec<_>>();
     (0..keys[0].len()).map(|at| joined(&of(at))).collect::<Vec<_>>().join(" ")
@@ -182,7 +186,7 @@ fn joined(keys: &[Key]) -> String {
     if let ([first, .., last], 5..) = (&names[..], names.len()) {
         return format!("{first}..{last}");
     }
-    // Four letters are read as a word: WASD.
+    // Four letters are written as a word: WASD.
     let is_letter = |key: &Key| matches!(key.code, KeyCode::Char('a'..='z')) && !key.ctrl;
     if names.len() == 4 && keys.iter().all(is_letter) {
         return names.concat().to_uppercase();
@@ -196,7 +200,7 @@ pub(super) fn is_arrows(keys: &[Key]) -> bool {
     keys.len() == arrows.len() && arrows.iter().all(|arrow| keys.contains(arrow))
 }
 
-/// Returns what the mouse does in these modes.
+/// Returns the rows about the mouse in these modes.
 fn of_mouse(modes: &[KeyMode]) -> Vec<Row> {
     let [drag, wheel] = if modes.contains(&KeyMode::Light) {
         ["move the light", "closer, farther"]
@@ -226,8 +230,8 @@ impl Line {
     }
 }
 
-/// Greatest width of keys with which the descriptions of a group are aligned.
-// The row of longer keys stands out, so that the others fit into 36 columns.
+/// Largest width in columns of the keys with which the descriptions of a group are aligned.
+// In a row with longer keys the description starts farther right, so that the other rows fit into 36 columns.
 const MAX_ALIGNED: usize = 12;
 
 /// Returns the rows as lines, each group under its heading, with its descriptions aligned.

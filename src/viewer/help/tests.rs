@@ -7,7 +7,7 @@ fn all_modes() -> [Vec<KeyMode>; 4] {
     [under(KeyMode::Fly), under(KeyMode::Orbit), above(KeyMode::Explain), above(KeyMode::Light)]
 }
 
-/// Returns the help that has the rows of `filter`.
+/// Returns the help with the rows that contain `filter`.
 fn help(keymap: &Keymap, modes: &[KeyMode], filter: &str, screen: Rect) -> Help {
     let states = [(Command::Turntable, "off".to_owned())];
     Help::new(&rows(keymap, modes, &states, filter), modes, filter, screen)
@@ -86,7 +86,7 @@ fn it_goes_by_what_is_bound() {
     keymap.bind(KeyMode::Always, Key::letter('o'), None);
     let fly = [KeyMode::Fly, KeyMode::Always];
     let text = shown(&help(&keymap, &fly, "", SCREEN), SCREEN);
-    // Two keys of one direction cannot share a row with one key each of the others.
+    // A direction with two keys cannot share a row with directions that have one key each.
     for row in ["8 ", "a 4 "] {
         assert!(text.contains(row), "{text}");
     }

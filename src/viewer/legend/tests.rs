@@ -9,7 +9,7 @@ fn each_map_has_its_legend_in_its_corner() {
     let places = |line| legend_areas(&texts, line, foot(screen, 0)).iter().map(|(_, area)| *area).collect::<Vec<_>>();
     let (left, right) = (Rect::new(0, 23, 8, 1), Rect::new(43, 23, 38, 1));
     assert_eq!(places(0.5), [left, right]);
-    // Of one that is wider than its picture the name is left, or nothing.
+    // A legend that is wider than its picture is reduced to the map's name, or to nothing.
     assert_eq!(places(0.6), [left, Rect::new(74, 23, 7, 1)]);
     assert_eq!(places(0.95), [left]);
     assert_eq!(places(0.05), [right]);
