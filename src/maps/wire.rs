@@ -39,8 +39,8 @@ pub(super) fn color(scene: &Scene, camera: &Camera, resolution: Resolution, samp
 /// height of a pixel at the hit, in world units.
 fn strength(triangle: &Triangle, ray: &Ray, pixel: f32) -> f32 {
     let [a, b, c] = triangle.corners();
-    // The distance in space between the ray and the line of an edge, which unlike a distance within the triangle's plane
-    // corresponds to pixels even if the triangle is tilted.
+    // The distance in space between the ray and the line of an edge, which unlike a distance within the triangle's
+    // plane corresponds to pixels even if the triangle is tilted.
     let distance = |from: glam::Vec3, to: glam::Vec3| {
         let normal = ray.direction.cross(to - from);
         (from - ray.origin).dot(normal).abs() / normal.length().max(f32::MIN_POSITIVE)
