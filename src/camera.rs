@@ -239,7 +239,7 @@ impl Camera {
     #[doc(hidden)]
     pub fn eye_rays(&self, aspect_ratio: f32) -> EyeRays {
         let Basis { u, v, w } = self.basis;
-        let (width, height, middle) = self.rectangle.fitted_to(aspect_ratio);
+        let (width, height, middle) = self.rectangle.width_height_middle(aspect_ratio);
         let q0 = u * (middle.x - 0.5 * width) + v * (middle.y - 0.5 * height) - w;
         EyeRays { eye: self.pose.eye, q0, across: u * width, upward: v * height }
     }
@@ -423,7 +423,7 @@ impl ViewRectangle {
     /// Returns width, height and middle of the rectangle, extended to a picture's aspect ratio.
     // It is extended instead of cropped or stretched, so that all of it is visible in a terminal of any shape: to the
     // left and right in a wider picture, up and down in a narrower one.
-    pub(crate) fn fitted_to(&self, aspect_ratio: f32) -> (f32, f32, Vec2) {
+    pub(crate) fn width_height_middle(&self, aspect_ratio: f32) -> (f32, f32, Vec2) {
         let (width, height) = match self.width {
             Some(width) if width > self.height * aspect_ratio => (width, width / aspect_ratio),
             _ => (self.height * aspect_ratio, self.height),

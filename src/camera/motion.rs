@@ -105,7 +105,7 @@ impl Camera {
     /// `aspect_ratio` is the picture's width divided by its height. A box of size 0 changes nothing.
     #[must_use]
     pub fn framing(&self, bounds: &Bounds, aspect_ratio: f32) -> Self {
-        let (width, height, centre) = self.rectangle.fitted_to(aspect_ratio);
+        let (width, height, centre) = self.rectangle.width_height_middle(aspect_ratio);
         let half = 0.5 * FRAMED_SHARE * Vec2::new(width, height);
         let [u, v, w] = [self.basis.u, self.basis.v, self.basis.w];
         let distance = framing_distance(bounds, [u, v, w], half, centre);

@@ -38,7 +38,7 @@ impl Camera {
     #[doc(hidden)]
     pub fn project(&self, point: Vec3, aspect_ratio: f32) -> Option<Vec2> {
         let (basis, way) = (self.basis, point - self.pose.eye);
-        let (width, height, centre) = self.rectangle.fitted_to(aspect_ratio);
+        let (width, height, centre) = self.rectangle.width_height_middle(aspect_ratio);
         let depth = -way.dot(basis.w);
         let on_plane = Vec2::new(way.dot(basis.u), way.dot(basis.v)) / depth - centre;
         let place = 0.5 + on_plane / Vec2::new(width, -height);
@@ -106,7 +106,7 @@ impl Camera {
 
     /// Converts a distance in the picture to one on the plane at distance 1 from the eye.
     fn on_view_plane(&self, shares: Vec2, aspect_ratio: f32) -> Vec2 {
-        let (width, height, _) = self.rectangle.fitted_to(aspect_ratio);
+        let (width, height, _) = self.rectangle.width_height_middle(aspect_ratio);
         shares * Vec2::new(width, height)
     }
 }

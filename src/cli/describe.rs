@@ -43,7 +43,7 @@ pub(super) fn run(args: &DescribeArgs) -> CommandResult {
     let [width, height] = [columns.saturating_mul(2), rows.saturating_mul(4)];
     check_pixel_count(width.into(), height.into())?;
     let resolution = Resolution::square(width, height);
-    let scene = args.scene.load()?;
+    let scene = args.scene.load_scene()?;
     let name = visible(&args.scene.name());
     if args.json {
         let facts = args.scene.on_threads(|| facts(&scene, scene.camera(), resolution))?;

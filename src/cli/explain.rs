@@ -51,7 +51,7 @@ pub(super) fn run(args: &ExplainArgs) -> CommandResult {
     if x >= width || y >= height {
         return Err(usage(format!("there is no pixel {x},{y} in a frame of {width}x{height} pixels")));
     }
-    let scene = args.scene.load()?;
+    let scene = args.scene.load_scene()?;
     let explanation = explain(&scene, scene.camera(), resolution, args.pixel);
     if args.json {
         return json::print(&as_json(&explanation, mode));

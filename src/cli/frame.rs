@@ -141,10 +141,10 @@ impl FrameArgs {
 
     /// Traces the frame and returns its bytes in `format`.
     fn contents(&self, format: Format) -> Result<Vec<u8>, Failure> {
-        let scene = self.scene.load()?;
+        let scene = self.scene.load_scene()?;
         let screen = self.screen();
         let mode = screen.map_or_else(|| self.cell_mode(format), |screen| screen.mode);
-        let kind = if self.check.is_some() { FrameKind::Cells } else { FrameKind::of(format) };
+        let kind = if self.check.is_some() { FrameKind::Cells } else { FrameKind::for_format(format) };
         let cells = screen.map(|screen| (screen.cells, screen.cell_aspect));
         let resolution = self.picture.resolution(mode, kind, cells)?;
         // Only pictures have a scale: a grid of cells may have more pixels on the screen than a picture in memory.

@@ -21,7 +21,7 @@ pub(super) enum FrameKind {
 
 impl FrameKind {
     /// Returns the kind of a frame in a file of this format.
-    pub(super) fn of(format: Format) -> Self {
+    pub(super) fn for_format(format: Format) -> Self {
         if format.has_pixels() { Self::Picture } else { Self::Cells }
     }
 

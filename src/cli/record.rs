@@ -129,7 +129,7 @@ impl RecordArgs {
         let resolution = self.picture.resolution(CellMode::HALF_BLOCK, kind, None)?;
         let fps = self.fps.unwrap_or(if kind == FrameKind::Gif { GIF_FPS } else { CAST_FPS });
         self.check_flags(&format, resolution, fps)?;
-        let scene = self.scene.load()?;
+        let scene = self.scene.load_scene()?;
         let cameras = self.cameras(scene.camera(), fps)?;
         Ok(Film { scene, cameras, fps, resolution, samples: self.picture.samples(kind), format })
     }

@@ -90,7 +90,7 @@ pub(super) struct CameraArgs {
 
 impl CameraArgs {
     /// Loads the scene, with the camera changed by the flags.
-    pub(super) fn load(&self, source: &SceneSource) -> Result<Scene, Failure> {
+    pub(super) fn load_scene(&self, source: &SceneSource) -> Result<Scene, Failure> {
         let on_warning = |warning: String| warn(warning);
         let reporter = Reporter::silent().with_warnings(&on_warning);
         let draft = self.read(source, self.mesh_up, &reporter)?;
@@ -109,7 +109,7 @@ impl CameraArgs {
     /// reporter cancels.
     ///
     /// A mesh file is turned so that its axis `up` points up, by default that of the command line.
-    pub(super) fn draft(
+    pub(super) fn load_draft(
         &self,
         source: &SceneSource,
         up: Option<UpAxis>,

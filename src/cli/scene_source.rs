@@ -58,7 +58,7 @@ impl SceneSource {
     /// Loads the scene without building its trees, until the reporter cancels.
     ///
     /// A mesh file is turned so that its axis `up` points up.
-    pub(super) fn draft(&self, up: Option<UpAxis>, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
+    pub(super) fn load_draft(&self, up: Option<UpAxis>, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
         match self {
             Self::File(path) => Draft::load_turned(path, up, reporter).map_err(|error| not_loaded(path, error)),
             Self::Stdin(bytes, stated) if self.is_mesh() => {

@@ -37,7 +37,7 @@ pub(super) fn run(args: &TourArgs, given: &ArgMatches) -> CommandResult {
 fn print_captions() -> CommandResult {
     let mut text = String::new();
     for scene in ShippedScene::all() {
-        let loaded = CameraArgs::default().load(&SceneSource::Shipped(scene))?;
+        let loaded = CameraArgs::default().load_scene(&SceneSource::Shipped(scene))?;
         let caption = loaded.caption().map_or("", |caption| caption);
         let gap = if text.is_empty() { "" } else { "\n" };
         text.extend([gap, scene.name, "\n", caption, "\n"]);

@@ -70,7 +70,7 @@ impl Explanation {
             Some(shaded) => self.add_hit(shaded, &mut lines),
             None => lines.push(String::new()),
         }
-        lines.push(light("L", self.light));
+        lines.push(light_line("L", self.light));
         self.add_tone(&mut lines);
         lines
     }
@@ -85,22 +85,22 @@ impl Explanation {
         lines.extend([
             String::new(),
             "o = eye".to_owned(),
-            vector("o", self.ray.origin),
+            vector_line("o", self.ray.origin),
             "w = (eye - target) / |eye - target|".to_owned(),
-            vector("w", w),
+            vector_line("w", w),
             "u = up x w / |up x w|".to_owned(),
-            vector("u", u),
+            vector_line("u", u),
             "v = w x u".to_owned(),
-            vector("v", v),
+            vector_line("v", v),
             String::new(),
             "view rectangle at distance 1".to_owned(),
-            format!("width {} height {}", number(width), number(height)),
+            format!("width {} height {}", padded_number(width), padded_number(height)),
             "q0 = its lower left corner".to_owned(),
-            vector("q0", corner(0.0, 0.0)),
+            vector_line("q0", corner(0.0, 0.0)),
             "q = q0 + width q_u u + height q_v v".to_owned(),
-            vector("q", self.q_in_space()),
+            vector_line("q", self.q_in_space()),
             "d = q - o".to_owned(),
-            vector("d", self.ray.direction),
+            vector_line("d", self.ray.direction),
         ]);
     }
 
@@ -113,7 +113,7 @@ impl Explanation {
         lines.push(format!("tested: {}, {nodes}", count(self.tested.len(), "surface")));
         for (at, tested) in self.tested.iter().enumerate() {
             let mark = if at == 0 && tested.t.is_some() { '>' } else { ' ' };
-            lines.push(format!("{mark} {:<14} {}", tested.name.to_string(), crossings(tested)));
+            lines.push(format!("{mark} {:<14} {}", tested.name.to_string(), root_values(tested)));
         }
     }
 
@@ -129,9 +129,9 @@ impl Explanation {
         };
         lines.extend([
             "p = o + t d".to_owned(),
-            vector("p", shaded.point.position),
+            vector_line("p", shaded.point.position),
             format!("n = unit normal, {side} side"),
-            vector("n", shaded.point.shading_normal),
+            vector_line("n", shaded.point.shading_normal),
         ]);
         for (number, contribution) in (1..).zip(&shaded.lights) {
             add_light(number, contribution, lines);
@@ -139,10 +139,10 @@ impl Explanation {
         lines.push(String::new());
         lines.extend([
             "E = ambient + all lights".to_owned(),
-            light("ambient", shaded.ambient),
-            light("E", shaded.arriving),
+            light_line("ambient", shaded.ambient),
+            light_line("E", shaded.arriving),
             "L = R E with the reflectance R".to_owned(),
-            light("R", shaded.reflectance),
+            light_line("R", shaded.reflectance),
         ]);
     }
 
@@ -153,7 +153,7 @@ impl Explanation {
             ToneCurve::Filmic => "Filmic",
         };
         lines.push(format!("tone: exposure {}, {curve}", self.exposure));
-        lines.push(light("shown", self.shown));
+        lines.push(light_line("shown", self.shown));
         let [r, g, b] = [self.bytes.r, self.bytes.g, self.bytes.b];
         lines.push(format!("sRGB {r} {g} {b}  #{r:02x}{g:02x}{b:02x}"));
     }
@@ -172,7 +172,7 @@ pub fn cell_of_pixel([x, y]: [u32; 2], mode: CellMode) -> String {
 /// Formats the roots of a tested surface's equation. The root that is the crossing is replaced by
 /// the traced t.
 // The equation is solved in f64, so its root may differ slightly from the t of the tracer, which the picture shows.
-fn crossings(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
+fn root_values(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
     let Equation { roots, without_root, is_outside, .. } = equation;
     if roots.is_empty() {
         return format!("  {without_root}");
@@ -184,15 +184,15 @@ fn crossings(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
         shown[own] = t;
     }
     let outside = if t.is_none() && *is_outside { "  outside" } else { "" };
-    shown.into_iter().map(number).collect::<String>() + outside
+    shown.into_iter().map(padded_number).collect::<String>() + outside
 }
 
 fn add_equation(equation: &Equation, lines: &mut Vec<String>) {
     lines.extend(equation.steps.iter().map(|step| match step {
-        Step::Value(what, value) => format!("  {what:<21}{}", number(*value as f32)),
+        Step::Value(what, value) => format!("  {what:<21}{}", padded_number(*value as f32)),
         Step::Text(text) => format!("  {text}"),
         Step::Values(before, between, values) => {
-            let values: Vec<_> = values.iter().map(|&value| number(value as f32)).collect();
+            let values: Vec<_> = values.iter().map(|&value| padded_number(value as f32)).collect();
             format!("  {before}{}", values.join(between))
         }
     }));
@@ -207,27 +207,27 @@ fn add_light(at: usize, contribution: &LightContribution, lines: &mut Vec<String
         Some((name, _)) => format!("V = 0, behind {name}"),
         None => "V = 1, lit".to_owned(),
     });
-    lines.push(light("I", contribution.light.color()));
-    lines.push(vector("l", incidence.l));
-    lines.push(format!("n.l  {}", number(incidence.cosine)));
+    lines.push(light_line("I", contribution.light.color()));
+    lines.push(vector_line("l", incidence.l));
+    lines.push(format!("n.l  {}", padded_number(incidence.cosine)));
     lines.push(match incidence.distance {
         f32::INFINITY => "D         infinite".to_owned(),
-        distance => format!("D    {}", number(distance)),
+        distance => format!("D    {}", padded_number(distance)),
     });
-    lines.push(light("=", contribution.arriving()));
+    lines.push(light_line("=", contribution.arriving()));
 }
 
-fn vector(name: &str, Vec3 { x, y, z }: Vec3) -> String {
-    format!("{name:<5}{} {} {}", number(x), number(y), number(z))
+fn vector_line(name: &str, Vec3 { x, y, z }: Vec3) -> String {
+    format!("{name:<5}{} {} {}", padded_number(x), padded_number(y), padded_number(z))
 }
 
-fn light(name: &str, LinearRgb { r, g, b }: LinearRgb) -> String {
-    let [r, g, b] = [r, g, b].map(|channel| format!("{:>8}", number(channel).trim_start()));
+fn light_line(name: &str, LinearRgb { r, g, b }: LinearRgb) -> String {
+    let [r, g, b] = [r, g, b].map(|channel| format!("{:>8}", padded_number(channel).trim_start()));
     format!("{name:<9}{r} {g} {b}")
 }
 
 /// Formats a number, right-aligned in nine columns.
-fn number(x: f32) -> String {
+fn padded_number(x: f32) -> String {
     let size = x.abs();
     match size {
         _ if size == 0.0 => format!("{:9.4}", 0.0),

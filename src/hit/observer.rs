@@ -29,7 +29,7 @@ pub struct PrimitiveTest {
 }
 
 impl PrimitiveTest {
-    pub(super) fn of(PrimitiveId { object, index }: PrimitiveId, t: Option<f32>) -> Self {
+    pub(super) fn from_crossing(PrimitiveId { object, index }: PrimitiveId, t: Option<f32>) -> Self {
         Self { object, primitive: index, t }
     }
 }

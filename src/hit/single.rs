@@ -74,7 +74,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
                 .first_crossing(self.rays, N::splat(self.within.min))
                 .and_then(|(crosses, t)| (crosses.bits() >> self.lane & 1 == 1).then(|| t.lane(self.lane)));
             if W::ENABLED {
-                self.observer.primitive_tested(PrimitiveTest::of(*id, crossing));
+                self.observer.primitive_tested(PrimitiveTest::from_crossing(*id, crossing));
             }
             if let Some(t) = crossing {
                 self.record(t, primitive);
@@ -128,7 +128,8 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
     fn report_tests(&mut self, primitives: impl Iterator<Item = PrimitiveId>, crossing: Option<(N::Mask, N)>) {
         let (crosses, t) = crossing.map_or((0, F32x8::ZERO), |(crosses, t)| (crosses.bits(), t.store()));
         for (lane, id) in primitives.enumerate() {
-            self.observer.primitive_tested(PrimitiveTest::of(id, (crosses >> lane & 1 == 1).then_some(t.0[lane])));
+            self.observer
+                .primitive_tested(PrimitiveTest::from_crossing(id, (crosses >> lane & 1 == 1).then_some(t.0[lane])));
         }
     }
 

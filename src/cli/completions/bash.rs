@@ -51,7 +51,7 @@ pub(super) fn script(program: &Command) -> String {
     for command in program.get_subcommands().chain([program]) {
         // An optional value follows a `=`. `HEAD` sets `$cur` to the part after it.
         for arg in options(command).filter(|arg| takes_value(arg)) {
-            values.insert(spellings(arg).join("|"), action(&Values::of(arg, program)));
+            values.insert(spellings(arg).join("|"), action(&Values::for_arg(arg, program)));
         }
     }
     for (flag, action) in values {
@@ -71,7 +71,7 @@ pub(super) fn script(program: &Command) -> String {
 /// positional argument.
 fn arguments(command: &Command, program: &Command) -> String {
     let flags: Vec<_> = options(command).flat_map(spellings).collect();
-    let place = command.get_positionals().next().map(|arg| action(&Values::of(arg, program))).unwrap_or_default();
+    let place = command.get_positionals().next().map(|arg| action(&Values::for_arg(arg, program))).unwrap_or_default();
     format!("if [[ $cur == -* ]]; then _termtrace_words \"{}\"; else {place}:; fi", flags.join(" "))
 }
 

@@ -38,7 +38,7 @@ pub(super) fn script(program: &Command) -> String {
             let _ = writeln!(script, "{start}{}", option(arg, program));
         }
         for place in command.get_positionals() {
-            let values = Values::of(place, program);
+            let values = Values::for_arg(place, program);
             let _ = writeln!(script, "{start}{}", value(&values));
             if values.files == Files::Scenes {
                 let _ = writeln!(script, "{start} -a '(__termtrace_scenes)'");
@@ -51,7 +51,7 @@ pub(super) fn script(program: &Command) -> String {
 fn option(arg: &Arg, program: &Command) -> String {
     let short = arg.get_short().map(|short| format!(" -s {short}")).unwrap_or_default();
     let long = arg.get_long().map(|long| format!(" -l {long}")).unwrap_or_default();
-    let value = if takes_value(arg) { value(&Values::of(arg, program)) } else { String::new() };
+    let value = if takes_value(arg) { value(&Values::for_arg(arg, program)) } else { String::new() };
     // The value of an option with an optional value follows a `=`, never in the next word.
     let required = if takes_value(arg) && !arg.is_require_equals_set() { " -r" } else { "" };
     let no_files = if takes_value(arg) && !value.contains(" -F") { " -f" } else { "" };

@@ -28,7 +28,7 @@ pub(super) struct Values {
 impl Values {
     /// Returns the completions of the value of `arg`: its possible values, or else those that
     /// follow from the value's name in the help, such as `orbit|FILE`.
-    pub(super) fn of(arg: &Arg, program: &Command) -> Self {
+    pub(super) fn for_arg(arg: &Arg, program: &Command) -> Self {
         let (mut words, mut files) = (Vec::new(), Files::None);
         let possible = arg.get_possible_values();
         words.extend(possible.iter().map(|value| (value.get_name().to_owned(), text(PossibleValue::get_help(value)))));

@@ -56,7 +56,7 @@ pub(super) fn script(program: &Command) -> String {
 
 /// Returns the zsh functions that offer commands and scenes.
 fn lists(program: &Command) -> String {
-    let scene = program.get_positionals().next().map(|arg| Values::of(arg, program));
+    let scene = program.get_positionals().next().map(|arg| Values::for_arg(arg, program));
     let scenes = scene.map(|values| values.words).unwrap_or_default();
     let mut text = String::new();
     for (name, what, words) in [("commands", "command", commands(program)), ("names", "built-in scene", scenes)] {
@@ -75,7 +75,7 @@ fn lists(program: &Command) -> String {
 fn specs(command: &Command, program: &Command) -> Vec<String> {
     let places = command.get_positionals().map(|arg| {
         let place = arg.get_index().map_or_else(|| "*".to_owned(), |index| index.to_string());
-        quoted(&format!("{place}:{}:{}", arg.get_id(), action(&Values::of(arg, program))))
+        quoted(&format!("{place}:{}:{}", arg.get_id(), action(&Values::for_arg(arg, program))))
     });
     options(command).map(|arg| option(arg, program)).chain(places).collect()
 }
@@ -105,7 +105,7 @@ fn value(arg: &Arg, program: &Command) -> String {
     let name = arg.get_value_names().and_then(<[_]>::first).map(|name| name.replace(':', "\\:")).unwrap_or_default();
     // Two colons: the value is optional.
     let colons = if arg.is_require_equals_set() { "::" } else { ":" };
-    format!("{colons}{name}:{}", action(&Values::of(arg, program)))
+    format!("{colons}{name}:{}", action(&Values::for_arg(arg, program)))
 }
 
 fn action(values: &Values) -> String {

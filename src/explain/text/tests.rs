@@ -11,6 +11,6 @@ fn numbers_take_nine_columns() {
         (-1.5e-10, "-1.50e-10"),
         (f32::INFINITY, "      inf"),
     ] {
-        assert_eq!(number(x), text);
+        assert_eq!(padded_number(x), text);
     }
 }
