@@ -178,7 +178,7 @@ impl Viewer {
             receiver: Receiver::default(),
             scenes: SceneHistory::default(),
             eye: Eye::new(options.key_speed, options.reduced_motion),
-            layout: ViewLayout::one(options.map),
+            layout: ViewLayout::single(options.map),
             pointer: PointerState::default(),
             requests: VecDeque::new(),
             names: Vec::new(),
@@ -308,14 +308,14 @@ impl Viewer {
         // An open panel of metadata still describes the scene before, or the mesh before it was turned.
         if self.screen.get::<Metadata>().is_some() {
             let name = self.names.get(index).cloned().unwrap_or_default();
-            self.screen.open(Metadata::of(&scene, name));
+            self.screen.open(Metadata::for_scene(&scene, name));
         }
         let caption = self.captions.then(|| self.caption(&scene, index)).flatten();
         self.screen.set(caption);
         if let Some(view) = self.scenes.show(scene, index, orbits) {
             let left = self.eye.open(view);
             if let Some((before, left)) = before.zip(left).filter(|(before, _)| *before != index) {
-                self.scenes.leave(before, left);
+                self.scenes.record_left(before, left);
             }
         }
         self.screen.set_name(self.names.get(index).map_or("", String::as_str));
@@ -381,7 +381,7 @@ impl Viewer {
     }
 
     /// Returns the driver's next action.
-    pub(crate) fn step(&mut self, busy: DriverState, now: Duration) -> Step {
+    pub(crate) fn next_step(&mut self, busy: DriverState, now: Duration) -> Step {
         self.set_time(now);
         // Moves the eye to its place at `now` first, because `decide` compares the picture with the eye's current view.
         self.eye.advance(now);
@@ -433,7 +433,7 @@ impl Viewer {
         let Some((scene, shot)) = self.scene().zip(self.wanted_shot()) else { return Step::Wait(None) };
         let probe = self.pacing.probe(self.now);
         self.receiver.sent(&probe, self.now);
-        let sampling = self.pacing.begin(shot, self.is_in_motion(), self.now);
+        let sampling = self.pacing.begin_frame(shot, self.is_in_motion(), self.now);
         Step::Trace(probe, Job { scene, shot, sampling: self.layout.sampling(sampling), refines: false })
     }
 

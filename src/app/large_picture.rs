@@ -139,7 +139,7 @@ impl Shared {
     /// Traces the picture. Returns `None` if it was cancelled.
     fn traced(&self, order: &Order, waker: &Mutex<Waker>) -> Option<crate::tone::Picture> {
         let shot = &order.job.shot;
-        let (mut part, parts) = (0, shot.layout.parts(shot.resolution).len());
+        let (mut part, parts) = (0, shot.layout.map_sizes(shot.resolution).len());
         let mut frame = frame_of(&order.job, |map, resolution| {
             let report = |share: f32| {
                 self.wait_while_paused();

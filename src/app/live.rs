@@ -109,7 +109,7 @@ impl Live {
             while let Some(event) = scenes.next_event()? {
                 self.handle_event(event).map_err(Error::Scene)?;
             }
-            let until = self.act(renderer)?;
+            let until = self.carry_out_steps(renderer)?;
             // Watching starts after the first picture, because that takes a quarter of a millisecond or more. An
             // earlier change is noticed nevertheless, because each file is compared with its state when it was read.
             if self.viewer.has_shown()
@@ -148,10 +148,10 @@ impl Live {
     }
 
     /// Carries out what the viewer decides to do now. Returns the time of its next wake-up.
-    fn act(&mut self, renderer: &mut Renderer) -> io::Result<Option<Duration>> {
+    fn carry_out_steps(&mut self, renderer: &mut Renderer) -> io::Result<Option<Duration>> {
         loop {
             let busy = DriverState { sending: self.terminal.is_sending(), tracing: renderer.tracing() };
-            match self.viewer.step(busy, self.clock.now()) {
+            match self.viewer.next_step(busy, self.clock.now()) {
                 Step::Wait(until) => return Ok(until),
                 Step::GiveUp => renderer.cancel_refinements(),
                 Step::Draw => {
@@ -167,7 +167,7 @@ impl Live {
                     if job.refines {
                         terminal::reach("refinement")?;
                     }
-                    if let Some(frame) = renderer.begin(job) {
+                    if let Some(frame) = renderer.start_frame(job) {
                         self.viewer.take_frame(frame);
                     }
                 }

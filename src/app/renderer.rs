@@ -102,7 +102,7 @@ impl Renderer {
     }
 
     /// Starts tracing a frame. A frame predicted to be small is traced at once and returned.
-    pub(super) fn begin(&mut self, job: Job) -> Option<Frame> {
+    pub(super) fn start_frame(&mut self, job: Job) -> Option<Frame> {
         if self.is_small(&job) {
             // Gives the same light as `UpTo(1)`, without the accumulators for a refinement, which traces this sample
             // again in little time.
@@ -213,7 +213,7 @@ pub(super) fn frame_of(
     let Job { scene, shot, sampling, refines } = job.clone();
     let mut cost = Cost::default();
     let (mut parts, mut geometry) = (Vec::new(), None);
-    for (map, resolution) in shot.layout.parts(shot.resolution) {
+    for (map, resolution) in shot.layout.map_sizes(shot.resolution) {
         let seen = trace_map(map, resolution)?;
         cost += seen.cost;
         parts.push(seen.picture);

@@ -87,7 +87,7 @@ impl<E: Send + 'static> Scenes<E> {
 
     /// Returns the names of the scenes.
     pub(super) fn names(&self) -> Vec<SceneName> {
-        self.sources.iter().map(|source| source.named().clone()).collect()
+        self.sources.iter().map(|source| source.scene_name().clone()).collect()
     }
 
     /// Switches to the scene `steps` places further on in the cyclic list, starts to load it, and

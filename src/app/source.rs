@@ -104,7 +104,7 @@ impl<E> Source<E> {
         Self { named: SceneName { orbited: true, ..self.named }, ..self }
     }
 
-    pub(super) fn named(&self) -> &SceneName {
+    pub(super) fn scene_name(&self) -> &SceneName {
         &self.named
     }
 

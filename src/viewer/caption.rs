@@ -60,7 +60,7 @@ impl Caption {
     }
 
     /// Returns the row of keys below a page.
-    fn foot(&self, canvas: &Canvas<'_>, is_last: bool) -> String {
+    fn keys_row(&self, canvas: &Canvas<'_>, is_last: bool) -> String {
         let key =
             |command, does: &str| key_names(canvas.keymap, canvas.modes, &[command]).map(|key| format!("{key} {does}"));
         let turn = key(Command::Caption, if is_last { "hides this" } else { "more" });
@@ -91,7 +91,7 @@ impl Layer for Caption {
         let page = self.page.min(pages.len().saturating_sub(1));
         let is_last = page + 1 >= pages.len();
         let mut lines = if page < pages.len() { pages.swap_remove(page) } else { Vec::new() };
-        lines.push(self.foot(canvas, is_last));
+        lines.push(self.keys_row(canvas, is_last));
         let width = lines.iter().map(|line| line.trim_end().width() as u16 + 2).max().unwrap_or(0).min(screen.width);
         let height = lines.len() as u16;
         let below = canvas.status_rows.max(1);

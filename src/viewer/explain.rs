@@ -91,7 +91,7 @@ impl ExplainPanel {
     fn at_pixel(frame: &Frame, pixel: [u32; 2], page: usize) -> Self {
         let (resolution, part) = frame.part_at(pixel);
         let explanation = explain(&frame.scene, frame.camera(), resolution, part);
-        let inset = Inset::of(&frame.scene, frame.camera(), &explanation);
+        let inset = Inset::for_explanation(&frame.scene, frame.camera(), &explanation);
         Self {
             pixel,
             resolution: frame.resolution(),
@@ -103,7 +103,7 @@ impl ExplainPanel {
     }
 
     /// Moves the cursor by these numbers of pixels to the right and down.
-    pub(super) fn step(&mut self, frame: &Frame, [right, down]: [i32; 2]) {
+    pub(super) fn move_cursor_by(&mut self, frame: &Frame, [right, down]: [i32; 2]) {
         let [x, y] = self.pixel;
         self.move_to(frame, [x.saturating_add_signed(right), y.saturating_add_signed(down)]);
     }

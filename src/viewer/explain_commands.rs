@@ -27,7 +27,7 @@ impl Viewer {
             Toward::Up => [0, -pixels],
             Toward::Down => [0, pixels],
         };
-        self.screen.explain(|panel, frame| panel.step(frame, step));
+        self.screen.explain(|panel, frame| panel.move_cursor_by(frame, step));
     }
 
     /// Turns pages of the explanation; negative numbers turn back.

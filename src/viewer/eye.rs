@@ -170,7 +170,7 @@ impl Eye {
         self.jump_with(now, |view| {
             let to = to(&view.camera);
             if to != view.camera {
-                view.history.leave(view.camera);
+                view.history.record_left(view.camera);
             }
             Some(to)
         });

@@ -86,7 +86,7 @@ impl Frame {
     /// the left map.)
     pub(super) fn part_at(&self, [x, y]: [u32; 2]) -> (Resolution, [u32; 2]) {
         let resolution = self.resolution();
-        match *self.shot.layout.parts(resolution) {
+        match *self.shot.layout.map_sizes(resolution) {
             [(_, left), (_, right)] if left.width() < resolution.width() => match x.checked_sub(left.width() + 1) {
                 Some(x) if x < right.width() => (right, [x, y]),
                 _ => (left, [x.min(left.width() - 1), y]),

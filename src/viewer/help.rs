@@ -121,7 +121,7 @@ impl Layer for HelpPanel {
             let area = help.area(page, canvas.screen());
             canvas.lay(area, |theme, area, buffer| help.draw(page, theme, area, buffer));
         } else {
-            canvas.write_line(&theme::needs_room("help"), canvas.foot(0));
+            canvas.write_line(&theme::needs_room("help"), canvas.row_from_bottom(0));
         }
     }
 }

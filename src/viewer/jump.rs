@@ -59,7 +59,7 @@ pub(super) struct JumpHistory {
 
 impl JumpHistory {
     /// Records a view that a jump leaves.
-    pub(super) fn leave(&mut self, camera: Camera) {
+    pub(super) fn record_left(&mut self, camera: Camera) {
         self.after.clear();
         push(&mut self.before, camera);
     }

@@ -158,7 +158,7 @@ impl Canvas<'_> {
     }
 
     pub(super) fn theme(&self) -> Theme {
-        Theme::of(self.cell_mode)
+        Theme::for_cell_mode(self.cell_mode)
     }
 
     /// Returns whether the screen is large enough for panels.
@@ -167,8 +167,8 @@ impl Canvas<'_> {
     }
 
     /// Returns the row of the screen that has `below` rows under it.
-    pub(super) fn foot(&self, below: u16) -> Rect {
-        theme::foot(self.screen(), below)
+    pub(super) fn row_from_bottom(&self, below: u16) -> Rect {
+        theme::row_from_bottom(self.screen(), below)
     }
 
     /// Calls `draw` on an empty ratatui buffer of this area, and lays the buffer over the cells.

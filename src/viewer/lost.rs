@@ -41,7 +41,7 @@ impl Layer for LostNotice {
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
-        let row = canvas.foot(canvas.status_rows);
+        let row = canvas.row_from_bottom(canvas.status_rows);
         let width = |text: &str| text.width() as u16 + 2;
         if let Some(text) = self.0.iter().find(|text| width(text) <= row.width) {
             let area = Rect { width: width(text), ..row };

@@ -60,7 +60,7 @@ impl Viewer {
     /// Opens the panel of facts about the shown scene; `name` is the scene's name in the panel.
     pub(crate) fn show_metadata(&mut self, name: String) {
         if let Some(scene) = self.scene() {
-            self.screen.open(Metadata::of(&scene, name));
+            self.screen.open(Metadata::for_scene(&scene, name));
         }
     }
 

@@ -17,7 +17,7 @@ pub(super) struct Metadata(Vec<String>);
 
 impl Metadata {
     /// Returns the panel about `scene`, whose name is `name`.
-    pub(super) fn of(scene: &Scene, name: String) -> Self {
+    pub(super) fn for_scene(scene: &Scene, name: String) -> Self {
         let mut lines = vec![name];
         let meshes = || {
             scene

@@ -52,7 +52,7 @@ impl Layer for Note {
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         for (below, text) in (0..).zip([Some(&self.text), self.above.as_ref()].into_iter().flatten()) {
-            let row = canvas.foot(below);
+            let row = canvas.row_from_bottom(below);
             let width = (text.width() as u16 + 2).min(row.width);
             canvas.lay(Rect { width, ..row }, |theme, area, buffer| legend::draw(text, theme, area, buffer));
         }

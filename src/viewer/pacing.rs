@@ -41,7 +41,7 @@ impl Pacing {
     }
 
     /// Records that a frame of a new view is begun, and returns its sampling.
-    pub(super) fn begin(&mut self, shot: Shot, in_motion: bool, now: Duration) -> Sampling {
+    pub(super) fn begin_frame(&mut self, shot: Shot, in_motion: bool, now: Duration) -> Sampling {
         let before = self.begun.replace(Begun { shot, at: now, in_motion });
         // The quality control compares the times of consecutive frames, which is valid only if their shots cost alike.
         if before.as_ref().is_some_and(|before| !shot.takes_as_long_as(&before.shot)) {

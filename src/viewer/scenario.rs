@@ -51,7 +51,7 @@ pub fn run_scenario(scenario: &[u8]) {
     let mut bytes = events.iter().copied();
     while let Some(event) = bytes.next() {
         driver.apply_event(event, &mut bytes);
-        driver.act();
+        driver.carry_out_steps();
     }
     driver.come_to_rest();
     driver.check_modes_end();
@@ -173,7 +173,7 @@ impl Driver {
         let Some(Job { scene, shot, sampling, refines }) = self.job.take() else { return };
         self.frames = self.frames.wrapping_add(1);
         let parts: Vec<_> =
-            shot.layout.parts(shot.resolution).into_iter().map(|(_, part)| self.flat_picture(part)).collect();
+            shot.layout.map_sizes(shot.resolution).into_iter().map(|(_, part)| self.flat_picture(part)).collect();
         let picture = shot.layout.combined(&parts, INITIAL_WIPE).unwrap_or_else(|| self.flat_picture(shot.resolution));
         let legends = shot.layout.legends(&scene, &shot.camera);
         let (cost, trace) = (Cost::default(), Duration::from_millis(milliseconds.into()));
@@ -192,10 +192,10 @@ impl Driver {
 
     /// Carries out the viewer's actions until it waits. Returns the time until which it waits, if
     /// any.
-    fn act(&mut self) -> Option<Duration> {
+    fn carry_out_steps(&mut self) -> Option<Duration> {
         for _ in 0..=MAX_ACTIONS {
             let tracing = self.job.as_ref().map(|job| if job.refines { Tracing::Refinement } else { Tracing::NewView });
-            match self.viewer.step(DriverState { sending: self.is_sending, tracing }, self.now) {
+            match self.viewer.next_step(DriverState { sending: self.is_sending, tracing }, self.now) {
                 Step::Wait(until) if until.is_none_or(|until| until > self.now) => return until,
                 // The timeout of an incomplete escape sequence has passed.
                 Step::Wait(_) => self.receive(&[]),
@@ -247,7 +247,7 @@ impl Driver {
             self.finish_job(1);
             self.is_sending = false;
             self.reply_to_queries();
-            match self.act() {
+            match self.carry_out_steps() {
                 None if self.job.is_none() && !self.is_sending => return,
                 None => {}
                 Some(until) => {
@@ -256,7 +256,7 @@ impl Driver {
                 }
             }
         }
-        panic!("it does not come to rest: next at {:?}, now {:?}", self.act(), self.now);
+        panic!("it does not come to rest: next at {:?}, now {:?}", self.carry_out_steps(), self.now);
     }
 
     /// Checks that every terminal mode that was switched on is switched off at the end.

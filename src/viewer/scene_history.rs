@@ -46,7 +46,7 @@ impl SceneHistory {
     }
 
     /// Records the view in which a scene is left.
-    pub(super) fn leave(&mut self, index: usize, view: ViewState) {
+    pub(super) fn record_left(&mut self, index: usize, view: ViewState) {
         self.left.insert(index, view);
     }
 

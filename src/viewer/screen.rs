@@ -107,7 +107,7 @@ impl Screen {
         let mode = self.painter.mode();
         self.painter = painter(capabilities);
         self.encoder = encoder(std::mem::take(&mut self.encoder), capabilities);
-        self.content.touch();
+        self.content.mark_changed();
         // The encoder's cells were made with other glyphs or colours, and no longer describe what the terminal shows.
         if mode != self.painter.mode() {
             self.encoder.forget();
@@ -247,7 +247,7 @@ impl Screen {
         self.encoder.forget();
         self.erases = covers_a_part;
         self.encoder.set_half_blocks(half_blocks);
-        self.content.touch();
+        self.content.mark_changed();
     }
 
     /// Returns whether the content has changed since it was drawn last and can be drawn at this
@@ -295,7 +295,7 @@ impl Screen {
         let figures = FrameStatistics { encode: self.encode, frames_per_second: self.rate.frames_per_second, slow };
         let cell_mode = self.painter.mode();
         // Drawing a panel may clamp its scroll position. If that counted as a change, every frame would cause another.
-        self.content.settle();
+        self.content.mark_unchanged();
         let content = self.content.quietly();
         let grid = &mut self.grid;
         match &content.frame {

@@ -41,10 +41,10 @@ impl Layer for StatusLine {
         let width = canvas.screen().width.into();
         if canvas.status_rows > 1 {
             let keys = help::status_line(canvas.keymap, canvas.modes, width);
-            canvas.write_line(&keys, canvas.foot(1));
+            canvas.write_line(&keys, canvas.row_from_bottom(1));
         }
         let separator = if canvas.cell_mode.glyphs.has_blocks() { " · " } else { "; " };
-        canvas.write_line(&status.text(separator, width), canvas.foot(0));
+        canvas.write_line(&status.text(separator, width), canvas.row_from_bottom(0));
     }
 }
 

@@ -22,7 +22,7 @@ pub(super) struct Theme {
 }
 
 impl Theme {
-    pub(super) fn of(cell_mode: CellMode) -> Self {
+    pub(super) fn for_cell_mode(cell_mode: CellMode) -> Self {
         let style = match cell_mode.colors {
             Colors::Truecolor => Style::new().fg(Color::Rgb(0xe6, 0xe6, 0xe6)).bg(Color::Rgb(0x18, 0x1c, 0x24)),
             // Greys from the fixed part of the palette, because the user may have changed the first 16 colours.
@@ -99,7 +99,7 @@ pub(super) fn has_room(screen: Rect) -> bool {
 }
 
 /// Returns the row of the screen that has `below` rows under it.
-pub(super) fn foot(screen: Rect, below: u16) -> Rect {
+pub(super) fn row_from_bottom(screen: Rect, below: u16) -> Rect {
     Rect { y: screen.bottom().saturating_sub(1 + below), height: screen.height.min(1), ..screen }
 }
 

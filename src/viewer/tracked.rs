@@ -16,13 +16,14 @@ impl<T> Tracked<T> {
         Self { value, is_changed: true }
     }
 
-    /// Returns whether the value may have been changed since [`settle`](Self::settle).
+    /// Returns whether the value may have been changed since
+    /// [`mark_unchanged`](Self::mark_unchanged).
     pub(super) fn is_changed(&self) -> bool {
         self.is_changed
     }
 
     /// Marks the value as changed, because something else that it is drawn with has changed.
-    pub(super) fn touch(&mut self) {
+    pub(super) fn mark_changed(&mut self) {
         self.is_changed = true;
     }
 
@@ -32,7 +33,7 @@ impl<T> Tracked<T> {
     }
 
     /// Marks the value as unchanged.
-    pub(super) fn settle(&mut self) {
+    pub(super) fn mark_unchanged(&mut self) {
         self.is_changed = false;
     }
 }

@@ -42,7 +42,7 @@ enum Split {
 
 impl ViewLayout {
     /// Returns the layout with a single map.
-    pub(super) fn one(map: Map) -> Self {
+    pub(super) fn single(map: Map) -> Self {
         Self { map, right: None }
     }
 
@@ -62,7 +62,7 @@ impl ViewLayout {
 
     /// Shows the edges of triangles alone, or the shaded picture again.
     pub(super) fn toggle_wire(&mut self) {
-        *self = Self::one(if *self == Self::one(Map::Wire) { Map::Shaded } else { Map::Wire });
+        *self = Self::single(if *self == Self::single(Map::Wire) { Map::Shaded } else { Map::Wire });
     }
 
     /// Switches from one map to two side by side, to a wipe, and back.
@@ -85,7 +85,7 @@ impl ViewLayout {
     }
 
     /// Returns the maps to trace for a picture of size `whole`, each with its own size in pixels.
-    pub(crate) fn parts(self, whole: Resolution) -> Vec<(Map, Resolution)> {
+    pub(crate) fn map_sizes(self, whole: Resolution) -> Vec<(Map, Resolution)> {
         match self.right {
             Some(RightMap { split: Split::Beside, .. }) => self.maps().zip(side_by_side_sizes(whole)).collect(),
             // Both maps of a wipe have the full size, so that moving the line traces nothing.

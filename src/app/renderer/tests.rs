@@ -67,11 +67,11 @@ fn small_frames_are_done_at_once() {
         sampling: Sampling::UpTo(NonZeroU32::MIN),
         refines: false,
     };
-    assert!(renderer.begin(job(8)).is_none(), "nothing is known of the first");
+    assert!(renderer.start_frame(job(8)).is_none(), "nothing is known of the first");
     let by_the_thread = wait_for(&mut renderer);
-    let by_the_loop = renderer.begin(job(8)).expect("64 pixels are a small frame");
+    let by_the_loop = renderer.start_frame(job(8)).expect("64 pixels are a small frame");
     assert!(by_the_loop.picture == by_the_thread.picture);
-    assert!(renderer.begin(job(1000)).is_none(), "a million pixels are not");
+    assert!(renderer.start_frame(job(1000)).is_none(), "a million pixels are not");
     wait_for(&mut renderer);
 }
 

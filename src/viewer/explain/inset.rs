@@ -47,7 +47,7 @@ const MISS_LENGTH: f32 = 1.5;
 const VIEW_RECTANGLE_DISTANCE: f32 = 0.3;
 
 impl Inset {
-    pub(super) fn of(scene: &Scene, camera: &Camera, explanation: &Explanation) -> Self {
+    pub(super) fn for_explanation(scene: &Scene, camera: &Camera, explanation: &Explanation) -> Self {
         let (Basis { v, w, .. }, eye) = (camera.basis(), explanation.ray.origin);
         let from_side = |point: Vec3| Vec2::new((eye - point).dot(w), (point - eye).dot(v));
         let shaded = explanation.hit.as_ref();

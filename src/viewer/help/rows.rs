@@ -22,7 +22,7 @@ impl Group {
     const ALL: [Self; 8] =
         [Self::Move, Self::Look, Self::Views, Self::Maps, Self::Light, Self::Files, Self::Program, Self::Mouse];
 
-    fn of(command: Command) -> Self {
+    fn for_command(command: Command) -> Self {
         use Command as C;
         match command {
             C::Move(_) | C::Around(_) | C::Nearer | C::Farther | C::ChangeMode | C::Turntable => Self::Move,
@@ -120,7 +120,7 @@ fn of_keys(keymap: &Keymap, modes: &[KeyMode], states: &[(Command, String)]) -> 
     let row = |commands: &[Command], keys, does: &str| {
         let state = states.iter().find(|(command, _)| commands.contains(command));
         let does = state.map_or_else(|| does.to_owned(), |(_, state)| format!("{does} ({state})"));
-        Row { group: Group::of(commands[0]), keys, does }
+        Row { group: Group::for_command(commands[0]), keys, does }
     };
     let (mut listed, mut rows) = (HashSet::new(), Vec::new());
     // Shift has a row although the keymap does not bind it: it makes the movement keys faster.

@@ -20,7 +20,7 @@ fn shown(help: &Help, screen: Rect) -> String {
         let area = help.area(page, screen);
         assert!(area.right() <= screen.width && area.bottom() <= screen.height);
         let mut buffer = Buffer::empty(area);
-        help.draw(page, Theme::of(CellMode::HALF_BLOCK), area, &mut buffer);
+        help.draw(page, Theme::for_cell_mode(CellMode::HALF_BLOCK), area, &mut buffer);
         for y in area.top()..area.bottom() {
             text.extend((area.left()..area.right()).map(|x| buffer[(x, y)].symbol()));
             text.push('\n');

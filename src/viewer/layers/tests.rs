@@ -19,7 +19,7 @@ impl<const LETTER: char> Layer for Letter<LETTER> {
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
-        canvas.write_line(&LETTER.to_string(), canvas.foot(0));
+        canvas.write_line(&LETTER.to_string(), canvas.row_from_bottom(0));
     }
 }
 

@@ -6,7 +6,7 @@ fn panel(progress: &Progress, cell_mode: CellMode, columns: u16, rows: u16) -> V
     let place = area(Rect::new(0, 0, columns, rows));
     assert!(place.right() <= columns && place.bottom() <= rows);
     let mut buffer = Buffer::empty(place);
-    draw(progress, Theme::of(cell_mode), place, &mut buffer);
+    draw(progress, Theme::for_cell_mode(cell_mode), place, &mut buffer);
     let row = |y| (place.left()..place.right()).map(|x| buffer[(x, y)].symbol()).collect::<String>();
     (place.top()..place.bottom()).map(row).collect()
 }

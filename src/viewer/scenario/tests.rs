@@ -30,16 +30,16 @@ proptest! {
 fn a_scene_is_drawn_and_moves() {
     let mut driver = Driver::new(0);
     driver.viewer.show(SCENES[0].clone(), 0, false);
-    driver.act();
+    driver.carry_out_steps();
     assert!(driver.job.is_some() && !driver.viewer.has_shown());
     driver.finish_job(5);
-    driver.act();
+    driver.carry_out_steps();
     assert!(driver.viewer.has_shown());
     driver.come_to_rest();
     let home = driver.viewer.moved();
     driver.receive(b"w");
     driver.now += Duration::from_millis(100);
-    driver.act();
+    driver.carry_out_steps();
     assert!(home.is_none() && driver.viewer.moved().is_some(), "{home:?}");
     assert!(driver.job.is_some());
     driver.come_to_rest();

@@ -4,7 +4,7 @@ use super::*;
 fn a_mutable_borrow_counts_as_a_change() {
     let mut list = Tracked::new(vec![1]);
     assert!(list.is_changed());
-    list.settle();
+    list.mark_unchanged();
     list.quietly().push(2);
     assert!(list.len() == 2 && !list.is_changed());
     list.push(3);

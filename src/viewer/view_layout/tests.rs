@@ -9,7 +9,7 @@ fn maps_go_round_and_the_right_one_alone_of_two() {
     let mut seen = ViewLayout::default();
     for map in Map::ALL.into_iter().cycle().skip(1).take(Map::ALL.len()) {
         seen.change_map(Map::next);
-        assert_eq!(seen, ViewLayout::one(map));
+        assert_eq!(seen, ViewLayout::single(map));
     }
     let mut two = shown(Map::Lambert, Map::Shaded, Split::Beside);
     two.change_map(Map::next);
@@ -20,13 +20,13 @@ fn maps_go_round_and_the_right_one_alone_of_two() {
 
 #[test]
 fn two_maps_are_beside_each_other_then_wiped_then_one() {
-    let mut seen = ViewLayout::one(Map::Depth);
+    let mut seen = ViewLayout::single(Map::Depth);
     seen.compare();
     assert_eq!(seen, shown(Map::Depth, Map::Normal, Split::Beside));
     seen.compare();
     assert!(seen.is_wipe());
     seen.compare();
-    assert_eq!(seen, ViewLayout::one(Map::Depth));
+    assert_eq!(seen, ViewLayout::single(Map::Depth));
 }
 
 /// Two maps side by side share the pixels of one picture, whereas a wipe traces both maps at full
@@ -34,11 +34,11 @@ fn two_maps_are_beside_each_other_then_wiped_then_one() {
 #[test]
 fn two_maps_side_by_side_cost_one_picture_and_a_wipe_two() {
     let whole = Resolution::square(80, 4).with_pixel_aspect(0.5).expect("a shape of pixels");
-    let parts = shown(Map::Shaded, Map::Depth, Split::Beside).parts(whole);
+    let parts = shown(Map::Shaded, Map::Depth, Split::Beside).map_sizes(whole);
     let widths: Vec<_> = parts.iter().map(|(_, part)| part.width()).collect();
     assert_eq!(widths, [39, 40]);
     assert!(parts.iter().all(|(_, part)| part.height() == 4 && part.pixel_aspect() == 0.5));
-    let parts = shown(Map::Shaded, Map::Depth, Split::Wipe).parts(whole);
+    let parts = shown(Map::Shaded, Map::Depth, Split::Wipe).map_sizes(whole);
     assert_eq!(parts, [(Map::Shaded, whole), (Map::Depth, whole)]);
 }
 
@@ -47,8 +47,8 @@ fn two_maps_side_by_side_cost_one_picture_and_a_wipe_two() {
 fn only_the_shaded_map_is_refined() {
     let one = Sampling::UpTo(NonZeroU32::MIN);
     assert_eq!(ViewLayout::default().sampling(Sampling::BEST), Sampling::BEST);
-    assert_eq!(ViewLayout::one(Map::Depth).sampling(Sampling::BEST), one);
-    assert_eq!(ViewLayout::one(Map::Depth).sampling(Sampling::Coarse), Sampling::Coarse);
+    assert_eq!(ViewLayout::single(Map::Depth).sampling(Sampling::BEST), one);
+    assert_eq!(ViewLayout::single(Map::Depth).sampling(Sampling::Coarse), Sampling::Coarse);
     assert_eq!(shown(Map::Depth, Map::Shaded, Split::Wipe).sampling(Sampling::BEST), Sampling::BEST);
     assert_eq!(shown(Map::Depth, Map::Object, Split::Beside).sampling(Sampling::BEST), one);
 }
@@ -80,7 +80,7 @@ fn no_screen_is_too_narrow() {
         let whole = Resolution::square(width, 2);
         for split in [Split::Beside, Split::Wipe] {
             let seen = shown(Map::Shaded, Map::Depth, split);
-            let parts: Vec<_> = seen.parts(whole).iter().map(|(_, part)| flat(part.width(), 1)).collect();
+            let parts: Vec<_> = seen.map_sizes(whole).iter().map(|(_, part)| flat(part.width(), 1)).collect();
             let combined = seen.combined(&parts, 0.5).expect("two");
             assert_eq!((combined.width, combined.pixels.len()), (width, 2 * width as usize));
         }
