@@ -97,7 +97,8 @@ pub fn intersect_slabs<N: Number>([x, y, z]: [[N; 2]; 3]) -> [N; 2] {
     // first operand is NaN, `max` and `min` return the second, which is never NaN.
     let enters = x[0].max(y[0].max(z[0].max(N::splat(f32::NEG_INFINITY))));
     let leaves = x[1].min(y[1].min(z[1].min(N::splat(f32::INFINITY))));
-    // The outer one of both products is right for either sign, and cheaper than a comparison with zero and a select.
+    // Which factor widens the interval depends on the sign of t. Taking the outer one of both products is cheaper than
+    // a comparison with zero and a select.
     let (less, more) = (N::splat(1.0 - CROSSING_SLACK), N::splat(1.0 + CROSSING_SLACK));
     [(enters * less).min(enters * more), (leaves * less).max(leaves * more)]
 }

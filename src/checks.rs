@@ -70,7 +70,7 @@ impl std::error::Error for SceneFault {}
 
 /// Returns whether a number is within `least` and `most` after it is rounded to f32.
 ///
-/// So a stored value that is written back to a file is accepted again.
+/// Because of the rounding, a stored value that is written back to a file is accepted again.
 fn is_within(value: f64, least: f64, most: f64) -> bool {
     (least as f32..=most as f32).contains(&(value as f32))
 }

@@ -336,8 +336,8 @@ impl Encoder {
             Order::Color => {
                 let order = by_color::order(wanted, &changed, self.half_blocks, known.pen);
                 let mut strokes = strokes::choose_strokes(wanted, &order, self.half_blocks, known.pen);
-                // Done in this order only: in raster order it saves less than it costs, because a compressor then finds
-                // fewer repetitions.
+                // Colours are shared in this order only. In raster order sharing costs more bytes than it saves,
+                // because a compressor then finds fewer repetitions.
                 strokes::share_next_fg(wanted, &mut strokes);
                 strokes
             }

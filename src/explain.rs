@@ -99,7 +99,7 @@ pub struct LightContribution {
     /// if nothing blocks it.
     pub incidence: Incidence,
     /// A surface that blocks the light, with the t of the crossing: 0 at the hit, 1 at the light.
-    // As in the picture it may be any blocker, not the closest one.
+    // Any surface in the way, as for shadow rays of the picture, not the one closest to the hit.
     pub blocker: Option<(SurfaceName, f32)>,
 }
 

@@ -208,8 +208,8 @@ impl Parser {
         // The bytes are counted, so that a terminal cannot keep the parser in this state for ever.
         self.late = Some(left - 1);
         match self.state {
-            // Only bytes that begin a sequence: another byte after the late ESC is more likely a key typed later than
-            // Alt with it.
+            // Only a byte that begins a sequence continues a late ESC. Any other byte is more likely a key typed later
+            // than one pressed with Alt.
             State::Escape => matches!(byte, b'[' | b'O' | b']' | b'P' | b'_'),
             // The first byte of a string tells a reply from typed letters, with which no reply begins.
             State::Text(kind) if self.text.is_empty() => kind.begins_with(byte),

@@ -33,7 +33,7 @@ pub trait LightSource: InSceneFile + Copy {
     ///
     /// `l` is the unit vector to the light, `distance_squared` the squared length of [`to_light`](Self::to_light),
     /// `cosine` is n.l.
-    // It includes the factor 1/pi of diffuse reflection, so that no later step needs pi.
+    // The result includes the factor 1/pi of diffuse reflection, so that no later step needs pi.
     fn irradiance<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3];
 
     /// Returns the formula of the [irradiance](Self::irradiance), for explanations.

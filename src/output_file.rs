@@ -102,7 +102,7 @@ impl OutputFile {
         Ok(Self { target, destination })
     }
 
-    /// Completes the file under the first path of `names` that does not exist, and returns that path.
+    /// Completes the file under the first path of `names` that is unused, and returns that path.
     ///
     /// # Errors
     /// If the file cannot be written or renamed, or [`AlreadyExists`](io::ErrorKind::AlreadyExists) if all names are

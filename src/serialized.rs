@@ -11,8 +11,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::convert::Infallible;
 use std::num::NonZeroU32;
 
-/// Implements `Serialize` and `Deserialize` by a type for the format: a conversion to it, and a
-/// checked one back.
+/// Implements `Serialize` and `Deserialize` for `$Type` through `$Form`, a type with the structure
+/// of the format: a conversion into `$Form`, and a checked conversion back.
 // Not derived for the types themselves, because derived impls would bypass the constructors' checks, and private fields
 // would become part of the format.
 macro_rules! serialize_as {

@@ -42,8 +42,8 @@ pub fn run_scalar<K: SimdKernel>(kernel: K) -> K::Output {
 
 #[cfg(target_arch = "x86_64")]
 #[inline]
-// Also requires BMI1, LZCNT and POPCNT, since loops over masks count and clear bits. Every known CPU with AVX2 has
-// them, but no specification guarantees it.
+// The kernels also need BMI1, LZCNT and POPCNT, since loops over masks count and clear bits. Every known CPU with AVX2
+// has them, but no specification guarantees it.
 fn has_avx2() -> bool {
     is_x86_feature_detected!("avx2")
         && is_x86_feature_detected!("bmi1")

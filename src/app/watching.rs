@@ -58,7 +58,7 @@ enum FileChange {
 
 /// Greatest number of times that the paths are resolved in a row because a link has changed
 /// meanwhile.
-// Otherwise a program that keeps replacing a link would keep the event loop busy. The next event tries again.
+// Without a limit, a program that keeps replacing a link would keep the event loop busy. The next event tries again.
 const MAX_RESOLUTIONS: usize = 8;
 
 impl Watching {

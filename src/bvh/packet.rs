@@ -52,7 +52,8 @@ const PACKET_SLACK: f32 = 128.0 / 16_777_216.0;
 const MIN_INVERSE: f32 = 4.0 * f32::MIN_POSITIVE;
 
 /// The largest ratio between inverses of a packet whose directions have one sign: 2^40.
-// It limits how far the packet's product can lie below zero where a ray's product rounds to zero (`culling.md`, 5).
+// The ratio limits how far the packet's product can lie below zero where a ray's product rounds to zero (`culling.md`,
+// 5).
 const MAX_INVERSE_RATIO: f32 = 1_099_511_627_776.0;
 
 /// The absolute widening of a packet's exits: 2^-100.

@@ -112,7 +112,7 @@ impl Hints {
     }
 
     /// Returns whether a reply that confirms truecolor would change the detected colours.
-    // It is false if the user wants no colours: then no sequence about colours is sent, not even a query.
+    // Returns false if the user wants no colours: no sequence about colours is sent then, not even a query.
     pub fn needs_truecolor_reply(&self) -> bool {
         self.colors(Some(true)).value != self.colors(None).value
     }

@@ -31,7 +31,7 @@ pub struct Replies {
 }
 
 /// The background colour that is set before the query of the current SGR attributes (DECRQSS).
-// It is not one of the 256 palette colours, so that a terminal without truecolor replies with another colour.
+// A colour that is not among the 256 of the palette, so that a terminal without truecolor replies with another one.
 pub const TEST_COLOR: Srgb8 = Srgb8::new(1, 2, 3);
 
 impl Replies {

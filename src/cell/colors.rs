@@ -31,7 +31,7 @@ impl Colors {
 }
 
 /// xterm's default values of the first sixteen palette colours.
-// They are assumed until the terminal reports its own values (OSC 4).
+// These values are assumed until the terminal reports its own (OSC 4).
 const XTERM_16: [Srgb8; 16] = [
     Srgb8::new(0, 0, 0),
     Srgb8::new(205, 0, 0),

@@ -20,7 +20,7 @@ pub(super) const KIND: GlyphKind = GlyphKind {
 };
 
 /// The characters of the ramp, from dark to light.
-// They must not change, because users' snapshots contain them.
+// The characters must not change, because users' snapshots contain them.
 pub const RAMP: &[u8; 10] = b" .:-=+*#%@";
 
 /// Fills each cell with the character of its pixels' mean luminance.

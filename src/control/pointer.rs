@@ -43,7 +43,7 @@ pub enum Gesture {
 const DOUBLE_CLICK_TIME: Duration = Duration::from_millis(400);
 /// Largest distance between the two clicks of a double click, as a share of the screen's width and
 /// height.
-// It is 1.6 columns of 80: without pixel reports, a slight move of the hand may cross a cell boundary.
+// 0.02 is 1.6 of 80 columns: without mouse reports in pixels, a slight move of the hand may cross a cell boundary.
 const DOUBLE_CLICK_DISTANCE: f32 = 0.02;
 
 /// The state of the mouse: position, held button and last click.

@@ -47,7 +47,7 @@ pub(super) struct Coverage {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PictureRect {
     /// The mean position of the covered pixels.
-    // Not the rectangle's centre, which one thin part that sticks out moves far away from most pixels.
+    // The mean position, not the rectangle's centre: a thin part that sticks out would move that away from most pixels.
     pub(super) middle: [f32; 2],
     /// The width and height of the rectangle.
     pub(super) extent: [f32; 2],
@@ -140,7 +140,7 @@ impl Survey {
 
     /// Returns whether `pixels`, the number of hidden pixels of an object, is enough to be
     /// mentioned.
-    // At least a twentieth of the visible pixels is; fewer are usually single pixels at edges.
+    // A twentieth of the visible pixels is significant; fewer are usually single pixels at edges.
     fn is_significant(&self, object: u32, pixels: usize) -> bool {
         20 * pixels >= self.covered.get(&object).map_or(0, |covered| covered.pixels)
     }

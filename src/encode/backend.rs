@@ -450,7 +450,8 @@ impl<W: Write> EncoderBackend<W> {
     /// Prepares for bytes that the program writes itself: sends all drawn cells, and forgets the
     /// screen.
     fn prepare_foreign_bytes(&mut self) -> io::Result<()> {
-        // Done only before the first of several writes in a row: a program may write an escape sequence in pieces.
+        // Cells are sent only before the first of several writes in a row: a program may write an escape sequence in
+        // pieces, between which no bytes may come.
         if !self.wrote_foreign_bytes {
             if self.is_frame_open || self.encoder.is_inexact() {
                 self.send_exactly()?;

@@ -9,8 +9,8 @@ pub(super) struct Tolerance {
     /// The largest distance of the two colours in OKLab.
     pub(super) distance: f32,
     /// The largest squared difference in 8-bit sRGB, summed over the channels.
-    // There are two measures because OKLab bounds the visible difference in a cell, and sRGB the signal-to-noise ratio
-    // of the picture.
+    // Two measures are needed: `distance` in OKLab bounds the visible difference in a cell, `square` in sRGB the
+    // signal-to-noise ratio of the picture.
     pub(super) square: u32,
 }
 

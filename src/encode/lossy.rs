@@ -65,8 +65,8 @@ enum Urgency {
     /// The shown halves are within the tolerance and need not be written now.
     Waits,
     /// The shown halves are within the tolerance, but the cell is due to be shown exactly.
-    // Not ordered by the size of the difference, which is invisible: neighbours written in one frame take the fewest
-    // bytes.
+    // These cells are not ordered by the size of the difference, which is invisible: neighbours that are written in one
+    // frame take the fewest bytes.
     Refines,
     /// The halves differ by more than the tolerance; the number is the larger squared difference of
     /// the two.

@@ -132,8 +132,8 @@ struct SurvivorPath {
 }
 
 /// The cost of a path: [`COST_PER_BYTE`] for each byte, plus one for each lower half block.
-// Ties go to the upper half block. Any fixed rule would do, so that a compressor finds the bytes of the previous frame
-// again; with this one the colours are sent in the order of the pixels.
+// Of two paths with equally many bytes, the one with more upper half blocks is taken. Any fixed rule makes consecutive
+// frames compress well; this one sends the two colours of a cell in the order of its pixels.
 type PathCost = u64;
 
 /// The cost of a byte. It exceeds the number of cells in a grid, so that lower half blocks only

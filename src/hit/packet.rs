@@ -165,7 +165,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     }
 
     /// Tests a group against unbounded primitives, and against trees of a single leaf.
-    // Done while the group's rays are still in registers, before they are stored for the trees.
+    // Called while the group's rays are still in registers, before they are stored for the traversal of the trees.
     #[inline(always)]
     fn test_unculled(&self, rays: &Rays<N>, active: u32) -> GroupHits<N, ANY> {
         let accel = self.accel;

@@ -15,9 +15,9 @@ use crate::lanes::set_bits;
 // With 8 instead of 6, and all groups counted, 1,000 spheres took 1.14 times as long.
 const MAX_SINGLE_RAYS: u32 = 6;
 
-/// The same limit as [`MAX_SINGLE_RAYS`], per group that may hit the node.
+/// The largest number of single rays at a node, as [`MAX_SINGLE_RAYS`], per group that may hit it.
 ///
-/// The larger limit applies.
+/// The larger of the two limits applies.
 const MAX_SINGLE_RAYS_PER_GROUP: u32 = 2;
 
 /// The largest number of groups at a node for which the rays of all groups are counted.

@@ -74,7 +74,7 @@ impl Sequence<'_> {
             // `M` with parameters is rxvt's mouse report, handled below.
             'M' if self.is_bare() => Some(Meaning::OldMouse),
             '[' if self.is_bare() => Some(Meaning::LinuxFunction),
-            // Only without parameters: with them `CSI I` is an echoed cursor movement by tabs.
+            // `CSI I` with parameters is not a report of the focus but an echoed cursor movement by tabs.
             'I' if self.is_bare() => Some(Meaning::Event(Event::FocusGained)),
             'O' if self.is_bare() => Some(Meaning::Event(Event::FocusLost)),
             'M' => {

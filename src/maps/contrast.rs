@@ -16,8 +16,8 @@ const BLACK: Srgb8 = Srgb8::new(0, 0, 0);
 const WHITE: Srgb8 = Srgb8::new(255, 255, 255);
 
 /// The luminance from which a pixel becomes white.
-// It has a lightness L* (CIE 1976) of 50, half that of white. With half the luminance of white instead, most pictures
-// would become black.
+// A luminance of 0.184 has a lightness L* (CIE 1976) of 50, half that of white. With half the luminance of white
+// instead, most pictures would become black.
 const WHITE_THRESHOLD: f32 = 0.184;
 
 /// Traces the light and the objects, and returns the high-contrast picture.

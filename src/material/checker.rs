@@ -96,8 +96,8 @@ impl InSceneFile for Checker {
 /// Returns the mean over an interval of a square wave.
 ///
 /// The wave is 1 from each even integer to the next integer, and -1 otherwise.
-// This is a box filter. The checker's mean over a footprint is the product of both axes' means, so squares too small
-// for their pixels turn grey. Point samples would give a moiré pattern, and supersampling would take 64 rays.
+// The mean is a box filter. The checker's mean over a footprint is the product of both axes' means, so squares too
+// small for their pixels turn grey. Point samples would give a moiré pattern, and supersampling would take 64 rays.
 #[inline(always)]
 fn mean_of_square_wave<N: Number>(middle: N, width: N) -> N {
     let (zero, one, half) = (N::splat(0.0), N::splat(1.0), N::splat(0.5) * width);

@@ -13,7 +13,7 @@ pub(crate) struct Meter<'a> {
 }
 
 /// The number of bytes between two reports.
-// They take one or two milliseconds to parse, so that a cancel takes less than a frame, and reports cost hardly any
+// 256 KiB take one or two milliseconds to parse: a cancel takes effect within a frame, and reports cost hardly any
 // time.
 const REPORT_STRIDE: usize = 256 << 10;
 

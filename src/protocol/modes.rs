@@ -36,7 +36,7 @@ const KEYBOARD: KeyboardEnhancementFlags = KeyboardEnhancementFlags::DISAMBIGUAT
     .union(KeyboardEnhancementFlags::REPORT_ALL_KEYS_AS_ESCAPE_CODES);
 
 /// The query for the flags of the kitty keyboard protocol that are set.
-// Keys that arrive before its reply are in the legacy encoding, later ones are sequences.
+// Keys that arrive before the reply to this query are in the legacy encoding, later keys in that of the protocol.
 const KEYBOARD_QUERY: &str = "\x1b[?u";
 
 impl TerminalMode {

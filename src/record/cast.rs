@@ -35,12 +35,12 @@ pub struct Cast<W: Write> {
     /// The time at which a link of `max_rate` has delivered everything sent.
     free_at: Duration,
     /// The last frame, and its encoded bytes, which may show the frame inexactly.
-    // It is written one frame late, because the film's last frame is encoded exactly, and only `end` knows which that
-    // is.
+    // Each frame is written when the next one arrives, because the film's last frame is encoded exactly, and only `end`
+    // knows which frame that is.
     last: Option<(Grid, Vec<u8>)>,
 }
 
-// In the first and the last frame, so that a film has one event for each frame.
+// The two sequences are part of the first and the last frame, so that a film has exactly one event per frame.
 /// Hides the cursor, which would blink in the picture (DECTCEM).
 const HIDE_CURSOR: &[u8] = b"\x1b[?25l";
 /// Shows the cursor.
@@ -97,8 +97,8 @@ impl<W: Write> Cast<W> {
         self.write_last()?;
         let mut bytes = if self.frame == 0 { HIDE_CURSOR.to_vec() } else { Vec::new() };
         let now = Duration::from_secs_f64(self.time());
-        // As in the live view, a frame for which the link is not free is dropped, not queued: queued frames would be
-        // later and later.
+        // A frame for which the link is not free is dropped, as in the live view. If frames were queued, they would
+        // be later and later.
         if self.free_at <= now {
             let max_bytes = self.max_rate.map(|rate| (rate / self.frames_per_second) as usize);
             let allowance = Allowance { quality: self.quality, now, max_bytes };

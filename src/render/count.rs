@@ -23,7 +23,7 @@ pub struct Counts {
     /// The number of pairs of a hit and a light without an object between them.
     ///
     /// Lights behind the surface count as well.
-    // Only tracing is measured, and compared with ray tracers that do not use normals.
+    // The normals are not used, because only tracing is measured, and compared with ray tracers that do not use them.
     pub lit: u64,
     /// The sum of the depths of all hits, in world units along the view direction, which are their
     /// t.

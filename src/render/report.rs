@@ -22,7 +22,7 @@ pub struct Report<'a> {
     /// The number of progress units of the whole render.
     total: u64,
     /// The progress units finished so far.
-    // It is locked during a report, so that reports from several threads come one at a time and in order.
+    // The mutex is locked during a report, so that reports from several threads come one at a time and in order.
     done: Mutex<Done>,
 }
 

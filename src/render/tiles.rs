@@ -69,7 +69,7 @@ impl Tiles {
     }
 
     /// Splits a picture's pixels by tiles: each tile gets its parts of the rows that it covers.
-    // So several threads can write to the picture at the same time, without a copy and without unsafe code.
+    // With disjoint slices, several threads can write to the picture at the same time without a copy or unsafe code.
     pub(super) fn split<'p, T>(&self, pixels: &'p mut [T]) -> Vec<Vec<&'p mut [T]>> {
         let side = (SIDE * self.scale) as usize;
         let mut tiles: Vec<_> = (0..self.count()).map(|_| Vec::with_capacity(side)).collect();

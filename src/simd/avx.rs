@@ -67,7 +67,7 @@ pub(super) use avx;
 /// Reduces eight registers to one, whose lanes are the minimum or maximum of each register.
 ///
 /// The reduction transposes: first neighbours are combined, then pairs, then halves.
-// It takes three rounds, where scalars from memory would take eight loads per register.
+// The reduction takes three rounds; scalars from memory would take eight loads per register.
 macro_rules! of_each {
     ($choose:ident, $eights:expr) => {{
         let [a, b, c, d, e, f, g, h] = *$eights;

@@ -64,7 +64,7 @@ const UNBLOCKED: &[Signal] = &[
     // A write that would cause these fails with an error: by `fail_large_writes`, and by the standard library.
     Signal::SIGXFSZ,
     Signal::SIGPIPE,
-    // Handlers are installed for these.
+    // Handlers are installed for the following signals.
     Signal::SIGTERM,
     Signal::SIGHUP,
     Signal::SIGINT,

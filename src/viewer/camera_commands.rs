@@ -62,8 +62,8 @@ impl Viewer {
         self.eye.jump(self.now, |camera| camera.framing(&bounds, aspect_ratio));
     }
 
-    /// Returns to the view before the last jump, or with `forward` to the one that the last return
-    /// left.
+    /// Jumps back to the view before the last jump, or with `forward` to the view that the last
+    /// jump back has left.
     pub(super) fn retrace_views(&mut self, forward: bool) {
         if !self.eye.retrace(forward, self.now) {
             self.show_note(if forward { "no view after this one" } else { "no view before this one" });

@@ -108,7 +108,7 @@ impl Display {
     /// Returns the terminal modes to switch on in addition to those that every terminal supports.
     pub(super) fn modes(&self) -> impl Iterator<Item = TerminalMode> {
         let keyboard = self.knows_keyboard().then_some(TerminalMode::Keyboard);
-        // Only if the replies report support, because a terminal without these modes might print their sequences.
+        // These modes are set only if the replies report support, because other terminals might print the sequences.
         keyboard.into_iter().chain(self.mouse_pixels().map(|_| TerminalMode::MousePixels))
     }
 }

@@ -206,7 +206,7 @@ impl Viewer {
     /// Closes the help if it is open; otherwise releases the held light, if any; otherwise closes
     /// the explanation; otherwise cancels the large picture.
     fn close_topmost(&mut self) {
-        // This is the order of the layers, from the topmost.
+        // The order is that of the layers on the screen, from the topmost.
         if self.screen.close::<HelpPanel>().is_none()
             && !self.release_light()
             && self.screen.close::<ExplainPanel>().is_none()

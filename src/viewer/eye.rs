@@ -176,8 +176,8 @@ impl Eye {
         });
     }
 
-    /// Jumps to the view before the last jump, or with `forward` to the one that the last such
-    /// return left. Returns whether there is such a view.
+    /// Jumps back to the view before the last jump, or with `forward` to the view that the last
+    /// jump back has left. Returns whether there is such a view.
     pub(super) fn retrace(&mut self, forward: bool, now: Duration) -> bool {
         self.jump_with(now, |view| view.history.retrace(view.camera, forward))
     }

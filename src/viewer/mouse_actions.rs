@@ -19,7 +19,7 @@ const WIPE_GRAB_COLUMNS: f32 = 2.0;
 /// Returns whether `input` need not be handled because `next` continues the same drag.
 ///
 /// Of consecutive motions of a drag that arrive together, only the last position matters.
-// Otherwise each motion would trace a frame, and on a slow link the picture would lag behind the pointer.
+// If all motions were handled, each would trace a frame, and on a slow link the picture would lag behind the pointer.
 pub(super) fn is_superseded(input: &Input, next: Option<&Input>) -> bool {
     let way = |input: &Input| match input {
         Input::Event(Event::Mouse(MouseEvent { kind: kind @ MouseEventKind::Drag(_), .. })) => Some(*kind),

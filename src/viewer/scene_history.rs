@@ -36,7 +36,8 @@ impl SceneHistory {
         // If a scene is loaded again with the same own camera, something else in its file was edited, and the user's
         // view is kept. If the camera was edited, the user wants to see the new one.
         let view = (before != Some((index, home))).then(|| {
-            // For the same reason a view that was left is used only if the scene's own camera is unchanged.
+            // The view in which the user left the scene is restored only if the scene's own camera was not edited
+            // since.
             let left = self.left.remove(&index).filter(|left| left.home() == home);
             left.unwrap_or_else(|| ViewState::initial(&scene, orbits))
         });

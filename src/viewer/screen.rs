@@ -115,7 +115,8 @@ impl Screen {
         self.encoder.set_half_blocks(capabilities.half_blocks);
     }
 
-    /// Replaces the frame. `moving` is the time if the view is moving, for the frame rate.
+    /// Replaces the frame. While the view moves, `moving` is the current time, from which the frame
+    /// rate is computed.
     pub(super) fn take_frame(&mut self, mut frame: Frame, moving: Option<Duration>) {
         let content = &mut *self.content;
         // The user may have moved the line between two maps while the frame was traced.

@@ -109,7 +109,7 @@ fn without_cells_nothing_is_drawn_or_found() {
             assert_eq!(buffer, Buffer::filled(AREA, Cell::new("x")));
             assert!(!state.is_current() && !state.press(Position::ORIGIN, Grip::Turn));
         }
-        // The same holds for a pane that had cells in an earlier draw call.
+        // A pane that had cells in an earlier draw call has none after a draw call with an empty area either.
         drawn(&SceneView::new(&scene), area, &mut state);
         assert_eq!(state.cell_of(scene.camera().pose().target), None);
         assert!(AREA.positions().all(|at| state.hit(&scene, at).is_none()));
@@ -168,7 +168,7 @@ impl Held {
         let (wake, woken) = channel();
         let (go_on, may_go_on) = channel();
         let state = SceneState::new(scene.camera()).in_background(move || {
-            // These fail if the test has ended.
+            // Both calls fail if the test has ended.
             let _ = wake.send(());
             let _ = may_go_on.recv();
         });

@@ -4,7 +4,7 @@ use crate::encode::{Allowance, Quality};
 use std::time::Duration;
 
 /// Time by which the bytes sent may be ahead of the rate.
-// It bounds the delay of a frame. A program that draws 30 times a second may use a third of it per frame.
+// This time bounds the delay of a frame. A program that draws 30 times a second may use a third of it per frame.
 const MAX_AHEAD: Duration = Duration::from_millis(100);
 
 /// The quality of frames, the program's clock, and the bandwidth cap with its use so far.
@@ -42,7 +42,7 @@ impl Limits {
     }
 
     /// Returns the earliest time at which cells that are due at `due` may be sent within the rate.
-    // Not before half of `MAX_AHEAD` is unused again, so that the frame has room for more than a few cells.
+    // A frame is not sent before half of `MAX_AHEAD` is unused again, so that it has room for more than a few cells.
     pub(super) fn due(&self, due: Duration) -> Duration {
         due.max(self.free_at.saturating_sub(MAX_AHEAD / 2))
     }

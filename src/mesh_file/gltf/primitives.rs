@@ -64,7 +64,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
 
     /// Adds the primitives of a mesh, transformed by the node that shows it.
     pub(super) fn add_mesh(&mut self, mesh: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<(), MeshFault> {
-        // Positions and normals of the previous node have that node's transform.
+        // The buffers hold positions and normals of the previous node, to which that node's transform was applied.
         self.positions.clear();
         self.normals.clear();
         for primitive in mesh.list("primitives")? {

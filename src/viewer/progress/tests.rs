@@ -30,7 +30,7 @@ fn the_panel_says_what_is_done_and_how_far() {
     assert_eq!([&*rows[0], &*rows[2]], [format!("+{}+", "-".repeat(44)), format!("| {}.  99 % |", "#".repeat(35))]);
 }
 
-/// There is no bar if the total is unknown, and the panel fits every screen.
+/// The panel has no progress bar if the total is unknown, and fits every screen.
 #[test]
 fn the_panel_goes_with_any_file_and_screen() {
     let unknown = parsing("x.glb", 0, 0);

@@ -1,6 +1,6 @@
 use super::*;
 
-/// The panel never covers the cell or the marks around it, and is on the screen.
+/// The panel never covers the explained cell or the marks around it, and lies within the screen.
 #[test]
 fn the_panel_is_never_on_the_cursor() {
     for (columns, rows) in [(40, 12), (41, 13), (79, 24), (80, 24), (81, 25), (200, 60), (65_535, 12), (40, 65_535)] {
