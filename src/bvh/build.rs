@@ -60,7 +60,8 @@ fn build_subtree<E: Send>(
     // A report without progress, so that a large build can be cancelled between subtrees.
     report(0)?;
     let node_bounds = bounds.boxes.bounds();
-    let Halves { cut, bounds } = cut(items, bounds, place.depth).unwrap_or_else(|| Halves::at(items.len() / 2, items));
+    let Halves { cut, bounds } =
+        cut(items, bounds, place.depth).unwrap_or_else(|| Halves::cut_at(items.len() / 2, items));
     let (left, right) = items.split_at_mut(cut);
     let [at_left, at_right] = place.children(cut);
     let (left, right) = threads::join(

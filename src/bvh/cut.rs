@@ -99,7 +99,7 @@ pub(super) struct Halves {
 }
 
 impl Halves {
-    pub(super) fn at(cut: usize, items: &[Item]) -> Self {
+    pub(super) fn cut_at(cut: usize, items: &[Item]) -> Self {
         Self { cut, bounds: [ItemBounds::of(&items[..cut]), ItemBounds::of(&items[cut..])] }
     }
 }
@@ -111,7 +111,7 @@ pub(super) fn cut(items: &mut [Item], bounds: &ItemBounds, depth: usize) -> Opti
     }
     let plane = if depth < FREE_DEPTH { Cut::cheapest(items, &bounds.middles) } else { None };
     // There is no plane if all centers coincide or the node is too deep. Any half of the items will do then.
-    let Some(Cut { bin, before, .. }) = plane else { return Some(Halves::at(items.len() / 2, items)) };
+    let Some(Cut { bin, before, .. }) = plane else { return Some(Halves::cut_at(items.len() / 2, items)) };
     Some(partition(items, |item| bin.index_of(item) < before))
 }
 

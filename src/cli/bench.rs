@@ -94,7 +94,7 @@ impl KernelArg {
 
 impl BenchArgs {
     /// Returns the scene's name and the scene.
-    fn scene(&self) -> Result<(String, Scene), Failure> {
+    fn load_scene(&self) -> Result<(String, Scene), Failure> {
         let camera_args = CameraArgs { threads: self.threads, ..CameraArgs::default() };
         let (name, scene) = if let Some(path) = &self.scene {
             (visible(&path.display().to_string()), camera_args.load(&SceneSource::from_path(path, None)?)?)
@@ -118,7 +118,7 @@ pub(super) fn run(args: &BenchArgs) -> CommandResult {
     let resolution = args.resolution()?;
     // The trees are built in the same pool, so that `--threads` also applies to the measured time of the build.
     on_threads(args.threads, || {
-        let (name, scene) = args.scene()?;
+        let (name, scene) = args.load_scene()?;
         let (built, bytes) = build(&scene);
         let samples = NonZeroU32::new(args.samples).unwrap_or(NonZeroU32::MIN);
         if args.json {
@@ -132,7 +132,7 @@ pub(super) fn run(args: &BenchArgs) -> CommandResult {
         for number in 1..=args.rounds {
             // Each round is printed as soon as it ends, so that an interrupted bench has shown its results so far.
             let round = Round::measured(args.kernel.kernel(), &scene, resolution, samples);
-            write_stdout(round.line(number).as_bytes())?;
+            write_stdout(round.table_line(number).as_bytes())?;
         }
         Ok(())
     })?
@@ -176,7 +176,7 @@ impl Round {
         })
     }
 
-    fn line(&self, number: u32) -> String {
+    fn table_line(&self, number: u32) -> String {
         let Counts { rays, hits, lit, depths } = self.counts;
         let [trace, frame] = [self.trace, self.frame].map(|time| time.as_secs_f64());
         // Avoids a division by 0: a coarse clock may measure no time for a tiny picture.

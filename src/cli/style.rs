@@ -34,7 +34,7 @@ fn error_line(line: &str) -> String {
         let (meant, end) = meant.split_at(meant.trim_end().len());
         format!("{before}{tip}{CYAN}{meant}{PLAIN}{end}")
     } else {
-        headed(line)
+        with_colored_heading(line)
     }
 }
 
@@ -47,18 +47,18 @@ pub(super) fn help(text: &str) -> String {
             is_in_commands = line.starts_with("Commands:");
         }
         let is_literal = text.starts_with('-') || is_in_commands && line.starts_with("  ");
-        colored + &if is_literal { literal(line, text) } else { headed(line) }
+        colored + &if is_literal { with_colored_column(line, text) } else { with_colored_heading(line) }
     })
 }
 
 /// Colours the first column of a help line: a flag or command, up to the first two spaces.
-fn literal(line: &str, text: &str) -> String {
+fn with_colored_column(line: &str, text: &str) -> String {
     let column = text.split("  ").next().unwrap_or_default().trim_end();
     line.replacen(column, &format!("{CYAN}{column}{PLAIN}"), 1)
 }
 
 /// Colours a heading at the start of a line: words up to a colon, such as `Usage:`.
-fn headed(line: &str) -> String {
+fn with_colored_heading(line: &str) -> String {
     match line.split_once(':') {
         Some((head, rest)) if is_heading(head) && (rest.trim().is_empty() || matches!(head, "Usage" | "Keys")) => {
             format!("{GREEN}{head}:{PLAIN}{rest}")

@@ -29,7 +29,7 @@ pub(super) fn normal(n: Vec3) -> Srgb8 {
 }
 
 /// Returns the grey for `count` out of `total`: dark grey for 0, white for all.
-pub(super) fn share(count: u32, total: u32) -> Srgb8 {
+pub(super) fn share_grey(count: u32, total: u32) -> Srgb8 {
     // Not black, so that shadows differ from the colour of pixels without a hit.
     const MIN_GREY: f32 = 0.22;
     grey(MIN_GREY + (1.0 - MIN_GREY) * count.min(total) as f32 / total.max(1) as f32)

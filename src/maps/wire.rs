@@ -30,14 +30,14 @@ pub(super) fn color(scene: &Scene, camera: &Camera, resolution: Resolution, samp
         Primitive::Triangle(triangle) => Some(*triangle),
         _ => None,
     };
-    let line = triangle.map_or(0.0, |triangle| strength(triangle, &sample.ray, hit.t * step));
+    let line = triangle.map_or(0.0, |triangle| edge_opacity(triangle, &sample.ray, hit.t * step));
     let [r, g, b] = EDGE.map(|edge| (grey + line * (edge - grey)) as u8);
     Some(Srgb8::new(r, g, b))
 }
 
 /// Returns the opacity, from 0 to 1, of the triangle's edges in the pixel of `ray`. `pixel` is the
 /// height of a pixel at the hit, in world units.
-fn strength(triangle: &Triangle, ray: &Ray, pixel: f32) -> f32 {
+fn edge_opacity(triangle: &Triangle, ray: &Ray, pixel: f32) -> f32 {
     let [a, b, c] = triangle.corners();
     // The distance in space between the ray and the line of an edge, which unlike a distance within the triangle's
     // plane corresponds to pixels even if the triangle is tilted.

@@ -61,7 +61,7 @@ pub(super) fn read(
     let name = side_files.name_of(path);
     let mut reader = MtlReader { text: TextCursor::new(bytes), folder, side_files, library };
     // The error names the MTL file, not the OBJ file that refers to it.
-    reader.statements().map_err(|fault| MeshFault::from(fault.into_error(&name, bytes)))
+    reader.read_statements().map_err(|fault| MeshFault::from(fault.into_error(&name, bytes)))
 }
 
 struct MtlReader<'a, 'b> {
@@ -76,7 +76,7 @@ struct MtlReader<'a, 'b> {
 const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
 
 impl MtlReader<'_, '_> {
-    fn statements(&mut self) -> Result<(), MeshFault> {
+    fn read_statements(&mut self) -> Result<(), MeshFault> {
         let mut has_reflectance = false;
         while self.text.go_to_statement() {
             let word = self.text.word();

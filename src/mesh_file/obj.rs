@@ -77,7 +77,7 @@ impl ObjReader<'_, '_> {
             let fourth = self.text.number()?;
             if !self.text.is_at_line_end() {
                 let (fifth, sixth) = (self.text.number()?, self.text.number()?);
-                self.color([fourth, fifth, sixth]);
+                self.add_srgb_color([fourth, fifth, sixth]);
             }
         }
         self.text.end_line()
@@ -89,7 +89,7 @@ impl ObjReader<'_, '_> {
 
     /// Adds the colour of the last vertex, `encoded` in sRGB. If only some vertices have colours,
     /// the others are white.
-    fn color(&mut self, encoded: [f32; 3]) {
+    fn add_srgb_color(&mut self, encoded: [f32; 3]) {
         let [r, g, b] = encoded.map(|channel| linear_from_srgb(f64::from(channel.clamp(0.0, 1.0))) as f32);
         self.pad_colors(self.mesh.positions.len() - 1);
         self.mesh.colors.values_mut().push(LinearRgb::new(r, g, b));

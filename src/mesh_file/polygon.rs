@@ -44,7 +44,7 @@ fn projected(corners: &[u32], positions: &[Vec3]) -> Option<Vec<DVec2>> {
 }
 
 /// Returns twice the area of a triangle, negative if it is clockwise.
-fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+fn doubled_signed_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
@@ -53,8 +53,8 @@ fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
 fn is_convex(outline: &[DVec2]) -> bool {
     let n = outline.len();
     // Turning left at each corner is not enough: a star turns left everywhere, twice around.
-    let turns_left = (0..n).all(|i| area(outline[i], outline[(i + 1) % n], outline[(i + 2) % n]) >= 0.0);
-    turns_left && (2..n).all(|i| area(outline[0], outline[i - 1], outline[i]) >= 0.0)
+    let turns_left = (0..n).all(|i| doubled_signed_area(outline[i], outline[(i + 1) % n], outline[(i + 2) % n]) >= 0.0);
+    turns_left && (2..n).all(|i| doubled_signed_area(outline[0], outline[i - 1], outline[i]) >= 0.0)
 }
 
 /// Cuts off ears until three corners or no ears remain. Returns the ears' triangles and the
@@ -81,8 +81,12 @@ fn with_neighbours(left: &[usize], i: usize) -> [usize; 3] {
 fn is_ear(outline: &[DVec2], left: &[usize], i: usize) -> bool {
     let corners = with_neighbours(left, i);
     let [a, b, c] = corners.map(|corner| outline[corner]);
-    let is_inside = |p: DVec2| area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0;
-    area(a, b, c) > 0.0
+    let is_inside = |p: DVec2| {
+        doubled_signed_area(a, b, p) >= 0.0
+            && doubled_signed_area(b, c, p) >= 0.0
+            && doubled_signed_area(c, a, p) >= 0.0
+    };
+    doubled_signed_area(a, b, c) > 0.0
         && !left.iter().any(|&other| {
             let p = outline[other];
             // A corner at the same point as `a`, `b` or `c` does not block the ear: an outline with a hole passes twice

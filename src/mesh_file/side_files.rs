@@ -39,7 +39,7 @@ impl<'a> SideFiles<'a> {
     /// Returns the bytes of a side file, or the message of a fault.
     pub(super) fn read(&mut self, path: &Path) -> Result<Vec<u8>, String> {
         let opened = (self.open)(path);
-        self.taken(path, opened)
+        self.counted_bytes(path, opened)
     }
 
     /// Returns the bytes of a side file that only adds colours, or the message of a fault.
@@ -49,15 +49,15 @@ impl<'a> SideFiles<'a> {
     pub(super) fn read_colors(&mut self, path: &Path, what: &str) -> Result<Option<Vec<u8>>, String> {
         let opened = (self.open)(path);
         let is_missing = opened.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::NotFound);
-        if is_missing && self.warns(path, what) {
+        if is_missing && self.warn_of_missing(path, what) {
             return Ok(None);
         }
-        self.taken(path, opened).map(Some)
+        self.counted_bytes(path, opened).map(Some)
     }
 
     /// Warns of a missing file, once per file. Returns whether the reporter has a callback for
     /// warnings.
-    fn warns(&mut self, path: &Path, what: &str) -> bool {
+    fn warn_of_missing(&mut self, path: &Path, what: &str) -> bool {
         // Many materials of a library may name the same texture.
         if self.missing.contains(path) {
             return true;
@@ -71,7 +71,7 @@ impl<'a> SideFiles<'a> {
     }
 
     /// Returns the bytes of an opened side file, and counts them towards the limit of the mesh.
-    fn taken(&mut self, path: &Path, opened: io::Result<Vec<u8>>) -> Result<Vec<u8>, String> {
+    fn counted_bytes(&mut self, path: &Path, opened: io::Result<Vec<u8>>) -> Result<Vec<u8>, String> {
         let name = self.name_of(path);
         let say = |what: &str| format!("{}: {what}", shown(name.as_bytes()));
         let bytes = opened.map_err(|error| say(&named_file::reason(&error)))?;

@@ -77,10 +77,10 @@ pub(super) fn number_text(x: f32) -> String {
     // `to_string` never writes an exponent: 1e-30 would have 31 digits.
     let short = if plain.len() > 16 { format!("{x:e}") } else { plain };
     // The reader rounds first to f64 and then to f32. The few numbers that this changes are written with all digits.
-    if reads_as(&short, |value| value as f32 == x) { short } else { f64::from(x).to_string() }
+    if parses_as(&short, |value| value as f32 == x) { short } else { f64::from(x).to_string() }
 }
 
-fn reads_as(text: &str, is_right: impl Fn(f64) -> bool) -> bool {
+fn parses_as(text: &str, is_right: impl Fn(f64) -> bool) -> bool {
     text.parse().is_ok_and(is_right)
 }
 
@@ -127,7 +127,7 @@ fn shortest_decimal(value: f64, is_right: impl Fn(f64) -> bool) -> Option<String
     // saved or copied.
     let digits = (0..=15).map(|digits| format!("{value:.digits$}"));
     let exact = value.to_string();
-    digits.chain([exact]).find(|text| reads_as(text, &is_right))
+    digits.chain([exact]).find(|text| parses_as(text, &is_right))
 }
 
 #[cfg(all(test, unit_tests))]

@@ -57,7 +57,7 @@ struct Crossing<N> {
 
 impl<N: Number> Crossing<N> {
     #[inline(always)]
-    fn of([a, b, c]: [Vector<N>; 3], weights: Vector<N>) -> Self {
+    fn from_weights([a, b, c]: [Vector<N>; 3], weights: Vector<N>) -> Self {
         let sum = weights.x + weights.y + weights.z;
         Self { weights, sum, t: weights.dot(Vector { x: a.z, y: b.z, z: c.z }) }
     }
@@ -92,7 +92,7 @@ impl<N: Number> TriangleN<N> {
         if !(agree | differ).all() {
             return self.crossing_from_weights(corners, weights, rays);
         }
-        agree.any().then(|| (agree, Crossing::of(corners, weights)))
+        agree.any().then(|| (agree, Crossing::from_weights(corners, weights)))
     }
 
     /// Returns the corners in the rays' sheared coordinates.
@@ -116,7 +116,7 @@ impl<N: Number> TriangleN<N> {
         if !(agree | is_uncertain).any() {
             return None;
         }
-        let crossing = Crossing::of(corners, weights);
+        let crossing = Crossing::from_weights(corners, weights);
         if is_uncertain.any() {
             Some(self.resolve_in_f64(agree, is_uncertain, crossing, rays))
         } else {
@@ -205,12 +205,12 @@ fn crossing_in_f64([is_active, ax, ay, az, bx, by, bz, cx, cy, cz, ox, oy, oz, d
 /// triangle computes the same number for a shared edge, negated.
 #[inline(always)]
 fn weights<N: Number>([a, b, c]: [Vector<N>; 3]) -> Vector<N> {
-    Vector { x: area(c, b), y: area(a, c), z: area(b, a) }
+    Vector { x: doubled_signed_area(c, b), y: doubled_signed_area(a, c), z: doubled_signed_area(b, a) }
 }
 
 /// Returns twice the signed area of the triangle of two points and the origin of the xy plane.
 #[inline(always)]
-fn area<N: Number>(from: Vector<N>, to: Vector<N>) -> N {
+fn doubled_signed_area<N: Number>(from: Vector<N>, to: Vector<N>) -> N {
     from.x * to.y - from.y * to.x
 }
 

@@ -253,7 +253,7 @@ pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> 
 fn accept_blocked(ignored: u64, deadly: Arc<AtomicUsize>, mut waker: Waker) -> io::Result<Receiver<()>> {
     let signals = signals_to_block();
     signals.thread_block()?;
-    let mut pending = PendingSignals::of(&signals)?;
+    let mut pending = PendingSignals::for_signals(&signals)?;
     let (stopped, stops) = channel();
     let accept = move || {
         while let Ok(signal) = pending.next() {
@@ -292,7 +292,7 @@ struct PendingSignals(nix::sys::signalfd::SignalFd);
 
 #[cfg(target_os = "linux")]
 impl PendingSignals {
-    fn of(signals: &SigSet) -> io::Result<Self> {
+    fn for_signals(signals: &SigSet) -> io::Result<Self> {
         use nix::sys::signalfd::{SfdFlags, SignalFd};
         Ok(Self(SignalFd::with_flags(signals, SfdFlags::SFD_CLOEXEC)?))
     }
@@ -311,7 +311,7 @@ struct PendingSignals(SigSet);
 #[cfg(not(target_os = "linux"))]
 impl PendingSignals {
     #[expect(clippy::unnecessary_wraps, reason = "it can fail on Linux")]
-    fn of(signals: &SigSet) -> io::Result<Self> {
+    fn for_signals(signals: &SigSet) -> io::Result<Self> {
         Ok(Self(*signals))
     }
 

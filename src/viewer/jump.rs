@@ -61,7 +61,7 @@ impl JumpHistory {
     /// Records a view that a jump leaves.
     pub(super) fn record_left(&mut self, camera: Camera) {
         self.after.clear();
-        push(&mut self.before, camera);
+        push_limited(&mut self.before, camera);
     }
 
     /// Returns the view before `camera` in the history, or with `forward` the view after it, and
@@ -70,12 +70,12 @@ impl JumpHistory {
         let (from, to) =
             if forward { (&mut self.after, &mut self.before) } else { (&mut self.before, &mut self.after) };
         let view = from.pop()?;
-        push(to, camera);
+        push_limited(to, camera);
         Some(view)
     }
 }
 
-fn push(views: &mut Vec<Camera>, camera: Camera) {
+fn push_limited(views: &mut Vec<Camera>, camera: Camera) {
     if views.len() == MAX_VIEWS {
         views.remove(0);
     }

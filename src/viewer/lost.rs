@@ -90,7 +90,7 @@ impl Hiding {
         }
         match seen {
             None => (!scene.objects().is_empty()).then_some(Self::Nothing),
-            Some(object) => Self::by(scene, camera.pose(), object),
+            Some(object) => Self::from_visible_back(scene, camera.pose(), object),
         }
     }
 
@@ -98,7 +98,7 @@ impl Hiding {
     ///
     /// `None` if the eye is outside the object's bounding box. The object is then visible after all: a mesh whose
     /// triangles have the opposite winding order.
-    fn by(scene: &Scene, Pose { eye, .. }: Pose, object: u32) -> Option<Self> {
+    fn from_visible_back(scene: &Scene, Pose { eye, .. }: Pose, object: u32) -> Option<Self> {
         let of = &scene.objects()[object as usize];
         let hidden = Hidden { number: object + 1, name: short_name(of) };
         match of.shape.bounds() {

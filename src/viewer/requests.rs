@@ -13,7 +13,7 @@ use crate::render::Sampling;
 const LARGE_SIDE: u32 = 1920;
 
 /// Returns the size of a large picture, of square pixels, in the shape of the shown one.
-fn large(shown: Resolution) -> Resolution {
+fn large_resolution(shown: Resolution) -> Resolution {
     let aspect = shown.aspect_ratio();
     let scaled = |by: f32| ((LARGE_SIDE as f32 * by).round() as u32).clamp(1, LARGE_SIDE);
     Resolution::square(scaled(aspect), scaled(1.0 / aspect))
@@ -78,7 +78,7 @@ impl Viewer {
     /// line between the two maps of a wipe, as a share of the width.
     pub(crate) fn large_picture(&self) -> Option<(Job, f32)> {
         let (scene, shot) = self.scene().zip(self.wanted_shot())?;
-        let shot = Shot { resolution: large(shot.resolution), geometry: false, ..shot };
+        let shot = Shot { resolution: large_resolution(shot.resolution), geometry: false, ..shot };
         Some((Job { scene, shot, sampling: Sampling::BEST, refines: false }, self.screen.wipe()))
     }
 

@@ -51,7 +51,7 @@ pub(super) fn script(program: &Command) -> String {
     for command in program.get_subcommands().chain([program]) {
         // An optional value follows a `=`. `HEAD` sets `$cur` to the part after it.
         for arg in options(command).filter(|arg| takes_value(arg)) {
-            values.insert(spellings(arg).join("|"), action(&Values::for_arg(arg, program)));
+            values.insert(spellings(arg).join("|"), completion_commands(&Values::for_arg(arg, program)));
         }
     }
     for (flag, action) in values {
@@ -59,23 +59,27 @@ pub(super) fn script(program: &Command) -> String {
     }
     script.push_str("    esac\n    case $command in\n");
     for command in program.get_subcommands() {
-        let _ = writeln!(script, "        {}) {} ;;", command.get_name(), arguments(command, program));
+        let _ = writeln!(script, "        {}) {} ;;", command.get_name(), argument_commands(command, program));
     }
     let first = format!("((COMP_CWORD > 1)) || _termtrace_words \"{}\"", names.join(" "));
-    let _ = writeln!(script, "        *) {}\n            {first} ;;", arguments(program, program));
+    let _ = writeln!(script, "        *) {}\n            {first} ;;", argument_commands(program, program));
     script
         + "    esac\n}\n\ncomplete -F _termtrace -o nosort termtrace 2>/dev/null || complete -F _termtrace termtrace\n"
 }
 
 /// Returns the shell commands that complete a word other than the value of an option: a flag or a
 /// positional argument.
-fn arguments(command: &Command, program: &Command) -> String {
+fn argument_commands(command: &Command, program: &Command) -> String {
     let flags: Vec<_> = options(command).flat_map(spellings).collect();
-    let place = command.get_positionals().next().map(|arg| action(&Values::for_arg(arg, program))).unwrap_or_default();
+    let place = command
+        .get_positionals()
+        .next()
+        .map(|arg| completion_commands(&Values::for_arg(arg, program)))
+        .unwrap_or_default();
     format!("if [[ $cur == -* ]]; then _termtrace_words \"{}\"; else {place}:; fi", flags.join(" "))
 }
 
-fn action(values: &Values) -> String {
+fn completion_commands(values: &Values) -> String {
     let words =
         if values.words.is_empty() { String::new() } else { format!("_termtrace_words \"{}\"; ", values.names()) };
     let files = match values.files {

@@ -29,17 +29,17 @@ pub(super) fn script(program: &Command) -> String {
     let names: Vec<_> = commands(program).into_iter().map(|(name, _)| name).collect();
     let mut script = HEAD.replace("COMMANDS", &names.join(" ")).replace("ENDINGS", &SCENE_ENDINGS.join("|"));
     for word in commands(program) {
-        let _ = writeln!(script, "complete -c termtrace -n __termtrace_first -a {}", offered(&[word]));
+        let _ = writeln!(script, "complete -c termtrace -n __termtrace_first -a {}", candidate_list(&[word]));
     }
     for command in program.get_subcommands().chain([program]) {
         let name = if std::ptr::eq(command, program) { "''" } else { command.get_name() };
         let start = format!("complete -c termtrace -n \"__termtrace_is {name}\"");
         for arg in options(command) {
-            let _ = writeln!(script, "{start}{}", option(arg, program));
+            let _ = writeln!(script, "{start}{}", option_flags(arg, program));
         }
         for place in command.get_positionals() {
             let values = Values::for_arg(place, program);
-            let _ = writeln!(script, "{start}{}", value(&values));
+            let _ = writeln!(script, "{start}{}", value_flags(&values));
             if values.files == Files::Scenes {
                 let _ = writeln!(script, "{start} -a '(__termtrace_scenes)'");
             }
@@ -48,23 +48,23 @@ pub(super) fn script(program: &Command) -> String {
     script
 }
 
-fn option(arg: &Arg, program: &Command) -> String {
+fn option_flags(arg: &Arg, program: &Command) -> String {
     let short = arg.get_short().map(|short| format!(" -s {short}")).unwrap_or_default();
     let long = arg.get_long().map(|long| format!(" -l {long}")).unwrap_or_default();
-    let value = if takes_value(arg) { value(&Values::for_arg(arg, program)) } else { String::new() };
+    let value = if takes_value(arg) { value_flags(&Values::for_arg(arg, program)) } else { String::new() };
     // The value of an option with an optional value follows a `=`, never in the next word.
     let required = if takes_value(arg) && !arg.is_require_equals_set() { " -r" } else { "" };
     let no_files = if takes_value(arg) && !value.contains(" -F") { " -f" } else { "" };
     format!("{short}{long}{required}{no_files}{value} -d {}", quoted(&text(arg.get_help())))
 }
 
-fn value(values: &Values) -> String {
+fn value_flags(values: &Values) -> String {
     let files = if values.files == Files::Any { " -F" } else { "" };
-    if values.words.is_empty() { files.to_owned() } else { format!("{files} -a {}", offered(&values.words)) }
+    if values.words.is_empty() { files.to_owned() } else { format!("{files} -a {}", candidate_list(&values.words)) }
 }
 
 /// Returns words in fish's syntax for candidates: one a line, with a tab before its description.
-fn offered(words: &[Word]) -> String {
+fn candidate_list(words: &[Word]) -> String {
     // fish unquotes the text twice: first as a string, then as a list of quoted words.
     let line = |(word, help): &Word| format!("{word}\\t'{}'", help.replace(['"', '$', '\\'], "").replace('\'', "\\'"));
     format!("\"{}\"", words.iter().map(line).collect::<Vec<_>>().join("\n"))

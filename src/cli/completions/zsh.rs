@@ -32,10 +32,10 @@ fi
 
 /// Returns the script: the options and their values of each command, then those of the live view.
 pub(super) fn script(program: &Command) -> String {
-    let mut script = HEAD.replacen("_termtrace_first", &(lists(program) + "_termtrace_first"), 1);
+    let mut script = HEAD.replacen("_termtrace_first", &(list_functions(program) + "_termtrace_first"), 1);
     for command in program.get_subcommands() {
         let _ = writeln!(script, "        {}) specs=(", command.get_name());
-        for spec in specs(command, program) {
+        for spec in argument_specs(command, program) {
             let _ = writeln!(script, "            {spec}");
         }
         script.push_str("            ) ;;\n");
@@ -47,7 +47,7 @@ pub(super) fn script(program: &Command) -> String {
         "        shift words\n        (( CURRENT-- ))\n        _arguments -s -S : $specs\n        return\n    fi\n",
     );
     script.push_str("    specs=(\n");
-    for spec in options(program).map(|arg| option(arg, program)) {
+    for spec in options(program).map(|arg| option_spec(arg, program)) {
         let _ = writeln!(script, "        {spec}");
     }
     script.push_str("        '1: :_termtrace_first'\n        '*:scene:_termtrace_scenes'\n");
@@ -55,7 +55,7 @@ pub(super) fn script(program: &Command) -> String {
 }
 
 /// Returns the zsh functions that offer commands and scenes.
-fn lists(program: &Command) -> String {
+fn list_functions(program: &Command) -> String {
     let scene = program.get_positionals().next().map(|arg| Values::for_arg(arg, program));
     let scenes = scene.map(|values| values.words).unwrap_or_default();
     let mut text = String::new();
@@ -72,19 +72,19 @@ fn lists(program: &Command) -> String {
     text
 }
 
-fn specs(command: &Command, program: &Command) -> Vec<String> {
+fn argument_specs(command: &Command, program: &Command) -> Vec<String> {
     let places = command.get_positionals().map(|arg| {
         let place = arg.get_index().map_or_else(|| "*".to_owned(), |index| index.to_string());
-        quoted(&format!("{place}:{}:{}", arg.get_id(), action(&Values::for_arg(arg, program))))
+        quoted(&format!("{place}:{}:{}", arg.get_id(), value_action(&Values::for_arg(arg, program))))
     });
-    options(command).map(|arg| option(arg, program)).chain(places).collect()
+    options(command).map(|arg| option_spec(arg, program)).chain(places).collect()
 }
 
 /// Returns an option as a spec of zsh's `_arguments`: its spellings, description and value.
-fn option(arg: &Arg, program: &Command) -> String {
+fn option_spec(arg: &Arg, program: &Command) -> String {
     let names = spellings(arg);
     let help = text(arg.get_help()).replace('\\', "\\\\").replace('[', "\\[").replace(']', "\\]");
-    let value = value(arg, program);
+    let value = value_spec(arg, program);
     let named = |name: &str| match (takes_value(arg), name.starts_with("--"), arg.is_require_equals_set()) {
         (false, ..) => name.to_owned(),
         (_, _, true) => format!("{name}=-"),
@@ -98,17 +98,17 @@ fn option(arg: &Arg, program: &Command) -> String {
     format!("'({})'{{{}}}{}", names.join(" "), list.join(","), quoted(&format!("[{help}]{value}")))
 }
 
-fn value(arg: &Arg, program: &Command) -> String {
+fn value_spec(arg: &Arg, program: &Command) -> String {
     if !takes_value(arg) {
         return String::new();
     }
     let name = arg.get_value_names().and_then(<[_]>::first).map(|name| name.replace(':', "\\:")).unwrap_or_default();
     // Two colons: the value is optional.
     let colons = if arg.is_require_equals_set() { "::" } else { ":" };
-    format!("{colons}{name}:{}", action(&Values::for_arg(arg, program)))
+    format!("{colons}{name}:{}", value_action(&Values::for_arg(arg, program)))
 }
 
-fn action(values: &Values) -> String {
+fn value_action(values: &Values) -> String {
     match (values.files, &values.words[..]) {
         (Files::Scenes, _) => "_termtrace_scenes".to_owned(),
         (Files::Any, []) => "_files".to_owned(),

@@ -18,8 +18,8 @@ fn normals_are_their_coordinates() {
 
 #[test]
 fn shares_go_from_dark_to_white() {
-    assert_eq!([0, 1, 2].map(|count| share(count, 2).r), [56, 156, 255]);
-    assert_eq!(share(0, 0).r, 56);
+    assert_eq!([0, 1, 2].map(|count| share_grey(count, 2).r), [56, 156, 255]);
+    assert_eq!(share_grey(0, 0).r, 56);
 }
 
 #[test]

@@ -6,7 +6,7 @@ fn only_edges_are_drawn_and_small_triangles_fainter() {
     let triangle = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y]).expect("a triangle");
     let at = |x, y, pixel| {
         let ray = Ray { origin: Vec3::new(x, y, 5.0), direction: Vec3::NEG_Z };
-        strength(&triangle, &ray, pixel)
+        edge_opacity(&triangle, &ray, pixel)
     };
     assert_eq!(at(0.3, 0.3, 0.01), 0.0);
     assert_eq!(at(0.3, 0.005, 0.01), 1.0);

@@ -123,7 +123,7 @@ impl<'a> Elements<'a> {
         Ok(Some(Self { view, offset, stride }))
     }
 
-    fn at(&self, i: usize) -> &[u8] {
+    fn element_bytes(&self, i: usize) -> &[u8] {
         &self.view.bytes()[self.offset + i * self.stride..]
     }
 }
@@ -184,12 +184,13 @@ impl<'a> Accessor<'a> {
 
     fn read_elements<T: Copy>(&self, zero: T, read: impl Fn(&[u8]) -> T) -> Vec<T> {
         let mut all = match &self.elements {
-            Some(elements) => (0..self.count).map(|i| read(elements.at(i))).collect(),
+            Some(elements) => (0..self.count).map(|i| read(elements.element_bytes(i))).collect(),
             None => vec![zero; self.count],
         };
         if let Some(sparse) = &self.sparse {
             for i in 0..sparse.count {
-                all[sparse.index_component.index(sparse.indices.at(i)) as usize] = read(sparse.values.at(i));
+                all[sparse.index_component.index(sparse.indices.element_bytes(i)) as usize] =
+                    read(sparse.values.element_bytes(i));
             }
         }
         all
@@ -216,7 +217,9 @@ impl<'a> Sparse<'a> {
             count,
         };
         // Checked once here, so that indexing in `read_elements` cannot panic.
-        let out = (0..count).map(|i| index_component.index(sparse.indices.at(i))).find(|&i| i as usize >= elements);
+        let out = (0..count)
+            .map(|i| index_component.index(sparse.indices.element_bytes(i)))
+            .find(|&i| i as usize >= elements);
         match out {
             Some(index) => Err(indices.fault(format!("index {index} is out of range: there are {elements} elements"))),
             None => Ok(sparse),

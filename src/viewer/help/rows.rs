@@ -106,7 +106,7 @@ pub(super) struct Row {
 /// A key that a mode binds is left out for the modes after it in `modes`. `states` has words on the current state,
 /// which follow the descriptions.
 pub(super) fn rows(keymap: &Keymap, modes: &[KeyMode], states: &[(Command, String)], filter: &str) -> Vec<Row> {
-    let rows = [of_keys(keymap, modes, states), of_mouse(modes)].concat();
+    let rows = [key_rows(keymap, modes, states), mouse_rows(modes)].concat();
     let filter = filter.to_lowercase();
     let contains = |row: &&Row| format!("{:?} {} {}", row.group, row.keys, row.does).to_lowercase().contains(&filter);
     let rows: Vec<_> = rows.iter().filter(contains).collect();
@@ -114,8 +114,8 @@ pub(super) fn rows(keymap: &Keymap, modes: &[KeyMode], states: &[(Command, Strin
     Group::ALL.into_iter().flat_map(of_group).map(|&row| row.clone()).collect()
 }
 
-fn of_keys(keymap: &Keymap, modes: &[KeyMode], states: &[(Command, String)]) -> Vec<Row> {
-    let bound = bound(keymap, modes);
+fn key_rows(keymap: &Keymap, modes: &[KeyMode], states: &[(Command, String)]) -> Vec<Row> {
+    let bound = bound_commands(keymap, modes);
     let keys_of = |command| bound.iter().find(|(bound, _)| *bound == command).map_or(&[][..], |(_, keys)| keys);
     let row = |commands: &[Command], keys, does: &str| {
         let state = states.iter().find(|(command, _)| commands.contains(command));
@@ -157,7 +157,7 @@ fn of_keys(keymap: &Keymap, modes: &[KeyMode], states: &[(Command, String)]) -> 
 }
 
 /// Returns the commands with the keys that are in force, topmost mode first.
-fn bound(keymap: &Keymap, modes: &[KeyMode]) -> Vec<(Command, Vec<Key>)> {
+fn bound_commands(keymap: &Keymap, modes: &[KeyMode]) -> Vec<(Command, Vec<Key>)> {
     let mut taken = HashSet::new();
     let mut bound: Vec<(Command, Vec<Key>)> = Vec::new();
     for row in modes.iter().flat_map(|&mode| keymap.of(mode)) {
@@ -201,7 +201,7 @@ pub(super) fn is_arrows(keys: &[Key]) -> bool {
 }
 
 /// Returns the rows about the mouse in these modes.
-fn of_mouse(modes: &[KeyMode]) -> Vec<Row> {
+fn mouse_rows(modes: &[KeyMode]) -> Vec<Row> {
     let [drag, wheel] = if modes.contains(&KeyMode::Light) {
         ["move the light", "closer, farther"]
     } else if modes.contains(&KeyMode::Explain) {
