@@ -365,7 +365,7 @@ impl RayStack {
     fn make_room(&mut self) {
         #[cold]
         fn grow(entries: &mut Vec<RayStackEntry>) {
-            // Cold: a stack grows a few times per kernel.
+            // The branch is rarely taken: the stack grows a few times per run of a kernel.
             entries.resize(2 * entries.len() + 8 * LANES, RayStackEntry(0));
         }
         if self.entries.len() < self.len + LANES {

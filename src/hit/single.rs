@@ -33,7 +33,7 @@ impl<'p, N: Lanes, const ANY: bool> SingleRay<'p, N, ANY> {
 }
 
 impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
-    /// Returns a ray with an observer.
+    /// Returns a single ray, the ray of lane `lane`, whose tests are reported to `observer`.
     #[inline(always)]
     pub(super) fn observed(
         accel: &'p Accelerator,
