@@ -1,4 +1,6 @@
-//! `--json`: the results of commands as JSON. Later versions may add fields, but keep the names of all others.
+//! `--json`: the results of commands as JSON.
+//!
+//! Later versions may add fields, but keep the names of all others.
 
 use super::outcome::{CommandResult, write_stdout};
 use glam::Vec3;

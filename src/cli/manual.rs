@@ -1,4 +1,4 @@
-//! The man pages, as roff: the sections of `clap_mangen`, and others, such as keys, files and environment.
+//! The man pages, as roff: the sections of `clap_mangen`, then others, such as keys and files.
 
 use clap::Command;
 use clap_mangen::Man;

@@ -1,4 +1,4 @@
-//! A line about work in the background: a recording of the session, and a large picture in progress.
+//! A line about work in the background: a recording of the session, and a large picture.
 
 use super::layers::{Canvas, Layer, Level};
 use super::legend;

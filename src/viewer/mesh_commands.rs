@@ -1,4 +1,4 @@
-//! Commands for looking at a single object: views from its sides, its metadata, and the axis that is up.
+//! Commands for looking at a single object: its sides, its metadata, and the axis that is up.
 
 use super::Viewer;
 use super::axes::Axes;

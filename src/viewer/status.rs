@@ -1,4 +1,4 @@
-//! The status line: the scene and statistics of the last frame, and in a row above them the important keys.
+//! The status line: the scene and statistics of the last frame, and a row of keys above them.
 
 use super::help;
 use super::layers::{Canvas, FrameStatistics, Layer, Level};
