@@ -97,7 +97,7 @@ impl BenchArgs {
     fn load_scene(&self) -> Result<(String, Scene), Failure> {
         let camera_args = CameraArgs { threads: self.threads, ..CameraArgs::default() };
         let (name, scene) = if let Some(path) = &self.scene {
-            (visible(&path.display().to_string()), camera_args.load(&SceneSource::from_path(path, None)?)?)
+            (visible(&path.display().to_string()), camera_args.load_scene(&SceneSource::from_path(path, None)?)?)
         } else {
             let generated = self.generated.unwrap_or(Generated::Three);
             (format!("{generated:?}").to_lowercase(), generated.scene().map_err(usage)?)

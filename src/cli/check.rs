@@ -26,7 +26,7 @@ pub(super) struct CheckArgs {
 pub(super) fn run(args: &CheckArgs) -> CommandResult {
     // `check` fails on a missing texture, of which the other commands only warn.
     let strict = CameraArgs { strict: true, ..args.camera_args.clone() };
-    let scene = strict.load(&SceneSource::from_path(&args.scene, strict.mesh_format)?)?;
+    let scene = strict.load_scene(&SceneSource::from_path(&args.scene, strict.mesh_format)?)?;
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let objects = count(scene.objects().len(), "object");
     let lights = count(scene.lights().len(), "light");

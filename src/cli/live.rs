@@ -139,7 +139,7 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
         return Err(Failure::Usage(message));
     }
     let source = SceneSource::from_argument(scenes.first().map(PathBuf::as_path), args.camera_args.mesh_format)?;
-    let scene = args.camera_args.load(&source)?;
+    let scene = args.camera_args.load_scene(&source)?;
     let cell_aspect = settings.terminal.cell_aspect.unwrap_or(USUAL_CELL_ASPECT);
     let cell_mode = settings.terminal.cells.mode_for_file(Colors::None);
     let resolution = cell::resolution(cell_mode, Size::new(80, 24), cell_aspect).map_err(usage)?;
@@ -220,7 +220,7 @@ pub(super) fn live_source(scene: SceneSource, camera_args: &CameraArgs) -> Sourc
     let (name, camera_args) = (scene.to_string(), camera_args.clone());
     // A file is read later, on another thread, so that its name alone decides.
     let is_mesh = scene.is_mesh();
-    let source = Source::turnable(name, move |watcher, up| camera_args.draft(&scene, up, watcher));
+    let source = Source::turnable(name, move |watcher, up| camera_args.load_draft(&scene, up, watcher));
     let source = if is_mesh { source.orbited() } else { source };
     file.into_iter().fold(source, Source::with_file)
 }

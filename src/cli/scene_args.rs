@@ -45,8 +45,8 @@ impl SceneArgs {
     }
 
     /// Loads the scene, with the camera changed by the flags.
-    pub(super) fn load(&self) -> Result<Scene, Failure> {
-        self.camera_args.load(&SceneSource::from_argument(self.scene.as_deref(), self.camera_args.mesh_format)?)
+    pub(super) fn load_scene(&self) -> Result<Scene, Failure> {
+        self.camera_args.load_scene(&SceneSource::from_argument(self.scene.as_deref(), self.camera_args.mesh_format)?)
     }
 
     /// Runs `work` in a pool with the number of threads given by `--threads`.
@@ -120,12 +120,18 @@ impl CameraArgs {
         Ok(draft.with_camera(camera))
     }
 
-    fn read(&self, source: &SceneSource, up: Option<UpAxis>, reporter: &Reporter<'_>) -> Result<Draft, Failure> {
+    fn load_with_own_camera(
+        &self,
+        source: &SceneSource,
+        up: Option<UpAxis>,
+        reporter: &Reporter<'_>,
+    ) -> Result<Draft, Failure> {
         if self.mesh_format.is_some() && !matches!(source, SceneSource::Stdin(..)) {
             let message = "--as is for a mesh on standard input (-); the format of a file is recognised";
             return Err(Failure::Usage(format!("{source}: {message}")));
         }
-        let draft = if self.strict { source.draft(up, &reporter.strict()) } else { source.draft(up, reporter) }?;
+        let draft =
+            if self.strict { source.load_draft(up, &reporter.strict()) } else { source.load_draft(up, reporter) }?;
         // An error, because a user would take a flag without any effect for a fault of the program.
         if self.mesh_up.is_some() && draft.mesh().is_none() {
             let message = "--mesh-up turns a mesh file; in a scene, write rotate: (-90, 0, 0) in the mesh";

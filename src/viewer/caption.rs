@@ -39,7 +39,7 @@ impl Caption {
     /// Returns the lines of each page on a screen of this size. The row of keys is not included.
     fn pages(&self, screen: Rect) -> Vec<Vec<String>> {
         let width = usize::from(screen.width.min(MAX_COLUMNS).saturating_sub(2)).max(1);
-        let rows = max_rows(screen).saturating_sub(1).max(1);
+        let rows = rows(screen).saturating_sub(1).max(1);
         let mut pages = vec![Vec::new()];
         for paragraph in self.text.lines() {
             let lines = wrapped(paragraph, width);

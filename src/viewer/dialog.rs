@@ -55,7 +55,7 @@ impl Layer for Dialog {
             let area = self.area(keymap, canvas.screen());
             canvas.lay(area, |theme, area, buffer| self.paint(keymap, theme, area, buffer));
         } else {
-            canvas.write_line(&self.line(keymap, canvas.screen().width.into()), canvas.foot(0));
+            canvas.write_line(&self.line(keymap, canvas.screen().width.into()), canvas.row_from_bottom(0));
         }
     }
 }

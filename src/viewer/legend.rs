@@ -22,7 +22,7 @@ impl Layer for Legends {
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         let Some(frame) = canvas.frame.filter(|_| canvas.has_room()) else { return };
         let line = if frame.shot.layout.is_wipe() { canvas.wipe } else { 0.5 };
-        for (text, area) in legend_areas(&frame.legends, line, canvas.foot(canvas.status_rows)) {
+        for (text, area) in legend_areas(&frame.legends, line, canvas.row_from_bottom(canvas.status_rows)) {
             let colors = canvas.cell_mode.colors;
             canvas.lay(area, |theme, area, buffer| {
                 draw(text, theme, area, buffer);

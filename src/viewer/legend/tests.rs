@@ -1,6 +1,6 @@
 use super::*;
 use crate::capabilities::CellMode;
-use crate::viewer::theme::foot;
+use crate::viewer::theme::row_from_bottom;
 
 #[test]
 fn each_map_has_its_legend_in_its_corner() {
@@ -27,7 +27,7 @@ fn the_cost_map_has_a_color_bar() {
     let drawn = |colors| {
         let mode = CellMode { colors, ..CellMode::HALF_BLOCK };
         let mut buffer = Buffer::empty(area);
-        draw(text, Theme::of(mode), area, &mut buffer);
+        draw(text, Theme::for_cell_mode(mode), area, &mut buffer);
         draw_cost_bar(colors, area, &mut buffer);
         buffer
     };
