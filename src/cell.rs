@@ -12,7 +12,7 @@ use crate::render::{Executor, Geometry, Sampling};
 use crate::scene::Scene;
 use crate::text::{ParseError, named};
 use crate::tone::Picture;
-use glyph_kind::{Fill, GlyphKind};
+use glyph_kind::{Background, Fill, GlyphKind};
 use ink_converter::InkConverter;
 use std::borrow::Cow;
 use std::fmt;
@@ -310,8 +310,10 @@ impl Painter {
             }
             Fill::Geometry(fill) => {
                 let unknown = || Geometry::of_one_surface(picture.width, picture.height);
+                let geometry = geometry.filter(|geometry| geometry.fits(picture.width, picture.height));
                 let geometry = geometry.map_or_else(|| Cow::Owned(unknown()), Cow::Borrowed);
-                fill(grid, picture, &geometry, self.light_background, &mut self.inks);
+                let background = if self.light_background { Background::Light } else { Background::Dark };
+                fill(grid, picture, &geometry, background, self.mode.colors);
             }
         }
     }

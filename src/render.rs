@@ -38,7 +38,7 @@ pub use count::{Counts, count};
 pub(crate) use gbuffer::trace_g_buffer_partial;
 pub use gbuffer::{GBufferSample, PixelValues, TraceDepth, trace_g_buffer};
 pub use geometry::Geometry;
-pub(crate) use geometry::{Extent, render_with_geometry, trace_geometry};
+pub(crate) use geometry::{CREASE_COSINE, Extent, Facet, render_with_geometry, trace_geometry};
 pub use sampling::Sampling;
 pub use schedule::Executor;
 pub use single_pixel::{PixelTrace, trace_pixel};

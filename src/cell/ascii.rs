@@ -1,32 +1,261 @@
 //! ASCII with outlines: characters draw where surfaces meet, and fill objects by their shading.
+//!
+//! A reader who sees only text needs to know what is in front of what, so ink is spent on objects: their outlines, and
+//! their own shading spread over the densest characters. Planes get a light texture, and the background stays blank.
 
-use super::glyph_kind::{Fill, GlyphKind};
-use super::ink_converter::InkConverter;
+use super::colors::{Colors, TextInks};
+use super::glyph_kind::{Background, Fill, GlyphKind};
+use super::tint;
+use crate::color::{LinearRgb, Srgb8};
 use crate::grid::{Cell, Grid, Ink};
 use crate::render::{Extent, Geometry};
 use crate::tone::Picture;
+use strokes::Edge;
+
+mod glyphs;
+mod strokes;
 
 pub(super) const KIND: GlyphKind = GlyphKind {
     name: "ascii",
     help: "outlines, and each object filled by its own shading",
     title: "characters with outlines",
-    pixels_per_cell: (2, 4),
+    pixels_per_cell: (ACROSS as u32, DOWN as u32),
     has_blocks: false,
     plain: None,
     fill: Fill::Geometry(fill),
 };
 
+const ACROSS: usize = 2;
+const DOWN: usize = 4;
+
+/// A character for filling, and its ink: the share of that of `@`.
+type Tone = (u8, f32);
+
+/// The characters of objects. Never blank: the dark side of an object is still an object.
+const OBJECT: [Tone; 8] =
+    [(b':', 0.19), (b';', 0.255), (b'+', 0.41), (b'x', 0.53), (b'o', 0.645), (b'X', 0.725), (b'#', 0.885), (b'@', 1.0)];
+/// The characters of floors and ceilings, and of walls, lighter than those of objects.
+// With steps of .25 in ink, a plane's pattern would look like an edge.
+const LEVEL: [Tone; 4] = [(b' ', 0.0), (b'.', 0.095), (b'-', 0.105), (b'~', 0.22)];
+const UPRIGHT: [Tone; 4] = [(b' ', 0.0), (b'.', 0.095), (b':', 0.19), (b'!', 0.305)];
+
+/// The least range of light that is spread over all characters, so that a flat object has one tone.
+const LEAST_RANGE: f32 = 0.12;
+
+/// The share of a cell that the object takes which most of its rays meet.
+struct Part {
+    /// The object's index, plus 1; 0 for the background.
+    object: u32,
+    extent: Extent,
+    /// The mean luma of the object's pixels in the cell.
+    light: f32,
+    /// The rows of pixels from the object's first to its last in the cell.
+    rows: [usize; 2],
+    /// The tone of the fill.
+    tone: Tone,
+    edge: Option<Edge>,
+}
+
 /// Sets each cell's glyph and colour.
-fn fill(grid: &mut Grid, _: &Picture, geometry: &Geometry, _: bool, _: &mut InkConverter) {
-    for row in 0..grid.size().rows {
-        for column in 0..grid.size().columns {
-            let (x, y) = (usize::from(column), usize::from(row));
-            let glyph = match geometry.at(4 * x + 2, 8 * y + 4).extent {
-                _ if geometry.has_edge(x, y) => '*',
-                Extent::Bounded => 'o',
-                _ => ' ',
-            };
-            *grid.cell_mut(column, row) = Cell::new(glyph, Ink::Default, Ink::Default);
+fn fill(grid: &mut Grid, picture: &Picture, geometry: &Geometry, background: Background, colors: Colors) {
+    let (columns, rows) = (usize::from(grid.size().columns), usize::from(grid.size().rows));
+    let mut parts: Vec<Part> =
+        (0..columns * rows).map(|cell| part(picture, geometry, cell % columns, cell / columns)).collect();
+    let heights = set_tones(&mut parts, background);
+    let (crowds, inks) = (Crowds::of(&parts, columns, rows), TextInks::of(colors));
+    for (cell, target) in grid.rows_mut().flatten().enumerate() {
+        let glyph = glyph(&parts, columns, cell, &heights, &crowds);
+        let is_plain = glyph == ' ' || inks.are_default();
+        let ink = if is_plain { Ink::Default } else { ink(picture, geometry, &parts[cell], cell, background, &inks) };
+        *target = Cell::new(glyph, ink, Ink::Default);
+    }
+}
+
+/// Returns the indices of a cell's pixels; beyond the picture's edge its last ones are repeated.
+fn pixels_of(picture: &Picture, column: usize, row: usize) -> [usize; ACROSS * DOWN] {
+    let (width, height) = (picture.width as usize, picture.height as usize);
+    std::array::from_fn(|at| {
+        let (x, y) = (ACROSS * column + at % ACROSS, DOWN * row + at / ACROSS);
+        y.min(height - 1) * width + x.min(width - 1)
+    })
+}
+
+/// Returns the part of a cell whose object most of the cell's rays meet, with the cell's edge.
+fn part(picture: &Picture, geometry: &Geometry, column: usize, row: usize) -> Part {
+    let pixels = pixels_of(picture, column, row);
+    let facets = pixels.map(|pixel| geometry.pixel(pixel));
+    let count = |object: u32| facets.iter().filter(|facet| facet.object == object).count();
+    let (mut most, mut owner) = (0, facets[0]);
+    for &facet in &facets {
+        if facet.object != owner.object || most == 0 {
+            let count = count(facet.object);
+            if count > most {
+                (most, owner) = (count, facet);
+            }
+        }
+    }
+    let mut own = (0..pixels.len()).filter(|&at| facets[at].object == owner.object);
+    let light = own.clone().map(|at| luma(picture.pixels[pixels[at]])).sum::<f32>() / most as f32;
+    let first = own.next().unwrap_or(0);
+    let rows = [first, own.next_back().unwrap_or(first)].map(|at| DOWN * row + at / ACROSS);
+    let edge = strokes::edge(geometry, column, row);
+    Part { object: owner.object, extent: owner.extent, light, rows, tone: LEVEL[0], edge }
+}
+
+/// Returns the luma of a pixel, in 0..=1.
+fn luma(pixel: Srgb8) -> f32 {
+    (0.2126 * f32::from(pixel.r) + 0.7152 * f32::from(pixel.g) + 0.0722 * f32::from(pixel.b)) / 255.0
+}
+
+/// Sets the tone of each part by the range of its object's light. Returns the height of each object.
+fn set_tones(parts: &mut [Part], background: Background) -> Heights {
+    let mut order: Vec<u32> = (0..parts.len() as u32).collect();
+    order.sort_unstable_by(|&a, &b| {
+        let [a, b] = [a, b].map(|at| &parts[at as usize]);
+        a.object.cmp(&b.object).then(a.light.total_cmp(&b.light))
+    });
+    let objects: Vec<u32> = parts.iter().map(|part| part.object).collect();
+    let mut heights = Vec::new();
+    for run in order.chunk_by(|&a, &b| objects[a as usize] == objects[b as usize]) {
+        let light = |at: usize| parts[run[at] as usize].light;
+        let quantile = |share: f32| {
+            let at = share * (run.len() - 1) as f32;
+            let below = at as usize;
+            let above = (below + 1).min(run.len() - 1);
+            light(below) + (at - below as f32) * (light(above) - light(below))
+        };
+        let (low, high) = (quantile(0.03), quantile(0.97));
+        let range = (high - low).max(LEAST_RANGE);
+        let least = 0.5 * (low + high - range);
+        let [mut top, mut bottom] = [usize::MAX, 0];
+        for &at in run {
+            let part = &mut parts[at as usize];
+            let share = ((part.light - least) / range).clamp(0.0, 1.0);
+            part.tone = tone(part.extent, if background == Background::Light { 1.0 - share } else { share });
+            (top, bottom) = (top.min(part.rows[0]), bottom.max(part.rows[1]));
+        }
+        heights.push((parts[run[0] as usize].object, bottom + 1 - top));
+    }
+    Heights(heights)
+}
+
+/// Returns the tone for a share of the range of an object's light.
+fn tone(extent: Extent, share: f32) -> Tone {
+    let step = |tones: &[Tone; 4], limits: [f32; 3]| tones[limits.iter().take_while(|&&limit| share >= limit).count()];
+    match extent {
+        Extent::Nothing => LEVEL[0],
+        Extent::Level => step(&LEVEL, [0.1, 0.4, 0.72]),
+        Extent::Upright => step(&UPRIGHT, [0.1, 0.4, 0.75]),
+        Extent::Bounded => {
+            let ink = OBJECT[0].1 + share * (1.0 - OBJECT[0].1);
+            let above = OBJECT.windows(2).take_while(|pair| ink > 0.5 * (pair[0].1 + pair[1].1)).count();
+            OBJECT[above]
         }
     }
 }
+
+/// The height of each object in rows of pixels, sorted by the object.
+struct Heights(Vec<(u32, usize)>);
+
+impl Heights {
+    /// Returns whether an object is less than four and a half cells high.
+    fn is_low(&self, object: u32) -> bool {
+        let found = self.0.binary_search_by_key(&object, |&(object, _)| object);
+        !found.is_ok_and(|at| 2 * self.0[at].1 >= 9 * DOWN)
+    }
+}
+
+/// The number of cells with a border above and to the left of each cell.
+struct Crowds {
+    sums: Vec<u32>,
+    columns: usize,
+    rows: usize,
+}
+
+impl Crowds {
+    fn of(parts: &[Part], columns: usize, rows: usize) -> Self {
+        let width = columns + 1;
+        let mut sums = vec![0; width * (rows + 1)];
+        for row in 0..rows {
+            let mut of_row = 0;
+            for column in 0..columns {
+                of_row += u32::from(parts[row * columns + column].edge.is_some_and(|edge| edge.is_border));
+                sums[(row + 1) * width + column + 1] = sums[row * width + column + 1] + of_row;
+            }
+        }
+        Self { sums, columns, rows }
+    }
+
+    /// Returns whether more than half of the nine by five cells around one have a border.
+    fn is_crowded(&self, column: usize, row: usize) -> bool {
+        let [left, top] = [column.saturating_sub(4), row.saturating_sub(2)];
+        let [right, bottom] = [(column + 5).min(self.columns), (row + 3).min(self.rows)];
+        let sum = |x: usize, y: usize| self.sums[y * (self.columns + 1) + x];
+        let borders = sum(right, bottom) + sum(left, top) - sum(left, bottom) - sum(right, top);
+        2 * borders as usize > (right - left) * (bottom - top)
+    }
+}
+
+/// Returns the colour of a cell's character: the hue of the object that it shows, at full brightness.
+///
+/// The character supplies the brightness, so that the darkest side of an object has its hue too. Planes are dimmer, so
+/// that objects stand out; on a light background all colours are darker.
+fn ink(
+    picture: &Picture,
+    geometry: &Geometry,
+    part: &Part,
+    cell: usize,
+    background: Background,
+    inks: &TextInks,
+) -> Ink {
+    let pixels = pixels_of(picture, cell % geometry.columns(), cell / geometry.columns());
+    let is_of = |object: u32| pixels.iter().any(|&pixel| geometry.pixel(pixel).object == object);
+    let object = part.edge.map(|edge| edge.owner).filter(|&owner| is_of(owner)).unwrap_or(part.object);
+    let (mut light, mut extent) = (LinearRgb::BLACK, part.extent);
+    for &pixel in pixels.iter().filter(|&&pixel| geometry.pixel(pixel).object == object) {
+        light += LinearRgb::from_srgb8(picture.pixels[pixel]);
+        extent = geometry.pixel(pixel).extent;
+    }
+    let brightness = match (background, extent) {
+        (Background::Dark, Extent::Bounded) => 255,
+        (Background::Dark, _) | (Background::Light, Extent::Bounded) => 153,
+        (Background::Light, _) => 102,
+    };
+    let mean = Srgb8::from_linear(light * (1.0 / pixels.len() as f32));
+    inks.nearest(tint::at_brightness(mean, brightness))
+}
+
+/// Returns the character of a cell: its edge, or its fill.
+fn glyph(parts: &[Part], columns: usize, cell: usize, heights: &Heights, crowds: &Crowds) -> char {
+    let (column, row) = (cell % columns, cell / columns);
+    let part = &parts[cell];
+    let fill = char::from(part.tone.0);
+    let is_plane = matches!(part.extent, Extent::Level | Extent::Upright);
+    let left = (column > 0).then(|| cell - 1);
+    let right = (column + 1 < columns).then_some(cell + 1);
+    let (above, below) = (cell.checked_sub(columns), Some(cell + columns).filter(|&below| below < parts.len()));
+    let Some(edge) = part.edge else {
+        // Lines stand free of the texture of planes.
+        let is_beside_line = || {
+            let has_border = |at: usize| parts[at].edge.is_some_and(|edge| edge.is_border);
+            [left, right, above, below].into_iter().flatten().any(has_border)
+        };
+        return if is_plane && is_beside_line() { ' ' } else { fill };
+    };
+    if !(edge.is_border && heights.is_low(edge.owner) && crowds.is_crowded(column, row)) {
+        return edge.glyph;
+    }
+    // Outlines around small objects in a crowd would be a tangle.
+    let ink = |at: Option<usize>| at.map_or(0.0, |at| parts[at].tone.1);
+    let [before, after] = if edge.is_steep { [left, right] } else { [above, below] };
+    if !edge.is_inside || (ink(before) - ink(after)).abs() > 0.35 {
+        if is_plane { ' ' } else { fill }
+    } else if edge.is_steep {
+        ' '
+    } else {
+        edge.glyph
+    }
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;

@@ -1,6 +1,7 @@
 //! The sets of colours that a terminal's cells may have.
 
-use crate::color::Srgb8;
+use crate::color::{Oklab, Srgb8};
+use crate::grid::Ink;
 
 /// A set of colours, ordered by the number of colours.
 ///
@@ -30,6 +31,55 @@ impl Colors {
     pub const SIXTEEN: Self = Self::Indexed16(XTERM_16);
 }
 
+/// The inks of characters: each is the one nearest to a colour, because characters cannot be dithered.
+pub(super) struct TextInks {
+    colors: Colors,
+    /// The sixteen colours, if there are only those.
+    // Converted once per frame: that of 16 colours takes about a microsecond.
+    sixteen: Vec<Oklab>,
+}
+
+impl TextInks {
+    pub(super) fn of(colors: Colors) -> Self {
+        let sixteen = match colors {
+            Colors::Indexed16(values) => values.map(Oklab::from_srgb8).into(),
+            _ => Vec::new(),
+        };
+        Self { colors, sixteen }
+    }
+
+    pub(super) fn are_default(&self) -> bool {
+        self.colors == Colors::None
+    }
+
+    /// Returns the ink that is nearest to a colour.
+    pub(super) fn nearest(&self, color: Srgb8) -> Ink {
+        match self.colors {
+            Colors::None => Ink::Default,
+            Colors::Truecolor => Ink::Rgb(color),
+            Colors::Indexed256 => {
+                // A level is nearest from the middle between it and the one before.
+                let level = |channel: u8| LEVELS.windows(2).filter(|pair| channel > pair[0].midpoint(pair[1])).count();
+                let [r, g, b] = [color.r, color.g, color.b].map(level);
+                Ink::Indexed((16 + 36 * r + 6 * g + b) as u8)
+            }
+            Colors::Indexed16(_) => {
+                let wanted = Oklab::from_srgb8(color);
+                // Lightness counts half, because the hue tells objects apart.
+                let distance = |&Oklab { l, a, b }: &Oklab| {
+                    let (l, a, b) = (0.5 * (l - wanted.l), a - wanted.a, b - wanted.b);
+                    l * l + a * a + b * b
+                };
+                let distances = self.sixteen.iter().map(distance).enumerate();
+                Ink::Indexed(distances.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(index, _)| index as u8))
+            }
+        }
+    }
+}
+
+/// The levels of a channel in the cube of the 256 palette colours.
+const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
+
 /// xterm's default values of the first sixteen palette colours.
 // These values are assumed until the terminal reports its own (OSC 4).
 const XTERM_16: [Srgb8; 16] = [
@@ -55,7 +105,6 @@ const XTERM_16: [Srgb8; 16] = [
 ///
 /// Colours 0..=15 vary with the theme, 16..=231 are a cube of six levels per channel, and 232..=255 are greys.
 pub(crate) fn xterm_color(index: u8) -> Srgb8 {
-    const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
     match index {
         0..16 => XTERM_16[usize::from(index)],
         16..232 => {

@@ -1,7 +1,7 @@
 //! The properties of a glyph kind, which are a row of the table of glyph kinds.
 
-use super::Glyphs;
 use super::ink_converter::InkConverter;
+use super::{Colors, Glyphs};
 use crate::grid::Grid;
 use crate::render::Geometry;
 use crate::tone::Picture;
@@ -27,7 +27,13 @@ pub(super) enum Fill {
     Colored(fn(&mut Grid, &Picture, &mut InkConverter)),
     /// Sets glyphs by lightness; [`tint`](super::tint) then adds the colours.
     Lightness(fn(&mut Grid, &Picture)),
-    /// Sets glyphs and colours from the picture and the surfaces that it shows; the flag is whether
-    /// the background is light.
-    Geometry(fn(&mut Grid, &Picture, &Geometry, bool, &mut InkConverter)),
+    /// Sets glyphs and colours from the picture and the surfaces that it shows, on the terminal's background.
+    Geometry(fn(&mut Grid, &Picture, &Geometry, Background, Colors)),
+}
+
+/// The terminal's default background.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Background {
+    Dark,
+    Light,
 }

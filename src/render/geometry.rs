@@ -108,6 +108,34 @@ impl Geometry {
         geometry
     }
 
+    /// Returns the geometry of `columns` by `rows` cells in which the objects are as `object` says at a position in
+    /// cells.
+    #[cfg(all(test, unit_tests))]
+    pub(crate) fn of_objects(columns: usize, rows: usize, object: impl Fn(f32, f32) -> u32) -> Self {
+        let facet = |x: f32, y: f32| match object(x, y) {
+            0 => Facet::NOTHING,
+            object => Facet { depth: 1.0, object, normal: [0, 0, 127], extent: Extent::Bounded },
+        };
+        let (width, height) = (CELL[0] * columns, CELL[1] * rows);
+        let middle = |at: usize, count: usize| (at as f32 + 0.5) / count as f32;
+        let at_pixel = |pixel: usize| facet(middle(pixel % width, CELL[0]), middle(pixel / width, CELL[1]));
+        let facets = (0..width * height).map(at_pixel).collect();
+        let mut geometry = Self::new(Resolution::square(width as u32, height as u32), facets, 0.0);
+        for (cell, _) in geometry.crossed_cells().into_iter().enumerate().filter(|&(_, is_crossed)| is_crossed) {
+            geometry.fine_indices[cell] = geometry.fine.len() as u32;
+            let (left, top) = ((cell % columns) as f32, (cell / columns) as f32);
+            geometry.fine.push(std::array::from_fn(|at| {
+                facet(left + middle(at % FINE[0], FINE[0]), top + middle(at / FINE[0], FINE[1]))
+            }));
+        }
+        geometry
+    }
+
+    /// Returns whether this is the geometry of a picture of this size.
+    pub(crate) fn fits(&self, width: u32, height: u32) -> bool {
+        (self.width, self.height()) == (width as usize, height as usize)
+    }
+
     /// Returns the number of cells in a row.
     pub(crate) fn columns(&self) -> usize {
         self.width.div_ceil(CELL[0])
@@ -122,9 +150,14 @@ impl Geometry {
         self.facets.len() / self.width.max(1)
     }
 
-    /// Returns the facet of a pixel; beyond the picture's edge, of the last one.
-    fn pixel(&self, x: usize, y: usize) -> &Facet {
-        &self.facets[y.min(self.height() - 1) * self.width + x.min(self.width - 1)]
+    /// Returns the facet of the pixel with this index.
+    pub(crate) fn pixel(&self, index: usize) -> &Facet {
+        &self.facets[index]
+    }
+
+    /// Returns the facet at a position in pixels; beyond the picture's edge, of the last pixel.
+    fn at_pixel(&self, x: usize, y: usize) -> &Facet {
+        self.pixel(y.min(self.height() - 1) * self.width + x.min(self.width - 1))
     }
 
     /// Returns whether surfaces meet in or beside a cell, so that it has more rays.
@@ -137,7 +170,7 @@ impl Geometry {
         let index = self.fine_indices[y / FINE[1] * self.columns() + x / FINE[0]];
         match self.fine.get(index as usize) {
             Some(facets) => &facets[y % FINE[1] * FINE[0] + x % FINE[0]],
-            None => self.pixel(x / 2, y / 2),
+            None => self.at_pixel(x / 2, y / 2),
         }
     }
 
@@ -154,17 +187,17 @@ impl Geometry {
         let mut mark = |x: usize, y: usize| crossed[y / CELL[1] * columns + x / CELL[0]] = true;
         for y in 0..height {
             for x in 0..width {
-                let facet = self.pixel(x, y);
+                let facet = self.at_pixel(x, y);
                 for (right, down) in [(1, 0), (0, 1)] {
                     if x + right >= width || y + down >= height {
                         continue;
                     }
-                    let next = self.pixel(x + right, y + down);
+                    let next = self.at_pixel(x + right, y + down);
                     let bends = || {
                         facet.extent == Extent::Bounded
                             && x >= right
                             && y >= down
-                            && self.jumps([self.pixel(x - right, y - down), facet, next])
+                            && self.jumps([self.at_pixel(x - right, y - down), facet, next])
                     };
                     if facet.may_border(next) || bends() {
                         mark(x, y);

@@ -1,6 +1,7 @@
 //! Pictures, and the texts about them.
 
 mod cell_quality;
+mod ascii;
 mod cells;
 mod closed_forms;
 mod describe;
