@@ -386,7 +386,7 @@ impl<S> Tree<S> {
         (self.first..self.end_index()).contains(&primitive)
     }
 
-    /// Returns whether the tree has nodes, and so can cull. Without nodes it is a single leaf, or empty.
+    /// Returns whether the tree has nodes, and so can cull. Without nodes, it is one leaf or empty.
     #[inline(always)]
     pub(crate) fn has_nodes(&self) -> bool {
         !self.bvh.is_leaf()

@@ -107,7 +107,7 @@ fn luma(pixel: Srgb8) -> f32 {
     (0.2126 * f32::from(pixel.r) + 0.7152 * f32::from(pixel.g) + 0.0722 * f32::from(pixel.b)) / 255.0
 }
 
-/// Sets the tone of each part by the range of its object's light. Returns the height of each object.
+/// Sets the tone of each part by its object's range of light, and returns the objects' heights.
 fn set_tones(parts: &mut [Part], background: Background) -> Heights {
     let mut order: Vec<u32> = (0..parts.len() as u32).collect();
     order.sort_unstable_by(|&a, &b| {
@@ -196,7 +196,7 @@ impl Crowds {
     }
 }
 
-/// Returns the colour of a cell's character: the hue of the object that it shows, at full brightness.
+/// Returns the colour of a cell's character: the hue of the object shown, at full brightness.
 ///
 /// The character supplies the brightness, so that the darkest side of an object has its hue too. Planes are dimmer, so
 /// that objects stand out; on a light background all colours are darker.

@@ -31,7 +31,7 @@ impl Colors {
     pub const SIXTEEN: Self = Self::Indexed16(XTERM_16);
 }
 
-/// The inks of characters: each is the one nearest to a colour, because characters cannot be dithered.
+/// The inks of characters: the nearest one for each colour, as characters cannot be dithered.
 pub(super) struct TextInks {
     colors: Colors,
     /// The sixteen colours, if there are only those.

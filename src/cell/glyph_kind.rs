@@ -27,7 +27,7 @@ pub(super) enum Fill {
     Colored(fn(&mut Grid, &Picture, &mut InkConverter)),
     /// Sets glyphs by lightness; [`tint`](super::tint) then adds the colours.
     Lightness(fn(&mut Grid, &Picture)),
-    /// Sets glyphs and colours from the picture and the surfaces that it shows, on the terminal's background.
+    /// Sets glyphs and colours from the picture, its surfaces and the terminal's background.
     Geometry(fn(&mut Grid, &Picture, &Geometry, Background, Colors)),
 }
 

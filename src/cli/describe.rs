@@ -31,8 +31,8 @@ pub(super) struct DescribeArgs {
     /// Print JSON
     ///
     /// The fields are "scene", "camera" (eye, target, up), "objects" (each with number, kind, color,
-    /// name, visible, and either position, share, nearest and farthest or reason; in_front_of,
-    /// behind, eye_is_inside), "lights" (color, direction, position) and "background" (color, share).
+    /// name, visible, and either position, share, nearest and farthest or reason; "in_front_of",
+    /// "behind" and "eye_is_inside"), "lights" (color, direction, position) and "background" (color, share).
     #[arg(long, help_heading = None)]
     json: bool,
 }

@@ -108,8 +108,7 @@ impl Geometry {
         geometry
     }
 
-    /// Returns the geometry of `columns` by `rows` cells in which the objects are as `object` says at a position in
-    /// cells.
+    /// Returns the geometry of `columns` by `rows` cells whose objects are a function of position.
     #[cfg(all(test, unit_tests))]
     pub(crate) fn of_objects(columns: usize, rows: usize, object: impl Fn(f32, f32) -> u32) -> Self {
         let facet = |x: f32, y: f32| match object(x, y) {

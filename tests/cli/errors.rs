@@ -134,7 +134,7 @@ fn help_has_examples() {
         "--threads",
         "--color",
         "--order",
-        "whether ssh compresses",
+        "cannot see whether",
     ] {
         assert!(help.contains(words), "{words}: {help}");
     }

@@ -562,7 +562,7 @@ fn help_has_the_flags_and_the_forms() {
         "--threads",
         "keyframes:",
         "numbered from 1",
-        "whether ssh compresses",
+        "cannot see whether",
         "Examples:",
     ] {
         assert!(help.contains(words), "{words}: {help}");

@@ -1,6 +1,6 @@
 //! The ink of the characters of outlines in `DejaVu` Sans Mono, made by `glyphs.py`.
 
-/// Each character, its penalty, and its rows from the top, with a digit of 0 to 15 for each of 8 samples.
+/// Each character, its penalty, and its rows from the top, a digit of 0 to 15 per sample.
 #[rustfmt::skip]
 #[allow(clippy::unreadable_literal, reason = "a digit for each sample")]
 pub(super) const GLYPHS: [(u8, f32, [u32; 16]); 18] = [

@@ -62,7 +62,7 @@ struct Window<'g>([[&'g Facet; WINDOW[0]]; WINDOW[1]]);
 struct Strokes {
     border: Points,
     crease: Points,
-    /// The length of the cell's strokes downwards and across; those on its left and upper side are its neighbours'.
+    /// The length of the cell's strokes downwards and across, without its left and upper sides.
     lengths: [u32; 2],
 }
 
@@ -119,7 +119,7 @@ enum Separation {
     Crease,
 }
 
-/// Returns the kind of edge between two neighbouring facets; `line` returns them and the ones beside them.
+/// Returns the kind of edge between the two middle facets of `line`.
 fn separation<'g>(
     geometry: &Geometry,
     a: &Facet,
@@ -152,7 +152,7 @@ impl Strokes {
         }
     }
 
-    /// Removes creases beside borders, where a curved surface turns away, and creases that are too short.
+    /// Removes creases that are too short, and those beside borders, where surfaces turn away.
     fn drop_doubtful_creases(&mut self) {
         const REACH: usize = 3;
         if self.crease.iter().all(|&row| row == 0) {

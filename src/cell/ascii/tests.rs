@@ -1,7 +1,7 @@
 use super::*;
 use crate::grid::Size;
 
-/// Returns the characters of a picture with these objects and this light at a position in cells, row by row.
+/// Returns the rows of characters of a picture whose objects and light are functions of position.
 fn text(
     [columns, rows]: [usize; 2],
     background: Background,
@@ -49,14 +49,14 @@ fn a_disc_on_nothing_has_a_closed_outline() {
     assert_eq!(
         text,
         [
-            r#"     _,,_       "#,
-            r#"  ,"`xxoX`",    "#,
-            r#" /;;+xxoXX##\   "#,
-            r#"\:;;+xxoXX##`/  "#,
-            r#"/:;;+xxoXX##_\  "#,
-            r#" \;;+xxoXX##/   "#,
-            r#"  "\__xo__/"    "#,
-            r#"     ````       "#,
+            r"      _,,_      ",
+            r#"   ,"`xxoX`",   "#,
+            r"  /;;+xxoXX##\  ",
+            r" \:;;+xxoXX##`/ ",
+            r" /:;;+xxoXX##_\ ",
+            r"  \;;+xxoXX##/  ",
+            r#"   "\__xo__/"   "#,
+            r"      ````      ",
         ]
     );
 }

@@ -34,7 +34,9 @@ pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> CommandResult 
     if let Some(picture) = picture {
         let beside = path.with_extension(format!("diff.{}", format.extension()));
         outputs::write(&beside, &picture)?;
-        text += &format!("a picture of the difference: {}\n", visible(&beside.display().to_string()));
+        text.push_str("a picture of the difference: ");
+        text.push_str(&visible(&beside.display().to_string()));
+        text.push('\n');
     }
     write_stdout(format!("{name}: the frame differs\n{text}").as_bytes())?;
     Err(Failure::Reported(1))
