@@ -30,9 +30,10 @@ pub(super) struct DescribeArgs {
     size: (u32, u32),
     /// Print JSON
     ///
-    /// The fields are "scene", "camera" (eye, target, up), "objects" (each with number, kind, color,
-    /// name, visible, and either position, share, nearest and farthest or reason; "in_front_of",
-    /// "behind" and "eye_is_inside"), "lights" (color, direction, position) and "background" (color, share).
+    /// The fields are "scene", "camera" (eye, target, up), "objects", "lights" (color, direction,
+    /// position) and "background" (color, share). An object has number, kind, color, name, visible,
+    /// whether the eye is inside it, the numbers of objects behind and in front of it, and either
+    /// position, share, nearest and farthest, or the reason why it cannot be seen.
     #[arg(long, help_heading = None)]
     json: bool,
 }

@@ -86,7 +86,7 @@ fn a_flat_object_has_one_character_and_nothing_is_blank() {
 #[test]
 fn small_objects_in_a_crowd_are_filled() {
     let object = |x: f32, y: f32| 1 + (x / 3.0) as u32 + 100 * (y / 2.0) as u32;
-    let light = |x: f32, _: f32| if (x / 3.0) as u32 % 2 == 0 { 20 + (60.0 * (x % 3.0)) as u8 } else { 90 };
+    let light = |x: f32, _: f32| if ((x / 3.0) as u32).is_multiple_of(2) { 20 + (60.0 * (x % 3.0)) as u8 } else { 90 };
     let rows = text([24, 8], Background::Dark, object, light);
     let lines = rows.concat().chars().filter(|glyph| "/\\|".contains(*glyph)).count();
     assert_eq!(lines, 0, "{rows:#?}");

@@ -31,7 +31,7 @@ fn the_cost_map_has_a_color_bar() {
         draw_cost_bar(colors, area, &mut buffer);
         buffer
     };
-    let symbols = |buffer: &Buffer| buffer.content.iter().map(|cell| cell.symbol()).collect::<String>();
+    let symbols = |buffer: &Buffer| buffer.content.iter().map(ratatui_core::buffer::Cell::symbol).collect::<String>();
     let bar = drawn(Colors::Truecolor);
     assert_eq!(symbols(&bar), " cost: 1   4   16  64  256 1024 tests  ");
     // Each number is on the colour of that number of tests.
