@@ -31,14 +31,15 @@ pub struct Camera {
 /// Formats the parameters without the basis, which is computed from the pose.
 impl fmt::Debug for Camera {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { pose: Pose { eye, target, up }, rectangle: ViewRectangle { width, height, shift }, .. } = self;
+        let Self { pose: Pose { eye, target, up }, rectangle, .. } = self;
+        let ViewRectangle { width, height, shift, tilt } = rectangle;
         // With `{:#?}` a vector is one line here, while glam's output would take a line for each coordinate.
         let mut camera = f.debug_struct("Camera");
         camera.field("eye", &format_args!("{eye:?}"));
         camera.field("target", &format_args!("{target:?}"));
         camera.field("up", &format_args!("{up:?}"));
         camera.field("width", &format_args!("{width:?}")).field("height", height);
-        camera.field("shift", &format_args!("{shift:?}")).finish()
+        camera.field("shift", &format_args!("{shift:?}")).field("tilt", &format_args!("{tilt:?}")).finish()
     }
 }
 
@@ -64,7 +65,8 @@ pub struct Basis {
     pub w: Vec3,
 }
 
-/// The view rectangle: the intrinsic parameters, on the plane at distance 1 in front of the eye.
+/// The view rectangle: the intrinsic parameters, on the plane that the w axis pierces at distance 1
+/// in front of the eye.
 // The picture depends only on the ratios of the lecture's f, w and h, so the focal length is always scaled to 1. Equal
 // views then have equal values.
 ///
@@ -86,6 +88,9 @@ pub struct ViewRectangle {
     /// The offset of the rectangle's middle from the w axis, to the right and upwards, in heights
     /// of the rectangle.
     shift: Vec2,
+    /// The angles between the direction of view and the normal of the plane, to the right and
+    /// upwards, in radians.
+    tilt: Vec2,
 }
 
 /// The error of camera parameters that give no picture.
@@ -114,6 +119,12 @@ pub enum CameraError {
     AspectRatio,
     /// The shift is more than 1000 heights of the view rectangle.
     Shift,
+    /// An angle of the tilt is more than 89 degrees.
+    #[doc(hidden)]
+    Tilt,
+    /// An edge of the view rectangle is beside or behind the eye.
+    #[doc(hidden)]
+    BehindEye,
 }
 
 impl fmt::Display for CameraError {
@@ -132,6 +143,10 @@ impl fmt::Display for CameraError {
             Self::Sides => "a side of the view rectangle must lie between 1e-6 and 1e6 focal lengths",
             Self::AspectRatio => "the aspect ratio must lie between 1e-6 and 1e6",
             Self::Shift => "the view rectangle can be shifted by at most 1000 of its heights",
+            Self::Tilt => "the view rectangle can be tilted by at most 89 degrees; at 90 it would contain the eye",
+            Self::BehindEye => {
+                "the view rectangle passes behind the eye; tilt it less, shift it less, or make it smaller"
+            }
         })
     }
 }
@@ -235,10 +250,27 @@ impl Camera {
         self.rectangle
     }
 
+    /// Returns the basis of the view rectangle: u and v along its sides, w perpendicular to it.
+    ///
+    /// It is the camera's basis unless the rectangle is tilted.
+    // A camera with a tilted rectangle has the same rays as one that looks along the normal of the rectangle, with
+    // another shift. So code that works with positions in the picture uses this basis, and needs no other formulas.
+    #[doc(hidden)]
+    pub fn rectangle_basis(&self) -> Basis {
+        let Basis { u, v, w } = self.basis;
+        // The sums below would change the sign of a zero.
+        if self.rectangle.tilt == Vec2::ZERO {
+            return self.basis;
+        }
+        let [(sin_right, cos_right), (sin_up, cos_up)] = self.rectangle.tilt.to_array().map(libm::sincosf);
+        let level = w * cos_right - u * sin_right;
+        Basis { u: u * cos_right + w * sin_right, v: v * cos_up + level * sin_up, w: level * cos_up - v * sin_up }
+    }
+
     /// Returns the eye rays of a picture with the given aspect ratio (width / height).
     #[doc(hidden)]
     pub fn eye_rays(&self, aspect_ratio: f32) -> EyeRays {
-        let Basis { u, v, w } = self.basis;
+        let Basis { u, v, w } = self.rectangle_basis();
         let (width, height, middle) = self.rectangle.width_height_middle(aspect_ratio);
         let q0 = u * (middle.x - 0.5 * width) + v * (middle.y - 0.5 * height) - w;
         EyeRays { eye: self.pose.eye, q0, across: u * width, upward: v * height }
@@ -289,6 +321,10 @@ pub(crate) fn radians(degrees: f64) -> f32 {
 }
 
 impl ViewRectangle {
+    /// The largest [tilt](Self::with_tilt) along each axis, in degrees.
+    // The plane is then at least cos^2(89 degrees) = 3e-4 in front of the eye, and f32 has digits left for directions.
+    pub(crate) const MAX_TILT_DEGREES: f32 = 89.0;
+
     /// The largest [shift](Self::with_shift) along each axis, in heights of the rectangle.
     // This is far beyond any lens, and f32 still resolves 6e-5 of a height.
     pub(crate) const MAX_SHIFT: f32 = 1e3;
@@ -302,7 +338,7 @@ impl ViewRectangle {
     pub fn from_vertical_fov(radians: f32) -> Result<Self, CameraError> {
         let height = (2.0 * libm::tan(0.5 * f64::from(radians))) as f32;
         if radians > 0.0 && radians < std::f32::consts::PI && height > 0.0 && height.is_finite() {
-            Ok(Self { width: None, height, shift: Vec2::ZERO })
+            Ok(Self { width: None, height, shift: Vec2::ZERO, tilt: Vec2::ZERO })
         } else {
             Err(CameraError::FieldOfView)
         }
@@ -321,14 +357,14 @@ impl ViewRectangle {
         if ![width, height].into_iter().all(|side| checks::is_ratio(side.into())) {
             return Err(CameraError::Sides);
         }
-        Ok(Self { width: Some(width), height, shift: Vec2::ZERO })
+        Ok(Self { width: Some(width), height, shift: Vec2::ZERO, tilt: Vec2::ZERO })
     }
 
-    /// Returns the rectangle with the given sides at focal length 1, without shift.
+    /// Returns the rectangle with the given sides at focal length 1, without shift or tilt.
     #[cfg(feature = "serde")]
     pub(crate) fn from_sides(width: Option<f32>, height: f32) -> Result<Self, CameraError> {
         if is_positive(height) && width.is_none_or(is_positive) {
-            Ok(Self { width, height, shift: Vec2::ZERO })
+            Ok(Self { width, height, shift: Vec2::ZERO, tilt: Vec2::ZERO })
         } else {
             Err(CameraError::ViewRectangle)
         }
@@ -336,20 +372,21 @@ impl ViewRectangle {
 
     /// Returns the rectangle with another vertical field of view, in radians.
     ///
-    /// The aspect ratio and the shift do not change.
+    /// The aspect ratio, the shift and the tilt do not change.
     ///
     /// # Errors
-    /// As [`ViewRectangle::from_vertical_fov`].
+    /// As [`ViewRectangle::from_vertical_fov`], or if the rectangle would pass behind the eye.
     #[doc(hidden)]
     pub fn with_vertical_fov(self, radians: f32) -> Result<Self, CameraError> {
         let Self { height, .. } = Self::from_vertical_fov(radians)?;
-        Ok(Self { height, width: self.width.map(|width| width * (height / self.height)), ..self })
+        Self { height, width: self.width.map(|width| width * (height / self.height)), ..self }.checked_in_front()
     }
 
     /// Returns the rectangle with both sides multiplied by `factor`.
     ///
     /// # Errors
-    /// If a side is no longer greater than 0 and finite, or the vertical field of view reaches 180 degrees.
+    /// If a side is no longer greater than 0 and finite, the vertical field of view reaches 180 degrees, or the
+    /// rectangle would pass behind the eye.
     #[doc(hidden)]
     pub fn scaled(self, factor: f32) -> Result<Self, CameraError> {
         let (width, height) = (self.width.map(|width| width * factor), self.height * factor);
@@ -357,20 +394,27 @@ impl ViewRectangle {
             return Err(CameraError::ViewRectangle);
         }
         let scaled = Self { width, height, ..self };
-        if scaled.vertical_fov() < std::f32::consts::PI { Ok(scaled) } else { Err(CameraError::FieldOfView) }
+        if scaled.vertical_fov() < std::f32::consts::PI {
+            scaled.checked_in_front()
+        } else {
+            Err(CameraError::FieldOfView)
+        }
     }
 
     /// Returns the rectangle with the same height and a fixed aspect ratio (width / height).
     ///
     /// # Errors
-    /// If the aspect ratio is not between 1e-6 and 1e6.
+    /// If the aspect ratio is not between 1e-6 and 1e6, or the rectangle would pass behind the eye.
     #[doc(hidden)]
     pub fn with_aspect_ratio(self, aspect_ratio: f32) -> Result<Self, CameraError> {
         if !checks::is_ratio(aspect_ratio.into()) {
             return Err(CameraError::AspectRatio);
         }
         let width = self.height * aspect_ratio;
-        if is_positive(width) { Ok(Self { width: Some(width), ..self }) } else { Err(CameraError::ViewRectangle) }
+        if !is_positive(width) {
+            return Err(CameraError::ViewRectangle);
+        }
+        Self { width: Some(width), ..self }.checked_in_front()
     }
 
     /// Returns the rectangle with its middle shifted from the w axis, to the right and upwards.
@@ -378,17 +422,47 @@ impl ViewRectangle {
     /// The shift is in heights of the rectangle.
     ///
     /// # Errors
-    /// If the shift is not finite, or more than 1000 heights along an axis.
+    /// If the shift is not finite, or more than 1000 heights along an axis, or the rectangle would pass behind the eye.
     #[doc(hidden)]
     pub fn with_shift(self, shift: Vec2) -> Result<Self, CameraError> {
         if !shift.is_finite() {
             return Err(CameraError::NotFinite);
         }
         let is_far = shift.abs().max_element() > Self::MAX_SHIFT;
-        if is_far { Err(CameraError::Shift) } else { Ok(Self { shift, ..self }) }
+        if is_far { Err(CameraError::Shift) } else { Self { shift, ..self }.checked_in_front() }
     }
 
-    /// Returns the vertical field of view of the unshifted rectangle, in radians.
+    /// Returns the rectangle with another tilt, to the right and upwards, in radians.
+    ///
+    /// These are the angles between the direction of view and the normal of the rectangle, away from the eye. The
+    /// rectangle turns about the point that the w axis pierces: first about v, then about its own horizontal axis.
+    ///
+    /// # Errors
+    /// If an angle is not finite or more than 89 degrees, or the rectangle would pass behind the eye.
+    #[doc(hidden)]
+    pub fn with_tilt(self, tilt: Vec2) -> Result<Self, CameraError> {
+        if !tilt.is_finite() {
+            return Err(CameraError::NotFinite);
+        }
+        let is_steep = tilt.abs().max_element() > radians(Self::MAX_TILT_DEGREES.into());
+        if is_steep { Err(CameraError::Tilt) } else { Self { tilt, ..self }.checked_in_front() }
+    }
+
+    /// Returns the rectangle, or an error if a part of it is beside or behind the eye.
+    // For a rectangle whose width follows from the picture, only the line through its middle is checked. A wide picture
+    // may extend it past the eye, and is still right, because the eye is never on the plane.
+    fn checked_in_front(self) -> Result<Self, CameraError> {
+        let Self { width, height, shift, tilt } = self;
+        let [(sin_right, cos_right), (sin_up, _)] = tilt.to_array().map(libm::sincosf);
+        // The depth along -w of a step along each side of the rectangle.
+        let towards = Vec2::new(sin_right, sin_up * cos_right);
+        let half = 0.5 * Vec2::new(width.unwrap_or(0.0), height);
+        let least_depth = 1.0 - towards.dot(shift * height) - towards.abs().dot(half);
+        // Without tilt the depth is 1, or NaN for sides beyond the range of f32, which other checks refuse.
+        if tilt == Vec2::ZERO || least_depth > 0.0 { Ok(self) } else { Err(CameraError::BehindEye) }
+    }
+
+    /// Returns the vertical field of view of the unshifted, untilted rectangle, in radians.
     #[doc(hidden)]
     pub fn vertical_fov(&self) -> f32 {
         2.0 * libm::atanf(0.5 * self.height)
@@ -420,7 +494,46 @@ impl ViewRectangle {
         self.shift
     }
 
+    /// Returns the angles between the direction of view and the normal of the rectangle.
+    ///
+    /// The first is to the right, the second upwards, both in radians.
+    #[doc(hidden)]
+    pub fn tilt(&self) -> Vec2 {
+        self.tilt
+    }
+
+    /// Returns the shift and the tilt in degrees, such as `shift 0 0.34` and `tilt 0 -21`.
+    ///
+    /// A text is missing if both of its numbers are 0.
+    #[doc(hidden)]
+    pub fn offset_texts(&self) -> Vec<String> {
+        // Adding 0 turns -0 into 0.
+        let number = |x: f32| (100.0 * x).round() / 100.0 + 0.0;
+        let tilt = self.tilt.to_array().map(f32::to_degrees);
+        let texts = [("shift", self.shift.to_array()), ("tilt", tilt)].into_iter();
+        texts
+            .filter(|(_, offset)| *offset != [0.0; 2])
+            .map(|(name, [x, y])| format!("{name} {} {}", number(x), number(y)))
+            .collect()
+    }
+
+    /// Returns the distance from the eye to the plane of the rectangle; 1 unless the rectangle is
+    /// tilted.
+    pub(crate) fn plane_distance(&self) -> f32 {
+        libm::cosf(self.tilt.x) * libm::cosf(self.tilt.y)
+    }
+
+    /// Returns the point that the w axis pierces, on the plane at distance 1 along the normal.
+    ///
+    /// Its coordinates are along the sides of the rectangle; (0, 0) unless the rectangle is tilted.
+    fn pierced(&self) -> Vec2 {
+        let Vec2 { x: right, y: up } = self.tilt;
+        -Vec2::new(libm::tanf(right) / libm::cosf(up), libm::tanf(up))
+    }
+
     /// Returns width, height and middle of the rectangle, extended to a picture's aspect ratio.
+    ///
+    /// They are lengths on the plane at distance 1 along the normal of the rectangle.
     // It is extended instead of cropped or stretched, so that all of it is visible in a terminal of any shape: to the
     // left and right in a wider picture, up and down in a narrower one.
     pub(crate) fn width_height_middle(&self, aspect_ratio: f32) -> (f32, f32, Vec2) {
@@ -428,7 +541,9 @@ impl ViewRectangle {
             Some(width) if width > self.height * aspect_ratio => (width, width / aspect_ratio),
             _ => (self.height * aspect_ratio, self.height),
         };
-        (width, height, self.shift * self.height)
+        let distance = self.plane_distance();
+        let shift = self.shift * (self.height / distance);
+        (width / distance, height / distance, self.pierced() + shift)
     }
 }
 

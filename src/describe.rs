@@ -10,7 +10,7 @@ use crate::light::Light;
 use crate::scene::{Background, Object, Scene};
 use crate::shape::Shape;
 use crate::text::listed;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use survey::{Coverage, Survey};
@@ -83,9 +83,16 @@ impl Description<'_> {
     /// Returns the first sentence: the numbers of objects and lights, and the camera.
     fn introduction(&self, name: &str) -> String {
         let Pose { eye, target, .. } = self.camera.pose();
-        let degrees = self.camera.rectangle().vertical_fov().to_degrees();
+        let rectangle = self.camera.rectangle();
+        let degrees = rectangle.vertical_fov().to_degrees();
+        let Vec2 { x: right, y: up } = rectangle.tilt() * 1_f32.to_degrees();
+        let tilt = if rectangle.tilt() == Vec2::ZERO {
+            String::new()
+        } else {
+            format!(", on a view rectangle tilted by {} degrees to the right and {} up", number(right), number(up))
+        };
         format!(
-            "{name}: {} and {}, seen from {} towards {}; {} degree vertical field of view.\n",
+            "{name}: {} and {}, seen from {} towards {}; {} degree vertical field of view{tilt}.\n",
             counted(self.scene.objects().len(), "object"),
             counted(self.scene.lights().len(), "light"),
             points(eye),
@@ -189,7 +196,7 @@ impl Description<'_> {
             return "no part of it is in front of the eye".to_owned();
         };
         let eye_rays = self.camera.eye_rays(resolution.aspect_ratio());
-        let basis = self.camera.basis();
+        let basis = self.camera.rectangle_basis();
         let away = middle - self.camera.pose().eye;
         let along = -away.dot(basis.w);
         if along <= 0.0 {

@@ -100,15 +100,19 @@ struct RectangleForm {
     width: Option<f32>,
     height: f32,
     shift: [f32; 2],
+    // Files of older versions have none.
+    #[serde(default)]
+    tilt: [f32; 2],
 }
 
 impl RectangleForm {
     fn of(rectangle: &ViewRectangle) -> Self {
-        Self { width: rectangle.width(), height: rectangle.height(), shift: rectangle.shift().into() }
+        let (shift, tilt) = (rectangle.shift().into(), rectangle.tilt().into());
+        Self { width: rectangle.width(), height: rectangle.height(), shift, tilt }
     }
 
     fn checked(self) -> Result<ViewRectangle, CameraError> {
-        ViewRectangle::from_sides(self.width, self.height)?.with_shift(self.shift.into())
+        ViewRectangle::from_sides(self.width, self.height)?.with_shift(self.shift.into())?.with_tilt(self.tilt.into())
     }
 }
 

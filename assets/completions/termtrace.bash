@@ -58,9 +58,11 @@ _termtrace() {
         --scale) return ;;
         --scene) _termtrace_words "three s1k s100k"; return ;;
         --seconds) return ;;
+        --shift) return ;;
         --size) return ;;
         --target) return ;;
         --threads) return ;;
+        --tilt) return ;;
         --turn-speed) return ;;
         --up) return ;;
         -o|--output) _termtrace_files; return ;;
@@ -69,19 +71,19 @@ _termtrace() {
         scenes) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
         tour) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order -h --help --compressed-link --quiet"; else :; fi ;;
         new) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order -h --help --compressed-link --quiet"; else _termtrace_files; :; fi ;;
-        frame) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --as --threads --size --pixels --cell-aspect --samples --scale --map --color --glyphs --format -o --output --check -h --help --strict --bless"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
-        record) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --as --threads --path --seconds --fps --size --pixels --cell-aspect --samples --scale --map --order --quality --max-rate -o --output -h --help --strict --compressed-link"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
-        explain) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --as --threads --pixel --size --pixels --cell-aspect -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
-        check) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --as --threads -h --help --strict"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
-        describe) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --as --threads --size -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
-        bench) if [[ $cur == -* ]]; then _termtrace_words "--scene --pixels --samples --threads --kernel --rounds -h --help --no-shadow --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        frame) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --size --pixels --cell-aspect --samples --scale --map --color --glyphs --format -o --output --check -h --help --strict --bless"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        record) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --path --seconds --fps --size --pixels --cell-aspect --samples --scale --map --order --quality --max-rate -o --output -h --help --strict --compressed-link"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        explain) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --pixel --size --pixels --cell-aspect -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        check) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads -h --help --strict"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        describe) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --size -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
+        bench) if [[ $cur == -* ]]; then _termtrace_words "--scene --pixels --samples --threads --kernel --rounds -h --help --no-shadow --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi ;;
         doctor) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect -h --help --no-config --json"; else :; fi ;;
         config) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint -h --help --no-config --keys --json"; else :; fi ;;
         completions) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "bash elvish fish powershell zsh"; :; fi ;;
         man) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes tour new frame record explain check describe bench doctor config completions man help version"; :; fi ;;
         help) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes tour new frame record explain check describe bench doctor config completions man help version"; :; fi ;;
         version) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
-        *) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --mesh-up --as --threads --color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order --strict --compressed-link --quiet --no-config -h --help -V --version"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi
+        *) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --color --glyphs --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order --strict --compressed-link --quiet --no-config -h --help -V --version"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots"; _termtrace_scenes; :; fi
             ((COMP_CWORD > 1)) || _termtrace_words "scenes tour new frame record explain check describe bench doctor config completions man help version" ;;
     esac
 }

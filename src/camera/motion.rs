@@ -2,7 +2,9 @@
 //!
 //! No motion turns the picture upside down. A motion to an invalid pose, such as an eye beyond ±1e9, changes nothing.
 
-use super::{Camera, Pose};
+use super::{Basis, Camera, Pose};
+#[cfg(feature = "live")]
+use super::{CameraError, radians};
 use crate::bounds::Bounds;
 use glam::{BVec3, Vec2, Vec3};
 
@@ -25,6 +27,13 @@ pub(crate) const FRAMED_SHARE: f32 = 0.95;
 /// The range of the vertical field of view, in radians: 1 to 150 degrees.
 // Beyond 150 degrees, shapes at the border are stretched more than 14 times as much as those in the middle.
 const FOV_RANGE: [f32; 2] = [0.017_453_3, 2.617_994];
+
+/// The step of the shift by a key, in heights of the view rectangle.
+#[cfg(feature = "live")]
+const SHIFT_STEP: f32 = 0.05;
+/// The step of the tilt by a key.
+#[cfg(feature = "live")]
+const TILT_STEP_DEGREES: f32 = 2.0;
 
 impl Camera {
     /// Returns the camera with the eye moved around the target by angles in radians.
@@ -98,6 +107,51 @@ impl Camera {
         rectangle.scaled(wanted / height).map_or(*self, |rectangle| self.with_rectangle(rectangle))
     }
 
+    /// Returns the camera with its view rectangle shifted upwards by a number of steps.
+    ///
+    /// A step is 0.05 heights, and ends at a multiple of it.
+    ///
+    /// # Errors
+    /// If the rectangle cannot be shifted farther.
+    #[cfg(feature = "live")]
+    pub(crate) fn shifted_rectangle(&self, steps: f32) -> Result<Self, CameraError> {
+        let Vec2 { x: right, y: up } = self.rectangle.shift;
+        let shift = Vec2::new(right, (up / SHIFT_STEP + steps).round() * SHIFT_STEP);
+        Ok(self.with_rectangle(self.rectangle.with_shift(shift)?))
+    }
+
+    /// Returns the camera with its view rectangle tilted upwards by a number of steps of 2 degrees.
+    ///
+    /// A step ends early where the rectangle becomes parallel to the up vector, so that one finds this angle by hand.
+    ///
+    /// # Errors
+    /// If the rectangle cannot be tilted farther.
+    #[cfg(feature = "live")]
+    pub(crate) fn tilted_rectangle(&self, steps: f32) -> Result<Self, CameraError> {
+        let Vec2 { x: right, y: up } = self.rectangle.tilt;
+        let next = radians(f64::from((up.to_degrees() / TILT_STEP_DEGREES + steps).round() * TILT_STEP_DEGREES));
+        let upright = self.upright_tilt();
+        let passes = (up < upright && upright < next) || (next < upright && upright < up);
+        let tilt = Vec2::new(right, if passes { upright } else { next });
+        Ok(self.with_rectangle(self.rectangle.with_tilt(tilt)?))
+    }
+
+    /// Returns whether the view rectangle is parallel to the up vector.
+    ///
+    /// Lines along the up vector are then parallel in the picture.
+    #[cfg(feature = "live")]
+    pub(crate) fn has_upright_rectangle(&self) -> bool {
+        (self.rectangle.tilt.y - self.upright_tilt()).abs() < 1e-5
+    }
+
+    /// Returns the upward tilt at which the view rectangle is parallel to the up vector.
+    #[cfg(feature = "live")]
+    fn upright_tilt(&self) -> f32 {
+        let up = self.pose.up.normalize_or_zero();
+        // The normal is perpendicular to `up` if its parts along v and in the plane of u and w cancel out.
+        libm::atanf(libm::cosf(self.rectangle.tilt.x) * up.dot(self.basis.w) / up.dot(self.basis.v))
+    }
+
     /// Returns the camera at the distance from which a box fills 95 % of a picture.
     ///
     /// The direction of view does not change, and the target becomes the box's centre.
@@ -107,15 +161,17 @@ impl Camera {
     pub fn framing(&self, bounds: &Bounds, aspect_ratio: f32) -> Self {
         let (width, height, centre) = self.rectangle.width_height_middle(aspect_ratio);
         let half = 0.5 * FRAMED_SHARE * Vec2::new(width, height);
-        let [u, v, w] = [self.basis.u, self.basis.v, self.basis.w];
+        let Basis { u, v, w } = self.rectangle_basis();
         let distance = framing_distance(bounds, [u, v, w], half, centre);
         if distance <= 0.0 {
             return *self;
         }
         // With a shifted view rectangle the picture's centre is not straight ahead, so the target is moved aside to
         // put the box into the centre.
-        let target = centre_of(bounds) - distance * (centre.x * u + centre.y * v);
-        self.with_valid_pose(Pose { eye: target + distance * w, target, ..self.pose })
+        let shift = centre - self.rectangle.pierced();
+        let target = centre_of(bounds) - distance * (shift.x * u + shift.y * v);
+        let eye = target + distance / self.rectangle.plane_distance() * self.basis.w;
+        self.with_valid_pose(Pose { eye, target, ..self.pose })
     }
 
     /// Returns the camera as [`nearer`](Self::nearer) does, within the limits of a scene of `size`.
@@ -158,7 +214,9 @@ impl Camera {
             Pose { eye, target: eye + view, up }
         };
         let zoom = even(self.rectangle.height(), end.rectangle.height());
-        let rectangle = self.rectangle.scaled(zoom).unwrap_or(self.rectangle);
+        let [from, to] = [self, end].map(|camera| camera.rectangle);
+        let (shift, tilt) = (from.shift.lerp(to.shift, share), from.tilt.lerp(to.tilt, share));
+        let rectangle = from.scaled(zoom).and_then(|scaled| scaled.with_shift(shift)?.with_tilt(tilt)).unwrap_or(from);
         self.with_valid_pose(pose).with_rectangle(rectangle)
     }
 

@@ -37,7 +37,7 @@ impl Camera {
     /// Returns `None` if the point is not in front of the eye.
     #[doc(hidden)]
     pub fn project(&self, point: Vec3, aspect_ratio: f32) -> Option<Vec2> {
-        let (basis, way) = (self.basis, point - self.pose.eye);
+        let (basis, way) = (self.rectangle_basis(), point - self.pose.eye);
         let (width, height, centre) = self.rectangle.width_height_middle(aspect_ratio);
         let depth = -way.dot(basis.w);
         let on_plane = Vec2::new(way.dot(basis.u), way.dot(basis.v)) / depth - centre;
@@ -48,8 +48,9 @@ impl Camera {
     /// Returns the camera shifted with its target by a drag of the picture to the right and down.
     // The shift is the distance of the drag at the target's depth, so that the target stays under the pointer.
     pub(crate) fn panned(&self, shares: Vec2, aspect_ratio: f32) -> Self {
-        let across = self.on_view_plane(shares, aspect_ratio);
-        self.shifted(self.target_distance() * (across.y * self.basis.v - across.x * self.basis.u))
+        let (across, basis) = (self.on_view_plane(shares, aspect_ratio), self.rectangle_basis());
+        let depth = self.target_distance() * self.rectangle.plane_distance();
+        self.shifted(depth * (across.y * basis.v - across.x * basis.u))
     }
 
     /// Returns the camera turned about its target by a drag of the scene to the right and down.
@@ -89,10 +90,10 @@ impl Camera {
     /// Returns a point moved by a drag to the right and down in the picture, at constant depth.
     #[doc(hidden)]
     pub fn point_dragged(&self, point: Vec3, by: Vec2, aspect_ratio: f32) -> Vec3 {
-        let across = self.on_view_plane(by, aspect_ratio);
+        let (across, basis) = (self.on_view_plane(by, aspect_ratio), self.rectangle_basis());
         // A point behind or beside the eye has no position in the picture. It moves as far as the target would.
-        let depth = Some((self.pose.eye - point).dot(self.basis.w)).filter(|depth| *depth > 0.0);
-        point + depth.unwrap_or(self.target_distance()) * (across.x * self.basis.u - across.y * self.basis.v)
+        let depth = Some((self.pose.eye - point).dot(basis.w)).filter(|depth| *depth > 0.0);
+        point + depth.unwrap_or(self.target_distance()) * (across.x * basis.u - across.y * basis.v)
     }
 
     /// Returns a point moved away from the eye by notches of the wheel.

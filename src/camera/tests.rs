@@ -22,7 +22,8 @@ fn place(camera: &Camera, point: Vec3, aspect_ratio: f32) -> Vec2 {
 fn a_point_is_where_its_ray_is() {
     let camera = camera(Vec3::new(1.0, 2.0, 7.0), Vec3::ZERO);
     let shifted = camera.with_rectangle(camera.rectangle().with_shift(Vec2::new(0.2, -0.3)).expect("finite"));
-    for camera in [camera, shifted] {
+    let tilted = shifted.with_rectangle(shifted.rectangle().with_tilt(Vec2::new(0.5, -0.7)).expect("in front"));
+    for camera in [camera, shifted, tilted] {
         let ray = camera.eye_rays(1.6).through(0.3, 0.6);
         assert!(camera.project(ray.at(4.0), 1.6).expect("in front").abs_diff_eq(Vec2::new(0.3, 0.4), 1e-5));
         assert_eq!(camera.project(ray.at(-1.0), 1.6), None);
@@ -53,13 +54,20 @@ fn all_corners_of_what_is_framed_are_in_the_picture_and_one_is_at_its_side() {
     for scale in [1e-4, 1.0, 1e6] {
         for bounds in boxes.map(|Bounds { min, max }| Bounds { min: scale * min, max: scale * max }) {
             for eye in [Vec3::new(1.0, 2.0, 7.0), Vec3::new(-3.0, -1.0, 0.2), Vec3::new(0.0, 9.0, 0.1)] {
-                for (aspect_ratio, shift) in [(1.6, Vec2::ZERO), (0.5, Vec2::ZERO), (1.6, Vec2::new(0.2, -0.3))] {
+                let (none, shift, tilt) = (Vec2::ZERO, Vec2::new(0.2, -0.3), Vec2::new(-0.3, 0.8));
+                for (aspect_ratio, shift, tilt) in
+                    [(1.6, none, none), (0.5, none, none), (1.6, shift, none), (1.6, none, tilt), (1.6, shift, tilt)]
+                {
                     let before = shifted(camera(scale * eye, Vec3::ZERO), shift);
+                    let before = before.with_rectangle(before.rectangle().with_tilt(tilt).expect("in front"));
                     let after = before.framing(&bounds, aspect_ratio);
                     assert!(after.basis().w.abs_diff_eq(before.basis().w, 1e-4), "the direction stays");
                     let places = corners(&bounds).map(|corner| place(&after, corner, aspect_ratio).abs().max_element());
                     let most = places.fold(0.0, f32::max);
-                    assert!((most - FRAMED_SHARE).abs() < 1e-3, "{bounds:?} {eye} {aspect_ratio} {shift}: {most}");
+                    assert!(
+                        (most - FRAMED_SHARE).abs() < 1e-3,
+                        "{bounds:?} {eye} {aspect_ratio} {shift} {tilt}: {most}"
+                    );
                 }
             }
         }
@@ -70,6 +78,17 @@ fn all_corners_of_what_is_framed_are_in_the_picture_and_one_is_at_its_side() {
 fn a_point_cannot_be_framed() {
     let before = camera(Vec3::Z, Vec3::ZERO);
     assert_eq!(before.framing(&Bounds { min: Vec3::X, max: Vec3::X }, 1.0), before);
+}
+
+#[cfg(feature = "live")]
+#[test]
+fn a_jump_leads_evenly_to_another_rectangle() {
+    let start = camera(Vec3::Z, Vec3::ZERO);
+    let end =
+        start.with_rectangle(start.rectangle().with_shift(Vec2::X).and_then(|r| r.with_tilt(Vec2::Y)).expect("one"));
+    let half = start.on_the_way_to(&end, 0.5).rectangle();
+    assert_eq!((half.shift(), half.tilt()), (0.5 * Vec2::X, 0.5 * Vec2::Y));
+    assert_eq!(start.on_the_way_to(&end, 1.0), end);
 }
 
 /// Many orbits in small steps keep the distance, the up direction and the target.

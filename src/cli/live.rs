@@ -11,7 +11,7 @@ use super::settings::{SettingArgs, Settings, keys};
 use super::shipped::ShippedScene;
 use super::threads::on_threads;
 use clap::{ArgMatches, Args};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::io::{self, IsTerminal};
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -199,7 +199,13 @@ fn last_view(camera: &Camera) -> String {
     let point = |Vec3 { x, y, z }: Vec3| format!("{x},{y},{z}");
     let up = if up == Vec3::Y { String::new() } else { format!(" --up {}", point(up)) };
     let degrees = (100.0 * camera.rectangle().vertical_fov().to_degrees()).round() / 100.0;
-    let flags = format!("--eye {} --target {}{up} --fov {degrees}", point(eye), point(target));
+    let rectangle = camera.rectangle();
+    let tilt = rectangle.tilt() * 1_f32.to_degrees();
+    let offsets = [("shift", rectangle.shift()), ("tilt", (1e3 * tilt).round() / 1e3)].into_iter();
+    let offsets: Vec<_> =
+        offsets.filter(|(_, by)| *by != Vec2::ZERO).map(|(name, Vec2 { x, y })| format!(" --{name} {x},{y}")).collect();
+    let offsets = offsets.concat();
+    let flags = format!("--eye {} --target {}{up} --fov {degrees}{offsets}", point(eye), point(target));
     format!("// your last view, for a scene file or as flags:\n{},\n// {flags}\n", camera.to_ron())
 }
 

@@ -6,7 +6,7 @@ use super::shipped::ShippedScene;
 use super::threads::on_threads;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::path::{Path, PathBuf};
 use termtrace::internals::mesh_file::UpAxis;
 use termtrace::internals::progress::Reporter;
@@ -71,6 +71,12 @@ pub(super) struct CameraArgs {
     /// Vertical field of view in degrees, instead of the scene's
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, hide_short_help = true)]
     pub(super) fov: Option<f32>,
+    /// Shift of the view rectangle to the right and up, in its heights, instead of the scene's
+    #[arg(long, value_name = "X,Y", value_parser = parse_vec2, allow_hyphen_values = true, hide_short_help = true)]
+    pub(super) shift: Option<Vec2>,
+    /// Tilt of the view rectangle to the right and up in degrees, instead of the scene's
+    #[arg(long, value_name = "X,Y", value_parser = parse_vec2, allow_hyphen_values = true, hide_short_help = true)]
+    pub(super) tilt: Option<Vec2>,
     /// Axis of a mesh file that points up [default: y; for STL and PLY a guess]
     #[arg(long, value_name = "AXIS", value_parser = up_axis_parser(), allow_hyphen_values = true)]
     #[arg(help_heading = "Mesh", hide_short_help = true)]
@@ -140,16 +146,22 @@ impl CameraArgs {
         Ok(draft)
     }
 
-    /// Returns `camera` changed by the flags `--eye`, `--target`, `--up` and `--fov`.
+    /// Returns `camera` changed by the flags for its pose and its view rectangle.
     pub(super) fn camera(&self, camera: &Camera) -> Result<Camera, CameraError> {
         let Pose { eye, target, up } = camera.pose();
         let pose =
             Pose { eye: self.eye.unwrap_or(eye), target: self.target.unwrap_or(target), up: self.up.unwrap_or(up) };
         let camera = camera.with_pose(pose)?;
-        match self.fov {
-            Some(degrees) => Ok(camera.with_rectangle(camera.rectangle().with_vertical_fov(degrees.to_radians())?)),
-            None => Ok(camera),
+        // Untilted first: only the sides and the shift of the final rectangle decide how far it can be tilted.
+        let own = camera.rectangle();
+        let mut rectangle = own.with_tilt(Vec2::ZERO)?;
+        if let Some(degrees) = self.fov {
+            rectangle = rectangle.with_vertical_fov(degrees.to_radians())?;
         }
+        // In f64, as an angle in a scene file is.
+        let radians = |degrees: Vec2| degrees.as_dvec2() * 1_f64.to_radians();
+        let tilt = self.tilt.map_or(own.tilt(), |degrees| radians(degrees).as_vec2());
+        Ok(camera.with_rectangle(rectangle.with_shift(self.shift.unwrap_or(own.shift()))?.with_tilt(tilt)?))
     }
 }
 
@@ -163,6 +175,15 @@ fn mesh_format_parser() -> impl TypedValueParser<Value = &'static str> {
 
 fn up_axis_parser() -> impl TypedValueParser<Value = UpAxis> {
     PossibleValuesParser::new(UpAxis::ALL.map(UpAxis::name)).map(|name| UpAxis::from_name(&name).unwrap_or_default())
+}
+
+/// Parses two numbers such as `0,-21.5`.
+fn parse_vec2(text: &str) -> Result<Vec2, String> {
+    let numbers: Result<Vec<f32>, _> = text.split(',').map(|number| number.trim().parse::<f32>()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y]) if x.is_finite() && y.is_finite() => Ok(Vec2::new(x, y)),
+        _ => Err("expected two numbers with a comma between them, such as 0,-21.5".to_owned()),
+    }
 }
 
 /// Parses a vector such as `0,1.5,6`, each number within a scene file's limits.

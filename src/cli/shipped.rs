@@ -38,6 +38,7 @@ shipped! {
     "far_fov",
     "tilted_up",
     "off_centre",
+    "tilted_rectangle",
     "many_spheres",
     "inside_sphere",
     "bare",

@@ -23,6 +23,14 @@ pub enum Command {
     Narrower,
     /// Widens the field of view.
     Wider,
+    /// Shifts the view rectangle down.
+    ShiftDown,
+    /// Shifts the view rectangle up.
+    ShiftUp,
+    /// Tilts the view rectangle down, to face lower than the camera looks.
+    TiltDown,
+    /// Tilts the view rectangle up, to face higher than the camera looks.
+    TiltUp,
     /// Starts or stops the turntable, which orbits the target without a key.
     Turntable,
     /// Moves the camera to view 1 to 9: one saved by the user, otherwise one of the scene file.
@@ -193,6 +201,10 @@ commands! {
     [Command::FrameAll] "Frame", "frame all (when lost)";
     [Command::Narrower] "Narrower", "zoom in (field of view)";
     [Command::Wider] "Wider", "zoom out (field of view)";
+    [Command::ShiftDown] "ShiftDown", "shift rectangle down";
+    [Command::ShiftUp] "ShiftUp", "shift rectangle up";
+    [Command::TiltDown] "TiltDown", "tilt rectangle down";
+    [Command::TiltUp] "TiltUp", "tilt rectangle up";
     [Command::Turntable] "Turntable", "turntable on or off";
     [Command::View(1)] "View1", A_VIEW;
     [Command::View(2)] "View2", A_VIEW;
@@ -297,7 +309,8 @@ impl Command {
     pub fn repeats(self) -> bool {
         // Toggles do not repeat: a key held too long would open and close a panel 25 times a second.
         let of_panels = matches!(self, Self::Point(_) | Self::ScrollUp | Self::ScrollDown | Self::Wipe(_));
-        of_panels || self.moves_light() || matches!(self, Self::Narrower | Self::Wider)
+        let of_rectangle = matches!(self, Self::ShiftDown | Self::ShiftUp | Self::TiltDown | Self::TiltUp);
+        of_panels || of_rectangle || self.moves_light() || matches!(self, Self::Narrower | Self::Wider)
     }
 
     /// Returns whether Shift with the key makes the command faster.

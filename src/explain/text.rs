@@ -6,7 +6,7 @@ use crate::capabilities::CellMode;
 use crate::color::LinearRgb;
 use crate::scene::{Scene, ToneCurve};
 use crate::shape::{Shape, Side};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::fmt;
 
 /// The largest width of a line in columns, unless a number has unusually many digits.
@@ -79,7 +79,8 @@ impl Explanation {
     // The rectangle's sides, w and h in the lecture, are printed as "width" and "height", because w is a basis vector
     // too.
     fn add_camera(&self, lines: &mut Vec<String>) {
-        let (Basis { u, v, w }, rays) = (self.camera.basis(), self.camera.eye_rays(self.resolution.aspect_ratio()));
+        let (Basis { u, v, w }, rectangle) = (self.camera.basis(), self.camera.rectangle());
+        let rays = self.camera.eye_rays(self.resolution.aspect_ratio());
         let corner = |qu, qv| rays.through(qu, qv).at(1.0);
         let [width, height] = [corner(1.0, 0.0), corner(0.0, 1.0)].map(|end| end.distance(corner(0.0, 0.0)));
         lines.extend([
@@ -94,10 +95,21 @@ impl Explanation {
             vector_line("v", v),
             String::new(),
             "view rectangle at distance 1".to_owned(),
+        ]);
+        lines.extend(rectangle.offset_texts());
+        let [mut along, mut up] = ["u", "v"];
+        if rectangle.tilt() != Vec2::ZERO {
+            // The sides have names of their own, as only the sides of an untilted rectangle are along u and v.
+            [along, up] = ["a", "b"];
+            let Basis { u, v, .. } = self.camera.rectangle_basis();
+            let sides = "a, b = unit vectors of its sides".to_owned();
+            lines.extend([sides, vector_line("a", u), vector_line("b", v)]);
+        }
+        lines.extend([
             format!("width {} height {}", padded_number(width), padded_number(height)),
             "q0 = its lower left corner".to_owned(),
             vector_line("q0", corner(0.0, 0.0)),
-            "q = q0 + width q_u u + height q_v v".to_owned(),
+            format!("q = q0 + width q_u {along} + height q_v {up}"),
             vector_line("q", self.q_in_space()),
             "d = q - o".to_owned(),
             vector_line("d", self.ray.direction),

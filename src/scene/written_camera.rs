@@ -35,6 +35,10 @@ impl Camera {
         if shift != Vec2::ZERO {
             fields.push(format!("shift: ({}, {})", number_text(shift.x), number_text(shift.y)));
         }
+        if rectangle.tilt() != Vec2::ZERO {
+            let [right, up] = rectangle.tilt().to_array().map(degrees_text);
+            fields.push(format!("tilt: ({right}, {up})"));
+        }
         format!("({})", fields.join(", "))
     }
 
@@ -51,6 +55,11 @@ impl Camera {
         let point = |v: Vec3| Vec3::from_array(v.to_array().map(|x| rounded(x.into(), digits) as f32));
         let up = Vec3::from_array(pose.up.to_array().map(|x| rounded(x.into(), 4.0) as f32));
         let camera = self.with_pose(Pose { eye: point(pose.eye), target: point(pose.target), up }).unwrap_or(*self);
+        let numbers = |v: Vec2, scale: f64| v.to_array().map(|x| rounded(scale * f64::from(x), 3.0) / scale);
+        let [shift, tilt] = [numbers(rectangle.shift(), 1.0), numbers(rectangle.tilt(), 1_f64.to_degrees())]
+            .map(|[x, y]| Vec2::new(x as f32, y as f32));
+        let rectangle = rectangle.with_shift(shift).and_then(|shifted| shifted.with_tilt(tilt)).unwrap_or(rectangle);
+        let camera = camera.with_rectangle(rectangle);
         // Of a rectangle with a width the author has chosen the shape.
         let angle = rounded(approximate_degrees(&rectangle), 2.0);
         match rectangle.with_vertical_fov(radians(angle)) {
@@ -101,6 +110,12 @@ fn lens_fields(rectangle: &ViewRectangle) -> Option<String> {
             format!("focal_length: 1, width: {width}, height: {height}")
         }
     })
+}
+
+/// Returns an angle in degrees, with the fewest digits that are read back with the same bits.
+fn degrees_text(angle: f32) -> String {
+    let degrees = f64::from(angle).to_degrees();
+    shortest_decimal(degrees, |value| radians(value) == angle).unwrap_or_else(|| degrees.to_string())
 }
 
 fn approximate_degrees(rectangle: &ViewRectangle) -> f64 {

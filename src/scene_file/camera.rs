@@ -20,6 +20,9 @@ pub struct WrittenCamera {
     /// The shift of the view rectangle from the centre, to the right and up, in heights of the
     /// rectangle.
     pub shift: Option<[WrittenNumber; 2]>,
+    /// The angles between the direction of view and the normal of the view rectangle, to the right
+    /// and up, in degrees.
+    pub tilt: Option<[WrittenNumber; 2]>,
 }
 
 /// The intrinsic parameters as written, in one of two forms.
@@ -47,7 +50,7 @@ impl WrittenCamera {
     /// Returns whether no intrinsic parameter is given.
     pub fn is_without_lens(&self) -> bool {
         let nothing = WrittenLens::FieldOfView { vertical_fov: None, aspect_ratio: None };
-        self.lens == nothing && self.shift.is_none()
+        self.lens == nothing && self.shift.is_none() && self.tilt.is_none()
     }
 }
 
@@ -66,8 +69,18 @@ impl NodeReader<'_> {
 
     /// Reads a camera or a view. `owner` is its name and `form` its full form, for messages.
     fn camera_called(&mut self, node: &SyntaxNode<'_>, owner: &'static str, form: &str) -> Option<WrittenCamera> {
-        const FIELDS: &[&str] =
-            &["eye", "target", "up", "vertical_fov", "aspect_ratio", "focal_length", "width", "height", "shift"];
+        const FIELDS: &[&str] = &[
+            "eye",
+            "target",
+            "up",
+            "vertical_fov",
+            "aspect_ratio",
+            "focal_length",
+            "width",
+            "height",
+            "shift",
+            "tilt",
+        ];
         let fields = self.fields(node, owner, form, FIELDS)?;
         Some(WrittenCamera {
             span: node.head(),
@@ -76,6 +89,7 @@ impl NodeReader<'_> {
             up: self.optional(&fields, "up", NodeReader::direction),
             lens: self.lens(&fields),
             shift: self.optional(&fields, "shift", NodeReader::shift),
+            tilt: self.optional(&fields, "tilt", NodeReader::tilt),
         })
     }
 
@@ -116,5 +130,9 @@ impl NodeReader<'_> {
 
     fn shift(&mut self, node: &SyntaxNode<'_>) -> Option<[WrittenNumber; 2]> {
         self.numbers(node, "a shift (right, up)")
+    }
+
+    fn tilt(&mut self, node: &SyntaxNode<'_>) -> Option<[WrittenNumber; 2]> {
+        self.numbers(node, "a tilt (right, up) in degrees")
     }
 }

@@ -4,7 +4,8 @@ use serde::de::DeserializeOwned;
 use std::fmt::Debug;
 
 fn camera() -> Camera {
-    let rectangle = ViewRectangle::from_vertical_fov(0.7).and_then(|r| r.with_shift(Vec2::new(0.1, 0.0)));
+    let rectangle = ViewRectangle::from_vertical_fov(0.7)
+        .and_then(|r| r.with_shift(Vec2::new(0.1, 0.0))?.with_tilt(Vec2::new(0.0, -0.2)));
     let pose = Pose { eye: Vec3::new(0.0, 1.0, 5.0), target: Vec3::ZERO, up: Vec3::Y };
     Camera::new(pose, rectangle.expect("a rectangle")).expect("a camera")
 }

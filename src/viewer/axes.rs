@@ -22,7 +22,7 @@ impl Layer for Axes {
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         let Some(frame) = canvas.frame.filter(|_| canvas.has_room()) else { return };
-        let basis = frame.camera().basis();
+        let basis = frame.camera().rectangle_basis();
         let turn = frame.scene.mesh().map_or(Mat3::IDENTITY, |mesh| mesh.up.turn());
         let has_colors = canvas.cell_mode.colors != Colors::None;
         let screen = canvas.screen();

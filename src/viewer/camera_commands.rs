@@ -2,6 +2,7 @@
 
 use super::Viewer;
 use super::lost::{Hiding, LostNotice};
+use crate::camera::{Camera, CameraError};
 use crate::control::Command;
 use crate::framebuffer::Resolution;
 use crate::hit::closest_hit;
@@ -85,6 +86,37 @@ impl Viewer {
             let degrees = camera.rectangle().vertical_fov().to_degrees();
             self.show_note(format!("field of view: {degrees:.1} degrees"));
         }
+    }
+
+    /// Shifts the view rectangle upwards by a number of steps, and shows the shift in a note.
+    pub(super) fn shift_rectangle(&mut self, steps: f32) {
+        self.change_rectangle("shift", |camera| camera.shifted_rectangle(steps));
+    }
+
+    /// Tilts the view rectangle upwards by a number of steps, and shows the tilt in a note.
+    pub(super) fn tilt_rectangle(&mut self, steps: f32) {
+        self.change_rectangle("tilt", |camera| camera.tilted_rectangle(steps));
+    }
+
+    /// Changes the view rectangle, and shows the changed `offset` or the error in a note.
+    fn change_rectangle(&mut self, offset: &str, change: impl FnOnce(&Camera) -> Result<Camera, CameraError>) {
+        let mut error = None;
+        self.eye.change(self.now, |camera, _| {
+            change(camera).unwrap_or_else(|fault| {
+                error = Some(fault);
+                *camera
+            })
+        });
+        if let Some(error) = error {
+            return self.show_note(error.to_string());
+        }
+        let Some(camera) = self.eye.camera() else { return };
+        let text = camera.rectangle().offset_texts().into_iter().find(|text| text.starts_with(offset));
+        let mut text = text.unwrap_or_else(|| format!("{offset} 0 0"));
+        if offset == "tilt" && camera.has_upright_rectangle() {
+            text += ": verticals are parallel";
+        }
+        self.show_note(text);
     }
 
     /// Starts or stops the turntable, unless the user has asked for reduced motion.

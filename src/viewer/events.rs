@@ -149,6 +149,10 @@ impl Viewer {
             // Zooming works in steps, not continuously as motion does: a field of view is set once and then left alone.
             Command::Narrower => self.zoom(1.0 / ZOOM_FACTOR),
             Command::Wider => self.zoom(ZOOM_FACTOR),
+            Command::ShiftDown => self.shift_rectangle(-1.0),
+            Command::ShiftUp => self.shift_rectangle(1.0),
+            Command::TiltDown => self.tilt_rectangle(-1.0),
+            Command::TiltUp => self.tilt_rectangle(1.0),
             Command::Turntable => self.toggle_turntable(),
             Command::View(number) => self.go_to_view(number),
             Command::SaveView => self.screen.open(Dialog::Save),

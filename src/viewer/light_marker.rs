@@ -75,7 +75,7 @@ impl PictureOnScreen {
     /// Returns an arrow at the edge towards a light outside the picture, with its distance from the
     /// eye, and its area.
     fn arrow(&self, camera: &Camera, light: Vec3, free: Rect) -> (String, Rect) {
-        let (basis, way) = (camera.basis(), light - camera.pose().eye);
+        let (basis, way) = (camera.rectangle_basis(), light - camera.pose().eye);
         let middle = 0.5 * self.cells;
         let (towards, behind) = match self.cell_of(camera, light) {
             Some(cell) => (cell - middle, ""),
@@ -113,7 +113,7 @@ impl PictureOnScreen {
 
 /// Returns the part of a line that is in front of the eye.
 fn clipped_to_front(camera: &Camera, ends: [Vec3; 2]) -> Option<[Vec3; 2]> {
-    let (eye, w) = (camera.pose().eye, camera.basis().w);
+    let (eye, w) = (camera.pose().eye, camera.rectangle_basis().w);
     let depths = ends.map(|end| (eye - end).dot(w));
     // Nearer points are projected to huge columns and rows.
     let near = 1e-3 * depths[0].abs().max(depths[1].abs());

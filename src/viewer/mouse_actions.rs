@@ -137,8 +137,9 @@ impl Viewer {
     fn scene_point_at(&self, at: Vec2) -> Option<Vec3> {
         let (frame, pose) = (self.screen.frame()?, self.eye.camera()?.pose());
         let ray = self.eye_ray_at(at)?;
-        // The ray's direction has the component 1 along -w, so t is the depth.
-        let t = closest_hit(&frame.scene, &ray).map_or(pose.eye.distance(pose.target), |hit| hit.t);
+        // As far as the target, where the ray of the target would end.
+        let miss = pose.eye.distance(pose.target) * self.eye.camera()?.rectangle().plane_distance();
+        let t = closest_hit(&frame.scene, &ray).map_or(miss, |hit| hit.t);
         Some(ray.at(t))
     }
 

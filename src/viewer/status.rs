@@ -3,6 +3,7 @@
 use super::help;
 use super::layers::{Canvas, FrameStatistics, Layer, Level};
 use super::theme;
+use crate::camera::ViewRectangle;
 use crate::grid::Size;
 use crate::render::Sampling;
 use glam::Vec3;
@@ -37,6 +38,7 @@ impl Layer for StatusLine {
             trace: frame.trace,
             figures: canvas.figures,
             eye: frame.camera().pose().eye,
+            rectangle: frame.camera().rectangle(),
         };
         let width = canvas.screen().width.into();
         if canvas.status_rows > 1 {
@@ -57,13 +59,14 @@ struct Status<'a> {
     trace: Duration,
     figures: FrameStatistics,
     eye: Vec3,
+    rectangle: ViewRectangle,
 }
 
 impl Status<'_> {
     /// Returns the items, separated by `separator`. If they do not fit into `width` columns, the
     /// first ones are left out.
     fn text(&self, separator: &str, width: usize) -> String {
-        let Self { name, cells, sampling, trace, figures, eye } = self;
+        let Self { name, cells, sampling, trace, figures, eye, rectangle } = self;
         let FrameStatistics { encode, frames_per_second, slow } = *figures;
         let mut items = vec![(*name).to_owned(), format!("{}x{}", cells.columns, cells.rows), samples(*sampling)];
         // The cause that limits the frame rate: a slow link, or else the time for tracing and encoding.
@@ -72,6 +75,7 @@ impl Status<'_> {
             None => milliseconds(*trace + encode),
         });
         items.extend(frames_per_second.map(|frames| format!("{frames:.0} fps")));
+        items.extend(rectangle.offset_texts());
         items.push(format!("eye {:.2} {:.2} {:.2}", eye.x, eye.y, eye.z));
         items.retain(|item| !item.is_empty());
         while items.len() > 1 && items.join(separator).width() + 2 > width {

@@ -16,6 +16,8 @@ fn flags_stand_for_fields_of_the_scene() {
         ("--target 1e0,+0.5,.25", "target: (0, 0.7, 0)", "target: (1, 0.5, 0.25)"),
         ("--up -0.5,-1,0", "up: (0, 1, 0)", "up: (-0.5, -1, 0)"),
         ("--fov 75.5", "vertical_fov: 40", "vertical_fov: 75.5"),
+        ("--shift -0.25,0.1", "vertical_fov: 40", "vertical_fov: 40, shift: (-0.25, 0.1)"),
+        ("--tilt 10,-21.5", "vertical_fov: 40", "vertical_fov: 40, tilt: (10, -21.5)"),
     ] {
         assert!(BALL.contains(written));
         folder.write("other.ron", BALL.replace(written, other));
@@ -57,6 +59,9 @@ fn invalid_cameras_are_rejected() {
             ("--fov 1e9", "field of view"),
             ("--fov nan", "field of view"),
             ("--fov inf", "field of view"),
+            ("--shift 0,2000", "at most 1000 of its heights"),
+            ("--tilt 0,-90", "at 90 it would contain the eye"),
+            ("--tilt 0,60 --shift 0,2", "passes behind the eye"),
         ] {
             folder.run(&format!("{command} {flags}")).fails_in_a_line(2, words);
         }
@@ -75,6 +80,9 @@ fn invalid_numbers_are_rejected() {
             folder.run(&format!("{command} {flag} 1,2,3 {flag} 1,2,3")).is_misused("multiple times");
         }
         folder.run(&format!("{command} --fov wide")).is_misused("--fov");
+        for value in ["1", "1,2,3", "a,b", "nan,0", "0,inf"] {
+            folder.run(&format!("{command} --tilt {value}")).is_misused("such as 0,-21.5");
+        }
     }
 }
 

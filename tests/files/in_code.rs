@@ -133,6 +133,11 @@ fn cameras_are_refused_in_the_words_of_scene_files() {
         (message(camera().with_fov_degrees(180.0)), view("vertical_fov: 180")),
         (message(rectangle.with_aspect_ratio(1e-7)), view("aspect_ratio: 1e-7")),
         (message(rectangle.with_shift(Vec2::X * 1001.0)), view("shift: (1001, 0)")),
+        (message(rectangle.with_tilt(Vec2::Y * 1.56)), view("tilt: (0, 89.4)")),
+        (
+            message(rectangle.with_shift(Vec2::Y * 2.0).and_then(|shifted| shifted.with_tilt(Vec2::Y))),
+            view("shift: (0, 2), tilt: (0, 57.3)"),
+        ),
         (message(ViewRectangle::from_focal_length(1.0, 1.0, 2e6)), view("focal_length: 1, width: 1, height: 2e6")),
     ] {
         assert_eq!(code, file);

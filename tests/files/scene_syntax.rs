@@ -11,7 +11,7 @@ use termtrace::{Scene, SceneError};
 
 const SCENE: &str = r##"// A scene with one of everything.
 Scene(
-    camera: (eye: (0, 1.5, 6), target: [0, 0.7, 0], up: (0, 1, 0), focal_length: 2, width: 3, height: 2, shift: (0, 0.1)),
+    camera: (eye: (0, 1.5, 6), target: [0, 0.7, 0], up: (0, 1, 0), focal_length: 2, width: 3, height: 2, shift: (0, 0.1), tilt: (5, -10)),
     views: [(eye: (1, 2, 3), target: (0, 0, 0)), (eye: [0, 9, 0], target: [0, 0, 0], up: (0, 0, 1), vertical_fov: 30)],
     background: Gradient(bottom: "#fff", top: "SteelBlue"), ambient: (0.1, 1e-2, 0x1),
     lights: [Point(position: (4, 6, 5), color: Some("white"), intensity: 60_0, falloff: InverseSquare)],

@@ -99,6 +99,27 @@ fn brackets_change_the_field_of_view_and_show_it() {
     assert_eq!(camera.pose(), load(BALL).camera().pose());
 }
 
+/// A step of the tilt stops where vertical lines are parallel in the picture.
+#[test]
+fn keys_shift_and_tilt_the_view_rectangle_and_show_it() {
+    let tower = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/tilted_rectangle.ron");
+    let mut session = looking(tower, &["--tilt", "0,-20"]);
+    session.send(b")");
+    session.wait_for_text("shift 0 0.05");
+    session.send(b"{");
+    session.wait_for_text("tilt 0 -20.87: verticals are parallel");
+    session.send(b"{");
+    session.wait_for_text("tilt 0 -22");
+    session.send(b"}((");
+    session.wait_for_text("shift 0 -0.05");
+    session.send(b"i");
+    session.wait_for_text("tilt 0 -20.87 · eye");
+    let camera = camera(&mut session).expect("it was changed");
+    let [shift, tilt] = [camera.rectangle().shift(), camera.rectangle().tilt()];
+    assert!((shift.y + 0.05).abs() < 1e-4 && (tilt.y.to_degrees() + 20.87).abs() < 1e-2, "{shift} {tilt}");
+    assert_eq!(camera.pose(), load(tower).camera().pose());
+}
+
 /// The turntable turns until a command moves the eye; then nothing moves.
 #[test]
 fn t_turns_until_the_next_move() {

@@ -12,4 +12,5 @@ mod maps;
 mod odd;
 mod properties;
 mod sampling;
+mod tilted;
 mod triangles;

@@ -94,7 +94,7 @@ fn a_coarse_map_is_of_larger_pixels() {
 /// Each map has the values that single rays find and the formulas of docs/controls.md give.
 #[test]
 fn maps_say_what_is_there() {
-    for name in ["three_spheres", "inside_sphere", "teapots", "bare"] {
+    for name in ["three_spheres", "inside_sphere", "teapots", "bare", "tilted_rectangle"] {
         let scene = scene(name);
         let resolution = Resolution::square(32, 20);
         let maps = Map::ALL.map(|map| picture(map, &scene, scene.camera(), resolution, ONE));

@@ -68,10 +68,12 @@ fn pose() -> impl Strategy<Value = Pose> {
 }
 
 fn camera() -> impl Strategy<Value = Camera> {
-    (pose(), 0.3_f32..2.0, point(0.3)).prop_map(|(pose, fov, shift)| {
-        let rectangle = ViewRectangle::from_vertical_fov(fov).unwrap().with_shift(Vec2::new(shift.x, shift.y)).unwrap();
-        Camera::new(pose, rectangle).unwrap()
-    })
+    (pose(), 0.3_f32..2.0, point(0.3), prop_oneof![Just(Vec3::ZERO), point(1.4)]).prop_map(
+        |(pose, fov, shift, tilt)| {
+            let rectangle = ViewRectangle::from_vertical_fov(fov).unwrap().with_shift(shift.truncate()).unwrap();
+            Camera::new(pose, rectangle.with_tilt(tilt.truncate()).unwrap_or(rectangle)).unwrap()
+        },
+    )
 }
 
 fn objects() -> impl Strategy<Value = Vec<Object>> {
@@ -281,7 +283,7 @@ proptest! {
     #[test]
     fn turning_up_by_180_degrees_turns_the_picture_by_180_degrees(scene in scene()) {
         let pose = scene.camera().pose();
-        let straight = scene.camera().with_rectangle(scene.camera().rectangle().with_shift(Vec2::ZERO).unwrap());
+        let straight = scene.camera().with_rectangle(scene.camera().rectangle().with_tilt(Vec2::ZERO).and_then(|r| r.with_shift(Vec2::ZERO)).unwrap());
         let turned = straight.with_pose(Pose { up: -pose.up, ..pose }).unwrap();
         let (a, b) = (picture(&scene, &straight, 24, 16), picture(&scene, &turned, 24, 16));
         let differ = a.pixels().iter().zip(b.pixels().iter().rev()).filter(|(a, b)| (a.g - b.g).abs() > 1e-3 * (1.0 + a.g)).count();

@@ -59,7 +59,27 @@ impl Validator<'_> {
             Some(shift) => self.shift(shift),
             None => Some(Vec2::ZERO),
         };
-        rectangle?.with_shift(shift?).ok()
+        let rectangle = rectangle.and_then(|rectangle| rectangle.with_shift(shift?).ok());
+        match &written.tilt {
+            Some(tilt) => self.tilted(rectangle, tilt),
+            None => rectangle,
+        }
+    }
+
+    /// Returns the rectangle with a written tilt, in degrees.
+    ///
+    /// If the rectangle has a fault and is `None`, the tilt is still checked.
+    fn tilted(&mut self, rectangle: Option<ViewRectangle>, written: &[WrittenNumber; 2]) -> Option<ViewRectangle> {
+        let too_steep = |angle: &&WrittenNumber| angle.value.abs() > f64::from(ViewRectangle::MAX_TILT_DEGREES);
+        if let Some(angle) = written.iter().find(too_steep) {
+            return self.camera_fault(angle.span, CameraError::Tilt);
+        }
+        let [right, up] = written.map(|angle| radians(angle.value));
+        match rectangle?.with_tilt(Vec2::new(right, up)) {
+            Ok(tilted) => Some(tilted),
+            // The fault is at the larger angle, which turns an edge farther back.
+            Err(error) => self.camera_fault(written[usize::from(up.abs() >= right.abs())].span, error),
+        }
     }
 
     /// Returns the camera with a pose, or reports a fault at the part of the pose that is wrong.

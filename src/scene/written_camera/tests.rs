@@ -17,6 +17,8 @@ fn a_written_camera_reads_back_equal() {
         "focal_length: 1, width: 1.8, height: 1.2",
         "focal_length: 1, width: 1.8, height: 1.2, shift: (0, 0.35)",
         "vertical_fov: 100, shift: (-0.25, 1)",
+        "vertical_fov: 30, shift: (0.1, 0), tilt: (-0.3, 12.5)",
+        "vertical_fov: 60, tilt: (0, -23.7)",
     ] {
         let line = format!("camera: (eye: (0.1, -3e-20, 4), target: (1000000, 0, 0), up: (0, 0.3, 0), {lens})");
         let scene = Scene::from_ron("x", &format!("({line})")).unwrap();
@@ -66,8 +68,12 @@ fn rectangle() -> impl Strategy<Value = ViewRectangle> {
         .prop_map(|(angle, ratio)| ViewRectangle::from_vertical_fov(angle).unwrap().with_aspect_ratio(ratio).unwrap());
     let by_length = (0.1_f32..10.0, 0.1_f32..10.0, 0.1_f32..10.0)
         .prop_map(|(f, w, h)| ViewRectangle::from_focal_length(f, w, h).unwrap());
-    (prop_oneof![by_angle, by_ratio, by_length], -2.0_f32..2.0, -2.0_f32..2.0)
-        .prop_map(|(rectangle, right, up)| rectangle.with_shift(Vec2::new(right, up)).unwrap())
+    let pair = |most: f32| [-most..most, -most..most].prop_map(Vec2::from_array);
+    let tilt = prop_oneof![Just(Vec2::ZERO), pair(1e-6), pair(1.55)];
+    (prop_oneof![by_angle, by_ratio, by_length], pair(2.0), tilt).prop_map(|(rectangle, shift, tilt)| {
+        let shifted = rectangle.with_shift(shift).unwrap();
+        shifted.with_tilt(tilt).unwrap_or(shifted)
+    })
 }
 
 proptest! {

@@ -26,7 +26,7 @@ impl Group {
         use Command as C;
         match command {
             C::Move(_) | C::Around(_) | C::Nearer | C::Farther | C::ChangeMode | C::Turntable => Self::Move,
-            C::Look(_) | C::Narrower | C::Wider => Self::Look,
+            C::Look(_) | C::Narrower | C::Wider | C::ShiftDown | C::ShiftUp | C::TiltDown | C::TiltUp => Self::Look,
             C::Front
             | C::FromRight
             | C::FromAbove
@@ -82,6 +82,8 @@ fn shared_rows() -> Vec<(Vec<Command>, &'static str)> {
         (toward(Command::Around), "orbit"),
         (toward(Command::Look), "look around"),
         (vec![Command::Narrower, Command::Wider], "zoom in, out"),
+        (vec![Command::ShiftDown, Command::ShiftUp], "shift rectangle"),
+        (vec![Command::TiltDown, Command::TiltUp], "tilt rectangle"),
         ((1..=9).map(Command::View).collect(), "go to view 1-9"),
         (vec![Command::NextMap, Command::LastMap], "next, previous map"),
         (vec![Command::Wipe(Side::Left), Command::Wipe(Side::Right)], "divider left, right"),

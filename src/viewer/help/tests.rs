@@ -66,6 +66,8 @@ fn each_group_lists_its_keys() {
         ", Backspace  view before",
         "q Ctrl-C  quit",
         "right drag    shift the view",
+        "( )  shift rectangle",
+        "{ }  tilt rectangle",
         "turntable on or off (off)",
     ] {
         let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
