@@ -104,7 +104,7 @@ macro_rules! only {
 
 /// Defines the accelerator from the table of [`surfaces`](crate::shape).
 macro_rules! accelerator {
-    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
+    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:meta;)*) => {
         /// The primitives of all shapes of a scene.
         ///
         /// They are numbered through, first in the lists, then in the leaves of the trees. A leaf takes eight indices
@@ -153,7 +153,7 @@ macro_rules! accelerator {
                 match primitive {
                     $($(#[$on])* Primitive::$surface(surface) => {
                         only! { list in $group self.$name.push((id, *surface)); }
-                        only! { tree in $group self.$name.push(id, *surface); }
+                        only! { tree in $group self.$name.push(id, surface.clone()); }
                     })*
                     Primitive::Facet(facet) => self.triangles.push(id, *facet.triangle()),
                 }
@@ -437,7 +437,7 @@ impl<T> Default for TreeBuilder<T> {
     }
 }
 
-impl<T: Surface + Copy + Sync> TreeBuilder<T> {
+impl<T: Surface + Clone + Sync> TreeBuilder<T> {
     fn push(&mut self, id: PrimitiveId, shape: T) {
         if let Some(bounds) = shape.bounds() {
             self.ids.push(id);
@@ -456,7 +456,7 @@ impl<T: Surface + Copy + Sync> TreeBuilder<T> {
             let numbers = places.boxes(leaf);
             // Unused lanes repeat the last primitive's id.
             let number = |lane: usize| numbers[lane.min(numbers.len() - 1)] as usize;
-            let shapes: [T; LANES] = from_fn(|lane| self.shapes[number(lane)]);
+            let shapes: [T; LANES] = from_fn(|lane| self.shapes[number(lane)].clone());
             (S::of(&shapes[..numbers.len()]), PrimitiveIds::of(from_fn(|lane| self.ids[number(lane)])))
         };
         let single_leaf_count = if bvh.is_leaf() { self.ids.len() } else { 0 };

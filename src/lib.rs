@@ -107,6 +107,7 @@
 //! - `written`: values as the author wrote them, with spans: read from the tree, and checked
 //!
 //! The scene, checked once, in radians, linear light and unit vectors:
+//! - `formula`: f(x, y, z) as text -> a tape; values, gradients, enclosures, and the first root along a ray
 //! - `bvh`: the bounding volume hierarchy, eight boxes to a node
 //! - `shape`: surfaces f(p) = 0, their intersections with rays, their normals
 //! - `accel`: the trees over all shapes of a scene, built once
@@ -317,6 +318,7 @@ mod scene_text;
 mod mesh_file;
 #[cfg_attr(not(feature = "ron"), allow(dead_code, unused_imports, reason = "only files have written values"))]
 mod written;
+mod formula;
 mod bvh;
 mod shape;
 mod accel;

@@ -193,6 +193,16 @@ impl Scene {
         }
     }
 
+    /// Returns a warning for each formula that certainly has no surface within its bounds.
+    #[doc(hidden)]
+    pub fn invisible_formulas(&self) -> Vec<String> {
+        let warning = |(at, object): (usize, &Object)| match &object.shape {
+            Shape::Implicit(implicit) => implicit.warning().map(|warning| format!("object {at}: {warning}")),
+            _ => None,
+        };
+        (1..).zip(self.objects()).filter_map(warning).collect()
+    }
+
     /// Returns the scene's own camera.
     pub fn camera(&self) -> &Camera {
         &self.checked.camera

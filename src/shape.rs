@@ -18,6 +18,7 @@ use std::sync::Arc;
 pub mod cube;
 pub mod described;
 pub mod equation;
+pub mod implicit;
 pub mod mesh;
 pub mod scalar_leaf;
 pub mod plane;
@@ -29,6 +30,7 @@ mod written;
 pub use cube::Cube;
 pub use described::Described;
 pub use equation::{Equation, Step};
+pub use implicit::Implicit;
 pub use mesh::{Facet, Mesh};
 pub use plane::Plane;
 pub use scalar_leaf::ScalarLeaf;
@@ -73,13 +75,22 @@ pub trait Crossable<N: Number> {
     /// The crossings are those of [`closest_crossing`](Surface::closest_crossing); `None` only if no lane hits.
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)>;
 
-    /// Computes [`first_crossing`](Self::first_crossing) for rays of a packet, which share an error
-    /// bound.
+    /// Computes [`first_crossing`](Self::first_crossing), but may leave out crossings beyond `max`.
+    ///
+    /// Most surfaces find them anyway.
+    #[inline(always)]
+    fn first_crossing_until(&self, rays: &Rays<N>, [min, _]: [N; 2]) -> Option<(N::Mask, N)> {
+        self.first_crossing(rays, min)
+    }
+
+    /// Computes [`first_crossing_until`](Self::first_crossing_until) for a packet.
+    ///
+    /// Its rays share an error bound.
     ///
     /// That is [`EdgeFunctions::packet_error_bound`], or infinity if the packet has none.
     #[inline(always)]
-    fn first_crossing_with_bound(&self, rays: &Rays<N>, min: N, _error_bound: N) -> Option<(N::Mask, N)> {
-        self.first_crossing(rays, min)
+    fn first_crossing_with_bound(&self, rays: &Rays<N>, range: [N; 2], _error_bound: N) -> Option<(N::Mask, N)> {
+        self.first_crossing_until(rays, range)
     }
 
     /// Returns the minima and maxima of the smallest boxes around the surfaces.
@@ -164,9 +175,9 @@ pub trait Endless: Surface + Copy {
 }
 
 /// A leaf: up to eight surfaces of one kind in SoA layout.
-pub trait SoaLeaf: Copy {
+pub trait SoaLeaf: Clone {
     /// The type of one surface.
-    type Shape: Surface + Copy + Sync;
+    type Shape: Surface + Clone + Sync;
 
     /// The type that implements the crossing formula.
     type Of<N: Lanes>: Crossable<N> + AtCrossing<N>;
@@ -253,19 +264,23 @@ const CLEARANCE: f32 = 32.0 / 16_777_216.0;
 /// Passes the table of all surfaces to a macro, one line each.
 ///
 /// A line has the group, which is `list` for unbounded surfaces and `tree` for all others; the name of the
-/// accelerator's field; the type; the type of a leaf, or of an unbounded surface in its list; a description.
+/// accelerator's field; the type; the type of a leaf, or of an unbounded surface in its list; the attribute of its
+/// variants: a description.
 macro_rules! surfaces {
     ($with:ident) => {
         $with! {
             tree spheres: Sphere as $crate::shape::SphereN<$crate::lanes::F32x8>,
-                "All points at one distance from a centre.";
+                doc = "All points at one distance from a centre.";
             list planes: Plane as $crate::shape::Plane,
-                "All points whose difference from a given point is perpendicular to the normal.";
+                doc = "All points whose difference from a given point is perpendicular to the normal.";
             tree triangles: Triangle as $crate::shape::TriangleN<$crate::lanes::F32x8>,
-                "The part of a plane between three points.";
+                doc = "The part of a plane between three points.";
+            // Hidden, until the form of a formula in code is promised.
+            tree implicits: Implicit as $crate::shape::ScalarLeaf<$crate::shape::Implicit>,
+                doc(hidden);
             #[cfg(all(test, unit_tests))]
             tree cubes: Cube as $crate::shape::ScalarLeaf<$crate::shape::Cube>,
-                "All points at one distance from a centre, along the axis along which they are farthest.";
+                doc = "All points at one distance from a centre, along the axis along which they are farthest.";
         }
     };
 }
@@ -274,12 +289,12 @@ pub(crate) use surfaces;
 
 /// Defines [`Shape`] and [`Primitive`] from the table of surfaces.
 macro_rules! shapes {
-    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
+    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:meta;)*) => {
         /// Any of the surfaces, or a mesh.
         #[derive(Clone, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Shape {
-            $(#[doc = $of] $(#[$on])* $surface($surface),)*
+            $(#[$of] $(#[$on])* $surface($surface),)*
             /// Many triangles.
             Mesh(Arc<Mesh>),
         }
@@ -327,7 +342,7 @@ macro_rules! shapes {
         /// A primitive, which rays are tested against: a surface, or a triangle of a mesh.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Primitive<'s> {
-            $(#[doc = $of] $(#[$on])* $surface(&'s $surface),)*
+            $(#[$of] $(#[$on])* $surface(&'s $surface),)*
             /// A triangle of a mesh.
             Facet(Facet<'s>),
         }

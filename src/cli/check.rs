@@ -31,6 +31,7 @@ pub(super) fn run(args: &CheckArgs) -> CommandResult {
     let objects = count(scene.objects().len(), "object");
     let lights = count(scene.lights().len(), "light");
     let path = args.scene.display().to_string();
-    let darkness = scene.darkness().map(|darkness| format!(", but {darkness}")).unwrap_or_default();
-    write_stdout(format!("{}: OK ({objects}, {lights}){darkness}\n", visible(&path)).as_bytes())
+    let faults = scene.darkness().map(str::to_owned).into_iter().chain(scene.invisible_formulas());
+    let warnings: String = faults.flat_map(|warning| [", but ".to_owned(), warning]).collect();
+    write_stdout(format!("{}: OK ({objects}, {lights}){warnings}\n", visible(&path)).as_bytes())
 }

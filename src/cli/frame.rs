@@ -10,7 +10,7 @@ use super::outcome::{CommandResult, Failure, write_stdout};
 use super::outputs;
 use super::picture::{FrameKind, PictureArgs};
 use super::scene_args::SceneArgs;
-use super::scene_source::warn_of_darkness;
+use super::scene_source::warn_of_invisibility;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use screen::Screen;
@@ -153,7 +153,7 @@ impl FrameArgs {
         }
         let samples = self.picture.samples(kind);
         let map = self.map.map();
-        warn_of_darkness(map, &scene);
+        warn_of_invisibility(map, &scene);
         // Only tracing runs in the pool of `--threads`; the file is encoded on one thread.
         match format.contents() {
             Contents::Pixels(write) => {

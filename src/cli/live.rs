@@ -6,7 +6,7 @@ use super::encoding::OrderArgs;
 use super::folder;
 use super::outcome::{CommandResult, Failure, exit_after_panic, reason, usage, write_stdout};
 use super::scene_args::CameraArgs;
-use super::scene_source::{SceneSource, warn_of_darkness};
+use super::scene_source::{SceneSource, warn_of_invisibility};
 use super::settings::{SettingArgs, Settings, keys};
 use super::shipped::ShippedScene;
 use super::threads::on_threads;
@@ -145,7 +145,7 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
     let resolution = cell::resolution(cell_mode, Size::new(80, 24), cell_aspect).map_err(usage)?;
     let sampling = settings.samples.unwrap_or(Sampling::Each(NonZeroU32::MIN));
     let map = settings.map.map();
-    warn_of_darkness(map, &scene);
+    warn_of_invisibility(map, &scene);
     let trace = || Painter::new(cell_mode).trace(map, &scene, scene.camera(), resolution, sampling);
     let grid = on_threads(args.camera_args.threads, trace)?;
     write_stdout(&export::ansi_or_text(&grid, cell_mode.colors))

@@ -108,8 +108,11 @@ fn shipped_like(name: &Path) -> Option<PathBuf> {
     closest(name.to_str()?, ShippedScene::names()).map(PathBuf::from)
 }
 
-/// Warns of a scene whose shaded picture is black. Other maps need no light.
-pub(super) fn warn_of_darkness(map: Map, scene: &Scene) {
+/// Warns of formulas without a surface, and of a shaded picture that is black for want of light.
+///
+/// Other maps need no light.
+pub(super) fn warn_of_invisibility(map: Map, scene: &Scene) {
+    scene.invisible_formulas().iter().for_each(warn);
     if let Some(darkness) = scene.darkness().filter(|_| map == Map::Shaded) {
         warn(darkness);
     }

@@ -200,14 +200,28 @@ fn root_values(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
 }
 
 fn add_equation(equation: &Equation, lines: &mut Vec<String>) {
-    lines.extend(equation.steps.iter().map(|step| match step {
-        Step::Value(what, value) => format!("  {what:<21}{}", padded_number(*value as f32)),
-        Step::Text(text) => format!("  {text}"),
+    lines.extend(equation.steps.iter().flat_map(|step| match step {
+        Step::Value(what, value) => vec![format!("  {what:<21}{}", padded_number(*value as f32))],
+        Step::Text(text) => vec![format!("  {text}")],
+        Step::Formula(formula) => formula_lines(formula),
         Step::Values(before, between, values) => {
             let values: Vec<_> = values.iter().map(|&value| padded_number(value as f32)).collect();
-            format!("  {before}{}", values.join(between))
+            vec![format!("  {before}{}", values.join(between))]
         }
     }));
+}
+
+/// Breaks a formula, which is ASCII, into at most three lines.
+fn formula_lines(formula: &str) -> Vec<String> {
+    const MAX_LINES: usize = 3;
+    let (width, mut lines) = (MAX_LINE_WIDTH - "  f = ".len(), Vec::new());
+    for (at, part) in formula.as_bytes().chunks(width).take(MAX_LINES).enumerate() {
+        let is_cut = at + 1 == MAX_LINES && formula.len() > MAX_LINES * width;
+        let part = if is_cut { &part[..width - "...".len()] } else { part };
+        let (start, end) = (if at == 0 { "  f = " } else { "      " }, if is_cut { "..." } else { "" });
+        lines.push(format!("{start}{}{end}", String::from_utf8_lossy(part).trim_end()));
+    }
+    lines
 }
 
 fn add_light(at: usize, contribution: &LightContribution, lines: &mut Vec<String>) {

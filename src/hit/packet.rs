@@ -179,8 +179,8 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     #[inline(always)]
     fn test_primitive<C: Crossable<N>>(&mut self, group: usize, shape: &C, primitive: u32, error_bound: N) {
         let mut hits = GroupHits::<N, ANY> { t: self.t[group], primitive: self.primitive[group] };
-        let (rays, min) = (&self.groups[group], N::splat(self.within.min));
-        if hits.record_closest(primitive, shape.first_crossing_with_bound(rays, min, error_bound), self.accel) {
+        let (rays, range) = (&self.groups[group], [N::splat(self.within.min), hits.t]);
+        if hits.record_closest(primitive, shape.first_crossing_with_bound(rays, range, error_bound), self.accel) {
             self.store_hits(group, hits);
         }
     }
@@ -213,7 +213,7 @@ impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
         let Some(leaf) = tree.leaves.first() else { return };
         for lane in 0..tree.single_leaf_count {
             let shape = leaf.splat(lane);
-            self.record_closest(tree.primitive(0, lane), shape.first_crossing(rays, min), accel);
+            self.record_closest(tree.primitive(0, lane), shape.first_crossing_until(rays, [min, self.t]), accel);
         }
     }
 

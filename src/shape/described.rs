@@ -33,7 +33,7 @@ pub trait Described {
 
 /// Delegates the methods of shapes and primitives to the surfaces of the table.
 macro_rules! described {
-    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
+    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:meta;)*) => {
         impl Shape {
             /// Returns the name of its kind: "sphere".
             #[doc(hidden)]

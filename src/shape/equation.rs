@@ -24,6 +24,8 @@ pub enum Step {
     Value(&'static str, f64),
     /// A formula or words without a value.
     Text(&'static str),
+    /// The text of a formula f, as the author wrote it.
+    Formula(String),
     /// Several values: a prefix, a separator, and the values.
     Values(&'static str, &'static str, Vec<f64>),
 }

@@ -5,51 +5,84 @@ use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use glam::Vec3;
 use std::array::from_fn;
+use std::sync::Arc;
 
 /// A leaf with up to eight surfaces of any type, which are tested one after the other.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScalarLeaf<S>([Option<S>; LANES]);
+///
+/// A lane holds the index of a surface, so that a surface may be of any size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScalarLeaf<S> {
+    surfaces: Arc<[S]>,
+    /// The index of each lane's surface; an unused lane has one that does not exist.
+    lanes: [u8; LANES],
+}
 
-impl<S: Surface + Copy + Sync> SoaLeaf for ScalarLeaf<S> {
+impl<S> ScalarLeaf<S> {
+    /// Returns the same surfaces in other lanes.
+    fn with_lanes(&self, surface_of: impl FnMut(usize) -> u8) -> Self {
+        Self { surfaces: Arc::clone(&self.surfaces), lanes: from_fn(surface_of) }
+    }
+
+    /// Returns the surface of `lane`, if the lane is used.
+    fn surface(&self, lane: usize) -> Option<&S> {
+        self.surfaces.get(usize::from(self.lanes[lane]))
+    }
+}
+
+impl<S: Surface + Clone + Send + Sync> SoaLeaf for ScalarLeaf<S> {
     type Shape = S;
     type Of<N: Lanes> = Self;
 
     fn of(shapes: &[S]) -> Self {
-        Self(from_fn(|lane| shapes.get(lane).copied()))
+        Self { surfaces: shapes.into(), lanes: from_fn(|lane| lane as u8) }
     }
 
     #[inline(always)]
     fn one_per_lane<N: Lanes>(&self) -> Self {
-        *self
+        self.clone()
     }
 
     #[inline(always)]
     fn splat<N: Lanes>(&self, lane: usize) -> Self {
-        Self([self.0[lane]; LANES])
+        self.with_lanes(|_| self.lanes[lane])
     }
 
     #[inline(always)]
     fn gather<N: Lanes>(&self, lanes: N) -> Self {
         let lanes = lanes.store();
-        Self(from_fn(|lane| self.0[lanes.0[lane].to_bits() as usize % LANES]))
+        self.with_lanes(|lane| self.lanes[lanes.0[lane].to_bits() as usize % LANES])
     }
 
+    /// Combines lanes of two leaves, which takes a new leaf with the surfaces of both.
     #[inline(always)]
     fn select<N: Lanes>(mask: N::Mask, yes: Self, no: Self) -> Self {
         let bits = mask.bits();
-        Self(from_fn(|lane| if bits >> lane & 1 == 1 { yes.0[lane] } else { no.0[lane] }))
+        let of_lane = |lane: usize| if bits >> lane & 1 == 1 { yes.surface(lane) } else { no.surface(lane) };
+        let (mut surfaces, mut lanes) = (Vec::new(), [u8::MAX; LANES]);
+        for (lane, index) in lanes.iter_mut().enumerate() {
+            if let Some(surface) = of_lane(lane) {
+                *index = surfaces.len() as u8;
+                surfaces.push(surface.clone());
+            }
+        }
+        Self { surfaces: surfaces.into(), lanes }
     }
 }
 
 impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
-        let (min, mut crosses, mut t) = (min.store(), 0, F32x8::ZERO);
-        for (lane, surface) in self.0.iter().enumerate() {
-            let within = Interval { min: min.0[lane], max: f32::MAX };
+        self.first_crossing_until(rays, [min, N::splat(f32::MAX)])
+    }
+
+    fn first_crossing_until(&self, rays: &Rays<N>, range: [N; 2]) -> Option<(N::Mask, N)> {
+        let ([min, max], mut crosses, mut t) = (range.map(N::store), 0, F32x8::ZERO);
+        for lane in 0..LANES {
+            let within = Interval { min: min.0[lane], max: max.0[lane] };
+            let Some(surface) = self.surface(lane).filter(|_| within.min <= within.max) else { continue };
             // Recomputes the ray's shared values for each surface, which is simple but slow. Surfaces that must be
             // fast implement `SoaLeaf`.
             let probe = Probe::new(ray_of(rays, lane));
-            if let Some(crossing) = surface.as_ref().and_then(|surface| surface.closest_crossing(&probe, within)) {
+            if let Some(crossing) = surface.closest_crossing(&probe, within) {
                 crosses |= 1 << lane;
                 t.0[lane] = crossing;
             }
@@ -58,7 +91,7 @@ impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
     }
 
     fn boxes(&self) -> [Vector<N>; 2] {
-        let bounds = |lane: usize| self.0[lane].as_ref().and_then(Surface::bounds);
+        let bounds = |lane: usize| self.surface(lane).and_then(Surface::bounds);
         // Unused lanes have an inverted infinite box, which no ray hits.
         let min = from_fn(|lane| bounds(lane).map_or(Vec3::INFINITY, |bounds| bounds.min));
         let max = from_fn(|lane| bounds(lane).map_or(Vec3::NEG_INFINITY, |bounds| bounds.max));
@@ -70,7 +103,7 @@ impl<S: Surface, N: Lanes> AtCrossing<N> for ScalarLeaf<S> {
     fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N> {
         let t = t.store();
         let points = from_fn::<_, LANES, _>(|lane| {
-            let surface = self.0[lane].as_ref()?;
+            let surface = self.surface(lane)?;
             Some(surface.at_crossing(&ray_of(rays, lane), t.0[lane]))
         });
         let (mut position, mut geometric_normal) = (Vector::ZERO, Vector::ZERO);

@@ -244,7 +244,7 @@ impl<N: Number> Crossable<N> for TriangleN<N> {
     }
 
     #[inline(always)]
-    fn first_crossing_with_bound(&self, rays: &Rays<N>, min: N, error_bound: N) -> Option<(N::Mask, N)> {
+    fn first_crossing_with_bound(&self, rays: &Rays<N>, [min, _]: [N; 2], error_bound: N) -> Option<(N::Mask, N)> {
         self.clamped_crossing(min, rays, self.crossing_with_bound(rays, error_bound)?)
     }
 

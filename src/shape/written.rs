@@ -30,7 +30,7 @@ pub trait Meshes {
 
 /// Defines [`WrittenShape`] from the table of surfaces.
 macro_rules! written {
-    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
+    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:meta;)*) => {
         written! { all $($(#[$on])* $surface,)* Mesh, }
     };
     (all $($(#[$on:meta])* $surface:ident,)*) => {
@@ -103,7 +103,7 @@ surfaces! { written }
 
 /// Defines the methods of [`Shape`] that return constants of its kind, from the table of surfaces.
 macro_rules! of_kind {
-    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:literal;)*) => {
+    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:meta;)*) => {
         impl Shape {
             /// Returns the name with an article, for messages.
             pub(crate) fn owner(&self) -> &'static str {

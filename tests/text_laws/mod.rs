@@ -1,15 +1,34 @@
-//! Properties of any bytes that are read as a scene, a camera path or a file of keys.
+//! Properties of any bytes that are read as a scene, a formula, a camera path or a file of keys.
 //!
 //! For the tests and for the fuzzer.
 
 use termtrace::internals::control::Keymap;
 use termtrace::internals::scene_text::text_from;
-use termtrace::{CameraPath, Scene, SceneError};
+use termtrace::{CameraPath, Render, Resolution, Scene, SceneError};
 
 /// A scene, or faults that can be shown.
 pub(crate) fn scene(bytes: &[u8]) {
     if let Err(error) = Scene::from_bytes("scene.ron", bytes) {
         assert_shown(&error, bytes);
+    }
+}
+
+/// A surface that can be traced, or a fault that can be shown.
+pub(crate) fn formula(bytes: &[u8]) {
+    // The end of the raw string would end the formula.
+    let formula = String::from_utf8_lossy(bytes).replace('"', "'");
+    let text = format!(
+        "(camera: (eye: (1, 2, 3), target: (0, 0, 0)), ambient: 1, objects: [Implicit(f: r\"{formula}\", \
+         params: {{\"a\": 0.5}}, bounds: Box(min: (-1, -1, -1), max: (1, 1, 1)))])"
+    );
+    match Scene::from_bytes("scene.ron", text.as_bytes()) {
+        Ok(scene) => {
+            let resolution = Resolution::new(4, 3).expect("a small picture");
+            let light = Render::new(&scene).resolution(resolution).run().expect("there is memory for it");
+            let is_finite = |channel: f32| channel.is_finite() && channel >= 0.0;
+            assert!(light.pixels().iter().all(|light| [light.r, light.g, light.b].into_iter().all(is_finite)));
+        }
+        Err(error) => assert_shown(&error, text.as_bytes()),
     }
 }
 

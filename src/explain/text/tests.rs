@@ -14,3 +14,11 @@ fn numbers_take_nine_columns() {
         assert_eq!(padded_number(x), text);
     }
 }
+
+#[test]
+fn long_formulas_take_three_lines() {
+    assert_eq!(formula_lines("x - 1"), ["  f = x - 1"]);
+    let lines = formula_lines(&"x + ".repeat(40));
+    assert_eq!(lines.len(), 3);
+    assert!(lines.iter().all(|line| line.len() <= MAX_LINE_WIDTH) && lines[2].ends_with("..."), "{lines:#?}");
+}

@@ -75,7 +75,8 @@ fn is_backward(seed: u64) -> bool {
 
 /// Tests rays with a packet's error bound. Returns the bits of t, or of -1 for rays that miss.
 fn t_bits(shape: &TriangleN<F32x8>, rays: &Rays<F32x8>, packet_error_bound: f32) -> Option<[u32; LANES]> {
-    let crossing = shape.first_crossing_with_bound(rays, F32x8::ZERO, F32x8::splat(packet_error_bound));
+    let crossing =
+        shape.first_crossing_with_bound(rays, [F32x8::ZERO, F32x8::splat(f32::MAX)], F32x8::splat(packet_error_bound));
     crossing.map(|(crosses, t)| F32x8::select(crosses, t, F32x8::splat(-1.0)).0.map(f32::to_bits))
 }
 

@@ -1,0 +1,116 @@
+//! The tokens of a formula.
+
+use super::Fault;
+use crate::text::visible_char;
+use std::ops::Range;
+
+/// A token; its text is in the formula.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Token {
+    Number(f64),
+    Name,
+    /// An operator or a bracket.
+    Sign(char),
+    End,
+}
+
+/// The tokens of a formula, and a position among them.
+pub(super) struct Tokens<'t> {
+    text: &'t str,
+    all: Vec<(Token, Range<usize>)>,
+    at: usize,
+}
+
+impl<'t> Tokens<'t> {
+    pub(super) fn new(text: &'t str) -> Result<Self, Fault> {
+        let (mut tokens, mut at) = (Vec::new(), 0);
+        while let Some(c) = text[at..].chars().next() {
+            let start = at;
+            let token = match c {
+                _ if c.is_whitespace() => {
+                    at += c.len_utf8();
+                    continue;
+                }
+                '0'..='9' | '.' => {
+                    at += number_length(&text[at..]);
+                    Token::Number(number(&text[start..at], start..at)?)
+                }
+                'a'..='z' | 'A'..='Z' | '_' => {
+                    at += length_while(&text[at..], |c| c.is_ascii_alphanumeric() || c == '_');
+                    Token::Name
+                }
+                '+' | '-' | '*' | '/' | '^' | '(' | ')' | '|' | ',' | ';' | '=' => {
+                    at += 1;
+                    Token::Sign(c)
+                }
+                _ => {
+                    let message = format!("`{}` is not part of a formula", visible_char(c));
+                    return Fault::new(at..at + c.len_utf8(), message);
+                }
+            };
+            tokens.push((token, start..at));
+        }
+        tokens.push((Token::End, text.len()..text.len()));
+        Ok(Self { text, all: tokens, at: 0 })
+    }
+
+    pub(super) fn token(&self) -> Token {
+        self.all[self.at].0
+    }
+
+    pub(super) fn range(&self) -> Range<usize> {
+        self.all[self.at].1.clone()
+    }
+
+    pub(super) fn text(&self) -> &'t str {
+        &self.text[self.range()]
+    }
+
+    /// Returns the text of the token before this one.
+    pub(super) fn before(&self) -> Option<&'t str> {
+        let (_, range) = self.all.get(self.at.checked_sub(1)?)?;
+        Some(&self.text[range.clone()])
+    }
+
+    pub(super) fn is_sign(&self, sign: char) -> bool {
+        self.token() == Token::Sign(sign)
+    }
+
+    /// Goes to the next token, if this one is not the end.
+    pub(super) fn advance(&mut self) {
+        self.at = (self.at + 1).min(self.all.len() - 1);
+    }
+
+    /// Returns whether a definition `name = ...;` starts here.
+    pub(super) fn starts_definition(&self) -> bool {
+        let mut rest = self.all[self.at..].iter().map(|&(token, _)| token);
+        rest.next() == Some(Token::Name)
+            && rest.next() == Some(Token::Sign('='))
+            && rest.any(|token| token == Token::Sign(';'))
+    }
+}
+
+fn length_while(text: &str, belongs: impl Fn(char) -> bool) -> usize {
+    text.find(|c| !belongs(c)).unwrap_or(text.len())
+}
+
+/// Returns the length of the number at the start of the text, with its exponent.
+fn number_length(text: &str) -> usize {
+    let digits = length_while(text, |c| c.is_ascii_digit() || c == '.');
+    let exponent = text[digits..].strip_prefix(['e', 'E']).map(|rest| rest.strip_prefix(['+', '-']).unwrap_or(rest));
+    match exponent {
+        // `2e` and `2exp(x)` are faults of another kind.
+        Some(rest) if rest.starts_with(|c: char| c.is_ascii_digit()) => {
+            text.len() - rest.len() + length_while(rest, |c| c.is_ascii_digit())
+        }
+        _ => digits,
+    }
+}
+
+fn number(text: &str, range: Range<usize>) -> Result<f64, Fault> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Fault::new(range, "this number is too large"),
+        Err(_) => Fault::new(range, format!("`{text}` is not a number")),
+    }
+}

@@ -1,0 +1,147 @@
+//! Values and gradients of a formula at a point, in f64.
+
+use super::Formula;
+use super::tape::{Binary, Index, Operation, Tape, Unary};
+use glam::DVec3;
+
+impl Unary {
+    /// Returns the value of the function; NaN where it is undefined.
+    pub(super) fn at(self, a: f64) -> f64 {
+        match self {
+            Self::Negate => -a,
+            Self::Abs => a.abs(),
+            Self::Square => a * a,
+            Self::Sqrt => a.sqrt(),
+            Self::Cbrt => libm::cbrt(a),
+            Self::Exp => libm::exp(a),
+            Self::Ln => libm::log(a),
+            Self::Sin => libm::sin(a),
+            Self::Cos => libm::cos(a),
+            Self::Tan => libm::tan(a),
+            Self::Asin => libm::asin(a),
+            Self::Atan => libm::atan(a),
+            Self::Floor => libm::floor(a),
+            Self::Step if a.is_nan() => a,
+            Self::Step => f64::from(u8::from(a >= 0.0)),
+        }
+    }
+
+    /// Returns the derivative at `a`, where the function has the value `value`.
+    fn slope(self, a: f64, value: f64) -> f64 {
+        match self {
+            Self::Negate => -1.0,
+            Self::Abs => 1.0_f64.copysign(a),
+            Self::Square => 2.0 * a,
+            Self::Sqrt => 0.5 / value,
+            Self::Cbrt => 1.0 / (3.0 * value * value),
+            Self::Exp => value,
+            Self::Ln => 1.0 / a,
+            Self::Sin => libm::cos(a),
+            Self::Cos => -libm::sin(a),
+            Self::Tan => 1.0 + value * value,
+            Self::Asin => 1.0 / (1.0 - a * a).sqrt(),
+            Self::Atan => 1.0 / (1.0 + a * a),
+            Self::Floor | Self::Step => 0.0,
+        }
+    }
+}
+
+impl Binary {
+    /// Returns the value of the function; NaN where it or an operand is undefined.
+    pub(super) fn at(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::Add => a + b,
+            Self::Subtract => a - b,
+            Self::Multiply => a * b,
+            Self::Divide => a / b,
+            // Unlike `f64::min` and `max`, a NaN of either operand stays.
+            Self::Min if a.is_nan() || a < b => a,
+            Self::Max if a.is_nan() || a > b => a,
+            Self::Min | Self::Max => b,
+            Self::Atan2 => libm::atan2(a, b),
+        }
+    }
+
+    /// Returns the derivatives by both operands.
+    fn slopes(self, a: f64, b: f64) -> [f64; 2] {
+        match self {
+            Self::Add => [1.0, 1.0],
+            Self::Subtract => [1.0, -1.0],
+            Self::Multiply => [b, a],
+            Self::Divide => [1.0 / b, -a / (b * b)],
+            Self::Min => {
+                if a < b {
+                    [1.0, 0.0]
+                } else {
+                    [0.0, 1.0]
+                }
+            }
+            Self::Max => {
+                if a > b {
+                    [1.0, 0.0]
+                } else {
+                    [0.0, 1.0]
+                }
+            }
+            Self::Atan2 => {
+                let squared = a * a + b * b;
+                [b / squared, -a / squared]
+            }
+        }
+    }
+}
+
+impl Tape {
+    /// Returns the value at a point. `values` is scratch memory.
+    pub(super) fn value(&self, point: DVec3, values: &mut Vec<f64>) -> f64 {
+        values.clear();
+        for &operation in self.operations() {
+            let of = |index: Index| values[usize::from(index)];
+            let value = match operation {
+                Operation::Constant(bits) => f64::from_bits(bits),
+                Operation::Coordinate(axis) => point[usize::from(axis)],
+                Operation::Unary(function, a) => function.at(of(a)),
+                Operation::Binary(function, a, b) => function.at(of(a), of(b)),
+            };
+            values.push(value);
+        }
+        values.last().copied().unwrap_or(f64::NAN)
+    }
+}
+
+impl Formula {
+    /// Returns f at a point; NaN where it is undefined.
+    pub(crate) fn value(&self, point: DVec3) -> f64 {
+        self.tape.value(point, &mut Vec::new())
+    }
+
+    /// Returns f and its gradient at a point, by forward differentiation.
+    pub(crate) fn gradient(&self, point: DVec3) -> (f64, DVec3) {
+        let mut values: Vec<(f64, DVec3)> = Vec::with_capacity(self.tape.operations().len());
+        for &operation in self.tape.operations() {
+            let of = |index: Index| values[usize::from(index)];
+            let value = match operation {
+                Operation::Constant(bits) => (f64::from_bits(bits), DVec3::ZERO),
+                Operation::Coordinate(axis) => (point[usize::from(axis)], DVec3::AXES[usize::from(axis)]),
+                Operation::Unary(function, a) => {
+                    let (a, slope) = of(a);
+                    let value = function.at(a);
+                    (value, scaled(slope, function.slope(a, value)))
+                }
+                Operation::Binary(function, a, b) => {
+                    let ((a, slope_a), (b, slope_b)) = (of(a), of(b));
+                    let [by_a, by_b] = function.slopes(a, b);
+                    (function.at(a, b), scaled(slope_a, by_a) + scaled(slope_b, by_b))
+                }
+            };
+            values.push(value);
+        }
+        values.last().copied().unwrap_or((f64::NAN, DVec3::NAN))
+    }
+}
+
+/// Returns the product, in which a zero vector stays zero, also times infinity.
+// The root of a constant or of the other axes must not make the whole gradient NaN.
+fn scaled(vector: DVec3, factor: f64) -> DVec3 {
+    if vector == DVec3::ZERO { vector } else { vector * factor }
+}

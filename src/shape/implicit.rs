@@ -1,0 +1,289 @@
+//! Implicit surfaces: the points within bounds where a formula is 0 and changes its sign.
+
+use super::described::size_in_words;
+use super::{CheckedShape, Described, Equation, Meshes, Points, Shape, Step, Surface, SurfacePoint};
+use crate::bounds::Bounds;
+use crate::formula::{Formula, Line, Solver, is_free_name};
+use crate::lanes::Vector;
+use crate::ray::{Interval, Probe, Ray};
+use crate::scene_text::{Span, SyntaxNode, Value};
+use crate::text::visible;
+use crate::written::{Fields, InSceneFile, NodeReader, Spanned, Validator, WrittenNumber, WrittenVector};
+use glam::{DVec3, Vec3};
+use std::sync::Arc;
+
+/// The most roots that an explanation shows, in front of the eye.
+const MAX_ROOTS: usize = 2;
+
+/// The longest formula in a description, in characters.
+const MAX_SHOWN: usize = 48;
+
+/// A surface f(x, y, z) = 0, drawn within bounds, at which it is cut open.
+// Shared, because a leaf of the tree has copies of its surfaces.
+#[doc(hidden)]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Implicit(Arc<Definition>);
+
+#[derive(Debug, PartialEq)]
+struct Definition {
+    formula: Formula,
+    /// The formula as written, on one line.
+    text: String,
+    bounds: Bounds,
+    /// The ball that cuts the surface, if the bounds are not a box.
+    ball: Option<Ball>,
+    /// Why nothing is seen, if that is certain.
+    warning: Option<&'static str>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Ball {
+    center: DVec3,
+    radius: f64,
+}
+
+impl Implicit {
+    fn new(text: &str, formula: Formula, bounds: Bounds, ball: Option<Ball>) -> Self {
+        let warning = formula.lack_of_surface(bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        let text = visible(&text.split_whitespace().collect::<Vec<_>>().join(" "));
+        Self(Arc::new(Definition { formula, text, bounds, ball, warning }))
+    }
+
+    /// Returns why nothing of the surface is seen, if that is certain.
+    pub(crate) fn warning(&self) -> Option<&'static str> {
+        self.0.warning
+    }
+
+    /// Returns the part of a ray's line that is within the bounds; it is empty if `min > max`.
+    fn within_bounds(&self, probe: &Probe) -> Interval {
+        let of_box = self.0.bounds.crossed(probe);
+        let Some(Ball { center, radius }) = self.0.ball else { return of_box };
+        let (d, from_center) = (probe.ray.direction.as_dvec3(), probe.ray.origin.as_dvec3() - center);
+        let (squared, half_b) = (d.dot(d), from_center.dot(d));
+        let nearest = from_center - d * (half_b / squared);
+        // NaN for a line that misses the ball; the comparisons of the caller reject it.
+        let root = ((radius * radius - nearest.dot(nearest)) / squared).sqrt();
+        let middle = -half_b / squared;
+        let (enters, leaves) = ((middle - root) as f32, (middle + root) as f32);
+        if root.is_nan() {
+            return Interval { min: f32::INFINITY, max: f32::NEG_INFINITY };
+        }
+        Interval { min: of_box.min.max(enters), max: of_box.max.min(leaves) }
+    }
+
+    /// Returns the formula as an equation on one line, shortened if it is long.
+    fn shown(&self) -> String {
+        let text = &self.0.text;
+        if text.chars().count() <= MAX_SHOWN {
+            return text.clone();
+        }
+        text.chars().take(MAX_SHOWN - 3).chain("...".chars()).collect()
+    }
+
+    /// Returns the direction in which f grows, of unit length, if it has one at the point.
+    fn normal(&self, at: DVec3) -> Option<DVec3> {
+        let (_, gradient) = self.0.formula.gradient(at);
+        let largest = gradient.abs().max_element();
+        // Divides by the largest coordinate first, so that no square overflows or vanishes.
+        let scaled = gradient / largest;
+        (largest > 0.0 && largest.is_finite()).then(|| scaled / scaled.dot(scaled).sqrt())
+    }
+}
+
+fn line_of(ray: &Ray) -> Line {
+    Line { origin: ray.origin.as_dvec3(), direction: ray.direction.as_dvec3() }
+}
+
+impl Surface for Implicit {
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.0.bounds)
+    }
+
+    fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
+        let inside = self.within_bounds(probe);
+        let range = [inside.min.max(within.min), inside.max];
+        if range[0] > within.max {
+            return None;
+        }
+        let t = Solver::new(&self.0.formula).first_root(&line_of(&probe.ray), range, within.max)?;
+        within.contains(t).then_some(t)
+    }
+
+    /// Returns the point, moved onto the surface along the gradient.
+    ///
+    /// The move corrects the rounding of t.
+    ///
+    /// Where the gradient is zero or undefined, as at the tip of a cone, the normal is that of a point a little in
+    /// front, or else it is opposite to the ray.
+    fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
+        let Line { origin, direction } = line_of(ray);
+        let at = origin + direction * f64::from(t);
+        let (value, gradient) = self.0.formula.gradient(at);
+        let step = gradient * (value / gradient.dot(gradient));
+        // The rounding of t moves the point by this much at most. A longer step is not a correction.
+        let rounding = f64::from(f32::EPSILON) * f64::from(t).abs() * direction.abs().max_element();
+        let position = if step.abs().max_element() <= rounding { at - step } else { at };
+        let size = at.abs().max_element().max(f64::from(self.0.bounds.extent().max_element()));
+        let in_front = direction * (f64::from(super::CLEARANCE) * size / direction.length());
+        let normal = self.normal(at).or_else(|| self.normal(at - in_front)).unwrap_or(-direction / direction.length());
+        let [position, normal] = [position, normal].map(|vector| Vector::splat(vector.as_vec3()));
+        Points::seen_by(&Probe::new(*ray).rays, position, normal, size as f32, [0.0; 2]).point()
+    }
+}
+
+impl Described for Implicit {
+    const KIND: &'static str = "formula";
+
+    fn described(&self, color: &str) -> String {
+        let zero = if self.0.text.contains('=') { "" } else { " = 0" };
+        format!("a {color} implicit surface, {}{zero}, {}", self.shown(), size_in_words(&self.0.bounds))
+    }
+
+    /// Finds the first roots of f(o + t d) within the bounds, in front of the eye.
+    fn equation(&self, ray: &Ray) -> Equation {
+        let (probe, line) = (Probe::new(*ray), line_of(ray));
+        let Interval { min, max } = self.within_bounds(&probe);
+        let (mut solver, mut roots, mut from) = (Solver::new(&self.0.formula), Vec::new(), min.max(0.0));
+        while roots.len() < MAX_ROOTS
+            && let Some(root) = solver.first_root(&line, [from, max], max)
+        {
+            roots.push(f64::from(root));
+            from = root;
+        }
+        let mut steps = vec![Step::Formula(self.0.text.clone()), Step::Text("f(o + t d) = 0, in the bounds")];
+        if min <= max {
+            steps.push(Step::Values("t in ", " to ", vec![f64::from(min), f64::from(max)]));
+        }
+        steps.push(Step::Values("t = ", " or ", roots.clone()));
+        Equation { steps, roots, without_root: "miss", is_outside: false }
+    }
+
+    fn encloses(&self, point: Vec3) -> bool {
+        let (Definition { formula, bounds, ball, .. }, at) = (&*self.0, point.as_dvec3());
+        let in_box = point.cmpge(bounds.min).all() && point.cmple(bounds.max).all();
+        in_box && ball.is_none_or(|ball| ball.center.distance(at) < ball.radius) && formula.value(at) < 0.0
+    }
+}
+
+/// An implicit surface as written: `Implicit(f: "...", bounds: ...)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenImplicit {
+    f: Option<Spanned<String>>,
+    bounds: Option<WrittenBounds>,
+    params: Vec<(String, WrittenNumber)>,
+}
+
+/// The bounds of a formula as written.
+#[derive(Clone, Debug, PartialEq)]
+enum WrittenBounds {
+    Box { min: Option<WrittenVector>, max: Option<WrittenVector>, span: Span },
+    Sphere { center: Option<WrittenVector>, radius: Option<WrittenNumber> },
+}
+
+impl InSceneFile for Implicit {
+    type Written = WrittenImplicit;
+
+    const NAME: &'static str = "Implicit";
+    const OWNER: &'static str = "an Implicit";
+    const FORM: &'static str = "Implicit(f: \"...\", bounds: Box(min: ..., max: ...))";
+    const FIELDS: &'static [&'static str] = &["f", "bounds", "params", "material"];
+
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenImplicit {
+        WrittenImplicit {
+            f: reader
+                .required(fields, "f", |reader, node| reader.text(node, "a formula in quotes, such as \"x^2 - y\"")),
+            bounds: reader.required(fields, "bounds", read_bounds),
+            params: reader.optional(fields, "params", read_params).unwrap_or_default(),
+        }
+    }
+}
+
+fn read_bounds(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenBounds> {
+    const FORM: &str = "bounds Box(min: ..., max: ...) or Sphere(center: ..., radius: ...)";
+    if reader.group_name(node, "a bound", FORM, &["Box", "Sphere"])? == "Box" {
+        let fields = reader.fields(node, "a Box", "Box(min: ..., max: ...)", &["min", "max"])?;
+        let min = reader.required(&fields, "min", NodeReader::point);
+        let max = reader.required(&fields, "max", NodeReader::point);
+        return Some(WrittenBounds::Box { min, max, span: node.head() });
+    }
+    let fields = reader.fields(node, "a Sphere", "Sphere(center: ..., radius: ...)", &["center", "radius"])?;
+    let center = reader.required(&fields, "center", NodeReader::point);
+    let radius = reader.required(&fields, "radius", NodeReader::number);
+    Some(WrittenBounds::Sphere { center, radius })
+}
+
+fn read_params(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Vec<(String, WrittenNumber)>> {
+    const WANTED: &str = "parameters with names {\"a\": 0.5, ...}";
+    let Value::Map(entries) = &node.value else {
+        reader.mismatch(node, WANTED);
+        return None;
+    };
+    let mut params: Vec<(String, WrittenNumber)> = Vec::new();
+    for (key, value) in entries {
+        let value = reader.number(value);
+        let Value::String(name) = &key.value else {
+            reader.mismatch(key, "the name of a parameter in quotes");
+            continue;
+        };
+        if !is_free_name(name) {
+            let shown = visible(name);
+            reader.fault(key.span, || format!("`{shown}` cannot be the name of a parameter; choose another name"));
+        } else if params.iter().any(|(known, _)| **known == **name) {
+            reader.fault(key.span, || format!("duplicate parameter `{name}`"));
+        } else {
+            // A value with a fault still defines its name, so that the formula has no second fault.
+            let missing = Spanned { value: 1.0, span: key.span };
+            params.push((name.to_string(), value.unwrap_or(missing)));
+        }
+    }
+    Some(params)
+}
+
+impl CheckedShape for Implicit {
+    fn check(written: &WrittenImplicit, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
+        let bounds = written.bounds.as_ref().and_then(|bounds| check_bounds(bounds, validator));
+        let text = written.f.as_ref()?;
+        let params: Vec<_> = written.params.iter().map(|(name, value)| (name.clone(), value.value)).collect();
+        let formula = match Formula::parse(&text.value, &params) {
+            Ok(formula) => formula,
+            Err(fault) => {
+                return validator.fault(span_in(text, fault.range), || format!("in this formula: {}", fault.message));
+            }
+        };
+        let (bounds, ball) = bounds?;
+        Some(Self::new(&text.value, formula, bounds, ball).into())
+    }
+}
+
+fn check_bounds(written: &WrittenBounds, validator: &mut Validator<'_>) -> Option<(Bounds, Option<Ball>)> {
+    match *written {
+        WrittenBounds::Box { min, max, span } => {
+            let min = min.and_then(|min| validator.point(min));
+            let max = max.and_then(|max| validator.point(max));
+            let (min, max) = (min?, max?);
+            if !min.cmplt(max).all() {
+                return validator.fault(span, || "each coordinate of min must be less than that of max".to_owned());
+            }
+            Some((Bounds { min, max }, None))
+        }
+        WrittenBounds::Sphere { center, radius } => {
+            let center = center.and_then(|center| validator.point(center));
+            let radius = radius.and_then(|radius| validator.length("radius", radius));
+            let (center, radius) = (center?, radius?);
+            let ball = Ball { center: center.as_dvec3(), radius: f64::from(radius) };
+            Some((Bounds { min: center - radius, max: center + radius }, Some(ball)))
+        }
+    }
+}
+
+/// Returns the span of a part of a text in the file.
+fn span_in(text: &Spanned<String>, part: std::ops::Range<usize>) -> Span {
+    let (start, end) = (text.span.start as usize, text.span.end as usize);
+    // The quotes, and the r and hashes of a raw string. No character of a formula needs an escape.
+    let opening = (end - start).saturating_sub(text.value.len()).div_ceil(2);
+    let at = |offset: usize| (start + opening + offset).min(end);
+    Span::new(at(part.start), at(part.end))
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;
