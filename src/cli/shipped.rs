@@ -30,7 +30,7 @@ macro_rules! shipped {
     };
 }
 
-// In the order of the lecture, which is that of the tour: eye rays, the closest hit, light, meshes.
+// In the order of the lecture, which is that of the tour: eye rays, the closest hit, light, meshes, formulas.
 shipped! {
     "three_spheres",
     "corridor",
@@ -45,6 +45,10 @@ shipped! {
     "two_lights",
     "three_lights",
     "teapots" ["teapot.obj"],
+    "heart",
+    "tanglecube",
+    "barth",
+    "gyroid",
 }
 
 impl ShippedScene {
