@@ -53,9 +53,11 @@ mod lights;
 mod lost;
 mod theme;
 mod light_marker;
+mod lines;
 mod camera_commands;
 mod note;
 mod options;
+mod outside;
 mod pacing;
 mod mesh_commands;
 mod metadata;
@@ -67,6 +69,7 @@ mod view_layout;
 mod status;
 #[cfg(all(unit_tests, any(test, feature = "test-hooks")))]
 mod scenario;
+mod tracer_lines;
 mod tracked;
 mod warnings;
 mod wipe_commands;
@@ -82,6 +85,7 @@ pub(crate) use frame::{Frame, Job, Shot};
 use metadata::Metadata;
 use note::Note;
 pub use options::Options;
+use outside::Outside;
 use pacing::Pacing;
 use pointer::PointerState;
 use progress::ProgressPanel;
@@ -153,6 +157,8 @@ pub(crate) struct Viewer {
     eye: Eye,
     /// Which maps the picture shows, and how they are arranged.
     layout: ViewLayout,
+    /// Whether the tracer is seen from outside, by a second camera.
+    outside: Outside,
     pointer: PointerState,
     screen: Screen,
     /// Whether captions are shown.
@@ -179,6 +185,7 @@ impl Viewer {
             scenes: SceneHistory::default(),
             eye: Eye::new(options.key_speed, options.reduced_motion),
             layout: ViewLayout::single(options.map),
+            outside: Outside::Off,
             pointer: PointerState::default(),
             requests: VecDeque::new(),
             names: Vec::new(),
@@ -297,6 +304,7 @@ impl Viewer {
     }
 
     fn open(&mut self, scene: Scene, index: usize, orbits: bool) {
+        self.end_outside();
         let (before, shown) = (self.scenes.shown(), scene.clone());
         if let Some(darkness) = scene.darkness() {
             self.warn(darkness.to_owned());
@@ -321,6 +329,10 @@ impl Viewer {
         self.screen.set_name(self.names.get(index).map_or("", String::as_str));
         // Also for a scene whose view is kept: its file may have got other views.
         self.eye.set_scene(&shown);
+    }
+
+    fn set_outside(&mut self, outside: Outside) {
+        self.outside = outside;
     }
 
     /// Opens the panel with the error that ended the loading of a scene.
@@ -451,10 +463,11 @@ impl Viewer {
 
     /// Returns the shot that the picture is to show, or `None` without a scene.
     fn wanted_shot(&self) -> Option<Shot> {
-        let (lights, camera) = (self.scenes.lights()?, self.eye.camera()?);
+        let (lights, camera) = (self.scenes.lights()?, self.first_camera()?);
+        let (outside, layout) = (self.second_camera(), self.shown_layout());
         let (scene, resolution) = (self.scenes.count(), self.display.resolution());
         let geometry = self.display.capabilities().cell_mode.shows_geometry();
-        Some(Shot { scene, lights: lights.moves(), camera, resolution, layout: self.layout, geometry })
+        Some(Shot { scene, lights: lights.moves(), camera, outside, resolution, layout, geometry })
     }
 
     /// Returns the sampling of the shown frame's next refinement, or `None` if it cannot be
@@ -538,7 +551,7 @@ impl Viewer {
 
     /// Returns the camera if the user has moved it.
     pub(crate) fn moved(&self) -> Option<Camera> {
-        self.eye.moved()
+        self.first_camera().filter(|&camera| !self.eye.is_home(camera))
     }
 
     /// Returns the receiver of the terminal's bytes, which knows which replies are outstanding.

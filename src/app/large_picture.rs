@@ -140,7 +140,7 @@ impl Shared {
     fn traced(&self, order: &Order, waker: &Mutex<Waker>) -> Option<crate::tone::Picture> {
         let shot = &order.job.shot;
         let (mut part, parts) = (0, shot.layout.map_sizes(shot.resolution).len());
-        let mut frame = frame_of(&order.job, |map, resolution| {
+        let mut frame = frame_of(&order.job, |map, resolution, camera| {
             let report = |share: f32| {
                 self.wait_while_paused();
                 self.set_progress((part as f32 + share) / parts as f32, waker);
@@ -148,13 +148,13 @@ impl Shared {
             };
             let scene = &order.job.scene;
             let picture = if map == Map::Shaded {
-                let render = Render::new(scene).camera(&shot.camera).resolution(resolution);
+                let render = Render::new(scene).camera(camera).resolution(resolution);
                 let render = render.threads(order.thread_count()).cancelled_by(&self.token).on_progress(report);
                 TracedMap::new(tone(&render.run()?, scene), Cost::default())
             } else {
                 self.wait_while_paused();
                 let executor = Executor::Cancellable(&self.token);
-                maps::trace(map, executor, scene, &shot.camera, resolution, order.job.sampling)?
+                maps::trace(map, executor, scene, camera, resolution, order.job.sampling)?
             };
             part += 1;
             Ok::<_, Cancelled>(picture)

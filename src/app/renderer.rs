@@ -107,8 +107,9 @@ impl Renderer {
             // Gives the same light as `UpTo(1)`, without the accumulators for a refinement, which traces this sample
             // again in little time.
             let one = Sampling::Each(NonZeroU32::MIN);
-            let trace_map =
-                |map, part| trace(&job.shot)(map, Executor::CurrentThread, &job.scene, &job.shot.camera, part, one);
+            let trace_map = |map, part, camera: &Camera| {
+                trace(&job.shot)(map, Executor::CurrentThread, &job.scene, camera, part, one)
+            };
             return frame_of(&job, trace_map).ok().map(|frame| self.record_time(frame));
         }
         let work = PendingJob { refines: job.refines, token: Cancellation::default() };
@@ -207,14 +208,14 @@ type TraceTask = Box<dyn FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send>
 /// Returns the frame of a job: `trace_map` traces each of its maps, which are then combined.
 pub(super) fn frame_of(
     job: &Job,
-    mut trace_map: impl FnMut(Map, Resolution) -> Result<TracedMap, Cancelled>,
+    mut trace_map: impl FnMut(Map, Resolution, &Camera) -> Result<TracedMap, Cancelled>,
 ) -> Result<Frame, Cancelled> {
     let start = Instant::now();
     let Job { scene, shot, sampling, refines } = job.clone();
     let mut cost = Cost::default();
     let (mut parts, mut geometry) = (Vec::new(), None);
-    for (map, resolution) in shot.layout.map_sizes(shot.resolution) {
-        let seen = trace_map(map, resolution)?;
+    for (map, resolution, camera) in shot.parts() {
+        let seen = trace_map(map, resolution, &camera)?;
         cost += seen.cost;
         parts.push(seen.picture);
         // Two views side by side meet within a cell, so they are drawn without geometry.
@@ -225,7 +226,12 @@ pub(super) fn frame_of(
     if !shot.layout.is_wipe() {
         parts.clear();
     }
-    let legends = shot.layout.legends(&scene, &shot.camera);
+    let legends = match shot.outside {
+        Some(_) => ["first camera", "from outside: o eye, q on rectangle, p hit, n normal, * light"]
+            .map(str::to_owned)
+            .to_vec(),
+        None => shot.layout.legends(&scene, &shot.camera),
+    };
     Ok(Frame { scene, shot, picture, geometry, parts, sampling, legends, refines, cost, trace: start.elapsed() })
 }
 
@@ -246,13 +252,13 @@ struct RefinablePicture {
 }
 
 impl RefinablePicture {
-    fn new(Job { scene, shot, .. }: &Job, resolution: Resolution) -> Self {
-        let picture = ProgressiveRender::new(&shot.camera, resolution);
-        Self { scene: scene.clone(), view: (shot.camera, resolution), picture, geometry: None }
+    fn new(scene: &Scene, camera: Camera, resolution: Resolution) -> Self {
+        let picture = ProgressiveRender::new(&camera, resolution);
+        Self { scene: scene.clone(), view: (camera, resolution), picture, geometry: None }
     }
 
-    fn has_view_of(&self, Job { scene, shot, .. }: &Job, resolution: Resolution) -> bool {
-        self.scene.is_copy_of(scene) && self.view == (shot.camera, resolution)
+    fn has_view_of(&self, scene: &Scene, camera: Camera, resolution: Resolution) -> bool {
+        self.scene.is_copy_of(scene) && self.view == (camera, resolution)
     }
 }
 
@@ -260,10 +266,10 @@ impl Tracer {
     fn trace(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
         // The kept picture need not be of the last frame: the loop traces small frames itself.
         let mut kept = self.kept.take();
-        frame_of(job, |map, resolution| {
+        frame_of(job, |map, resolution, camera| {
             let last = if map.refines() { kept.take() } else { None };
-            let last = last.filter(|kept| job.refines && kept.has_view_of(job, resolution));
-            self.trace_or_refine(job, token, map, resolution, last)
+            let last = last.filter(|kept| job.refines && kept.has_view_of(&job.scene, *camera, resolution));
+            self.trace_or_refine(job, token, (map, resolution, camera), last)
         })
     }
 
@@ -272,24 +278,23 @@ impl Tracer {
         &mut self,
         job: &Job,
         token: &Cancellation,
-        map: Map,
-        resolution: Resolution,
+        (map, resolution, camera): (Map, Resolution, &Camera),
         kept: Option<RefinablePicture>,
     ) -> Result<TracedMap, Cancelled> {
         let Job { scene, shot, .. } = job;
         let samples = match job.sampling {
             Sampling::UpTo(samples) if map.refines() => samples,
             sampling => {
-                return trace(shot)(map, Executor::Cancellable(token), scene, &shot.camera, resolution, sampling);
+                return trace(shot)(map, Executor::Cancellable(token), scene, camera, resolution, sampling);
             }
         };
-        let mut kept = kept.unwrap_or_else(|| RefinablePicture::new(job, resolution));
+        let mut kept = kept.unwrap_or_else(|| RefinablePicture::new(scene, *camera, resolution));
         let cost = kept.picture.refine_or_cancel(token, scene, samples)?;
         let mut traced = TracedMap::new(tone(&kept.picture.framebuffer(), scene), cost);
         if shot.geometry {
             let geometry = kept.geometry.get_or_insert_with(|| {
                 let executor = Executor::Cancellable(token);
-                let (geometry, cost) = trace_geometry(executor, scene, &shot.camera, resolution, job.sampling);
+                let (geometry, cost) = trace_geometry(executor, scene, camera, resolution, job.sampling);
                 traced.cost += cost;
                 geometry.into()
             });

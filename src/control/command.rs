@@ -94,6 +94,8 @@ pub enum Command {
     Wireframe,
     /// Shows or hides the directions of the axes.
     Axes,
+    /// Shows the tracer from outside, then other drawings of its geometry, then the ordinary view.
+    Outside,
     /// Shows or hides the name, the format and the size of the scene.
     Metadata,
     /// Turns a mesh so that the next axis of its file points up.
@@ -248,6 +250,7 @@ commands! {
     [Command::FromAbove] "FromAbove", A_SIDE;
     [Command::Wireframe] "Wireframe", "wireframe on or off";
     [Command::Axes] "Axes", "axes on or off";
+    [Command::Outside] "Outside", "tracer from outside";
     [Command::Metadata] "Metadata", "name, format and size";
     [Command::TurnMesh] "TurnMesh", "mesh: next axis up";
     [Command::Caption] "Caption", "caption on or off";

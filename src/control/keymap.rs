@@ -201,6 +201,7 @@ const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Always, &[Key::named(KeyCode::F(7))], Command::FromAbove),
     (KeyMode::Always, &[letter('#')], Command::Wireframe),
     (KeyMode::Always, &[letter('X')], Command::Axes),
+    (KeyMode::Always, &[letter('V')], Command::Outside),
     (KeyMode::Always, &[letter('M')], Command::Metadata),
     (KeyMode::Always, &[letter('?')], Command::Help),
     (KeyMode::Always, &[Key::named(KeyCode::Esc)], Command::Close),

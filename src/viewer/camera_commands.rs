@@ -75,7 +75,7 @@ impl Viewer {
     /// by side.
     pub(super) fn first_map_resolution(&self) -> Resolution {
         let whole = self.resolution();
-        self.layout.map_sizes(whole).first().map_or(whole, |(_, part)| *part)
+        self.shown_layout().map_sizes(whole).first().map_or(whole, |(_, part)| *part)
     }
 
     /// Scales the view rectangle by `factor`, and shows the field of view in a note.

@@ -187,6 +187,7 @@ impl Viewer {
             Command::TurnMesh => self.turn_mesh(),
             Command::Front | Command::FromRight | Command::FromAbove => self.look_from(command),
             Command::Wireframe => self.layout.toggle_wire(),
+            Command::Outside => self.change_outside(),
             Command::Axes => self.toggle_axes(),
             Command::Metadata => self.toggle_metadata(),
             // Keys of motion have been passed to the eye, and answers do nothing without an open question.

@@ -9,6 +9,7 @@ use super::frame::Frame;
 use super::help;
 use super::layers::{Canvas, Layer, Level};
 use super::theme::{self, Theme};
+use super::tracer_lines::draw_eye_ray;
 use crate::capabilities::CellMode;
 use crate::control::{Command, KeyMode};
 use crate::explain::{Explanation, cell_of_pixel, explain};
@@ -72,9 +73,13 @@ impl Layer for ExplainPanel {
         let above = Rect { height: screen.height - canvas.status_rows.saturating_sub(1), ..screen };
         let keys = help::key_names(canvas.keymap, canvas.modes, &[Command::ScrollUp, Command::ScrollDown]);
         let keys = keys.unwrap_or_default();
-        canvas.lay(panel_area(above, self.cell(mode)), |theme, panel, buffer| {
-            self.paint(&keys, theme, mode, panel, buffer);
-        });
+        match canvas.frame.filter(|frame| frame.shot.outside.is_some()) {
+            // Seen from outside, the ray is drawn in the other picture, which the panel would cover.
+            Some(frame) => draw_eye_ray(canvas, frame, &self.explanation),
+            None => canvas.lay(panel_area(above, self.cell(mode)), |theme, panel, buffer| {
+                self.paint(&keys, theme, mode, panel, buffer);
+            }),
+        }
         for mark in marks(self, canvas.theme(), mode, screen) {
             overlay::lay_over(canvas.grid, &mark);
         }
@@ -89,6 +94,9 @@ impl ExplainPanel {
     }
 
     fn at_pixel(frame: &Frame, pixel: [u32; 2], page: usize) -> Self {
+        // Of two cameras, the pixels of the first one are explained.
+        let first = frame.shot.outside.map(|_| frame.part_at([0, 0]).0.width().saturating_sub(1));
+        let pixel = first.map_or(pixel, |last| [pixel[0].min(last), pixel[1]]);
         let (resolution, part) = frame.part_at(pixel);
         let explanation = explain(&frame.scene, frame.camera(), resolution, part);
         let inset = Inset::for_explanation(&frame.scene, frame.camera(), &explanation);

@@ -115,6 +115,11 @@ impl Eye {
         self.view.as_ref().filter(|view| view.camera != view.home).map(|view| view.camera)
     }
 
+    /// Returns whether a camera is the scene's own; true without a scene.
+    pub(super) fn is_home(&self, camera: Camera) -> bool {
+        self.view.as_ref().is_none_or(|view| view.home == camera)
+    }
+
     /// Returns the time up to which the motion has been carried out; `None` at rest.
     pub(super) fn moved_until(&self) -> Option<Duration> {
         self.moved_until

@@ -3,6 +3,7 @@
 use super::view_layout::ViewLayout;
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
+use crate::maps::Map;
 use crate::render::{Cost, Geometry, Sampling};
 use crate::scene::Scene;
 use crate::tone::Picture;
@@ -17,6 +18,8 @@ pub(crate) struct Shot {
     /// Number of times that the scene's lights have been moved.
     pub(crate) lights: u32,
     pub(crate) camera: Camera,
+    /// The camera of the right one of two pictures, which shows the tracer from outside.
+    pub(crate) outside: Option<Camera>,
     pub(crate) resolution: Resolution,
     pub(crate) layout: ViewLayout,
     /// Whether the cells show geometry, which is traced besides the picture.
@@ -24,6 +27,13 @@ pub(crate) struct Shot {
 }
 
 impl Shot {
+    /// Returns the maps to trace, each with its own size in pixels and its camera.
+    pub(crate) fn parts(&self) -> Vec<(Map, Resolution, Camera)> {
+        let cameras = [self.camera, self.outside.unwrap_or(self.camera)];
+        let sizes = self.layout.map_sizes(self.resolution);
+        sizes.into_iter().zip(cameras).map(|((map, size), camera)| (map, size, camera)).collect()
+    }
+
     /// Returns whether tracing this shot probably takes about as long as tracing `other`.
     ///
     /// This holds if the shots differ only in the camera or the lights.

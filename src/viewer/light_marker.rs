@@ -2,6 +2,7 @@
 
 use super::frame::Frame;
 use super::layers::{Canvas, Layer, Level};
+use super::lines::{clipped_to_front, range_in_box};
 use crate::camera::Camera;
 use crate::control::KeyMode;
 use glam::{Vec2, Vec3};
@@ -100,7 +101,8 @@ impl PictureOnScreen {
     fn line(&self, camera: &Camera, from: Vec3, to: Vec3) -> Vec<Rect> {
         let ends = clipped_to_front(camera, [from, to]).map(|ends| ends.map(|end| self.cell_of(camera, end)));
         let Some([Some(from), Some(to)]) = ends else { return Vec::new() };
-        let Some([from, to]) = clipped_to_box([from, to], self.cells) else { return Vec::new() };
+        let Some([first, last]) = range_in_box([from, to], self.cells) else { return Vec::new() };
+        let [from, to] = [first, last].map(|share| from + share * (to - from));
         // A dot in every second cell, from the surface on.
         let share = 2.0 / (to - from).abs().max_element().max(1.0);
         let dot = |at: u16| {
@@ -109,36 +111,6 @@ impl PictureOnScreen {
         };
         (0..=(1.0 / share) as u16).map(dot).filter(|dot| !dot.is_empty()).collect()
     }
-}
-
-/// Returns the part of a line that is in front of the eye.
-fn clipped_to_front(camera: &Camera, ends: [Vec3; 2]) -> Option<[Vec3; 2]> {
-    let (eye, w) = (camera.pose().eye, camera.rectangle_basis().w);
-    let depths = ends.map(|end| (eye - end).dot(w));
-    // Nearer points are projected to huge columns and rows.
-    let near = 1e-3 * depths[0].abs().max(depths[1].abs());
-    let at_front = |behind: usize| {
-        let (other, depth) = (1 - behind, depths[behind]);
-        let share = (near - depth) / (depths[other] - depth);
-        if depth < near { ends[behind].lerp(ends[other], share) } else { ends[behind] }
-    };
-    depths.iter().any(|&depth| depth > near).then(|| [at_front(0), at_front(1)])
-}
-
-/// Returns the part of a line that is within a box from (0, 0) to `size`.
-fn clipped_to_box([from, to]: [Vec2; 2], size: Vec2) -> Option<[Vec2; 2]> {
-    let way = to - from;
-    let (mut first, mut last) = (0.0_f32, 1.0_f32);
-    for (start, way, end) in [(from.x, way.x, size.x), (from.y, way.y, size.y)] {
-        if way == 0.0 && !(0.0..=end).contains(&start) {
-            return None;
-        }
-        if way != 0.0 {
-            let [a, b] = [-start / way, (end - start) / way];
-            (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
-        }
-    }
-    (first <= last).then(|| [from + first * way, from + last * way])
 }
 
 /// Returns the area of a mark of this width centred at a column and row, moved into `screen` if it

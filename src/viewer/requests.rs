@@ -22,7 +22,7 @@ fn large_resolution(shown: Resolution) -> Resolution {
 impl Viewer {
     /// Requests that the camera is copied to the clipboard, as a line of a scene file.
     pub(super) fn copy_camera(&mut self) {
-        if let Some(camera) = self.eye.camera() {
+        if let Some(camera) = self.first_camera() {
             self.requests.push_back(Request::Copy(format!("{},", camera.rounded().to_ron())));
             self.show_note("camera copied, if the terminal allows it; it is also printed on exit");
         }
@@ -30,7 +30,7 @@ impl Viewer {
 
     /// Requests to propose that the view is written into the scene's file.
     pub(super) fn propose_view(&mut self) {
-        self.requests.extend(self.eye.camera().map(|camera| Request::ProposeView(camera.rounded())));
+        self.requests.extend(self.first_camera().map(|camera| Request::ProposeView(camera.rounded())));
     }
 
     /// Opens the question in which format to export the picture, if there are a picture and a

@@ -46,6 +46,11 @@ impl ViewLayout {
         Self { map, right: None }
     }
 
+    /// Returns the layout with its left map twice, side by side.
+    pub(super) fn twice(self) -> Self {
+        Self { right: Some(RightMap { map: self.map, split: Split::Beside }), ..self }
+    }
+
     /// Replaces the single map, or the right one of two, by the map that `step` returns for it.
     ///
     /// With two maps, the left one is skipped.

@@ -120,6 +120,34 @@ fn keys_shift_and_tilt_the_view_rectangle_and_show_it() {
     assert_eq!(camera.pose(), load(tower).camera().pose());
 }
 
+/// `V` splits the screen; the keys move first the second eye, then the first camera.
+#[test]
+fn v_shows_the_tracer_from_outside() {
+    let mut session = looking(BALL, &[]);
+    session.send(b"V");
+    session.wait_for_text("keys move the view from outside; V next");
+    session.send(b"i");
+    session.wait_for("the letters of the camera", SOON, |seen| {
+        let text = seen.screen().text().concat();
+        ["o", "v", "q", "p"].iter().all(|letter| text.contains(letter)) && text.contains("first camera")
+    });
+    session.send(b"[");
+    session.wait_for_rest();
+    session.send(b"V");
+    session.wait_for_text("keys move the first camera; V next");
+    session.send(b"[");
+    session.wait_for_text("field of view: 41.3 degrees");
+    session.send(b"V");
+    session.wait_for_text("horizon and vanishing points; V next");
+    session.send(b"V");
+    session.wait_for_text("ordinary view; V next");
+    session.wait_for_rest();
+    assert!(!session.seen().screen().text().concat().contains("first camera"));
+    let camera = camera(&mut session).expect("it was changed");
+    assert_eq!(camera.pose(), load(BALL).camera().pose(), "the second eye has not moved the first camera");
+    assert!((camera.rectangle().vertical_fov().to_degrees() - 41.3).abs() < 0.1, "one step of the zoom");
+}
+
 /// The turntable turns until a command moves the eye; then nothing moves.
 #[test]
 fn t_turns_until_the_next_move() {

@@ -12,7 +12,7 @@ fn three_spheres() -> Scene {
 }
 
 fn shot(camera: Camera, resolution: Resolution) -> Shot {
-    Shot { scene: 1, lights: 0, camera, resolution, layout: ViewLayout::default(), geometry: false }
+    Shot { scene: 1, lights: 0, camera, outside: None, resolution, layout: ViewLayout::default(), geometry: false }
 }
 
 fn frame(refines: bool) -> Frame {

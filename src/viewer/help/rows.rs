@@ -44,6 +44,7 @@ impl Group {
             | C::Wipe(_)
             | C::Wireframe
             | C::Explain
+            | C::Outside
             | C::Point(_)
             | C::ScrollUp
             | C::ScrollDown => Self::Maps,

@@ -30,6 +30,7 @@ fn the_order_is_the_links() {
             scene: 0,
             lights: 0,
             camera: *scene.camera(),
+            outside: None,
             resolution,
             layout: ViewLayout::default(),
             geometry: false,
