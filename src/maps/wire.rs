@@ -7,14 +7,15 @@ use crate::ray::Ray;
 use crate::render::GBufferSample;
 use crate::scene::Scene;
 use crate::shape::{Primitive, Triangle};
+use glam::Vec3;
 
 /// The colour of edges.
 const EDGE: [f32; 3] = [255.0, 208.0, 64.0];
-/// Half the width of a line, in pixels.
-const HALF_WIDTH: f32 = 0.6;
-/// The least height, in pixels, of a triangle whose edges have their full colour. The edges of
+/// The least mean height, in pixels, of a triangle whose edges have their full colour. The edges of
 /// smaller triangles are fainter, because they would otherwise cover the whole surface.
-const FULL_HEIGHT: f32 = 5.0;
+const FULL_HEIGHT: f32 = 7.0;
+/// The opacity of the edges of the smallest triangles.
+const LEAST_OPACITY: f32 = 0.1;
 
 /// Returns the colour of a pixel: a grey by the angle of the surface, and edges. `None` without a
 /// hit.
@@ -39,18 +40,21 @@ pub(super) fn color(scene: &Scene, camera: &Camera, resolution: Resolution, samp
 /// height of a pixel at the hit, in world units.
 fn edge_opacity(triangle: &Triangle, ray: &Ray, pixel: f32) -> f32 {
     let [a, b, c] = triangle.corners();
-    // The distance in space between the ray and the line of an edge, which unlike a distance within the triangle's
-    // plane corresponds to pixels even if the triangle is tilted.
-    let distance = |from: glam::Vec3, to: glam::Vec3| {
+    // The distance in space between a line along the ray and the line of an edge, which unlike a distance within the
+    // triangle's plane corresponds to pixels even if the triangle is tilted.
+    let distance = |point: Vec3, from: Vec3, to: Vec3| {
         let normal = ray.direction.cross(to - from);
-        (from - ray.origin).dot(normal).abs() / normal.length().max(f32::MIN_POSITIVE)
+        (from - point).dot(normal).abs() / normal.length().max(f32::MIN_POSITIVE)
     };
-    let nearest = distance(a, b).min(distance(b, c)).min(distance(c, a));
-    if nearest > HALF_WIDTH * pixel {
-        return 0.0;
-    }
-    let height = distance(a, b).max(distance(b, c)).max(distance(c, a));
-    (height / (FULL_HEIGHT * pixel)).clamp(0.15, 1.0)
+    let nearest =
+        [(a, b), (b, c), (c, a)].map(|(from, to)| distance(ray.origin, from, to)).into_iter().fold(f32::MAX, f32::min);
+    // The share of the pixel that a line with a width of one pixel covers.
+    let coverage = (1.0 - nearest / pixel).max(0.0);
+    // The mean height of the triangle as it is seen, harmonic because the share of lines in its area is the sum over
+    // the edges of the line's width divided by the height over the edge.
+    let heights = [(a, b, c), (b, c, a), (c, a, b)].map(|(from, to, corner)| distance(corner, from, to));
+    let height = 3.0 / heights.into_iter().map(|height| height.max(f32::MIN_POSITIVE).recip()).sum::<f32>();
+    coverage * (height / (FULL_HEIGHT * pixel)).clamp(LEAST_OPACITY, 1.0)
 }
 
 #[cfg(all(test, unit_tests))]
