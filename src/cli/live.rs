@@ -43,9 +43,9 @@ fn hint(keymap: &Keymap, occasion: Occasion) -> String {
     let does = |command, does: &str| key(command).map(|key| format!("{key} {does}"));
     let moves = Some(moves.map_or_else(|| "drag to look".to_owned(), |keys| format!("drag or {keys} to move")));
     let (help, quit) = (does(Command::Help, "keys"), does(Command::Quit, "quit"));
-    // Each line fits into 80 columns.
+    // Each line fits into 80 columns. On narrower screens parts are left out, from the second one on.
     let parts = match occasion {
-        Occasion::Demo => vec![moves, help, quit, Some("termtrace FILE opens yours".to_owned())],
+        Occasion::Demo => vec![moves, Some("termtrace FILE opens yours".to_owned()), help, quit],
         Occasion::Scenes => {
             vec![moves, does(Command::NextMap, "maps"), does(Command::Explain, "explain"), help, quit]
         }
@@ -96,8 +96,7 @@ impl ViewArgs {
         options.exports = Some(PathBuf::from("."));
         options.welcome = settings.hint().then(|| hint(&keymap, occasion));
         options.tour = if let Occasion::Tour(scenes) = occasion { Some(scenes) } else { None };
-        options.few_colors =
-            settings.hint().then(|| "256 colours; --color truecolor if your terminal has it".to_owned());
+        options.few_colors = settings.hint().then(|| "256 colours; try --color truecolor".to_owned());
         options.keymap = keymap;
         options
     }

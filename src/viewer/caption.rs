@@ -94,7 +94,7 @@ impl Layer for Caption {
         lines.push(self.keys_row(canvas, is_last));
         let width = lines.iter().map(|line| line.trim_end().width() as u16 + 2).max().unwrap_or(0).min(screen.width);
         let height = lines.len() as u16;
-        let below = canvas.status_rows.max(1);
+        let below = canvas.status_rows.max(canvas.note_rows);
         let area = Rect { y: screen.bottom().saturating_sub(below + height), width, height, ..screen };
         canvas.lay(area, |theme, area, buffer| {
             Clear.render(area, buffer);

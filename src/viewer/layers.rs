@@ -138,6 +138,9 @@ pub(super) struct Canvas<'a> {
     pub(super) figures: FrameStatistics,
     /// Number of rows that the status line takes at the bottom of the screen.
     pub(super) status_rows: u16,
+    /// Number of rows that the note takes there, or one without a note, so that the next one covers
+    /// nothing.
+    pub(super) note_rows: u16,
 }
 
 /// Statistics of the frames shown.

@@ -37,6 +37,11 @@ impl Note {
         Self { above: Some(text), ..self }
     }
 
+    /// Returns the number of rows that the note takes.
+    pub(super) fn rows(&self) -> u16 {
+        1 + u16::from(self.above.is_some())
+    }
+
     /// Returns the time at which the note fades: [`NOTE_TIME`] after the first call.
     ///
     /// `None` if it stays until the next key.
@@ -53,8 +58,24 @@ impl Layer for Note {
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         for (below, text) in (0..).zip([Some(&self.text), self.above.as_ref()].into_iter().flatten()) {
             let row = canvas.row_from_bottom(below);
+            let text = shortened(text, usize::from(row.width.saturating_sub(2)));
             let width = (text.width() as u16 + 2).min(row.width);
-            canvas.lay(Rect { width, ..row }, |theme, area, buffer| legend::draw(text, theme, area, buffer));
+            canvas.lay(Rect { width, ..row }, |theme, area, buffer| legend::draw(&text, theme, area, buffer));
         }
     }
 }
+
+/// Returns the text without as many of its parts, which semicolons separate, as do not fit into
+/// `width` columns.
+///
+/// The second part goes first, and the first one stays.
+fn shortened(text: &str, width: usize) -> String {
+    let mut parts: Vec<_> = text.split("; ").collect();
+    while parts.len() > 1 && parts.join("; ").width() > width {
+        parts.remove(1);
+    }
+    parts.join("; ")
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;

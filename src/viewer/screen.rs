@@ -305,6 +305,7 @@ impl Screen {
         }
         let area = theme::area(grid.size());
         let status_rows = content.layers.get::<StatusLine>().map_or(0, |_| StatusLine::rows(area));
+        let note_rows = content.layers.get::<Note>().map_or(1, Note::rows);
         let modes = content.active_modes(grid.size());
         content.layers.draw(&mut Canvas {
             grid: &mut *grid,
@@ -316,6 +317,7 @@ impl Screen {
             wipe: content.wipe,
             figures,
             status_rows,
+            note_rows,
         });
         // Order by colour saves bytes but takes 0.5 ms longer, more than a fast link saves by fewer bytes.
         let (usual, order) =

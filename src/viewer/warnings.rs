@@ -32,8 +32,8 @@ impl Layer for Warnings {
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
-        // At least one row above the lowest, in which a note may be shown at the same time.
-        let row = canvas.row_from_bottom(canvas.status_rows.max(1));
+        // Above the rows in which a note may be shown at the same time.
+        let row = canvas.row_from_bottom(canvas.status_rows.max(canvas.note_rows));
         let lines = self.lines(row.width);
         for (above, line) in (0..).zip(lines.iter().rev()).take_while(|&(above, _)| above < row.y) {
             canvas.write_line(&format!(" {line}"), Rect { y: row.y - above, ..row });

@@ -37,16 +37,27 @@ fn turn_to_the_last_page(session: &mut Session) {
 #[test]
 fn the_tour_shows_each_scene_with_its_caption_in_three_rows() {
     let mut session = start(&["tour"], Size::cells(80, 24));
-    session.wait_for_text("1 of 12; n next scene");
+    session.wait_for_text(" 1 of ");
     session.wait_for_text("Look at: the edge of a shadow");
     session.send(b"n");
-    session.wait_for_text("2 of 12; n next scene");
+    session.wait_for_text(" 2 of ");
     let rows = session.seen().screen().text();
     assert!(rows[..20].iter().all(|row| !row.contains(char::is_alphabetic)), "{rows:?}");
     turn_to_the_last_page(&mut session);
     session.wait_for_text("as high as the eye, on the horizon.");
     session.send(b"p");
-    session.wait_for_text("1 of 12");
+    session.wait_for_text(" 1 of ");
+    leave(&mut session);
+}
+
+/// The line about few colours takes a row of its own below the caption.
+#[test]
+fn the_line_about_colours_covers_no_caption() {
+    let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).size(Size::cells(80, 24));
+    let mut session = start.arg("tour").env("TERMTRACE_HINT", "true").env("COLORTERM", "").spawn();
+    session.wait_for_text("256 colours; try --color truecolor");
+    let rows = session.seen().screen().text();
+    assert!(rows[21].contains(" 1 of ") && rows[22].contains("256 colours"), "{rows:?}");
     leave(&mut session);
 }
 

@@ -27,6 +27,14 @@ fn every_scene_and_mesh_opens_with_the_keys_to_press() {
     }
 }
 
+/// On a narrow screen parts of the hint are left out, and none is cut.
+#[test]
+fn the_hint_fits_into_forty_columns() {
+    let mut session = start("corridor", Size::cells(40, 12)).spawn();
+    session.wait_for_text(" drag or WASD to move; ? keys; q quit");
+    leave(session);
+}
+
 #[test]
 fn the_hint_goes_at_the_first_key_and_at_the_first_mouse_press() {
     for input in [&b"e"[..], b"\x1b[<0;40;12M"] {
@@ -62,7 +70,7 @@ fn settings_and_bindings_hold_for_the_hint() {
     leave(session);
 }
 
-const FEW_COLORS: &str = "256 colours; --color truecolor if your terminal has it";
+const FEW_COLORS: &str = "256 colours; try --color truecolor";
 
 /// Over ssh only `TERM` is set: the terminal is known by its replies, and where it is not, a line
 /// says which flag to try.

@@ -37,6 +37,7 @@ fn topmost(layers: &mut Layers) -> String {
         wipe: 0.5,
         figures,
         status_rows: 0,
+        note_rows: 1,
     });
     crate::export::text(&grid).trim().to_owned()
 }
