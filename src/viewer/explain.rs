@@ -69,8 +69,8 @@ impl Layer for ExplainPanel {
             return;
         }
         let (screen, mode) = (canvas.screen(), canvas.cell_mode);
-        // The panel leaves the lowest row and the rows of the status line free.
-        let above = Rect { height: screen.height - canvas.status_rows.saturating_sub(1), ..screen };
+        // The panel leaves the rows of the status line free.
+        let above = Rect { height: screen.height - canvas.status_rows, ..screen };
         let keys = help::key_names(canvas.keymap, canvas.modes, &[Command::ScrollUp, Command::ScrollDown]);
         let keys = keys.unwrap_or_default();
         match canvas.frame.filter(|frame| frame.shot.outside.is_some()) {

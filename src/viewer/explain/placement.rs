@@ -11,9 +11,8 @@ use ratatui_core::layout::Rect;
 /// Width of the panel, with its border and a blank on each side.
 const PANEL_WIDTH: u16 = MAX_LINE_WIDTH as u16 + 4;
 
-/// Rows at the bottom of the screen that stay free.
-// One for notes and legends, and one for the status line.
-const RESERVED_ROWS: u16 = 2;
+/// Rows at the bottom of the screen that stay free, for notes and legends.
+const RESERVED_ROWS: u16 = 1;
 
 /// Least and greatest height of the inset within the panel, in rows.
 // With fewer rows the letters o, q and p of the drawing overlap; more rows would show nothing more and leave the text
