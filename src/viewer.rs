@@ -118,7 +118,7 @@ pub(crate) enum Request {
     SwitchScene(isize),
     /// Call [`Viewer::show_metadata`] with the name of the shown scene.
     ShowMetadata,
-    /// Read the mesh file again, turned so that this axis of the file points up.
+    /// Read the mesh file again, turned so that the axis after this one points up.
     TurnMesh(UpAxis),
     /// Copy this text to the user's clipboard.
     Copy(String),

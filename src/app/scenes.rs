@@ -103,10 +103,11 @@ impl<E: Send + 'static> Scenes<E> {
         Ok(self.wanted)
     }
 
-    /// Reads the current scene again; if it is a mesh, with the axis `up` of its file pointing up.
-    pub(super) fn turn_up(&mut self, up: UpAxis) -> io::Result<()> {
+    /// Reads the current scene again; if it is a mesh, with the next axis of its file pointing up,
+    /// after `shown`.
+    pub(super) fn turn_up(&mut self, shown: UpAxis) -> io::Result<()> {
         if let Some(source) = self.sources.get_mut(self.wanted) {
-            source.turn_up(up);
+            source.turn_up(shown);
         }
         self.read_again()
     }

@@ -87,9 +87,11 @@ impl<E> Source<E> {
         Self { named, up: None, read: Arc::new(read) }
     }
 
-    /// Makes later readings of a mesh file turn it so that its axis `up` points up.
-    pub(super) fn turn_up(&mut self, up: UpAxis) {
-        self.up = Some(up);
+    /// Makes later readings of a mesh file turn it so that the next axis points up: the one after
+    /// the chosen axis, or after `shown` if none is chosen.
+    pub(super) fn turn_up(&mut self, shown: UpAxis) {
+        // Not always after the shown one: a key may be pressed again before the turned mesh is shown.
+        self.up = Some(self.up.unwrap_or(shown).next());
     }
 
     /// Sets the scene file, into which views can be saved.

@@ -17,7 +17,7 @@ impl Viewer {
     /// Turns the mesh so that the next axis of its file points up.
     pub(super) fn turn_mesh(&mut self) {
         match self.scene().and_then(|scene| scene.mesh()) {
-            Some(mesh) => self.requests.push_back(super::Request::TurnMesh(mesh.up.next())),
+            Some(mesh) => self.requests.push_back(super::Request::TurnMesh(mesh.up)),
             None => self.show_note("only a mesh that is opened by itself can be turned"),
         }
     }

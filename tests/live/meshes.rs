@@ -66,6 +66,9 @@ fn a_key_turns_a_mesh_and_a_guess_is_announced() {
     session.send(b"z");
     session.wait_for_text("up         x");
     session.wait_for_text("size       1 x 1 x 2");
+    // The second press comes before the mesh is shown turned by the first.
+    session.send(b"zz");
+    session.wait_for_text("up         -z");
     leave(&mut session);
     let mut scene = looking(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/ball.ron"), &[]);
     scene.send(b"z");
