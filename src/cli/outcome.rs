@@ -90,7 +90,7 @@ fn report_failure(message: &str, code: u8) -> ExitCode {
 
 /// Prints a warning to standard error.
 pub(super) fn warn(message: impl Display) {
-    print_error(&format!("termtrace: warning: {}\n", visible_lines(&message.to_string())));
+    print_error(&format!("warning: {}\n", visible_lines(&message.to_string())));
 }
 
 /// Prints a message to standard error, coloured if that is a terminal, unless the write could block

@@ -3,6 +3,7 @@
 use std::io::IsTerminal;
 
 const RED: &str = "\x1b[1;31m";
+const YELLOW: &str = "\x1b[1;33m";
 const GREEN: &str = "\x1b[1;32m";
 const CYAN: &str = "\x1b[1;36m";
 const PLAIN: &str = "\x1b[0m";
@@ -14,7 +15,7 @@ pub(super) fn is_colored(stream: &impl IsTerminal) -> bool {
     stream.is_terminal() && variable("NO_COLOR").is_empty() && variable("TERM") != "dumb"
 }
 
-/// Returns an error message with coloured `error:`, tips and carets.
+/// Returns an error message or warning with coloured `error:` or `warning:`, tips and carets.
 ///
 /// `text` must contain no control characters of quoted arguments: the caller replaces them before.
 pub(super) fn error(text: &str) -> String {
@@ -26,6 +27,8 @@ fn error_line(line: &str) -> String {
     let tip = "did you mean ";
     if let Some(message) = line.strip_prefix("error:") {
         format!("{RED}error:{PLAIN}{}", error_line(message))
+    } else if let Some(message) = line.strip_prefix("warning:") {
+        format!("{YELLOW}warning:{PLAIN}{message}")
     } else if text.starts_with('^') && text.trim_matches('^').is_empty() {
         line.replacen(text, &format!("{RED}{text}{PLAIN}"), 1)
     } else if text.starts_with("tip:") {

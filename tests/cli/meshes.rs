@@ -34,7 +34,7 @@ fn a_mesh_is_turned_by_a_flag_or_by_a_guess_that_is_announced() {
     assert_eq!(upright, folder.frame("bowl.stl --mesh-up z"));
     let guessed = folder.run("frame bowl.stl");
     assert_eq!((guessed.code, guessed.stdout == upright), (Some(0), true));
-    let notice = "termtrace: warning: bowl.stl: z is taken for up in this STL; --mesh-up y (or another axis) says \
+    let notice = "warning: bowl.stl: z is taken for up in this STL; --mesh-up y (or another axis) says \
                   otherwise\n";
     assert_eq!(guessed.stderr, notice);
     // Turned back to y, with the same z for right.
@@ -53,7 +53,7 @@ fn missing_materials_and_textures_are_warnings_except_in_check_and_with_strict()
     let named = format!("mtllib a.mtl\nusemtl red\n{TRIANGLE}");
     folder.write("named.obj", &named);
     let run = folder.run("frame named.obj");
-    assert_eq!(run.stderr, "termtrace: warning: named.obj: materials missing: a.mtl\n");
+    assert_eq!(run.stderr, "warning: named.obj: materials missing: a.mtl\n");
     assert_eq!(run.stdout, folder.frame("plain.obj"), "clay");
     let error = "named.obj:1:8: the materials are missing: \"a.mtl\": there is no such file";
     folder.run("check named.obj").fails_in_a_line(2, error);
@@ -62,7 +62,7 @@ fn missing_materials_and_textures_are_warnings_except_in_check_and_with_strict()
     // Each texture is named once, however many materials have it; the other colours stay.
     folder.write("a.mtl", "newmtl red\nKd 1 0 0\nmap_Kd a.png\nnewmtl blue\nmap_Kd a.png\n");
     let run = folder.run("frame named.obj --format ansi");
-    assert_eq!(run.stderr, "termtrace: warning: named.obj: texture missing: a.png\n");
+    assert_eq!(run.stderr, "warning: named.obj: texture missing: a.png\n");
     folder.run("check named.obj").fails_in_a_line(2, "the texture is missing: \"a.png\"");
     folder.write("a.mtl", "newmtl red\nKd 1 0 0\n");
     assert_eq!(run.stdout, folder.frame("named.obj --format ansi"));
@@ -72,7 +72,7 @@ fn missing_materials_and_textures_are_warnings_except_in_check_and_with_strict()
     let scene = r#"(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, objects: [Mesh(path: "named.obj")])"#;
     folder.write("scene.ron", scene);
     let run = folder.run("describe scene.ron");
-    assert_eq!((run.code, run.stderr.as_str()), (Some(0), "termtrace: warning: named.obj: texture missing: a.png\n"));
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), "warning: named.obj: texture missing: a.png\n"));
     folder.run("check scene.ron").fails(2, "the texture is missing: \"a.png\"");
 }
 
@@ -92,7 +92,7 @@ fn a_missing_picture_of_a_gltf_file_is_a_warning_but_not_a_missing_buffer() {
     };
     folder.write("a.gltf", document(positions));
     let run = folder.run("frame a.gltf");
-    assert_eq!((run.code, run.stderr.as_str()), (Some(0), "termtrace: warning: a.gltf: texture missing: a.png\n"));
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), "warning: a.gltf: texture missing: a.png\n"));
     folder.run("check a.gltf").fails_in_a_line(2, "\"a.png\": there is no such file");
     folder.write("b.gltf", document("b.bin"));
     folder.run("frame b.gltf --strict").fails_in_a_line(2, "\"a.png\": there is no such file");

@@ -53,7 +53,7 @@ fn a_scene_without_light_is_warned_of() {
     assert_eq!(folder.run("check dark.ron").text(), format!("dark.ron: OK (1 object, 0 lights), but {UNLIT}\n"));
     for command in ["frame dark.ron", "dark.ron"] {
         let run = folder.run(command);
-        assert_eq!((run.code, run.stderr), (Some(0), format!("termtrace: warning: {UNLIT}\n")), "{command}");
+        assert_eq!((run.code, run.stderr), (Some(0), format!("warning: {UNLIT}\n")), "{command}");
     }
     // A map needs no light.
     folder.run("frame dark.ron --map depth").done();

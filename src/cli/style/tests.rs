@@ -2,7 +2,7 @@ use super::*;
 
 /// Returns the text without its colour sequences.
 fn plain(text: &str) -> String {
-    [RED, GREEN, CYAN, PLAIN].iter().fold(text.to_owned(), |text, color| text.replace(color, ""))
+    [RED, YELLOW, GREEN, CYAN, PLAIN].iter().fold(text.to_owned(), |text, color| text.replace(color, ""))
 }
 
 #[test]
@@ -19,6 +19,7 @@ fn errors_are_colored_by_their_parts() {
     ] {
         assert!(colored.contains(&part), "{part:?}: {colored:?}");
     }
+    assert_eq!(error("warning: a: no b\n"), format!("{YELLOW}warning:{PLAIN} a: no b\n"));
     assert!(!error("error: x: Usage: y\n").contains(GREEN), "only a line's own heading is colored");
 }
 
