@@ -1,4 +1,4 @@
-//! termtrace: a live ray tracer whose screen is the terminal, as a library.
+//! termtrace: a real-time ray tracer that runs in the terminal, as a library.
 //!
 //! Scene file -> scene -> camera -> eye ray -> closest hit -> shade -> framebuffer (linear light) -> tone -> cells ->
 //! bytes -> a terminal or a file; and back: bytes -> events -> camera.
