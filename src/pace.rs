@@ -63,7 +63,8 @@ const SMOOTH_SCREENS_PER_SECOND: f64 = 16.0;
 // then. After a tenfold drop of the rate, 36 frames a second with a gain of 0.86 recover in 1.73 to 1.94 s of simulated
 // time; 16 a second with a gain of 0.95 took 1.9 to 2.4 s.
 const SLOW_LINK_FRAME_RATE: f64 = 36.0;
-/// Number of bytes that a frame may always have, however low the estimated rate is.
+/// Number of bytes that a frame may always have, however low the estimated rate is; a terminal that
+/// draws slowly gets more (see [`FrameFloor`](estimates::FrameFloor)).
 // Still smaller frames cannot show that the rate was estimated too low: with them, an estimate that had collapsed after
 // unsolicited replies took seconds to recover.
 const MIN_FRAME_BYTES: usize = 200;
@@ -237,7 +238,8 @@ impl Link {
         let is_sure = limit < smooth || measured.is_some_and(|rate| rate.is_limit);
         let slow = rate < smooth && is_sure || rate < 2.0 * smooth && self.is_slow();
         self.replies.set_slow(slow);
-        let max_bytes = MIN_FRAME_BYTES.max((rate / self.frames_per_second()) as usize);
+        let floor = self.replies.frame_floor.bytes().min((limit / self.frames_per_second()) as usize);
+        let max_bytes = MIN_FRAME_BYTES.max(floor).max((rate / self.frames_per_second()) as usize);
         slow.then_some(Limit { rate: Some(rate), max_bytes })
     }
 

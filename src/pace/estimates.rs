@@ -1,6 +1,7 @@
 //! Estimates of the shortest round trip and of the rate. Both use recent samples only, because
 //! links change.
 
+use super::MIN_FRAME_BYTES;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -28,6 +29,15 @@ const SMOOTHING: f64 = 0.75;
 /// second suffices.
 // The round trips of smaller frames consist of jitter and the terminal's own delay.
 const MIN_SAMPLE_BYTES: f64 = 512.0;
+
+/// Least service time of a frame after which [`FrameFloor`] grows.
+// Frames of a slow link take 28 ms, if they are larger than the floor.
+const MIN_DRAWING_TIME: Duration = Duration::from_millis(50);
+/// Time for which [`FrameFloor`] does not grow after larger frames have taken longer.
+// On a near link of 3 KB/s, one frame in this time takes 133 ms instead of 67.
+const FLOOR_PAUSE: Duration = Duration::from_secs(2);
+/// Greatest number of doublings of [`FrameFloor`]: to 51 kB, half a picture of 200x60 cells.
+const MAX_DOUBLINGS: u32 = 8;
 
 /// The estimate of the shortest round trip.
 #[derive(Default)]
@@ -119,6 +129,44 @@ pub(super) struct Rate {
     pub(super) bytes_per_second: f64,
     /// Whether it is the link's limit; otherwise it is a lower bound.
     pub(super) is_limit: bool,
+}
+
+/// The number of bytes that a frame may always have, however low the estimated rate is.
+///
+/// It is doubled for as long as frames of this size take hardly longer than those of half the size.
+// A terminal that draws for 0.2 s after each frame delays the reply to the next one by that time, whatever its size.
+// The time was taken for transmission: frames became smaller, and the estimated rate with them. From 70 ms on, a near
+// terminal got 1 % of what it could draw; now it gets a quarter or more.
+#[derive(Default)]
+pub(super) struct FrameFloor {
+    /// Number of times that the size was doubled.
+    doublings: u32,
+    /// The service time of frames of half the size.
+    before: Option<Duration>,
+    /// Time until which the size is not doubled, because that took longer.
+    waits_until: Duration,
+}
+
+impl FrameFloor {
+    /// Returns the number of bytes.
+    pub(super) fn bytes(&self) -> usize {
+        MIN_FRAME_BYTES << self.doublings
+    }
+
+    /// Records the service time of a frame of this many bytes.
+    pub(super) fn record(&mut self, bytes: usize, service: Duration, now: Duration) {
+        let floor = self.bytes();
+        if !(floor / 2..2 * floor).contains(&bytes) {
+            return;
+        }
+        if self.before.take().is_some_and(|before| service > before.mul_f64(1.5)) {
+            self.doublings = self.doublings.saturating_sub(1);
+            self.waits_until = now + FLOOR_PAUSE;
+        } else if service >= MIN_DRAWING_TIME && now >= self.waits_until && self.doublings < MAX_DOUBLINGS {
+            self.before = Some(service);
+            self.doublings += 1;
+        }
+    }
 }
 
 /// The estimate of the rate, from samples of the last frames.

@@ -76,6 +76,8 @@ struct World {
     wanted: usize,
     /// Delay of the first reply, because the terminal is busy starting.
     start: Duration,
+    /// Time for which the terminal draws after each frame, and reads nothing.
+    draws: Duration,
 }
 
 const SCREEN: usize = 80 * 24 * 8;
@@ -99,6 +101,7 @@ impl World {
             first_reply: None,
             wanted: SCREEN,
             start: Duration::ZERO,
+            draws: Duration::ZERO,
         }
     }
 
@@ -139,6 +142,7 @@ impl World {
         let mut frame = vec![b'x'; limit - 11];
         self.link.send(&mut frame, self.now);
         let seen = self.transmit(&frame);
+        self.free_at += self.draws;
         self.frames.push((self.now, frame.len(), seen));
     }
 
@@ -362,4 +366,29 @@ fn after_a_loss_one_query_is_in_flight_on_a_slow_link() {
     }
     let rate = world.link.replies.rates.best().map(|rate| rate.bytes_per_second);
     assert!(rate.is_some_and(|rate| (20_000.0..=55_000.0).contains(&rate)), "{rate:?} of 50 KB/s");
+}
+
+/// A near terminal that draws for a fixed time after each frame is not taken for a slow link: it
+/// gets large frames.
+#[test]
+fn a_near_terminal_that_draws_slowly_gets_large_frames() {
+    for (tags, draws) in [(true, 80), (false, 80), (true, 150), (false, 150), (true, 300)] {
+        let mut world = World { draws: ms(draws), ..World::new(tags, Fault::Doubled, usize::MAX) };
+        world.simulate(ms(20_000));
+        let since = world.now.saturating_sub(ms(5_000));
+        let sent: usize = world.frames.iter().filter(|frame| frame.0 >= since).map(|frame| frame.1).sum();
+        let could = SCREEN * 5_000 / draws as usize;
+        assert!(5 * sent > could, "tags {tags}, draws for {draws} ms: {sent} bytes of {could}");
+    }
+}
+
+/// The frames of a near link that is slow stay small.
+#[test]
+fn a_near_link_that_is_slow_gets_small_frames() {
+    for (tags, rate) in [(true, 3_000.0), (false, 3_000.0), (true, 11_500.0), (false, 11_500.0)] {
+        let mut world = World { rate, ..World::new(tags, Fault::Doubled, usize::MAX) };
+        world.simulate(ms(30_000));
+        let worst = world.worst_key(ms(15_000), ms(30_000));
+        assert!(worst < ms(250), "tags {tags}, {rate} bytes per second: {worst:?}");
+    }
 }

@@ -1,7 +1,7 @@
 //! The terminal's replies: what they show about the link, and what to do while replies are missing.
 
 use super::alignment::Alignment;
-use super::estimates::{BusyPeriod, Rates, RoundTrip};
+use super::estimates::{BusyPeriod, FrameFloor, Rates, RoundTrip};
 use super::initial_window::InitialWindow;
 use super::ledger::{InFlight, Ledger, Matched, Query, Validity};
 use super::{FRAME_TIME, MAX_TRANSMISSION_TIME};
@@ -96,6 +96,7 @@ pub(super) struct ReplyTracker {
     pub(super) round_trip: RoundTrip,
     pub(super) rates: Rates,
     busy_period: BusyPeriod,
+    pub(super) frame_floor: FrameFloor,
     /// Number of bytes known to have arrived since the estimates were dropped last, which limits
     /// the window (slow start).
     pub(super) delivered: f64,
@@ -152,6 +153,7 @@ impl ReplyTracker {
             round_trip: RoundTrip::default(),
             rates: Rates::default(),
             busy_period: BusyPeriod::default(),
+            frame_floor: FrameFloor::default(),
             delivered: 0.0,
             begun: None,
             slow: false,
@@ -165,6 +167,9 @@ impl ReplyTracker {
 
     pub(super) fn set_slow(&mut self, slow: bool) {
         self.slow = slow;
+        if !slow {
+            self.frame_floor = FrameFloor::default();
+        }
     }
 
     /// Appends a query without a frame, whose round trip is the link's own, and records it.
@@ -430,7 +435,18 @@ impl ReplyTracker {
             && passed
                 > self.busy_period.transmitted_until().max(sent) + self.transmission_time(bytes) + LATE_REPLY_MARGIN;
         let (bytes, service) = self.busy_period.extend(sent, bytes, passed);
+        if self.shows_drawing_time(matched.validity) {
+            self.frame_floor.record(bytes, service, now);
+        }
         self.rates.record(bytes, service, is_late, now);
+    }
+
+    /// Returns whether a reply of this validity shows how long a near terminal draws.
+    fn shows_drawing_time(&self, validity: Validity) -> bool {
+        // Over a long way a small frame takes long because the link is slow. Replies without numbers may be matched
+        // wrongly while the first picture is on its way: at 5 KB/s the floor then grew to 6 kB.
+        let is_matched = self.tag_support == TagSupport::Known || self.delivered >= MIN_DELIVERED_BYTES;
+        self.slow && self.is_local() && is_matched && validity == Validity::Exact
     }
 
     /// Gives up matching replies to queries until no more replies arrive.
@@ -442,6 +458,7 @@ impl ReplyTracker {
     fn resync(&mut self, now: Duration) {
         self.ledger.clear();
         self.alignment = Alignment::default();
+        self.frame_floor = FrameFloor::default();
         if self.slow {
             self.rates.keep_limits();
             if self.serial_replies == 0 && self.delivered < MIN_DELIVERED_BYTES {
