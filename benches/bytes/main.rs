@@ -7,10 +7,14 @@
 //!   row by row from the top;
 //! - `cargo bench --bench bytes -- --programs` runs two programs of ratatui on both backends, which otherwise come
 //!   last;
+//! - `cargo bench --bench bytes -- --capped` only sends frames with a limit of bytes, at the motions of a camera, which
+//!   otherwise come after the programs; with `--seed N` also at one drawn from the seed;
 //! - `cargo bench --bench bytes -- --test` only sees whether it runs.
 //!
 //! Bytes are the mean of all frames after the first. Times are CPU time, the best of five, cells filled included.
 
+mod capped;
+mod motions;
 mod programs;
 mod scenes;
 mod seen;
@@ -33,6 +37,7 @@ struct Options {
     seeds: Vec<u64>,
     is_test: bool,
     only_programs: bool,
+    only_capped: bool,
 }
 
 impl Options {
@@ -45,6 +50,7 @@ impl Options {
                 "--bench" => {}
                 "--test" => options.is_test = true,
                 "--programs" => options.only_programs = true,
+                "--capped" => options.only_capped = true,
                 "--seed" => {
                     let number = arguments.next().and_then(|number| number.parse().ok());
                     options.seeds.push(number.expect("--seed takes a number"));
@@ -171,6 +177,9 @@ fn main() {
     if options.only_programs {
         return programs::print(options.is_test);
     }
+    if options.only_capped {
+        return print_capped(&options);
+    }
     let mut sequences = given(&options);
     sequences.extend(drawn(&options));
     let mut sizes: Vec<Size> = sequences.iter().map(|frames| frames.size).collect();
@@ -183,5 +192,13 @@ fn main() {
     }
     if options.folder.is_none() {
         programs::print(options.is_test);
+        print_capped(&options);
+    }
+}
+
+fn print_capped(options: &Options) {
+    let frames = options.frame_count().min(motions::FRAMES);
+    for &size in options.sizes() {
+        capped::print(size, frames, options.rounds(), &options.seeds);
     }
 }

@@ -132,7 +132,7 @@ impl Sequence {
 
     /// Two sequences of two kinds.
     pub(crate) fn drawn(seed: u64) -> [Self; 2] {
-        let mut draw = Draw(seed);
+        let mut draw = Draw::new(seed);
         let first = draw.below(4);
         let second = (first + 1 + draw.below(3)) % 4;
         [first, second].map(|kind| Self::drawn_of(Kind::ALL[kind], &mut draw))
@@ -238,9 +238,13 @@ impl fmt::Display for Sequence {
 }
 
 /// Numbers drawn from a seed: the generator of Steele, Lea and Flood 2014 (`SplitMix64`).
-struct Draw(u64);
+pub(crate) struct Draw(u64);
 
 impl Draw {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -248,15 +252,15 @@ impl Draw {
         mixed ^ mixed >> 31
     }
 
-    fn below(&mut self, end: usize) -> usize {
+    pub(crate) fn below(&mut self, end: usize) -> usize {
         (self.next() % end as u64) as usize
     }
 
-    fn between(&mut self, least: f32, most: f32) -> f32 {
+    pub(crate) fn between(&mut self, least: f32, most: f32) -> f32 {
         least + (most - least) * (self.next() >> 40) as f32 / (1 << 24) as f32
     }
 
-    fn sign(&mut self) -> f32 {
+    pub(crate) fn sign(&mut self) -> f32 {
         if self.below(2) == 0 { 1.0 } else { -1.0 }
     }
 

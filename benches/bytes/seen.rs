@@ -100,25 +100,25 @@ impl Errors {
 }
 
 /// Returns the PSNR in decibels; infinite for equal pictures.
-fn psnr(mean_square: f64) -> f64 {
+pub(crate) fn psnr(mean_square: f64) -> f64 {
     10.0 * libm::log10(255.0 * 255.0 / mean_square)
 }
 
 /// The screen of a terminal.
-struct Screen(vt100::Parser);
+pub(crate) struct Screen(vt100::Parser);
 
 impl Screen {
-    fn new(picture: &Picture) -> Self {
+    pub(crate) fn new(picture: &Picture) -> Self {
         let side = |cells: u32| NonZeroU16::new(cells as u16).expect("a screen has cells");
         Self(vt100::Parser::new(side(picture.height() / 2), side(picture.width()), 0))
     }
 
-    fn feed(&mut self, bytes: &[u8]) {
+    pub(crate) fn feed(&mut self, bytes: &[u8]) {
         self.0.process(bytes);
     }
 
     /// Returns the pixels in the picture's order: row by row from the top.
-    fn pixels(&self) -> Vec<Srgb8> {
+    pub(crate) fn pixels(&self) -> Vec<Srgb8> {
         let (rows, columns) = self.0.screen().size();
         let line = |row, half: usize| (0..columns.get()).map(move |column| self.halves(column, row)[half]);
         (0..rows.get()).flat_map(|row| line(row, 0).chain(line(row, 1))).collect()

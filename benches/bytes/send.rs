@@ -70,8 +70,13 @@ impl Lossy {
 
     /// The bytes for that picture at that time.
     pub(crate) fn send(&mut self, picture: &Picture, now: Duration) -> &[u8] {
+        self.send_within(picture, now, None)
+    }
+
+    /// The bytes for that picture at that time, under a limit.
+    pub(crate) fn send_within(&mut self, picture: &Picture, now: Duration, max_bytes: Option<usize>) -> &[u8] {
         self.bytes.clear();
-        let allowance = Allowance { quality: self.quality, now, max_bytes: None };
+        let allowance = Allowance { quality: self.quality, now, max_bytes };
         self.encoder.encode_within(&grid_from_picture(CellMode::HALF_BLOCK, picture), allowance, &mut self.bytes);
         &self.bytes
     }
@@ -164,7 +169,7 @@ pub(crate) fn times<const N: usize>(ways: [Way; N], frames: &[Picture], rounds: 
 }
 
 /// Returns the CPU time of this thread, in seconds.
-fn cpu_time() -> f64 {
+pub(crate) fn cpu_time() -> f64 {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }

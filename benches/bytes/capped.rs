@@ -1,0 +1,136 @@
+//! Frames with a limit of bytes: how near they are to the wanted pictures, on an emulator's screen.
+
+use crate::motions::Motion;
+use crate::seen::{Screen, psnr};
+use crate::send::{Lossy, cpu_time};
+use std::time::Duration;
+use termtrace::{Picture, Quality, Size, Srgb8};
+
+/// The limits: frames a second, bytes a frame, and the PSNR and SSIM that are wanted at either size.
+const LIMITS: [Limit; 6] = [
+    Limit { rate: 30, max_bytes: 1_000, wanted: [(31.5, 0.98), (0.0, 0.0)] },
+    Limit { rate: 30, max_bytes: 1_667, wanted: [(34.0, 0.99), (30.7, 0.95)] },
+    Limit { rate: 30, max_bytes: 3_333, wanted: [(0.0, 0.0), (0.0, 0.0)] },
+    Limit { rate: 15, max_bytes: 1_667, wanted: [(0.0, 0.0), (0.0, 0.0)] },
+    Limit { rate: 15, max_bytes: 3_333, wanted: [(36.0, 0.0), (31.0, 0.0)] },
+    Limit { rate: 15, max_bytes: 8_000, wanted: [(40.5, 0.0), (35.7, 0.0)] },
+];
+
+struct Limit {
+    rate: usize,
+    max_bytes: usize,
+    wanted: [(f64, f64); 2],
+}
+
+/// What a motion's frames after the first show and take, in the mean.
+#[derive(Clone, Copy, Debug, Default)]
+struct Judged {
+    psnr: f64,
+    ssim: f64,
+    bytes: f64,
+    millis: f64,
+    /// The frames above the limit.
+    over: f64,
+}
+
+impl Judged {
+    fn fields(&self) -> [f64; 5] {
+        [self.psnr, self.ssim, self.bytes, self.millis, self.over]
+    }
+
+    fn mean(all: &[Self]) -> Self {
+        let [psnr, ssim, bytes, millis, over] =
+            std::array::from_fn(|at| all.iter().map(|one| one.fields()[at]).sum::<f64>() / all.len() as f64);
+        Self { psnr, ssim, bytes, millis, over }
+    }
+}
+
+/// Measures the fixed motions, and one for each seed, and prints a table.
+pub(crate) fn print(size: Size, frames: usize, rounds: usize, seeds: &[u64]) {
+    let drawn = seeds.iter().map(|&seed| Motion::drawn(seed));
+    let motions: Vec<Motion> = Motion::ALL.into_iter().chain(drawn).collect();
+    for motion in &motions[Motion::ALL.len()..] {
+        println!("{motion:?}");
+    }
+    let pictures: Vec<Vec<Picture>> = motions.iter().map(|motion| motion.frames(size, frames)).collect();
+    let names: Vec<&str> = motions.iter().map(|motion| motion.name).collect();
+    println!(
+        "\n| {}x{}: dB, SSIM, bytes, ms; over the limit | mean of four (at least) | {} |",
+        size.columns,
+        size.rows,
+        names.join(" | ")
+    );
+    println!("|---|--:|{}", "--:|".repeat(names.len()));
+    for limit in &LIMITS {
+        let all: Vec<Judged> = pictures.iter().map(|frames| judged(frames, limit, rounds)).collect();
+        let mean = Judged::mean(&all[..Motion::ALL.len()]);
+        let (psnr, ssim) = limit.wanted[usize::from(size != crate::SIZES[0])];
+        let wanted = if psnr > 0.0 { format!(" ({psnr:.1}, {ssim:.2})") } else { String::new() };
+        let cells: Vec<String> = all.iter().map(shown).collect();
+        println!("| {}/s, {} B | {}{wanted} | {} |", limit.rate, limit.max_bytes, shown(&mean), cells.join(" | "));
+    }
+}
+
+fn shown(Judged { psnr, ssim, bytes, millis, over }: &Judged) -> String {
+    format!("{psnr:.1} {ssim:.3} {bytes:.0} {millis:.2}; {over}")
+}
+
+/// Sends the pictures within the limit, the first without, and judges what an emulator shows.
+fn judged(pictures: &[Picture], limit: &Limit, rounds: usize) -> Judged {
+    let every = 30 / limit.rate;
+    let (mut all, mut least) = (Vec::new(), f64::INFINITY);
+    for _ in 0..rounds {
+        all.clear();
+        let mut lossy = Lossy::new(Quality::Equal);
+        let mut screen = Screen::new(&pictures[0]);
+        for (k, picture) in pictures.iter().enumerate().step_by(every) {
+            let start = cpu_time();
+            let max_bytes = (k > 0).then_some(limit.max_bytes);
+            let bytes = lossy.send_within(picture, Duration::from_secs(k as u64) / 30, max_bytes);
+            let millis = (cpu_time() - start) * 1e3;
+            let length = bytes.len();
+            screen.feed(bytes);
+            if k > 0 {
+                let seen = screen.pixels();
+                let square = mean_square(&seen, picture.pixels());
+                let ssim = ssim(&seen, picture.pixels(), picture.width() as usize);
+                let over = f64::from(u8::from(length > limit.max_bytes));
+                all.push(Judged { psnr: psnr(square), ssim, bytes: length as f64, millis, over });
+            }
+        }
+        least = least.min(Judged::mean(&all).millis);
+    }
+    let mean = Judged::mean(&all);
+    Judged { millis: least, over: mean.over * all.len() as f64, ..mean }
+}
+
+fn mean_square(seen: &[Srgb8], wanted: &[Srgb8]) -> f64 {
+    let square = |a: u8, b: u8| f64::from(u32::from(a.abs_diff(b)).pow(2));
+    let squares = seen.iter().zip(wanted).map(|(a, b)| square(a.r, b.r) + square(a.g, b.g) + square(a.b, b.b));
+    squares.sum::<f64>() / (3 * wanted.len()) as f64
+}
+
+/// Returns the structural similarity of the luma, the mean of windows of 8x8 pixels, 4 apart.
+fn ssim(seen: &[Srgb8], wanted: &[Srgb8], width: usize) -> f64 {
+    let luma = |c: Srgb8| 0.299 * f64::from(c.r) + 0.587 * f64::from(c.g) + 0.114 * f64::from(c.b);
+    let (mut sum, mut count) = (0.0, 0.0);
+    let height = seen.len() / width;
+    for top in (0..height.saturating_sub(7)).step_by(4) {
+        for left in (0..width - 7).step_by(4) {
+            let pixels = (0..64).map(|at| (top + at / 8) * width + left + at % 8);
+            let mut sums = [0.0; 5];
+            for (a, b) in pixels.map(|at| (luma(seen[at]), luma(wanted[at]))) {
+                for (sum, value) in sums.iter_mut().zip([a, b, a * a, b * b, a * b]) {
+                    *sum += value / 64.0;
+                }
+            }
+            let [a, b, aa, bb, ab] = sums;
+            let (c1, c2) = (6.502_5, 58.522_5);
+            let similarity = (2.0 * a * b + c1) * (2.0 * (ab - a * b) + c2)
+                / ((a * a + b * b + c1) * (aa - a * a + bb - b * b + c2));
+            sum += similarity;
+            count += 1.0;
+        }
+    }
+    sum / count
+}
