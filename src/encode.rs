@@ -24,6 +24,7 @@ use crate::grid::{Cell, Glyph, Grid, HalfBlocks, Size};
 #[cfg(feature = "backend")]
 mod backend;
 mod by_color;
+mod capped;
 mod change_times;
 #[cfg(feature = "backend")]
 mod foreign_output;
@@ -86,10 +87,10 @@ pub struct Allowance {
     pub now: Duration,
     /// The largest number of bytes that the frame should take; `None` for no limit.
     ///
-    /// Above the limit, the cells with the smallest errors wait for a later frame, even if they exceed the quality's
-    /// caps. Cells that are only made exact also wait above 8 bytes per cell of the screen. Text, picture cells that
-    /// replace text or unknown contents, and the cell with the largest error never wait; with [`Quality::Exact`] no
-    /// cell does.
+    /// In motion, cells get coarser colours, or keep those of earlier frames, so that the error that is left is small.
+    /// At rest, the cells with the smallest errors wait for a later frame, and cells that are only made exact also wait
+    /// above 8 bytes per cell of the screen. Text and picture cells that replace text or unknown contents never wait;
+    /// with [`Quality::Exact`] no cell does.
     pub max_bytes: Option<usize>,
 }
 
@@ -105,6 +106,7 @@ pub struct Encoder {
     change_times: ChangeTimes,
     /// The time at which the cells that are not exact are to be sent; `None` if all are exact.
     due: Option<Duration>,
+    shortage: capped::Shortage,
 }
 
 /// The state of the terminal, as known from the bytes sent.
@@ -228,8 +230,16 @@ impl Encoder {
     /// after a cluster.
     fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let Some(caps) = lossy::QualityCaps::for_quality(allowance.quality) else { return self.draw(wanted, bytes) };
-        self.change_times.record(wanted, allowance.now);
+        let in_motion = self.change_times.record(wanted, allowance.now);
         let known = self.take_state(wanted.size(), bytes);
+        // At rest, the cells get their final colours, the largest error first: coarse ones would be sent in vain.
+        let is_capped = |&max_bytes: &usize| in_motion && max_bytes >= capped::LEAST_BYTES;
+        let cap = allowance.max_bytes.filter(is_capped).filter(|_| capped::is_possible(&known.shown, wanted));
+        if let Some(max_bytes) = cap
+            && self.shortage.is_known()
+        {
+            return self.draw_capped(wanted, known, max_bytes, allowance.now, bytes);
+        }
         let has_waited = |at| self.change_times.exact_at(at) <= allowance.now;
         let plan = lossy::Plan::new(lossy::LossyFrame {
             shown: &known.shown,
@@ -256,6 +266,12 @@ impl Encoder {
                 break (next, cursor);
             }
             bytes.truncate(start);
+            if let Some(max_bytes) = cap
+                && !refines
+            {
+                self.shortage.begin(taken, max_bytes);
+                return self.draw_capped(wanted, known, max_bytes, allowance.now, bytes);
+            }
             // Tries again with the share of the cells that should fit, less a thirty-second, so that the next try
             // hardly ever fails. With a sixteenth less, 84.5 to 85.2 % of a link of 50 kB/s were used instead of 86.5
             // to 87.3 %.
@@ -268,6 +284,42 @@ impl Encoder {
         let refines = plan.inexact_cells(&next.shown).map(|at| self.change_times.exact_at(at)).max();
         self.due = if is_cut { Some(allowance.now) } else { refines };
         self.known = Some(next);
+        cursor
+    }
+
+    /// Appends a frame of at most `max_bytes` without the marks of a synchronized update.
+    ///
+    /// Only text may take more.
+    ///
+    /// Returns the cursor's position after the frame, or `None` if it depends on the terminal.
+    fn draw_capped(
+        &mut self,
+        wanted: &Grid,
+        mut known: TerminalState,
+        max_bytes: usize,
+        now: Duration,
+        bytes: &mut Vec<u8>,
+    ) -> Option<CellPosition> {
+        let start = bytes.len();
+        let with_text = capped::with_text(&known.shown, wanted);
+        let mut cursor = with_text.and_then(|with_text| self.write(&with_text, &mut known, bytes));
+        let (picture, pen) = (bytes.len(), known.pen);
+        let frame = capped::CappedFrame {
+            shown: &mut known.shown,
+            wanted,
+            half_blocks: self.half_blocks,
+            max_bytes: max_bytes.saturating_sub(picture - start + self.synchronized_len()),
+        };
+        let mut shortage = self.shortage;
+        capped::draw(frame, &mut shortage, |grid, changed| {
+            bytes.truncate(picture);
+            known.pen = pen;
+            cursor = self.write_changed(grid, changed, &mut known.pen, bytes).or(cursor);
+            bytes.len() - picture
+        });
+        self.shortage = shortage;
+        self.due = capped::is_inexact(&known.shown, wanted).then_some(now);
+        self.known = Some(known);
         cursor
     }
 
@@ -331,18 +383,30 @@ impl Encoder {
     /// after them, or `None` if it depends on the terminal.
     fn write(&self, wanted: &Grid, known: &mut TerminalState, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let changed = update_grid(&mut known.shown, wanted);
+        self.write_changed(wanted, &changed, &mut known.pen, bytes)
+    }
+
+    /// Appends the bytes that write the `changed` cells of `wanted`. Returns the cursor's position
+    /// after them, or `None` if it depends on the terminal.
+    fn write_changed(
+        &self,
+        wanted: &Grid,
+        changed: &[CellPosition],
+        pen: &mut Pen,
+        bytes: &mut Vec<u8>,
+    ) -> Option<CellPosition> {
         let strokes = match self.order {
-            Order::Raster => strokes::choose_strokes(wanted, &changed, self.half_blocks, known.pen),
+            Order::Raster => strokes::choose_strokes(wanted, changed, self.half_blocks, *pen),
             Order::Color => {
-                let order = by_color::order(wanted, &changed, self.half_blocks, known.pen);
-                let mut strokes = strokes::choose_strokes(wanted, &order, self.half_blocks, known.pen);
+                let order = by_color::order(wanted, changed, self.half_blocks, *pen);
+                let mut strokes = strokes::choose_strokes(wanted, &order, self.half_blocks, *pen);
                 // Colours are shared in this order only. In raster order sharing costs more bytes than it saves,
                 // because a compressor then finds fewer repetitions.
                 strokes::share_next_fg(wanted, &mut strokes);
                 strokes
             }
         };
-        strokes::write_strokes(wanted, &strokes, self.half_blocks, &mut known.pen, bytes)
+        strokes::write_strokes(wanted, &strokes, self.half_blocks, pen, bytes)
     }
 }
 

@@ -6,7 +6,7 @@ use crate::send::{Lossy, cpu_time};
 use std::time::Duration;
 use termtrace::{Picture, Quality, Size, Srgb8};
 
-/// The limits: frames a second, bytes a frame, and the PSNR and SSIM that are wanted at either size.
+/// The limits, each with the PSNR and SSIM that are wanted at either size.
 const LIMITS: [Limit; 6] = [
     Limit { rate: 30, max_bytes: 1_000, wanted: [(31.5, 0.98), (0.0, 0.0)] },
     Limit { rate: 30, max_bytes: 1_667, wanted: [(34.0, 0.99), (30.7, 0.95)] },
@@ -22,7 +22,7 @@ struct Limit {
     wanted: [(f64, f64); 2],
 }
 
-/// What a motion's frames after the first show and take, in the mean.
+/// The means of a motion's frames after the first.
 #[derive(Clone, Copy, Debug, Default)]
 struct Judged {
     psnr: f64,

@@ -24,19 +24,24 @@ impl Default for ChangeTimes {
 impl ChangeTimes {
     /// Records a wanted grid, and `now` as the time of change for cells that differ from the last
     /// one.
-    pub(super) fn record(&mut self, wanted: &Grid, now: Duration) {
+    ///
+    /// Returns whether any cell has changed.
+    pub(super) fn record(&mut self, wanted: &Grid, now: Duration) -> bool {
         if self.wanted.size() != wanted.size() {
             self.wanted = wanted.clone();
             self.since = vec![now; wanted.cells().len()];
-            return;
+            return true;
         }
+        let mut has_changed = false;
         for ((last, cell), since) in self.wanted.cells_mut().iter_mut().zip(wanted.cells()).zip(&mut self.since) {
             // Updated in place, because cloning the whole grid for each frame would allocate.
             if last != cell {
                 last.clone_from(cell);
                 *since = now;
+                has_changed = true;
             }
         }
+        has_changed
     }
 
     /// Returns the time at which the cell at index `cell_index` is to be made exact.

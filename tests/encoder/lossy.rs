@@ -173,9 +173,9 @@ fn either_half_may_be_what_differs() {
     }
 }
 
-/// Of several changes under a limit the largest is sent first, and each frame keeps the limit.
+/// Each frame under a limit keeps it, uses it, and brings the picture nearer.
 #[test]
-fn the_largest_errors_come_first() {
+fn a_limit_is_kept() {
     let size = Size::new(30, 8);
     for quality in [Quality::Equal, Quality::Fast] {
         let mut watched = Watched::new(Order::Raster, HalfBlocks::Either, size, Clusters::None);
@@ -185,10 +185,10 @@ fn the_largest_errors_come_first() {
             let level = 20 + (at * 37 % 200) as u8;
             *cell = Cell::new('▄', rgb(level, 20, 20), rgb(20, level, 20));
         }
-        // The watched encoder asserts that no frame is above the limit, and that larger errors are sent first.
+        // The watched encoder asserts that no frame is above the limit, and that the error shrinks.
         let limited = allowance(0, quality, Some(300));
         let sent = watched.send_within(&wanted, limited);
-        assert!((1..=300).contains(&sent), "{sent} bytes");
+        assert!((100..=300).contains(&sent), "{sent} bytes");
         let rest = watched.rest(&wanted, limited);
         assert!(rest.after >= Duration::from_millis(500));
     }

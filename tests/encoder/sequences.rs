@@ -86,6 +86,28 @@ fn random_sequences() {
     }
 }
 
+/// Under the limit of a slow link all frames fit, use it, and are near the wanted ones.
+#[test]
+fn frames_under_a_limit_are_near() {
+    const MAX_BYTES: usize = 1_667;
+    let frames = frames(&Sequence::of(Kind::Orbit), SMALL, 1);
+    let mut watched = Watched::new(Order::Color, HalfBlocks::Either, SMALL, Clusters::None);
+    let (mut sum, mut used) = (0.0, 0);
+    for (k, (now, grid)) in frames.iter().enumerate() {
+        let max_bytes = (k > 0).then_some(MAX_BYTES);
+        let sent = watched.send_within(grid, Allowance { quality: Quality::Equal, now: *now, max_bytes });
+        if k > 0 {
+            assert!(sent <= MAX_BYTES, "frame {k} has {sent} bytes");
+            used += sent;
+            sum += watched.psnr(grid);
+        }
+    }
+    let count = frames.len() - 1;
+    let (psnr, used) = (sum / count as f64, used as f64 / (count * MAX_BYTES) as f64);
+    println!("{psnr:.2} dB with {used:.3} of the limit");
+    assert!(psnr >= 29.0 && used >= 0.9, "{psnr} dB with {used} of the limit");
+}
+
 /// While one sphere moves, what has been still for a second is exact.
 #[test]
 fn cells_at_rest_are_exact() {

@@ -1,6 +1,6 @@
 //! An encoder whose bytes three terminals read; after each frame they are asked.
 
-use super::near::{Caps, assert_text_is_exact, assert_within, distance, halves, square};
+use super::near::{Caps, assert_text_is_exact, assert_within, halves, square};
 use super::screens::{Clusters, Screens};
 use std::time::Duration;
 use termtrace::internals::encode::Allowance;
@@ -103,7 +103,7 @@ impl Watched {
         match allowance.max_bytes {
             Some(most) if allowance.quality != Quality::Exact => {
                 assert_limited(&before, &seen, wanted, (bytes.len(), most));
-                assert_largest_first(&before, &seen, wanted, caps);
+                assert_nearer(&before, &seen, wanted);
             }
             _ => assert_within(caps, &seen, wanted),
         }
@@ -159,6 +159,15 @@ impl Watched {
         rest
     }
 
+    /// Returns the peak signal-to-noise ratio of the picture that is shown, in decibels.
+    pub(crate) fn psnr(&self, wanted: &Grid) -> f64 {
+        let cells = self.screens.shown().iter().zip(wanted.cells());
+        let pairs = cells.filter_map(|(shown, wanted)| Some([halves(shown)?, halves(wanted)?]));
+        let squares = pairs.flat_map(|[shown, wanted]| [square(shown[0], wanted[0]), square(shown[1], wanted[1])]);
+        let sum: u32 = squares.sum();
+        10.0 * libm::log10(255.0 * 255.0 * (6 * wanted.cells().len()) as f64 / f64::from(sum))
+    }
+
     /// Asserts that these cells have their exact colours.
     #[track_caller]
     pub(crate) fn assert_exact_at(&self, places: impl Iterator<Item = usize>, wanted: &Grid) {
@@ -195,16 +204,14 @@ fn assert_limited(before: &[Cell], seen: &Grid, wanted: &Grid, (bytes, most): (u
     assert!(bytes <= most || written <= 1, "{bytes} bytes for {written} cells, where {most} are allowed");
 }
 
-/// Asserts that the cells left differ no more than those written did.
+/// Asserts that a frame brings the picture no further from the wanted one.
 #[track_caller]
-fn assert_largest_first(before: &[Cell], seen: &Grid, wanted: &Grid, caps: Caps) {
-    let error = |a: [_; 2], b: [_; 2]| (0..2).map(|half| square(a[half], b[half])).max();
-    let is_beyond = |a: [_; 2], b: [_; 2]| (0..2).any(|half| distance(a[half], b[half]) > caps.distance + 1e-6);
-    let cells = || pictures(before, seen, wanted);
-    let written = cells().filter(|[before, seen, _]| before != seen).map(|[before, _, wanted]| error(before, wanted));
-    let left = cells().filter(|[before, seen, wanted]| before == seen && is_beyond(*seen, *wanted));
-    let left = left.map(|[_, seen, wanted]| error(seen, wanted));
-    if let (Some(written), Some(left)) = (written.min(), left.max()) {
-        assert!(written >= left, "{written:?} was written before {left:?}");
+fn assert_nearer(before: &[Cell], seen: &Grid, wanted: &Grid) {
+    let error = |a: [_; 2], b: [_; 2]| (0..2).map(|half| u64::from(square(a[half], b[half]))).sum::<u64>();
+    let (mut error_before, mut error_after) = (0, 0);
+    for [before, seen, wanted] in pictures(before, seen, wanted) {
+        error_before += error(before, wanted);
+        error_after += error(seen, wanted);
     }
+    assert!(error_after <= error_before, "the squared error grew from {error_before} to {error_after}");
 }

@@ -1,0 +1,263 @@
+//! Frames under a limit of bytes: the picture with the smallest error that fits.
+//!
+//! An exchange rate decides: the squared error, in 8-bit sRGB summed over the channels of both halves of a cell, that a
+//! byte has to remove. It is kept from frame to frame, so that the bytes of a frame come close to the limit: the larger
+//! the shortage of bytes, the larger the errors that stay.
+//!
+//! 1. Cells whose error is worth a byte are active. The [`colors`] of their halves become a palette, whose
+//!    colours are as far apart as the rate allows.
+//! 2. The [`pairs`] of these colours that pay for their pen are opened, and each cell takes the cheapest open pair, or
+//!    keeps what it shows.
+//! 3. If the bytes exceed the limit, the pairs that gain the least per byte are given up.
+//!
+//! The picture here is what [`picture_halves`] takes for one: half blocks and spaces in truecolor. All else is text.
+//!
+//! It is facility location (Cornuejols, Nemhauser and Wolsey 1990), solved in one greedy pass, because a full search
+//! gains another tenth of the quality in forty times the time.
+
+use super::halves::{Halves, half_block_cell, picture_halves, squared_difference};
+use super::moves::CellPosition;
+use crate::grid::{Cell, Grid, HalfBlocks};
+use colors::Palette;
+use pairs::{Colors, Pairs};
+use std::cell::RefCell;
+use std::mem;
+
+mod colors;
+mod pairs;
+
+/// The squared error that a byte has to remove.
+type ExchangeRate = f32;
+
+/// A cell whose error is large enough to be worth bytes.
+struct ActiveCell {
+    /// The cell's index in the grid.
+    at: usize,
+    wanted: Halves,
+    /// The error if the cell is not written.
+    stay: f32,
+    /// The error and the bytes of the cheapest way so far, the bytes at the exchange rate.
+    cost: f32,
+    /// The key of the pair with which the cell is written; `None` to keep what it shows.
+    pair: Option<u16>,
+    /// The colours that are nearest to each half and second nearest.
+    nearest: [[u8; 2]; 2],
+}
+
+/// The smallest limit of a frame for which the exchange rate decides.
+///
+/// A frame below it may have no room for a single pen.
+pub(super) const LEAST_BYTES: usize = 200;
+
+/// The exchange rate below which the differences are invisible, and the equal frame is tried.
+const LEAST_RATE: ExchangeRate = 0.3;
+
+/// The shortage of bytes, from frame to frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Shortage {
+    /// The exchange rate of the next frame; `None` while the frames of the quality fit.
+    rate: Option<ExchangeRate>,
+}
+
+impl Shortage {
+    /// Returns whether there is a shortage.
+    pub(super) fn is_known(self) -> bool {
+        self.rate.is_some()
+    }
+
+    /// Records that the frame of the quality takes `bytes`, where `max_bytes` are allowed.
+    pub(super) fn begin(&mut self, bytes: usize, max_bytes: usize) {
+        let share = bytes as f32 / max_bytes as f32;
+        self.rate = Some(2.0 * share * share);
+    }
+
+    /// Records that a frame at a rate would have taken `share` times the limit.
+    ///
+    /// Returns whether the rate was far off, so that the frame should be chosen again.
+    fn learn(&mut self, rate: ExchangeRate, share: f32) -> bool {
+        // With the power 1 instead of 1/2 the rate swings from frame to frame.
+        let next = rate * share.sqrt().clamp(0.1, 3.0);
+        self.rate = (next >= LEAST_RATE).then_some(next);
+        !(0.6..=1.6).contains(&share) && self.rate.is_some()
+    }
+}
+
+/// A frame under a limit, in which all text is shown already.
+pub(super) struct CappedFrame<'a> {
+    /// The grid that the terminal shows, and after the frame the one that it shows then.
+    pub(super) shown: &'a mut Grid,
+    pub(super) wanted: &'a Grid,
+    pub(super) half_blocks: HalfBlocks,
+    /// The largest number of bytes.
+    pub(super) max_bytes: usize,
+}
+
+/// The working memory of a frame, which all encoders of a thread share.
+#[derive(Default)]
+struct Scratch {
+    active: Vec<ActiveCell>,
+    palette: Palette,
+    pairs: Pairs,
+    /// The cells to write.
+    cells: Vec<WrittenCell>,
+    /// The cells that the frame replaces, with their indices.
+    replaced: Vec<(usize, Cell)>,
+    changed: Vec<CellPosition>,
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
+/// A cell to write.
+struct WrittenCell {
+    /// The cell's index in the grid.
+    at: usize,
+    halves: Halves,
+}
+
+/// Largest number of times that the cells of a frame are chosen.
+const MAX_TRIES: usize = 3;
+
+/// Chooses the cells of a frame and their colours, and calls `write` with the grid to show and the
+/// positions of these cells.
+///
+/// `write` replaces what it has written for the frame before, and returns the number of bytes. It is called again if
+/// they exceed the limit.
+pub(super) fn draw(
+    mut frame: CappedFrame<'_>,
+    shortage: &mut Shortage,
+    mut write: impl FnMut(&Grid, &[CellPosition]) -> usize,
+) {
+    SCRATCH.with_borrow_mut(|scratch| {
+        for left in (0..MAX_TRIES).rev() {
+            let rate = shortage.rate.unwrap_or(LEAST_RATE);
+            let bytes = scratch.choose_and_write(&mut frame, rate, &mut write);
+            if frame.max_bytes < LEAST_BYTES
+                || !shortage.learn(rate, bytes as f32 / frame.max_bytes as f32)
+                || left == 0
+            {
+                break;
+            }
+            scratch.restore(frame.shown);
+        }
+    });
+}
+
+impl Scratch {
+    /// Chooses the cells at an exchange rate, and writes those that fit.
+    ///
+    /// Returns the bytes of all chosen cells.
+    fn choose_and_write(
+        &mut self,
+        frame: &mut CappedFrame<'_>,
+        rate: ExchangeRate,
+        write: &mut impl FnMut(&Grid, &[CellPosition]) -> usize,
+    ) -> usize {
+        let Self { active, palette, pairs, .. } = self;
+        find_active(frame.shown, frame.wanted, rate, active);
+        palette.choose(active, rate);
+        let colors = Colors { palette, rate, half_blocks: frame.half_blocks };
+        pairs.choose(active, &colors, frame.wanted.size().columns.into());
+        let (mut ranks, mut most_cells) = (pairs.ranks(), usize::MAX);
+        let mut all = None;
+        loop {
+            let colors = Colors { palette: &self.palette, rate, half_blocks: frame.half_blocks };
+            self.pairs.list_cells(&self.active, &colors, ranks, &mut self.cells);
+            self.cells.truncate(most_cells);
+            self.apply(frame);
+            let bytes = write(frame.shown, &self.changed);
+            let all = *all.get_or_insert(bytes);
+            if bytes <= frame.max_bytes || self.cells.is_empty() {
+                return all;
+            }
+            self.restore(frame.shown);
+            if ranks > 1 {
+                ranks = self.pairs.ranks_within(ranks, frame.max_bytes as f32 / bytes as f32).max(1);
+            } else {
+                most_cells = (self.cells.len() * frame.max_bytes / bytes).min(self.cells.len() - 1);
+            }
+        }
+    }
+
+    /// Makes the frame's grid show the cells to write.
+    fn apply(&mut self, frame: &mut CappedFrame<'_>) {
+        let columns = usize::from(frame.shown.size().columns);
+        self.replaced.clear();
+        self.changed.clear();
+        for cell in &self.cells {
+            let new = half_block_cell(cell.halves, &frame.wanted.cells()[cell.at]);
+            let old = &mut frame.shown.cells_mut()[cell.at];
+            if *old != new {
+                self.replaced.push((cell.at, mem::replace(old, new)));
+                let (column, row) = (cell.at % columns, cell.at / columns);
+                self.changed.push(CellPosition { column: column as u16, row: row as u16 });
+            }
+        }
+    }
+
+    /// Undoes what [`apply`](Self::apply) did.
+    fn restore(&mut self, shown: &mut Grid) {
+        for (at, cell) in self.replaced.drain(..).rev() {
+            shown.cells_mut()[at] = cell;
+        }
+    }
+}
+
+/// Largest number of cells of a frame whose picture replaces text or unknown contents.
+///
+/// Such cells never wait, and are written exactly, before the exchange rate decides on the others.
+// A shorter status line uncovers a few. When a panel closes, the exact colours of all these cells would take more bytes
+// than those of the frame's quality.
+const MAX_APPEARING: usize = 64;
+
+/// Returns whether few enough cells of the picture replace text for a frame under a limit.
+pub(super) fn is_possible(shown: &Grid, wanted: &Grid) -> bool {
+    let cells = shown.cells().iter().zip(wanted.cells());
+    let appearing = cells.filter(|(shown, wanted)| picture_halves(shown).is_none() && picture_halves(wanted).is_some());
+    appearing.count() <= MAX_APPEARING
+}
+
+/// Returns the shown grid with the wanted text, and with the wanted picture where it shows text.
+///
+/// `None` if the terminal shows these already.
+pub(super) fn with_text(shown: &Grid, wanted: &Grid) -> Option<Grid> {
+    let is_text = |(shown, wanted): (&Cell, &Cell)| {
+        shown != wanted && (picture_halves(wanted).is_none() || picture_halves(shown).is_none())
+    };
+    if !shown.cells().iter().zip(wanted.cells()).any(is_text) {
+        return None;
+    }
+    let mut grid = shown.clone();
+    for (shown, wanted) in grid.cells_mut().iter_mut().zip(wanted.cells()) {
+        if is_text((shown, wanted)) {
+            shown.clone_from(wanted);
+        }
+    }
+    Some(grid)
+}
+
+/// Returns whether a cell of the picture does not show its wanted halves.
+pub(super) fn is_inexact(shown: &Grid, wanted: &Grid) -> bool {
+    let cells = shown.cells().iter().zip(wanted.cells());
+    cells
+        .filter_map(|(shown, wanted)| Some((shown, picture_halves(wanted)?)))
+        .any(|(shown, wanted)| picture_halves(shown) != Some(wanted))
+}
+
+/// Collects the cells whose error is worth a byte.
+fn find_active(shown: &Grid, wanted: &Grid, rate: ExchangeRate, active: &mut Vec<ActiveCell>) {
+    active.clear();
+    for (at, (shown, wanted)) in shown.cells().iter().zip(wanted.cells()).enumerate() {
+        let (Some(shown), Some(wanted)) = (picture_halves(shown), picture_halves(wanted)) else { continue };
+        let stay = error(shown, wanted);
+        if stay > rate {
+            active.push(ActiveCell { at, wanted, stay, cost: stay, pair: None, nearest: [[0; 2]; 2] });
+        }
+    }
+}
+
+/// Returns the squared error of both halves.
+fn error(shown: Halves, wanted: Halves) -> f32 {
+    (squared_difference(shown[0], wanted[0]) + squared_difference(shown[1], wanted[1])) as f32
+}

@@ -1,0 +1,277 @@
+//! The pairs of colours of a frame under a limit, and the choice of a pair for each cell.
+
+use super::colors::{MAX_COLORS, Palette};
+use super::{ActiveCell, ExchangeRate, WrittenCell, error};
+use crate::color::Srgb8;
+use crate::encode::halves::Halves;
+use crate::grid::HalfBlocks;
+
+/// The number of keys of pairs.
+const KEYS: usize = 1 << 14;
+
+/// The end of a list of ways.
+const END: u32 = u32::MAX;
+
+/// A way to write a cell.
+struct Way {
+    /// The cell's index among the active ones.
+    cell: u32,
+    cost: f32,
+    /// The index of the next way with the same pair.
+    next: u32,
+}
+
+/// The ways to write cells with a pair, and whether the pair is open.
+#[derive(Clone, Copy)]
+struct Pair {
+    /// The sum of what each cell would save.
+    saving: f32,
+    /// The index of the first way.
+    first: u32,
+    /// The rank of the pair among the open ones, from 0 for the best; `u16::MAX` for other pairs.
+    rank: u16,
+}
+
+const UNUSED: Pair = Pair { saving: 0.0, first: END, rank: u16::MAX };
+
+/// A pair with which cells are written.
+#[derive(Clone, Copy)]
+struct OpenPair {
+    key: u16,
+    /// The error that its cells lose.
+    gain: f32,
+    bytes: f32,
+}
+
+#[derive(Default)]
+pub(super) struct Pairs {
+    ways: Vec<Way>,
+    /// The pairs by key.
+    pairs: Vec<Pair>,
+    /// The keys of the pairs that have a way.
+    used: Vec<u16>,
+    open: Vec<OpenPair>,
+}
+
+impl Pairs {
+    /// Chooses the pair of each cell.
+    pub(super) fn choose(&mut self, active: &mut [ActiveCell], colors: &Colors<'_>, columns: usize) {
+        self.collect_ways(active, colors);
+        self.open_pairs(active, colors.rate);
+        for _ in 0..2 {
+            take_neighbours(active, colors, columns);
+        }
+        self.rank_pairs(active, colors);
+    }
+
+    /// Lists the cells of the first `ranks` pairs, each colour the mean of the halves sharing it.
+    pub(super) fn list_cells(
+        &self,
+        active: &[ActiveCell],
+        colors: &Colors<'_>,
+        ranks: usize,
+        cells: &mut Vec<WrittenCell>,
+    ) {
+        cells.clear();
+        let mut sums = [[0_u32; 4]; MAX_COLORS];
+        let is_written = |&key: &u16| usize::from(self.pairs[usize::from(key)].rank) < ranks;
+        let shown = |cell: &ActiveCell| Some(colors.cheapest(cell.pair.filter(is_written)?, cell.wanted).1);
+        for (cell, shown) in active.iter().filter_map(|cell| Some((cell, shown(cell)?))) {
+            for (color, wanted) in shown.into_iter().zip(cell.wanted) {
+                let values = [wanted.r.into(), wanted.g.into(), wanted.b.into(), 1];
+                for (sum, value) in sums[usize::from(color)].iter_mut().zip(values) {
+                    *sum += value;
+                }
+            }
+        }
+        let means = sums.map(|[r, g, b, count]| {
+            let [r, g, b] = [r, g, b].map(|sum| ((sum + count / 2) / count.max(1)) as u8);
+            Srgb8 { r, g, b }
+        });
+        for (cell, shown) in active.iter().filter_map(|cell| Some((cell, shown(cell)?))) {
+            cells.push(WrittenCell { at: cell.at, halves: shown.map(|color| means[usize::from(color)]) });
+        }
+    }
+
+    /// Returns the number of ranks.
+    pub(super) fn ranks(&self) -> usize {
+        self.open.len()
+    }
+
+    /// Returns the number of ranks whose cells take a `share` of the bytes of the first `ranks`.
+    ///
+    /// The number is less than `ranks`.
+    pub(super) fn ranks_within(&self, ranks: usize, share: f32) -> usize {
+        let bytes = |open: &[OpenPair]| open.iter().map(|open| open.bytes).sum::<f32>();
+        // A hundredth less, so that the next try hardly ever fails.
+        let mut left = 0.99 * share * bytes(&self.open[..ranks]);
+        let fits = |open: &&OpenPair| {
+            left -= open.bytes;
+            left >= 0.0
+        };
+        self.open[..ranks - 1].iter().take_while(fits).count()
+    }
+
+    /// Offers each cell the pairs of the colours near its halves.
+    fn collect_ways(&mut self, active: &[ActiveCell], colors: &Colors<'_>) {
+        self.ways.clear();
+        self.pairs.resize(KEYS, UNUSED);
+        for key in self.used.drain(..) {
+            self.pairs[usize::from(key)] = UNUSED;
+        }
+        for (at, cell) in active.iter().enumerate() {
+            let [upper, lower] = cell.nearest;
+            for &a in distinct(&upper) {
+                for &b in distinct(&lower) {
+                    self.offer(at, cell, colors.key(a, b), colors);
+                    if a != b {
+                        self.offer(at, cell, colors.key(b, b), colors);
+                    }
+                }
+                if !lower.contains(&a) {
+                    self.offer(at, cell, colors.key(a, a), colors);
+                }
+            }
+        }
+    }
+
+    /// Adds a way to write a cell, unless it costs more than the cell's error.
+    fn offer(&mut self, at: usize, cell: &ActiveCell, key: u16, colors: &Colors<'_>) {
+        let cost = colors.cheapest(key, cell.wanted).0 + colors.rate * (glyph_len(key) + move_len(key));
+        if cost >= cell.stay {
+            return;
+        }
+        let pair = &mut self.pairs[usize::from(key)];
+        if pair.first == END {
+            self.used.push(key);
+        }
+        pair.saving += cell.stay - cost;
+        self.ways.push(Way { cell: at as u32, cost, next: pair.first });
+        pair.first = self.ways.len() as u32 - 1;
+    }
+
+    /// Opens the pairs that save more than a pen, the best first, and gives each cell the cheapest.
+    fn open_pairs(&mut self, active: &mut [ActiveCell], rate: ExchangeRate) {
+        let Self { ways, pairs, used, .. } = self;
+        used.sort_unstable_by(|&a, &b| {
+            pairs[usize::from(b)].saving.total_cmp(&pairs[usize::from(a)].saving).then(a.cmp(&b))
+        });
+        for &key in used.iter() {
+            let pair = pairs[usize::from(key)];
+            let price = rate * pen_len(key);
+            if pair.saving <= price {
+                break;
+            }
+            let list = || std::iter::successors(ways.get(pair.first as usize), |way| ways.get(way.next as usize));
+            let saving: f32 = list().map(|way| (active[way.cell as usize].cost - way.cost).max(0.0)).sum();
+            if saving <= price {
+                continue;
+            }
+            for way in list() {
+                let cell = &mut active[way.cell as usize];
+                if way.cost < cell.cost {
+                    (cell.cost, cell.pair) = (way.cost, Some(key));
+                }
+            }
+        }
+    }
+
+    /// Gives up pairs that no longer pay for their pen, and ranks the others by what they gain per
+    /// byte.
+    fn rank_pairs(&mut self, active: &mut [ActiveCell], colors: &Colors<'_>) {
+        self.open.clear();
+        for cell in active.iter() {
+            let Some(key) = cell.pair else { continue };
+            let pair = &mut self.pairs[usize::from(key)];
+            if pair.rank == u16::MAX {
+                pair.rank = self.open.len() as u16;
+                self.open.push(OpenPair { key, gain: 0.0, bytes: pen_len(key) });
+            }
+            let open = &mut self.open[usize::from(pair.rank)];
+            open.gain += cell.stay - colors.cheapest(key, cell.wanted).0;
+            open.bytes += (cell.cost - colors.cheapest(key, cell.wanted).0) / colors.rate;
+        }
+        self.open.sort_unstable_by(|a, b| (b.gain * a.bytes).total_cmp(&(a.gain * b.bytes)).then(a.key.cmp(&b.key)));
+        for open in &self.open {
+            self.pairs[usize::from(open.key)].rank = u16::MAX;
+        }
+        self.open.retain(|open| open.gain >= colors.rate * (open.bytes - 0.2 * pen_len(open.key)));
+        for (rank, open) in (0..).zip(&self.open) {
+            self.pairs[usize::from(open.key)].rank = rank;
+        }
+        for cell in active.iter_mut() {
+            cell.pair = cell.pair.filter(|&key| self.pairs[usize::from(key)].rank != u16::MAX);
+        }
+    }
+}
+
+/// The palette, and how its colours may be combined.
+pub(super) struct Colors<'a> {
+    pub(super) palette: &'a Palette,
+    pub(super) rate: ExchangeRate,
+    pub(super) half_blocks: HalfBlocks,
+}
+
+impl Colors<'_> {
+    /// Returns the key of a pair: the numbers of its upper and lower colour.
+    ///
+    /// They are in ascending order if one pen shows both orders.
+    fn key(&self, upper: u8, lower: u8) -> u16 {
+        let (a, b) =
+            if self.half_blocks == HalfBlocks::Either && lower < upper { (lower, upper) } else { (upper, lower) };
+        u16::from(a) << 7 | u16::from(b)
+    }
+
+    /// Returns the least error of halves shown with a pair, and the numbers of the colours for it.
+    fn cheapest(&self, key: u16, wanted: Halves) -> (f32, [u8; 2]) {
+        let [a, b] = [(key >> 7) as u8, (key & 127) as u8];
+        let plain = error([self.palette.color(a), self.palette.color(b)], wanted);
+        if a == b || self.half_blocks == HalfBlocks::Lower {
+            return (plain, [a, b]);
+        }
+        let flipped = error([self.palette.color(b), self.palette.color(a)], wanted);
+        if flipped < plain { (flipped, [b, a]) } else { (plain, [a, b]) }
+    }
+}
+
+/// Lets cells take the pair of the cell beside them, which saves a move.
+fn take_neighbours(active: &mut [ActiveCell], colors: &Colors<'_>, columns: usize) {
+    for at in 0..active.len() {
+        for beside in [at.wrapping_sub(1), at + 1] {
+            let Some(&ActiveCell { at: place, pair: Some(key), .. }) = active.get(beside) else { continue };
+            let cell = &mut active[at];
+            let is_beside = place.abs_diff(cell.at) == 1 && place / columns == cell.at / columns;
+            if !is_beside {
+                continue;
+            }
+            let cost = colors.cheapest(key, cell.wanted).0 + colors.rate * glyph_len(key);
+            if cost < cell.cost {
+                (cell.cost, cell.pair) = (cost, Some(key));
+            }
+        }
+    }
+}
+
+/// Returns the two colours, or one if they are the same.
+fn distinct(colors: &[u8; 2]) -> &[u8] {
+    if colors[0] == colors[1] { &colors[..1] } else { colors }
+}
+
+fn is_flat(key: u16) -> bool {
+    key >> 7 == key & 127
+}
+
+/// Returns the bytes of a glyph: of a space or a half block.
+fn glyph_len(key: u16) -> f32 {
+    if is_flat(key) { 1.0 } else { 3.0 }
+}
+
+/// Returns the bytes of the move to a cell, in the mean.
+fn move_len(key: u16) -> f32 {
+    if is_flat(key) { 2.0 } else { 3.0 }
+}
+
+/// Returns the bytes of a change of the pen, in the mean.
+fn pen_len(key: u16) -> f32 {
+    if is_flat(key) { 15.0 } else { 17.0 }
+}
