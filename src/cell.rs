@@ -134,8 +134,10 @@ impl FromStr for Glyphs {
 impl CellMode {
     /// Half blocks in truecolor.
     pub const HALF_BLOCK: Self = Self { glyphs: Glyphs::Half, colors: Colors::Truecolor };
-    /// The ramp in the terminal's default colours: the mode of golden text frames.
+    /// The ramp in the terminal's default colours.
     pub const RAMP: Self = Self { glyphs: Glyphs::Ramp, colors: Colors::None };
+    /// ASCII with outlines in the terminal's default colours: the mode of golden text frames.
+    pub(crate) const TEXT: Self = Self { glyphs: Glyphs::Ascii, colors: Colors::None };
 
     /// Returns a picture's resolution for a screen of this size and cell aspect (height / width).
     ///

@@ -169,10 +169,10 @@ impl FromStr for Format {
 /// )"##)?;
 /// let rows = [
 ///     "            ",
-///     "   -+**+-   ",
-///     "  -#%@@%#-  ",
-///     "  -#%@@%#-  ",
-///     "   -+**+-   ",
+///     r#"  _/"``"\   "#,
+///     r#"  /o#@@#o\  "#,
+///     r#"  \o#@@#o/  "#,
+///     r#"  `\,,,,/   "#,
 ///     "            ",
 /// ];
 /// assert_eq!(text_frame(&scene, Size::new(12, 6)), rows.map(|row| format!("{row}\n")).concat());
@@ -182,7 +182,7 @@ impl FromStr for Format {
 /// # Panics
 /// If the screen has more than 16,777,216 cells.
 pub fn text_frame(scene: &Scene, size: Size) -> String {
-    text(&frame_grid(scene, CellMode::RAMP, size, USUAL_CELL_ASPECT))
+    text(&frame_grid(scene, CellMode::TEXT, size, USUAL_CELL_ASPECT))
 }
 
 /// Returns a scene, seen by its own camera, as the cells of a screen of this size and cell aspect.

@@ -64,15 +64,15 @@ pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {
     least.filter(|least| least.value > found.value).unwrap_or(found)
 }
 
-/// Returns the glyphs to use: the user's choice, or else half blocks, spaces or letter shapes.
+/// Returns the glyphs to use: the user's choice, or else half blocks, spaces or ASCII.
 ///
-/// Spaces are for locales that cannot encode half blocks, shapes for terminals without colours.
+/// Spaces are for locales that cannot encode half blocks, ASCII for terminals without colours.
 pub fn glyphs(choice: GlyphChoice, colors: Detected<Colors>, clues: &Clues<'_>) -> Detected<Glyphs> {
     if let Some(value) = choice {
         return Detected { value, source: Source::User };
     }
     if colors.value == Colors::None {
-        return Detected { value: Glyphs::Shape, source: colors.source };
+        return Detected { value: Glyphs::Ascii, source: colors.source };
     }
     match locale(clues) {
         Some((name, locale)) => {

@@ -41,7 +41,7 @@ enum ColorArg {
 /// The value of `--color` and `--glyphs` that leaves the choice to the terminal or the file format.
 const AUTO: &str = "auto";
 const AUTO_HELP: &str =
-    "Half blocks; shape if there is no colour, spaces if the locale is not UTF-8 or a block is not one column wide";
+    "Half blocks; ascii if there is no colour, spaces if the locale is not UTF-8 or a block is not one column wide";
 
 fn glyph_parser() -> impl TypedValueParser<Value = GlyphChoice> {
     let kinds = Glyphs::ALL.iter().map(|glyphs| PossibleValue::new(glyphs.name()).help(capitalized(glyphs.help())));
@@ -94,9 +94,7 @@ impl CellArgs {
             ColorChoice::Never => Colors::None,
             ColorChoice::Exactly(colors) => colors,
         };
-        // Text without colours uses the ramp, not `shape`: golden frames are compared as text, and only the ramp is
-        // guaranteed not to change.
-        let auto = if colors == Colors::None { Glyphs::Ramp } else { Glyphs::Half };
+        let auto = if colors == Colors::None { Glyphs::Ascii } else { Glyphs::Half };
         CellMode { glyphs: self.glyph_choice().unwrap_or(auto), colors }
     }
 }

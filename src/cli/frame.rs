@@ -27,8 +27,8 @@ const DEFAULT: Format = Format::Text;
 
 const FILES: &str = "\
 On a terminal a frame without --format fills the window, in the colours that the
-environment allows. Elsewhere it depends on neither: auto means the ramp without
-colours for text, and truecolor half blocks for ANSI, SVG and HTML.
+environment allows. Elsewhere it depends on neither: auto means ascii without colours
+for text, and truecolor half blocks for ANSI, SVG and HTML.
 A golden frame (--check) of any format has 80x24 cells and one sample per pixel,
 unless flags say otherwise.";
 

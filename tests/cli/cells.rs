@@ -36,16 +36,18 @@ fn an_ansi_frame_has_the_chosen_colours() {
 }
 
 #[test]
-fn a_text_frame_is_the_ramp_unless_asked() {
+fn a_text_frame_has_outlines_unless_asked() {
     let folder = Folder::new();
     let frame = |flags: &str| String::from_utf8(folder.frame(&format!("ball.ron --size 20x8 {flags}"))).expect("text");
-    let ramp = frame("");
-    assert!(ramp.chars().all(|c| " .:-=+*#%@\n".contains(c)));
-    for flags in ["--color auto", "--color never", "--glyphs auto", "--glyphs ramp", "--format ansi --color never"] {
-        assert_eq!(frame(flags), ramp, "{flags}");
+    let ascii = frame("");
+    assert!(ascii.contains('|') && ascii.contains('@'), "{ascii}");
+    for flags in ["--color auto", "--color never", "--glyphs auto", "--glyphs ascii", "--format ansi --color never"] {
+        assert_eq!(frame(flags), ascii, "{flags}");
     }
+    let ramp = frame("--glyphs ramp");
+    assert!(ramp.chars().all(|c| " .-:*+=%#@\n".contains(c)));
     let shape = frame("--glyphs shape");
-    assert!(shape.is_ascii() && shape != ramp);
+    assert!(shape.is_ascii() && shape != ramp && shape != ascii);
     let half = frame("--glyphs half");
     assert!(half.chars().all(|c| " ▀▄█\n".contains(c)) && half.contains('▄'));
     for text in [shape, half] {
@@ -63,6 +65,30 @@ fn goldens_are_of_any_kind() {
         folder.run(&format!("frame ball.ron --check {name} {flags}")).done();
         assert_eq!(folder.run(&format!("frame ball.ron --check {name}")).code, Some(1), "{name} is of no other kind");
     }
+}
+
+/// Checks that a golden of the former default, a ramp in another order, says how to go on.
+#[test]
+fn an_older_golden_names_the_glyphs_that_it_needs() {
+    let folder = Folder::new();
+    let said = |flags: &str| folder.run(&format!("frame ball.ron --check a.txt {flags}"));
+    let differs = |flags: &str, hint: &str| {
+        let said = said(flags);
+        assert_eq!(said.code, Some(1));
+        let diff = String::from_utf8(said.stdout).expect("text");
+        assert!(diff.ends_with(&format!("{hint}\n")), "{flags}: {diff}");
+    };
+    for kind in ["shape", "half", "ramp"] {
+        said(&format!("--bless --glyphs {kind}")).done();
+        differs("", &format!("the golden frame has the characters of --glyphs {kind}: compare it with that flag"));
+    }
+    let now = String::from_utf8(folder.read("a.txt")).expect("text");
+    let before = now.chars().map(|c| " .-:*+=%#@".find(c).map_or(c, |at| char::from(b" .:-=+*#%@"[at])));
+    folder.write("a.txt", &before.collect::<String>());
+    differs("", "the golden frame has the characters of --glyphs ramp: compare it with that flag");
+    differs("--glyphs ramp", "only the order of the ramp's characters has changed; --bless writes the frame anew");
+    said("--bless --glyphs ramp").done();
+    said("--glyphs ramp").done();
 }
 
 #[test]

@@ -133,7 +133,7 @@ fn judge(folder: &Folder, arguments: &str) {
             assert_shows((glyph, rgb_of(on_screen.fgcolor()), rgb_of(on_screen.bgcolor())), png.cell(column, row));
         }
     }
-    let text = folder.run(&format!("frame {arguments} --format text")).text();
+    let text = folder.run(&format!("frame {arguments} --format text --glyphs ramp")).text();
     assert_eq!(text.lines().count(), rows);
     for (row, line) in text.lines().enumerate() {
         for (column, glyph) in line.chars().enumerate() {
@@ -152,7 +152,7 @@ fn assert_lightness(glyph: char, (upper, lower): (Rgb, Option<Rgb>)) {
     let luminance = |[r, g, b]: Rgb| 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
     let y = lower.map_or(luminance(upper), |lower| f64::midpoint(luminance(upper), luminance(lower)));
     let lightness = if y > 216.0 / 24389.0 { 116.0 * libm::cbrt(y) - 16.0 } else { y * 24389.0 / 27.0 };
-    let place = " .:-=+*#%@".find(glyph).unwrap_or_else(|| panic!("{glyph:?} is not of the ramp")) as f64;
+    let place = " .-:*+=%#@".find(glyph).unwrap_or_else(|| panic!("{glyph:?} is not of the ramp")) as f64;
     // The last step has white in it; where two steps meet, either will do.
     let (least, most) = (10.0 * place - 1e-3, if place < 9.0 { 10.0 * place + 10.0 + 1e-3 } else { 100.1 });
     assert!((least..=most).contains(&lightness), "{glyph:?} for lightness {lightness}");

@@ -1,17 +1,16 @@
 //! The size of a frame.
 
 use super::{BALL, Folder};
-use termtrace::internals::cell::RAMP;
 use termtrace::{Scene, Size, text_frame};
 
-/// Returns the number of lines and their common length, in characters of the ramp.
+/// Returns the number of lines and their common length, in characters.
 #[track_caller]
 fn text_size(frame: &[u8]) -> (usize, usize) {
     assert_eq!(frame.last(), Some(&b'\n'));
     let lines: Vec<_> = frame[..frame.len() - 1].split(|&byte| byte == b'\n').collect();
     for line in &lines {
         assert_eq!(line.len(), lines[0].len());
-        assert!(line.iter().all(|byte| RAMP.contains(byte)), "{:?}", String::from_utf8_lossy(line));
+        assert!(line.iter().all(|byte| (b' '..=b'~').contains(byte)), "{:?}", String::from_utf8_lossy(line));
     }
     (lines[0].len(), lines.len())
 }
@@ -33,7 +32,7 @@ fn a_frame_is_80_by_24_characters() {
 fn size_is_cells_and_pixels_is_pixels() {
     let folder = Folder::new();
     for (cells, pixels) in [("80x24", "80x48"), ("1x1", "1x2"), ("7x3", "7x6"), ("30X9", "30x18")] {
-        for format in ["text", "ansi", "png"] {
+        for format in ["text --glyphs ramp", "ansi", "png"] {
             let by_cells = folder.frame(&format!("ball.ron --format {format} --size {cells}"));
             let by_pixels = folder.frame(&format!("ball.ron --format {format} --pixels {pixels}"));
             assert!(by_cells == by_pixels, "{format} of {cells} and {pixels}");
@@ -56,7 +55,7 @@ fn any_size_works() {
 fn an_odd_number_of_pixel_rows_ends_in_half_a_cell() {
     let folder = Folder::new();
     for (pixels, size) in [("1x1", (1, 1)), ("5x3", (5, 2)), ("40x23", (40, 12))] {
-        assert_eq!(text_size(&folder.frame(&format!("ball.ron --pixels {pixels}"))), size, "{pixels}");
+        assert_eq!(text_size(&folder.frame(&format!("ball.ron --glyphs ramp --pixels {pixels}"))), size, "{pixels}");
         folder.frame(&format!("ball.ron --pixels {pixels} --format ansi"));
         folder.frame(&format!("ball.ron --pixels {pixels} --format png"));
     }
@@ -73,7 +72,7 @@ fn invalid_sizes_are_rejected() {
         folder.run(&format!("frame ball.ron --size {size}")).fails_in_a_line(2, "too large");
     }
     for size in ["65536x1", "1x131071", "65535x1025", "4294967295x4294967295"] {
-        folder.run(&format!("frame ball.ron --pixels {size}")).fails_in_a_line(2, "too large");
+        folder.run(&format!("frame ball.ron --glyphs ramp --pixels {size}")).fails_in_a_line(2, "too large");
     }
     folder.run("frame ball.ron --pixels 1000x1000 --scale 256 --format png").fails_in_a_line(2, "too large");
 }

@@ -552,10 +552,10 @@ fn has_sgr(bytes: &[u8]) -> bool {
 #[test]
 fn without_colour_no_sgr_is_sent() {
     for (environment, flags, glyphs) in [
-        (&[("NO_COLOR", "1")][..], &[][..], Glyphs::Shape),
-        (&[("TERM", "dumb"), ("COLORTERM", "")], &[], Glyphs::Shape),
-        (&[("FORCE_COLOR", "0")], &[], Glyphs::Shape),
-        (&[], &["--color=never"], Glyphs::Shape),
+        (&[("NO_COLOR", "1")][..], &[][..], Glyphs::Ascii),
+        (&[("TERM", "dumb"), ("COLORTERM", "")], &[], Glyphs::Ascii),
+        (&[("FORCE_COLOR", "0")], &[], Glyphs::Ascii),
+        (&[], &["--color=never"], Glyphs::Ascii),
         (&[], &["--color=never", "--glyphs=ramp"], Glyphs::Ramp),
         (&[], &["--color=never", "--glyphs=half"], Glyphs::Half),
     ] {

@@ -97,13 +97,13 @@ fn the_ramp_is_by_lightness() {
 /// fourth.
 #[test]
 fn the_ramp_takes_the_mean_of_light() {
-    assert_ramp(&["bwr", "wbb"], "##-\n");
-    assert_ramp(&["bw", "wb", "wr"], "##\n@+\n");
+    assert_ramp(&["bwr", "wbb"], "%%:\n");
+    assert_ramp(&["bw", "wb", "wr"], "%%\n@+\n");
 }
 
 #[test]
 fn the_ramp_is_a_promise() {
-    assert_eq!(RAMP, b" .:-=+*#%@");
+    assert_eq!(RAMP, b" .-:*+=%#@");
 }
 
 #[test]

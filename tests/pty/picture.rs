@@ -2,7 +2,7 @@
 
 use super::screen::{Colour, Screen};
 use termtrace::internals::cell;
-use termtrace::{CellMode, Grid, Ink, Sampling, Scene, Size, render, tone};
+use termtrace::{CellMode, Grid, Ink, Map, Painter, Sampling, Scene, Size};
 
 /// Returns the final picture of a scene on a screen whose cells are `aspect` times as high as wide.
 pub(crate) fn picture(scene: &Scene, mode: CellMode, size: Size, aspect: f32) -> Grid {
@@ -12,8 +12,7 @@ pub(crate) fn picture(scene: &Scene, mode: CellMode, size: Size, aspect: f32) ->
 /// Returns the picture of a scene with the given sampling.
 pub(crate) fn picture_with(sampling: Sampling, scene: &Scene, mode: CellMode, size: Size, aspect: f32) -> Grid {
     let resolution = cell::resolution(mode, size, aspect).expect("a size that pictures can have");
-    let framebuffer = render(scene, scene.camera(), resolution, sampling);
-    cell::grid_from_picture(mode, &tone(&framebuffer, scene))
+    Painter::new(mode).trace(Map::Shaded, scene, scene.camera(), resolution, sampling)
 }
 
 impl From<Ink> for Colour {

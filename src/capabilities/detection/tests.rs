@@ -73,13 +73,13 @@ fn the_first_source_with_a_value_decides_the_colours() {
 
 #[test]
 fn half_blocks_need_colour_and_utf8() {
-    use Glyphs::{Half, Ramp, Shape, Spaces};
+    use Glyphs::{Ascii, Half, Ramp, Spaces};
     let utf8 = ("LANG", "en_US.UTF-8");
     let variable = Source::Variable;
     for (choice, colors, environment, value, source) in [
         (None, Truecolor, &[utf8][..], Half, variable("LANG")),
         (None, SIXTEEN, &[utf8], Half, variable("LANG")),
-        (None, NoColors, &[utf8], Shape, Source::Terminfo),
+        (None, NoColors, &[utf8], Ascii, Source::Terminfo),
         (None, Truecolor, &[], Half, Source::Assumed),
         (None, Truecolor, &[("LANG", "C.utf8")], Half, variable("LANG")),
         (None, Truecolor, &[("LANG", "C")], Spaces, variable("LANG")),

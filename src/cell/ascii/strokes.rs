@@ -76,9 +76,12 @@ impl<'g> Window<'g> {
         }))
     }
 
-    /// Returns the index, plus 1, of the object that is nearest in the cell.
+    /// Returns the index, plus 1, of the nearest object in the cell and at its lower right sides.
+    // An edge on these sides is the cell's, though the nearer object is beyond it.
     fn nearest_object(&self) -> u32 {
-        self.cell().min_by(|a, b| a.depth.total_cmp(&b.depth)).map_or(0, |facet| facet.object)
+        let rows = self.0[MARGIN..].iter().take(SAMPLES[1] + 1);
+        let facets = rows.flat_map(|row| &row[MARGIN..=MARGIN + SAMPLES[0]]).copied();
+        facets.min_by(|a, b| a.depth.total_cmp(&b.depth)).map_or(0, |facet| facet.object)
     }
 
     fn has_two_objects(&self) -> bool {

@@ -4,7 +4,9 @@ use crate::cli::outcome::{CommandResult, Failure, write_stdout};
 use crate::cli::outputs;
 use std::io;
 use std::path::Path;
+use termtrace::Glyphs;
 use termtrace::export::Format;
+use termtrace::internals::cell::RAMP;
 use termtrace::internals::export::GoldenDifference;
 use termtrace::internals::named_file::{self, Accepted};
 use termtrace::internals::progress::Reporter;
@@ -38,6 +40,35 @@ pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> CommandResult 
         text.push_str(&visible(&beside.display().to_string()));
         text.push('\n');
     }
+    if let Some(hint) = glyphs_hint(&golden, frame).filter(|_| format == Format::Text) {
+        text += &format!("{hint}\n");
+    }
     write_stdout(format!("{name}: the frame differs\n{text}").as_bytes())?;
     Err(Failure::Reported(1))
+}
+
+/// The characters of the ramp in the order that they had when it was the default of text frames.
+const RAMP_BEFORE: &[u8; RAMP.len()] = b" .:-=+*#%@";
+
+/// Returns how to compare a golden text frame that has the characters of another kind of glyphs.
+fn glyphs_hint(golden: &[u8], frame: &[u8]) -> Option<String> {
+    let now = |byte: &u8| RAMP_BEFORE.iter().position(|before| before == byte).map_or(*byte, |at| RAMP[at]);
+    if golden.len() == frame.len() && golden.iter().map(now).eq(frame.iter().copied()) {
+        return Some("only the order of the ramp's characters has changed; --bless writes the frame anew".to_owned());
+    }
+    let kind = probable_glyphs(golden).filter(|&kind| Some(kind) != probable_glyphs(frame))?;
+    Some(format!("the golden frame has the characters of --glyphs {kind}: compare it with that flag"))
+}
+
+/// Returns the kind of glyphs that a text frame probably has, if its characters tell.
+fn probable_glyphs(text: &[u8]) -> Option<Glyphs> {
+    if text.iter().all(|byte| *byte == b'\n' || RAMP.contains(byte)) {
+        Some(Glyphs::Ramp)
+    } else if !text.is_ascii() {
+        std::str::from_utf8(text).is_ok_and(|text| text.chars().all(|c| " ▀▄█\n".contains(c))).then_some(Glyphs::Half)
+    } else {
+        // The fills of `ascii` have these three letters, and its outlines none.
+        let is_of_shape = |byte: &u8| byte.is_ascii_alphanumeric() && !b"oxX".contains(byte);
+        Some(if text.iter().any(is_of_shape) { Glyphs::Shape } else { Glyphs::Ascii })
+    }
 }
