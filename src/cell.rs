@@ -14,6 +14,7 @@ use crate::text::{ParseError, named};
 use crate::tone::Picture;
 use glyph_kind::{Background, Fill, GlyphKind};
 use ink_converter::InkConverter;
+use memory::Memory;
 use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
@@ -27,6 +28,7 @@ mod glyph_kind;
 mod half;
 mod ink_converter;
 mod lit;
+mod memory;
 mod mixes;
 mod pair;
 mod palette;
@@ -222,6 +224,8 @@ pub struct Painter {
     mode: CellMode,
     light_background: bool,
     inks: InkConverter,
+    /// The last frame of the live view, for glyphs that show geometry.
+    memory: Memory,
 }
 
 impl fmt::Debug for Painter {
@@ -235,7 +239,7 @@ impl fmt::Debug for Painter {
 impl Painter {
     /// Returns a painter for a terminal with light text on a dark background.
     pub fn new(mode: CellMode) -> Self {
-        Self { mode, light_background: false, inks: InkConverter::for_colors(mode.colors) }
+        Self { mode, light_background: false, inks: InkConverter::for_colors(mode.colors), memory: Memory::default() }
     }
 
     /// Sets whether the terminal's background is light.
@@ -296,6 +300,20 @@ impl Painter {
     /// If the picture needs more than 65,535 columns or rows.
     #[doc(hidden)]
     pub fn paint(&mut self, picture: &Picture, geometry: Option<&Geometry>, grid: &mut Grid) {
+        self.paint_with(picture, geometry, false, grid);
+    }
+
+    /// Fills a grid as [`paint`](Self::paint) does, with less flicker while the view moves.
+    ///
+    /// Of glyphs that show geometry, a cell keeps that of the frame painted before if its samples are the same, or if
+    /// another glyph is hardly better. At rest the glyphs depend on the picture alone.
+    #[doc(hidden)]
+    pub fn paint_view(&mut self, picture: &Picture, geometry: Option<&Geometry>, is_moving: bool, grid: &mut Grid) {
+        self.memory.is_moving = is_moving;
+        self.paint_with(picture, geometry, true, grid);
+    }
+
+    fn paint_with(&mut self, picture: &Picture, geometry: Option<&Geometry>, is_view: bool, grid: &mut Grid) {
         let pixels_per_cell = self.mode.pixels_per_cell();
         grid.clear(size_in_cells(picture, pixels_per_cell));
         let has_colors = self.mode.colors != Colors::None;
@@ -315,7 +333,8 @@ impl Painter {
                 let geometry = geometry.filter(|geometry| geometry.fits(picture.width, picture.height));
                 let geometry = geometry.map_or_else(|| Cow::Owned(unknown()), Cow::Borrowed);
                 let background = if self.light_background { Background::Light } else { Background::Dark };
-                fill(grid, picture, &geometry, background, self.mode.colors);
+                let memory = is_view.then_some(&mut self.memory);
+                fill(grid, picture, &geometry, (background, self.mode.colors), memory);
             }
         }
     }

@@ -398,6 +398,7 @@ impl Viewer {
         // Moves the eye to its place at `now` first, because `decide` compares the picture with the eye's current view.
         self.eye.advance(now);
         self.screen.set_moving(self.eye.mode());
+        self.screen.set_in_motion(self.is_in_motion());
         self.mark_light();
         self.note_few_colors();
         let fades_at = self.screen.fade_note(now);

@@ -5,6 +5,7 @@
 
 use super::colors::{Colors, TextInks};
 use super::glyph_kind::{Background, Fill, GlyphKind};
+use super::memory::{KeptCell, LEAST_RANGE, Memory, Ranges, Remembered};
 use super::tint;
 use crate::color::{LinearRgb, Srgb8};
 use crate::grid::{Cell, Grid, Ink};
@@ -39,8 +40,17 @@ const OBJECT: [Tone; 8] =
 const LEVEL: [Tone; 4] = [(b' ', 0.0), (b'.', 0.095), (b'-', 0.105), (b'~', 0.22)];
 const UPRIGHT: [Tone; 4] = [(b' ', 0.0), (b'.', 0.095), (b':', 0.19), (b'!', 0.305)];
 
-/// The least range of light that is spread over all characters, so that a flat object has one tone.
-const LEAST_RANGE: f32 = 0.12;
+/// The shares of the range of an object's light from which its later characters are used.
+// Half-way between the inks of two characters.
+const OBJECT_LIMITS: [f32; OBJECT.len() - 1] = {
+    let mut limits = [0.0; OBJECT.len() - 1];
+    let mut at = 0;
+    while at < limits.len() {
+        limits[at] = (0.5 * (OBJECT[at].1 + OBJECT[at + 1].1) - OBJECT[0].1) / (1.0 - OBJECT[0].1);
+        at += 1;
+    }
+    limits
+};
 
 /// The share of a cell that the object takes which most of its rays meet.
 struct Part {
@@ -51,23 +61,47 @@ struct Part {
     light: f32,
     /// The rows of pixels from the object's first to its last in the cell.
     rows: [usize; 2],
+    /// The fill of the same object in the frame before, while the view moves.
+    kept_fill: Option<u8>,
     /// The tone of the fill.
     tone: Tone,
     edge: Option<Edge>,
 }
 
 /// Sets each cell's glyph and colour.
-fn fill(grid: &mut Grid, picture: &Picture, geometry: &Geometry, background: Background, colors: Colors) {
+fn fill(
+    grid: &mut Grid,
+    picture: &Picture,
+    geometry: &Geometry,
+    (background, colors): (Background, Colors),
+    memory: Option<&mut Memory>,
+) {
     let (columns, rows) = (usize::from(grid.size().columns), usize::from(grid.size().rows));
-    let mut parts: Vec<Part> =
-        (0..columns * rows).map(|cell| part(picture, geometry, cell % columns, cell / columns)).collect();
-    let heights = set_tones(&mut parts, background);
+    let before = memory.as_ref().and_then(|memory| memory.before(picture));
+    let part =
+        |cell: usize| part(picture, geometry, [cell % columns, cell / columns], before.map(|it| &it.cells[cell]));
+    let mut parts: Vec<Part> = (0..columns * rows).map(part).collect();
+    let (heights, ranges) = set_tones(&mut parts, background, before);
     let (crowds, inks) = (Crowds::of(&parts, columns, rows), TextInks::of(colors));
     for (cell, target) in grid.rows_mut().flatten().enumerate() {
+        let pixels = pixels_of(picture, cell % columns, cell / columns);
+        if let Some(shown) = before.and_then(|before| before.unchanged(picture, geometry, cell, &pixels)) {
+            *target = shown.clone();
+            continue;
+        }
         let glyph = glyph(&parts, columns, cell, &heights, &crowds);
         let is_plain = glyph == ' ' || inks.are_default();
         let ink = if is_plain { Ink::Default } else { ink(picture, geometry, &parts[cell], cell, background, &inks) };
         *target = Cell::new(glyph, ink, Ink::Default);
+    }
+    if let Some(memory) = memory {
+        let kept = |(part, shown): (&Part, &Cell)| KeptCell {
+            object: part.object,
+            fill: part.tone.0,
+            edge: part.edge.map(|edge| edge.glyph),
+            shown: shown.clone(),
+        };
+        memory.remember(picture, geometry, ranges, parts.iter().zip(grid.cells()).map(kept).collect());
     }
 }
 
@@ -81,7 +115,7 @@ fn pixels_of(picture: &Picture, column: usize, row: usize) -> [usize; ACROSS * D
 }
 
 /// Returns the part of a cell whose object most of the cell's rays meet, with the cell's edge.
-fn part(picture: &Picture, geometry: &Geometry, column: usize, row: usize) -> Part {
+fn part(picture: &Picture, geometry: &Geometry, [column, row]: [usize; 2], before: Option<&KeptCell>) -> Part {
     let pixels = pixels_of(picture, column, row);
     let facets = pixels.map(|pixel| geometry.pixel(pixel));
     let count = |object: u32| facets.iter().filter(|facet| facet.object == object).count();
@@ -98,8 +132,9 @@ fn part(picture: &Picture, geometry: &Geometry, column: usize, row: usize) -> Pa
     let light = own.clone().map(|at| luma(picture.pixels[pixels[at]])).sum::<f32>() / most as f32;
     let first = own.next().unwrap_or(0);
     let rows = [first, own.next_back().unwrap_or(first)].map(|at| DOWN * row + at / ACROSS);
-    let edge = strokes::edge(geometry, column, row);
-    Part { object: owner.object, extent: owner.extent, light, rows, tone: LEVEL[0], edge }
+    let edge = strokes::edge(geometry, [column, row], before.and_then(|before| before.edge));
+    let kept_fill = before.filter(|before| before.object == owner.object).map(|before| before.fill);
+    Part { object: owner.object, extent: owner.extent, light, rows, kept_fill, tone: LEVEL[0], edge }
 }
 
 /// Returns the luma of a pixel, in 0..=1.
@@ -107,15 +142,15 @@ fn luma(pixel: Srgb8) -> f32 {
     (0.2126 * f32::from(pixel.r) + 0.7152 * f32::from(pixel.g) + 0.0722 * f32::from(pixel.b)) / 255.0
 }
 
-/// Sets the tone of each part by its object's range of light, and returns the objects' heights.
-fn set_tones(parts: &mut [Part], background: Background) -> Heights {
+/// Sets the tone of each part by its object's range of light; returns the heights and the ranges.
+fn set_tones(parts: &mut [Part], background: Background, before: Option<&Remembered>) -> (Heights, Ranges) {
     let mut order: Vec<u32> = (0..parts.len() as u32).collect();
     order.sort_unstable_by(|&a, &b| {
         let [a, b] = [a, b].map(|at| &parts[at as usize]);
         a.object.cmp(&b.object).then(a.light.total_cmp(&b.light))
     });
     let objects: Vec<u32> = parts.iter().map(|part| part.object).collect();
-    let mut heights = Vec::new();
+    let (mut heights, mut ranges) = (Vec::new(), Ranges::default());
     for run in order.chunk_by(|&a, &b| objects[a as usize] == objects[b as usize]) {
         let light = |at: usize| parts[run[at] as usize].light;
         let quantile = |share: f32| {
@@ -124,34 +159,40 @@ fn set_tones(parts: &mut [Part], background: Background) -> Heights {
             let above = (below + 1).min(run.len() - 1);
             light(below) + (at - below as f32) * (light(above) - light(below))
         };
-        let (low, high) = (quantile(0.03), quantile(0.97));
+        let object = objects[run[0] as usize];
+        let [low, high] = ranges.add(object, [quantile(0.03), quantile(0.97)], before);
         let range = (high - low).max(LEAST_RANGE);
         let least = 0.5 * (low + high - range);
         let [mut top, mut bottom] = [usize::MAX, 0];
         for &at in run {
             let part = &mut parts[at as usize];
             let share = ((part.light - least) / range).clamp(0.0, 1.0);
-            part.tone = tone(part.extent, if background == Background::Light { 1.0 - share } else { share });
+            let share = if background == Background::Light { 1.0 - share } else { share };
+            part.tone = tone(part.extent, share, part.kept_fill);
             (top, bottom) = (top.min(part.rows[0]), bottom.max(part.rows[1]));
         }
-        heights.push((parts[run[0] as usize].object, bottom + 1 - top));
+        heights.push((object, bottom + 1 - top));
     }
-    Heights(heights)
+    (Heights(heights), ranges)
 }
 
 /// Returns the tone for a share of the range of an object's light.
-fn tone(extent: Extent, share: f32) -> Tone {
-    let step = |tones: &[Tone; 4], limits: [f32; 3]| tones[limits.iter().take_while(|&&limit| share >= limit).count()];
-    match extent {
-        Extent::Nothing => LEVEL[0],
-        Extent::Level => step(&LEVEL, [0.1, 0.4, 0.72]),
-        Extent::Upright => step(&UPRIGHT, [0.1, 0.4, 0.75]),
-        Extent::Bounded => {
-            let ink = OBJECT[0].1 + share * (1.0 - OBJECT[0].1);
-            let above = OBJECT.windows(2).take_while(|pair| ink > 0.5 * (pair[0].1 + pair[1].1)).count();
-            OBJECT[above]
-        }
-    }
+///
+/// It is the one with the character `kept` if the share is less than a tenth of a step away from that.
+fn tone(extent: Extent, share: f32, kept: Option<u8>) -> Tone {
+    let (tones, limits): (&[Tone], &[f32]) = match extent {
+        Extent::Nothing => return LEVEL[0],
+        Extent::Level => (&LEVEL, &[0.1, 0.4, 0.72]),
+        Extent::Upright => (&UPRIGHT, &[0.1, 0.4, 0.75]),
+        Extent::Bounded => (&OBJECT, &OBJECT_LIMITS),
+    };
+    let is_near = |&at: &usize| {
+        let [low, high] = [if at == 0 { 0.0 } else { limits[at - 1] }, limits.get(at).copied().unwrap_or(1.0)];
+        let margin = 0.1 * (high - low);
+        (low - margin..=high + margin).contains(&share)
+    };
+    let kept = kept.and_then(|kept| tones.iter().position(|&(character, _)| character == kept)).filter(is_near);
+    tones[kept.unwrap_or_else(|| limits.iter().take_while(|&&limit| share >= limit).count())]
 }
 
 /// The height of each object in rows of pixels, sorted by the object.

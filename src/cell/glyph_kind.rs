@@ -1,6 +1,7 @@
 //! The properties of a glyph kind, which are a row of the table of glyph kinds.
 
 use super::ink_converter::InkConverter;
+use super::memory::Memory;
 use super::{Colors, Glyphs};
 use crate::grid::Grid;
 use crate::render::Geometry;
@@ -28,7 +29,9 @@ pub(super) enum Fill {
     /// Sets glyphs by lightness; [`tint`](super::tint) then adds the colours.
     Lightness(fn(&mut Grid, &Picture)),
     /// Sets glyphs and colours from the picture, its surfaces and the terminal's background.
-    Geometry(fn(&mut Grid, &Picture, &Geometry, Background, Colors)),
+    ///
+    /// With a memory, cells keep the glyphs of the frame before where it says so.
+    Geometry(fn(&mut Grid, &Picture, &Geometry, (Background, Colors), Option<&mut Memory>)),
 }
 
 /// The terminal's default background.

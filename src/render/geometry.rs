@@ -164,6 +164,12 @@ impl Geometry {
         self.fine_indices[row * self.columns() + column] != NOT_FINE
     }
 
+    /// Returns whether a cell, which has these pixels, has the same facets in both geometries.
+    pub(crate) fn has_same_facets(&self, other: &Self, cell: usize, pixels: &[usize]) -> bool {
+        let fine = |geometry: &Self| geometry.fine.get(geometry.fine_indices[cell] as usize).copied();
+        pixels.iter().all(|&pixel| self.facets[pixel] == other.facets[pixel]) && fine(self) == fine(other)
+    }
+
     /// Returns the facet at a position in quarters of a cell's width and eighths of its height.
     pub(crate) fn at(&self, x: usize, y: usize) -> &Facet {
         let index = self.fine_indices[y / FINE[1] * self.columns() + x / FINE[0]];

@@ -45,6 +45,8 @@ pub(super) struct Screen {
     grid: Grid,
     order: Option<Order>,
     quality: Option<Quality>,
+    /// Whether the view moves, so that cells keep their glyphs where they can.
+    is_in_motion: bool,
     /// Whether the next frame's bytes erase the whole window first.
     erases: bool,
     /// Time at which the last frame was drawn.
@@ -90,6 +92,7 @@ impl Screen {
             grid: Grid::new(Size::new(0, 0)),
             order,
             quality,
+            is_in_motion: false,
             erases: false,
             drawn: None,
             rate: FrameRate::default(),
@@ -215,6 +218,15 @@ impl Screen {
         }
     }
 
+    /// Sets whether the view moves.
+    pub(super) fn set_in_motion(&mut self, is_in_motion: bool) {
+        // A picture at rest is drawn again, because its glyphs depend on nothing but the picture.
+        if self.is_in_motion && !is_in_motion && self.painter.mode().shows_geometry() {
+            self.content.mark_changed();
+        }
+        self.is_in_motion = is_in_motion;
+    }
+
     /// Sets the name of the scene.
     pub(super) fn set_name(&mut self, name: &str) {
         name.clone_into(&mut self.content.name);
@@ -300,7 +312,9 @@ impl Screen {
         let content = self.content.quietly();
         let grid = &mut self.grid;
         match &content.frame {
-            Some(frame) => self.painter.paint(&frame.picture, frame.geometry.as_deref(), grid),
+            Some(frame) => {
+                self.painter.paint_view(&frame.picture, frame.geometry.as_deref(), self.is_in_motion, grid);
+            }
             None => grid.clear(size),
         }
         let area = theme::area(grid.size());

@@ -18,6 +18,8 @@ const BORDER_INK: f32 = 0.75;
 const CREASE_INK: f32 = 0.6;
 /// The least length of a cell's strokes in samples. Shorter ones are left to the next cell.
 const LEAST_LENGTH: u32 = 2;
+/// The mean difference from strokes by which a character replaces the one shown before.
+const CLEAR_DIFFERENCE: f32 = 0.006;
 /// The number of points of the shortest crease in and around a cell, .75 of a cell's width.
 const LEAST_CREASE_POINTS: u32 = 12;
 
@@ -36,7 +38,9 @@ pub(super) struct Edge {
 }
 
 /// Returns the edge that crosses a cell, if there is one that is long enough.
-pub(super) fn edge(geometry: &Geometry, column: usize, row: usize) -> Option<Edge> {
+///
+/// It has the character `kept` if no other one is clearly better.
+pub(super) fn edge(geometry: &Geometry, [column, row]: [usize; 2], kept: Option<char>) -> Option<Edge> {
     if !geometry.has_edge(column, row) {
         return None;
     }
@@ -47,7 +51,7 @@ pub(super) fn edge(geometry: &Geometry, column: usize, row: usize) -> Option<Edg
         return None;
     }
     Some(Edge {
-        glyph: MATCHER.nearest(&strokes),
+        glyph: MATCHER.nearest(&strokes, kept),
         is_border: in_cell(&strokes.border).any(|row| row != 0),
         is_steep: 2 * upright > level,
         is_inside: window.has_two_objects(),
@@ -204,7 +208,9 @@ static MATCHER: LazyLock<Matcher> = LazyLock::new(|| {
 
 impl Matcher {
     /// Returns the character whose blurred ink differs least from blurred strokes.
-    fn nearest(&self, strokes: &Strokes) -> char {
+    ///
+    /// It is `kept` if no other one is clearly better.
+    fn nearest(&self, strokes: &Strokes, kept: Option<char>) -> char {
         let mut differences = self.constants;
         for (y, (border, crease)) in in_cell(&strokes.border).zip(in_cell(&strokes.crease)).enumerate() {
             let mut left = border | crease;
@@ -218,7 +224,10 @@ impl Matcher {
             }
         }
         let mut nearest = (f32::INFINITY, b' ');
-        for (&(character, ..), difference) in GLYPHS.iter().zip(differences) {
+        for (&(character, ..), mut difference) in GLYPHS.iter().zip(differences) {
+            if kept == Some(char::from(character)) {
+                difference -= CLEAR_DIFFERENCE * POINTS as f32;
+            }
             if difference < nearest.0 {
                 nearest = (difference, character);
             }

@@ -17,7 +17,7 @@ fn text(
     let [width, height] = [(ACROSS * columns) as u32, (DOWN * rows) as u32];
     let picture = Picture { width, height, pixels: (0..columns * rows * ACROSS * DOWN).map(pixel).collect() };
     let mut grid = Grid::new(Size::new(columns as u16, rows as u16));
-    fill(&mut grid, &picture, &geometry, background, Colors::None);
+    fill(&mut grid, &picture, &geometry, (background, Colors::None), None);
     grid.rows().map(|row| row.iter().map(|cell| cell.glyph.to_string()).collect()).collect()
 }
 
@@ -105,7 +105,7 @@ fn colours_are_the_hues_of_objects() {
         (Colors::None, Background::Dark, Ink::Default),
     ] {
         let mut grid = Grid::new(Size::new(2, 1));
-        fill(&mut grid, &picture, &geometry, background, colors);
+        fill(&mut grid, &picture, &geometry, (background, colors), None);
         assert_eq!(*grid.cell(1, 0), Cell::new('o', expected, Ink::Default), "{colors:?} {background:?}");
     }
 }
