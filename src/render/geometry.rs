@@ -1,7 +1,7 @@
 //! The geometry of a picture: the surface that each eye ray meets, for glyphs with outlines.
 //!
-//! A cell has two by four rays, those of its light, and four by eight more where surfaces meet: outlines then have the
-//! precision of an eighth of a cell, for one and a half times the rays.
+//! A cell has two by four rays, those of its light, and four more around each of them where surfaces meet: outlines
+//! then have the precision of an eighth of a cell, for a third more rays.
 
 use super::sampling::SampleBatches;
 use super::steps::{Buffers, RenderJob, Stage};
@@ -86,7 +86,7 @@ pub struct Geometry {
     least_jump: f32,
     /// For each cell, the index in `fine`, or [`NOT_FINE`].
     fine_indices: Vec<u32>,
-    /// The facets of cells with four by eight more rays, row by row.
+    /// The facets of cells with more rays, four by eight, row by row.
     fine: Vec<[Facet; FINE[0] * FINE[1]]>,
 }
 
@@ -120,7 +120,7 @@ impl Geometry {
         let at_pixel = |pixel: usize| facet(middle(pixel % width, CELL[0]), middle(pixel / width, CELL[1]));
         let facets = (0..width * height).map(at_pixel).collect();
         let mut geometry = Self::new(Resolution::square(width as u32, height as u32), facets, 0.0);
-        for (cell, _) in geometry.crossed_cells().into_iter().enumerate().filter(|&(_, is_crossed)| is_crossed) {
+        for cell in geometry.cells_with(&geometry.crossed_pixels()) {
             geometry.fine_indices[cell] = geometry.fine.len() as u32;
             let (left, top) = ((cell % columns) as f32, (cell / columns) as f32);
             geometry.fine.push(std::array::from_fn(|at| {
@@ -185,11 +185,11 @@ impl Geometry {
         bend.abs() > 0.03 * middle.depth + self.least_jump
     }
 
-    /// Returns the mask of cells that an edge may cross.
-    fn crossed_cells(&self) -> Vec<bool> {
-        let mut crossed = vec![false; self.fine_indices.len()];
-        let (width, height, columns) = (self.width, self.height(), self.columns());
-        let mut mark = |x: usize, y: usize| crossed[y / CELL[1] * columns + x / CELL[0]] = true;
+    /// Returns the mask of pixels beside which an edge may be.
+    fn crossed_pixels(&self) -> Vec<bool> {
+        let mut crossed = vec![false; self.facets.len()];
+        let (width, height) = (self.width, self.height());
+        let mut mark = |x: usize, y: usize| crossed[y * width + x] = true;
         for y in 0..height {
             for x in 0..width {
                 let facet = self.at_pixel(x, y);
@@ -212,6 +212,15 @@ impl Geometry {
             }
         }
         crossed
+    }
+
+    /// Returns the indices of the cells with one of these pixels.
+    fn cells_with(&self, pixels: &[bool]) -> Vec<usize> {
+        let mut cells = vec![false; self.fine_indices.len()];
+        for at in (0..pixels.len()).filter(|&at| pixels[at]) {
+            cells[at / self.width / CELL[1] * self.columns() + at % self.width / CELL[0]] = true;
+        }
+        (0..cells.len()).filter(|&cell| cells[cell]).collect()
     }
 }
 
@@ -295,7 +304,7 @@ fn facet(scene: &Scene, Buffers { points, hits, .. }: &Buffers, ray: usize) -> F
         .map_or(Facet::NOTHING, |(object, normal)| Facet::of_hit(scene, object, normal, hits[group].t.0[lane]))
 }
 
-/// Returns the geometry of traced pixels, with more rays in cells that an edge may cross.
+/// Returns the geometry of traced pixels, with more rays where an edge may be.
 fn with_fine_facets(
     executor: Executor<'_>,
     scene: &Scene,
@@ -310,8 +319,8 @@ fn with_fine_facets(
     if coarse.scale > 1 {
         return (geometry, Cost::default());
     }
-    let crossed = geometry.crossed_cells();
-    let (columns, fine_size) = (geometry.columns(), [2 * resolution.width(), 2 * resolution.height()]);
+    let crossed = geometry.crossed_pixels();
+    let (width, fine_size) = (geometry.width, [2 * resolution.width(), 2 * resolution.height()]);
     let fine =
         Resolution::new(fine_size[0], fine_size[1]).and_then(|size| size.with_pixel_aspect(resolution.pixel_aspect()));
     // A picture whose fine samples would be too large has none.
@@ -324,7 +333,7 @@ fn with_fine_facets(
         let number = tile.number;
         tile.buffers.active.retain(|&pixel| {
             let [x, y] = tiles.position(number, pixel).map(|at| at as usize);
-            crossed[y / FINE[1] * columns + x / FINE[0]]
+            crossed[y / 2 * width + x / 2]
         });
         if tile.buffers.active.is_empty() {
             return;
@@ -336,14 +345,18 @@ fn with_fine_facets(
             }
         });
     });
-    for cell in (0..crossed.len()).filter(|&cell| crossed[cell]) {
-        let (left, top) = (cell % columns * FINE[0], cell / columns * FINE[1]);
-        geometry.fine_indices[cell] = geometry.fine.len() as u32;
-        geometry.fine.push(std::array::from_fn(|at| {
+    for cell in geometry.cells_with(&crossed) {
+        let (left, top) = (cell % geometry.columns() * FINE[0], cell / geometry.columns() * FINE[1]);
+        let facets = std::array::from_fn(|at| {
             let (x, y) = ((left + at % FINE[0]) as u32, (top + at / FINE[0]) as u32);
-            let (tile, pixel) = tiles.tile_and_index([x.min(fine_size[0] - 1), y.min(fine_size[1] - 1)]);
-            traced[tile].get(pixel).copied().unwrap_or(Facet::NOTHING)
-        }));
+            let [x, y] = [x.min(fine_size[0] - 1), y.min(fine_size[1] - 1)];
+            let coarse = y as usize / 2 * width + x as usize / 2;
+            let (tile, pixel) = tiles.tile_and_index([x, y]);
+            let fine = traced[tile].get(pixel).filter(|_| crossed[coarse]);
+            *fine.unwrap_or(&geometry.facets[coarse])
+        });
+        geometry.fine_indices[cell] = geometry.fine.len() as u32;
+        geometry.fine.push(facets);
     }
     (geometry, cost)
 }
