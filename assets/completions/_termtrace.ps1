@@ -32,6 +32,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--threads', '--threads', [CompletionResultType]::ParameterName, 'Number of threads that trace [default: one per core]')
             [CompletionResult]::new('--color', '--color', [CompletionResultType]::ParameterName, 'Colours to draw with [default: auto]')
             [CompletionResult]::new('--glyphs', '--glyphs', [CompletionResultType]::ParameterName, 'Characters to draw with [default: auto]')
+            [CompletionResult]::new('--background', '--background', [CompletionResultType]::ParameterName, 'The terminal''s background, for characters without colours and ascii [default: auto: as the terminal reports, or dark]')
             [CompletionResult]::new('--cell-aspect', '--cell-aspect', [CompletionResultType]::ParameterName, 'A cell''s height over its width [default: as detected, or 2]')
             [CompletionResult]::new('--map', '--map', [CompletionResultType]::ParameterName, 'The shaded picture, or a map of the scene [default: shaded]')
             [CompletionResult]::new('--samples', '--samples', [CompletionResultType]::ParameterName, 'Rays per pixel, also in motion; best: up to 64 at edges [default: as many as the time allows; best at rest]')
@@ -77,6 +78,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
         'termtrace;tour' {
             [CompletionResult]::new('--color', '--color', [CompletionResultType]::ParameterName, 'Colours to draw with [default: auto]')
             [CompletionResult]::new('--glyphs', '--glyphs', [CompletionResultType]::ParameterName, 'Characters to draw with [default: auto]')
+            [CompletionResult]::new('--background', '--background', [CompletionResultType]::ParameterName, 'The terminal''s background, for characters without colours and ascii [default: auto: as the terminal reports, or dark]')
             [CompletionResult]::new('--cell-aspect', '--cell-aspect', [CompletionResultType]::ParameterName, 'A cell''s height over its width [default: as detected, or 2]')
             [CompletionResult]::new('--map', '--map', [CompletionResultType]::ParameterName, 'The shaded picture, or a map of the scene [default: shaded]')
             [CompletionResult]::new('--samples', '--samples', [CompletionResultType]::ParameterName, 'Rays per pixel, also in motion; best: up to 64 at edges [default: as many as the time allows; best at rest]')
@@ -98,6 +100,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
         'termtrace;new' {
             [CompletionResult]::new('--color', '--color', [CompletionResultType]::ParameterName, 'Colours to draw with [default: auto]')
             [CompletionResult]::new('--glyphs', '--glyphs', [CompletionResultType]::ParameterName, 'Characters to draw with [default: auto]')
+            [CompletionResult]::new('--background', '--background', [CompletionResultType]::ParameterName, 'The terminal''s background, for characters without colours and ascii [default: auto: as the terminal reports, or dark]')
             [CompletionResult]::new('--cell-aspect', '--cell-aspect', [CompletionResultType]::ParameterName, 'A cell''s height over its width [default: as detected, or 2]')
             [CompletionResult]::new('--map', '--map', [CompletionResultType]::ParameterName, 'The shaded picture, or a map of the scene [default: shaded]')
             [CompletionResult]::new('--samples', '--samples', [CompletionResultType]::ParameterName, 'Rays per pixel, also in motion; best: up to 64 at edges [default: as many as the time allows; best at rest]')
@@ -134,6 +137,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--map', '--map', [CompletionResultType]::ParameterName, 'The shaded picture, or a map of the scene [default: shaded]')
             [CompletionResult]::new('--color', '--color', [CompletionResultType]::ParameterName, 'Colours to draw with [default: auto]')
             [CompletionResult]::new('--glyphs', '--glyphs', [CompletionResultType]::ParameterName, 'Characters to draw with [default: auto]')
+            [CompletionResult]::new('--background', '--background', [CompletionResultType]::ParameterName, 'The terminal''s background, for characters without colours and ascii [default: auto: as the terminal reports, or dark]')
             [CompletionResult]::new('--format', '--format', [CompletionResultType]::ParameterName, 'Format to write [default: by the file name''s extension, or text]')
             [CompletionResult]::new('-o', '-o', [CompletionResultType]::ParameterName, 'Write to a file; - is standard output [default: -]')
             [CompletionResult]::new('--output', '--output', [CompletionResultType]::ParameterName, 'Write to a file; - is standard output [default: -]')
@@ -248,6 +252,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
         'termtrace;doctor' {
             [CompletionResult]::new('--color', '--color', [CompletionResultType]::ParameterName, 'Colours to draw with [default: auto]')
             [CompletionResult]::new('--glyphs', '--glyphs', [CompletionResultType]::ParameterName, 'Characters to draw with [default: auto]')
+            [CompletionResult]::new('--background', '--background', [CompletionResultType]::ParameterName, 'The terminal''s background, for characters without colours and ascii [default: auto: as the terminal reports, or dark]')
             [CompletionResult]::new('--cell-aspect', '--cell-aspect', [CompletionResultType]::ParameterName, 'A cell''s height over its width [default: as detected, or 2]')
             [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
@@ -258,6 +263,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
         'termtrace;config' {
             [CompletionResult]::new('--color', '--color', [CompletionResultType]::ParameterName, 'Colours to draw with [default: auto]')
             [CompletionResult]::new('--glyphs', '--glyphs', [CompletionResultType]::ParameterName, 'Characters to draw with [default: auto]')
+            [CompletionResult]::new('--background', '--background', [CompletionResultType]::ParameterName, 'The terminal''s background, for characters without colours and ascii [default: auto: as the terminal reports, or dark]')
             [CompletionResult]::new('--cell-aspect', '--cell-aspect', [CompletionResultType]::ParameterName, 'A cell''s height over its width [default: as detected, or 2]')
             [CompletionResult]::new('--map', '--map', [CompletionResultType]::ParameterName, 'The shaded picture, or a map of the scene [default: shaded]')
             [CompletionResult]::new('--samples', '--samples', [CompletionResultType]::ParameterName, 'Rays per pixel, also in motion; best: up to 64 at edges [default: as many as the time allows; best at rest]')

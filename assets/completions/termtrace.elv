@@ -29,6 +29,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --threads 'Number of threads that trace [default: one per core]'
             cand --color 'Colours to draw with [default: auto]'
             cand --glyphs 'Characters to draw with [default: auto]'
+            cand --background 'The terminal''s background, for characters without colours and ascii [default: auto: as the terminal reports, or dark]'
             cand --cell-aspect 'A cell''s height over its width [default: as detected, or 2]'
             cand --map 'The shaded picture, or a map of the scene [default: shaded]'
             cand --samples 'Rays per pixel, also in motion; best: up to 64 at edges [default: as many as the time allows; best at rest]'
@@ -72,6 +73,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
         &'termtrace;tour'= {
             cand --color 'Colours to draw with [default: auto]'
             cand --glyphs 'Characters to draw with [default: auto]'
+            cand --background 'The terminal''s background, for characters without colours and ascii [default: auto: as the terminal reports, or dark]'
             cand --cell-aspect 'A cell''s height over its width [default: as detected, or 2]'
             cand --map 'The shaded picture, or a map of the scene [default: shaded]'
             cand --samples 'Rays per pixel, also in motion; best: up to 64 at edges [default: as many as the time allows; best at rest]'
@@ -92,6 +94,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
         &'termtrace;new'= {
             cand --color 'Colours to draw with [default: auto]'
             cand --glyphs 'Characters to draw with [default: auto]'
+            cand --background 'The terminal''s background, for characters without colours and ascii [default: auto: as the terminal reports, or dark]'
             cand --cell-aspect 'A cell''s height over its width [default: as detected, or 2]'
             cand --map 'The shaded picture, or a map of the scene [default: shaded]'
             cand --samples 'Rays per pixel, also in motion; best: up to 64 at edges [default: as many as the time allows; best at rest]'
@@ -127,6 +130,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --map 'The shaded picture, or a map of the scene [default: shaded]'
             cand --color 'Colours to draw with [default: auto]'
             cand --glyphs 'Characters to draw with [default: auto]'
+            cand --background 'The terminal''s background, for characters without colours and ascii [default: auto: as the terminal reports, or dark]'
             cand --format 'Format to write [default: by the file name''s extension, or text]'
             cand -o 'Write to a file; - is standard output [default: -]'
             cand --output 'Write to a file; - is standard output [default: -]'
@@ -235,6 +239,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
         &'termtrace;doctor'= {
             cand --color 'Colours to draw with [default: auto]'
             cand --glyphs 'Characters to draw with [default: auto]'
+            cand --background 'The terminal''s background, for characters without colours and ascii [default: auto: as the terminal reports, or dark]'
             cand --cell-aspect 'A cell''s height over its width [default: as detected, or 2]'
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
@@ -244,6 +249,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
         &'termtrace;config'= {
             cand --color 'Colours to draw with [default: auto]'
             cand --glyphs 'Characters to draw with [default: auto]'
+            cand --background 'The terminal''s background, for characters without colours and ascii [default: auto: as the terminal reports, or dark]'
             cand --cell-aspect 'A cell''s height over its width [default: as detected, or 2]'
             cand --map 'The shaded picture, or a map of the scene [default: shaded]'
             cand --samples 'Rays per pixel, also in motion; best: up to 64 at edges [default: as many as the time allows; best at rest]'

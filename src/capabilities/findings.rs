@@ -15,6 +15,8 @@ pub struct Hints {
     pub glyphs: GlyphChoice,
     /// The cell aspect, if the user gives it. A value outside [`CELL_ASPECT_RANGE`] is ignored.
     pub cell_aspect: Option<f32>,
+    /// Whether the default background is light, if the user says so.
+    pub light_background: Option<bool>,
     variables: Vec<(&'static str, String)>,
     terminfo: Option<Colors>,
 }
@@ -187,7 +189,9 @@ impl Findings {
                 let replied = replies.cell_pixels.map(|(_, height)| HalfBlocks::of_cell_height(height));
                 detected_or(replied, Source::Reply, HalfBlocks::Lower)
             },
-            light_background: answered(replies.light_background()),
+            light_background: hints
+                .light_background
+                .map_or_else(|| answered(replies.light_background()), |value| Detected { value, source: Source::User }),
             synchronized_output: answered(replies.synchronized_output),
             kitty_keyboard: answered(replies.kitty_keyboard),
             sgr_mouse: answered(replies.sgr_mouse),

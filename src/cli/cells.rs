@@ -5,7 +5,7 @@ use super::settings::defaults;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use termtrace::internals::capabilities::{ColorChoice, GlyphChoice, Hints, terminfo_colors};
-use termtrace::{CellMode, Colors, Glyphs};
+use termtrace::{CellMode, Colors, Glyphs, Painter};
 
 #[derive(Args)]
 #[command(next_help_heading = "Cells")]
@@ -16,6 +16,19 @@ pub(super) struct CellArgs {
     #[arg(long, value_name = "KIND", value_parser = glyph_parser(), hide_short_help = true)]
     #[arg(help = defaults::help("glyphs", "Characters to draw with"))]
     glyphs: Option<GlyphChoice>,
+    #[arg(long, value_name = "WHICH", hide_short_help = true)]
+    #[arg(help = defaults::help("background", "The terminal's background, for characters without colours and ascii"))]
+    background: Option<BackgroundArg>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum BackgroundArg {
+    /// As the terminal reports, or dark
+    Auto,
+    /// Light: the darkest parts get the densest characters
+    Light,
+    /// Dark: the lightest parts get the densest characters
+    Dark,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -50,9 +63,18 @@ fn glyph_parser() -> impl TypedValueParser<Value = GlyphChoice> {
 }
 
 impl CellArgs {
-    /// Returns whether `--color` or `--glyphs` is given.
+    /// Returns whether one of these flags is given.
     pub(super) fn is_given(&self) -> bool {
-        self.color.is_some() || self.glyphs.is_some()
+        self.color.is_some() || self.glyphs.is_some() || self.background.is_some()
+    }
+
+    /// Returns a painter for a file, a pipe or a terminal that is not queried.
+    pub(super) fn painter(&self, mode: CellMode) -> Painter {
+        Painter::new(mode).with_light_background(self.light_background().unwrap_or(false))
+    }
+
+    fn light_background(&self) -> Option<bool> {
+        self.background.filter(|&choice| choice != BackgroundArg::Auto).map(|choice| choice == BackgroundArg::Light)
     }
 
     /// Returns whether `--color` requires colours: neither `auto` nor `never`.
@@ -82,6 +104,7 @@ impl CellArgs {
         hints.color = self.color_choice();
         hints.glyphs = self.glyph_choice();
         hints.cell_aspect = cell_aspect;
+        hints.light_background = self.light_background();
         hints
     }
 

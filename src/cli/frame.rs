@@ -20,7 +20,7 @@ use termtrace::export::Format;
 use termtrace::internals::export::Contents;
 use termtrace::internals::maps;
 use termtrace::internals::text::{any_of, listed};
-use termtrace::{CellMode, Colors, Painter};
+use termtrace::{CellMode, Colors};
 
 /// The format if neither `--format` nor the extension of a file name decides.
 const DEFAULT: Format = Format::Text;
@@ -121,9 +121,10 @@ impl FrameArgs {
         self.map.check_samples(self.picture.given_samples())?;
         let name = format.name();
         match format.contents() {
-            Contents::Pixels(_) if self.cells.is_given() => {
-                wrong(format!("--color and --glyphs are for cells; a {} consists of pixels", name.to_uppercase()))
-            }
+            Contents::Pixels(_) if self.cells.is_given() => wrong(format!(
+                "--color, --glyphs and --background are for cells; a {} consists of pixels",
+                name.to_uppercase()
+            )),
             Contents::Pixels(_) if self.output().is_none() && self.check.is_none() && io::stdout().is_terminal() => {
                 wrong(format!("a {} would garble the terminal; name a file with -o, or pipe it", name.to_uppercase()))
             }
@@ -162,7 +163,7 @@ impl FrameArgs {
                     .map_err(|error| Failure::runtime(format.name().to_uppercase(), error))
             }
             Contents::Cells { write, .. } => {
-                let trace = || Painter::new(mode).trace(map, &scene, scene.camera(), resolution, samples);
+                let trace = || self.cells.painter(mode).trace(map, &scene, scene.camera(), resolution, samples);
                 let grid = self.scene.on_threads(trace)?;
                 let (aspect, name) = (self.picture.cell_aspect(), self.scene.name());
                 let title = Path::new(&name).file_stem().unwrap_or_default().to_string_lossy();

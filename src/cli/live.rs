@@ -21,7 +21,7 @@ use termtrace::internals::control::{Command, Direction, KeyMode, Keymap};
 use termtrace::internals::terminal::die_of;
 use termtrace::internals::{app, cell};
 use termtrace::live::{Ending, Options, Outcome, Signals, Source};
-use termtrace::{Camera, Colors, Painter, Pose, Sampling, Size, export};
+use termtrace::{Camera, Colors, Pose, Sampling, Size, export};
 
 /// The command that opens the live view, which determines what the view shows first.
 #[derive(Clone, Copy)]
@@ -145,7 +145,7 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
     let sampling = settings.samples.unwrap_or(Sampling::Each(NonZeroU32::MIN));
     let map = settings.map.map();
     warn_of_invisibility(map, &scene);
-    let trace = || Painter::new(cell_mode).trace(map, &scene, scene.camera(), resolution, sampling);
+    let trace = || settings.terminal.cells.painter(cell_mode).trace(map, &scene, scene.camera(), resolution, sampling);
     let grid = on_threads(args.camera_args.threads, trace)?;
     write_stdout(&export::ansi_or_text(&grid, cell_mode.colors))
 }

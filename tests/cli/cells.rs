@@ -56,6 +56,24 @@ fn a_text_frame_has_outlines_unless_asked() {
 }
 
 #[test]
+fn the_background_decides_which_parts_are_dense() {
+    let folder = Folder::new();
+    let frame = |flags: &str| folder.frame(&format!("ball.ron --size 40x12 {flags}"));
+    for glyphs in ["ascii", "ramp", "shape"] {
+        let dark = frame(&format!("--glyphs {glyphs} --background dark"));
+        assert!(
+            dark == frame(&format!("--glyphs {glyphs}"))
+                && dark == frame(&format!("--glyphs {glyphs} --background auto"))
+        );
+        assert!(dark != frame(&format!("--glyphs {glyphs} --background light")), "{glyphs}");
+    }
+    let printed = folder.run("ball.ron --background light").done();
+    assert!(printed == folder.frame("ball.ron --background light"));
+    folder.run("frame ball.ron -o ball.png --background light").fails_in_a_line(2, "a PNG consists of pixels");
+    folder.run("frame ball.ron --background grey").is_misused("auto, light, dark");
+}
+
+#[test]
 fn goldens_are_of_any_kind() {
     let folder = Folder::new();
     for (name, flags) in

@@ -47,13 +47,15 @@ fn doctor_reports_other_environments_and_flags() {
         [
             "colours               none                          NO_COLOR",
             "locale                C                             LC_ALL",
-            "cells                 characters by shape           NO_COLOR",
+            "cells                 characters with outlines      NO_COLOR",
         ]
     );
     assert_eq!(said.lines().nth(6), Some("cell, height/width    2.250                         --cell-aspect"));
     let said = doctor("--color=16 --glyphs=ramp", &environment).text();
     assert!(said.contains("\ncolours               16                            --color\n"), "{said}");
     assert!(said.contains("\ncells                 characters by lightness       --glyphs\n"), "{said}");
+    let said = doctor("--background=light", &environment).text();
+    assert!(said.contains("\nbackground            light                         --background\n"), "{said}");
     let said = doctor("", &[("TERM", "some-terminal")]).text();
     assert!(said.contains("\nlocale                not set: UTF-8 assumed        assumed\n"), "{said}");
     let said = doctor("", &[("TERM", "some-terminal"), ("LC_ALL", "C")]).text();

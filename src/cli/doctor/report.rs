@@ -190,7 +190,11 @@ impl Report<'_> {
     }
 
     fn background(&self) -> ReportRow {
-        let kind = if self.findings.light_background.value { "light" } else { "dark" };
+        let found = self.findings.light_background;
+        let kind = if found.value { "light" } else { "dark" };
+        if found.source == Source::User {
+            return self.overridable_row("background", "background", found, |_| kind.to_owned());
+        }
         match self.replies.background {
             Some(c) => self.reply_row("background", Some(format!("{kind}, #{:02x}{:02x}{:02x}", c.r, c.g, c.b))),
             None => ("background", format!("unknown (assumed {kind})"), self.no_reply().to_owned()),

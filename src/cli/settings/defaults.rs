@@ -2,9 +2,10 @@
 
 /// Each setting and its default as text for the help. It is text because some defaults depend on
 /// the terminal.
-const DEFAULTS: [(&str, &str); 12] = [
+const DEFAULTS: [(&str, &str); 13] = [
     ("color", "auto"),
     ("glyphs", "auto"),
+    ("background", "auto: as the terminal reports, or dark"),
     ("map", "shaded"),
     ("quality", "exact; in casts, and live on a slow link, equal"),
     ("max_rate", "the measured rate of the link"),
