@@ -26,6 +26,8 @@ mod watching;
 
 use live::Live;
 use renderer::Renderer;
+#[cfg(feature = "serve")]
+pub(crate) use renderer::Tracer;
 use scenes::Scenes;
 pub use source::Source;
 

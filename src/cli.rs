@@ -25,6 +25,7 @@ mod outputs;
 mod picture;
 mod record;
 mod scene_args;
+mod serve;
 mod settings;
 mod shipped;
 mod style;
@@ -47,7 +48,7 @@ termtrace [OPTIONS] [SCENE]...
 const SUMMARY: &str = "\
 Commands:
   tour, scenes, new           see or list the built-in scenes, write a scene
-  frame, record               write a picture or a film
+  frame, record, serve        write a picture or a film, show scenes over SSH
   describe, explain, check    a picture in words, one pixel, a file's faults
   doctor, config, bench       this terminal, the settings, the speed
   completions, man, help, version
@@ -141,6 +142,8 @@ enum Command {
     Describe(DeferredArgs<describe::DescribeArgs>),
     /// Measure how fast a scene is traced
     Bench(DeferredArgs<bench::BenchArgs>),
+    /// Show scenes to everyone who connects by SSH
+    Serve(DeferredArgs<serve::ServeArgs>),
     /// Show what was detected about this terminal, and a test card
     Doctor(DeferredArgs<doctor::DoctorArgs>),
     /// Show the effective settings and where each comes from
@@ -179,6 +182,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Check(DeferredArgs(args))) => check::run(&args),
         Some(Command::Describe(DeferredArgs(args))) => describe::run(&args),
         Some(Command::Bench(DeferredArgs(args))) => bench::run(&args),
+        Some(Command::Serve(DeferredArgs(args))) => serve::run(args, given),
         Some(Command::Doctor(_)) => doctor::run(given),
         Some(Command::Config(DeferredArgs(args))) => config::run(&args, given),
         Some(Command::Completions(DeferredArgs(args))) => completions::complete(&args),

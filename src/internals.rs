@@ -73,3 +73,8 @@ modules! {
 modules! {
     record
 }
+
+#[cfg(feature = "serve")]
+modules! {
+    serve
+}

@@ -77,6 +77,7 @@
 //! | `scrolling-regions` | the same beside ratatui's feature of this name; includes `backend` | 33 |
 //! | `serde` | cameras, colours, sizes, maps and samplings in the formats of serde, checked when they are read | 11 |
 //! | `live` | the live view, on Linux and macOS; includes all of the above but `gif` and the last four | 92 |
+//! | `serve` | the server of the live view over SSH, for the program; includes `live`; needs Rust 1.89 | 199 |
 //! | `cli` | the program `termtrace`, by default | 108 |
 //!
 //! A program that uses only the library turns the default features off:
@@ -148,6 +149,7 @@
 //! - `viewer`: one user's view: bytes, scenes, frames and time in; bytes and requests for frames out
 //! - `terminal`: the only owner of the terminal
 //! - `app`: a viewer on the terminal
+//! - `serve`: any number of viewers over SSH
 //!
 //! For programs that use the crate:
 //! - [`live`]: the promised part of `app` and `terminal`
@@ -366,6 +368,8 @@ mod viewer;
 mod terminal;
 #[cfg(feature = "live")]
 mod app;
+#[cfg(feature = "serve")]
+mod serve;
 #[cfg(feature = "live")]
 pub mod live;
 pub mod prelude;

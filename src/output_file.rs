@@ -82,12 +82,22 @@ impl OutputFile {
     /// [`AlreadyExists`](io::ErrorKind::AlreadyExists), here or from [`finish`](Self::finish), if the name is used,
     /// even by a link; or if the folder does not allow a new file.
     pub fn create_new(path: &Path) -> io::Result<Self> {
+        Self::create_new_by(path, Temporary::new_file)
+    }
+
+    /// Starts a file whose name must be unused and which only its owner may read (mode 0600).
+    ///
+    /// # Errors
+    /// As for [`create_new`](Self::create_new).
+    pub fn create_secret(path: &Path) -> io::Result<Self> {
+        Self::create_new_by(path, Temporary::private)
+    }
+
+    fn create_new_by(path: &Path, create: impl FnOnce(&Path) -> io::Result<Temporary>) -> io::Result<Self> {
         match fs::symlink_metadata(path) {
             Ok(_) => Err(io::ErrorKind::AlreadyExists.into()),
             Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-            Err(_) => {
-                Ok(Self { target: path.to_owned(), destination: Destination::NewOnly(Temporary::new_file(path)?) })
-            }
+            Err(_) => Ok(Self { target: path.to_owned(), destination: Destination::NewOnly(create(path)?) }),
         }
     }
 

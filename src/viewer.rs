@@ -169,6 +169,8 @@ pub(crate) struct Viewer {
     names: Vec<String>,
     /// The time of the last call.
     now: Duration,
+    /// The time of the last key or movement of the mouse; 0 before the first.
+    last_event: Duration,
 }
 
 impl Viewer {
@@ -191,6 +193,7 @@ impl Viewer {
             names: Vec::new(),
             captions: options.tour.is_some(),
             now: Duration::ZERO,
+            last_event: Duration::ZERO,
             display,
             screen,
             options: Options { welcome: None, ..options.clone() },
@@ -539,6 +542,17 @@ impl Viewer {
     /// Returns the last frame.
     pub(crate) fn frame(&self) -> Option<&Frame> {
         self.screen.frame()
+    }
+
+    /// Records the time of a key or of a movement of the mouse.
+    fn record_event(&mut self, now: Duration) {
+        self.last_event = now;
+    }
+
+    /// Returns the time of the last key or movement of the mouse; 0 before the first.
+    #[cfg(feature = "serve")]
+    pub(crate) fn last_event(&self) -> Duration {
+        self.last_event
     }
 
     /// Returns the size of the terminal's window in cells.

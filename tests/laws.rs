@@ -396,6 +396,19 @@ fn ways_back_are_found() {
 /// The modules of rustix with which `named_file` opens files and waits for pipes.
 const FOR_FILES: [&str; 3] = ["rustix::event::", "rustix::fs::", "rustix::io::"];
 
+/// The modules of rustix with which `serve` uses sockets and waits for signals; it also reads CPU
+/// times.
+const FOR_SOCKETS: [&str; 3] = ["rustix::event::", "rustix::net::", "rustix::time::"];
+
+/// Only the server uses its protocol and its runtime.
+#[test]
+fn only_the_server_names_its_crates() {
+    for (path, text) in library_files().iter().filter(|(path, _)| stage(path) != "serve") {
+        let code = code(text);
+        assert!(!code.contains("tokio::") && !code.contains("russh::"), "{}", path.display());
+    }
+}
+
 /// Laws 5 and 7: only `terminal` uses the terminal and signals; the library neither prints nor
 /// exits.
 #[test]
@@ -407,6 +420,9 @@ fn the_operating_systems_terminal_has_one_owner() {
         }
         if stage(&path) == "named_file" {
             code = FOR_FILES.iter().fold(code, |code, module| code.replace(module, ""));
+        }
+        if stage(&path) == "serve" {
+            code = FOR_SOCKETS.iter().fold(code, |code, module| code.replace(module, ""));
         }
         if stage(&path) != "terminal" {
             // Locks of files and the right to write them are no terminal's.
@@ -422,13 +438,16 @@ fn the_operating_systems_terminal_has_one_owner() {
 const OF_A_SYSTEM: [&str; 7] =
     ["std::os::", "rustix::", "nix::", "signal_hook", "cfg(unix", "cfg(windows", "target_os"];
 
-/// Returns whether a file is compiled with the feature `live` only, by its module or one around it.
+/// Returns whether a file is compiled with `live` only, or with `serve`, which includes it.
+///
+/// The attribute may be that of its module or of one around it.
 fn is_live_only(path: &Path) -> bool {
     let folder = path.parent().expect("a file is in a folder");
     let is_top = folder == root().join("src");
     let parent = if is_top { folder.join("lib.rs") } else { folder.with_extension("rs") };
     let name = path.file_stem().and_then(OsStr::to_str).expect("names are UTF-8");
-    let declarations = ["mod ", "pub mod "].map(|start| format!("\n#[cfg(feature = \"live\")]\n{start}{name};\n"));
+    let declarations = [("live", "mod "), ("live", "pub mod "), ("serve", "mod ")]
+        .map(|(feature, start)| format!("\n#[cfg(feature = \"{feature}\")]\n{start}{name};\n"));
     let text = fs::read_to_string(&parent).expect("the parent is there");
     declarations.iter().any(|declaration| text.contains(declaration)) || !is_top && is_live_only(&parent)
 }

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// The other test programs, each with what it tests.
-const LEFT_OUT: [(&str, &str); 13] = [
+const LEFT_OUT: [(&str, &str); 14] = [
     ("cli", "the command line"),
     ("encoder", "cells to bytes, and ratatui's backend"),
     ("features", "the crates that each feature brings"),
@@ -22,6 +22,7 @@ const LEFT_OUT: [(&str, &str); 13] = [
     ("pictures", "pictures, bit for bit"),
     ("public_api", "what the library promises"),
     ("readme", "what README and docs/ say"),
+    ("serve", "the server over SSH"),
     ("slow", "limits in time"),
     ("slow_link", "a link of few bytes, late replies"),
 ];

@@ -29,7 +29,7 @@ _termtrace() {
         flag=${COMP_WORDS[COMP_CWORD-2]}
     fi
     if ((COMP_CWORD > 1)); then
-        case ${COMP_WORDS[1]} in scenes|tour|new|frame|record|explain|check|describe|bench|doctor|config|completions|man|help|version) command=${COMP_WORDS[1]} ;; esac
+        case ${COMP_WORDS[1]} in scenes|tour|new|frame|record|explain|check|describe|bench|serve|doctor|config|completions|man|help|version) command=${COMP_WORDS[1]} ;; esac
     fi
     case $flag in
         --as) _termtrace_words "obj stl ply gltf glb"; return ;;
@@ -78,14 +78,15 @@ _termtrace() {
         check) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads -h --help --strict"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
         describe) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --size -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
         bench) if [[ $cur == -* ]]; then _termtrace_words "--scene --pixels --samples --threads --kernel --rounds -h --help --no-shadow --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
+        serve) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
         doctor) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --background --cell-aspect -h --help --no-config --json"; else :; fi ;;
         config) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --background --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint -h --help --no-config --keys --json"; else :; fi ;;
         completions) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "bash elvish fish powershell zsh"; :; fi ;;
-        man) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes tour new frame record explain check describe bench doctor config completions man help version"; :; fi ;;
-        help) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes tour new frame record explain check describe bench doctor config completions man help version"; :; fi ;;
+        man) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes tour new frame record explain check describe bench serve doctor config completions man help version"; :; fi ;;
+        help) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes tour new frame record explain check describe bench serve doctor config completions man help version"; :; fi ;;
         version) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
         *) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --color --glyphs --background --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order --strict --compressed-link --quiet --no-config -h --help -V --version"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi
-            ((COMP_CWORD > 1)) || _termtrace_words "scenes tour new frame record explain check describe bench doctor config completions man help version" ;;
+            ((COMP_CWORD > 1)) || _termtrace_words "scenes tour new frame record explain check describe bench serve doctor config completions man help version" ;;
     esac
 }
 

@@ -58,6 +58,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand check 'Report every fault of a scene file'
             cand describe 'Describe a picture in words'
             cand bench 'Measure how fast a scene is traced'
+            cand serve 'Show scenes to everyone who connects by SSH'
             cand doctor 'Show what was detected about this terminal, and a test card'
             cand config 'Show the effective settings and where each comes from'
             cand completions 'Print shell completions'
@@ -234,6 +235,11 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --help 'Print help; -h prints a summary'
             cand --no-shadow 'Trace no shadow rays'
             cand --json 'Print JSON'
+            cand --no-config 'no-config'
+        }
+        &'termtrace;serve'= {
+            cand -h 'Print help; -h prints a summary'
+            cand --help 'Print help; -h prints a summary'
             cand --no-config 'no-config'
         }
         &'termtrace;doctor'= {

@@ -3,7 +3,7 @@
 function __termtrace_is
     set -l words (commandline -opc)
     set -l command ''
-    contains -- "$words[2]" scenes tour new frame record explain check describe bench doctor config completions man help version; and set command $words[2]
+    contains -- "$words[2]" scenes tour new frame record explain check describe bench serve doctor config completions man help version; and set command $words[2]
     test "$command" = "$argv[1]"
 end
 
@@ -25,6 +25,7 @@ complete -c termtrace -n __termtrace_first -a "explain\t'Explain one pixel: its 
 complete -c termtrace -n __termtrace_first -a "check\t'Report every fault of a scene file'"
 complete -c termtrace -n __termtrace_first -a "describe\t'Describe a picture in words'"
 complete -c termtrace -n __termtrace_first -a "bench\t'Measure how fast a scene is traced'"
+complete -c termtrace -n __termtrace_first -a "serve\t'Show scenes to everyone who connects by SSH'"
 complete -c termtrace -n __termtrace_first -a "doctor\t'Show what was detected about this terminal, and a test card'"
 complete -c termtrace -n __termtrace_first -a "config\t'Show the effective settings and where each comes from'"
 complete -c termtrace -n __termtrace_first -a "completions\t'Print shell completions'"
@@ -412,6 +413,8 @@ tanglecube\t'A tanglecube: eight corners joined by twelve tubes, of one formula 
 barth\t'Barth\'s sextic: 65 points where cones meet, the most that a surface of degree six can have.'
 gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and never meets itself.'"
 complete -c termtrace -n "__termtrace_is bench" -a '(__termtrace_scenes)'
+complete -c termtrace -n "__termtrace_is serve" -s h -l help -d 'Print help; -h prints a summary'
+complete -c termtrace -n "__termtrace_is serve"
 complete -c termtrace -n "__termtrace_is doctor" -l color -r -f -a "auto\t'As many as the terminal supports, by NO_COLOR, CLICOLOR_FORCE, FORCE_COLOR, COLORTERM, its own reply, terminfo and TERM; termtrace doctor shows which of them decided'
 always\t'As auto, but at least 16 colours, even if NO_COLOR is set'
 never\t'No colours, and no escape sequences for them'
@@ -489,6 +492,7 @@ explain\t'Explain one pixel: its ray, what it hit, each light'
 check\t'Report every fault of a scene file'
 describe\t'Describe a picture in words'
 bench\t'Measure how fast a scene is traced'
+serve\t'Show scenes to everyone who connects by SSH'
 doctor\t'Show what was detected about this terminal, and a test card'
 config\t'Show the effective settings and where each comes from'
 completions\t'Print shell completions'
@@ -505,6 +509,7 @@ explain\t'Explain one pixel: its ray, what it hit, each light'
 check\t'Report every fault of a scene file'
 describe\t'Describe a picture in words'
 bench\t'Measure how fast a scene is traced'
+serve\t'Show scenes to everyone who connects by SSH'
 doctor\t'Show what was detected about this terminal, and a test card'
 config\t'Show the effective settings and where each comes from'
 completions\t'Print shell completions'

@@ -104,13 +104,7 @@ impl Renderer {
     /// Starts tracing a frame. A frame predicted to be small is traced at once and returned.
     pub(super) fn start_frame(&mut self, job: Job) -> Option<Frame> {
         if self.is_small(&job) {
-            // Gives the same light as `UpTo(1)`, without the accumulators for a refinement, which traces this sample
-            // again in little time.
-            let one = Sampling::Each(NonZeroU32::MIN);
-            let trace_map = |map, part, camera: &Camera| {
-                trace(&job.shot)(map, Executor::CurrentThread, &job.scene, camera, part, one)
-            };
-            return frame_of(&job, trace_map).ok().map(|frame| self.record_time(frame));
+            return trace_once(&job).ok().map(|frame| self.record_time(frame));
         }
         let work = PendingJob { refines: job.refines, token: Cancellation::default() };
         let token = work.token.clone();
@@ -235,9 +229,20 @@ pub(super) fn frame_of(
     Ok(Frame { scene, shot, picture, geometry, parts, sampling, legends, refines, cost, trace: start.elapsed() })
 }
 
-/// The state of the tracing thread.
+/// Traces a frame with one sample per pixel on the calling thread.
+///
+/// Gives the same light as `UpTo(1)`, without the accumulators for a refinement, which traces this sample again in
+/// little time.
+fn trace_once(job: &Job) -> Result<Frame, Cancelled> {
+    let one = Sampling::Each(NonZeroU32::MIN);
+    let trace_map =
+        |map, part, camera: &Camera| trace(&job.shot)(map, Executor::CurrentThread, &job.scene, camera, part, one);
+    frame_of(job, trace_map)
+}
+
+/// The state of a tracing thread.
 #[derive(Default)]
-struct Tracer {
+pub(crate) struct Tracer {
     /// The last picture with its samples, if it can be refined.
     kept: Option<RefinablePicture>,
 }
@@ -263,6 +268,18 @@ impl RefinablePicture {
 }
 
 impl Tracer {
+    /// Traces or refines a frame on the threads of the current rayon pool, or returns that it was
+    /// cancelled.
+    ///
+    /// Without a kept picture, or if that is another viewer's, a refinement traces all samples anew.
+    #[cfg(feature = "serve")]
+    pub(crate) fn trace_for_any(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
+        if job.refines || !has_one_sample(job.sampling) {
+            return self.trace(job, token);
+        }
+        trace_once(job)
+    }
+
     fn trace(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
         // The kept picture need not be of the last frame: the loop traces small frames itself.
         let mut kept = self.kept.take();

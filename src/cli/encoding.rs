@@ -102,7 +102,7 @@ impl LossArgs {
 
 /// Parses a number of bytes per second, such as `50k` or `1M` (k is 1,000, M is 1,000,000). At
 /// least 1,000, because at lower rates a single screen would take many seconds.
-fn parse_rate(text: &str) -> Result<u32, String> {
+pub(super) fn parse_rate(text: &str) -> Result<u32, String> {
     let (digits, unit) = match text.strip_suffix(['k', 'K']) {
         Some(digits) => (digits, 1_000),
         None => text.strip_suffix(['m', 'M']).map_or((text, 1), |digits| (digits, 1_000_000)),

@@ -11,7 +11,6 @@ use super::settings::{SettingArgs, Settings, keys};
 use super::shipped::ShippedScene;
 use super::threads::on_threads;
 use clap::{ArgMatches, Args};
-use glam::{Vec2, Vec3};
 use std::io::{self, IsTerminal};
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -21,7 +20,7 @@ use termtrace::internals::control::{Command, Direction, KeyMode, Keymap};
 use termtrace::internals::terminal::die_of;
 use termtrace::internals::{app, cell};
 use termtrace::live::{Ending, Options, Outcome, Signals, Source};
-use termtrace::{Camera, Colors, Pose, Sampling, Size, export};
+use termtrace::{Camera, Colors, Sampling, Size, export};
 
 /// The command that opens the live view, which determines what the view shows first.
 #[derive(Clone, Copy)]
@@ -194,18 +193,7 @@ pub(super) fn open_view(
 /// Returns the text about the camera on exit: a line of a scene file, and the same as flags.
 // The rest is comments of such a file, so that all three lines can be pasted.
 fn last_view(camera: &Camera) -> String {
-    let Pose { eye, target, up } = camera.pose();
-    let point = |Vec3 { x, y, z }: Vec3| format!("{x},{y},{z}");
-    let up = if up == Vec3::Y { String::new() } else { format!(" --up {}", point(up)) };
-    let degrees = (100.0 * camera.rectangle().vertical_fov().to_degrees()).round() / 100.0;
-    let rectangle = camera.rectangle();
-    let tilt = rectangle.tilt() * 1_f32.to_degrees();
-    let offsets = [("shift", rectangle.shift()), ("tilt", (1e3 * tilt).round() / 1e3)].into_iter();
-    let offsets: Vec<_> =
-        offsets.filter(|(_, by)| *by != Vec2::ZERO).map(|(name, Vec2 { x, y })| format!(" --{name} {x},{y}")).collect();
-    let offsets = offsets.concat();
-    let flags = format!("--eye {} --target {}{up} --fov {degrees}{offsets}", point(eye), point(target));
-    format!("// your last view, for a scene file or as flags:\n{},\n// {flags}\n", camera.to_ron())
+    format!("// your last view, for a scene file or as flags:\n{},\n// {}\n", camera.to_ron(), camera.to_flags())
 }
 
 /// Returns the scenes to show. Standard input is read here, before raw mode, because the user may

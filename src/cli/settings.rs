@@ -114,9 +114,23 @@ impl SettingArgs {
     }
 }
 
+/// Reads a file of settings, whose names are those of `command`'s flags.
+#[cfg(feature = "serve")]
+pub(super) fn read_as_flags(path: PathBuf, command: &Command) -> Result<ArgMatches, Failure> {
+    use super::outcome::Failure::Scene;
+    let file = UserFile::read_at(path).map_err(|error| match error {
+        termtrace::LoadError::Scene(error) => Scene(error),
+        error => usage(error),
+    })?;
+    let setting = |entry: &Entry| command.get_arguments().find(|setting| setting.get_id() == entry.name.as_str());
+    let entries = entries::read(&file, command).map_err(Scene)?;
+    let words = entries.iter().filter_map(|entry| Some(values::word(setting(entry)?, &entry.text)));
+    command.clone().try_get_matches_from(words).map_err(usage)
+}
+
 /// Parses a frame rate of at least 0.01 frames per second: a lower one, probably a typing error,
 /// would look like a hang.
-fn parse_fps(text: &str) -> Result<f32, String> {
+pub(super) fn parse_fps(text: &str) -> Result<f32, String> {
     let number = text.parse::<f32>().ok().filter(|fps| (0.01..=1_000.0).contains(fps));
     number.ok_or_else(|| "expected frames per second, from 0.01 to 1000".to_owned())
 }

@@ -235,6 +235,11 @@ impl Keymap {
         }
     }
 
+    /// Unbinds all keys of these commands, which the help then does not list.
+    pub fn remove(&mut self, commands: &[Command]) {
+        self.bindings.retain(|row| !commands.contains(&row.command));
+    }
+
     /// Returns the command of a key event in `modes`, the topmost first, and whether Shift makes
     /// the command faster.
     pub fn command(&self, modes: &[KeyMode], event: &KeyEvent) -> Option<(Command, bool)> {

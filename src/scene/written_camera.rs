@@ -42,6 +42,23 @@ impl Camera {
         format!("({})", fields.join(", "))
     }
 
+    /// Returns the camera as flags of the command line: `--eye ... --target ... --fov ...`.
+    #[doc(hidden)]
+    pub fn to_flags(&self) -> String {
+        let Pose { eye, target, up } = self.pose();
+        let point = |Vec3 { x, y, z }: Vec3| format!("{x},{y},{z}");
+        let up = if up == Vec3::Y { String::new() } else { format!(" --up {}", point(up)) };
+        let rectangle = self.rectangle();
+        let degrees = (100.0 * rectangle.vertical_fov().to_degrees()).round() / 100.0;
+        let tilt = rectangle.tilt() * 1_f32.to_degrees();
+        let offsets = [("shift", rectangle.shift()), ("tilt", (1e3 * tilt).round() / 1e3)].into_iter();
+        let offsets: Vec<_> = offsets
+            .filter(|(_, by)| *by != Vec2::ZERO)
+            .map(|(name, Vec2 { x, y })| format!(" --{name} {x},{y}"))
+            .collect();
+        format!("--eye {} --target {}{up} --fov {degrees}{}", point(eye), point(target), offsets.concat())
+    }
+
     /// Returns the camera with its numbers rounded to what a picture resolves.
     ///
     /// In a picture of a thousand rows, eye and target move by less than a tenth of a pixel at the distance of the

@@ -60,6 +60,9 @@ impl Viewer {
     fn take_inputs(&mut self, inputs: &[Input], now: Duration) -> Result<(), OutOfMemory> {
         self.set_time(now);
         for (at, input) in inputs.iter().enumerate() {
+            if matches!(input, Input::Event(Event::Key(_) | Event::Mouse(_))) {
+                self.record_event(now);
+            }
             match input {
                 input if mouse_actions::is_superseded(input, inputs.get(at + 1)) => {}
                 Input::Event(Event::Mouse(event)) => self.take_mouse(*event),

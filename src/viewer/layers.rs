@@ -39,7 +39,7 @@ pub(super) enum Level {
 }
 
 /// A panel or mark over the picture.
-pub(super) trait Layer: Any {
+pub(super) trait Layer: Any + Send {
     fn level(&self) -> Level;
 
     fn draw(&mut self, canvas: &mut Canvas<'_>);

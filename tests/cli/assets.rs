@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each file in `assets/`, and the command that prints it.
-const ASSETS: [(&str, &str); 21] = [
+const ASSETS: [(&str, &str); 22] = [
     ("completions/termtrace.bash", "completions bash"),
     ("completions/termtrace.elv", "completions elvish"),
     ("completions/termtrace.fish", "completions fish"),
@@ -29,6 +29,7 @@ const ASSETS: [(&str, &str); 21] = [
     ("man/termtrace-new.1", "man new"),
     ("man/termtrace-record.1", "man record"),
     ("man/termtrace-scenes.1", "man scenes"),
+    ("man/termtrace-serve.1", "man serve"),
     ("man/termtrace-tour.1", "man tour"),
     ("man/termtrace-version.1", "man version"),
 ];

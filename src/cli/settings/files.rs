@@ -21,14 +21,25 @@ impl UserFile {
     /// Reads the configuration file `name`; `None` if it does not exist, or its folder is unknown.
     pub(in crate::cli) fn read(name: &str) -> Result<Option<Self>, LoadError> {
         let Some(path) = path_of(name) else { return Ok(None) };
+        match Self::read_at(path) {
+            // `NotADirectory` means that a folder of the path is a file, so there are no settings either. Other errors,
+            // such as a missing permission, are reported.
+            Err(LoadError::CannotRead { error, .. })
+                if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) =>
+            {
+                Ok(None)
+            }
+            read => read.map(Some),
+        }
+    }
+
+    /// Reads the configuration file at `path`.
+    pub(in crate::cli) fn read_at(path: PathBuf) -> Result<Self, LoadError> {
         match named_file::read(&path, Accepted::FilesAndPipes, |_| MAX_USER_FILE_BYTES, &Reporter::silent()) {
             Ok(bytes) => {
                 let text = text_from(&path.to_string_lossy(), &bytes)?.to_owned();
-                Ok(Some(Self { path, text }))
+                Ok(Self { path, text })
             }
-            // `NotADirectory` means that a folder of the path is a file, so there are no settings either. Other errors,
-            // such as a missing permission, are reported.
-            Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => Ok(None),
             Err(error) => Err(LoadError::CannotRead { path, error }),
         }
     }

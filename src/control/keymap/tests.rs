@@ -114,3 +114,12 @@ fn keys_are_bound_anew() {
     );
     assert_eq!(command('x'), None);
 }
+
+#[test]
+fn removed_commands_have_no_key() {
+    let mut keymap = Keymap::default();
+    keymap.remove(&[Command::Export, Command::Suspend]);
+    assert_eq!(keymap.command(&[KeyMode::Fly, KeyMode::Always], &press('o')), None);
+    let removed = |row: &Binding| row.command == Command::Suspend;
+    assert!(!keymap.bindings().iter().any(removed) && Keymap::default().bindings().iter().any(removed));
+}

@@ -93,3 +93,13 @@ proptest! {
         prop_assert_eq!(read_back(&camera), camera);
     }
 }
+
+#[test]
+fn a_camera_is_written_as_flags() {
+    let line = "(camera: (eye: (0.5, 1, 5), target: (0, 0, 0), vertical_fov: 40.5))";
+    let camera = *Scene::from_ron("x", line).unwrap().camera();
+    assert_eq!(camera.to_flags(), "--eye 0.5,1,5 --target 0,0,0 --fov 40.5");
+    let line = line.replace("vertical", "up: (0, 0, 1), vertical");
+    let camera = *Scene::from_ron("x", &line).unwrap().camera();
+    assert_eq!(camera.to_flags(), "--eye 0.5,1,5 --target 0,0,0 --up 0,0,1 --fov 40.5");
+}

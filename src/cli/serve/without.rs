@@ -1,0 +1,19 @@
+//! The command in a program without the server.
+
+use crate::cli::outcome::{CommandResult, Failure};
+use clap::{ArgMatches, Args};
+use std::ffi::OsString;
+
+/// The arguments of the command: any.
+#[derive(Args)]
+pub(in crate::cli) struct ServeArgs {
+    #[arg(hide = true, trailing_var_arg = true, allow_hyphen_values = true)]
+    _any: Vec<OsString>,
+}
+
+/// Fails with the way to get a program with the server.
+#[expect(clippy::needless_pass_by_value, reason = "the signature of the function with a server")]
+pub(in crate::cli) fn run(_args: ServeArgs, _given: &ArgMatches) -> CommandResult {
+    let how = "cargo install termtrace --features serve";
+    Err(Failure::Runtime(format!("this program was built without its server; {how} installs it with one")))
+}

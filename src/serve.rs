@@ -1,0 +1,368 @@
+//! Any number of viewers over SSH, each with a view of its own, in one process.
+//!
+//! A client gets a terminal with the view of a scene, and nothing else. One thread owns the sockets ([`tokio`],
+//! `russh`); it never traces. The other threads are the `stage`: each turn of a `seat` (one viewer) runs on one of
+//! them, from its input to its bytes, and the `run_queue` shares their time fairly. Between them is a `line` for each
+//! connection, with at most one frame. `limits` counts connections and places; `ssh` and `visit` say what a client may
+//! ask for.
+//!
+//! Of these `run_queue`, `seat`, `limits`, `visit` and `client_terminal` are pure: they are told the time.
+
+use crate::scene::Scene;
+use crate::terminal::{Signals, without_signals};
+use house::House;
+use limits::Refusal;
+use line::{Line, locked};
+use russh::keys::PublicKey;
+use russh::server::{Config, run_stream};
+use russh::{MethodKind, MethodSet, Preferred, SshId, mac};
+use rustix::event::{PollFd, PollFlags, poll};
+use socket::Socket;
+use ssh::Client;
+use stage::Stage;
+use std::borrow::Cow;
+use std::io;
+use std::net::{SocketAddr, TcpListener};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+use tokio::net::TcpStream;
+use tokio::time::{sleep, timeout};
+
+mod client_terminal;
+mod host_key;
+mod house;
+mod limits;
+mod line;
+mod reception;
+mod run_queue;
+mod seat;
+mod socket;
+mod ssh;
+mod stage;
+mod visit;
+
+/// Time to wait after an error of accepting a connection, such as too many open files.
+const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
+
+/// A scene that visitors may see.
+#[derive(Clone, Debug)]
+pub struct HostedScene {
+    /// The name that visitors type.
+    pub name: String,
+    /// The name of the scene on the command line at home.
+    pub file: String,
+    /// A line about its contents.
+    pub title: String,
+    /// The scene.
+    pub scene: Scene,
+    /// Whether the view starts in orbit mode.
+    pub orbits: bool,
+}
+
+/// The settings of a server.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The address to listen at.
+    pub listen: SocketAddr,
+    /// The file of the host key, which is made if there is none.
+    pub host_key: PathBuf,
+    /// The most viewers at a time. Others wait.
+    pub max_viewers: usize,
+    /// The most connections from one address.
+    pub max_per_address: usize,
+    /// The longest time without a key.
+    pub idle: Duration,
+    /// The longest visit.
+    pub session_max: Duration,
+    /// The most bytes per second for one viewer.
+    pub max_rate: Option<u32>,
+    /// The most frames per second for one viewer.
+    pub max_frames: f32,
+    /// The threads that draw; `None` for one per core.
+    pub threads: Option<usize>,
+    /// The keys of those who may see it; `None` for everybody.
+    pub authorized_keys: Option<Vec<PublicKey>>,
+    /// The text that clients print before the login.
+    pub banner: Option<String>,
+    /// The link in the welcome and on leaving.
+    pub link: Option<String>,
+    /// The longest time that a client may take to log in.
+    pub login_time: Duration,
+    /// The longest time in which a client takes no bytes.
+    pub patience: Duration,
+    /// The time that viewers have to leave when the server ends.
+    pub drain: Duration,
+}
+
+impl Settings {
+    /// Returns the default settings, with the host key in this file.
+    pub fn new(host_key: PathBuf) -> Self {
+        Self {
+            listen: SocketAddr::from(([127, 0, 0, 1], 2222)),
+            host_key,
+            max_viewers: 200,
+            max_per_address: 10,
+            idle: Duration::from_secs(600),
+            session_max: Duration::from_secs(3600),
+            max_rate: Some(200_000),
+            max_frames: 30.0,
+            threads: None,
+            authorized_keys: None,
+            banner: None,
+            link: None,
+            login_time: Duration::from_secs(10),
+            patience: Duration::from_secs(20),
+            drain: Duration::from_secs(30),
+        }
+    }
+}
+
+/// Reads the public keys of a file as `sshd` does, without options before a key.
+///
+/// # Errors
+/// If the file cannot be read, or a line is no public key.
+pub fn authorized_keys(path: &Path) -> io::Result<Vec<PublicKey>> {
+    let text = std::fs::read_to_string(path)?;
+    let lines = (1..).zip(text.lines().map(str::trim)).filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    let parsed = lines.map(|(number, line)| {
+        PublicKey::from_openssh(line)
+            .map_err(|error| io::Error::other(format!("line {number}: no public key: {error}")))
+    });
+    parsed.collect()
+}
+
+/// A running server.
+pub struct Server {
+    house: Arc<House>,
+    address: SocketAddr,
+    fingerprint: String,
+    sockets: Option<JoinHandle<()>>,
+    threads: Vec<JoinHandle<()>>,
+    ended: Arc<AtomicBool>,
+}
+
+/// A receiver of a server's lines for a log.
+pub type Log = Arc<dyn Fn(&str) + Send + Sync>;
+
+impl Server {
+    /// Starts a server, which shows the first scene unless a visitor asks for another one.
+    ///
+    /// `on_end` is called when it has drained.
+    ///
+    /// # Errors
+    /// If there is no scene, the host key cannot be read or made, or the address cannot be used; the error names it.
+    pub fn start(
+        scenes: Vec<HostedScene>,
+        settings: Settings,
+        log: Log,
+        on_end: impl FnOnce() + Send + 'static,
+    ) -> io::Result<Self> {
+        if scenes.is_empty() {
+            return Err(io::Error::other("there is no scene to show"));
+        }
+        let named = |what: String| move |error: io::Error| io::Error::new(error.kind(), format!("{what}: {error}"));
+        let key = host_key::load_or_make(&settings.host_key).map_err(named(settings.host_key.display().to_string()))?;
+        let listener = TcpListener::bind(settings.listen).map_err(named(settings.listen.to_string()))?;
+        listener.set_nonblocking(true)?;
+        let address = listener.local_addr()?;
+        let cores = || thread::available_parallelism().map_or(1, usize::from);
+        let (stage, threads) = Stage::start(settings.threads.unwrap_or_else(cores))?;
+        let fingerprint = host_key::fingerprint(&key);
+        let config = Arc::new(config(&settings, key));
+        let house = Arc::new(House::new(scenes, settings, stage));
+        let (ended, shared) = (Arc::new(AtomicBool::new(false)), Arc::clone(&house));
+        let flag = Arc::clone(&ended);
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+        let sockets = thread::Builder::new().name("sockets".to_owned()).spawn(move || {
+            runtime.block_on(welcome_all(shared, config, listener, log));
+            flag.store(true, Ordering::SeqCst);
+            on_end();
+        })?;
+        Ok(Self { house, address, fingerprint, sockets: Some(sockets), threads, ended })
+    }
+
+    /// Returns the address that it listens at.
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Returns the host key's fingerprint: `SHA256:...`.
+    pub fn fingerprint(&self) -> &str {
+        &self.fingerprint
+    }
+
+    /// Returns the number of viewers.
+    pub fn viewers(&self) -> usize {
+        self.house.stage.seat_count()
+    }
+
+    /// Makes the turn of a viewer panic that sends this byte.
+    #[cfg(feature = "test-hooks")]
+    pub fn panic_at(&self, byte: u8) {
+        let _ = self.house.stage.panics.set(byte);
+    }
+
+    /// Accepts no more connections, and tells all viewers that they have to leave.
+    pub fn drain(&self) {
+        self.house.drain(self.house.stage.now() + self.house.settings.drain);
+    }
+
+    /// Returns whether it has drained and ended.
+    pub fn has_ended(&self) -> bool {
+        self.ended.load(Ordering::SeqCst)
+    }
+
+    /// Waits until it has drained.
+    pub fn join(mut self) {
+        if let Some(sockets) = self.sockets.take() {
+            let _ = sockets.join();
+        }
+        self.house.stage.close();
+        for thread in self.threads.drain(..) {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Runs a server until a signal asks it to end and it has drained; a second signal ends it at once.
+///
+/// `started` is told the address and the host key's fingerprint.
+///
+/// # Errors
+/// As for [`Server::start`].
+pub fn run(
+    scenes: Vec<HostedScene>,
+    settings: Settings,
+    signals: &mut Signals,
+    log: Log,
+    started: impl FnOnce(SocketAddr, &str),
+) -> io::Result<Option<i32>> {
+    let mut waker = signals.waker()?;
+    let server = without_signals(|| Server::start(scenes, settings, Arc::clone(&log), move || waker.wake()))?;
+    started(server.address(), server.fingerprint());
+    let mut draining = false;
+    loop {
+        let _ = poll(&mut [PollFd::from_borrowed_fd(signals.wake_pipe(), PollFlags::IN)], None);
+        signals.drain();
+        // A terminal in which it runs was resized, or it was stopped and continued.
+        let is_other = signals.take_resized() | signals.take_continued();
+        if server.has_ended() {
+            server.join();
+            return Ok(None);
+        }
+        match signals.deadly() {
+            Some(signal) if draining && !is_other => return Ok(Some(signal)),
+            Some(_) if !draining => {
+                draining = true;
+                log(&format!("draining {} viewers; a second signal ends at once", server.viewers()));
+                server.drain();
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Returns what the server agrees to.
+fn config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
+    let with_keys = settings.authorized_keys.is_some();
+    let macs = [mac::HMAC_SHA256_ETM, mac::HMAC_SHA512_ETM, mac::HMAC_SHA256, mac::HMAC_SHA512];
+    Config {
+        server_id: SshId::Standard(Cow::Borrowed("SSH-2.0-termtrace")),
+        methods: if with_keys { MethodSet::from(&[MethodKind::PublicKey][..]) } else { MethodSet::empty() },
+        auth_rejection_time: Duration::from_millis(500),
+        auth_rejection_time_initial: Some(Duration::ZERO),
+        keys: vec![key],
+        // Input is keys; only output is large.
+        window_size: 16 * 1024,
+        maximum_packet_size: 4 * 1024,
+        channel_buffer_size: 4,
+        event_buffer_size: 2,
+        max_auth_attempts: 6,
+        // A viewer's own time without a key is limited, and a socket that takes nothing is closed.
+        inactivity_timeout: None,
+        preferred: Preferred { mac: Cow::Owned(macs.to_vec()), ..Preferred::default() },
+        ..Config::default()
+    }
+}
+
+/// Accepts connections until the server drains, and waits until the last viewer has left.
+async fn welcome_all(house: Arc<House>, config: Arc<Config>, listener: TcpListener, log: Log) {
+    let listener = match tokio::net::TcpListener::from_std(listener) {
+        Ok(listener) => listener,
+        Err(error) => return log(&format!("the socket cannot be used: {error}")),
+    };
+    let mut changes = house.changes.subscribe();
+    let accepting = tokio::spawn(accept_all(Arc::clone(&house), config, listener, log));
+    while house.drained_at().is_none() && changes.changed().await.is_ok() {}
+    accepting.abort();
+    // The last second is for the replies of terminals, and for what is still to be sent.
+    let end = house.drained_at().unwrap_or_default() + Duration::from_secs(3);
+    while house.stage.seat_count() > 0 && house.stage.now() < end {
+        let _ = timeout(Duration::from_millis(200), changes.changed()).await;
+    }
+    sleep(Duration::from_millis(200)).await;
+}
+
+async fn accept_all(house: Arc<House>, config: Arc<Config>, listener: tokio::net::TcpListener, log: Log) {
+    loop {
+        match listener.accept().await {
+            Ok((stream, address)) => {
+                let entry = locked(&house.door).enter(address.ip(), house.stage.now());
+                match entry {
+                    Ok(entry) => {
+                        let connection = connect(Arc::clone(&house), Arc::clone(&config), stream, entry);
+                        tokio::spawn(connection);
+                    }
+                    // A closed connection costs the least; a message would need the whole handshake.
+                    Err(refusal) => log(&format!("refused {}: {}", limits::shortened(address.ip()), words(refusal))),
+                }
+            }
+            // Such as too many open files: others may end meanwhile.
+            Err(error) => {
+                log(&format!("cannot accept a connection: {error}"));
+                sleep(ACCEPT_PAUSE).await;
+            }
+        }
+    }
+}
+
+fn words(refusal: Refusal) -> &'static str {
+    match refusal {
+        Refusal::Busy => "too many connections",
+        Refusal::Address => "too many connections from this address",
+        Refusal::Rate => "too many new connections from this address",
+    }
+}
+
+/// Serves one connection; ends it if the client does not log in, or asks for nothing.
+async fn connect(house: Arc<House>, config: Arc<Config>, stream: TcpStream, entry: limits::Entry) {
+    let (login_time, idle) = (house.settings.login_time, house.settings.idle);
+    let socket = Socket::new(stream, house.settings.patience);
+    let (kick, line) = (socket.kick(), Arc::new(Line::default()));
+    let client = Client {
+        house,
+        line: Arc::clone(&line),
+        kick: kick.clone(),
+        entry: Some(entry),
+        terminal: client_terminal::ClientTerminal::default(),
+        channel: None,
+        asked: false,
+    };
+    let log_in = async {
+        let session = run_stream(config, socket, client).await.ok()?;
+        line.logged_in.notified().await;
+        Some(session)
+    };
+    match timeout(login_time, log_in).await {
+        Ok(Some(_session)) => {
+            if timeout(idle, line.asked.notified()).await.is_err() {
+                kick.kick();
+            }
+        }
+        Ok(None) => {}
+        Err(_) => kick.kick(),
+    }
+}

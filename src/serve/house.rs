@@ -1,0 +1,172 @@
+//! The state that all connections share: scenes, settings, limits, and the stage.
+
+use super::client_terminal::ClientTerminal;
+use super::limits::{Door, Places};
+use super::line::locked;
+use super::stage::Stage;
+use super::{HostedScene, Settings};
+use crate::capabilities::{Colors, terminfo_colors};
+use crate::control::{Command, Keymap};
+use crate::export::text_frame;
+use crate::grid::Size;
+use crate::viewer::Options;
+use std::collections::HashMap;
+use std::fmt::Write;
+use std::sync::{Arc, Mutex, OnceLock};
+use std::time::Duration;
+use tokio::sync::watch;
+
+/// The commands that would touch the server's disk or stop it. No key is bound to them.
+const LEFT_OUT: [Command; 6] =
+    [Command::Export, Command::ExportLarge, Command::Record, Command::KeepView, Command::TurnMesh, Command::Suspend];
+
+/// The most names of terminals whose colours are remembered.
+const MAX_TERMINALS: usize = 256;
+
+/// The state that all connections share.
+pub(super) struct House {
+    pub(super) settings: Settings,
+    pub(super) scenes: Arc<[HostedScene]>,
+    pub(super) stage: Arc<Stage>,
+    pub(super) door: Mutex<Door>,
+    places: Mutex<Places>,
+    /// Changes when a place is freed, or the server begins to drain.
+    pub(super) changes: watch::Sender<()>,
+    drained_at: OnceLock<Duration>,
+    keymap: Keymap,
+    /// The colours of terminals according to terminfo, which is read once for each name.
+    terminals: Mutex<HashMap<String, Option<Colors>>>,
+    /// One frame of each scene as text, made when it is first asked for.
+    text_frames: Vec<OnceLock<String>>,
+}
+
+impl House {
+    pub(super) fn new(scenes: Vec<HostedScene>, settings: Settings, stage: Arc<Stage>) -> Self {
+        let mut keymap = Keymap::default();
+        keymap.remove(&LEFT_OUT);
+        // Some connections only ask for text, and some wait for a place.
+        let connections = 2 * settings.max_viewers + 64;
+        Self {
+            door: Mutex::new(Door::new(connections, settings.max_per_address)),
+            places: Mutex::new(Places::new(settings.max_viewers)),
+            changes: watch::Sender::new(()),
+            drained_at: OnceLock::new(),
+            text_frames: scenes.iter().map(|_| OnceLock::new()).collect(),
+            scenes: scenes.into(),
+            terminals: Mutex::default(),
+            settings,
+            stage,
+            keymap,
+        }
+    }
+
+    /// Returns the options of a new viewer, whose window has this number of columns.
+    pub(super) fn options(&self, terminal: &ClientTerminal, columns: u16) -> Options {
+        let mut options = Options::new(terminal.hints(&|name| self.terminfo(name)));
+        options.max_rate = self.settings.max_rate;
+        options.max_frames = Some(self.settings.max_frames);
+        options.keymap = self.keymap.clone();
+        options.welcome = Some(welcome(self.scenes.len(), self.settings.link.as_deref(), columns));
+        options
+    }
+
+    fn terminfo(&self, name: &str) -> Option<Colors> {
+        let mut known = locked(&self.terminals);
+        if let Some(colors) = known.get(name) {
+            return *colors;
+        }
+        let colors = terminfo_colors(name);
+        if known.len() < MAX_TERMINALS {
+            known.insert(name.to_owned(), colors);
+        }
+        colors
+    }
+
+    /// Returns one frame of a scene as text.
+    pub(super) fn text_frame(&self, scene: usize) -> &str {
+        self.text_frames[scene].get_or_init(|| text_frame(&self.scenes[scene].scene, Size::new(80, 24)))
+    }
+
+    /// Returns the list of scenes.
+    pub(super) fn list(&self) -> String {
+        let width = self.scenes.iter().map(|scene| scene.name.len()).max().unwrap_or(0);
+        self.scenes.iter().fold(String::new(), |mut list, HostedScene { name, title, .. }| {
+            let _ = write!(list, "{}\r\n", format!("{name:width$}  {title}").trim_end());
+            list
+        })
+    }
+
+    /// Begins to drain: the viewers have to leave by this time.
+    pub(super) fn drain(&self, at: Duration) {
+        if self.drained_at.set(at).is_ok() {
+            self.stage.drain(at);
+            self.changes.send_replace(());
+        }
+    }
+
+    /// Returns the time by which the viewers have to leave, if the server drains.
+    pub(super) fn drained_at(&self) -> Option<Duration> {
+        self.drained_at.get().copied()
+    }
+
+    /// Returns a visitor at the end of the queue for a place; `None` if too many wait.
+    pub(super) fn queue_up(self: &Arc<Self>) -> Option<Visitor> {
+        let number = locked(&self.places).join()?;
+        Some(Visitor { house: Arc::clone(self), number })
+    }
+}
+
+/// Returns the line that is shown until the first key: the main keys, or fewer if there is no room
+/// beside the link.
+fn welcome(scenes: usize, link: Option<&str>, columns: u16) -> String {
+    let next = if scenes > 1 { ", n next scene" } else { "" };
+    let link = link.map(|link| format!("  {link}")).unwrap_or_default();
+    let line = format!("drag or WASD moves, t turns{next}, ? all keys, q quits{link}");
+    // A note has a blank at each side.
+    if line.chars().count() + 2 <= columns.into() { line } else { format!("? all keys, q quits{link}") }
+}
+
+/// A visitor in the queue for a place, which leaves it when it is dropped.
+pub(super) struct Visitor {
+    house: Arc<House>,
+    number: u64,
+}
+
+impl Visitor {
+    /// Takes a place; if none is free, returns how many visitors are ahead.
+    pub(super) fn take_place(&self) -> Result<Place, usize> {
+        locked(&self.house.places).take(self.number)?;
+        Ok(Place(Arc::clone(&self.house)))
+    }
+}
+
+impl Drop for Visitor {
+    fn drop(&mut self) {
+        locked(&self.house.places).give_up(self.number);
+        self.house.changes.send_replace(());
+    }
+}
+
+/// A viewer's place, which is freed when it is dropped.
+pub(super) struct Place(Arc<House>);
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        locked(&self.0.places).free();
+        self.0.changes.send_replace(());
+    }
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests {
+    use super::welcome;
+
+    #[test]
+    fn the_link_has_room_beside_the_keys() {
+        let link = "https://example.org/demo";
+        assert_eq!(welcome(1, None, 80), "drag or WASD moves, t turns, ? all keys, q quits");
+        assert_eq!(welcome(2, Some(link), 80), format!("? all keys, q quits  {link}"));
+        let wide = format!("drag or WASD moves, t turns, n next scene, ? all keys, q quits  {link}");
+        assert_eq!(welcome(2, Some(link), 90), wide);
+    }
+}

@@ -1,0 +1,205 @@
+//! The limits on connections and viewers, in total and from one address.
+//!
+//! Pure: the time is a parameter.
+
+use std::collections::{HashMap, VecDeque};
+use std::net::IpAddr;
+use std::time::Duration;
+
+/// The most connections that have not logged in.
+const MAX_LOGGING_IN: usize = 64;
+/// The most connections from one address that have not logged in.
+const MAX_LOGGING_IN_PER_ADDRESS: usize = 8;
+/// New connections from one address at once; more are allowed at one each [`REFILL_TIME`].
+const BURST: f64 = 20.0;
+const REFILL_TIME: Duration = Duration::from_millis(200);
+/// The most addresses without a connection that are remembered.
+///
+/// All others share one allowance, so that an attacker with many addresses does not make the table grow.
+const MAX_REMEMBERED: usize = 10_000;
+
+/// The addresses that count as one: a whole network of IPv6, of which every user has one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Origin {
+    V4([u8; 4]),
+    V6([u8; 8]),
+    /// All that are not remembered.
+    Others,
+}
+
+impl Origin {
+    fn of(address: IpAddr) -> Self {
+        match address.to_canonical() {
+            IpAddr::V4(address) => Self::V4(address.octets()),
+            IpAddr::V6(address) => {
+                let [a, b, c, d, e, f, g, h, ..] = address.octets();
+                Self::V6([a, b, c, d, e, f, g, h])
+            }
+        }
+    }
+}
+
+/// Returns an address without what tells one user from another, for logs.
+pub(super) fn shortened(address: IpAddr) -> String {
+    match Origin::of(address) {
+        Origin::V4([a, b, c, _]) => format!("{a}.{b}.{c}.0/24"),
+        Origin::V6([a, b, c, d, e, f, ..]) => {
+            let group = |high, low| u16::from_be_bytes([high, low]);
+            format!("{:x}:{:x}:{:x}::/48", group(a, b), group(c, d), group(e, f))
+        }
+        Origin::Others => String::new(),
+    }
+}
+
+/// The connections of one origin.
+#[derive(Clone, Copy, Debug)]
+struct Visitor {
+    connected: usize,
+    logging_in: usize,
+    allowance: f64,
+    seen: Duration,
+}
+
+/// The reason why a connection is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Refusal {
+    /// Too many connections are logging in.
+    Busy,
+    /// Too many connections from this address.
+    Address,
+    /// Too many new connections from this address in a short time.
+    Rate,
+}
+
+/// A connection that was let in.
+#[derive(Debug)]
+pub(super) struct Entry {
+    origin: Origin,
+    logging_in: bool,
+}
+
+/// The connections that there are, by origin.
+#[derive(Debug)]
+pub(super) struct Door {
+    per_address: usize,
+    total: usize,
+    connected: usize,
+    logging_in: usize,
+    visitors: HashMap<Origin, Visitor>,
+}
+
+impl Door {
+    /// Returns a door for at most `total` connections, and `per_address` from one address.
+    pub(super) fn new(total: usize, per_address: usize) -> Self {
+        Self { per_address, total, connected: 0, logging_in: 0, visitors: HashMap::new() }
+    }
+
+    /// Lets a connection in, or tells why not.
+    pub(super) fn enter(&mut self, address: IpAddr, now: Duration) -> Result<Entry, Refusal> {
+        // The limits of one address are lifted together, for a load test from one machine.
+        let most_logging_in = MAX_LOGGING_IN_PER_ADDRESS.max(self.per_address / 2);
+        if self.connected >= self.total || self.logging_in >= MAX_LOGGING_IN.max(self.per_address / 2) {
+            return Err(Refusal::Busy);
+        }
+        let origin = self.remembered(Origin::of(address), now);
+        let burst = BURST.max(self.per_address as f64);
+        let visitor =
+            self.visitors.entry(origin).or_insert(Visitor { connected: 0, logging_in: 0, allowance: burst, seen: now });
+        let refilled = now.saturating_sub(visitor.seen).as_secs_f64() / REFILL_TIME.as_secs_f64();
+        visitor.allowance = (visitor.allowance + refilled).min(burst);
+        visitor.seen = now;
+        if visitor.connected >= self.per_address || visitor.logging_in >= most_logging_in {
+            return Err(Refusal::Address);
+        }
+        if visitor.allowance < 1.0 {
+            return Err(Refusal::Rate);
+        }
+        visitor.allowance -= 1.0;
+        visitor.connected += 1;
+        visitor.logging_in += 1;
+        self.connected += 1;
+        self.logging_in += 1;
+        Ok(Entry { origin, logging_in: true })
+    }
+
+    /// Records that a connection has logged in.
+    pub(super) fn log_in(&mut self, entry: &mut Entry) {
+        if std::mem::take(&mut entry.logging_in) {
+            self.logging_in -= 1;
+            if let Some(visitor) = self.visitors.get_mut(&entry.origin) {
+                visitor.logging_in -= 1;
+            }
+        }
+    }
+
+    /// Records that a connection has ended.
+    pub(super) fn leave(&mut self, mut entry: Entry) {
+        self.log_in(&mut entry);
+        self.connected -= 1;
+        if let Some(visitor) = self.visitors.get_mut(&entry.origin) {
+            visitor.connected -= 1;
+        }
+    }
+
+    /// Returns `origin`, or [`Origin::Others`] if it is new and there is no room for another one.
+    fn remembered(&mut self, origin: Origin, now: Duration) -> Origin {
+        if self.visitors.len() >= MAX_REMEMBERED && !self.visitors.contains_key(&origin) {
+            let refilled = REFILL_TIME * BURST as u32;
+            self.visitors.retain(|_, visitor| visitor.connected > 0 || visitor.seen + refilled > now);
+            if self.visitors.len() >= MAX_REMEMBERED {
+                return Origin::Others;
+            }
+        }
+        origin
+    }
+}
+
+/// The places for viewers, and those who wait for one in the order of their arrival.
+#[derive(Debug)]
+pub(super) struct Places {
+    most: usize,
+    taken: usize,
+    waiting: VecDeque<u64>,
+    next: u64,
+}
+
+impl Places {
+    /// Returns `most` free places.
+    pub(super) fn new(most: usize) -> Self {
+        Self { most, taken: 0, waiting: VecDeque::new(), next: 0 }
+    }
+
+    /// Joins the end of the queue. Returns the number of the visitor; `None` if too many wait.
+    pub(super) fn join(&mut self) -> Option<u64> {
+        if self.waiting.len() >= self.most.max(16) {
+            return None;
+        }
+        self.next += 1;
+        self.waiting.push_back(self.next);
+        Some(self.next)
+    }
+
+    /// Takes a place if one is free for this visitor; otherwise returns how many are ahead.
+    pub(super) fn take(&mut self, visitor: u64) -> Result<(), usize> {
+        let ahead = self.waiting.iter().position(|&waiting| waiting == visitor).unwrap_or(0);
+        if self.taken + ahead >= self.most {
+            return Err(ahead);
+        }
+        self.give_up(visitor);
+        self.taken += 1;
+        Ok(())
+    }
+
+    /// Leaves the queue.
+    pub(super) fn give_up(&mut self, visitor: u64) {
+        self.waiting.retain(|&waiting| waiting != visitor);
+    }
+
+    /// Frees a place.
+    pub(super) fn free(&mut self) {
+        self.taken = self.taken.saturating_sub(1);
+    }
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;

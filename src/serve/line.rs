@@ -1,0 +1,186 @@
+//! The exchange between a connection and its seat: input in one direction, bytes in the other.
+//!
+//! Both sides hold a lock only to move bytes, so the thread of the sockets never waits for a picture.
+
+use super::run_queue::SeatId;
+use super::seat::Arrived;
+use crate::grid::Window;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+use std::time::Duration;
+use tokio::sync::Notify;
+
+/// The size of the parts in which input is taken; at most two of them wait for a seat's turn.
+///
+/// The connection is not read while they wait.
+const MAX_INPUT: usize = 4096;
+
+/// The most bytes that wait to be sent while input is taken.
+const MAX_OUTPUT: usize = 64 * 1024;
+
+/// The line between a connection and its seat.
+#[derive(Debug, Default)]
+pub(super) struct Line {
+    inbox: Mutex<Inbox>,
+    /// Notified when the seat has taken the input.
+    taken: Notify,
+    outbox: Mutex<Outbox>,
+    /// Notified when there are bytes to send, or the connection or the seat has ended.
+    filled: Notify,
+    seat: OnceLock<SeatId>,
+    /// Notified when the client has logged in, and when the connection has ended.
+    pub(super) logged_in: Notify,
+    /// Notified when the client has asked for a view, and when the connection has ended.
+    pub(super) asked: Notify,
+}
+
+#[derive(Debug, Default)]
+struct Inbox {
+    arrived: Arrived,
+    hung_up: bool,
+}
+
+#[derive(Debug, Default)]
+struct Outbox {
+    bytes: Vec<u8>,
+    /// Whether bytes are being sent.
+    sending: bool,
+    /// The exit status, once the seat has ended.
+    ended: Option<u32>,
+}
+
+/// The bytes that a connection is to send next.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Outgoing {
+    pub(super) bytes: Vec<u8>,
+    /// The exit status, if these are the last bytes.
+    pub(super) ended: Option<u32>,
+}
+
+/// Returns the value of a mutex, also if a thread has panicked while it had the lock.
+// Each field that is locked so is valid by itself.
+pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Line {
+    /// Appends input, and waits for room if there is too much of it.
+    pub(super) async fn push(&self, bytes: &[u8]) {
+        for part in bytes.chunks(MAX_INPUT) {
+            loop {
+                let taken = self.taken.notified();
+                {
+                    let mut inbox = locked(&self.inbox);
+                    if inbox.hung_up {
+                        return;
+                    }
+                    if inbox.arrived.bytes.len() + part.len() <= 2 * MAX_INPUT {
+                        inbox.arrived.bytes.extend_from_slice(part);
+                        break;
+                    }
+                }
+                taken.await;
+            }
+        }
+    }
+
+    /// Sets the window's new size. Only the last one counts.
+    pub(super) fn resize(&self, window: Window) {
+        locked(&self.inbox).arrived.window = Some(window);
+    }
+
+    /// Announces when the server ends.
+    pub(super) fn drain(&self, at: Duration) {
+        locked(&self.inbox).arrived.drained_at = Some(at);
+    }
+
+    /// Records that the connection has ended.
+    pub(super) fn hang_up(&self) {
+        locked(&self.inbox).hung_up = true;
+        self.taken.notify_waiters();
+        for waiting in [&self.filled, &self.logged_in, &self.asked] {
+            waiting.notify_one();
+        }
+    }
+
+    /// Returns whether the connection has ended.
+    pub(super) fn is_hung_up(&self) -> bool {
+        locked(&self.inbox).hung_up
+    }
+
+    /// Takes the input that has arrived; nothing while many bytes are to be sent.
+    ///
+    /// Input leads to more of them.
+    pub(super) fn take_arrived(&self) -> Arrived {
+        if locked(&self.outbox).bytes.len() > MAX_OUTPUT {
+            return Arrived::default();
+        }
+        let arrived = std::mem::take(&mut locked(&self.inbox).arrived);
+        self.taken.notify_waiters();
+        arrived
+    }
+
+    /// Returns whether bytes are to be sent or being sent.
+    pub(super) fn is_sending(&self) -> bool {
+        let outbox = locked(&self.outbox);
+        outbox.sending || !outbox.bytes.is_empty()
+    }
+
+    /// Hands over bytes to send, and the exit status if they are the last ones.
+    pub(super) fn send(&self, mut bytes: Vec<u8>, ended: Option<u32>) {
+        if bytes.is_empty() && ended.is_none() {
+            return;
+        }
+        let mut outbox = locked(&self.outbox);
+        if outbox.bytes.is_empty() {
+            outbox.bytes = bytes;
+        } else {
+            outbox.bytes.append(&mut bytes);
+        }
+        outbox.ended = ended;
+        drop(outbox);
+        self.filled.notify_one();
+    }
+
+    /// Waits for bytes to send. `None` if the connection has ended.
+    pub(super) async fn outgoing(&self) -> Option<Outgoing> {
+        loop {
+            if self.is_hung_up() {
+                return None;
+            }
+            {
+                let mut outbox = locked(&self.outbox);
+                outbox.sending = !outbox.bytes.is_empty();
+                if outbox.sending || outbox.ended.is_some() {
+                    return Some(Outgoing { bytes: std::mem::take(&mut outbox.bytes), ended: outbox.ended });
+                }
+            }
+            self.filled.notified().await;
+        }
+    }
+
+    /// Records that the bytes of [`outgoing`](Self::outgoing) have been sent.
+    pub(super) fn sent(&self) {
+        locked(&self.outbox).sending = false;
+    }
+
+    /// Records the number of the connection's seat.
+    pub(super) fn set_seat(&self, id: SeatId) {
+        // A connection has one seat in its life.
+        let _ = self.seat.set(id);
+    }
+
+    /// Returns the number of the connection's seat, if it has one.
+    pub(super) fn seat(&self) -> Option<SeatId> {
+        self.seat.get().copied()
+    }
+
+    /// Wakes the connection's task, which waits for a place and has no seat yet.
+    pub(super) fn rouse(&self) {
+        self.filled.notify_one();
+    }
+
+    /// Waits for [`rouse`](Self::rouse), or until the connection has ended.
+    pub(super) async fn roused(&self) {
+        self.filled.notified().await;
+    }
+}

@@ -1,0 +1,163 @@
+//! One visit, from the wait for a place to the last byte.
+
+use super::client_terminal::ClientTerminal;
+use super::house::{House, Place};
+use super::line::{Line, Outgoing};
+use super::seat::{Seat, Stay};
+use super::socket::Kick;
+use crate::grid::Window;
+use crate::text::visible;
+use russh::ChannelId;
+use russh::server::Handle;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::time::{sleep, timeout};
+
+/// The most bytes in one message.
+// The connection's buffer keeps the size of its largest message for ever.
+const MAX_MESSAGE: usize = 8 * 1024;
+/// Time that a client which was told to leave has to close the connection.
+const CLOSING_TIME: Duration = Duration::from_secs(2);
+/// The keys that leave the waiting room: q, Ctrl-C, Ctrl-D.
+const LEAVING: &[u8] = b"q\x03\x04";
+
+/// One visit: the connection, and the client's channel.
+pub(super) struct Reception {
+    pub(super) house: Arc<House>,
+    pub(super) line: Arc<Line>,
+    pub(super) kick: Kick,
+    pub(super) handle: Handle,
+    pub(super) channel: ChannelId,
+}
+
+impl Reception {
+    /// Shows a scene until the user leaves.
+    pub(super) async fn show(&self, scene: usize, terminal: &ClientTerminal, window: Window) {
+        let mut window = window;
+        let Some(_place) = self.wait_for_place(&mut window).await else {
+            return self.end(1).await;
+        };
+        let (house, now) = (&self.house, self.house.stage.now());
+        let settings = &house.settings;
+        let stay = Stay { idle: settings.idle, ends: now + settings.session_max };
+        let options = house.options(terminal, window.size.columns);
+        let mut first = Vec::new();
+        let scenes = Arc::clone(&house.scenes);
+        let seat = Seat::new(scenes, scene, (options, settings.link.clone()), window, stay, now, &mut first);
+        let Ok(seat) = seat else {
+            return self.refuse("there is not enough memory for a window of this size").await;
+        };
+        self.line.send(first, None);
+        let id = house.stage.add(seat, Arc::clone(&self.line));
+        self.line.set_seat(id);
+        if let Some(at) = house.drained_at() {
+            self.line.drain(at);
+        }
+        // Input that arrived before the seat had its number has not woken it.
+        house.stage.wake(id);
+        while let Some(Outgoing { bytes, ended }) = self.line.outgoing().await {
+            if !self.send(&bytes).await {
+                break;
+            }
+            self.line.sent();
+            match ended {
+                Some(status) => return self.end(status).await,
+                None => house.stage.wake(id),
+            }
+        }
+        self.line.hang_up();
+        house.stage.wake(id);
+    }
+
+    /// Waits until there is a place, and tells the user meanwhile how many are ahead.
+    ///
+    /// `None` if the user leaves, the server drains, or too many wait.
+    async fn wait_for_place(&self, window: &mut Window) -> Option<Place> {
+        let mut changes = self.house.changes.subscribe();
+        let Some(visitor) = self.house.queue_up() else {
+            self.send(b"full, and many wait; come back later\r\n").await;
+            return None;
+        };
+        let mut told = None;
+        loop {
+            changes.mark_unchanged();
+            if self.house.drained_at().is_some() {
+                self.send(b"\r\x1b[Kthe server restarts; come back soon\r\n").await;
+                return None;
+            }
+            let ahead = match visitor.take_place() {
+                Ok(place) => {
+                    if told.is_some() {
+                        self.send(b"\r\x1b[K").await;
+                    }
+                    return Some(place);
+                }
+                Err(ahead) => ahead,
+            };
+            if told.replace(ahead) != Some(ahead) {
+                let text = format!("\r\x1b[Kfull, {ahead} ahead of you; q leaves");
+                self.send(text.as_bytes()).await;
+            }
+            first_of(changes.changed(), self.line.roused()).await;
+            let arrived = self.line.take_arrived();
+            *window = arrived.window.unwrap_or(*window);
+            if self.line.is_hung_up() || arrived.bytes.iter().any(|byte| LEAVING.contains(byte)) {
+                self.send(b"\r\x1b[K").await;
+                return None;
+            }
+        }
+    }
+
+    /// Prints a text and ends the visit.
+    pub(super) async fn print(&self, text: &str) {
+        self.send(text.as_bytes()).await;
+        self.end(0).await;
+    }
+
+    /// Prints an error message and ends the visit.
+    pub(super) async fn refuse(&self, message: &str) {
+        let message = format!("error: {}\r\n", visible(message));
+        let _ = self.handle.extended_data(self.channel, 1, message.into_bytes()).await;
+        self.end(2).await;
+    }
+
+    /// Sends bytes, and returns whether the connection has taken them.
+    ///
+    /// A client that grants no room for them for too long is shown out. (One that does not read its socket is noticed
+    /// by the socket.)
+    async fn send(&self, bytes: &[u8]) -> bool {
+        for message in bytes.chunks(MAX_MESSAGE) {
+            let sent = timeout(self.house.settings.patience, self.handle.data(self.channel, message.to_vec())).await;
+            if !matches!(sent, Ok(Ok(()))) {
+                self.kick.kick();
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Ends the visit, and the connection if the client does not.
+    async fn end(&self, status: u32) {
+        let ending = async {
+            let _ = self.handle.exit_status_request(self.channel, status).await;
+            let _ = self.handle.eof(self.channel).await;
+            let _ = self.handle.close(self.channel).await;
+        };
+        let _ = timeout(CLOSING_TIME, ending).await;
+        sleep(CLOSING_TIME).await;
+        self.kick.kick();
+    }
+}
+
+/// Waits for the first of two events.
+async fn first_of<A, B>(first: impl Future<Output = A>, second: impl Future<Output = B>) {
+    let (mut first, mut second) = (std::pin::pin!(first), std::pin::pin!(second));
+    std::future::poll_fn(|cx| {
+        if first.as_mut().poll(cx).is_ready() || second.as_mut().poll(cx).is_ready() {
+            std::task::Poll::Ready(())
+        } else {
+            std::task::Poll::Pending
+        }
+    })
+    .await;
+}

@@ -1,0 +1,153 @@
+//! The order in which seats get CPU time: fair shares of time, not of frames.
+//!
+//! Start-time fair queueing: a seat whose turn took long waits for its next one until all others have had as much time.
+//! So a viewer with a large window, or one whose link makes frames expensive, pays with its own frame rate. A seat
+//! that has rested starts level with the others and gets a head start, so that a key press waits for about one round at
+//! most. Refinements run only when nothing else is ready. Pure: it reads no clock.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
+
+/// The number of a seat; numbers are never used again.
+pub(super) type SeatId = u64;
+
+/// The head start of a seat that has rested.
+///
+/// It is about the time of one frame of 80x24 cells. Such a seat is served before those that take turns all the time,
+/// but its share does not grow, because the head start is granted only once its earlier time is paid back.
+const HEAD_START: Duration = Duration::from_millis(1);
+
+/// The kind of work that a seat waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Class {
+    /// Input, or a new picture.
+    Picture,
+    /// More samples for a picture at rest.
+    Refinement,
+}
+
+/// The wish of a seat after its turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Next {
+    /// Another turn.
+    Turn(Class),
+    /// A turn at this time, unless it is woken before; `None` sleeps until it is woken.
+    Sleep(Option<Duration>),
+    /// No more turns.
+    End,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Asleep(Option<Duration>),
+    Ready(Class, Duration),
+    /// Its turn is being carried out.
+    Running {
+        /// The virtual time at which the turn started.
+        start: Duration,
+        /// Whether it was woken since then.
+        woken: bool,
+    },
+}
+
+#[derive(Debug)]
+struct Seat {
+    /// The virtual time at which its last turn ended.
+    finish: Duration,
+    state: State,
+}
+
+/// The seats that are ready, asleep or running.
+#[derive(Debug, Default)]
+pub(super) struct RunQueue {
+    seats: BTreeMap<SeatId, Seat>,
+    ready: BTreeSet<(Class, Duration, SeatId)>,
+    timers: BTreeSet<(Duration, SeatId)>,
+    /// The virtual time: the start of the last turn.
+    virtual_time: Duration,
+    running: usize,
+}
+
+impl RunQueue {
+    /// Adds a seat, which is ready at once.
+    pub(super) fn add(&mut self, id: SeatId) {
+        self.seats.insert(id, Seat { finish: self.virtual_time, state: State::Asleep(None) });
+        self.wake(id);
+    }
+
+    /// Makes a seat ready that has got input, or whose bytes have been sent.
+    pub(super) fn wake(&mut self, id: SeatId) {
+        let Some(seat) = self.seats.get_mut(&id) else { return };
+        match seat.state {
+            State::Running { start, .. } => seat.state = State::Running { start, woken: true },
+            State::Ready(Class::Picture, _) => {}
+            State::Asleep(_) | State::Ready(..) => {
+                let rested = self.virtual_time.saturating_sub(HEAD_START);
+                let start = seat.finish.max(rested);
+                self.set(id, State::Ready(Class::Picture, start));
+            }
+        }
+    }
+
+    /// Returns the seat whose turn it is at `now`, if any; it runs until [`finish`](Self::finish).
+    pub(super) fn take(&mut self, now: Duration) -> Option<SeatId> {
+        while let Some(&(_, id)) = self.timers.first().filter(|(at, _)| *at <= now) {
+            self.wake(id);
+        }
+        let &(class, start, id) = self.ready.first()?;
+        if class == Class::Picture {
+            self.virtual_time = self.virtual_time.max(start);
+        }
+        self.set(id, State::Running { start, woken: false });
+        self.running += 1;
+        Some(id)
+    }
+
+    /// Records that the turn of a seat took this much CPU time.
+    pub(super) fn finish(&mut self, id: SeatId, cost: Duration, next: Next) {
+        self.running = self.running.saturating_sub(1);
+        let Some(seat) = self.seats.get_mut(&id) else { return };
+        let State::Running { start, woken } = seat.state else { return };
+        let finish = start + cost;
+        seat.finish = finish;
+        match next {
+            Next::End => drop(self.seats.remove(&id)),
+            _ if woken => self.set(id, State::Ready(Class::Picture, finish)),
+            Next::Turn(class) => self.set(id, State::Ready(class, finish)),
+            Next::Sleep(until) => self.set(id, State::Asleep(until)),
+        }
+    }
+
+    /// Returns the time of the next timer.
+    pub(super) fn next_timer(&self) -> Option<Duration> {
+        self.timers.first().map(|&(at, _)| at)
+    }
+
+    /// Returns the number of seats that are running or ready for a new picture.
+    pub(super) fn load(&self) -> usize {
+        self.running + self.ready.range(..(Class::Refinement, Duration::ZERO, 0)).count()
+    }
+
+    /// Returns the number of seats.
+    pub(super) fn len(&self) -> usize {
+        self.seats.len()
+    }
+
+    fn set(&mut self, id: SeatId, state: State) {
+        let Some(seat) = self.seats.get_mut(&id) else { return };
+        match seat.state {
+            State::Asleep(Some(at)) => drop(self.timers.remove(&(at, id))),
+            State::Ready(class, start) => drop(self.ready.remove(&(class, start, id))),
+            State::Asleep(None) | State::Running { .. } => {}
+        }
+        match state {
+            State::Asleep(Some(at)) => drop(self.timers.insert((at, id))),
+            State::Ready(class, start) => drop(self.ready.insert((class, start, id))),
+            State::Asleep(None) | State::Running { .. } => {}
+        }
+        seat.state = state;
+    }
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;

@@ -1,0 +1,318 @@
+//! One viewer of the server: its view, the modes of its terminal, and the end of its visit.
+//!
+//! Pure: it is told the time, gets a function that traces, and returns bytes.
+
+use super::HostedScene;
+use super::run_queue::{Class, Next};
+use crate::grid::Window;
+use crate::memory::OutOfMemory;
+use crate::protocol::{FENCE, TerminalMode, TerminalModes};
+use crate::viewer::{DriverState, Frame, Job, Options, Request, Step, Viewer};
+use base64::Engine;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Time before the end in which it is counted down.
+const COUNTDOWN: Duration = Duration::from_secs(30);
+/// Greatest time that leaving waits for the terminal's last replies.
+const LAST_REPLIES: Duration = Duration::from_secs(1);
+/// The most decisions in one turn. A turn has one frame of a new view, and what follows from it.
+const MAX_STEPS: usize = 8;
+
+/// The reason why a viewer leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Parting {
+    /// The user quit.
+    Quit,
+    /// No key was pressed for too long.
+    Idle,
+    /// The greatest time of a visit is over.
+    TimeOver,
+    /// The server ends.
+    Drained,
+    /// There is not enough memory for the window.
+    OutOfMemory,
+}
+
+impl Parting {
+    /// Returns what is counted down before it, if it can be foreseen.
+    fn notice(self, seconds: u64) -> String {
+        let what = match self {
+            Self::Idle => "no key for a while: any key stays, else you leave",
+            Self::TimeOver => "your time is over: you leave",
+            _ => "the server restarts: you leave",
+        };
+        format!("{what} in {seconds} s")
+    }
+
+    /// Returns the sentence that is printed on leaving; empty if the user knows why.
+    fn sentence(self) -> &'static str {
+        match self {
+            Self::Quit => "",
+            Self::Idle => "no key for a while; come back at any time\r\n",
+            Self::TimeOver => "your time was over; come back at any time\r\n",
+            Self::Drained => "the server restarts; come back soon\r\n",
+            Self::OutOfMemory => "there is not enough memory for a window of this size\r\n",
+        }
+    }
+}
+
+/// The times that limit a visit.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stay {
+    /// The longest time without a key.
+    pub(super) idle: Duration,
+    /// The time at which the visit ends.
+    pub(super) ends: Duration,
+}
+
+/// The input that has arrived for a seat since its last turn.
+#[derive(Debug, Default)]
+pub(super) struct Arrived {
+    pub(super) bytes: Vec<u8>,
+    pub(super) window: Option<Window>,
+    /// The time at which the server ends, if it does.
+    pub(super) drained_at: Option<Duration>,
+}
+
+/// Traces a frame; `None` if it was interrupted, which it may be if the flag is set.
+pub(super) type Trace<'a> = dyn FnMut(&Job, bool) -> Option<Frame> + 'a;
+
+/// One viewer: its view, and the modes of its terminal.
+pub(super) struct Seat {
+    viewer: Viewer,
+    modes: TerminalModes,
+    scenes: Arc<[HostedScene]>,
+    shown: usize,
+    link: Option<String>,
+    stay: Stay,
+    began: Duration,
+    drained_at: Option<Duration>,
+    /// The seconds that were counted down last.
+    counted: Option<u64>,
+    /// Since when the viewer leaves; its terminal is restored then.
+    leaving: Option<Duration>,
+}
+
+impl Seat {
+    /// Returns a seat that shows scene number `shown`, and appends the first bytes to `out`.
+    ///
+    /// # Errors
+    /// If there is not enough memory for the window.
+    pub(super) fn new(
+        scenes: Arc<[HostedScene]>,
+        shown: usize,
+        (options, link): (Options, Option<String>),
+        window: Window,
+        stay: Stay,
+        now: Duration,
+        out: &mut Vec<u8>,
+    ) -> Result<Self, OutOfMemory> {
+        let mut viewer = Viewer::new(options, window)?;
+        viewer.set_names(scenes.iter().map(|scene| scene.name.clone()).collect());
+        let mut modes = TerminalModes::default();
+        for mode in TerminalMode::ALL_TERMINALS {
+            modes.switch_on(mode, out);
+        }
+        out.extend(viewer.queries(now));
+        let (began, drained_at, counted, leaving) = (now, None, None, None);
+        let mut seat = Self { viewer, modes, scenes, shown, link, stay, began, drained_at, counted, leaving };
+        seat.show(shown);
+        Ok(seat)
+    }
+
+    fn show(&mut self, index: usize) {
+        if let Some(scene) = self.scenes.get(index) {
+            self.viewer.show(scene.scene.clone(), index, scene.orbits);
+            self.shown = index;
+        }
+    }
+
+    /// Takes what has arrived, decides, and appends the bytes to send.
+    ///
+    /// `sending` tells whether earlier bytes are still to be sent, and `class` what the turn may be used for. At most
+    /// one frame of a new view is traced.
+    pub(super) fn take_turn(
+        &mut self,
+        arrived: Arrived,
+        (sending, class): (bool, Class),
+        clock: &dyn Fn() -> Duration,
+        trace: &mut Trace<'_>,
+        out: &mut Vec<u8>,
+    ) -> Next {
+        let now = clock();
+        self.drained_at = arrived.drained_at.or(self.drained_at);
+        if self.leaving.is_some() {
+            return self.await_last_replies(&arrived.bytes, now);
+        }
+        if self.take_arrived(&arrived, now, out).is_err() {
+            return self.leave(Parting::OutOfMemory, now, out);
+        }
+        if self.carry_out_requests(out) {
+            return self.leave(Parting::Quit, now, out);
+        }
+        let (end, parting) = self.end();
+        if now >= end {
+            return self.leave(parting, now, out);
+        }
+        let counted = self.count_down(end, parting, now);
+        match self.decide((sending, class), clock, trace, out) {
+            Next::Sleep(until) => Next::Sleep(until.into_iter().chain([counted]).min()),
+            next => next,
+        }
+    }
+
+    fn take_arrived(&mut self, arrived: &Arrived, now: Duration, out: &mut Vec<u8>) -> Result<(), OutOfMemory> {
+        if let Some(window) = arrived.window {
+            self.viewer.resize(window)?;
+        }
+        // Without bytes, too: an escape key that no byte follows is noticed by its time.
+        self.viewer.receive(&arrived.bytes, now)?;
+        for mode in self.viewer.modes() {
+            self.modes.switch_on(mode, out);
+        }
+        Ok(())
+    }
+
+    /// Returns when, and why, the visit ends if no key is pressed.
+    fn end(&self) -> (Duration, Parting) {
+        let idle = (self.viewer.last_event().max(self.began) + self.stay.idle, Parting::Idle);
+        let ends = [(self.stay.ends, Parting::TimeOver), idle];
+        let drained = self.drained_at.map(|at| (at, Parting::Drained));
+        drained.into_iter().chain(ends).min_by_key(|&(at, _)| at).expect("there are two")
+    }
+
+    /// Shows how many seconds are left, if few are, and returns the time at which that changes.
+    fn count_down(&mut self, end: Duration, parting: Parting, now: Duration) -> Duration {
+        let countdown = if parting == Parting::Idle { COUNTDOWN.min(self.stay.idle / 2) } else { COUNTDOWN };
+        let left = end - now;
+        if left > countdown {
+            self.counted = None;
+            return end - countdown;
+        }
+        let seconds = left.as_secs() + u64::from(left.subsec_nanos() > 0);
+        // Shown once a second: each note is a change, which is drawn.
+        if self.counted.replace(seconds) != Some(seconds) {
+            self.viewer.show_note(parting.notice(seconds));
+        }
+        end - Duration::from_secs(seconds - 1)
+    }
+
+    /// Draws, and traces at most one frame of a new view.
+    fn decide(
+        &mut self,
+        (mut sending, class): (bool, Class),
+        clock: &dyn Fn() -> Duration,
+        trace: &mut Trace<'_>,
+        out: &mut Vec<u8>,
+    ) -> Next {
+        let mut traced = false;
+        for _ in 0..MAX_STEPS {
+            match self.viewer.next_step(DriverState { sending, tracing: None }, clock()) {
+                Step::Wait(until) => return Next::Sleep(until),
+                Step::GiveUp => {}
+                Step::Draw => {
+                    let mut bytes = Vec::new();
+                    self.viewer.draw(clock(), &mut bytes);
+                    self.viewer.end_frame(&mut bytes, clock());
+                    sending |= !bytes.is_empty();
+                    out.append(&mut bytes);
+                }
+                // The first picture is held back until it is refined, if that takes little time.
+                Step::Trace(_, job) if job.refines && class == Class::Picture && self.viewer.has_shown() => {
+                    return Next::Turn(Class::Refinement);
+                }
+                Step::Trace(probe, job) => {
+                    out.extend_from_slice(&probe);
+                    match trace(&job, self.viewer.has_shown()) {
+                        Some(frame) => self.viewer.take_frame(frame),
+                        None => return Next::Turn(Class::Refinement),
+                    }
+                    // What it leads to is drawn at once; another frame is for the next turn.
+                    if std::mem::replace(&mut traced, true) {
+                        return Next::Turn(class);
+                    }
+                }
+            }
+        }
+        Next::Turn(class)
+    }
+
+    /// Carries out the viewer's requests. Returns whether the user leaves.
+    ///
+    /// No key is bound to what would touch the server's disk, and such a request does nothing.
+    fn carry_out_requests(&mut self, out: &mut Vec<u8>) -> bool {
+        let mut copied = None;
+        while let Some(request) = self.viewer.next_request() {
+            match request {
+                Request::Leave => return true,
+                Request::SwitchScene(steps) => {
+                    let count = self.scenes.len();
+                    let index = (self.shown + steps.rem_euclid(count.cast_signed()).cast_unsigned()) % count;
+                    let note = if count == 1 {
+                        "only one scene".to_owned()
+                    } else {
+                        self.show(index);
+                        format!("{} ({} of {count})", self.scenes[index].name, index + 1)
+                    };
+                    self.viewer.show_note(note);
+                }
+                Request::ShowMetadata => self.viewer.show_metadata(self.scenes[self.shown].name.clone()),
+                // Only the last one stays on the clipboard, and many would be much longer than the keys.
+                Request::Copy(text) => copied = Some(text),
+                _ => {}
+            }
+        }
+        if let Some(text) = copied {
+            let encoded = base64::engine::general_purpose::STANDARD.encode(text);
+            out.extend_from_slice(format!("\x1b]52;c;{encoded}\x1b\\").as_bytes());
+        }
+        false
+    }
+
+    /// Restores the terminal, and appends what is left on the screen.
+    pub(super) fn leave(&mut self, parting: Parting, now: Duration, out: &mut Vec<u8>) -> Next {
+        self.modes_off(now, out);
+        out.extend_from_slice(parting.sentence().as_bytes());
+        let HostedScene { file, .. } = &self.scenes[self.shown];
+        let camera = self.viewer.moved().map(|camera| format!(" {}", camera.rounded().to_flags()));
+        let command = format!("this view at home: termtrace {file}{}\r\n", camera.unwrap_or_default());
+        out.extend_from_slice(command.as_bytes());
+        if let Some(link) = &self.link {
+            out.extend_from_slice(format!("{link}\r\n").as_bytes());
+        }
+        self.leaving = Some(now);
+        self.await_last_replies(&[], now)
+    }
+
+    /// Switches all modes off. If replies are outstanding, sends a last query.
+    ///
+    /// Terminals reply in order, so no other reply follows that to this query.
+    fn modes_off(&mut self, now: Duration, out: &mut Vec<u8>) {
+        let awaits = self.modes.is_on(TerminalMode::Keyboard) || self.viewer.receiver().reply_time_left(now).is_some();
+        self.modes.switch_all_off(out);
+        if awaits {
+            out.extend_from_slice(FENCE);
+            self.viewer.receiver().sent(FENCE, now);
+        }
+    }
+
+    /// Reads the terminal's replies until the last one.
+    ///
+    /// The user's shell would take them for typed text.
+    fn await_last_replies(&mut self, bytes: &[u8], now: Duration) -> Next {
+        let receiver = self.viewer.receiver();
+        receiver.receive(bytes, now);
+        let due = self.leaving.map_or(now, |since| since + LAST_REPLIES);
+        if receiver.reply_time_left(now).is_none() || now >= due { Next::End } else { Next::Sleep(Some(due)) }
+    }
+
+    /// Restores the terminal after a panic in a turn.
+    pub(super) fn abandon(&mut self, out: &mut Vec<u8>) {
+        self.modes.switch_all_off(out);
+        out.extend_from_slice(b"a fault of the server ended this view\r\n");
+    }
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;

@@ -1,0 +1,168 @@
+use super::*;
+use crate::app::Tracer;
+use crate::capabilities::Hints;
+use crate::progress::Cancellation;
+use crate::scene::Scene;
+use std::cell::Cell;
+
+const SECOND: Duration = Duration::from_secs(1);
+const STAY: Stay = Stay { idle: Duration::from_secs(100), ends: Duration::from_secs(1000) };
+
+/// A seat in a terminal of 20x6 cells that answers queries, with a clock that only the test sets.
+struct Sitting {
+    seat: Seat,
+    tracer: Tracer,
+    now: Cell<Duration>,
+    traced: u32,
+    bytes: Vec<u8>,
+}
+
+fn scenes() -> Arc<[HostedScene]> {
+    let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Sphere(center: (0, 0, 0), radius: 1)])";
+    let scene = |name: &str| HostedScene {
+        name: name.to_owned(),
+        file: format!("{name}.ron"),
+        title: String::new(),
+        scene: Scene::from_ron(name, text).expect("a scene"),
+        orbits: false,
+    };
+    [scene("one"), scene("two")].into()
+}
+
+impl Sitting {
+    fn new(stay: Stay) -> Self {
+        let window = crate::serve::client_terminal::window([20, 6, 0, 0]);
+        let variable = |name: &str| (name == "TERM").then(|| "xterm-256color".to_owned());
+        let options = (Options::new(Hints::gather(&variable, &|_| None)), None);
+        let mut bytes = Vec::new();
+        let seat = Seat::new(scenes(), 0, options, window, stay, SECOND, &mut bytes).expect("there is memory");
+        Self { seat, tracer: Tracer::default(), now: Cell::new(SECOND), traced: 0, bytes }
+    }
+
+    fn turn_for(&mut self, class: Class, arrived: Arrived) -> Next {
+        let Self { seat, tracer, now, traced, bytes } = self;
+        let mut trace = |job: &Job, _: bool| {
+            *traced += 1;
+            tracer.trace_for_any(job, &Cancellation::default()).ok()
+        };
+        seat.take_turn(arrived, (false, class), &|| now.get(), &mut trace, bytes)
+    }
+
+    fn turn(&mut self, input: &[u8]) -> Next {
+        self.turn_for(Class::Refinement, Arrived { bytes: input.to_vec(), ..Arrived::default() })
+    }
+
+    /// Lets it have turns until it sleeps, with answers to all queries.
+    fn rest(&mut self) -> Option<Duration> {
+        loop {
+            let answers = b"\x1b[?62c".repeat(self.bytes.windows(3).filter(|bytes| *bytes == b"\x1b[c").count());
+            self.bytes.clear();
+            match self.turn(&answers) {
+                Next::Sleep(until) if self.bytes.is_empty() => return until,
+                Next::Sleep(_) | Next::Turn(_) => {}
+                Next::End => panic!("nobody has left"),
+            }
+        }
+    }
+
+    fn sent(&self) -> String {
+        String::from_utf8_lossy(&self.bytes).into_owned()
+    }
+}
+
+#[test]
+fn it_rests_until_the_countdown() {
+    let mut sitting = Sitting::new(STAY);
+    sitting.turn(&[]);
+    assert!(sitting.sent().contains("\x1b[?1049h") && sitting.traced > 0);
+    // Thirty seconds before the end of 100 without a key.
+    assert_eq!(sitting.rest(), Some(71 * SECOND));
+    sitting.now.set(71 * SECOND);
+    sitting.turn(&[]);
+    assert!(sitting.sent().contains("30 s") || !sitting.bytes.is_empty());
+    assert_eq!(sitting.rest(), Some(72 * SECOND));
+    // A reply is no key, a key is one.
+    sitting.turn(b"\x1b[?62c");
+    assert_eq!(sitting.rest(), Some(72 * SECOND));
+    sitting.turn(b"i");
+    assert_eq!(sitting.rest(), Some(141 * SECOND));
+    sitting.now.set(171 * SECOND);
+    assert_eq!((sitting.turn(&[]), sitting.sent().contains("no key for a while; come back")), (Next::End, true));
+}
+
+#[test]
+fn an_end_that_nears_wins() {
+    let mut sitting = Sitting::new(Stay { ends: 50 * SECOND, ..STAY });
+    assert_eq!(sitting.rest(), Some(20 * SECOND));
+    let arrived = Arrived { drained_at: Some(10 * SECOND), ..Arrived::default() };
+    sitting.turn_for(Class::Picture, arrived);
+    assert_eq!(sitting.rest(), Some(2 * SECOND));
+    sitting.now.set(10 * SECOND);
+    assert_eq!((sitting.turn(&[]), sitting.sent().contains("the server restarts")), (Next::End, true));
+}
+
+#[test]
+fn leaving_waits_for_the_last_reply() {
+    let mut sitting = Sitting::new(STAY);
+    sitting.turn(&[]);
+    // No query has been answered yet.
+    sitting.bytes.clear();
+    assert_eq!(sitting.turn(b"q"), Next::Sleep(Some(2 * SECOND)));
+    let sent = sitting.sent();
+    assert!(sent.contains("\x1b[?1049l") && sent.contains("\x1b[c"), "{sent:?}");
+    assert!(sent.contains("this view at home: termtrace one.ron\r\n"), "{sent:?}");
+    // Keys are no replies.
+    assert_eq!(sitting.turn(b"qqq"), Next::Sleep(Some(2 * SECOND)));
+    let replies = b"\x1b[?62c".repeat(20);
+    assert_eq!(sitting.turn(&replies), Next::End);
+
+    let mut silent = Sitting::new(STAY);
+    silent.turn(&[]);
+    assert_eq!(silent.turn(b"q"), Next::Sleep(Some(2 * SECOND)));
+    silent.now.set(2 * SECOND);
+    assert_eq!(silent.turn(&[]), Next::End);
+}
+
+#[test]
+fn a_refinement_waits_for_its_class() {
+    let mut sitting = Sitting::new(STAY);
+    sitting.rest();
+    let before = sitting.traced;
+    // Of a moved eye one frame is traced; more samples have to wait.
+    let key = Arrived { bytes: b"]".to_vec(), ..Arrived::default() };
+    let mut next = sitting.turn_for(Class::Picture, key);
+    for _ in 0..3 {
+        if next == Next::Turn(Class::Refinement) {
+            break;
+        }
+        next = sitting.turn_for(Class::Picture, Arrived::default());
+    }
+    assert_eq!((next, sitting.traced - before), (Next::Turn(Class::Refinement), 1));
+    sitting.turn_for(Class::Refinement, Arrived::default());
+    assert!(sitting.traced > before + 1);
+}
+
+#[test]
+fn scenes_are_switched_in_a_ring() {
+    let mut sitting = Sitting::new(STAY);
+    sitting.rest();
+    for expected in [1, 0, 1] {
+        sitting.turn(b"n");
+        assert_eq!((sitting.seat.shown, sitting.seat.viewer.shown_scene()), (expected, Some(expected)));
+        sitting.rest();
+    }
+    sitting.turn(b"p");
+    assert_eq!(sitting.seat.shown, 0);
+}
+
+#[test]
+fn after_a_panic_all_modes_are_off() {
+    let mut sitting = Sitting::new(STAY);
+    sitting.rest();
+    let mut bytes = Vec::new();
+    sitting.seat.abandon(&mut bytes);
+    let text = String::from_utf8_lossy(&bytes);
+    assert!(text.contains("\x1b[?25h") && text.contains("\x1b[?1049l"), "{text:?}");
+    // Nothing is switched off that was not on: the keyboard's flags may be the shell's.
+    assert!(!text.contains("\x1b[<1u"), "{text:?}");
+}

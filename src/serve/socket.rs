@@ -1,0 +1,99 @@
+//! A client's socket, which can be closed at any time, and ends by itself when it stalls.
+
+use rustix::net::{Shutdown, shutdown, sockopt};
+use std::io;
+use std::pin::Pin;
+use std::sync::{Arc, Weak};
+use std::task::{Context, Poll, ready};
+use std::time::Duration;
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::net::TcpStream;
+use tokio::time::{Sleep, sleep};
+
+/// The bytes that the system keeps for a client that does not read.
+const SEND_BUFFER: usize = 64 * 1024;
+
+/// A client's socket.
+pub(super) struct Socket {
+    stream: Arc<TcpStream>,
+    /// Greatest time in which a client that is to get bytes takes none.
+    patience: Duration,
+    /// The end of the patience, while the client takes no bytes.
+    stalled: Option<Pin<Box<Sleep>>>,
+}
+
+/// Closes a socket that is in use elsewhere.
+#[derive(Clone)]
+pub(super) struct Kick(Weak<TcpStream>);
+
+impl Kick {
+    /// Closes the socket: reading ends, and writing fails.
+    pub(super) fn kick(&self) {
+        if let Some(stream) = self.0.upgrade() {
+            let _ = shutdown(&*stream, Shutdown::Both);
+        }
+    }
+}
+
+impl Socket {
+    /// Returns the socket of a new connection.
+    pub(super) fn new(stream: TcpStream, patience: Duration) -> Self {
+        // What the system refuses here is a matter of speed only.
+        let _ = stream.set_nodelay(true);
+        let _ = sockopt::set_socket_send_buffer_size(&stream, SEND_BUFFER);
+        // A host that vanished is noticed without any bytes of ours.
+        let _ = sockopt::set_socket_keepalive(&stream, true);
+        let _ = sockopt::set_tcp_keepidle(&stream, Duration::from_secs(60));
+        Self { stream: Arc::new(stream), patience, stalled: None }
+    }
+
+    /// Returns a handle that closes the socket.
+    pub(super) fn kick(&self) -> Kick {
+        Kick(Arc::downgrade(&self.stream))
+    }
+}
+
+impl AsyncRead for Socket {
+    fn poll_read(self: Pin<&mut Self>, cx: &mut Context<'_>, buffer: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
+        loop {
+            ready!(self.stream.poll_read_ready(cx))?;
+            match self.stream.try_read(buffer.initialize_unfilled()) {
+                Ok(count) => {
+                    buffer.advance(count);
+                    return Poll::Ready(Ok(()));
+                }
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
+                Err(error) => return Poll::Ready(Err(error)),
+            }
+        }
+    }
+}
+
+impl AsyncWrite for Socket {
+    fn poll_write(mut self: Pin<&mut Self>, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
+        loop {
+            if self.stream.poll_write_ready(cx)?.is_pending() {
+                let patience = self.patience;
+                let stalled = self.stalled.get_or_insert_with(|| Box::pin(sleep(patience)));
+                ready!(stalled.as_mut().poll(cx));
+                return Poll::Ready(Err(io::ErrorKind::TimedOut.into()));
+            }
+            match self.stream.try_write(bytes) {
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
+                done => {
+                    self.stalled = None;
+                    return Poll::Ready(done);
+                }
+            }
+        }
+    }
+
+    fn poll_flush(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+
+    fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        let _ = shutdown(&*self.stream, Shutdown::Write);
+        Poll::Ready(Ok(()))
+    }
+}

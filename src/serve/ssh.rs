@@ -1,0 +1,200 @@
+//! The SSH requests that are granted: one terminal with the view of a scene, and no other.
+//!
+//! Everything that is not named here is refused by default in `russh`: forwarding of ports, sockets and agents, X11,
+//! subsystems, and passwords. The channel's own queue of messages is dropped, because a channel that is not read blocks
+//! its whole connection after some messages; input comes by [`Handler::data`], output goes by [`Handle::data`], which
+//! waits while the client takes nothing.
+
+use super::client_terminal::{self, ClientTerminal};
+use super::house::House;
+use super::limits::Entry;
+use super::line::{Line, locked};
+use super::reception;
+use super::socket::Kick;
+use super::visit::{self, Visit};
+use russh::server::{Auth, ChannelOpenHandle, Handler, Msg, Session, VerifiedPublicKey};
+use russh::{Channel, ChannelId, Error, Pty};
+use std::sync::Arc;
+
+/// One connection.
+pub(super) struct Client {
+    pub(super) house: Arc<House>,
+    pub(super) line: Arc<Line>,
+    pub(super) kick: Kick,
+    /// Taken when the connection ends.
+    pub(super) entry: Option<Entry>,
+    pub(super) terminal: ClientTerminal,
+    /// The one channel of the connection.
+    pub(super) channel: Option<ChannelId>,
+    /// Whether the client has asked for something.
+    pub(super) asked: bool,
+}
+
+impl Drop for Client {
+    fn drop(&mut self) {
+        if let Some(entry) = self.entry.take() {
+            locked(&self.house.door).leave(entry);
+        }
+        self.line.hang_up();
+        self.wake();
+    }
+}
+
+impl Client {
+    /// Wakes the seat, or the task that waits for one.
+    fn wake(&self) {
+        match self.line.seat() {
+            Some(id) => self.house.stage.wake(id),
+            None => self.line.rouse(),
+        }
+    }
+
+    fn log_in(&mut self) -> Auth {
+        if let Some(entry) = &mut self.entry {
+            locked(&self.house.door).log_in(entry);
+        }
+        self.line.logged_in.notify_one();
+        Auth::Accept
+    }
+
+    /// Starts what the client asks for, once.
+    fn start(&mut self, channel: ChannelId, command: &[u8], session: &mut Session) -> Result<(), Error> {
+        if std::mem::replace(&mut self.asked, true) {
+            return session.channel_failure(channel);
+        }
+        session.channel_success(channel)?;
+        self.line.asked.notify_one();
+        let names = self.house.scenes.iter().map(|scene| scene.name.as_str());
+        let visit = visit::parse(command, names);
+        let reception = reception::Reception {
+            house: Arc::clone(&self.house),
+            line: Arc::clone(&self.line),
+            kick: self.kick.clone(),
+            handle: session.handle(),
+            channel,
+        };
+        let terminal = std::mem::take(&mut self.terminal);
+        tokio::spawn(async move {
+            match (visit, terminal.window) {
+                (Ok(Visit::Scene(scene)), Some(window)) => reception.show(scene, &terminal, window).await,
+                (Ok(Visit::Scene(scene)), None) => reception.print(reception.house.text_frame(scene)).await,
+                (Ok(Visit::List), _) => reception.print(&reception.house.list()).await,
+                (Err(message), _) => reception.refuse(&message).await,
+            }
+        });
+        Ok(())
+    }
+}
+
+impl Handler for Client {
+    type Error = Error;
+
+    async fn auth_none(&mut self, _user: &str) -> Result<Auth, Error> {
+        Ok(if self.house.settings.authorized_keys.is_none() { self.log_in() } else { Auth::reject() })
+    }
+
+    async fn auth_publickey(&mut self, _user: &str, key: VerifiedPublicKey<'_>) -> Result<Auth, Error> {
+        let known = |keys: &Vec<_>| {
+            keys.iter().any(|known: &russh::keys::PublicKey| known.key_data() == key.public_key.key_data())
+        };
+        let accepts = self.house.settings.authorized_keys.as_ref().is_none_or(known);
+        Ok(if accepts { self.log_in() } else { Auth::reject() })
+    }
+
+    async fn authentication_banner(&mut self) -> Result<Option<String>, Error> {
+        Ok(self.house.settings.banner.clone())
+    }
+
+    async fn channel_open_session(
+        &mut self,
+        channel: Channel<Msg>,
+        reply: ChannelOpenHandle,
+        _session: &mut Session,
+    ) -> Result<(), Error> {
+        // A dropped reply refuses a second channel.
+        if self.channel.is_none() {
+            self.channel = Some(channel.id());
+            reply.accept().await;
+        }
+        Ok(())
+    }
+
+    async fn channel_close(&mut self, _channel: ChannelId, _session: &mut Session) -> Result<(), Error> {
+        self.line.hang_up();
+        self.wake();
+        Ok(())
+    }
+
+    async fn data(&mut self, _channel: ChannelId, data: &[u8], _session: &mut Session) -> Result<(), Error> {
+        for part in data.chunks(1024) {
+            self.line.push(part).await;
+            self.wake();
+        }
+        Ok(())
+    }
+
+    async fn pty_request(
+        &mut self,
+        channel: ChannelId,
+        term: &str,
+        columns: u32,
+        rows: u32,
+        width: u32,
+        height: u32,
+        _modes: &[(Pty, u32)],
+        session: &mut Session,
+    ) -> Result<(), Error> {
+        self.terminal.set_variable("TERM", term);
+        self.terminal.window = Some(client_terminal::window([columns, rows, width, height]));
+        session.channel_success(channel)
+    }
+
+    async fn window_change_request(
+        &mut self,
+        _channel: ChannelId,
+        columns: u32,
+        rows: u32,
+        width: u32,
+        height: u32,
+        _session: &mut Session,
+    ) -> Result<(), Error> {
+        self.line.resize(client_terminal::window([columns, rows, width, height]));
+        self.wake();
+        Ok(())
+    }
+
+    async fn env_request(
+        &mut self,
+        channel: ChannelId,
+        name: &str,
+        value: &str,
+        session: &mut Session,
+    ) -> Result<(), Error> {
+        self.terminal.set_variable(name, value);
+        session.channel_success(channel)
+    }
+
+    async fn shell_request(&mut self, channel: ChannelId, session: &mut Session) -> Result<(), Error> {
+        self.start(channel, b"", session)
+    }
+
+    async fn exec_request(&mut self, channel: ChannelId, command: &[u8], session: &mut Session) -> Result<(), Error> {
+        self.start(channel, command, session)
+    }
+
+    async fn subsystem_request(&mut self, channel: ChannelId, _name: &str, session: &mut Session) -> Result<(), Error> {
+        session.channel_failure(channel)
+    }
+
+    async fn x11_request(
+        &mut self,
+        channel: ChannelId,
+        _single_connection: bool,
+        _protocol: &str,
+        _cookie: &str,
+        _screen: u32,
+        session: &mut Session,
+    ) -> Result<(), Error> {
+        session.channel_failure(channel)
+    }
+}

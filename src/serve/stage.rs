@@ -1,0 +1,207 @@
+//! The threads that draw for all viewers, and share their time fairly among them.
+//!
+//! A turn is carried out by one thread from the input to the bytes: passing a frame of 0.1 ms to another thread would
+//! take as long as tracing it. Each thread is a pool of its own to rayon, so that whatever is called stays on it.
+
+use super::line::{Line, locked};
+use super::run_queue::{Class, Next, RunQueue, SeatId};
+use super::seat::{Arrived, Seat};
+use crate::app::Tracer;
+use crate::progress::Cancellation;
+use crate::viewer::{FIRST_FRAME_MOTION, Frame, Job};
+use std::collections::HashMap;
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+/// A seat with its line.
+struct Staged {
+    seat: Mutex<Seat>,
+    line: Arc<Line>,
+}
+
+#[derive(Default)]
+struct Shared {
+    queue: RunQueue,
+    seats: HashMap<SeatId, Arc<Staged>>,
+    next_id: SeatId,
+    /// The threads that wait for work.
+    resting: usize,
+    /// Cancels the refinements in progress; replaced when it is used.
+    refinements: Cancellation,
+    /// Whether the threads are to end.
+    closed: bool,
+}
+
+/// The seats, and the threads that serve them.
+pub(super) struct Stage {
+    shared: Mutex<Shared>,
+    ready: Condvar,
+    start: Instant,
+    threads: usize,
+    /// The byte of input at which a turn panics, for a test.
+    #[cfg(feature = "test-hooks")]
+    pub(super) panics: std::sync::OnceLock<u8>,
+}
+
+impl Stage {
+    /// Starts the stage with this number of threads.
+    pub(super) fn start(threads: usize) -> io::Result<(Arc<Self>, Vec<JoinHandle<()>>)> {
+        let stage = Arc::new(Self {
+            shared: Mutex::default(),
+            ready: Condvar::new(),
+            start: Instant::now(),
+            threads,
+            #[cfg(feature = "test-hooks")]
+            panics: std::sync::OnceLock::new(),
+        });
+        let start_thread = |index| {
+            let stage = Arc::clone(&stage);
+            thread::Builder::new().name(format!("stage {index}")).spawn(move || stage.serve())
+        };
+        let threads = (0..threads).map(start_thread).collect::<io::Result<_>>()?;
+        Ok((stage, threads))
+    }
+
+    /// Returns the time of all viewers' clock.
+    ///
+    /// It does not start at 0, because a key counts as held for this time before its press.
+    pub(super) fn now(&self) -> Duration {
+        FIRST_FRAME_MOTION + self.start.elapsed()
+    }
+
+    /// Adds a seat.
+    pub(super) fn add(&self, seat: Seat, line: Arc<Line>) -> SeatId {
+        let mut shared = locked(&self.shared);
+        let id = shared.next_id;
+        shared.next_id += 1;
+        shared.seats.insert(id, Arc::new(Staged { seat: Mutex::new(seat), line }));
+        shared.queue.add(id);
+        self.rouse(&mut shared);
+        id
+    }
+
+    /// Makes a seat ready that has got input, or whose bytes have been sent.
+    pub(super) fn wake(&self, id: SeatId) {
+        let mut shared = locked(&self.shared);
+        shared.queue.wake(id);
+        self.rouse(&mut shared);
+    }
+
+    /// Announces to all seats when the server ends.
+    pub(super) fn drain(&self, at: Duration) {
+        let mut shared = locked(&self.shared);
+        let ids: Vec<_> = shared.seats.iter().map(|(&id, staged)| (staged.line.drain(at), id).1).collect();
+        ids.into_iter().for_each(|id| shared.queue.wake(id));
+        self.ready.notify_all();
+    }
+
+    /// Returns the number of seats.
+    pub(super) fn seat_count(&self) -> usize {
+        locked(&self.shared).queue.len()
+    }
+
+    /// Ends the threads.
+    pub(super) fn close(&self) {
+        locked(&self.shared).closed = true;
+        self.ready.notify_all();
+    }
+
+    /// Wakes a resting thread; if there is none, interrupts the refinements.
+    fn rouse(&self, shared: &mut Shared) {
+        if shared.resting > 0 {
+            self.ready.notify_one();
+        } else {
+            std::mem::take(&mut shared.refinements).cancel();
+        }
+    }
+
+    /// Serves seats until the stage is closed.
+    fn serve(&self) {
+        // The thread is a pool by itself. Without a pool each `rayon::join` would go to the global one.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
+        let mut tracer = Tracer::default();
+        while let Some((id, staged, load, token)) = self.next_turn() {
+            let started = cpu_time();
+            let mut turn = || self.take_turn(&staged, load, &token, &mut tracer);
+            let turned = catch_unwind(AssertUnwindSafe(|| match &pool {
+                Ok(pool) => pool.install(&mut turn),
+                Err(_) => turn(),
+            }));
+            let next = turned.unwrap_or_else(|_| {
+                // The panic hook has reported it. Only this viewer ends, with a clean terminal.
+                tracer = Tracer::default();
+                let mut out = Vec::new();
+                locked(&staged.seat).abandon(&mut out);
+                staged.line.send(out, Some(1));
+                Next::End
+            });
+            let mut shared = locked(&self.shared);
+            shared.queue.finish(id, cpu_time().saturating_sub(started), next);
+            if next == Next::End {
+                shared.seats.remove(&id);
+            }
+        }
+    }
+
+    /// Waits for the next turn. Returns the seat, the load, and the token of refinements.
+    fn next_turn(&self) -> Option<(SeatId, Arc<Staged>, usize, Cancellation)> {
+        let mut shared = locked(&self.shared);
+        loop {
+            if shared.closed {
+                return None;
+            }
+            let now = self.now();
+            if let Some(id) = shared.queue.take(now) {
+                let (load, token) = (shared.queue.load(), shared.refinements.clone());
+                if let Some(staged) = shared.seats.get(&id) {
+                    return Some((id, Arc::clone(staged), load, token));
+                }
+                shared.queue.finish(id, Duration::ZERO, Next::End);
+                continue;
+            }
+            shared.resting += 1;
+            let timeout = shared.queue.next_timer().map(|at| at.saturating_sub(now));
+            shared = match timeout {
+                Some(timeout) => self.ready.wait_timeout(shared, timeout).unwrap_or_else(PoisonError::into_inner).0,
+                None => self.ready.wait(shared).unwrap_or_else(PoisonError::into_inner),
+            };
+            shared.resting -= 1;
+        }
+    }
+
+    fn take_turn(&self, staged: &Staged, load: usize, token: &Cancellation, tracer: &mut Tracer) -> Next {
+        let line = &staged.line;
+        if line.is_hung_up() {
+            return Next::End;
+        }
+        let mut seat = locked(&staged.seat);
+        let share = (load as f64 / self.threads as f64).max(1.0);
+        let never = Cancellation::default();
+        let mut trace = |job: &Job, may_interrupt: bool| -> Option<Frame> {
+            let mut frame = tracer.trace_for_any(job, if may_interrupt { token } else { &never }).ok()?;
+            // The time that a frame takes at this viewer's share: by it the number of samples is chosen.
+            frame.trace = frame.trace.mul_f64(share);
+            Some(frame)
+        };
+        let mut out = Vec::new();
+        let arrived: Arrived = line.take_arrived();
+        #[cfg(feature = "test-hooks")]
+        assert!(
+            !self.panics.get().is_some_and(|key| arrived.bytes.contains(key)),
+            "a test asked for a panic in a seat"
+        );
+        let class = if load <= self.threads { Class::Refinement } else { Class::Picture };
+        let next = seat.take_turn(arrived, (line.is_sending(), class), &|| self.now(), &mut trace, &mut out);
+        line.send(out, (next == Next::End).then_some(0));
+        next
+    }
+}
+
+/// Returns the CPU time of this thread.
+fn cpu_time() -> Duration {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Duration::new(time.tv_sec.try_into().unwrap_or(0), time.tv_nsec.try_into().unwrap_or(0))
+}

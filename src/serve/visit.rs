@@ -1,0 +1,47 @@
+//! The commands of clients: the name of a scene, or the list of scenes.
+
+/// The most bytes of a command; no scene has a longer name.
+const MAX_COMMAND: usize = 256;
+
+/// The wish of a client.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Visit {
+    /// The view of the scene with this index.
+    Scene(usize),
+    /// The list of scenes.
+    List,
+}
+
+/// Returns what a command asks for, of a server with scenes of these names.
+///
+/// # Errors
+/// The message for the client, of printable characters.
+pub(super) fn parse<'a>(command: &[u8], names: impl Iterator<Item = &'a str>) -> Result<Visit, String> {
+    let wrong = || "a command is the name of a scene, or --list, which prints their names".to_owned();
+    let command = std::str::from_utf8(command).ok().filter(|command| command.len() <= MAX_COMMAND).ok_or_else(wrong)?;
+    match command.trim() {
+        "" => Ok(Visit::Scene(0)),
+        "--list" => Ok(Visit::List),
+        name => names.into_iter().position(|known| known == name).map(Visit::Scene).ok_or_else(wrong),
+    }
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_names_of_scenes_are_understood() {
+        let parse = |command: &[u8]| parse(command, ["balls", "corridor"].into_iter());
+        assert_eq!(parse(b"corridor"), Ok(Visit::Scene(1)));
+        assert_eq!(parse(b" corridor\n"), Ok(Visit::Scene(1)));
+        assert_eq!(parse(b""), Ok(Visit::Scene(0)));
+        assert_eq!(parse(b"--list"), Ok(Visit::List));
+        let long = vec![b'a'; 300 * 1024];
+        let wrong: [&[u8]; 7] = [b"../../etc/passwd", b"x;id", b"corridor; id", b"/", b"\x1b[2J", &[0xff, 0xfe], &long];
+        for command in wrong {
+            let message = parse(command).expect_err("there is no such scene");
+            assert!(message.chars().all(|c| (' '..='~').contains(&c)) && message.len() < 80, "{message}");
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! A client in this process: it reads, answers queries as a terminal does, and keeps all bytes.
+
+use crate::Hosting;
+use crate::pty::{Modes, Screen};
+use russh::client::{self, AuthResult, Handle, Msg};
+use russh::keys::PublicKeyOrCertificate;
+use russh::{Channel, ChannelMsg};
+use std::sync::Arc;
+
+/// A client that trusts every server.
+pub(crate) struct Anybody;
+
+impl client::Handler for Anybody {
+    type Error = russh::Error;
+
+    async fn check_server_key(&mut self, _key: &PublicKeyOrCertificate) -> Result<bool, russh::Error> {
+        Ok(true)
+    }
+}
+
+/// Connects without logging in.
+pub(crate) async fn connect(hosting: &Hosting) -> Handle<Anybody> {
+    let config = Arc::new(client::Config { nodelay: true, ..client::Config::default() });
+    client::connect(config, hosting.address(), Anybody).await.expect("the server accepts a connection")
+}
+
+/// Connects and logs in.
+pub(crate) async fn log_in(hosting: &Hosting) -> Handle<Anybody> {
+    let mut session = connect(hosting).await;
+    let auth = session.authenticate_none("anybody").await.expect("an answer");
+    assert!(matches!(auth, AuthResult::Success), "everybody is let in");
+    session
+}
+
+/// A visitor with a terminal.
+pub(crate) struct Guest {
+    pub(crate) session: Handle<Anybody>,
+    pub(crate) channel: Channel<Msg>,
+    /// All bytes that have come.
+    pub(crate) bytes: Vec<u8>,
+    /// The bytes of error messages.
+    pub(crate) errors: Vec<u8>,
+    /// The exit status.
+    pub(crate) status: Option<u32>,
+    /// Whether it answers queries.
+    pub(crate) answers: bool,
+    answered: usize,
+    screen: Screen,
+}
+
+impl Guest {
+    /// Opens the view of the first scene in a terminal of 80x24 cells.
+    pub(crate) async fn enter(hosting: &Hosting) -> Self {
+        Self::enter_with(hosting, (80, 24), None).await
+    }
+
+    /// Opens a view in a terminal of this size, by a command if there is one.
+    pub(crate) async fn enter_with(hosting: &Hosting, (columns, rows): (u16, u16), command: Option<&str>) -> Self {
+        let mut guest = Self::without_terminal(hosting, (columns, rows)).await;
+        let (columns, rows) = (columns.into(), rows.into());
+        guest.channel.request_pty(true, "xterm-256color", columns, rows, 0, 0, &[]).await.expect("a terminal");
+        guest.ask(command).await;
+        guest
+    }
+
+    /// Opens the view by a client that grants room for few bytes.
+    pub(crate) async fn enter_with_little_room(hosting: &Hosting) -> Self {
+        let config = client::Config { window_size: 32 * 1024, channel_buffer_size: 1, ..client::Config::default() };
+        let mut session = client::connect(Arc::new(config), hosting.address(), Anybody).await.expect("a connection");
+        assert!(session.authenticate_none("anybody").await.expect("an answer").success());
+        let mut guest = Self::on(session, (80, 24)).await;
+        guest.channel.request_pty(true, "xterm-256color", 80, 24, 0, 0, &[]).await.expect("a terminal");
+        guest.ask(None).await;
+        guest
+    }
+
+    /// Opens a channel without a terminal.
+    pub(crate) async fn without_terminal(hosting: &Hosting, size: (u16, u16)) -> Self {
+        Self::on(log_in(hosting).await, size).await
+    }
+
+    async fn on(session: Handle<Anybody>, (columns, rows): (u16, u16)) -> Self {
+        let channel = session.channel_open_session().await.expect("a channel");
+        let (bytes, errors, screen) = (Vec::new(), Vec::new(), Screen::new(columns, rows));
+        Self { session, channel, bytes, errors, status: None, answers: true, answered: 0, screen }
+    }
+
+    /// Asks for a shell, or for a command.
+    pub(crate) async fn ask(&mut self, command: Option<&str>) {
+        match command {
+            Some(command) => self.channel.exec(true, command).await,
+            None => self.channel.request_shell(true).await,
+        }
+        .expect("the request is sent");
+    }
+
+    pub(crate) async fn send(&self, bytes: &[u8]) {
+        self.channel.data(bytes).await.expect("the connection is open");
+    }
+
+    /// Reads the next message. Returns `false` once the channel is closed.
+    async fn read(&mut self) -> bool {
+        match self.channel.wait().await {
+            Some(ChannelMsg::Data { data }) => {
+                self.bytes.extend_from_slice(&data);
+                self.screen.feed(&data);
+                self.answer().await;
+            }
+            Some(ChannelMsg::ExtendedData { data, .. }) => self.errors.extend_from_slice(&data),
+            Some(ChannelMsg::ExitStatus { exit_status }) => self.status = Some(exit_status),
+            Some(ChannelMsg::Close) | None => return false,
+            Some(_) => {}
+        }
+        true
+    }
+
+    async fn answer(&mut self) {
+        const DA1: &[u8] = b"\x1b[c";
+        let unread = &self.bytes[self.answered..];
+        let queries = unread.windows(DA1.len()).filter(|window| *window == DA1).count();
+        self.answered = self.bytes.len() - unread.len().min(DA1.len() - 1);
+        if unread.ends_with(DA1) {
+            self.answered = self.bytes.len();
+        }
+        if self.answers && queries > 0 {
+            // The server may have ended meanwhile.
+            let _ = self.channel.data(&*b"\x1b[?62;22c".repeat(queries)).await;
+        }
+    }
+
+    /// Reads until the bytes and the screen are as wanted.
+    pub(crate) async fn see(&mut self, what: &str, wanted: impl Fn(&Self) -> bool) {
+        while !wanted(self) {
+            let is_open = self.read().await;
+            assert!(is_open || wanted(self), "the server closed the channel before {what}: {:?}", self.text());
+        }
+    }
+
+    /// Reads until this text is on the screen.
+    pub(crate) async fn see_text(&mut self, text: &str) {
+        self.see(text, |guest| guest.text().iter().any(|row| row.contains(text))).await;
+    }
+
+    /// Reads until a picture in colour is on the screen.
+    pub(crate) async fn see_picture(&mut self) {
+        let is_coloured = |guest: &Self| guest.has("38;") && guest.text().iter().any(|row| row.contains(['▀', '▄']));
+        self.see("a picture", is_coloured).await;
+    }
+
+    pub(crate) fn has(&self, text: &str) -> bool {
+        self.bytes.windows(text.len()).any(|window| window == text.as_bytes())
+    }
+
+    pub(crate) fn text(&self) -> Vec<String> {
+        self.screen.text()
+    }
+
+    pub(crate) fn resize_screen(&mut self, columns: u16, rows: u16) {
+        self.screen.resize(columns, rows);
+    }
+
+    /// Reads until the channel is closed. Returns the exit status.
+    pub(crate) async fn leave(&mut self) -> Option<u32> {
+        while self.read().await {}
+        self.status
+    }
+
+    /// Asserts that the terminal is as it was.
+    pub(crate) fn assert_clean(&self) {
+        let left = Modes::after(&self.bytes).left_on();
+        assert!(left.is_empty(), "left on: {left:?}");
+        assert!(!self.screen.is_alternate());
+    }
+}
