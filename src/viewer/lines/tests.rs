@@ -34,10 +34,10 @@ fn a_line_is_where_its_points_are_projected() {
 #[test]
 fn a_line_ends_before_the_eye() {
     let mut plot = plot(None);
-    plot.line([Vec3::new(0.0, 1.0, 4.0), Vec3::new(0.0, 1.0, 60.0)], 7);
+    plot.line([Vec3::new(0.0, 0.1, 4.0), Vec3::new(0.0, 0.1, 60.0)], 7);
     assert!(dot_count(&plot) > 0, "its part in front of the eye is drawn");
     let mut behind = self::plot(None);
-    behind.line([Vec3::new(0.0, 1.0, 6.0), Vec3::new(0.0, 1.0, 60.0)], 7);
+    behind.line([Vec3::new(0.0, 0.1, 6.0), Vec3::new(0.0, 0.1, 60.0)], 7);
     assert_eq!(dot_count(&behind), 0);
 }
 
