@@ -34,6 +34,7 @@ modules! {
     shade
     framebuffer
     render
+    rasterize
     tone
     maps
     describe

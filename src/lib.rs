@@ -124,6 +124,7 @@
 //! - `shade`: the light that a surface sends to the eye
 //! - `framebuffer`: linear light per pixel
 //! - `render`: tile by tile, eye rays -> hits -> shadow rays -> shade
+//! - `rasterize`: object by object, projection -> depth buffer, for comparison
 //!
 //! From light to the screen:
 //! - `tone`: exposure, tone curve, transfer function, 8 bits
@@ -335,6 +336,8 @@ mod hit;
 mod shade;
 mod framebuffer;
 mod render;
+#[cfg_attr(not(feature = "cli"), allow(dead_code, reason = "only the program compares both orders"))]
+mod rasterize;
 mod tone;
 mod maps;
 mod describe;

@@ -32,6 +32,7 @@ _termtrace() {
         case ${COMP_WORDS[1]} in scenes|tour|new|frame|record|explain|check|describe|bench|serve|doctor|config|completions|man|help|version) command=${COMP_WORDS[1]} ;; esac
     fi
     case $flag in
+        --algorithm) _termtrace_words "raytrace rasterize"; return ;;
         --as) _termtrace_words "obj stl ply gltf glb"; return ;;
         --background) _termtrace_words "auto light dark"; return ;;
         --cell-aspect) return ;;
@@ -77,7 +78,7 @@ _termtrace() {
         explain) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --pixel --size --pixels --cell-aspect -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
         check) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads -h --help --strict"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
         describe) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --size -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
-        bench) if [[ $cur == -* ]]; then _termtrace_words "--scene --pixels --samples --threads --kernel --rounds -h --help --no-shadow --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
+        bench) if [[ $cur == -* ]]; then _termtrace_words "--scene --pixels --samples --threads --kernel --algorithm --rounds -h --help --no-shadow --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
         serve) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
         doctor) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --background --cell-aspect -h --help --no-config --json"; else :; fi ;;
         config) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --background --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint -h --help --no-config --keys --json"; else :; fi ;;

@@ -230,6 +230,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --samples 'Rays per pixel'
             cand --threads 'Number of threads that trace [default: one per core]'
             cand --kernel 'How rays are traced through the scene; affects the time only'
+            cand --algorithm 'Image order or object order'
             cand --rounds 'Number of rounds'
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'

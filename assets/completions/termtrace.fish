@@ -391,6 +391,8 @@ complete -c termtrace -n "__termtrace_is bench" -l kernel -r -f -a "auto\t'As pa
 single\t'Single rays, each against eight boxes or primitives at once'
 packet\t'Always as packets'
 scalar\t'Single rays, without SIMD instructions'" -d 'How rays are traced through the scene; affects the time only'
+complete -c termtrace -n "__termtrace_is bench" -l algorithm -r -f -a "raytrace\t'Image order: the closest hit of the ray through each pixel'
+rasterize\t'Object order: projection of each object, and a depth buffer'" -d 'Image order or object order'
 complete -c termtrace -n "__termtrace_is bench" -l rounds -r -f -d 'Number of rounds'
 complete -c termtrace -n "__termtrace_is bench" -s h -l help -d 'Print help; -h prints a summary'
 complete -c termtrace -n "__termtrace_is bench" -l no-shadow -d 'Trace no shadow rays'

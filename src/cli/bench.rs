@@ -16,6 +16,7 @@ use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use termtrace::internals::hit::Kernel;
+use termtrace::internals::rasterize::rasterize;
 use termtrace::internals::render::{Counts, count};
 use termtrace::internals::text::visible;
 use termtrace::{Resolution, Scene, render, tone};
@@ -23,13 +24,16 @@ use termtrace::{Resolution, Scene, render, tone};
 const FIGURES: &str = "\
 A round traces the eye rays of a picture and a shadow ray from each hit to each
 light. It prints the number of hits, the time and the rays per second; then the
-time of a whole frame, up to its 8-bit picture, and a hash of its light.";
+time of a whole frame, up to its 8-bit picture, and a hash of its light. With
+--algorithm rasterize a round draws the scene object by object instead, on one
+thread: which object each pixel shows, as the eye rays find it.";
 
 const EXAMPLES: &str = "\
 Examples:
   termtrace bench                             three spheres on a plane
   termtrace bench --scene s100k --threads 1   100,000 spheres, one thread
-  termtrace bench my.ron --pixels 200x120 --samples 16";
+  termtrace bench my.ron --pixels 200x120 --samples 16
+  termtrace bench --scene s1k --algorithm rasterize   object by object";
 
 #[derive(Args)]
 #[command(after_long_help = format!("{FIGURES}\n\n{EXAMPLES}"))]
@@ -52,6 +56,9 @@ pub(super) struct BenchArgs {
     /// How rays are traced through the scene; affects the time only
     #[arg(long, value_name = "HOW", default_value = "auto")]
     kernel: KernelArg,
+    /// Image order or object order
+    #[arg(long, value_name = "ORDER", default_value = "raytrace")]
+    algorithm: Algorithm,
     /// Number of rounds
     #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     rounds: u32,
@@ -62,10 +69,20 @@ pub(super) struct BenchArgs {
     ///
     /// The fields are "scene", "build_seconds", "tree_bytes" and "rounds". Each round has "rays",
     /// "hits", "lit" (pairs of a hit and a light that reaches it), "depths" (the sum of the hits'
-    /// depths), "trace_seconds", "frame_seconds" and "hash".
+    /// depths), "trace_seconds", "frame_seconds" and "hash". With --algorithm rasterize each round has
+    /// "hits", "depths" and "draw_seconds".
     #[allow(clippy::doc_markdown, reason = "the help shows these texts as they are")]
     #[arg(long)]
     json: bool,
+}
+
+/// The values of `--algorithm`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Algorithm {
+    /// Image order: the closest hit of the ray through each pixel
+    Raytrace,
+    /// Object order: projection of each object, and a depth buffer
+    Rasterize,
 }
 
 /// The values of `--kernel`: a [`Kernel`] with help for each.
@@ -106,6 +123,25 @@ impl BenchArgs {
         Ok((name, scene.with_shadows(shadows)))
     }
 
+    /// Refuses flags that a depth buffer has no use for.
+    fn check_algorithm(&self) -> CommandResult {
+        if self.algorithm == Algorithm::Rasterize && self.samples > 1 {
+            let message = "--algorithm rasterize draws one sample per pixel; --samples is for --algorithm raytrace";
+            return Err(Failure::Usage(message.to_owned()));
+        }
+        Ok(())
+    }
+
+    fn round(&self, scene: &Scene, resolution: Resolution) -> Round {
+        match self.algorithm {
+            Algorithm::Raytrace => {
+                let samples = NonZeroU32::new(self.samples).unwrap_or(NonZeroU32::MIN);
+                Round::Traced(TracedRound::measured(self.kernel.kernel(), scene, resolution, samples))
+            }
+            Algorithm::Rasterize => Round::Drawn(DrawnRound::measured(scene, resolution)),
+        }
+    }
+
     fn resolution(&self) -> Result<Resolution, Failure> {
         let (width, height) = self.pixels;
         check_pixel_count(width.into(), height.into())?;
@@ -116,14 +152,13 @@ impl BenchArgs {
 pub(super) fn run(args: &BenchArgs) -> CommandResult {
     // Checked before the scene is generated or read, which takes seconds if the scene is large.
     let resolution = args.resolution()?;
+    args.check_algorithm()?;
     // The trees are built in the same pool, so that `--threads` also applies to the measured time of the build.
     on_threads(args.threads, || {
         let (name, scene) = args.load_scene()?;
         let (built, bytes) = build(&scene);
-        let samples = NonZeroU32::new(args.samples).unwrap_or(NonZeroU32::MIN);
         if args.json {
-            let round = || Round::measured(args.kernel.kernel(), &scene, resolution, samples).as_json();
-            let rounds: Vec<_> = (0..args.rounds).map(|_| round()).collect();
+            let rounds: Vec<_> = (0..args.rounds).map(|_| args.round(&scene, resolution).as_json()).collect();
             return json::print(
                 &json!({ "scene": name, "build_seconds": built, "tree_bytes": bytes, "rounds": rounds }),
             );
@@ -131,8 +166,7 @@ pub(super) fn run(args: &BenchArgs) -> CommandResult {
         write_stdout(format!("{name}: built in {built:.3} s, {bytes} bytes\n").as_bytes())?;
         for number in 1..=args.rounds {
             // Each round is printed as soon as it ends, so that an interrupted bench has shown its results so far.
-            let round = Round::measured(args.kernel.kernel(), &scene, resolution, samples);
-            write_stdout(round.table_line(number).as_bytes())?;
+            write_stdout(args.round(&scene, resolution).table_line(number).as_bytes())?;
         }
         Ok(())
     })?
@@ -147,15 +181,58 @@ fn build(scene: &Scene) -> (f64, usize) {
     (start.elapsed().as_secs_f64(), again.tree_bytes())
 }
 
-/// The ray counts and times of one round.
-struct Round {
+/// The figures of one round.
+enum Round {
+    Traced(TracedRound),
+    Drawn(DrawnRound),
+}
+
+impl Round {
+    fn as_json(&self) -> Value {
+        match self {
+            Self::Traced(round) => round.as_json(),
+            Self::Drawn(DrawnRound { hits, depths, time }) => {
+                json!({ "hits": hits, "depths": depths, "draw_seconds": time.as_secs_f64() })
+            }
+        }
+    }
+
+    fn table_line(&self, number: u32) -> String {
+        match self {
+            Self::Traced(round) => round.table_line(number),
+            Self::Drawn(DrawnRound { hits, depths, time }) => {
+                format!("round {number}: {hits} hits, depths {depths:.3}, {:.6} s\n", time.as_secs_f64())
+            }
+        }
+    }
+}
+
+/// The pixels that show an object, their depths, and the time of drawing all objects.
+struct DrawnRound {
+    hits: u64,
+    depths: f64,
+    time: Duration,
+}
+
+impl DrawnRound {
+    fn measured(scene: &Scene, resolution: Resolution) -> Self {
+        let start = Instant::now();
+        let buffer = rasterize(scene, scene.camera(), resolution);
+        let time = start.elapsed();
+        let (hits, depths) = buffer.hits_and_depths();
+        Self { hits, depths, time }
+    }
+}
+
+/// The ray counts and times of one round of tracing.
+struct TracedRound {
     counts: Counts,
     trace: Duration,
     frame: Duration,
     hash: u64,
 }
 
-impl Round {
+impl TracedRound {
     fn measured(kernel: Kernel, scene: &Scene, resolution: Resolution, samples: NonZeroU32) -> Self {
         let start = Instant::now();
         let counts = count(kernel, scene, scene.camera(), resolution, samples);

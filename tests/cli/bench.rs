@@ -65,6 +65,25 @@ fn generated_scenes_have_the_hits_that_embree_finds() {
     assert_eq!((rounds(&text)[0]["rays"], rounds(&text)[0]["lit"]), ("4096", "0"), "{text}");
 }
 
+/// Both orders see as many pixels of objects, except at edges, at the same depths.
+#[test]
+fn object_order_is_measured_beside_image_order() {
+    let folder = Folder::new();
+    for scene in ["three", "s1k"] {
+        let run = |order: &str| {
+            folder
+                .run(&format!("bench --scene {scene} --pixels 64x64 --rounds 1 --no-shadow --algorithm {order}"))
+                .text()
+        };
+        let [traced, drawn] = ["raytrace", "rasterize"].map(run);
+        let number = |text: &str, name| rounds(text)[0][name].parse::<f64>().expect("a number");
+        assert!((number(&traced, "hits") - number(&drawn, "hits")).abs() <= 4.0, "{traced}{drawn}");
+        assert!((number(&traced, "depths") / number(&drawn, "depths") - 1.0).abs() < 0.01, "{traced}{drawn}");
+    }
+    let json = folder.run("bench --pixels 9x9 --rounds 1 --algorithm rasterize --json").text();
+    assert!(json.contains("\"draw_seconds\"") && !json.contains("trace_seconds"), "{json}");
+}
+
 #[test]
 fn wrong_arguments_are_reported() {
     let folder = Folder::new();
@@ -73,4 +92,6 @@ fn wrong_arguments_are_reported() {
     folder.run("bench --pixels 65536x65536").fails(2, "too large");
     folder.run("bench --kernel best").is_misused("scalar");
     folder.run("bench --rounds 0").is_misused("--rounds");
+    folder.run("bench --algorithm rasterize --samples 4").fails(2, "one sample per pixel");
+    folder.run("bench --algorithm painter").is_misused("rasterize");
 }

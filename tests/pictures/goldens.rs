@@ -25,7 +25,7 @@ fn stems(folder: &Path, ending: &str) -> BTreeSet<String> {
         .collect()
 }
 
-fn scenes() -> BTreeSet<String> {
+pub(crate) fn scenes() -> BTreeSet<String> {
     stems(&folder("scenes"), ".ron")
 }
 

@@ -11,6 +11,7 @@ mod hashes;
 mod maps;
 mod odd;
 mod properties;
+mod rasterized;
 mod sampling;
 mod tilted;
 mod triangles;
