@@ -38,7 +38,7 @@ impl Viewer {
         let (next, text) = match self.outside {
             Outside::Off => {
                 self.screen.open(TracerMarks);
-                (Outside::MovesSecond { first: camera }, "keys move the view from outside")
+                (Outside::MovesSecond { first: camera }, "keys move the second eye")
             }
             Outside::MovesSecond { .. } => (Outside::MovesFirst { second: camera }, "keys move the first camera"),
             Outside::MovesFirst { .. } => {

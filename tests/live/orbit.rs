@@ -125,7 +125,7 @@ fn keys_shift_and_tilt_the_view_rectangle_and_show_it() {
 fn v_shows_the_tracer_from_outside() {
     let mut session = looking(BALL, &[]);
     session.send(b"V");
-    session.wait_for_text("keys move the view from outside; V next");
+    session.wait_for_text("keys move the second eye; V next");
     session.send(b"i");
     session.wait_for("the letters of the camera", SOON, |seen| {
         let text = seen.screen().text().concat();
