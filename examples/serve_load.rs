@@ -95,10 +95,10 @@ async fn load(arguments: Arguments) {
     let arguments = Rc::new(arguments);
     let began = Instant::now();
     for number in 0..arguments.viewers {
-        let (arguments, measured) = (Rc::clone(&arguments), Rc::clone(&measured));
+        let (of_all, all_measured) = (Rc::clone(&arguments), Rc::clone(&measured));
         tokio::task::spawn_local(async move {
-            if visit(number, &arguments, &measured).await.is_none() {
-                measured.borrow_mut().failed += 1;
+            if visit(number, &of_all, &all_measured).await.is_none() {
+                all_measured.borrow_mut().failed += 1;
             }
         });
         // Sixteen at a time.
@@ -116,13 +116,14 @@ async fn load(arguments: Arguments) {
     let up = began.elapsed();
     sleep(Duration::from_secs(2)).await;
     let before = (cpu_of(arguments.pid), own_cpu());
-    *measured.borrow_mut() = Measured {
-        first: std::mem::take(&mut measured.borrow_mut().first),
+    let entered = measured.take();
+    measured.replace(Measured {
+        first: entered.first,
+        failed: entered.failed,
         frames: vec![0; arguments.moving],
         counts: true,
-        failed: measured.borrow().failed,
         ..Measured::default()
-    };
+    });
     let counted = Instant::now();
     sleep(Duration::from_secs(arguments.seconds)).await;
     let seconds = counted.elapsed().as_secs_f64();
