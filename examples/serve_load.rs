@@ -180,10 +180,10 @@ impl std::fmt::Display for Shares {
 /// Enters, and reads for ever.
 async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured>) -> Option<()> {
     let (mut channel, _session, asked) = enter(arguments).await?;
-    let (mut tail, mut frames, mut pressed, mut next_key) = (Vec::new(), 0_u32, None, asked);
+    let (mut tail, mut frames, mut pressed, mut next_key, mut painted) = (Vec::new(), 0_u32, None, asked, false);
     let is_keyed = number >= arguments.moving && number < arguments.moving + KEYED;
     loop {
-        if is_keyed && frames > 0 && Instant::now() >= next_key && pressed.is_none() {
+        if is_keyed && painted && Instant::now() >= next_key && pressed.is_none() {
             next_key = Instant::now() + Duration::from_millis(500);
             channel.data(&(if frames.is_multiple_of(2) { b"[" } else { b"]" })[..]).await.ok()?;
             pressed = Some(Instant::now());
@@ -193,7 +193,9 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
         let ChannelMsg::Data { data } = message? else { continue };
         tail.extend_from_slice(&data);
         let ended = answer(&mut channel, &mut tail).await?;
-        if ended > 0 && frames == 0 {
+        // The first frame is sent before the reply about synchronized ones, so its end has no mark.
+        if !painted && data.windows(2).filter(|pair| pair == b"\xe2\x96").count() > 20 {
+            painted = true;
             measured.borrow_mut().first.push(1e3 * asked.elapsed().as_secs_f64());
             if number < arguments.moving {
                 channel.data(&b"t"[..]).await.ok()?;
@@ -234,7 +236,8 @@ async fn answer(channel: &mut Channel<Msg>, tail: &mut Vec<u8>) -> Option<u32> {
     while let Some(next) = tail[at..].iter().position(|&byte| byte == 0x1b) {
         at += next;
         let rest = &tail[at..];
-        if rest.len() < FRAME_END.len() + 1 && !rest.starts_with(QUERIES[0].0) && !rest.starts_with(FRAME_END) {
+        // The rest of what may be a longer query comes with the next bytes.
+        if rest.len() < QUERIES[1].0.len() && !rest.starts_with(QUERIES[0].0) && !rest.starts_with(FRAME_END) {
             break;
         }
         ended += u32::from(rest.starts_with(FRAME_END));
