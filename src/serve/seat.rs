@@ -134,7 +134,7 @@ impl Seat {
     /// one frame of a new view is traced.
     pub(super) fn take_turn(
         &mut self,
-        arrived: Arrived,
+        arrived: &Arrived,
         (sending, class): (bool, Class),
         clock: &dyn Fn() -> Duration,
         trace: &mut Trace<'_>,
@@ -145,7 +145,7 @@ impl Seat {
         if self.leaving.is_some() {
             return self.await_last_replies(&arrived.bytes, now);
         }
-        if self.take_arrived(&arrived, now, out).is_err() {
+        if self.take_arrived(arrived, now, out).is_err() {
             return self.leave(Parting::OutOfMemory, now, out);
         }
         if self.carry_out_requests(out) {
@@ -185,17 +185,17 @@ impl Seat {
     /// Shows how many seconds are left, if few are, and returns the time at which that changes.
     fn count_down(&mut self, end: Duration, parting: Parting, now: Duration) -> Duration {
         let countdown = if parting == Parting::Idle { COUNTDOWN.min(self.stay.idle / 2) } else { COUNTDOWN };
-        let left = end - now;
+        let left = end.saturating_sub(now);
         if left > countdown {
             self.counted = None;
-            return end - countdown;
+            return end.saturating_sub(countdown);
         }
         let seconds = left.as_secs() + u64::from(left.subsec_nanos() > 0);
         // Shown once a second: each note is a change, which is drawn.
         if self.counted.replace(seconds) != Some(seconds) {
             self.viewer.show_note(parting.notice(seconds));
         }
-        end - Duration::from_secs(seconds - 1)
+        end.saturating_sub(Duration::from_secs(seconds - 1))
     }
 
     /// Draws, and traces at most one frame of a new view.

@@ -94,7 +94,9 @@ impl Stage {
     pub(super) fn drain(&self, at: Duration) {
         let mut shared = locked(&self.shared);
         let ids: Vec<_> = shared.seats.iter().map(|(&id, staged)| (staged.line.drain(at), id).1).collect();
-        ids.into_iter().for_each(|id| shared.queue.wake(id));
+        for id in ids {
+            shared.queue.wake(id);
+        }
         self.ready.notify_all();
     }
 
@@ -194,7 +196,7 @@ impl Stage {
             "a test asked for a panic in a seat"
         );
         let class = if load <= self.threads { Class::Refinement } else { Class::Picture };
-        let next = seat.take_turn(arrived, (line.is_sending(), class), &|| self.now(), &mut trace, &mut out);
+        let next = seat.take_turn(&arrived, (line.is_sending(), class), &|| self.now(), &mut trace, &mut out);
         line.send(out, (next == Next::End).then_some(0));
         next
     }

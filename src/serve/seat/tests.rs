@@ -45,7 +45,7 @@ impl Sitting {
             *traced += 1;
             tracer.trace_for_any(job, &Cancellation::default()).ok()
         };
-        seat.take_turn(arrived, (false, class), &|| now.get(), &mut trace, bytes)
+        seat.take_turn(&arrived, (false, class), &|| now.get(), &mut trace, bytes)
     }
 
     fn turn(&mut self, input: &[u8]) -> Next {
