@@ -109,7 +109,7 @@ async fn load(arguments: Arguments) {
     let all = || measured.borrow().first.len() + measured.borrow().failed >= arguments.viewers;
     let _ = timeout(Duration::from_secs(60), async {
         while !all() {
-            sleep(Duration::from_millis(1)).await
+            sleep(Duration::from_millis(1)).await;
         }
     })
     .await;

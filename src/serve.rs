@@ -237,11 +237,11 @@ pub fn run(
     scenes: Vec<HostedScene>,
     settings: Settings,
     signals: &mut Signals,
-    log: Log,
+    log: &Log,
     started: impl FnOnce(SocketAddr, &str),
 ) -> io::Result<Option<i32>> {
     let mut waker = signals.waker()?;
-    let server = without_signals(|| Server::start(scenes, settings, Arc::clone(&log), move || waker.wake()))?;
+    let server = without_signals(|| Server::start(scenes, settings, Arc::clone(log), move || waker.wake()))?;
     started(server.address(), server.fingerprint());
     let mut draining = false;
     loop {

@@ -137,6 +137,7 @@ pub(crate) enum Request {
 }
 
 /// The driver's next action.
+#[allow(clippy::large_enum_variant, reason = "a step is taken where it is returned, and never stored")]
 pub(crate) enum Step {
     /// Send the bytes that [`Viewer::draw`] appends.
     Draw,

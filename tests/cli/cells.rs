@@ -102,7 +102,7 @@ fn an_older_golden_names_the_glyphs_that_it_needs() {
     }
     let now = String::from_utf8(folder.read("a.txt")).expect("text");
     let before = now.chars().map(|c| " .-:*+=%#@".find(c).map_or(c, |at| char::from(b" .:-=+*#%@"[at])));
-    folder.write("a.txt", &before.collect::<String>());
+    folder.write("a.txt", before.collect::<String>());
     differs("", "the golden frame has the characters of --glyphs ramp: compare it with that flag");
     differs("--glyphs ramp", "only the order of the ramp's characters has changed; --bless writes the frame anew");
     said("--bless --glyphs ramp").done();

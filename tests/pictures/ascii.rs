@@ -79,7 +79,7 @@ fn motion(name: &str, step: f32, glyphs: Glyphs) -> [f64; 2] {
         .collect();
     let share = |is_counted: &dyn Fn(usize, usize) -> bool| {
         let cells = |at: usize| (0..80 * 24).filter(|&cell| is_counted(at, cell)).count();
-        (1..58).map(cells).sum::<usize>() as f64 / (57 * 80 * 24) as f64
+        (1..58).map(cells).sum::<usize>() as f64 / f64::from(57 * 80 * 24)
     };
     let glyph = |frame: usize, cell: usize| &frames[frame].cells()[cell].glyph;
     let changes = |at, cell| glyph(at, cell) != glyph(at - 1, cell);

@@ -25,7 +25,7 @@ fn ssh(hosting: &Hosting, arguments: &[&str]) -> Option<Output> {
 fn a_terminal_shows_the_view_and_is_left_clean() {
     let hosting = Hosting::usual();
     let Some(options) = options(&hosting) else { return };
-    let start = options.iter().fold(Start::new("ssh"), |start, option| start.arg(option));
+    let start = options.iter().fold(Start::new("ssh"), Start::arg);
     let mut session = start.arg("-tt").arg("127.0.0.1").size(Size::cells(80, 24)).spawn();
     session.wait_for_text("? all keys, q quits");
     session.wait_for("a picture", SOON, |seen| seen.screen().text()[..20].iter().any(|row| row.contains(['▀', '▄'])));

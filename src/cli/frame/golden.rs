@@ -41,7 +41,8 @@ pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> CommandResult 
         text.push('\n');
     }
     if let Some(hint) = glyphs_hint(&golden, frame).filter(|_| format == Format::Text) {
-        text += &format!("{hint}\n");
+        text.push_str(&hint);
+        text.push('\n');
     }
     write_stdout(format!("{name}: the frame differs\n{text}").as_bytes())?;
     Err(Failure::Reported(1))

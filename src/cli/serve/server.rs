@@ -99,13 +99,13 @@ pub(in crate::cli) fn run(mut args: ServeArgs, given: &ArgMatches) -> CommandRes
     let settings = settings(&args)?;
     let scenes = scenes(&args.scenes)?;
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
-    let log = Arc::new(|line: &str| print_error(&format!("termtrace: {}\n", visible_lines(line))));
+    let log: serve::Log = Arc::new(|line: &str| print_error(&format!("termtrace: {}\n", visible_lines(line))));
     let started = |address: SocketAddr, fingerprint: &str| {
         let (ip, port) = (address.ip(), address.port());
         let line = format!("listening on {address}: ssh -p {port} {ip}\nhost key {fingerprint}\n");
         let _ = write_stdout(line.as_bytes());
     };
-    let ended = serve::run(scenes, settings, &mut signals, log, started);
+    let ended = serve::run(scenes, settings, &mut signals, &log, started);
     if let Some(signal) = ended.map_err(|error| Failure::Runtime(reason(&error)))? {
         die_of(signal);
     }

@@ -12,7 +12,6 @@ pub(in crate::cli) struct ServeArgs {
 }
 
 /// Fails with the way to get a program with the server.
-#[expect(clippy::needless_pass_by_value, reason = "the signature of the function with a server")]
 pub(in crate::cli) fn run(_args: ServeArgs, _given: &ArgMatches) -> CommandResult {
     let how = "cargo install termtrace --features serve";
     Err(Failure::Runtime(format!("this program was built without its server; {how} installs it with one")))

@@ -112,7 +112,7 @@ impl Palette {
             self.bin_of_half.push(bin);
         }
         for bin in &mut self.bins {
-            bin.mean = bin.sum.map(|sum| ((sum + bin.count / 2) / bin.count) as i32);
+            bin.mean = bin.sum.map(|sum| ((sum + bin.count / 2) / bin.count).cast_signed());
         }
     }
 
@@ -232,14 +232,14 @@ impl Palette {
             for (sum, of_bin) in share.sum.iter_mut().zip(bin.sum) {
                 *sum += of_bin;
             }
-            share.loss += (bin.count as i32 * (second - first)) as f32;
+            share.loss += (bin.count.cast_signed() * (second - first)) as f32;
         }
         let is_kept = |share: &Share| share.count > 0 && share.loss >= 15.0 * rate;
         // At least the colour of the most halves stays.
         let most = shares.iter().map(|share| share.count).max().unwrap_or(0);
         self.clear();
         for share in shares.iter().filter(|share| share.count > 0 && (is_kept(share) || share.count == most)) {
-            self.push(share.sum.map(|sum| ((sum + share.count / 2) / share.count) as i32));
+            self.push(share.sum.map(|sum| ((sum + share.count / 2) / share.count).cast_signed()));
         }
     }
 

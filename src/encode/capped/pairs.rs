@@ -47,7 +47,7 @@ struct OpenPair {
 pub(super) struct Pairs {
     ways: Vec<Way>,
     /// The pairs by key.
-    pairs: Vec<Pair>,
+    table: Vec<Pair>,
     /// The keys of the pairs that have a way.
     used: Vec<u16>,
     open: Vec<OpenPair>,
@@ -74,7 +74,7 @@ impl Pairs {
     ) {
         cells.clear();
         let mut sums = [[0_u32; 4]; MAX_COLORS];
-        let is_written = |&key: &u16| usize::from(self.pairs[usize::from(key)].rank) < ranks;
+        let is_written = |&key: &u16| usize::from(self.table[usize::from(key)].rank) < ranks;
         let shown = |cell: &ActiveCell| Some(colors.cheapest(cell.pair.filter(is_written)?, cell.wanted).1);
         for (cell, shown) in active.iter().filter_map(|cell| Some((cell, shown(cell)?))) {
             for (color, wanted) in shown.into_iter().zip(cell.wanted) {
@@ -89,7 +89,12 @@ impl Pairs {
             Srgb8 { r, g, b }
         });
         for (cell, shown) in active.iter().filter_map(|cell| Some((cell, shown(cell)?))) {
-            cells.push(WrittenCell { at: cell.at, halves: shown.map(|color| means[usize::from(color)]) });
+            let halves = shown.map(|color| means[usize::from(color)]);
+            // The mean is best for all cells that share it. A single one may be farther from it than what it shows,
+            // and would raise the error of the frame if the limit left out the others.
+            if error(halves, cell.wanted) < cell.stay {
+                cells.push(WrittenCell { at: cell.at, halves });
+            }
         }
     }
 
@@ -115,9 +120,9 @@ impl Pairs {
     /// Offers each cell the pairs of the colours near its halves.
     fn collect_ways(&mut self, active: &[ActiveCell], colors: &Colors<'_>) {
         self.ways.clear();
-        self.pairs.resize(KEYS, UNUSED);
+        self.table.resize(KEYS, UNUSED);
         for key in self.used.drain(..) {
-            self.pairs[usize::from(key)] = UNUSED;
+            self.table[usize::from(key)] = UNUSED;
         }
         for (at, cell) in active.iter().enumerate() {
             let [upper, lower] = cell.nearest;
@@ -141,7 +146,7 @@ impl Pairs {
         if cost >= cell.stay {
             return;
         }
-        let pair = &mut self.pairs[usize::from(key)];
+        let pair = &mut self.table[usize::from(key)];
         if pair.first == END {
             self.used.push(key);
         }
@@ -152,12 +157,12 @@ impl Pairs {
 
     /// Opens the pairs that save more than a pen, the best first, and gives each cell the cheapest.
     fn open_pairs(&mut self, active: &mut [ActiveCell], rate: ExchangeRate) {
-        let Self { ways, pairs, used, .. } = self;
+        let Self { ways, table, used, .. } = self;
         used.sort_unstable_by(|&a, &b| {
-            pairs[usize::from(b)].saving.total_cmp(&pairs[usize::from(a)].saving).then(a.cmp(&b))
+            table[usize::from(b)].saving.total_cmp(&table[usize::from(a)].saving).then(a.cmp(&b))
         });
         for &key in used.iter() {
-            let pair = pairs[usize::from(key)];
+            let pair = table[usize::from(key)];
             let price = rate * pen_len(key);
             if pair.saving <= price {
                 break;
@@ -182,7 +187,7 @@ impl Pairs {
         self.open.clear();
         for cell in active.iter() {
             let Some(key) = cell.pair else { continue };
-            let pair = &mut self.pairs[usize::from(key)];
+            let pair = &mut self.table[usize::from(key)];
             if pair.rank == u16::MAX {
                 pair.rank = self.open.len() as u16;
                 self.open.push(OpenPair { key, gain: 0.0, bytes: pen_len(key) });
@@ -193,14 +198,14 @@ impl Pairs {
         }
         self.open.sort_unstable_by(|a, b| (b.gain * a.bytes).total_cmp(&(a.gain * b.bytes)).then(a.key.cmp(&b.key)));
         for open in &self.open {
-            self.pairs[usize::from(open.key)].rank = u16::MAX;
+            self.table[usize::from(open.key)].rank = u16::MAX;
         }
         self.open.retain(|open| open.gain >= colors.rate * (open.bytes - 0.2 * pen_len(open.key)));
         for (rank, open) in (0..).zip(&self.open) {
-            self.pairs[usize::from(open.key)].rank = rank;
+            self.table[usize::from(open.key)].rank = rank;
         }
         for cell in active.iter_mut() {
-            cell.pair = cell.pair.filter(|&key| self.pairs[usize::from(key)].rank != u16::MAX);
+            cell.pair = cell.pair.filter(|&key| self.table[usize::from(key)].rank != u16::MAX);
         }
     }
 }
