@@ -17,10 +17,14 @@ use ink_converter::InkConverter;
 use memory::Memory;
 use std::borrow::Cow;
 use std::fmt;
+use std::num::NonZeroU32;
 use std::str::FromStr;
 
 mod ascii;
+mod block_parts;
+mod blocks;
 mod blue_noise;
+mod braille;
 mod colors;
 #[cfg(all(test, unit_tests))]
 mod dots;
@@ -30,13 +34,17 @@ mod ink_converter;
 mod lit;
 mod memory;
 mod mixes;
+mod mosaic;
+mod octants;
 mod pair;
 mod palette;
 mod ramp;
+mod sextants;
 mod shape;
 mod spaces;
 mod tint;
 
+pub(crate) use block_parts::{BlockParts, block_parts};
 pub use colors::Colors;
 pub(crate) use colors::xterm_color;
 pub use ramp::RAMP;
@@ -72,6 +80,14 @@ crate::table::table! {
         Ramp = ramp::KIND;
         /// A space on the mean colour of a cell's two pixels.
         Spaces = spaces::KIND;
+        /// Quadrants and eighths: the glyph and the two colours with the least squared error.
+        Blocks = blocks::KIND;
+        /// Octants and eighths, for terminals with Unicode 16.
+        Octants = octants::KIND;
+        /// Sextants, for terminals with Unicode 13.
+        Sextants = sextants::KIND;
+        /// Two by four Braille dots on a background.
+        Braille = braille::KIND;
         /// A dot for each light pixel. This kind exists in tests only.
         #[cfg(all(test, unit_tests))]
         Dots = dots::KIND;
@@ -181,6 +197,13 @@ impl CellMode {
     ) -> Result<TracedMap, Cancelled> {
         let trace = if self.shows_geometry() { maps::trace_with_geometry } else { maps::trace };
         trace(map, executor, scene, camera, resolution, sampling)
+    }
+
+    /// Returns the sampling of a frame where nothing else decides it: at most 17 rays per cell.
+    #[doc(hidden)]
+    pub const fn sampling(self) -> Sampling {
+        let (across, down) = self.pixels_per_cell();
+        if across * down > 17 { Sampling::Split } else { Sampling::Each(NonZeroU32::MIN) }
     }
 
     /// Returns the mode without colours that has the same number of pixels per cell.

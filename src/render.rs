@@ -30,6 +30,7 @@ mod gbuffer;
 mod geometry;
 mod count;
 mod single_pixel;
+mod split;
 mod builder;
 
 pub use adaptive::ProgressiveRender;
@@ -105,6 +106,7 @@ fn units(resolution: Resolution, sampling: Sampling) -> u64 {
     let pixels = resolution.pixel_count() as u64;
     match sampling.bounded() {
         Sampling::Coarse => u64::from(resolution.width().div_ceil(2)) * u64::from(resolution.height().div_ceil(2)),
+        Sampling::Split => split::units(resolution),
         Sampling::Each(samples) => pixels * u64::from(samples.get()),
         Sampling::UpTo(samples) => pixels + adaptive::refinement_units(resolution, samples),
     }
@@ -120,6 +122,7 @@ pub(crate) fn render_partial(
 ) -> Rendered {
     match sampling.bounded() {
         Sampling::Coarse => uniform::render(executor, scene, &Tiles::new(camera, resolution, 2), 1),
+        Sampling::Split => split::render(executor, scene, camera, resolution),
         Sampling::Each(samples) => uniform::render(executor, scene, &Tiles::new(camera, resolution, 1), samples.get()),
         Sampling::UpTo(samples) => {
             let mut picture = ProgressiveRender::new(camera, resolution);

@@ -63,6 +63,7 @@ struct SizeForm {
 #[serde(rename_all = "snake_case")]
 enum SamplingForm {
     Coarse,
+    Split,
     Each(NonZeroU32),
     UpTo(NonZeroU32),
 }
@@ -71,6 +72,7 @@ impl From<Sampling> for SamplingForm {
     fn from(sampling: Sampling) -> Self {
         match sampling {
             Sampling::Coarse => Self::Coarse,
+            Sampling::Split => Self::Split,
             Sampling::Each(samples) => Self::Each(samples),
             Sampling::UpTo(samples) => Self::UpTo(samples),
         }
@@ -81,6 +83,7 @@ impl From<SamplingForm> for Sampling {
     fn from(form: SamplingForm) -> Self {
         match form {
             SamplingForm::Coarse => Self::Coarse,
+            SamplingForm::Split => Self::Split,
             SamplingForm::Each(samples) => Self::Each(samples),
             SamplingForm::UpTo(samples) => Self::UpTo(samples),
         }

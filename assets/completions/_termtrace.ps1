@@ -169,6 +169,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--samples', '--samples', [CompletionResultType]::ParameterName, 'Rays per pixel; best: 1 to 64 [default: 1; PNG, GIF: best]')
             [CompletionResult]::new('--scale', '--scale', [CompletionResultType]::ParameterName, 'Picture files: draw each pixel as N by N pixels of the file [default: 1]')
             [CompletionResult]::new('--map', '--map', [CompletionResultType]::ParameterName, 'The shaded picture, or a map of the scene [default: shaded]')
+            [CompletionResult]::new('--glyphs', '--glyphs', [CompletionResultType]::ParameterName, 'Characters of an asciicast: as for frame [default: half]')
             [CompletionResult]::new('--order', '--order', [CompletionResultType]::ParameterName, 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]')
             [CompletionResult]::new('--quality', '--quality', [CompletionResultType]::ParameterName, 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]')
             [CompletionResult]::new('--max-rate', '--max-rate', [CompletionResultType]::ParameterName, 'Limit on the average number of bytes sent per second, such as 50k or 2M [default: the measured rate of the link]')

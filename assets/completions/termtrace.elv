@@ -161,6 +161,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --samples 'Rays per pixel; best: 1 to 64 [default: 1; PNG, GIF: best]'
             cand --scale 'Picture files: draw each pixel as N by N pixels of the file [default: 1]'
             cand --map 'The shaded picture, or a map of the scene [default: shaded]'
+            cand --glyphs 'Characters of an asciicast: as for frame [default: half]'
             cand --order 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]'
             cand --quality 'Fidelity of the picture while it moves: lower sends fewer bytes [default: exact; in casts, and live on a slow link, equal]'
             cand --max-rate 'Limit on the average number of bytes sent per second, such as 50k or 2M [default: the measured rate of the link]'

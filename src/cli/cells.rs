@@ -56,7 +56,7 @@ const AUTO: &str = "auto";
 const AUTO_HELP: &str =
     "Half blocks; ascii if there is no colour, spaces if the locale is not UTF-8 or a block is not one column wide";
 
-fn glyph_parser() -> impl TypedValueParser<Value = GlyphChoice> {
+pub(super) fn glyph_parser() -> impl TypedValueParser<Value = GlyphChoice> {
     let kinds = Glyphs::ALL.iter().map(|glyphs| PossibleValue::new(glyphs.name()).help(capitalized(glyphs.help())));
     let auto = PossibleValue::new(AUTO).help(AUTO_HELP);
     PossibleValuesParser::new([auto].into_iter().chain(kinds)).map(|name| Glyphs::from_name(&name))

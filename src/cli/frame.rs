@@ -121,10 +121,12 @@ impl FrameArgs {
         self.map.check_samples(self.picture.given_samples())?;
         let name = format.name();
         match format.contents() {
-            Contents::Pixels(_) if self.cells.is_given() => wrong(format!(
-                "--color, --glyphs and --background are for cells; a {} consists of pixels",
-                name.to_uppercase()
-            )),
+            Contents::Pixels(_) if self.cells.is_given() => {
+                let of_cells = formats().into_iter().filter(|format| !format.has_pixels());
+                let names = any_of(&of_cells.map(Format::name).collect::<Vec<_>>());
+                let name = name.to_uppercase();
+                wrong(format!("--color, --glyphs and --background are for cells ({names}); a {name} consists of pixels"))
+            }
             Contents::Pixels(_) if self.output().is_none() && self.check.is_none() && io::stdout().is_terminal() => {
                 wrong(format!("a {} would garble the terminal; name a file with -o, or pipe it", name.to_uppercase()))
             }
@@ -152,7 +154,7 @@ impl FrameArgs {
         if format.has_pixels() {
             self.picture.check_scaled_pixel_count(resolution)?;
         }
-        let samples = self.picture.samples(kind);
+        let samples = self.picture.samples(kind, mode);
         let map = self.map.map();
         warn_of_invisibility(map, &scene);
         // Only tracing runs in the pool of `--threads`; the file is encoded on one thread.

@@ -34,9 +34,9 @@ impl FrameKind {
         }
     }
 
-    fn samples(self) -> Sampling {
+    fn samples(self, mode: CellMode) -> Sampling {
         match self {
-            Self::Cells => Sampling::Each(NonZeroU32::MIN),
+            Self::Cells => mode.sampling(),
             Self::Picture | Self::Gif => Sampling::BEST,
         }
     }
@@ -51,7 +51,8 @@ pub(super) struct SizeArgs {
     size: Option<(u32, u32)>,
     /// Size in pixels [default: PNG 1280x800, GIF 480x300]
     ///
-    /// A cell has two pixels, one above the other, or with --glyphs shape two by four.
+    /// A cell has two pixels, one above the other; with --glyphs shape two by four, with sextants four by six, with
+    /// blocks, octants and braille four by eight.
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pixels: Option<(u32, u32)>,
     /// A cell's height over its width
@@ -67,7 +68,9 @@ pub(super) struct PictureArgs {
     size: SizeArgs,
     /// Rays per pixel; best: 1 to 64 [default: 1; PNG, GIF: best]
     ///
-    /// The first ray goes through the centre of the pixel. best traces one ray, and up to 64 at edges.
+    /// The first ray goes through the centre of the pixel. best traces one ray, and up to 64 at edges. The default for
+    /// blocks, octants, sextants and braille is one ray for 2 by 2 pixels, and one per pixel where the contrast is
+    /// high: at most 17 rays per cell.
     #[arg(long, value_name = "N|best", value_parser = parse_samples)]
     samples: Option<Sampling>,
     /// Picture files: draw each pixel as N by N pixels of the file [default: 1]
@@ -122,9 +125,9 @@ impl PictureArgs {
         self.size.cell_aspect
     }
 
-    /// Returns the sampling of a frame of this kind.
-    pub(super) fn samples(&self, kind: FrameKind) -> Sampling {
-        self.samples.unwrap_or_else(|| kind.samples())
+    /// Returns the sampling of a frame of this kind; `mode` is that of its cells.
+    pub(super) fn samples(&self, kind: FrameKind, mode: CellMode) -> Sampling {
+        self.samples.unwrap_or_else(|| kind.samples(mode))
     }
 
     /// Returns the value of `--samples`, if given.

@@ -3,6 +3,7 @@
 mod numbered;
 mod progress;
 
+use super::cells::glyph_parser;
 use super::encoding::EncodingArgs;
 use super::map::MapArgs;
 use super::outcome::{CommandResult, Failure, print_error, reason};
@@ -14,11 +15,12 @@ use numbered::NumberedFiles;
 use std::fs;
 use std::io::{self, BufWriter, IsTerminal};
 use std::path::{Path, PathBuf};
-use termtrace::internals::cell;
+use termtrace::internals::capabilities::GlyphChoice;
 use termtrace::internals::grid::HalfBlocks;
+use termtrace::internals::maps;
 use termtrace::internals::text::visible;
 use termtrace::{
-    Camera, CameraPath, Cast, CellMode, Encoder, Gif, Order, Picture, Quality, Resolution, Sampling, Scene, Size,
+    Camera, CameraPath, Cast, CellMode, Encoder, Gif, Map, Order, Painter, Quality, Resolution, Sampling, Scene, Size,
     export,
 };
 
@@ -55,6 +57,9 @@ pub(super) struct RecordArgs {
     picture: PictureArgs,
     #[command(flatten)]
     map: MapArgs,
+    /// Characters of an asciicast: as for frame [default: half]
+    #[arg(long, help_heading = "Film", value_name = "KIND", value_parser = glyph_parser(), hide_short_help = true)]
+    glyphs: Option<GlyphChoice>,
     #[command(flatten)]
     encoding: EncodingArgs,
     /// FILE.cast (asciicast), FILE.gif, or FILE-%04d.png
@@ -103,6 +108,7 @@ struct Film {
     cameras: Vec<Camera>,
     fps: u32,
     resolution: Resolution,
+    mode: CellMode,
     samples: Sampling,
     format: FilmFormat,
 }
@@ -126,12 +132,19 @@ impl RecordArgs {
             self.scene.refuse_overwriting(&[&self.path], output)?;
         }
         let kind = format.kind();
-        let resolution = self.picture.resolution(CellMode::HALF_BLOCK, kind, None)?;
+        let mode = self.cell_mode();
+        let resolution = self.picture.resolution(mode, kind, None)?;
         let fps = self.fps.unwrap_or(if kind == FrameKind::Gif { GIF_FPS } else { CAST_FPS });
         self.check_flags(&format, resolution, fps)?;
         let scene = self.scene.load_scene()?;
         let cameras = self.cameras(scene.camera(), fps)?;
-        Ok(Film { scene, cameras, fps, resolution, samples: self.picture.samples(kind), format })
+        Ok(Film { scene, cameras, fps, resolution, mode, samples: self.picture.samples(kind, mode), format })
+    }
+
+    /// Returns the mode of an asciicast's cells. Pixels of a GIF or PNG are those of half blocks.
+    fn cell_mode(&self) -> CellMode {
+        let half = CellMode::HALF_BLOCK;
+        CellMode { glyphs: self.glyphs.flatten().unwrap_or(half.glyphs), ..half }
     }
 
     /// Refuses sizes and frame rates that the format cannot represent, and flags that have no
@@ -145,6 +158,11 @@ impl RecordArgs {
         }
         if is_cast && self.picture.has_scale() {
             return wrong("--scale is for GIF and PNG; an asciicast takes its size from --size");
+        }
+        if !is_cast && self.glyphs.is_some() {
+            return wrong(
+                "--glyphs is for an asciicast; GIF and PNG consist of pixels; name a file that ends in .cast",
+            );
         }
         if !is_cast && self.encoding.is_given() {
             return wrong(
@@ -207,6 +225,7 @@ impl RecordArgs {
                 // Buffered, because `Cast` writes a frame in many small pieces.
                 let cast = Cast::begin(BufWriter::new(out), film.cells(), encoder, film.fps)?;
                 Sink::Cast(
+                    Box::new(Painter::new(film.mode)),
                     cast.with_quality(self.encoding.loss.quality().unwrap_or(Quality::Equal))
                         .with_max_rate(self.encoding.loss.max_rate()),
                 )
@@ -222,18 +241,27 @@ impl RecordArgs {
 
 /// The writer of a film's frames, by format.
 enum Sink {
-    Cast(Cast<BufWriter<Output>>),
+    Cast(Box<Painter>, Cast<BufWriter<Output>>),
     Gif(Gif<BufWriter<Output>>),
     Png { pixel_aspect: f32, scale: u32 },
 }
 
 impl Sink {
-    fn write_frame(&mut self, picture: &Picture, file: &Path, outputs: &mut Outputs) -> io::Result<()> {
+    fn write_frame(
+        &mut self,
+        film: &Film,
+        map: Map,
+        camera: &Camera,
+        file: &Path,
+        outputs: &mut Outputs,
+    ) -> io::Result<()> {
+        let &Film { ref scene, resolution, samples, .. } = film;
+        let picture = || maps::picture(map, scene, camera, resolution, samples);
         match self {
-            Self::Cast(cast) => cast.frame(cell::grid_from_picture(CellMode::HALF_BLOCK, picture)),
-            Self::Gif(gif) => gif.frame(picture),
+            Self::Cast(painter, cast) => cast.frame(painter.trace(map, scene, camera, resolution, samples)),
+            Self::Gif(gif) => gif.frame(&picture()),
             Self::Png { pixel_aspect, scale } => {
-                let bytes = export::png(picture, *pixel_aspect, *scale).map_err(io::Error::other)?;
+                let bytes = export::png(&picture(), *pixel_aspect, *scale).map_err(io::Error::other)?;
                 outputs.write(file, &bytes)
             }
         }
@@ -241,7 +269,7 @@ impl Sink {
 
     fn end(self) -> io::Result<()> {
         match self {
-            Self::Cast(cast) => finish(cast.end()?),
+            Self::Cast(_, cast) => finish(cast.end()?),
             Self::Gif(gif) => finish(gif.end()?),
             Self::Png { .. } => Ok(()),
         }
@@ -284,9 +312,9 @@ impl Film {
 
     /// Returns the size of the film in cells.
     fn cells(&self) -> Size {
-        let (across, down) = CellMode::HALF_BLOCK.pixels_per_cell();
+        let (across, down) = self.mode.pixels_per_cell();
         // `SizeArgs::resolution` refuses more than 65535 cells in either direction.
-        Size::new((self.resolution.width() / across) as u16, self.resolution.height().div_ceil(down) as u16)
+        Size::new(self.resolution.width().div_ceil(across) as u16, self.resolution.height().div_ceil(down) as u16)
     }
 
     /// Adds the frame's file name to an error of writing it. A closed pipe, as after `| head`,
@@ -331,9 +359,7 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
     bar.tick();
     let mut sink = film.written(0, args.sink(film, &mut outputs))?;
     for (frame, camera) in film.cameras.iter().enumerate() {
-        let Film { scene, resolution, samples, .. } = film;
-        let picture = termtrace::internals::maps::picture(args.map.map(), scene, camera, *resolution, *samples);
-        film.written(frame, sink.write_frame(&picture, &film.file(frame), &mut outputs))?;
+        film.written(frame, sink.write_frame(film, args.map.map(), camera, &film.file(frame), &mut outputs))?;
         bar.inc(1);
     }
     // `end` gives an asciicast or GIF its name, so an interrupted film leaves no file.

@@ -1,10 +1,10 @@
 //! The appearance of a grid in SVG and HTML: areas of one colour, and the text over them.
 
-use crate::cell::xterm_color;
+use crate::cell::{BlockParts, block_parts, xterm_color};
 use crate::color::Srgb8;
 use crate::grid::{Attributes, Cell, Glyph, Grid, Ink};
 use std::collections::HashMap;
-use std::fmt::Write;
+use std::fmt::{self, Write};
 
 /// The default glyph colour in exports, which assume light text on a dark background.
 pub(super) const DEFAULT_TEXT: Srgb8 = Srgb8::new(255, 255, 255);
@@ -56,25 +56,84 @@ pub(super) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Returns the backgrounds and half blocks as SVG paths, one per colour.
+/// Returns the backgrounds and block characters as SVG paths, one per colour.
 ///
 /// A unit is a column in width and half a cell in height.
-// One path per colour, because an element per area would repeat the colour in each.
 pub(super) fn paths(grid: &Grid) -> String {
-    let mut indices = HashMap::new();
-    let mut outlines: Vec<(Srgb8, String)> = Vec::new();
+    let mut halves = Paths::default();
     for ColorArea { x, y, width, height, color } in areas(grid) {
-        let index = *indices.entry(color).or_insert_with(|| {
-            outlines.push((color, String::new()));
-            outlines.len() - 1
+        let _ = write!(halves.outline(color), "M{x} {y}h{width}v{height}h-{width}");
+    }
+    // Parts of cells lie over the backgrounds of their cells, so their paths come later.
+    let mut parts = Paths::default();
+    for (row, cells) in grid.rows().enumerate() {
+        for (column, cell) in cells.iter().enumerate() {
+            if let Some(block) = fine_block(cell) {
+                write_block(parts.outline(cell_colors(cell)[0]), column, row, block);
+            }
+        }
+    }
+    format!("{halves}{parts}")
+}
+
+/// The outlines of areas, by colour.
+// One path per colour, because an element per area would repeat the colour in each.
+#[derive(Default)]
+struct Paths {
+    indices: HashMap<Srgb8, usize>,
+    outlines: Vec<(Srgb8, String)>,
+}
+
+impl Paths {
+    /// Returns the outline of the areas of a colour, to append to.
+    fn outline(&mut self, color: Srgb8) -> &mut String {
+        let index = *self.indices.entry(color).or_insert_with(|| {
+            self.outlines.push((color, String::new()));
+            self.outlines.len() - 1
         });
-        let _ = write!(outlines[index].1, "M{x} {y}h{width}v{height}h-{width}");
+        &mut self.outlines[index].1
     }
-    let mut paths = String::new();
-    for (color, outline) in outlines {
-        let _ = writeln!(paths, r#"<path fill="{}" d="{outline}"/>"#, hex(color));
+}
+
+impl fmt::Display for Paths {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.outlines.iter().try_for_each(|(color, outline)| {
+            let color = hex(*color);
+            writeln!(f, r#"<path fill="{color}" d="{outline}"/>"#)
+        })
     }
-    paths
+}
+
+/// Returns the parts that a block character other than a half or full block fills.
+fn fine_block(cell: &Cell) -> Option<BlockParts> {
+    match cell.glyph {
+        Glyph::Char(' '..='~' | '▀' | '▄' | '█') => None,
+        Glyph::Char(glyph) => block_parts(glyph),
+        _ => None,
+    }
+}
+
+/// Appends a rectangle for each run of filled parts in a row of parts.
+fn write_block(
+    outline: &mut String,
+    column: usize,
+    row: usize,
+    BlockParts { parts: [across, down], mask }: BlockParts,
+) {
+    let unit = |at: usize, parts: usize, scale: f64| {
+        let length = scale * at as f64 / parts as f64;
+        (1000.0 * length).round() / 1000.0
+    };
+    for y in 0..down {
+        let is_filled = |x: &usize| mask >> (y * across + x) & 1 == 1;
+        let mut x = 0;
+        while let Some(start) = (x..across).find(is_filled) {
+            x = (start..across).find(|x| !is_filled(x)).unwrap_or(across);
+            let [left, top] = [unit(across * column + start, across, 1.0), unit(down * row + y, down, 2.0)];
+            let [width, height] = [unit(x - start, across, 1.0), unit(1, down, 2.0)];
+            let _ = write!(outline, "M{left} {top}h{width}v{height}h-{width}");
+        }
+    }
 }
 
 /// Returns rectangles of equal colour: runs in each half row, merged with equal runs directly
@@ -165,6 +224,7 @@ fn text_of(cell: &Cell) -> Option<String> {
     let underlined = cell.attributes.contains(Attributes::UNDERLINED);
     match cell.glyph {
         Glyph::Covered | Glyph::Foreign | Glyph::Char('▀' | '▄' | '█') => None,
+        _ if fine_block(cell).is_some() => None,
         // An underlined blank is text, because its underline is visible.
         Glyph::Char(' ') if !underlined => None,
         _ => Some(cell.glyph.to_string()),

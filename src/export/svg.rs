@@ -25,8 +25,8 @@ const FONT_ADVANCE: f64 = 0.6;
 
 /// Returns the grid as an SVG drawing without scripts, fonts or references.
 ///
-/// Cells are 10 units wide and `cell_aspect` times as high. Half blocks are rectangles, merged where they are equal;
-/// characters are text. Default colours are light on dark, palette colours those of xterm.
+/// Cells are 10 units wide and `cell_aspect` times as high. Block characters are rectangles, half blocks merged where
+/// they are equal; characters are text. Default colours are light on dark, palette colours those of xterm.
 ///
 /// ```
 /// use termtrace::export::svg;

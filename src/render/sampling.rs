@@ -11,6 +11,11 @@ use std::ops::Range;
 pub enum Sampling {
     /// One ray for each block of two by two pixels.
     Coarse,
+    /// One ray for each block of two by two pixels, and more where blocks differ most.
+    ///
+    /// Blocks that differ most from a neighbour get one ray for each pixel, but at most nine of 32 blocks: a picture
+    /// has at most 2.125 rays per block.
+    Split,
     /// The same number of rays through each pixel, at most 65,536.
     Each(NonZeroU32),
     /// One ray through each pixel, and 4, 16 or 64 rays at edges, limited to the given number.
@@ -33,7 +38,7 @@ impl Sampling {
     pub(super) fn bounded(self) -> Self {
         match self {
             Self::Each(samples) => Self::Each(samples.min(Self::MAX_SAMPLES)),
-            Self::Coarse | Self::UpTo(_) => self,
+            Self::Coarse | Self::Split | Self::UpTo(_) => self,
         }
     }
 }

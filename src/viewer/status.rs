@@ -96,6 +96,7 @@ fn samples(sampling: Sampling) -> String {
     match sampling {
         // One ray for 2x2 pixels.
         Sampling::Coarse => "1/4 sample".to_owned(),
+        Sampling::Split => "1/4 to 1 sample".to_owned(),
         Sampling::Each(samples) | Sampling::UpTo(samples) if samples.get() == 1 => "1 sample".to_owned(),
         Sampling::Each(samples) | Sampling::UpTo(samples) => format!("{samples} samples"),
     }

@@ -24,7 +24,7 @@ fn an_ansi_frame_has_the_chosen_colours() {
     for flags in ["", "--color auto", "--color always", "--color truecolor --glyphs half"] {
         assert!(frame(flags) == frame("--color=truecolor"), "{flags}");
     }
-    for glyphs in ["auto", "half", "shape", "ramp"] {
+    for glyphs in ["auto", "half", "shape", "ramp", "blocks", "octants", "sextants", "braille"] {
         let (found, others) = indices(&frame(&format!("--color 256 --glyphs {glyphs}")));
         assert!(!found.is_empty() && found.iter().all(|&index| index >= 16) && !others, "{glyphs}");
         let (found, others) = indices(&frame(&format!("--color 16 --glyphs {glyphs}")));
@@ -150,7 +150,8 @@ fn flags_without_effect_on_a_format_are_rejected() {
         folder.run(&format!("frame ball.ron -o ball.png {flags}")).fails_in_a_line(2, "a PNG consists of pixels");
     }
     folder.run("ball.ron --color 88").is_misused("auto, always, never, truecolor, 256, 16");
-    folder.run("frame ball.ron --glyphs octants").is_misused("auto, half, shape, ascii, ramp, spaces");
+    folder.run("frame ball.ron --glyphs octets").is_misused("blocks, octants, sextants, braille");
+    folder.run("record ball.ron --glyphs blocks -o x.gif").fails_in_a_line(2, "name a file that ends in .cast");
 }
 
 /// A cell of shapes has two by four pixels.
@@ -160,4 +161,7 @@ fn sizes_are_in_cells_of_the_mode() {
     let frame = |flags: &str| folder.frame(&format!("ball.ron {flags}"));
     assert!(frame("--glyphs shape --pixels 40x32") == frame("--glyphs shape --size 20x8"));
     assert!(frame("--glyphs ramp --pixels 20x16") == frame("--glyphs ramp --size 20x8"));
+    assert!(frame("--glyphs sextants --pixels 80x48") == frame("--glyphs sextants --size 20x8"));
+    assert!(frame("--glyphs blocks --pixels 80x64") == frame("--glyphs blocks --size 20x8"));
+    assert!(frame("--glyphs blocks --size 20x8 --samples 1") != frame("--glyphs blocks --size 20x8"));
 }

@@ -7,10 +7,12 @@ use std::fs;
 use std::path::Path;
 
 /// The frames. Cells that are not square show that a cell's aspect is used.
-const FRAMES: [(&str, &str); 6] = [
+const FRAMES: [(&str, &str); 8] = [
     ("half.svg", "--size 24x8"),
     ("half.html", "--size 24x8"),
     ("shape.svg", "--size 24x8 --glyphs shape --cell-aspect 1.9"),
+    ("blocks.svg", "--size 24x8 --glyphs blocks"),
+    ("octants.html", "--size 24x8 --glyphs octants"),
     ("shape.html", "--size 24x8 --glyphs shape --cell-aspect 1.9"),
     ("plain.svg", "--size 24x8 --color never"),
     ("few.html", "--size 24x8 --color 16"),

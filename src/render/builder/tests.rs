@@ -11,9 +11,9 @@ fn scene() -> Scene {
     Scene::from_ron("row.ron", &text).expect("a scene")
 }
 
-fn samplings() -> [Sampling; 4] {
+fn samplings() -> [Sampling; 5] {
     let samples = |samples| NonZeroU32::new(samples).expect("more than none");
-    [Sampling::Coarse, Sampling::Each(samples(5)), Sampling::UpTo(samples(1)), Sampling::BEST]
+    [Sampling::Coarse, Sampling::Split, Sampling::Each(samples(5)), Sampling::UpTo(samples(1)), Sampling::BEST]
 }
 
 #[test]
