@@ -55,6 +55,7 @@ mod theme;
 mod light_marker;
 mod lines;
 mod camera_commands;
+mod cell_commands;
 mod note;
 mod options;
 mod outside;

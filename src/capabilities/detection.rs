@@ -176,7 +176,7 @@ pub(super) fn locale(clues: &Clues<'_>) -> Option<(&'static str, String)> {
     ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(|name| Some((name, non_empty_variable(clues, name)?)))
 }
 
-fn is_utf8(locale: &str) -> bool {
+pub(super) fn is_utf8(locale: &str) -> bool {
     let locale = locale.to_ascii_lowercase();
     locale.contains("utf-8") || locale.contains("utf8")
 }

@@ -1,6 +1,6 @@
 //! The properties of a terminal, combined from all sources: user, environment, window and replies.
 
-use super::detection::{colorterm, locale, requested_by_variable};
+use super::detection::{colorterm, is_utf8, locale, requested_by_variable};
 use super::{CELL_ASPECT_RANGE, USUAL_CELL_ASPECT, colors, glyphs};
 use super::{Capabilities, CellMode, Clues, ColorChoice, Colors, Detected, GlyphChoice, Glyphs, Replies, Source};
 use crate::grid::{CellShape, HalfBlocks};
@@ -70,6 +70,17 @@ impl Hints {
     /// set.
     pub fn locale(&self) -> Option<(&'static str, String)> {
         self.with_clues(None, locale)
+    }
+
+    /// Sets the user's choice of glyphs.
+    #[cfg(feature = "live")]
+    pub(crate) fn choose_glyphs(&mut self, glyphs: Glyphs) {
+        self.glyphs = Some(glyphs);
+    }
+
+    /// Returns whether the locale can encode the glyphs; without a locale, UTF-8 is assumed.
+    pub fn can_encode(&self, glyphs: Glyphs) -> bool {
+        !glyphs.has_blocks() || self.locale().is_none_or(|(_, locale)| is_utf8(&locale))
     }
 
     /// Returns the variable that requests or refuses colours, if one is set.

@@ -60,7 +60,7 @@ pub(super) fn run(given: &ArgMatches) -> CommandResult {
     }
     write_stdout(report::text(&report).as_bytes())?;
     // The test card consists of escape sequences, which only a terminal draws.
-    if is_terminal { write_stdout(&card::bytes(&findings.capabilities())) } else { Ok(()) }
+    if is_terminal { write_stdout(&card::bytes(&findings.capabilities(), &hints)) } else { Ok(()) }
 }
 
 /// Puts the terminal into raw mode, sends the queries, waits for the replies, and restores the

@@ -125,7 +125,9 @@ impl FrameArgs {
                 let of_cells = formats().into_iter().filter(|format| !format.has_pixels());
                 let names = any_of(&of_cells.map(Format::name).collect::<Vec<_>>());
                 let name = name.to_uppercase();
-                wrong(format!("--color, --glyphs and --background are for cells ({names}); a {name} consists of pixels"))
+                wrong(format!(
+                    "--color, --glyphs and --background are for cells ({names}); a {name} consists of pixels"
+                ))
             }
             Contents::Pixels(_) if self.output().is_none() && self.check.is_none() && io::stdout().is_terminal() => {
                 wrong(format!("a {} would garble the terminal; name a file with -o, or pipe it", name.to_uppercase()))

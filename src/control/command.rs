@@ -98,6 +98,8 @@ pub enum Command {
     Outside,
     /// Shows or hides the name, the format and the size of the scene.
     Metadata,
+    /// Shows the picture by the next kind of cells.
+    NextGlyphs,
     /// Turns a mesh so that the next axis of its file points up.
     TurnMesh,
     /// Shows the caption of the scene, its next page, or after the last page none.
@@ -252,6 +254,7 @@ commands! {
     [Command::Axes] "Axes", "axes on or off";
     [Command::Outside] "Outside", "tracer from outside";
     [Command::Metadata] "Metadata", "name, format and size";
+    [Command::NextGlyphs] "NextGlyphs", "next kind of cells";
     [Command::TurnMesh] "TurnMesh", "mesh: next axis up";
     [Command::Caption] "Caption", "caption on or off";
     [Command::Redraw] "Redraw", "redraw";

@@ -200,6 +200,7 @@ const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Always, &[Key::named(KeyCode::F(6))], Command::FromRight),
     (KeyMode::Always, &[Key::named(KeyCode::F(7))], Command::FromAbove),
     (KeyMode::Always, &[letter('#')], Command::Wireframe),
+    (KeyMode::Always, &[letter('B')], Command::NextGlyphs),
     (KeyMode::Always, &[letter('X')], Command::Axes),
     (KeyMode::Always, &[letter('V')], Command::Outside),
     (KeyMode::Always, &[letter('M')], Command::Metadata),

@@ -2,7 +2,7 @@
 //! cells.
 
 use super::extent;
-use crate::capabilities::{Capabilities, Findings, Hints};
+use crate::capabilities::{Capabilities, Findings, Glyphs, Hints};
 use crate::cell;
 use crate::framebuffer::Resolution;
 use crate::grid::{Size, Window};
@@ -34,6 +34,12 @@ impl Display {
 
     pub(super) fn queries(&self) -> &InitialQueries {
         &self.queries
+    }
+
+    /// Sets the kind of glyphs, as the user chooses it.
+    pub(super) fn choose_glyphs(&mut self, glyphs: Glyphs) {
+        self.hints.choose_glyphs(glyphs);
+        self.conclude();
     }
 
     /// Returns the size of the whole window.

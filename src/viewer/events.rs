@@ -187,6 +187,7 @@ impl Viewer {
             Command::ScrollDown => self.turn_explanation(1),
             Command::Redraw => self.redraw(),
             Command::Caption => self.turn_caption(),
+            Command::NextGlyphs => self.change_glyphs(),
             Command::TurnMesh => self.turn_mesh(),
             Command::Front | Command::FromRight | Command::FromAbove => self.look_from(command),
             Command::Wireframe => self.layout.toggle_wire(),

@@ -57,6 +57,31 @@ fn leave(session: &mut Session) {
     session.assert_clean();
 }
 
+#[test]
+fn a_key_cycles_through_all_kinds_of_cells() {
+    let mut session = looking(live());
+    let of_kind = |glyphs, shown: char| match glyphs {
+        Glyphs::Half => shown == '▄',
+        Glyphs::Blocks => ('▖'..='▟').contains(&shown),
+        Glyphs::Octants => ('\u{1CD00}'..='\u{1CDE5}').contains(&shown),
+        Glyphs::Sextants => ('\u{1FB00}'..='\u{1FB3B}').contains(&shown),
+        Glyphs::Braille => ('⠁'..='⣿').contains(&shown),
+        _ => shown.is_ascii_punctuation(),
+    };
+    for &glyphs in Glyphs::ALL[1..].iter().chain(&Glyphs::ALL[..1]) {
+        session.send(b"B");
+        session.wait_for_text(&format!("(--glyphs {glyphs})"));
+        // The lowest row holds the note.
+        session.wait_for(&format!("a picture of {glyphs}"), SOON, |seen| {
+            let rows = seen.screen().text();
+            let picture: String = rows[..rows.len() - 1].concat();
+            (glyphs == Glyphs::Spaces || picture.chars().any(|shown| of_kind(glyphs, shown)))
+                && picture.chars().all(|shown| glyphs.has_blocks() || shown.is_ascii())
+        });
+    }
+    leave(&mut session);
+}
+
 /// Returns the replies of a terminal that supports all queries, in order, without the fence's.
 fn all_replies() -> Vec<u8> {
     [

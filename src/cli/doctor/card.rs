@@ -1,12 +1,16 @@
-//! The test card: a circle, a gradient and stripes of half cells, with advice which flag to set if
-//! one of them looks wrong.
+//! The test card: a circle, a gradient, stripes of half cells, a disc by each kind of glyphs.
+//!
+//! Below is advice which flag to set if one of them looks wrong.
 
-use termtrace::internals::capabilities::{Capabilities, HalfBlocks};
+use std::fmt::Write;
+use termtrace::internals::capabilities::{Capabilities, HalfBlocks, Hints};
 use termtrace::internals::cell;
-use termtrace::{Cell, Colors, Grid, LinearRgb, Painter, Picture, Size, Srgb8, export};
+use termtrace::{Cell, CellMode, Colors, Glyphs, Grid, LinearRgb, Painter, Picture, Size, Srgb8, export};
 
 /// Height of the card in cells. Card, advice and the report above them fit on a screen of 24 rows.
-const ROWS: u16 = 8;
+const ROWS: u16 = 5;
+/// Height in cells of the discs that show the kinds of glyphs.
+const SAMPLE_ROWS: u16 = 2;
 /// The columns at which the gradient and the stripes start, and the width of the card. The circle
 /// starts at column 0.
 const GRADIENT: u16 = 24;
@@ -17,9 +21,16 @@ const COLUMNS: u16 = 70;
 const GAP: u16 = 2;
 
 /// Returns the bytes that draw the card, and the advice below it.
-pub(super) fn bytes(capabilities: &Capabilities) -> Vec<u8> {
-    let grid = grid(capabilities);
-    let mut bytes = export::ansi_or_text(&grid, capabilities.cell_mode.colors);
+pub(super) fn bytes(capabilities: &Capabilities, hints: &Hints) -> Vec<u8> {
+    let colors = capabilities.cell_mode.colors;
+    let mut bytes = export::ansi_or_text(&grid(capabilities), colors);
+    let kinds: Vec<Glyphs> = Glyphs::ALL.iter().copied().filter(|&glyphs| hints.can_encode(glyphs)).collect();
+    bytes.extend(export::ansi_or_text(&samples(&kinds, capabilities), colors));
+    let mut names = String::new();
+    for &kind in &kinds {
+        let _ = write!(names, "{kind:width$}", width = usize::from(sample_width(kind)) + 1);
+    }
+    bytes.extend_from_slice(format!("{}\n", names.trim_end()).as_bytes());
     bytes.extend_from_slice(advice(capabilities).as_bytes());
     bytes
 }
@@ -42,9 +53,35 @@ fn advice(capabilities: &Capabilities) -> String {
     )
 }
 
+/// Returns the width in cells of the disc of a kind: at least that of its name below.
+fn sample_width(glyphs: Glyphs) -> u16 {
+    glyphs.name().len().max(6) as u16
+}
+
+/// Returns a row of discs, one by each kind of glyphs, with a column after each.
+fn samples(kinds: &[Glyphs], capabilities: &Capabilities) -> Grid {
+    let &Capabilities { cell_aspect, cell_mode: CellMode { colors, .. }, light_background, .. } = capabilities;
+    let mut samples = Grid::new(Size::new(kinds.iter().map(|&kind| sample_width(kind) + 1).sum(), SAMPLE_ROWS));
+    let mut left = 0;
+    for &glyphs in kinds {
+        let (mode, size) = (CellMode { glyphs, colors }, Size::new(sample_width(glyphs), SAMPLE_ROWS));
+        let disc = picture(mode, size, cell_aspect, |at| at.disc_color(size, cell_aspect));
+        let sample = Painter::new(mode).with_light_background(light_background).grid(&disc);
+        for (row, cells) in (0..).zip(sample.rows()) {
+            for (column, cell) in (left..).zip(cells) {
+                samples.cell_mut(column, row).clone_from(cell);
+            }
+        }
+        left += size.columns + 1;
+    }
+    samples
+}
+
 fn grid(capabilities: &Capabilities) -> Grid {
-    let mut painter = Painter::new(capabilities.cell_mode).with_light_background(capabilities.light_background);
-    let mut grid = painter.grid(&picture(capabilities));
+    let &Capabilities { cell_mode, cell_aspect, light_background, .. } = capabilities;
+    let mut painter = Painter::new(cell_mode).with_light_background(light_background);
+    let card = picture(cell_mode, Size::new(COLUMNS, ROWS), cell_aspect, |at| at.color(cell_aspect));
+    let mut grid = painter.grid(&card);
     // The live view uses the upper half block too if the terminal's half blocks join without a seam. Every second
     // column of the stripes does the same here, so that a seam would show.
     if capabilities.half_blocks == HalfBlocks::Either {
@@ -67,19 +104,17 @@ fn use_upper_half(cell: &mut Cell) {
     }
 }
 
-fn picture(capabilities: &Capabilities) -> Picture {
-    let mode = capabilities.cell_mode;
-    let resolution = cell::resolution(mode, Size::new(COLUMNS, ROWS), capabilities.cell_aspect)
-        .expect("the card is small, and the aspect was checked");
+/// Returns a picture of `size` cells, whose pixels have the colours that `color` returns.
+fn picture(mode: CellMode, size: Size, cell_aspect: f32, color: impl Fn(CardPoint) -> Srgb8) -> Picture {
+    let resolution = cell::resolution(mode, size, cell_aspect).expect("the card is small, and the aspect was checked");
     let (across, down) = mode.pixels_per_cell();
     let pixels = (0..resolution.height()).flat_map(|y| (0..resolution.width()).map(move |x| (x, y)));
     let color = |(x, y): (u32, u32)| {
-        let at = CardPoint {
+        color(CardPoint {
             column: (x as f32 + 0.5) / across as f32,
             row: (y as f32 + 0.5) / down as f32,
             pixel: (1.0 / across as f32, 1.0 / down as f32),
-        };
-        at.color(capabilities.cell_aspect)
+        })
     };
     let pixels = pixels.map(color).collect();
     Picture::from_pixels(resolution.width(), resolution.height(), pixels).expect("a pixel for each place")
@@ -97,7 +132,7 @@ impl CardPoint {
         let [gradient, stripes, end] = [GRADIENT, STRIPES, COLUMNS].map(f32::from);
         let gap = f32::from(GAP);
         if self.column < gradient - gap {
-            self.disc_color(cell_aspect)
+            self.disc_color(Size::new(GRADIENT - GAP, ROWS), cell_aspect)
         } else if (gradient..stripes - gap).contains(&self.column) {
             self.gradient_color((self.column - gradient) / (stripes - gap - gradient))
         } else if (stripes..end).contains(&self.column) {
@@ -107,10 +142,10 @@ impl CardPoint {
         }
     }
 
-    /// Returns the colour of the pixel in the disc's part of the card.
-    fn disc_color(&self, cell_aspect: f32) -> Srgb8 {
+    /// Returns the colour of the pixel in a part of `size` cells with a disc.
+    fn disc_color(&self, size: Size, cell_aspect: f32) -> Srgb8 {
         // All lengths here are in cell widths, as the disc must be round on the screen.
-        let (width, height) = (f32::from(GRADIENT - GAP), f32::from(ROWS) * cell_aspect);
+        let (width, height) = (f32::from(size.columns), f32::from(size.rows) * cell_aspect);
         // The edge is smoothed by 4 x 4 samples per pixel: jagged, it would not show whether the disc is round.
         let radius = 0.46 * width.min(height);
         let samples = (0..16).filter(|sample| {

@@ -43,6 +43,7 @@ impl Group {
             | C::Compare
             | C::Wipe(_)
             | C::Wireframe
+            | C::NextGlyphs
             | C::Explain
             | C::Outside
             | C::Point(_)
@@ -88,6 +89,7 @@ fn shared_rows() -> Vec<(Vec<Command>, &'static str)> {
         ((1..=9).map(Command::View).collect(), "go to view 1-9"),
         (vec![Command::NextMap, Command::LastMap], "next, previous map"),
         (vec![Command::Wipe(Side::Left), Command::Wipe(Side::Right)], "divider left, right"),
+        (vec![Command::Wireframe, Command::NextGlyphs], "wireframe, kind of cells"),
         (toward(Command::Point), "move the cursor"),
         (vec![Command::ScrollUp, Command::ScrollDown], "turn pages"),
         (toward(Command::MoveLight), "move the light"),

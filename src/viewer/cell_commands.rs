@@ -1,0 +1,26 @@
+//! The command that changes the kind of cells.
+
+use super::Viewer;
+use crate::capabilities::Glyphs;
+
+impl Viewer {
+    /// Shows the picture by the next kind of cells that the terminal's locale can encode.
+    pub(super) fn change_glyphs(&mut self) {
+        let (before, size) = (*self.display.capabilities(), self.size());
+        let shown = before.cell_mode.glyphs;
+        let at = Glyphs::ALL.iter().position(|&glyphs| glyphs == shown).unwrap_or(0);
+        let mut others = Glyphs::ALL.iter().cycle().skip(at + 1).take(Glyphs::ALL.len());
+        let Some(&next) = others.find(|glyphs| self.options.hints.can_encode(**glyphs)) else { return };
+        self.display.choose_glyphs(next);
+        if let Err(error) = self.display.check_memory() {
+            self.display.choose_glyphs(shown);
+            self.show_note(error.to_string());
+            return;
+        }
+        self.screen.set_capabilities(self.display.capabilities());
+        if self.size() != size {
+            self.redraw();
+        }
+        self.show_note(format!("{} (--glyphs {next})", next.title()));
+    }
+}
