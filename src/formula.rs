@@ -2,17 +2,19 @@
 //!
 //! `parse` reads the text into a `tape`, a list of operations in which equal terms are shared. `point` evaluates the
 //! tape in f64; `model` encloses its values on a piece of a ray by a quadratic polynomial and a bound of its error;
-//! `roots` walks along the ray with these enclosures, so that no sign change is stepped over.
+//! `roots` walks along the ray with these enclosures, so that no sign change is stepped over, on eight rays at once,
+//! for which `packet` computes the models in f32.
 
 mod check;
 mod model;
+mod packet;
 mod parse;
 mod point;
 mod roots;
 mod tape;
 
 pub(crate) use parse::{Fault, is_free_name};
-pub(crate) use roots::{Line, Solver};
+pub(crate) use roots::{Line, Searches, Solver};
 
 use tape::Tape;
 

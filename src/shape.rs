@@ -9,7 +9,7 @@
 
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
-use crate::lanes::{Lanes, Number, Vector};
+use crate::lanes::{F32x8, LANES, Lanes, Number, Vector, set_bits};
 use crate::ray::{CommonOrigin, Interval, Probe, Ray, Rays};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
@@ -51,6 +51,21 @@ pub trait Surface {
     /// For a bounded surface it is clamped to the [interval of its box](Bounds::crossed), from which rounding may have
     /// moved it, so that culling by boxes never drops a hit (`culling.md`, 2).
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32>;
+
+    /// Returns the mask of the rays in `lanes` that cross the surface, and the t of each: as
+    /// [`closest_crossing`](Self::closest_crossing) does.
+    fn closest_crossings(&self, rays: &[Ray; LANES], within: &[Interval; LANES], lanes: u32) -> (u32, F32x8) {
+        let (mut crosses, mut t) = (0, F32x8::ZERO);
+        for lane in set_bits(lanes) {
+            // Recomputes the ray's shared values for each surface, which is simple but slow. Surfaces that must be
+            // fast implement `SoaLeaf`.
+            if let Some(crossing) = self.closest_crossing(&Probe::new(rays[lane]), within[lane]) {
+                crosses |= 1 << lane;
+                t.0[lane] = crossing;
+            }
+        }
+        (crosses, t)
+    }
 
     /// Returns the surface point at the crossing `t` that
     /// [`closest_crossing`](Self::closest_crossing) found for `ray`.

@@ -9,7 +9,7 @@ use super::tape::{Binary, Index, Operation, Tape, Unary};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Twice the largest relative rounding error of an f64 operation.
-const EPSILON: f64 = f64::EPSILON;
+pub(super) const EPSILON: f64 = f64::EPSILON;
 
 /// A quantity along a piece of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,6 +113,8 @@ impl Model {
         let beyond = 2.0 * (c1 * c2).abs() + c2 * c2 + error * (2.0 * (c1.abs() + c2.abs()) + error);
         let (linear, square) = (g1 * c2, g2 * c1 * c1);
         let rounding = 8.0 * EPSILON * (g.abs() + (g1 * c1).abs() + linear.abs() + square.abs());
+        // A bound that has vanished is none.
+        let third = if third < f64::MIN_POSITIVE { f64::INFINITY } else { third };
         let remainder = third * spread * spread * spread;
         let taylor =
             Self::new([g, g1 * c1, linear + square], g1.abs() * error + g2.abs() * beyond + remainder + rounding);
@@ -122,7 +124,7 @@ impl Model {
 }
 
 /// The evaluation of one operation, which notes where it may jump.
-struct Evaluation<'c>(&'c mut Continuity);
+pub(super) struct Evaluation<'c>(pub(super) &'c mut Continuity);
 
 impl Evaluation<'_> {
     /// Returns everything, as the function jumps or is undefined on the range or a part of it.
@@ -132,7 +134,7 @@ impl Evaluation<'_> {
         Model::ANYTHING
     }
 
-    fn unary(&mut self, function: Unary, a: Model, is_non_negative: bool) -> Model {
+    pub(super) fn unary(&mut self, function: Unary, a: Model, is_non_negative: bool) -> Model {
         let [low, high] = a.range();
         // Includes NaN.
         if !(high - low < f64::INFINITY) {
@@ -221,7 +223,7 @@ impl Evaluation<'_> {
         a.function([libm::asin(c0), q, 0.5 * c0 * q * q * q], third, hull)
     }
 
-    fn binary(&mut self, function: Binary, a: Model, b: Model) -> Model {
+    pub(super) fn binary(&mut self, function: Binary, a: Model, b: Model) -> Model {
         match function {
             Binary::Add => a.plus(b),
             Binary::Subtract => a.minus(b),

@@ -1,6 +1,8 @@
 //! The first root of a formula along a ray: the first sign change across which it is continuous.
 //!
-//! The walk goes forward in pieces, each enclosed by a [`Model`]. A piece without a root is passed, and the next one is
+//! Eight walks go side by side; their longer pieces are enclosed together, in f32.
+//!
+//! A walk goes forward in pieces, each enclosed by a [`Model`]. A piece without a root is passed, and the next one is
 //! twice as long. Otherwise the walk advances to the first t that may be a root, and the next piece ends where the sign
 //! is certainly the other one, if the model shows such a place, or is half as long. So thin parts are not stepped over.
 //! A sign change may be lost if it is undone within [`MIN_PIECE`] of the range, or behind [`MAX_PIECES`] pieces.
@@ -9,13 +11,19 @@
 
 use super::Formula;
 use super::model::{Continuity, Model};
+use super::packet::{PacketModels, StoredModels, coordinates, of_lane};
+use crate::lanes::{F32x8, LANES, set_bits};
+use crate::simd;
 use glam::DVec3;
 
 /// The length of the shortest piece, relative to the range.
 const MIN_PIECE: f64 = 1e-9;
 
 /// The relative length of a piece with a sign change at which the search among points begins.
-const BRACKET: f64 = 1.0 / 1_048_576.0;
+const BRACKET: f64 = 1.0 / 16_384.0;
+
+/// The relative length of a piece below which models are computed in f64.
+const FINE: f64 = 1.0 / 8192.0;
 
 /// The length of the longest stretch of undecided sign that may hide a root, relative to the range.
 // f may be zero on a whole stretch of the ray, which is no surface. Near a triple root it may be zero in f64.
@@ -38,15 +46,28 @@ pub(crate) struct Line {
     pub(crate) direction: DVec3,
 }
 
-/// The search for roots, with its scratch memory.
+/// The search for roots along up to eight lines at once, with its scratch memory.
 #[derive(Debug)]
 pub(crate) struct Solver<'f> {
     formula: &'f Formula,
     models: Vec<Model>,
+    packets: Vec<StoredModels>,
     values: Vec<f64>,
 }
 
-/// The place that the search has reached.
+/// Up to eight searches: each lane's line, range, and the t after which its root is not needed.
+#[derive(Clone, Debug)]
+pub(crate) struct Searches {
+    /// The origins, then the directions, axis by axis.
+    lines: [[[f64; LANES]; 3]; 2],
+    walks: [Walk; LANES],
+    ends: [[f64; 2]; LANES],
+    /// The lanes that still search.
+    lanes: u32,
+}
+
+/// The place that a search has reached.
+#[derive(Clone, Copy, Debug)]
 struct Walk {
     /// The start of the next piece.
     t: f64,
@@ -75,9 +96,55 @@ enum Found {
     Root([f64; 2]),
 }
 
+impl Searches {
+    /// No search in any lane.
+    pub(crate) const NONE: Self =
+        Self { lines: [[[0.0; LANES]; 3]; 2], walks: [Walk::NOWHERE; LANES], ends: [[0.0; 2]; LANES], lanes: 0 };
+
+    /// Adds a lane, unless its range is empty: see [`Solver::first_root`].
+    pub(crate) fn add(&mut self, lane: usize, line: &Line, [start, end]: [f32; 2], until: f32) {
+        let (from, to) = (f64::from(start), f64::from(end));
+        let range = to - from;
+        // Also rejects NaN.
+        if !(range > 0.0 && range < f64::INFINITY) {
+            return;
+        }
+        for (lines, vector) in self.lines.iter_mut().zip([line.origin, line.direction]) {
+            for (numbers, number) in lines.iter_mut().zip(vector.to_array()) {
+                numbers[lane] = number;
+            }
+        }
+        self.walks[lane] = Walk::new(from, to);
+        self.ends[lane] = [to, f64::from(until)];
+        self.lanes |= 1 << lane;
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.lanes == 0
+    }
+
+    fn line(&self, lane: usize) -> Line {
+        let [origin, direction] = self.lines.map(|axes| DVec3::from_array(axes.map(|numbers| numbers[lane])));
+        Line { origin, direction }
+    }
+
+    /// Returns the next piece of each lane, after the end of those that have arrived.
+    fn pieces(&mut self) -> [[f64; 2]; LANES] {
+        let mut pieces = [[0.0; 2]; LANES];
+        for lane in set_bits(self.lanes) {
+            let (Walk { t, length, .. }, [to, until]) = (self.walks[lane], self.ends[lane]);
+            if t >= to || t > until {
+                self.lanes &= !(1 << lane);
+            }
+            pieces[lane] = [t, (t + length).min(to)];
+        }
+        pieces
+    }
+}
+
 impl<'f> Solver<'f> {
     pub(crate) fn new(formula: &'f Formula) -> Self {
-        Self { formula, models: Vec::new(), values: Vec::new() }
+        Self { formula, models: Vec::new(), packets: Vec::new(), values: Vec::new() }
     }
 
     /// Returns the first root in `start..=end`, unless it is known to lie behind `until`.
@@ -85,37 +152,52 @@ impl<'f> Solver<'f> {
     /// It is the first f32 at which the sign of f, computed in f64, differs from the sign in front of it. `until`
     /// only ends the search early; it does not change a root in front of it. A root at `start` itself is passed, so
     /// that the search from a root finds the next one.
-    pub(crate) fn first_root(&mut self, line: &Line, [start, end]: [f32; 2], until: f32) -> Option<f32> {
-        let (from, to) = (f64::from(start), f64::from(end));
-        let range = to - from;
-        // Also rejects NaN.
-        if !(range > 0.0 && range < f64::INFINITY) {
-            return None;
-        }
-        let shortest = (MIN_PIECE * range).max(16.0 * f64::EPSILON * from.abs().max(to.abs()));
-        let mut walk = Walk {
-            t: from,
-            length: range,
-            sign: 0.0,
-            since: from,
-            undecided: 0,
-            stride: shortest,
-            skipped: 0.0,
-            shortest,
-            range,
-        };
+    pub(crate) fn first_root(&mut self, line: &Line, range: [f32; 2], until: f32) -> Option<f32> {
+        let mut searches = Searches::NONE;
+        searches.add(0, line, range, until);
+        let (lanes, roots) = self.first_roots(searches);
+        (lanes != 0).then_some(roots.0[0])
+    }
+
+    /// Returns the lanes with a root, and their first roots: each as if it were alone.
+    pub(crate) fn first_roots(&mut self, mut searches: Searches) -> (u32, F32x8) {
+        let (mut found, mut roots) = (0, F32x8::ZERO);
         for _ in 0..MAX_PIECES {
-            if walk.t >= to || walk.t > f64::from(until) {
-                return None;
+            let pieces = searches.pieces();
+            if searches.lanes == 0 {
+                break;
             }
-            let piece = [walk.t, (walk.t + walk.length).min(to)];
-            let (model, continuity) = self.model(line, piece);
-            match walk.advance(&model, continuity, piece) {
-                Found::Nothing => {}
-                Found::Root(bracket) => return Some(self.first_change(line, bracket, walk.sign)),
+            // Short pieces are left to f64: in f32, their models are rounding errors.
+            let is_short = |lane: &usize| pieces[*lane][1] - pieces[*lane][0] < searches.walks[*lane].range * FINE;
+            let fine = set_bits(searches.lanes).filter(is_short).fold(0, |lanes, lane| lanes | 1 << lane);
+            let coarse = searches.lanes & !fine;
+            let packet = (coarse != 0).then(|| self.packet(&searches, &pieces, coarse));
+            for lane in set_bits(searches.lanes) {
+                let line = searches.line(lane);
+                let (model, continuity) = match &packet {
+                    Some((models, continuity)) if coarse >> lane & 1 == 1 => (of_lane(models, lane), continuity[lane]),
+                    _ => self.model(&line, pieces[lane]),
+                };
+                if let Found::Root(bracket) = searches.walks[lane].advance(&model, continuity, pieces[lane]) {
+                    roots.0[lane] = self.first_change(&line, bracket, searches.walks[lane].sign);
+                    found |= 1 << lane;
+                    searches.lanes &= !(1 << lane);
+                }
             }
         }
-        None
+        (found, roots)
+    }
+
+    fn packet(
+        &mut self,
+        searches: &Searches,
+        pieces: &[[f64; 2]; LANES],
+        lanes: u32,
+    ) -> (StoredModels, [Continuity; LANES]) {
+        let [o, d] = &searches.lines;
+        let coordinates = [0, 1, 2].map(|axis| coordinates(&o[axis], &d[axis], pieces));
+        let scratch = &mut self.packets;
+        simd::dispatch(PacketModels { tape: &self.formula.tape, coordinates, lanes, scratch })
     }
 
     fn model(&mut self, line: &Line, piece: [f64; 2]) -> (Model, Continuity) {
@@ -136,6 +218,7 @@ impl<'f> Solver<'f> {
             // The formula changes its sign and changes it back between two neighbouring numbers.
             return after;
         }
+        let mut is_behind = None;
         for step in 1_u32.. {
             let (least, most) = (before.next_up(), after.next_down());
             if least > most {
@@ -145,8 +228,15 @@ impl<'f> Solver<'f> {
             let share = if step % 4 == 0 { 0.5 } else { value_before / (value_before - value_after) };
             let (from, to) = (f64::from(before), f64::from(after));
             let guess = (from + (to - from) * if (0.0..=1.0).contains(&share) { share } else { 0.5 }) as f32;
+            // A little beyond the secant's root, seen from the last guess, so that the root is soon enclosed.
+            let guess = match is_behind {
+                Some(true) => guess.next_up().next_up(),
+                Some(false) => guess.next_down().next_down(),
+                None => guess,
+            };
             let guess = guess.max(least).min(most);
             let value = self.value(line, guess) * sign;
+            is_behind = Some(value > 0.0);
             if value > 0.0 {
                 (before, value_before, value_after) = (guess, value, 0.5 * value_after);
             } else {
@@ -158,6 +248,24 @@ impl<'f> Solver<'f> {
 }
 
 impl Walk {
+    const NOWHERE: Self = Self {
+        t: 0.0,
+        length: 0.0,
+        sign: 0.0,
+        since: 0.0,
+        undecided: 0,
+        stride: 0.0,
+        skipped: 0.0,
+        shortest: 0.0,
+        range: 0.0,
+    };
+
+    fn new(from: f64, to: f64) -> Self {
+        let range = to - from;
+        let shortest = (MIN_PIECE * range).max(16.0 * f64::EPSILON * from.abs().max(to.abs()));
+        Self { t: from, length: range, since: from, stride: shortest, shortest, range, ..Self::NOWHERE }
+    }
+
     /// Moves past the piece, or to where it has to be looked at more closely.
     fn advance(&mut self, model: &Model, continuity: Continuity, piece @ [from, to]: [f64; 2]) -> Found {
         let width = to - from;

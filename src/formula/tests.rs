@@ -1,5 +1,9 @@
+use super::packet::{PacketModels, StoredModels};
 use super::*;
+use crate::lanes::{ALL, LANES};
+use crate::simd;
 use glam::DVec3;
+use std::array::from_fn;
 
 /// Random numbers (xorshift) from a seed that a failure prints.
 struct Random(u64);
@@ -339,6 +343,72 @@ fn models_enclose_all_values() {
             }
         }
     }
+}
+
+/// Compares models in f32, of every kernel, with f64 values at points of random pieces of eight lines.
+#[test]
+fn models_of_eight_pieces_enclose_all_values() {
+    const SEED: u64 = 0x5eed_0005;
+    let samples: u64 = std::env::var("FORMULA_SAMPLES").ok().and_then(|text| text.parse().ok()).unwrap_or(1_000_000);
+    let (mut random, mut checked) = (Random(SEED), 0);
+    let (mut scratch, mut values) = (Vec::new(), Vec::new());
+    while checked < samples {
+        let text = random.formula(3);
+        let Ok(formula) = Formula::parse(&text, &[]) else { continue };
+        let lines: [[DVec3; 2]; LANES] = from_fn(|_| [random.point(2.0), random.point(1.0)]);
+        let pieces = from_fn(|_| {
+            let from = random.between(0.0, 4.0);
+            [from, from + random.between(0.0, 1.0) * libm::pow(10.0, -(random.below(5) as f64))]
+        });
+        let coordinates = [0, 1, 2].map(|axis: usize| {
+            packet::coordinates(&lines.map(|line| line[0][axis]), &lines.map(|line| line[1][axis]), &pieces)
+        });
+        let tape = &formula.tape;
+        let packet = PacketModels { tape, coordinates, lanes: ALL, scratch: &mut scratch };
+        let (stored, continuity) = simd::dispatch(packet);
+        let packet = PacketModels { tape, coordinates, lanes: ALL, scratch: &mut scratch };
+        let (of_arrays, _) = simd::run_scalar(packet);
+        let bits = |models: StoredModels| models.map(|numbers| numbers.0.map(|number| f32::to_bits(number + 0.0)));
+        let is_nan = stored.iter().any(|numbers| numbers.0.iter().any(|number| number.is_nan()));
+        assert!(is_nan || bits(stored) == bits(of_arrays), "{text}: {stored:?}, {of_arrays:?}, seed {SEED:#x}");
+        for lane in 0..LANES {
+            let (model, [o, d], [from, to]) = (packet::of_lane(&stored, lane), lines[lane], pieces[lane]);
+            let [c0, c1, c2] = model.c;
+            for _ in 0..20 {
+                let t = random.between(from, to);
+                let value = formula.tape.value(o + d * t, &mut values);
+                let u = ((t - 0.5 * (from + to)) / (0.5 * (to - from))).clamp(-1.0, 1.0);
+                let distance = (value - (c0 + u * (c1 + u * c2))).abs();
+                // The value itself, and u, are rounded.
+                let slack = 1e-11 * (1.0 + value.abs() + c1.abs() + c2.abs());
+                let is_outside = distance > model.error + slack
+                    || (value.is_nan() && model.error.is_finite() && !continuity[lane].may_jump);
+                assert!(!is_outside, "{text} at {t} in {from}..{to}: {value}, {model:?}, {o} + t {d}, seed {SEED:#x}");
+                checked += 1;
+            }
+        }
+    }
+}
+
+/// A search has the bits that it has alone, whatever is searched for in the other lanes.
+#[test]
+fn eight_searches_find_what_each_finds_alone() {
+    const SEED: u64 = 0x5eed_0006;
+    let (mut random, mut count) = (Random(SEED), 0);
+    for _ in 0..300 {
+        let text = random.formula(3);
+        let Ok(formula) = Formula::parse(&text, &[]) else { continue };
+        let lines: [Line; LANES] = from_fn(|_| Line { origin: random.point(2.0), direction: random.point(1.0) });
+        let mut searches = Searches::NONE;
+        lines.iter().enumerate().for_each(|(lane, line)| searches.add(lane, line, [0.0, 4.0], 4.0));
+        let (found, roots) = Solver::new(&formula).first_roots(searches);
+        for (lane, line) in lines.iter().enumerate() {
+            let root = (found >> lane & 1 == 1).then_some(roots.0[lane]);
+            assert_eq!(root, Solver::new(&formula).first_root(line, [0.0, 4.0], 4.0), "{text}, seed {SEED:#x}");
+            count += found >> lane & 1;
+        }
+    }
+    assert!(count > 300, "{count} roots");
 }
 
 #[test]

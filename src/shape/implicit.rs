@@ -3,8 +3,8 @@
 use super::described::size_in_words;
 use super::{CheckedShape, Described, Equation, Meshes, Points, Shape, Step, Surface, SurfacePoint};
 use crate::bounds::Bounds;
-use crate::formula::{Formula, Line, Solver, is_free_name};
-use crate::lanes::Vector;
+use crate::formula::{Formula, Line, Searches, Solver, is_free_name};
+use crate::lanes::{F32x8, LANES, Vector, set_bits};
 use crate::ray::{Interval, Probe, Ray};
 use crate::scene_text::{Span, SyntaxNode, Value};
 use crate::text::visible;
@@ -100,13 +100,27 @@ impl Surface for Implicit {
     }
 
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let inside = self.within_bounds(probe);
-        let range = [inside.min.max(within.min), inside.max];
-        if range[0] > within.max {
-            return None;
+        let (crosses, t) = self.closest_crossings(&[probe.ray; LANES], &[within; LANES], 1);
+        (crosses != 0).then_some(t.0[0])
+    }
+
+    /// Returns the first roots along up to eight rays, searched together.
+    fn closest_crossings(&self, rays: &[Ray; LANES], within: &[Interval; LANES], lanes: u32) -> (u32, F32x8) {
+        let mut searches = Searches::NONE;
+        for lane in set_bits(lanes) {
+            let (ray, within) = (&rays[lane], within[lane]);
+            let inside = self.within_bounds(&Probe::new(*ray));
+            let start = inside.min.max(within.min);
+            if start <= within.max {
+                searches.add(lane, &line_of(ray), [start, inside.max], within.max);
+            }
         }
-        let t = Solver::new(&self.0.formula).first_root(&line_of(&probe.ray), range, within.max)?;
-        within.contains(t).then_some(t)
+        if searches.is_empty() {
+            return (0, F32x8::ZERO);
+        }
+        let (found, t) = Solver::new(&self.0.formula).first_roots(searches);
+        let is_within = |lane: &usize| within[*lane].contains(t.0[*lane]);
+        (set_bits(found).filter(is_within).fold(0, |lanes, lane| lanes | 1 << lane), t)
     }
 
     /// Returns the point, moved onto the surface along the gradient.

@@ -1,13 +1,13 @@
 //! A leaf for surfaces whose formula is written for one ray and one surface.
 
 use super::{AtCrossing, Crossable, Points, Side, SoaLeaf, Surface};
-use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Vector};
-use crate::ray::{Interval, Probe, Ray, Rays};
+use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Vector, set_bits};
+use crate::ray::{Interval, Ray, Rays};
 use glam::Vec3;
 use std::array::from_fn;
 use std::sync::Arc;
 
-/// A leaf with up to eight surfaces of any type, which are tested one after the other.
+/// A leaf with up to eight surfaces of any type, which are tested one after the other against all their rays.
 ///
 /// A lane holds the index of a surface, so that a surface may be of any size.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,16 +76,20 @@ impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
 
     fn first_crossing_until(&self, rays: &Rays<N>, range: [N; 2]) -> Option<(N::Mask, N)> {
         let ([min, max], mut crosses, mut t) = (range.map(N::store), 0, F32x8::ZERO);
-        for lane in 0..LANES {
-            let within = Interval { min: min.0[lane], max: max.0[lane] };
-            let Some(surface) = self.surface(lane).filter(|_| within.min <= within.max) else { continue };
-            // Recomputes the ray's shared values for each surface, which is simple but slow. Surfaces that must be
-            // fast implement `SoaLeaf`.
-            let probe = Probe::new(ray_of(rays, lane));
-            if let Some(crossing) = surface.closest_crossing(&probe, within) {
-                crosses |= 1 << lane;
-                t.0[lane] = crossing;
-            }
+        let within = from_fn(|lane| Interval { min: min.0[lane], max: max.0[lane] });
+        let each = from_fn(|lane| ray_of(rays, lane));
+        let is_used = |lane: &usize| within[*lane].min <= within[*lane].max && self.surface(*lane).is_some();
+        let mut left = (0..LANES).filter(is_used).fold(0, |lanes, lane| lanes | 1 << lane);
+        while let Some(first) = set_bits(left).next()
+            && let Some(surface) = self.surface(first)
+        {
+            // All lanes of one surface together.
+            let is_same = |lane: &usize| self.lanes[*lane] == self.lanes[first];
+            let lanes = set_bits(left).filter(is_same).fold(0, |lanes, lane| lanes | 1 << lane);
+            let (found, crossings) = surface.closest_crossings(&each, &within, lanes);
+            set_bits(found).for_each(|lane| t.0[lane] = crossings.0[lane]);
+            crosses |= found;
+            left &= !lanes;
         }
         (crosses != 0).then(|| (N::mask_from_bits(crosses), N::load(&t)))
     }

@@ -1,0 +1,411 @@
+//! Models of a formula on pieces of eight rays at once, in f32.
+//!
+//! They are the models of [`model`](super::model) with the rounding of f32. The frequent operations have a vector form
+//! here; all others are computed lane by lane in f64. Each lane has the bits that it has alone.
+
+use super::model::{Continuity, EPSILON as EPSILON_64, Evaluation, Model};
+use super::tape::{Binary, Index, Operation, Tape, Unary};
+use crate::lanes::{F32x8, LANES, LaneMask, Lanes, SimdKernel, set_bits};
+use std::f64::consts::FRAC_2_PI;
+
+/// Twice the largest relative rounding error of an f32 operation.
+const EPSILON: f32 = f32::EPSILON;
+
+/// A bound of the absolute error of the polynomials for sine and cosine.
+// They are off by 1e-7 at most: the property test of models would find more than this.
+const OF_SINE: f32 = 2.0 * EPSILON;
+
+/// A bound of the relative error of the polynomial for the exponential function.
+const OF_EXP: f32 = 4.0 * EPSILON;
+
+/// The largest angle at which the reduction to a quarter turn is exact enough.
+const LARGEST_ANGLE: f32 = 8000.0;
+
+/// Eight models in memory: the coefficients, then the error.
+pub(super) type StoredModels = [F32x8; 4];
+
+/// The models of a tape on eight pieces, for the lanes in `lanes`.
+pub(super) struct PacketModels<'a> {
+    pub(super) tape: &'a Tape,
+    pub(super) coordinates: [StoredModels; 3],
+    pub(super) lanes: u32,
+    pub(super) scratch: &'a mut Vec<StoredModels>,
+}
+
+impl SimdKernel for PacketModels<'_> {
+    type Output = (StoredModels, [Continuity; LANES]);
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) -> Self::Output {
+        let Self { tape, coordinates, lanes, scratch } = self;
+        let mut evaluation = PacketEvaluation { lanes, may_jump: 0, is_undefined: 0 };
+        scratch.clear();
+        for &operation in tape.operations() {
+            let of = |index: Index| Models::<N>::load(&scratch[usize::from(index)]);
+            let models = match operation {
+                Operation::Constant(bits) => Models::constant(f64::from_bits(bits)),
+                Operation::Coordinate(axis) => Models::load(&coordinates[usize::from(axis)]),
+                Operation::Unary(function, a) => {
+                    evaluation.unary(function, of(a), tape.is_non_negative(usize::from(a)))
+                }
+                Operation::Binary(function, a, b) => evaluation.binary(function, of(a), of(b)),
+            };
+            scratch.push(models.store());
+        }
+        let continuity = |lane: usize| Continuity {
+            may_jump: evaluation.may_jump >> lane & 1 == 1,
+            is_undefined: evaluation.is_undefined >> lane & 1 == 1,
+        };
+        let last = scratch.last().copied().unwrap_or(Models::<N>::anything().store());
+        (last, std::array::from_fn(continuity))
+    }
+}
+
+/// Returns the models of a coordinate on eight pieces, see [`Model::coordinate`].
+pub(super) fn coordinates(o: &[f64; LANES], d: &[f64; LANES], pieces: &[[f64; 2]; LANES]) -> StoredModels {
+    let mut models = [F32x8::ZERO; 4];
+    for lane in 0..LANES {
+        let [from, to] = pieces[lane];
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        let (at_middle, slope) = (middle * d[lane], half * d[lane]);
+        let rounding_64 = o[lane].abs() + at_middle.abs() + (from.abs() + to.abs()) * d[lane].abs();
+        let (c0, c1) = ((o[lane] + at_middle) as f32, slope as f32);
+        let rounding = EPSILON * (c0.abs() + c1.abs()) + (4.0 * EPSILON_64 * rounding_64) as f32;
+        (models[0].0[lane], models[1].0[lane], models[3].0[lane]) = (c0, c1, enlarged(rounding));
+    }
+    models
+}
+
+/// Returns the model of one lane.
+pub(super) fn of_lane(models: &StoredModels, lane: usize) -> Model {
+    let [c0, c1, c2, error] = models.map(|numbers| f64::from(numbers.0[lane]));
+    Model { c: [c0, c1, c2], error }
+}
+
+/// Returns the error with room for its own rounding, and for numbers that vanish below the least normal one.
+fn enlarged(error: f32) -> f32 {
+    error * (1.0 + 16.0 * EPSILON) + 16.0 * f32::MIN_POSITIVE
+}
+
+/// Eight models in registers.
+#[derive(Clone, Copy)]
+struct Models<N> {
+    c: [N; 3],
+    error: N,
+}
+
+/// Eight values, as a function of eight models and a hull around each.
+struct Taylor<N> {
+    /// The function, its derivative, and half the second derivative, at c0.
+    at: [N; 3],
+    /// A bound of the third derivative's magnitude on the range, divided by 6.
+    third: N,
+    /// The absolute error of each number in `at`.
+    off: N,
+}
+
+impl<N: Lanes> Models<N> {
+    #[inline(always)]
+    fn load(&[c0, c1, c2, error]: &StoredModels) -> Self {
+        Self { c: [N::load(&c0), N::load(&c1), N::load(&c2)], error: N::load(&error) }
+    }
+
+    #[inline(always)]
+    fn store(self) -> StoredModels {
+        let [c0, c1, c2] = self.c;
+        [c0.store(), c1.store(), c2.store(), self.error.store()]
+    }
+
+    #[inline(always)]
+    fn new(c: [N; 3], error: N) -> Self {
+        let room = N::splat(1.0 + 16.0 * EPSILON);
+        Self { c, error: error * room + N::splat(16.0 * f32::MIN_POSITIVE) }
+    }
+
+    #[inline(always)]
+    fn anything() -> Self {
+        Self { c: [N::splat(0.0); 3], error: N::splat(f32::INFINITY) }
+    }
+
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        let (zero, rounded) = (N::splat(0.0), value as f32);
+        let error = if f64::from(rounded) == value { 0.0 } else { enlarged(EPSILON * rounded.abs()) };
+        Self { c: [N::splat(rounded), zero, zero], error: N::splat(error) }
+    }
+
+    #[inline(always)]
+    fn hull(low: N, high: N) -> Self {
+        let half = N::splat(0.5);
+        let rounding = N::splat(4.0 * EPSILON) * (low.abs() + high.abs());
+        let zero = N::splat(0.0);
+        Self::new([half * low + half * high, zero, zero], half * high - half * low + rounding)
+    }
+
+    #[inline(always)]
+    fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
+        let pick = |axis: usize| N::select(mask, yes.c[axis], no.c[axis]);
+        Self { c: [pick(0), pick(1), pick(2)], error: N::select(mask, yes.error, no.error) }
+    }
+
+    #[inline(always)]
+    fn magnitude(self) -> N {
+        self.c[0].abs() + self.c[1].abs() + self.c[2].abs()
+    }
+
+    #[inline(always)]
+    fn range(self) -> [N; 2] {
+        let (Self { c: [c0, c1, c2], error }, zero) = (self, N::splat(0.0));
+        let slack = error + N::splat(4.0 * EPSILON) * self.magnitude();
+        [c0 - c1.abs() + c2.min(zero) - slack, c0 + c1.abs() + c2.max(zero) + slack]
+    }
+
+    #[inline(always)]
+    fn negate(self) -> Self {
+        let [c0, c1, c2] = self.c;
+        Self { c: [-c0, -c1, -c2], error: self.error }
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        let ([a0, a1, a2], [b0, b1, b2]) = (self.c, other.c);
+        let rounding = N::splat(EPSILON) * (self.magnitude() + other.magnitude());
+        Self::new([a0 + b0, a1 + b1, a2 + b2], self.error + other.error + rounding)
+    }
+
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        let ([a0, a1, a2], [b0, b1, b2]) = (self.c, other.c);
+        let (of_a, of_b) = (self.magnitude(), other.magnitude());
+        let beyond = (a1 * b2).abs() + (a2 * b1).abs() + (a2 * b2).abs();
+        let rounding = N::splat(4.0 * EPSILON) * of_a * of_b;
+        let error = self.error * (of_b + other.error) + other.error * of_a + rounding;
+        Self::new([a0 * b0, a0 * b1 + a1 * b0, a0 * b2 + a1 * b1 + a2 * b0], beyond + error)
+    }
+
+    #[inline(always)]
+    fn scaled(self, factor: N) -> Self {
+        let size = factor.abs();
+        let error = self.error * size + N::splat(EPSILON) * size * self.magnitude();
+        Self::new(self.c.map(|c| c * factor), error)
+    }
+
+    #[inline(always)]
+    fn function(self, Taylor { at: [g, g1, g2], third, off }: Taylor<N>, hull: Self) -> Self {
+        let Self { c: [_, c1, c2], error } = self;
+        let (two, sizes) = (N::splat(2.0), c1.abs() + c2.abs());
+        let spread = sizes + error;
+        let beyond = two * (c1 * c2).abs() + c2 * c2 + error * (two * sizes + error);
+        let (linear, square) = (g1 * c2, g2 * c1 * c1);
+        let rounding = N::splat(8.0 * EPSILON) * (g.abs() + (g1 * c1).abs() + linear.abs() + square.abs());
+        let of_values = off * (N::splat(1.0) + sizes + c1 * c1);
+        // A bound that has vanished is none.
+        let third = N::select(third.lt(N::splat(f32::MIN_POSITIVE)), N::splat(f32::INFINITY), third);
+        let remainder = third * spread * spread * spread;
+        let taylor = Self::new(
+            [g, g1 * c1, linear + square],
+            g1.abs() * error + g2.abs() * beyond + remainder + rounding + of_values,
+        );
+        taylor.or_if_narrower(hull)
+    }
+
+    /// Returns the models with the smaller errors.
+    #[inline(always)]
+    fn or_if_narrower(self, hull: Self) -> Self {
+        let is_closer = self.error.le(hull.error) | !hull.error.le(hull.error);
+        Self::select(is_closer, self, hull)
+    }
+
+    #[inline(always)]
+    fn squared(self) -> Self {
+        let ([low, high], zero) = (self.range(), N::splat(0.0));
+        let (one, other) = (low * low, high * high);
+        let least = N::select(low.le(zero) & zero.le(high), zero, one.min(other));
+        self.times(self).or_if_narrower(Self::hull(least, one.max(other)))
+    }
+
+    /// Returns |a|: `a` itself or its negative, or on a range around 0 the chord.
+    #[inline(always)]
+    fn absolute(self) -> Self {
+        let ([low, high], zero) = (self.range(), N::splat(0.0));
+        let width = high - low;
+        let (slope, at_zero) = ((high + low) / width, N::splat(-2.0) * low * high / width);
+        let rounding = N::splat(16.0 * EPSILON) * (at_zero + width);
+        let half = N::splat(0.5) * at_zero;
+        let chord = self.scaled(slope).plus(Self::new([half, zero, zero], half + rounding));
+        let chord = Self::select(width.lt(N::splat(f32::INFINITY)), chord, Self::anything());
+        Self::select(zero.le(low), self, Self::select(high.le(zero), self.negate(), chord))
+    }
+
+    #[inline(always)]
+    fn minimum(self, other: Self) -> Self {
+        let (difference, zero) = (self.plus(other.negate()), N::splat(0.0));
+        let [low, high] = difference.range();
+        let blend = self.plus(other).plus(difference.absolute().negate()).scaled(N::splat(0.5));
+        Self::select(high.le(zero), self, Self::select(zero.le(low), other, blend))
+    }
+
+    /// Returns the sines, or the cosines.
+    #[inline(always)]
+    fn wave(self, is_cosine: bool) -> Self {
+        let (c0, one) = (self.c[0], N::splat(1.0));
+        let [sin, cos] = sin_cos(c0);
+        let [value, slope] = if is_cosine { [cos, -sin] } else { [sin, cos] };
+        let taylor = Taylor {
+            at: [value, slope, N::splat(-0.5) * value],
+            third: N::splat(1.0 / 5.9),
+            off: N::select(c0.abs().le(N::splat(LARGEST_ANGLE)), N::splat(OF_SINE), N::splat(f32::INFINITY)),
+        };
+        self.function(taylor, Self::hull(-one, one))
+    }
+
+    #[inline(always)]
+    fn exponential(self) -> Self {
+        let ([low, high], zero) = (self.range(), N::splat(0.0));
+        let (value, most) = (exp(self.c[0]), exp(high) * N::splat(1.0 + OF_EXP));
+        let is_in_reach = high.lt(N::splat(87.0));
+        let least = N::select(low.lt(N::splat(-86.0)), zero, exp(low) * N::splat(1.0 - OF_EXP));
+        let taylor = Taylor {
+            at: [value, value, N::splat(0.5) * value],
+            third: most * N::splat(1.0 / 5.9),
+            off: N::splat(OF_EXP) * value + N::splat(1e-37),
+        };
+        Self::select(is_in_reach, self.function(taylor, Self::hull(least, most)), Self::anything())
+    }
+}
+
+/// Returns sine and cosine, off by at most [`OF_SINE`] up to [`LARGEST_ANGLE`].
+#[inline(always)]
+fn sin_cos<N: Lanes>(x: N) -> [N; 2] {
+    let number = |value: f64| N::splat(value as f32);
+    let (one, two, half) = (number(1.0), number(2.0), number(0.5));
+    let quarters = (x * number(FRAC_2_PI) + half).floor();
+    // A quarter turn in three parts, of which the products with the first two are exact (Cody and Waite; Cephes).
+    let r = x - quarters * number(1.570_312_5) - quarters * number(4.837_512_969_970_703e-4);
+    let r = r - quarters * number(7.549_789_948_768_648e-8);
+    let r2 = r * r;
+    let odd_part = number(8.332_160_873_6e-3) - r2 * number(1.951_529_589_1e-4);
+    let sin = r + r * r2 * (r2 * odd_part - number(1.666_665_461_1e-1));
+    let even_part = r2 * number(2.443_315_711_809_948e-5) - number(1.388_731_625_493_765e-3);
+    let cos = one - half * r2 + r2 * r2 * (r2 * even_part + number(4.166_664_568_298_827e-2));
+    let halves = (quarters * half).floor();
+    let odd = quarters - two * halves;
+    let turned = halves - two * (halves * half).floor();
+    let is_odd = half.lt(odd);
+    let sign_of_cos = turned + odd - two * turned * odd;
+    [N::select(is_odd, cos, sin) * (one - two * turned), N::select(is_odd, sin, cos) * (one - two * sign_of_cos)]
+}
+
+/// Returns e^x, off by at most [`OF_EXP`] of its value from -86 to 87; beyond that the nearer end's.
+#[inline(always)]
+fn exp<N: Lanes>(x: N) -> N {
+    let number = |value: f64| N::splat(value as f32);
+    let x = x.max(number(-87.0)).min(number(88.0));
+    let power = (x * number(std::f64::consts::LOG2_E) + number(0.5)).floor();
+    let r = x - power * number(0.693_359_375) + power * number(2.121_944_4e-4);
+    let polynomial = [1.398_199_950_7e-3, 8.333_451_907_3e-3, 4.166_579_589_4e-2, 1.666_666_545_9e-1, 0.5];
+    let sum = polynomial.iter().fold(number(1.987_569_150_0e-4), |sum, &c| sum * r + number(c));
+    let [scale] = N::map_lanes([power], |[power]| [f32::from_bits(((power as i32 + 127) as u32) << 23)]);
+    (sum * r * r + r + number(1.0)) * scale
+}
+
+/// The evaluation of operations, which notes the lanes where they may jump.
+struct PacketEvaluation {
+    lanes: u32,
+    may_jump: u32,
+    is_undefined: u32,
+}
+
+impl PacketEvaluation {
+    #[inline(always)]
+    fn unary<N: Lanes>(&mut self, function: Unary, a: Models<N>, is_non_negative: bool) -> Models<N> {
+        match function {
+            Unary::Negate => a.negate(),
+            Unary::Abs => a.absolute(),
+            Unary::Square => a.squared(),
+            Unary::Sin => a.wave(false),
+            Unary::Cos => a.wave(true),
+            Unary::Exp => a.exponential(),
+            Unary::Sqrt => self.square_root(a, is_non_negative),
+            _ => self.lane_by_lane([a, a], |evaluation, [a, _]| evaluation.unary(function, a, is_non_negative)),
+        }
+    }
+
+    #[inline(always)]
+    fn binary<N: Lanes>(&mut self, function: Binary, a: Models<N>, b: Models<N>) -> Models<N> {
+        match function {
+            Binary::Add => a.plus(b),
+            Binary::Subtract => a.plus(b.negate()),
+            Binary::Multiply => a.times(b),
+            Binary::Divide => self.quotient(a, b),
+            Binary::Min => a.minimum(b),
+            Binary::Max => a.negate().minimum(b.negate()).negate(),
+            Binary::Atan2 => self.lane_by_lane([a, b], |evaluation, [a, b]| evaluation.binary(function, a, b)),
+        }
+    }
+
+    /// Notes the lanes, and returns everything there.
+    #[inline(always)]
+    fn anything_where<N: Lanes>(&mut self, mask: N::Mask, is_undefined: N::Mask, else_: Models<N>) -> Models<N> {
+        self.may_jump |= mask.bits();
+        self.is_undefined |= is_undefined.bits();
+        Models::select(mask, Models::anything(), else_)
+    }
+
+    #[inline(always)]
+    fn square_root<N: Lanes>(&mut self, a: Models<N>, is_non_negative: bool) -> Models<N> {
+        let ([low, high], zero) = (a.range(), N::splat(0.0));
+        let value = a.c[0].sqrt();
+        let slope = N::splat(0.5) / value;
+        let root = low.sqrt();
+        let third = N::splat(1.0) / (N::splat(15.9) * low * low * root);
+        let taylor = Taylor { at: [value, slope, N::splat(-0.25) * slope / a.c[0]], third, off: zero };
+        let of_positive = a.function(taylor, Models::hull(root, high.sqrt()));
+        let is_positive = zero.lt(low);
+        let of_any = Models::select(is_positive, of_positive, Models::hull(zero, high.max(zero).sqrt()));
+        if !is_non_negative {
+            self.may_jump |= (!is_positive).bits();
+        }
+        let (is_undefined, is_known) = (high.lt(zero), (high - low).lt(N::splat(f32::INFINITY)));
+        self.anything_where(is_undefined | !is_known, is_undefined, of_any)
+    }
+
+    #[inline(always)]
+    fn quotient<N: Lanes>(&mut self, a: Models<N>, b: Models<N>) -> Models<N> {
+        let ([low, high], zero, one) = (b.range(), N::splat(0.0), N::splat(1.0));
+        let (value, nearest) = (one / b.c[0], low.abs().min(high.abs()));
+        let squared = nearest * nearest;
+        let taylor = Taylor {
+            at: [value, -(value * value), value * value * value],
+            third: N::splat(1.01) / (squared * squared),
+            off: zero,
+        };
+        let inverse = b.function(taylor, Models::hull(one / high, one / low));
+        let is_defined = zero.lt(low) | high.lt(zero);
+        let is_undefined = zero.le(low) & high.le(zero);
+        self.anything_where(!is_defined, is_undefined, a.times(inverse))
+    }
+
+    /// Computes an operation that is rare in f64, one lane after the other.
+    #[inline(always)]
+    fn lane_by_lane<N: Lanes>(
+        &mut self,
+        operands: [Models<N>; 2],
+        operation: impl Fn(&mut Evaluation<'_>, [Model; 2]) -> Model,
+    ) -> Models<N> {
+        let (operands, mut results) = (operands.map(Models::store), Models::<N>::anything().store());
+        for lane in set_bits(self.lanes) {
+            let mut continuity = Continuity::default();
+            let Model { c, error } =
+                operation(&mut Evaluation(&mut continuity), [of_lane(&operands[0], lane), of_lane(&operands[1], lane)]);
+            self.may_jump |= u32::from(continuity.may_jump) << lane;
+            self.is_undefined |= u32::from(continuity.is_undefined) << lane;
+            let rounding = EPSILON * c.iter().map(|c| c.abs() as f32).sum::<f32>();
+            for (result, c) in results.iter_mut().zip(c) {
+                result.0[lane] = c as f32;
+            }
+            results[3].0[lane] = enlarged(error as f32 + rounding);
+        }
+        Models::load(&results)
+    }
+}
