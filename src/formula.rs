@@ -16,21 +16,40 @@ mod tape;
 pub(crate) use parse::{Fault, is_free_name};
 pub(crate) use roots::{Line, Searches, Solver};
 
+use std::sync::Arc;
 use tape::Tape;
 
-/// A formula in x, y and z, whose sign tells inside from outside.
+/// A formula in x, y, z and the time, whose sign tells inside from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Formula {
+    /// The tape at one time.
     tape: Tape,
+    /// The tape in which the time is a variable, if the formula depends on it.
+    moving: Option<Arc<Tape>>,
 }
 
 impl Formula {
-    /// Parses a formula, in which `params` are constants with names.
+    /// Parses a formula, in which `params` are constants with names, and sets its time to 0.
     ///
     /// # Errors
     /// The first fault, with its range of bytes in `text`.
     pub(crate) fn parse(text: &str, params: &[(String, f64)]) -> Result<Self, Fault> {
-        parse::parse(text, params).map(|tape| Self { tape })
+        let tape = parse::parse(text, params)?;
+        if tape.moves() {
+            return Ok(Self { tape: tape.at_time(0.0), moving: Some(Arc::new(tape)) });
+        }
+        Ok(Self { tape, moving: None })
+    }
+
+    /// Returns whether the formula depends on the time.
+    pub(crate) fn moves(&self) -> bool {
+        self.moving.is_some()
+    }
+
+    /// Returns the formula at a time in seconds.
+    pub(crate) fn at_time(&self, seconds: f64) -> Self {
+        let tape = self.moving.as_ref().map_or_else(|| self.tape.clone(), |moving| moving.at_time(seconds));
+        Self { tape, moving: self.moving.clone() }
     }
 }
 

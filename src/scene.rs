@@ -203,6 +203,23 @@ impl Scene {
         (1..).zip(self.objects()).filter_map(warning).collect()
     }
 
+    /// Returns whether any surface depends on the time.
+    #[doc(hidden)]
+    pub fn moves(&self) -> bool {
+        self.accelerator.moves()
+    }
+
+    /// Returns the scene at a time in seconds; a scene that is loaded or built is at time 0.
+    #[doc(hidden)]
+    pub fn at_time(mut self, seconds: f64) -> Self {
+        if !self.moves() {
+            return self;
+        }
+        self.accelerator = Arc::new(self.accelerator.at_time(seconds));
+        let at_time = |object: &Object| Object { shape: object.shape.at_time(seconds), material: object.material };
+        self.with(|checked| checked.objects = checked.objects.iter().map(at_time).collect())
+    }
+
     /// Returns the scene's own camera.
     pub fn camera(&self) -> &Camera {
         &self.checked.camera

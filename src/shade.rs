@@ -258,7 +258,8 @@ impl Reflect<'_> {
             (Material::Own, shape) => {
                 let mut channels = [F32x8::ZERO; 3];
                 for lane in set_bits(own) {
-                    let reflectance = shape.primitive(points.ids.id(lane).index).own_reflectance(points.uv(lane));
+                    let (index, position) = (points.ids.id(lane).index, points.position.of_lane(lane));
+                    let reflectance = shape.primitive(index).own_reflectance(position, points.uv(lane));
                     let LinearRgb { r, g, b } = reflectance.unwrap_or(Material::DEFAULT_REFLECTANCE);
                     [channels[0].0[lane], channels[1].0[lane], channels[2].0[lane]] = [r, g, b];
                 }

@@ -396,14 +396,30 @@ impl From<Mesh> for Shape {
     }
 }
 
+impl Shape {
+    /// Returns whether the shape or its colours depend on the time.
+    pub(crate) fn moves(&self) -> bool {
+        matches!(self, Self::Implicit(implicit) if implicit.moves())
+    }
+
+    /// Returns the shape at a time in seconds.
+    pub(crate) fn at_time(&self, seconds: f64) -> Self {
+        match self {
+            Self::Implicit(implicit) => Self::Implicit(implicit.at_time(seconds)),
+            other => other.clone(),
+        }
+    }
+}
+
 impl Primitive<'_> {
     /// Returns the diffuse reflectance from the file of a mesh, at the coordinates
-    /// [`uv`](SurfacePoint::uv).
+    /// [`uv`](SurfacePoint::uv), or from the formulas of a surface, at a position.
     ///
-    /// `None` if the file has no colours, and for other shapes.
-    pub fn own_reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
+    /// `None` if there are no such colours, and for other shapes.
+    pub fn own_reflectance(&self, position: Vec3, uv: Vec2) -> Option<LinearRgb> {
         match self {
             Self::Facet(facet) => facet.file_reflectance(uv),
+            Self::Implicit(implicit) => implicit.own_reflectance(position),
             _ => None,
         }
     }

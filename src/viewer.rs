@@ -60,6 +60,7 @@ mod note;
 mod options;
 mod outside;
 mod pacing;
+mod playback;
 mod mesh_commands;
 mod metadata;
 mod mouse_actions;
@@ -88,6 +89,7 @@ use note::Note;
 pub use options::Options;
 use outside::Outside;
 use pacing::Pacing;
+use playback::Playback;
 use pointer::PointerState;
 use progress::ProgressPanel;
 #[cfg(all(unit_tests, feature = "test-hooks"))]
@@ -157,6 +159,8 @@ pub(crate) struct Viewer {
     receiver: Receiver,
     scenes: SceneHistory,
     eye: Eye,
+    /// The time of the scene.
+    playback: Playback,
     /// Which maps the picture shows, and how they are arranged.
     layout: ViewLayout,
     /// Whether the tracer is seen from outside, by a second camera.
@@ -188,6 +192,7 @@ impl Viewer {
             receiver: Receiver::default(),
             scenes: SceneHistory::default(),
             eye: Eye::new(options.key_speed, options.reduced_motion),
+            playback: Playback::default(),
             layout: ViewLayout::single(options.map),
             outside: Outside::Off,
             pointer: PointerState::default(),
@@ -311,8 +316,8 @@ impl Viewer {
     fn open(&mut self, scene: Scene, index: usize, orbits: bool) {
         self.end_outside();
         let (before, shown) = (self.scenes.shown(), scene.clone());
-        if let Some(darkness) = scene.darkness() {
-            self.warn(darkness.to_owned());
+        for warning in scene.darkness().map(str::to_owned).into_iter().chain(scene.invisible_formulas()) {
+            self.warn(warning);
         }
         if let Some(mesh) = scene.mesh().filter(|mesh| mesh.is_guess) {
             let turn = self.hint(Command::TurnMesh, "turns it");
@@ -326,11 +331,14 @@ impl Viewer {
         let caption = self.captions.then(|| self.caption(&scene, index)).flatten();
         self.screen.set(caption);
         if let Some(view) = self.scenes.show(scene, index, orbits) {
+            self.playback = Playback::default();
             let left = self.eye.open(view);
             if let Some((before, left)) = before.zip(left).filter(|(before, _)| *before != index) {
                 self.scenes.record_left(before, left);
             }
         }
+        // A scene that is loaded again goes on at its time.
+        self.playback.start(shown.moves() && !self.options.reduced_motion, self.now);
         self.screen.set_name(self.names.get(index).map_or("", String::as_str));
         // Also for a scene whose view is kept: its file may have got other views.
         self.eye.set_scene(&shown);
@@ -402,6 +410,7 @@ impl Viewer {
         self.set_time(now);
         // Moves the eye to its place at `now` first, because `decide` compares the picture with the eye's current view.
         self.eye.advance(now);
+        self.playback.advance(now);
         self.screen.set_moving(self.eye.mode());
         self.screen.set_in_motion(self.is_in_motion());
         self.mark_light();
@@ -426,7 +435,7 @@ impl Viewer {
             picture: self.picture_state(),
             holds_first_back: !self.screen.has_shown() && self.pacing.ends_within(FIRST_REFINEMENT),
             begun: self.pacing.begun_at(),
-            moved_until: self.eye.moved_until(),
+            moved_until: self.eye.moved_until().or(self.playback.moved_until()),
             min_frame_interval: self.pacing.min_frame_interval(),
             link_free_at: self.pacing.free_at(self.now),
             is_changed: self.screen.is_changed(size),
@@ -462,9 +471,10 @@ impl Viewer {
         Step::Trace(Vec::new(), Job { scene, shot, sampling, refines: true })
     }
 
-    /// Returns the shown scene, with its lights as moved by the user.
+    /// Returns the shown scene at its time, with its lights as moved by the user.
     fn scene(&self) -> Option<Scene> {
-        self.scenes.lights().map(|lights| lights.scene().clone())
+        let seconds = self.playback.time().as_secs_f64();
+        self.scenes.lights().map(|lights| lights.scene().clone().at_time(seconds))
     }
 
     /// Returns the shot that the picture is to show, or `None` without a scene.
@@ -473,7 +483,8 @@ impl Viewer {
         let (outside, layout) = (self.second_camera(), self.shown_layout());
         let (scene, resolution) = (self.scenes.count(), self.display.resolution());
         let geometry = self.display.capabilities().cell_mode.shows_geometry();
-        Some(Shot { scene, lights: lights.moves(), camera, outside, resolution, layout, geometry })
+        let time = self.playback.time();
+        Some(Shot { scene, lights: lights.moves(), time, camera, outside, resolution, layout, geometry })
     }
 
     /// Returns the sampling of the shown frame's next refinement, or `None` if it cannot be
@@ -485,10 +496,10 @@ impl Viewer {
         (next != frame.sampling).then_some(next)
     }
 
-    /// Returns whether the view is being changed by keys, the turntable or a drag, so that the next
-    /// frame will differ.
+    /// Returns whether the view is being changed by keys, the turntable, a drag or the time, so that
+    /// the next frame will differ.
     fn is_in_motion(&self) -> bool {
-        self.eye.is_moving() || self.pointer.holds()
+        self.eye.is_moving() || self.pointer.holds() || self.playback.moved_until().is_some()
     }
 
     /// Appends the bytes that bring the screen up to date.

@@ -106,6 +106,8 @@ impl FilmFormat {
 struct Film {
     scene: Scene,
     cameras: Vec<Camera>,
+    /// The time of the first frame in seconds.
+    start: f64,
     fps: u32,
     resolution: Resolution,
     mode: CellMode,
@@ -138,7 +140,8 @@ impl RecordArgs {
         self.check_flags(&format, resolution, fps)?;
         let scene = self.scene.load_scene()?;
         let cameras = self.cameras(scene.camera(), fps)?;
-        Ok(Film { scene, cameras, fps, resolution, mode, samples: self.picture.samples(kind, mode), format })
+        let (start, samples) = (self.scene.time, self.picture.samples(kind, mode));
+        Ok(Film { scene, cameras, start, fps, resolution, mode, samples, format })
     }
 
     /// Returns the mode of an asciicast's cells. Pixels of a GIF or PNG are those of half blocks.
@@ -247,22 +250,17 @@ enum Sink {
 }
 
 impl Sink {
-    fn write_frame(
-        &mut self,
-        film: &Film,
-        map: Map,
-        camera: &Camera,
-        file: &Path,
-        outputs: &mut Outputs,
-    ) -> io::Result<()> {
-        let &Film { ref scene, resolution, samples, .. } = film;
+    /// Traces and writes frame number `frame`, counted from 0.
+    fn write_frame(&mut self, film: &Film, map: Map, frame: usize, outputs: &mut Outputs) -> io::Result<()> {
+        let &Film { resolution, samples, .. } = film;
+        let (scene, camera) = (&film.scene_at(frame), &film.cameras[frame]);
         let picture = || maps::picture(map, scene, camera, resolution, samples);
         match self {
             Self::Cast(painter, cast) => cast.frame(painter.trace(map, scene, camera, resolution, samples)),
             Self::Gif(gif) => gif.frame(&picture()),
             Self::Png { pixel_aspect, scale } => {
                 let bytes = export::png(&picture(), *pixel_aspect, *scale).map_err(io::Error::other)?;
-                outputs.write(file, &bytes)
+                outputs.write(&film.file(frame), &bytes)
             }
         }
     }
@@ -281,6 +279,11 @@ fn finish(out: BufWriter<Output>) -> io::Result<()> {
 }
 
 impl Film {
+    /// Returns the scene at the time of frame number `frame`, counted from 0.
+    fn scene_at(&self, frame: usize) -> Scene {
+        self.scene.clone().at_time(self.start + frame as f64 / f64::from(self.fps))
+    }
+
     /// Returns the file that frame number `frame`, counted from 0, is written to, for messages too.
     fn file(&self, frame: usize) -> PathBuf {
         match &self.format {
@@ -358,8 +361,8 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
     // The bar is first drawn after the signal handler is installed: before, a signal would leave it on the screen.
     bar.tick();
     let mut sink = film.written(0, args.sink(film, &mut outputs))?;
-    for (frame, camera) in film.cameras.iter().enumerate() {
-        film.written(frame, sink.write_frame(film, args.map.map(), camera, &film.file(frame), &mut outputs))?;
+    for frame in 0..film.cameras.len() {
+        film.written(frame, sink.write_frame(film, args.map.map(), frame, &mut outputs))?;
         bar.inc(1);
     }
     // `end` gives an asciicast or GIF its name, so an interrupted film leaves no file.

@@ -22,6 +22,10 @@ pub(super) struct SceneArgs {
     scene: Option<PathBuf>,
     #[command(flatten)]
     pub(super) camera_args: CameraArgs,
+    /// Seconds to which a moving scene is set
+    #[arg(long, value_name = "S", value_parser = parse_time, default_value_t = 0.0, allow_hyphen_values = true)]
+    #[arg(help_heading = "Picture", hide_short_help = true)]
+    pub(super) time: f64,
 }
 
 impl SceneArgs {
@@ -44,9 +48,10 @@ impl SceneArgs {
         Ok(())
     }
 
-    /// Loads the scene, with the camera changed by the flags.
+    /// Loads the scene, with the camera and the time changed by the flags.
     pub(super) fn load_scene(&self) -> Result<Scene, Failure> {
-        self.camera_args.load_scene(&SceneSource::from_argument(self.scene.as_deref(), self.camera_args.mesh_format)?)
+        let source = SceneSource::from_argument(self.scene.as_deref(), self.camera_args.mesh_format)?;
+        Ok(self.camera_args.load_scene(&source)?.at_time(self.time))
     }
 
     /// Runs `work` in a pool with the number of threads given by `--threads`.
@@ -175,6 +180,12 @@ fn mesh_format_parser() -> impl TypedValueParser<Value = &'static str> {
 
 fn up_axis_parser() -> impl TypedValueParser<Value = UpAxis> {
     PossibleValuesParser::new(UpAxis::ALL.map(UpAxis::name)).map(|name| UpAxis::from_name(&name).unwrap_or_default())
+}
+
+/// Parses a time in seconds, within the limits of a path file.
+fn parse_time(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| seconds.abs() <= 1e6);
+    seconds.ok_or_else(|| "expected a number of seconds from -1e6 to 1e6, such as 2.5".to_owned())
 }
 
 /// Parses two numbers such as `0,-21.5`.

@@ -33,6 +33,8 @@ pub enum Command {
     TiltUp,
     /// Starts or stops the turntable, which orbits the target without a key.
     Turntable,
+    /// Pauses a scene that moves, or lets it go on.
+    Pause,
     /// Moves the camera to view 1 to 9: one saved by the user, otherwise one of the scene file.
     View(u8),
     /// Asks for a number from 1 to 9 and saves the camera as that view.
@@ -210,6 +212,7 @@ commands! {
     [Command::TiltDown] "TiltDown", "tilt rectangle down";
     [Command::TiltUp] "TiltUp", "tilt rectangle up";
     [Command::Turntable] "Turntable", "turntable on or off";
+    [Command::Pause] "Pause", "pause a moving scene";
     [Command::View(1)] "View1", A_VIEW;
     [Command::View(2)] "View2", A_VIEW;
     [Command::View(3)] "View3", A_VIEW;

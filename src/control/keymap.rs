@@ -166,6 +166,7 @@ const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Always, &[letter('{')], Command::TiltDown),
     (KeyMode::Always, &[letter('}')], Command::TiltUp),
     (KeyMode::Always, &[letter('t')], Command::Turntable),
+    (KeyMode::Always, &[letter(' ')], Command::Pause),
     (KeyMode::Always, &[letter('1')], Command::View(1)),
     (KeyMode::Always, &[letter('2')], Command::View(2)),
     (KeyMode::Always, &[letter('3')], Command::View(3)),

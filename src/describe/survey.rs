@@ -148,7 +148,7 @@ impl Survey {
 
 fn pixel_content(scene: &Scene, sample: &GBufferSample) -> Option<PixelContent> {
     let (hit, surface) = (sample.hit?, sample.surface(scene)?);
-    let own = hit.surface(scene).own_reflectance(surface.uv);
+    let own = hit.surface(scene).own_reflectance(surface.position, surface.uv);
     Some(PixelContent {
         object: hit.object,
         distance: hit.t * sample.ray.direction.length(),

@@ -14,12 +14,16 @@ const MAX_DEPTH: u32 = 6;
 impl Formula {
     /// Returns why the formula certainly has no surface inside a box; `None` if it may have one.
     pub(crate) fn lack_of_surface(&self, min: DVec3, max: DVec3) -> Option<&'static str> {
-        let last = self.tape.operations().len() - 1;
-        if self.has_no_zero(min, max) {
+        // At another time a formula that moves may have a zero.
+        if !self.moves() && self.has_no_zero(min, max) {
             return Some("f has no zero inside the bounds: nothing is seen");
         }
-        let never_negative = "f is never negative: without a change of its sign there is no surface";
-        self.tape.is_non_negative(last).then_some(never_negative)
+        let tape = self.moving.as_deref().unwrap_or(&self.tape);
+        let last = tape.operations().len() - 1;
+        if tape.is_non_negative(last) {
+            return Some("f is never negative: without a change of its sign there is no surface");
+        }
+        tape.is_non_positive(last).then_some("f is never positive: without a change of its sign there is no surface")
     }
 
     /// Returns whether enclosures show that f has the same sign in the whole box.

@@ -12,7 +12,7 @@
 mod functions;
 mod tokens;
 
-use super::tape::{Binary, Index, MAX_OPERATIONS, Tape, TapeBuilder, TooLong, Unary};
+use super::tape::{Binary, Index, MAX_OPERATIONS, TIME, Tape, TapeBuilder, TooLong, Unary};
 use crate::text::{closest, visible};
 use functions::{CONSTANTS, FUNCTIONS, VARIABLES};
 use std::collections::HashMap;
@@ -214,7 +214,7 @@ impl Parser<'_> {
                 let axes = [coordinate(self, 0)?, coordinate(self, 1)?, coordinate(self, 2)?];
                 self.length(&axes, range)
             }
-            "time" => Fault::new(range, "`time` is not supported yet: formulas do not move"),
+            "time" => coordinate(self, TIME),
             _ => Fault::new(range, self.unknown_name(name)),
         }
     }

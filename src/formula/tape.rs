@@ -5,6 +5,9 @@ use std::collections::HashMap;
 /// The largest number of operations.
 pub(super) const MAX_OPERATIONS: usize = 4096;
 
+/// The number of the time among the coordinates, in tapes that cannot be evaluated yet.
+pub(super) const TIME: u8 = 3;
+
 /// The index of an operation in its tape.
 pub(super) type Index = u16;
 
@@ -13,7 +16,7 @@ pub(super) type Index = u16;
 pub(super) enum Operation {
     /// A number, by its bits, so that operations can be compared and hashed.
     Constant(u64),
-    /// x, y or z: 0, 1 or 2.
+    /// x, y or z: 0, 1 or 2; or the [`TIME`].
     Coordinate(u8),
     Unary(Unary, Index),
     Binary(Binary, Index, Index),
@@ -55,8 +58,8 @@ pub(super) enum Binary {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tape {
     operations: Vec<Operation>,
-    /// Whether the value of each operation is at least 0 wherever it is defined.
-    non_negative: Vec<bool>,
+    /// Whether the value of each operation is at least 0, and at most 0, wherever it is defined.
+    signs: Vec<[bool; 2]>,
 }
 
 impl Tape {
@@ -64,9 +67,37 @@ impl Tape {
         &self.operations
     }
 
+    /// Returns whether a value depends on the time.
+    pub(super) fn moves(&self) -> bool {
+        self.operations.contains(&Operation::Coordinate(TIME))
+    }
+
+    /// Returns the tape in which the time is a constant.
+    pub(super) fn at_time(&self, seconds: f64) -> Self {
+        let (mut builder, mut places) = (TapeBuilder::default(), Vec::with_capacity(self.operations.len()));
+        for &operation in &self.operations {
+            let of = |operand: Index| places[usize::from(operand)];
+            let place = match operation {
+                Operation::Coordinate(TIME) => builder.constant(seconds),
+                Operation::Unary(function, a) => builder.unary(function, of(a)),
+                Operation::Binary(function, a, b) => builder.binary(function, of(a), of(b)),
+                leaf => builder.push(leaf),
+            };
+            // No operation becomes more than one, so the tape does not become too long.
+            places.push(place.unwrap_or_default());
+        }
+        let result = places.last().copied().unwrap_or_default();
+        builder.finish(result)
+    }
+
     /// Returns whether the operation at `index` can be shown to have no negative value.
     pub(super) fn is_non_negative(&self, index: usize) -> bool {
-        self.non_negative[index]
+        self.signs[index][0]
+    }
+
+    /// Returns whether the operation at `index` can be shown to have no positive value.
+    pub(super) fn is_non_positive(&self, index: usize) -> bool {
+        self.signs[index][1]
     }
 }
 
@@ -95,6 +126,7 @@ impl TapeBuilder {
         Ok(index)
     }
 
+    /// Adds a number.
     pub(super) fn constant(&mut self, value: f64) -> Result<Index, TooLong> {
         // -0 and 0 are one constant.
         self.push(Operation::Constant((value + 0.0).to_bits()))
@@ -182,8 +214,8 @@ impl TapeBuilder {
                 leaf => leaf,
             });
         }
-        let non_negative = non_negative(&operations);
-        Tape { operations, non_negative }
+        let signs = signs(&operations);
+        Tape { operations, signs }
     }
 }
 
@@ -195,27 +227,33 @@ fn mark_operands(operation: Operation, is_used: &mut [bool]) {
     }
 }
 
-/// Returns which operations can be shown to have no negative value.
-fn non_negative(operations: &[Operation]) -> Vec<bool> {
-    let mut known: Vec<bool> = Vec::with_capacity(operations.len());
+/// Returns which operations can be shown to have no negative value, and no positive one.
+fn signs(operations: &[Operation]) -> Vec<[bool; 2]> {
+    let mut known: Vec<[bool; 2]> = Vec::with_capacity(operations.len());
     for &operation in operations {
         let of = |index: Index| known[usize::from(index)];
-        let is = match operation {
-            Operation::Constant(bits) => f64::from_bits(bits) >= 0.0,
-            Operation::Coordinate(_) => false,
+        let signs = match operation {
+            Operation::Constant(bits) => [f64::from_bits(bits) >= 0.0, f64::from_bits(bits) <= 0.0],
+            Operation::Coordinate(_) => [false; 2],
             Operation::Unary(function, a) => match function {
-                Unary::Abs | Unary::Square | Unary::Sqrt | Unary::Exp | Unary::Step => true,
-                Unary::Cbrt | Unary::Floor | Unary::Atan | Unary::Asin => of(a),
-                Unary::Negate | Unary::Ln | Unary::Sin | Unary::Cos | Unary::Tan => false,
+                Unary::Abs | Unary::Square | Unary::Sqrt | Unary::Exp | Unary::Step => [true, false],
+                Unary::Negate => [of(a)[1], of(a)[0]],
+                Unary::Cbrt | Unary::Floor | Unary::Atan | Unary::Asin => [of(a)[0], false],
+                Unary::Ln | Unary::Sin | Unary::Cos | Unary::Tan => [false; 2],
             },
-            Operation::Binary(function, a, b) => match function {
-                Binary::Add | Binary::Multiply | Binary::Divide | Binary::Min => of(a) && of(b),
-                Binary::Max => of(a) || of(b),
-                Binary::Atan2 => of(a),
-                Binary::Subtract => false,
-            },
+            Operation::Binary(function, a, b) => {
+                let ([a, below_a], [b, below_b]) = (of(a), of(b));
+                match function {
+                    Binary::Add => [a && b, below_a && below_b],
+                    Binary::Subtract => [a && below_b, below_a && b],
+                    Binary::Multiply | Binary::Divide => [a && b || below_a && below_b, a && below_b || below_a && b],
+                    Binary::Min => [a && b, below_a || below_b],
+                    Binary::Max => [a || b, below_a && below_b],
+                    Binary::Atan2 => [a, false],
+                }
+            }
         };
-        known.push(is);
+        known.push(signs);
     }
     known
 }

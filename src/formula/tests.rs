@@ -73,13 +73,16 @@ fn roots(text: &str) -> Vec<f32> {
 }
 
 fn roots_between(text: &str, [low, high]: [f32; 2]) -> Vec<f32> {
-    let formula = formula(text);
+    roots_of(&formula(text), [low, high])
+}
+
+fn roots_of(formula: &Formula, [low, high]: [f32; 2]) -> Vec<f32> {
     let line = Line { origin: DVec3::ZERO, direction: DVec3::X };
-    let (mut solver, mut from, mut found) = (Solver::new(&formula), low, Vec::new());
+    let (mut solver, mut from, mut found) = (Solver::new(formula), low, Vec::new());
     while let Some(root) = solver.first_root(&line, [from, high], high) {
         found.push(root);
         from = root;
-        assert!(found.len() < 100, "{text}: {found:?}");
+        assert!(found.len() < 100, "{found:?}");
     }
     found
 }
@@ -148,10 +151,24 @@ fn faults_name_the_place_and_what_would_be_right() {
         ("x^33", 1, "a whole exponent is at most 32, found 33"),
         ("x = 1; x", 0, "`x` has a meaning already: choose another name"),
         ("sin + 1", 0, "`sin` is a function: expected `(` after it"),
-        ("x + time", 4, "`time` is not supported yet: formulas do not move"),
     ] {
         assert_eq!(fault(text), (at, message.to_owned()), "{text}");
     }
+}
+
+#[test]
+fn a_formula_is_moved_by_the_time() {
+    let formula = formula("x + 2*time*y + 0*sin(time)");
+    let value = |formula: &Formula| formula.value(DVec3::new(1.0, 3.0, 0.0));
+    assert!(formula.moves());
+    assert_eq!([0.0, 0.5, 4.0].map(|seconds| value(&formula.at_time(seconds))), [1.0, 4.0, 25.0]);
+    assert_eq!(formula.at_time(7.0).at_time(0.0), formula);
+    let fixed = self::formula("x + r");
+    assert!(!fixed.moves() && fixed.at_time(3.0) == fixed);
+    // What is undefined at a time has no surface then.
+    let undefined = self::formula("x + 1/time + sqrt(time - 1)");
+    assert!(roots_of(&undefined.at_time(0.0), [-4.0, 4.0]).is_empty());
+    assert_eq!(roots_of(&undefined.at_time(1.0), [-4.0, 4.0]), [-1.0]);
 }
 
 #[test]
@@ -446,6 +463,9 @@ fn a_lack_of_a_surface_is_shown() {
     assert_eq!(lack("x - 5"), no_zero);
     assert_eq!(lack("sin(x) + cos(y) - 2.5"), no_zero);
     assert!(lack("(x^2 + y^2 + z^2 - 1)^2").is_some_and(|text| text.starts_with("f is never negative")));
+    assert!(lack("-(x - 1)^2").is_some_and(|text| text.starts_with("f is never positive")));
+    assert!(lack("-2*(x - 1)^2*|y|").is_some_and(|text| text.starts_with("f is never positive")));
+    assert_eq!(lack("x - 5 + time"), None);
     assert_eq!(lack("x^2 + y^2 + z^2 - 1"), None);
     assert_eq!(lack("x - 1.999"), None);
 }

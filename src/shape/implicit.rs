@@ -3,12 +3,13 @@
 use super::described::size_in_words;
 use super::{CheckedShape, Described, Equation, Meshes, Points, Shape, Step, Surface, SurfacePoint};
 use crate::bounds::Bounds;
+use crate::color::LinearRgb;
 use crate::formula::{Formula, Line, Searches, Solver, is_free_name};
 use crate::lanes::{F32x8, LANES, Vector, set_bits};
 use crate::ray::{Interval, Probe, Ray};
 use crate::scene_text::{Span, SyntaxNode, Value};
 use crate::text::visible;
-use crate::written::{Fields, InSceneFile, NodeReader, Spanned, Validator, WrittenNumber, WrittenVector};
+use crate::written::{Fields, InSceneFile, NodeReader, Spanned, Validator, WrittenNumber, WrittenVector, values};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
@@ -27,6 +28,8 @@ pub struct Implicit(Arc<Definition>);
 #[derive(Debug, PartialEq)]
 struct Definition {
     formula: Formula,
+    /// The reflectances of red, green and blue, if the surface has its own colours.
+    colors: Option<[Formula; 3]>,
     /// The formula as written, on one line.
     text: String,
     bounds: Bounds,
@@ -43,10 +46,42 @@ struct Ball {
 }
 
 impl Implicit {
-    fn new(text: &str, formula: Formula, bounds: Bounds, ball: Option<Ball>) -> Self {
+    fn new(text: &str, formula: Formula, colors: Option<[Formula; 3]>, bounds: Bounds, ball: Option<Ball>) -> Self {
         let warning = formula.lack_of_surface(bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let text = visible(&text.split_whitespace().collect::<Vec<_>>().join(" "));
-        Self(Arc::new(Definition { formula, text, bounds, ball, warning }))
+        Self(Arc::new(Definition { formula, colors, text, bounds, ball, warning }))
+    }
+
+    /// Returns whether the surface or its colours depend on the time.
+    pub(crate) fn moves(&self) -> bool {
+        self.0.formula.moves() || self.0.colors.iter().flatten().any(Formula::moves)
+    }
+
+    /// Returns the surface at a time in seconds.
+    pub(crate) fn at_time(&self, seconds: f64) -> Self {
+        if !self.moves() {
+            return self.clone();
+        }
+        let Definition { formula, colors, text, bounds, ball, warning } = &*self.0;
+        Self(Arc::new(Definition {
+            formula: formula.at_time(seconds),
+            colors: colors.as_ref().map(|colors| colors.each_ref().map(|color| color.at_time(seconds))),
+            text: text.clone(),
+            bounds: *bounds,
+            ball: *ball,
+            warning: *warning,
+        }))
+    }
+
+    /// Returns the reflectance at a point of the surface, if it has its own colours.
+    ///
+    /// Values outside 0 to 1 count as the nearer end, and undefined ones as 0.
+    pub(super) fn own_reflectance(&self, position: Vec3) -> Option<LinearRgb> {
+        let [r, g, b] = self.0.colors.as_ref()?.each_ref().map(|color| {
+            let value = color.value(position.as_dvec3());
+            if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) as f32 }
+        });
+        Some(LinearRgb::new(r, g, b))
     }
 
     /// Returns why nothing of the surface is seen, if that is certain.
@@ -185,6 +220,7 @@ pub struct WrittenImplicit {
     f: Option<Spanned<String>>,
     bounds: Option<WrittenBounds>,
     params: Vec<(String, WrittenNumber)>,
+    color: Option<[Spanned<String>; 3]>,
 }
 
 /// The bounds of a formula as written.
@@ -200,7 +236,7 @@ impl InSceneFile for Implicit {
     const NAME: &'static str = "Implicit";
     const OWNER: &'static str = "an Implicit";
     const FORM: &'static str = "Implicit(f: \"...\", bounds: Box(min: ..., max: ...))";
-    const FIELDS: &'static [&'static str] = &["f", "bounds", "params", "material"];
+    const FIELDS: &'static [&'static str] = &["f", "bounds", "params", "color", "material"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenImplicit {
         WrittenImplicit {
@@ -208,6 +244,12 @@ impl InSceneFile for Implicit {
                 .required(fields, "f", |reader, node| reader.text(node, "a formula in quotes, such as \"x^2 - y\"")),
             bounds: reader.required(fields, "bounds", read_bounds),
             params: reader.optional(fields, "params", read_params).unwrap_or_default(),
+            color: reader.optional(fields, "color", |reader, node| {
+                if fields.get("material").is_some() {
+                    reader.fault(node.head(), || "an Implicit has either a color or a material".to_owned());
+                }
+                read_color(reader, node)
+            }),
         }
     }
 }
@@ -224,6 +266,15 @@ fn read_bounds(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Wri
     let center = reader.required(&fields, "center", NodeReader::point);
     let radius = reader.required(&fields, "radius", NodeReader::number);
     Some(WrittenBounds::Sphere { center, radius })
+}
+
+fn read_color(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<[Spanned<String>; 3]> {
+    const WANTED: &str = "three formulas [\"...\", \"...\", \"...\"] for red, green and blue";
+    let Some(items) = values(node).filter(|items| items.len() == 3) else {
+        reader.mismatch(node, WANTED);
+        return None;
+    };
+    reader.read_all(items, |reader, item| reader.text(item, "a formula in quotes")).try_into().ok()
 }
 
 fn read_params(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Vec<(String, WrittenNumber)>> {
@@ -254,18 +305,32 @@ fn read_params(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Vec
 }
 
 impl CheckedShape for Implicit {
+    fn brings_colors(written: &WrittenImplicit) -> bool {
+        written.color.is_some()
+    }
+
     fn check(written: &WrittenImplicit, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
         let bounds = written.bounds.as_ref().and_then(|bounds| check_bounds(bounds, validator));
-        let text = written.f.as_ref()?;
         let params: Vec<_> = written.params.iter().map(|(name, value)| (name.clone(), value.value)).collect();
-        let formula = match Formula::parse(&text.value, &params) {
-            Ok(formula) => formula,
-            Err(fault) => {
-                return validator.fault(span_in(text, fault.range), || format!("in this formula: {}", fault.message));
-            }
+        // All are checked before a fault ends the function, so that each fault is reported.
+        let formula = written.f.as_ref().and_then(|text| check_formula(text, &params, validator));
+        let colors = written.color.as_ref().map(|colors| {
+            let [r, g, b] = colors.each_ref().map(|text| check_formula(text, &params, validator));
+            Some([r?, g?, b?])
+        });
+        let (text, formula, (bounds, ball)) = (written.f.as_ref()?, formula?, bounds?);
+        let colors = match colors {
+            Some(colors) => Some(colors?),
+            None => None,
         };
-        let (bounds, ball) = bounds?;
-        Some(Self::new(&text.value, formula, bounds, ball).into())
+        Some(Self::new(&text.value, formula, colors, bounds, ball).into())
+    }
+}
+
+fn check_formula(text: &Spanned<String>, params: &[(String, f64)], validator: &mut Validator<'_>) -> Option<Formula> {
+    match Formula::parse(&text.value, params) {
+        Ok(formula) => Some(formula),
+        Err(fault) => validator.fault(span_in(text, fault.range), || format!("in this formula: {}", fault.message)),
     }
 }
 

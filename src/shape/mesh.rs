@@ -220,7 +220,9 @@ impl InSceneFile for Mesh {
 }
 
 impl CheckedShape for Mesh {
-    const BRINGS_COLORS: bool = true;
+    fn brings_colors(_: &WrittenMesh) -> bool {
+        true
+    }
 
     fn check(written: &WrittenMesh, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
         let placed = checked_placement(validator, written);

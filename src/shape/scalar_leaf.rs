@@ -23,6 +23,11 @@ impl<S> ScalarLeaf<S> {
         Self { surfaces: Arc::clone(&self.surfaces), lanes: from_fn(surface_of) }
     }
 
+    /// Replaces all surfaces by others with the same bounds.
+    pub(crate) fn replace(&mut self, by: impl Fn(&S) -> S) {
+        self.surfaces = self.surfaces.iter().map(by).collect();
+    }
+
     /// Returns the surface of `lane`, if the lane is used.
     fn surface(&self, lane: usize) -> Option<&S> {
         self.surfaces.get(usize::from(self.lanes[lane]))

@@ -12,8 +12,10 @@ pub trait CheckedShape: InSceneFile {
     /// Whether the surface has coordinates, on which patterns are laid out.
     const HAS_COORDINATES: bool = false;
 
-    /// Whether the surface may have its own colours, as meshes have from their files.
-    const BRINGS_COLORS: bool = false;
+    /// Returns whether the surface may have its own colours, as meshes have from their files.
+    fn brings_colors(_: &Self::Written) -> bool {
+        false
+    }
 
     /// Returns the shape, or `None` after a fault has been reported to `validator`.
     fn check(written: &Self::Written, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape>;
@@ -92,7 +94,7 @@ macro_rules! written {
             /// Returns whether the shape may have colours of its own.
             pub(crate) fn brings_colors(&self) -> bool {
                 match self {
-                    $($(#[$on])* Self::$surface(_) => super::$surface::BRINGS_COLORS,)*
+                    $($(#[$on])* Self::$surface(written) => super::$surface::brings_colors(written),)*
                 }
             }
         }

@@ -157,6 +157,7 @@ impl Viewer {
             Command::TiltDown => self.tilt_rectangle(-1.0),
             Command::TiltUp => self.tilt_rectangle(1.0),
             Command::Turntable => self.toggle_turntable(),
+            Command::Pause => self.toggle_playback(),
             Command::View(number) => self.go_to_view(number),
             Command::SaveView => self.screen.open(Dialog::Save),
             Command::Reset => self.eye.reset(self.now),

@@ -17,6 +17,8 @@ pub(crate) struct Shot {
     pub(crate) scene: u32,
     /// Number of times that the scene's lights have been moved.
     pub(crate) lights: u32,
+    /// The time of a scene that moves, else 0.
+    pub(crate) time: Duration,
     pub(crate) camera: Camera,
     /// The camera of the right one of two pictures, which shows the tracer from outside.
     pub(crate) outside: Option<Camera>,
@@ -36,7 +38,7 @@ impl Shot {
 
     /// Returns whether tracing this shot probably takes about as long as tracing `other`.
     ///
-    /// This holds if the shots differ only in the camera or the lights.
+    /// This holds if the shots differ only in the camera, the lights or the time.
     pub(super) fn takes_as_long_as(&self, other: &Self) -> bool {
         // The cost changes gradually with the camera, but abruptly with the scene, the size or the maps.
         let about = |shot: &Self| (shot.scene, shot.resolution, shot.layout);

@@ -19,6 +19,7 @@ mod mouse;
 mod moving;
 mod orbit;
 mod paths;
+mod playing;
 #[path = "../pty/mod.rs"]
 mod pty;
 mod queries;

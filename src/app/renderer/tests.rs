@@ -5,6 +5,7 @@ use crate::terminal::Signals;
 use crate::tone::Picture;
 use crate::viewer::ViewLayout;
 use glam::Vec3;
+use std::time::Duration;
 
 fn three_spheres() -> Scene {
     let text = include_str!("../../../scenes/three_spheres.ron");
@@ -12,7 +13,8 @@ fn three_spheres() -> Scene {
 }
 
 fn shot(camera: Camera, resolution: Resolution) -> Shot {
-    Shot { scene: 1, lights: 0, camera, outside: None, resolution, layout: ViewLayout::default(), geometry: false }
+    let layout = ViewLayout::default();
+    Shot { scene: 1, lights: 0, time: Duration::ZERO, camera, outside: None, resolution, layout, geometry: false }
 }
 
 fn frame(refines: bool) -> Frame {

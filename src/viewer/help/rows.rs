@@ -25,7 +25,7 @@ impl Group {
     fn for_command(command: Command) -> Self {
         use Command as C;
         match command {
-            C::Move(_) | C::Around(_) | C::Nearer | C::Farther | C::ChangeMode | C::Turntable => Self::Move,
+            C::Move(_) | C::Around(_) | C::Nearer | C::Farther | C::ChangeMode | C::Turntable | C::Pause => Self::Move,
             C::Look(_) | C::Narrower | C::Wider | C::ShiftDown | C::ShiftUp | C::TiltDown | C::TiltUp => Self::Look,
             C::Front
             | C::FromRight

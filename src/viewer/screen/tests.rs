@@ -29,6 +29,7 @@ fn the_order_is_the_links() {
         shot: Shot {
             scene: 0,
             lights: 0,
+            time: Duration::ZERO,
             camera: *scene.camera(),
             outside: None,
             resolution,

@@ -1,0 +1,66 @@
+//! The time of a scene that moves.
+
+use super::Viewer;
+use std::time::Duration;
+
+/// The longest time between two frames that moves the scene.
+// The time for which the program is suspended does not count.
+const MAX_STEP: Duration = Duration::from_secs(1);
+
+/// The time of the shown scene.
+#[derive(Debug, Default)]
+pub(super) struct Playback {
+    time: Duration,
+    /// The time of the viewer's clock up to which the scene has moved; `None` while it stands still.
+    moved_until: Option<Duration>,
+    /// Whether the user has paused it.
+    is_paused: bool,
+}
+
+impl Playback {
+    /// Returns the scene's time.
+    pub(super) fn time(&self) -> Duration {
+        self.time
+    }
+
+    /// Returns the time of the viewer's clock up to which the scene has moved; `None` while it
+    /// stands still.
+    pub(super) fn moved_until(&self) -> Option<Duration> {
+        self.moved_until
+    }
+
+    /// Moves the scene up to `now`.
+    pub(super) fn advance(&mut self, now: Duration) {
+        if let Some(since) = self.moved_until {
+            self.time += now.saturating_sub(since).min(MAX_STEP);
+            self.moved_until = Some(now);
+        }
+    }
+
+    /// Lets a scene that can move do so from `now` on, unless the user has paused it.
+    pub(super) fn start(&mut self, can_move: bool, now: Duration) {
+        self.moved_until = (can_move && !self.is_paused).then_some(now);
+    }
+
+    fn toggle(&mut self, now: Duration) {
+        self.advance(now);
+        self.is_paused = !self.is_paused;
+        self.start(true, now);
+    }
+}
+
+impl Viewer {
+    /// Pauses the scene's motion, or lets it go on, unless the user has asked for reduced motion.
+    pub(super) fn toggle_playback(&mut self) {
+        if !self.scenes.lights().is_some_and(|lights| lights.scene().moves()) {
+            return self.show_note("this scene does not move");
+        }
+        if self.options.reduced_motion {
+            return self.show_note("the scene stands still: --reduced-motion");
+        }
+        self.playback.toggle(self.now);
+        let seconds = self.playback.time.as_secs_f64();
+        let text = if self.playback.is_paused { format!("paused at {seconds:.2} s") } else { "playing".to_owned() };
+        self.show_note(text);
+    }
+}
