@@ -496,8 +496,8 @@ impl Viewer {
         (next != frame.sampling).then_some(next)
     }
 
-    /// Returns whether the view is being changed by keys, the turntable, a drag or the time, so that
-    /// the next frame will differ.
+    /// Returns whether the view is being changed by keys, the turntable, a drag or the time, so
+    /// that the next frame will differ.
     fn is_in_motion(&self) -> bool {
         self.eye.is_moving() || self.pointer.holds() || self.playback.moved_until().is_some()
     }

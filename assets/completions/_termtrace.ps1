@@ -99,6 +99,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             break
         }
         'termtrace;new' {
+            [CompletionResult]::new('--formula', '--formula', [CompletionResultType]::ParameterName, 'Formula of a surface, instead of the starter scene')
             [CompletionResult]::new('--color', '--color', [CompletionResultType]::ParameterName, 'Colours to draw with [default: auto]')
             [CompletionResult]::new('--glyphs', '--glyphs', [CompletionResultType]::ParameterName, 'Characters to draw with [default: auto]')
             [CompletionResult]::new('--background', '--background', [CompletionResultType]::ParameterName, 'The terminal''s background, for characters without colours and ascii [default: auto: as the terminal reports, or dark]')
@@ -130,6 +131,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--mesh-up', '--mesh-up', [CompletionResultType]::ParameterName, 'Axis of a mesh file that points up [default: y; for STL and PLY a guess]')
             [CompletionResult]::new('--as', '--as', [CompletionResultType]::ParameterName, 'Format of a mesh on standard input [default: by its content]')
             [CompletionResult]::new('--threads', '--threads', [CompletionResultType]::ParameterName, 'Number of threads that trace [default: one per core]')
+            [CompletionResult]::new('--time', '--time', [CompletionResultType]::ParameterName, 'Seconds to which a moving scene is set')
             [CompletionResult]::new('--size', '--size', [CompletionResultType]::ParameterName, 'The frame''s size in cells [default: 80x24]')
             [CompletionResult]::new('--pixels', '--pixels', [CompletionResultType]::ParameterName, 'Size in pixels [default: PNG 1280x800, GIF 480x300]')
             [CompletionResult]::new('--cell-aspect', '--cell-aspect', [CompletionResultType]::ParameterName, 'A cell''s height over its width')
@@ -160,6 +162,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--mesh-up', '--mesh-up', [CompletionResultType]::ParameterName, 'Axis of a mesh file that points up [default: y; for STL and PLY a guess]')
             [CompletionResult]::new('--as', '--as', [CompletionResultType]::ParameterName, 'Format of a mesh on standard input [default: by its content]')
             [CompletionResult]::new('--threads', '--threads', [CompletionResultType]::ParameterName, 'Number of threads that trace [default: one per core]')
+            [CompletionResult]::new('--time', '--time', [CompletionResultType]::ParameterName, 'Seconds to which a moving scene is set')
             [CompletionResult]::new('--path', '--path', [CompletionResultType]::ParameterName, 'The orbit, or a file of keyframes')
             [CompletionResult]::new('--seconds', '--seconds', [CompletionResultType]::ParameterName, 'Length in seconds [default: 8, or the path''s]')
             [CompletionResult]::new('--fps', '--fps', [CompletionResultType]::ParameterName, 'Frames per second [default: 30; GIF: 25]')
@@ -192,6 +195,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--mesh-up', '--mesh-up', [CompletionResultType]::ParameterName, 'Axis of a mesh file that points up [default: y; for STL and PLY a guess]')
             [CompletionResult]::new('--as', '--as', [CompletionResultType]::ParameterName, 'Format of a mesh on standard input [default: by its content]')
             [CompletionResult]::new('--threads', '--threads', [CompletionResultType]::ParameterName, 'Number of threads that trace [default: one per core]')
+            [CompletionResult]::new('--time', '--time', [CompletionResultType]::ParameterName, 'Seconds to which a moving scene is set')
             [CompletionResult]::new('--pixel', '--pixel', [CompletionResultType]::ParameterName, 'The pixel''s column and row, from (0, 0) at the top left')
             [CompletionResult]::new('--size', '--size', [CompletionResultType]::ParameterName, 'The frame''s size in cells [default: 80x24]')
             [CompletionResult]::new('--pixels', '--pixels', [CompletionResultType]::ParameterName, 'Size in pixels [default: PNG 1280x800, GIF 480x300]')
@@ -229,6 +233,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--mesh-up', '--mesh-up', [CompletionResultType]::ParameterName, 'Axis of a mesh file that points up [default: y; for STL and PLY a guess]')
             [CompletionResult]::new('--as', '--as', [CompletionResultType]::ParameterName, 'Format of a mesh on standard input [default: by its content]')
             [CompletionResult]::new('--threads', '--threads', [CompletionResultType]::ParameterName, 'Number of threads that trace [default: one per core]')
+            [CompletionResult]::new('--time', '--time', [CompletionResultType]::ParameterName, 'Seconds to which a moving scene is set')
             [CompletionResult]::new('--size', '--size', [CompletionResultType]::ParameterName, 'The size of the screen, in cells')
             [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')

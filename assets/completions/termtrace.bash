@@ -40,6 +40,7 @@ _termtrace() {
         --color) _termtrace_words "auto always never truecolor 256 16"; return ;;
         --eye) return ;;
         --format) _termtrace_words "text ansi svg html png"; return ;;
+        --formula) return ;;
         --fov) return ;;
         --fps) return ;;
         --glyphs) _termtrace_words "auto half shape ascii ramp spaces blocks octants sextants braille"; return ;;
@@ -65,6 +66,7 @@ _termtrace() {
         --target) return ;;
         --threads) return ;;
         --tilt) return ;;
+        --time) return ;;
         --turn-speed) return ;;
         --up) return ;;
         -o|--output) _termtrace_files; return ;;
@@ -72,12 +74,12 @@ _termtrace() {
     case $command in
         scenes) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
         tour) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --background --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order -h --help --compressed-link --quiet"; else :; fi ;;
-        new) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --background --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order -h --help --compressed-link --quiet"; else _termtrace_files; :; fi ;;
-        frame) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --size --pixels --cell-aspect --samples --scale --map --color --glyphs --background --format -o --output --check -h --help --strict --bless"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
-        record) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --path --seconds --fps --size --pixels --cell-aspect --samples --scale --map --glyphs --order --quality --max-rate -o --output -h --help --strict --compressed-link"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
-        explain) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --pixel --size --pixels --cell-aspect -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
+        new) if [[ $cur == -* ]]; then _termtrace_words "--formula --color --glyphs --background --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order -h --help --compressed-link --quiet"; else _termtrace_files; :; fi ;;
+        frame) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --time --size --pixels --cell-aspect --samples --scale --map --color --glyphs --background --format -o --output --check -h --help --strict --bless"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
+        record) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --time --path --seconds --fps --size --pixels --cell-aspect --samples --scale --map --glyphs --order --quality --max-rate -o --output -h --help --strict --compressed-link"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
+        explain) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --time --pixel --size --pixels --cell-aspect -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
         check) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads -h --help --strict"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
-        describe) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --size -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
+        describe) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --time --size -h --help --strict --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
         bench) if [[ $cur == -* ]]; then _termtrace_words "--scene --pixels --samples --threads --kernel --algorithm --rounds -h --help --no-shadow --json"; else _termtrace_words "three_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle many_spheres inside_sphere bare two_lights three_lights teapots heart tanglecube barth gyroid"; _termtrace_scenes; :; fi ;;
         serve) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
         doctor) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --background --cell-aspect -h --help --no-config --json"; else :; fi ;;

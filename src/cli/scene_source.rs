@@ -16,6 +16,9 @@ use termtrace::{LoadError, Map, Scene, SceneError};
 /// The name of standard input in messages.
 const STDIN: &str = "standard input";
 
+/// The name of a scene around a formula in messages.
+const FORMULA: &str = "formula";
+
 /// The source of a scene, which can be loaded repeatedly.
 #[derive(Clone)]
 pub(super) enum SceneSource {
@@ -24,6 +27,8 @@ pub(super) enum SceneSource {
     Stdin(Vec<u8>, Option<&'static str>),
     /// A scene embedded in the program.
     Shipped(&'static ShippedScene),
+    /// The text of a scene around a formula from the command line.
+    Formula(String),
 }
 
 impl SceneSource {
@@ -51,7 +56,7 @@ impl SceneSource {
         match self {
             Self::File(path) => is_mesh(&path.to_string_lossy(), &[]),
             Self::Stdin(bytes, stated) => stated.is_some() || !format_name(STDIN, None, bytes).is_empty(),
-            Self::Shipped(_) => false,
+            Self::Shipped(_) | Self::Formula(_) => false,
         }
     }
 
@@ -69,6 +74,7 @@ impl SceneSource {
             Self::Shipped(scene) => {
                 Draft::from_embedded(scene.name, scene.text.as_bytes(), scene.meshes, reporter).map_err(wrong)
             }
+            Self::Formula(text) => Draft::from_bytes(FORMULA, text.as_bytes(), reporter).map_err(wrong),
         }
     }
 }
@@ -79,6 +85,7 @@ impl fmt::Display for SceneSource {
             Self::File(path) => path.display().fmt(f),
             Self::Stdin(..) => f.write_str(STDIN),
             Self::Shipped(scene) => f.write_str(scene.name),
+            Self::Formula(_) => f.write_str(FORMULA),
         }
     }
 }

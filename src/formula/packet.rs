@@ -82,7 +82,7 @@ pub(super) fn of_lane(models: &StoredModels, lane: usize) -> Model {
     Model { c: [c0, c1, c2], error }
 }
 
-/// Returns the error with room for its own rounding, and for numbers that vanish below the least normal one.
+/// Returns the error with room for its own rounding, and for numbers that vanish.
 fn enlarged(error: f32) -> f32 {
     error * (1.0 + 16.0 * EPSILON) + 16.0 * f32::MIN_POSITIVE
 }
@@ -296,7 +296,7 @@ fn sin_cos<N: Lanes>(x: N) -> [N; 2] {
     [N::select(is_odd, cos, sin) * (one - two * turned), N::select(is_odd, sin, cos) * (one - two * sign_of_cos)]
 }
 
-/// Returns e^x, off by at most [`OF_EXP`] of its value from -86 to 87; beyond that the nearer end's.
+/// Returns e^x, off by at most [`OF_EXP`] of its value from -86 to 87; beyond, the nearer end's.
 #[inline(always)]
 fn exp<N: Lanes>(x: N) -> N {
     let number = |value: f64| N::splat(value as f32);

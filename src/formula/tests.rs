@@ -362,7 +362,7 @@ fn models_enclose_all_values() {
     }
 }
 
-/// Compares models in f32, of every kernel, with f64 values at points of random pieces of eight lines.
+/// Compares models in f32, of every kernel, with f64 values at points of random pieces.
 #[test]
 fn models_of_eight_pieces_enclose_all_values() {
     const SEED: u64 = 0x5eed_0005;

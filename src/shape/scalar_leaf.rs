@@ -7,7 +7,7 @@ use glam::Vec3;
 use std::array::from_fn;
 use std::sync::Arc;
 
-/// A leaf with up to eight surfaces of any type, which are tested one after the other against all their rays.
+/// A leaf with up to eight surfaces of any type, each of which is tested against all its rays.
 ///
 /// A lane holds the index of a surface, so that a surface may be of any size.
 #[derive(Clone, Debug, PartialEq)]

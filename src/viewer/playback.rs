@@ -11,7 +11,7 @@ const MAX_STEP: Duration = Duration::from_secs(1);
 #[derive(Debug, Default)]
 pub(super) struct Playback {
     time: Duration,
-    /// The time of the viewer's clock up to which the scene has moved; `None` while it stands still.
+    /// The time of the viewer's clock up to which the scene has moved; `None` while it is still.
     moved_until: Option<Duration>,
     /// Whether the user has paused it.
     is_paused: bool,
@@ -56,7 +56,7 @@ impl Viewer {
             return self.show_note("this scene does not move");
         }
         if self.options.reduced_motion {
-            return self.show_note("the scene stands still: --reduced-motion");
+            return self.show_note("nothing moves: --reduced-motion");
         }
         self.playback.toggle(self.now);
         let seconds = self.playback.time.as_secs_f64();

@@ -12,6 +12,7 @@ mod doctor;
 mod errors;
 mod explain;
 mod formats;
+mod formulas;
 mod glyphs;
 mod golden;
 mod inputs;

@@ -42,7 +42,7 @@ fn a_scene_stands_still_where_motion_is_reduced() {
     let mut session = started("--reduced-motion");
     session.wait_for_rest();
     session.send(b" ");
-    session.wait_for_text("the scene stands still: --reduced-motion");
+    session.wait_for_text("nothing moves: --reduced-motion");
     session.wait_for_rest();
     leave(session);
 }
