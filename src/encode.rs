@@ -19,7 +19,7 @@
 //! repeats, erases or scrolls, except for scrolling that ratatui requests from a backend. The terminal has to be in raw
 //! mode, in which a line feed keeps the column.
 
-use crate::grid::{Cell, Glyph, Grid, HalfBlocks, Size};
+use crate::grid::{Grid, HalfBlocks, PackedCell, Size};
 
 #[cfg(feature = "backend")]
 mod backend;
@@ -416,35 +416,51 @@ impl Encoder {
 // The grid is updated in place, which saves copying it for each frame.
 fn update_grid(shown: &mut Grid, wanted: &Grid) -> Vec<CellPosition> {
     let mut changed = Vec::new();
-    for ((shown, wanted), row) in shown.rows_mut().zip(wanted.rows()).zip(0..) {
-        update_row(shown, wanted, |column| changed.push(CellPosition { column, row }));
+    let columns = usize::from(wanted.size().columns);
+    for row in 0..wanted.size().rows {
+        let start = usize::from(row) * columns;
+        let of_wanted = &wanted.packed()[start..start + columns];
+        // Equal numbers of clusters may be those of different texts.
+        if shown.packed()[start..start + columns] != *of_wanted || of_wanted.iter().any(|cell| cell.is_cluster()) {
+            update_row(shown, wanted, start, columns, |column| changed.push(CellPosition { column, row }));
+        }
     }
     changed
 }
 
-/// Makes the row `shown` equal to `wanted`, and calls `write` with the column of each glyph to
-/// write.
+/// Makes the row from the index `start` equal in both grids, and calls `write` with the column of
+/// each glyph to write.
 // The cells after a grapheme cluster are written again with it, because a terminal that shows the cluster's characters
 // one by one overwrites them.
-fn update_row(shown: &mut [Cell], wanted: &[Cell], mut write: impl FnMut(u16)) {
+fn update_row(shown: &mut Grid, wanted: &Grid, start: usize, columns: usize, mut write: impl FnMut(u16)) {
     let mut safe_from = 0;
     let mut column = 0;
-    while column < wanted.len() {
-        let end = column + widths::leading_width(&wanted[column..]);
-        let (shown, wanted) = (&mut shown[column..end], &wanted[column..end]);
-        let is_ours = !matches!(wanted[0].glyph, Glyph::Covered | Glyph::Foreign);
-        if is_ours && (column < safe_from || shown != wanted) {
-            let looks_alike = shown.iter().zip(wanted).all(|(shown, wanted)| pen::look_alike(shown, wanted));
+    let row = &wanted.packed()[start..start + columns];
+    while column < columns {
+        let end = column + widths::leading_width(&row[column..]);
+        let cells = || (column..end).map(|column| (start + column, shown.packed()[start + column], row[column]));
+        let is_ours = !row[column].is_covered() && !row[column].is_foreign();
+        let is_same = cells().all(|(_, own, other)| shown.is_same(own, wanted, other));
+        if is_ours && (column < safe_from || !is_same) {
+            let looks_alike = cells().all(|(_, own, other)| look_alike(shown, own, wanted, other));
             // Updated even if both look alike, because cells also record whether they are text, as a panel's blank is,
             // or picture.
-            shown.clone_from_slice(wanted);
+            (column..end).for_each(|column| shown.copy_cell(start + column, wanted, row[column]));
             if !looks_alike || column < safe_from {
                 write(column as u16);
-                if let Glyph::Cluster(text) = &wanted[0].glyph {
+                if let Some(text) = wanted.cluster(row[column]) {
                     safe_from = safe_from.max(column + widths::max_cluster_width(text));
                 }
             }
         }
         column = end;
     }
+}
+
+/// Returns whether the cells of two grids look the same in every terminal.
+fn look_alike(shown: &Grid, own: PackedCell, wanted: &Grid, other: PackedCell) -> bool {
+    if own.is_cluster() || other.is_cluster() {
+        return shown.cluster(own) == wanted.cluster(other) && pen::look_alike(own, other.with_glyph_of(own));
+    }
+    pen::look_alike(own, other)
 }

@@ -5,14 +5,20 @@
 
 use crate::color::Srgb8;
 use crate::framebuffer::{MAX_CELLS, ResolutionError};
+use packed::Clusters;
 use std::fmt;
+use std::hash::{Hash, Hasher};
 #[cfg(feature = "backend")]
 use std::ops::Range;
+use std::ops::{Deref, DerefMut};
+use std::slice;
 use std::sync::Arc;
 
 mod attributes;
+mod packed;
 
 pub use attributes::Attributes;
+pub(crate) use packed::{PackedCell, PackedInk};
 
 /// A screen's size in cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -194,6 +200,7 @@ impl Cell {
     pub const BLANK: Self = Self::new(' ', Ink::Default, Ink::Default);
 
     /// A cell with foreign contents.
+    #[cfg(any(feature = "backend", all(test, unit_tests)))]
     pub(crate) const FOREIGN: Self = Self::with_glyph(Glyph::Foreign, Ink::Default, Ink::Default);
 
     /// Returns a cell with a character in these colours, without attributes.
@@ -214,11 +221,94 @@ impl Cell {
 }
 
 /// A rectangle of cells, stored row by row from the top.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+// A cell takes 16 bytes: its cluster, if it has one, is an index into the grid's own list. Cells are therefore read and
+// set through the grid.
+#[derive(Clone, Debug)]
 pub struct Grid {
     size: Size,
     // One vector for all rows, because frames are compared, cloned and cleared as a whole.
-    cells: Vec<Cell>,
+    cells: Vec<PackedCell>,
+    clusters: Clusters,
+}
+
+impl PartialEq for Grid {
+    fn eq(&self, other: &Self) -> bool {
+        self.size == other.size
+            && if self.clusters.is_empty() && other.clusters.is_empty() {
+                self.cells == other.cells
+            } else {
+                self.cells().eq(other.cells())
+            }
+    }
+}
+
+impl Eq for Grid {}
+
+impl Hash for Grid {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.size.hash(state);
+        self.cells().for_each(|cell| cell.hash(state));
+    }
+}
+
+/// Cells of a grid, row by row.
+#[doc(hidden)]
+#[derive(Clone, Debug)]
+pub struct Cells<'a> {
+    cells: slice::Iter<'a, PackedCell>,
+    clusters: &'a Clusters,
+}
+
+impl Iterator for Cells<'_> {
+    type Item = Cell;
+
+    #[inline]
+    fn next(&mut self) -> Option<Cell> {
+        self.cells.next().map(|&cell| self.clusters.unpack(cell))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.cells.size_hint()
+    }
+
+    fn nth(&mut self, at: usize) -> Option<Cell> {
+        self.cells.nth(at).map(|&cell| self.clusters.unpack(cell))
+    }
+}
+
+impl DoubleEndedIterator for Cells<'_> {
+    fn next_back(&mut self) -> Option<Cell> {
+        self.cells.next_back().map(|&cell| self.clusters.unpack(cell))
+    }
+}
+
+impl ExactSizeIterator for Cells<'_> {}
+
+/// A cell of a grid that is set when this value is dropped.
+struct CellMut<'a> {
+    grid: &'a mut Grid,
+    at: usize,
+    cell: Cell,
+}
+
+impl Deref for CellMut<'_> {
+    type Target = Cell;
+
+    fn deref(&self) -> &Cell {
+        &self.cell
+    }
+}
+
+impl DerefMut for CellMut<'_> {
+    fn deref_mut(&mut self) -> &mut Cell {
+        &mut self.cell
+    }
+}
+
+impl Drop for CellMut<'_> {
+    fn drop(&mut self) {
+        self.grid.set_at(self.at, &self.cell);
+    }
 }
 
 /// A blank grid of a size that is checked before memory is allocated.
@@ -233,12 +323,12 @@ impl TryFrom<Size> for Grid {
     type Error = ResolutionError;
 
     fn try_from(size: Size) -> Result<Self, ResolutionError> {
-        Ok(Self { size, cells: vec![Cell::BLANK; size.checked_cell_count()?] })
+        Ok(Self::of(PackedCell::BLANK, size, size.checked_cell_count()?))
     }
 }
 
 impl Grid {
-    /// Largest number of cells of a grid: 16,777,216, which take 700 MB.
+    /// Largest number of cells of a grid: 16,777,216, which take 268 MB.
     #[doc(hidden)]
     pub const MAX_CELLS: usize = MAX_CELLS;
 
@@ -253,7 +343,11 @@ impl Grid {
     /// # Panics
     /// If it has more than 16,777,216 cells. For a size that was not checked, use `Grid::try_from(size)`.
     pub fn new(size: Size) -> Self {
-        Self { size, cells: vec![Cell::BLANK; Self::checked_cell_count(size)] }
+        Self::of(PackedCell::BLANK, size, Self::checked_cell_count(size))
+    }
+
+    fn of(cell: PackedCell, size: Size, cell_count: usize) -> Self {
+        Self { size, cells: vec![cell; cell_count], clusters: Clusters::default() }
     }
 
     /// Sets the size and makes all cells blank.
@@ -265,8 +359,9 @@ impl Grid {
         // The memory is reused: with new grids for each frame, a key press caused 571 page faults instead of 210.
         let count = Self::checked_cell_count(size);
         self.size = size;
+        self.clusters.clear();
         self.cells.clear();
-        self.cells.resize(count, Cell::BLANK);
+        self.cells.resize(count, PackedCell::BLANK);
     }
 
     /// Returns a grid of foreign cells: a shown grid of unknown contents, or a wanted grid without
@@ -276,7 +371,7 @@ impl Grid {
     /// If it has more than 16,777,216 cells.
     #[doc(hidden)]
     pub fn foreign(size: Size) -> Self {
-        Self { size, cells: vec![Cell::FOREIGN; Self::checked_cell_count(size)] }
+        Self::of(PackedCell::FOREIGN, size, Self::checked_cell_count(size))
     }
 
     /// Returns the number of cells, if it is within the limit.
@@ -292,32 +387,95 @@ impl Grid {
 
     /// Returns all cells, row by row from the top.
     #[doc(hidden)]
-    pub fn cells(&self) -> &[Cell] {
+    pub fn cells(&self) -> Cells<'_> {
+        self.view(&self.cells)
+    }
+
+    fn view<'a>(&'a self, cells: &'a [PackedCell]) -> Cells<'a> {
+        Cells { cells: cells.iter(), clusters: &self.clusters }
+    }
+
+    /// Returns all cells as they are stored.
+    pub(crate) fn packed(&self) -> &[PackedCell] {
         &self.cells
     }
 
-    /// Returns all cells mutably, row by row from the top.
-    #[doc(hidden)]
-    pub fn cells_mut(&mut self) -> &mut [Cell] {
-        &mut self.cells
+    /// Returns the text of a cell of this grid whose glyph is a cluster.
+    pub(crate) fn cluster(&self, cell: PackedCell) -> Option<&str> {
+        self.clusters.text(cell).map(|text| &**text)
     }
 
-    /// Returns the rows from the top.
+    /// Returns whether a cell of this grid is equal to a cell of another.
+    #[inline]
+    pub(crate) fn is_same(&self, own: PackedCell, other: &Self, of_other: PackedCell) -> bool {
+        if own.is_cluster() && of_other.is_cluster() {
+            return self.clusters.unpack(own) == other.clusters.unpack(of_other);
+        }
+        own == of_other
+    }
+
+    /// Sets the cell at an index to a cell of another grid.
+    #[inline]
+    pub(crate) fn copy_cell(&mut self, at: usize, other: &Self, cell: PackedCell) {
+        if cell.is_cluster() {
+            self.set_at(at, &other.clusters.unpack(cell));
+        } else {
+            self.cells[at] = cell;
+        }
+    }
+
+    /// Sets the cell at an index to one that is no cluster.
+    #[inline]
+    pub(crate) fn set_packed(&mut self, at: usize, cell: PackedCell) {
+        debug_assert!(!cell.is_cluster(), "a cluster belongs to its grid");
+        self.cells[at] = cell;
+    }
+
+    /// Returns the cell at an index, counted row by row from the top.
+    ///
+    /// # Panics
+    /// If there are fewer cells.
+    #[doc(hidden)]
+    pub fn at(&self, index: usize) -> Cell {
+        self.clusters.unpack(self.cells[index])
+    }
+
+    /// Sets the cell at an index, counted row by row from the top.
+    ///
+    /// # Panics
+    /// If there are fewer cells.
+    #[doc(hidden)]
+    #[inline]
+    pub fn set_at(&mut self, index: usize, cell: &Cell) {
+        self.cells[index] = self.clusters.pack(cell);
+        if self.clusters.is_crowded(self.cells.len()) {
+            self.clusters.drop_unused(&mut self.cells);
+        }
+    }
+
+    /// Sets all cells.
+    #[doc(hidden)]
+    pub fn fill(&mut self, cell: &Cell) {
+        self.clusters.clear();
+        let cell = self.clusters.pack(cell);
+        self.cells.fill(cell);
+    }
+
+    /// Returns the rows from the top, each with its cells.
     ///
     /// ```
     /// use termtrace::{Grid, Size};
     ///
     /// assert!(Grid::new(Size::new(80, 24)).rows().all(|row| row.len() == 80));
     /// ```
-    pub fn rows(&self) -> impl Iterator<Item = &[Cell]> {
-        // At least 1, because `chunks_exact` panics for 0, the width of a grid without columns.
-        self.cells.chunks_exact(usize::from(self.size.columns).max(1))
+    pub fn rows(&self) -> impl Iterator<Item = impl ExactSizeIterator<Item = Cell>> {
+        self.packed_rows().map(|row| self.view(row))
     }
 
-    /// Returns the rows mutably, from the top.
-    #[doc(hidden)]
-    pub fn rows_mut(&mut self) -> impl Iterator<Item = &mut [Cell]> {
-        self.cells.chunks_exact_mut(usize::from(self.size.columns).max(1))
+    /// Returns the rows as they are stored.
+    pub(crate) fn packed_rows(&self) -> slice::ChunksExact<'_, PackedCell> {
+        // At least 1, because `chunks_exact` panics for 0, the width of a grid without columns.
+        self.cells.chunks_exact(usize::from(self.size.columns).max(1))
     }
 
     /// Returns the cells of a row from a column to the row's end.
@@ -325,7 +483,12 @@ impl Grid {
     /// # Panics
     /// If the cell is outside the grid.
     #[doc(hidden)]
-    pub fn row_from(&self, column: u16, row: u16) -> &[Cell] {
+    pub fn row_from(&self, column: u16, row: u16) -> Cells<'_> {
+        self.view(self.packed_row_from(column, row))
+    }
+
+    /// Returns the cells of a row from a column to the row's end, as they are stored.
+    pub(crate) fn packed_row_from(&self, column: u16, row: u16) -> &[PackedCell] {
         let left = usize::from(self.size.columns - column);
         &self.cells[self.index(column, row)..][..left]
     }
@@ -339,22 +502,24 @@ impl Grid {
     /// assert!(grid.get(79, 23).is_some_and(|cell| cell.glyph == ' '));
     /// assert!(grid.get(80, 0).is_none());
     /// ```
-    pub fn get(&self, column: u16, row: u16) -> Option<&Cell> {
+    pub fn get(&self, column: u16, row: u16) -> Option<Cell> {
         let is_inside = column < self.size.columns && row < self.size.rows;
         is_inside.then(|| self.cell(column, row))
     }
 
     /// Returns the cell in this column and row mutably; `None` outside the grid.
     ///
+    /// The grid has the changed cell once the returned value is dropped.
+    ///
     /// ```
     /// use termtrace::{Cell, Grid, Ink, Size};
     ///
     /// let mut grid = Grid::new(Size::new(80, 24));
-    /// let cell = grid.get_mut(79, 23).ok_or("the cell is inside the grid")?;
-    /// *cell = Cell::new('x', Ink::Default, Ink::Indexed(4));
+    /// *grid.get_mut(79, 23).ok_or("the cell is inside the grid")? = Cell::new('x', Ink::Default, Ink::Indexed(4));
+    /// assert!(grid.get(79, 23).is_some_and(|cell| cell.glyph == 'x'));
     /// # Ok::<(), &str>(())
     /// ```
-    pub fn get_mut(&mut self, column: u16, row: u16) -> Option<&mut Cell> {
+    pub fn get_mut(&mut self, column: u16, row: u16) -> Option<impl DerefMut<Target = Cell>> {
         let is_inside = column < self.size.columns && row < self.size.rows;
         is_inside.then(|| self.cell_mut(column, row))
     }
@@ -364,8 +529,14 @@ impl Grid {
     /// # Panics
     /// If the cell is outside the grid.
     #[doc(hidden)]
-    pub fn cell(&self, column: u16, row: u16) -> &Cell {
-        &self.cells[self.index(column, row)]
+    pub fn cell(&self, column: u16, row: u16) -> Cell {
+        self.at(self.index(column, row))
+    }
+
+    /// Returns the cell in this column and row as it is stored.
+    #[inline]
+    pub(crate) fn packed_cell(&self, column: u16, row: u16) -> PackedCell {
+        self.cells[self.index(column, row)]
     }
 
     /// Returns the cell in this column and row mutably.
@@ -373,9 +544,19 @@ impl Grid {
     /// # Panics
     /// If the cell is outside the grid.
     #[doc(hidden)]
-    pub fn cell_mut(&mut self, column: u16, row: u16) -> &mut Cell {
-        let index = self.index(column, row);
-        &mut self.cells[index]
+    pub fn cell_mut(&mut self, column: u16, row: u16) -> impl DerefMut<Target = Cell> {
+        let at = self.index(column, row);
+        CellMut { cell: self.at(at), at, grid: self }
+    }
+
+    /// Sets the cell in this column and row.
+    ///
+    /// # Panics
+    /// If the cell is outside the grid.
+    #[inline]
+    pub(crate) fn set(&mut self, column: u16, row: u16, cell: &Cell) {
+        let at = self.index(column, row);
+        self.set_at(at, cell);
     }
 
     /// Writes a cell whose glyph is `columns` wide, and marks the cells that it covers.
@@ -392,23 +573,24 @@ impl Grid {
         self.split_wide_glyph(end, row);
         for covered in column + 1..end {
             // Covered cells also have the glyph's colours, so that comparing them detects a change of any.
-            *self.cell_mut(covered, row) = Cell { glyph: Glyph::Covered, ..cell.clone() };
+            self.set(covered, row, &Cell { glyph: Glyph::Covered, ..*cell });
         }
-        self.cell_mut(column, row).clone_from(cell);
+        self.set(column, row, cell);
     }
 
     /// If a wide glyph extends from the left into this column, replaces it by blanks in its
     /// colours.
     fn split_wide_glyph(&mut self, column: u16, row: u16) {
-        if column >= self.size.columns || self.cell(column, row).glyph != Glyph::Covered {
+        if column >= self.size.columns || !self.packed_cell(column, row).is_covered() {
             return;
         }
         // A glyph may cover any number of columns, so its first and last column are searched.
-        let is_covered = |grid: &Self, column| grid.cell(column, row).glyph == Glyph::Covered;
+        let is_covered = |grid: &Self, column| grid.packed_cell(column, row).is_covered();
         let start = (0..column).rev().find(|&column| !is_covered(self, column)).unwrap_or(0);
         let end = (column..self.size.columns).find(|&column| !is_covered(self, column)).unwrap_or(self.size.columns);
         for column in start..end {
-            self.cell_mut(column, row).glyph = Glyph::Char(' ');
+            let at = self.index(column, row);
+            self.cells[at] = self.cells[at].blanked();
         }
     }
 
@@ -421,7 +603,7 @@ impl Grid {
         let (cells, shift) = self.region_and_shift(region, line_count);
         cells.rotate_left(shift);
         let kept = cells.len() - shift;
-        cells[kept..].fill(Cell::BLANK);
+        cells[kept..].fill(PackedCell::BLANK);
     }
 
     /// Moves the contents of rows `region` down by `line_count` rows; blank rows are put on top.
@@ -431,12 +613,12 @@ impl Grid {
     pub(crate) fn scroll_down(&mut self, region: Range<u16>, line_count: u16) {
         let (cells, shift) = self.region_and_shift(region, line_count);
         cells.rotate_right(shift);
-        cells[..shift].fill(Cell::BLANK);
+        cells[..shift].fill(PackedCell::BLANK);
     }
 
     /// Returns the cells of rows `region`, and how many of them `line_count` rows have.
     #[cfg(feature = "backend")]
-    fn region_and_shift(&mut self, region: Range<u16>, line_count: u16) -> (&mut [Cell], usize) {
+    fn region_and_shift(&mut self, region: Range<u16>, line_count: u16) -> (&mut [PackedCell], usize) {
         let end = region.end.min(self.size.rows);
         let start = region.start.min(end);
         let cells_of = |rows: u16| Size { rows, ..self.size }.cell_count();

@@ -161,7 +161,7 @@ fn ink_from_ratatui(color: Color) -> Ink {
 /// ```
 impl From<&Grid> for Buffer {
     fn from(grid: &Grid) -> Self {
-        let content = grid.cells().iter().map(ratatui_from_cell).collect();
+        let content = grid.cells().map(|cell| ratatui_from_cell(&cell)).collect();
         Self { area: Rect::new(0, 0, grid.size().columns, grid.size().rows), content }
     }
 }

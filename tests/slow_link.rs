@@ -250,7 +250,7 @@ fn psnr(screen: &Screen, wanted: &Grid) -> f64 {
         halves_of(cell.glyph, cell.foreground, cell.background)
     });
     let wanted = halves(80, |column, row| {
-        let cell = &wanted.cells()[row * 80 + column];
+        let cell = wanted.at(row * 80 + column);
         let glyph = ['▄', '▀', ' '].into_iter().find(|&glyph| cell.glyph == glyph)?;
         halves_of(glyph, cell.fg.into(), cell.bg.into())
     });

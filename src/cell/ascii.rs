@@ -83,23 +83,23 @@ fn fill(
     let mut parts: Vec<Part> = (0..columns * rows).map(part).collect();
     let (heights, ranges) = set_tones(&mut parts, background, before);
     let (crowds, inks) = (Crowds::of(&parts, columns, rows), TextInks::of(colors));
-    for (cell, target) in grid.rows_mut().flatten().enumerate() {
+    for cell in 0..columns * rows {
         let pixels = pixels_of(picture, cell % columns, cell / columns);
         if let Some(shown) = before.and_then(|before| before.unchanged(picture, geometry, cell, &pixels)) {
-            *target = shown.clone();
+            grid.set_at(cell, shown);
             continue;
         }
         let glyph = glyph(&parts, columns, cell, &heights, &crowds);
         let is_plain = glyph == ' ' || inks.are_default();
         let ink = if is_plain { Ink::Default } else { ink(picture, geometry, &parts[cell], cell, background, &inks) };
-        *target = Cell::new(glyph, ink, Ink::Default);
+        grid.set_at(cell, &Cell::new(glyph, ink, Ink::Default));
     }
     if let Some(memory) = memory {
-        let kept = |(part, shown): (&Part, &Cell)| KeptCell {
+        let kept = |(part, shown): (&Part, Cell)| KeptCell {
             object: part.object,
             fill: part.tone.0,
             edge: part.edge.map(|edge| edge.glyph),
-            shown: shown.clone(),
+            shown,
         };
         memory.remember(picture, geometry, ranges, parts.iter().zip(grid.cells()).map(kept).collect());
     }

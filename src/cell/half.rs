@@ -33,12 +33,13 @@ fn fill(grid: &mut Grid, picture: &Picture, inks: &mut InkConverter) {
             let (x, y) = (usize::from(column), 2 * usize::from(row));
             let upper = inks.ink_at(upper, x, y);
             let lower = lower.map(|lower| inks.ink_at(lower, x, y + 1));
-            *grid.cell_mut(column, row) = match lower {
+            let cell = match lower {
                 Some(lower) if lower != upper => Cell::new('▄', lower, upper),
                 Some(_) => Cell::new(' ', Ink::Default, upper),
                 // The lower half is below the picture and keeps the default background.
                 None => Cell::new('▀', upper, Ink::Default),
             };
+            grid.set(column, row, &cell);
         }
     }
 }
@@ -58,7 +59,7 @@ fn fill_without_colors(grid: &mut Grid, picture: &Picture) {
                 (true, false) => '▀',
                 (true, true) => '█',
             };
-            *grid.cell_mut(column, row) = Cell::new(glyph, Ink::Default, Ink::Default);
+            grid.set(column, row, &Cell::new(glyph, Ink::Default, Ink::Default));
         }
     }
 }

@@ -29,7 +29,7 @@ pub(super) fn fill(grid: &mut Grid, picture: &Picture) {
         for column in 0..grid.size().columns {
             let (upper, lower) = pair::pixels(picture, column, row);
             let luminance = lower.map_or(luminance(upper), |lower| 0.5 * (luminance(upper) + luminance(lower)));
-            *grid.cell_mut(column, row) = Cell::new(glyph(luminance), Ink::Default, Ink::Default);
+            grid.set(column, row, &Cell::new(glyph(luminance), Ink::Default, Ink::Default));
         }
     }
 }

@@ -34,7 +34,7 @@ fn fill(grid: &mut Grid, picture: &Picture) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
             let glyph = matcher.nearest(&samples(picture, column, row));
-            *grid.cell_mut(column, row) = Cell::new(glyph, Ink::Default, Ink::Default);
+            grid.set(column, row, &Cell::new(glyph, Ink::Default, Ink::Default));
         }
     }
 }

@@ -28,7 +28,7 @@ fn fill(grid: &mut Grid, picture: &Picture, inks: &mut InkConverter) {
         for column in 0..grid.size().columns {
             let mean = tint::cell_mean(picture, KIND.pixels_per_cell, column, row);
             let ink = inks.ink_at(mean, column.into(), row.into());
-            *grid.cell_mut(column, row) = Cell::new(' ', Ink::Default, ink);
+            grid.set(column, row, &Cell::new(' ', Ink::Default, ink));
         }
     }
 }

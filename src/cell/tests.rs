@@ -15,10 +15,10 @@ fn a_glyph_kind_for_tests_is_found_and_painted() {
     let resolution = resolution(mode, Size::new(2, 1), 2.0).expect("a small screen");
     assert_eq!((resolution.width(), resolution.height()), (picture.width, picture.height));
     let grid = grid_from_picture(mode, &picture);
-    assert_eq!(*grid.cell(0, 0), Cell::new('o', Ink::Rgb(BLUE), Ink::Rgb(BLACK)));
-    assert_eq!(*grid.cell(1, 0), Cell::new(' ', Ink::Default, Ink::Rgb(BLACK)));
+    assert_eq!(grid.cell(0, 0), Cell::new('o', Ink::Rgb(BLUE), Ink::Rgb(BLACK)));
+    assert_eq!(grid.cell(1, 0), Cell::new(' ', Ink::Default, Ink::Rgb(BLACK)));
     let on_light = Painter::new(mode.plain()).with_light_background(true).grid(&picture);
-    assert_eq!(on_light.cells().iter().map(|cell| cell.glyph.to_string()).collect::<String>(), "oo");
+    assert_eq!(on_light.cells().map(|cell| cell.glyph.to_string()).collect::<String>(), "oo");
 }
 
 #[test]

@@ -22,7 +22,7 @@ pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u3
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
             let color = at_brightness(cell_mean(picture, pixels_per_cell, column, row), 255);
-            let cell = grid.cell_mut(column, row);
+            let mut cell = grid.cell_mut(column, row);
             cell.bg = inks.background();
             // Blanks keep their colour, because it is invisible and each change of colour takes bytes.
             if cell.glyph != ' ' {

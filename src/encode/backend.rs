@@ -284,9 +284,9 @@ impl<W> EncoderBackend<W> {
     // ratatui draws changed cells only. If it draws a cell that is already wanted, it assumes other contents on the
     // screen, so the cell is sent again.
     fn draw_cell(&mut self, place: Position, cell: &ratatui_core::buffer::Cell) -> u16 {
-        let before = self.wanted.cell(place.x, place.y).clone();
+        let before = self.wanted.cell(place.x, place.y);
         let columns = overlay::put_cell(&mut self.wanted, place, cell, self.window.columns_rows.width - place.x);
-        if *self.wanted.cell(place.x, place.y) == before {
+        if self.wanted.cell(place.x, place.y) == before {
             self.encoder.forget_cell(CellPosition { column: place.x, row: place.y });
         }
         columns

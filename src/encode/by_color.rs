@@ -12,17 +12,18 @@
 use super::moves::{CellPosition, cheapest_move};
 use super::pen::Pen;
 use super::strokes::cursor_after;
-use crate::grid::{Attributes, Cell, Glyph, Grid, HalfBlocks, Ink};
+use crate::grid::{Attributes, Grid, HalfBlocks, PackedCell, PackedInk};
 use std::ops::Range;
 
 /// Returns the changed cells in the order of writing: text row by row, then picture cells by the
 /// tour.
 pub(super) fn order(wanted: &Grid, changed: &[CellPosition], half_blocks: HalfBlocks, pen: Pen) -> Vec<CellPosition> {
-    let is_picture = |position: &&CellPosition| picture_inks(wanted.cell(position.column, position.row)).is_some();
+    let is_picture =
+        |position: &&CellPosition| picture_inks(wanted.packed_cell(position.column, position.row)).is_some();
     let picture: Vec<CellPosition> = changed.iter().filter(is_picture).copied().collect();
     let mut order: Vec<CellPosition> = changed.iter().filter(|position| !is_picture(position)).copied().collect();
     let last = order.last().copied();
-    let pen = last.map_or(pen, |position| pen.pen_for(wanted.cell(position.column, position.row)));
+    let pen = last.map_or(pen, |position| pen.pen_for(wanted.packed_cell(position.column, position.row)));
     let mut tour = Tour::new(wanted, &picture, half_blocks, pen);
     tour.cursor = last.and_then(|position| cursor_after(wanted, position));
     tour.visit_all(&mut order);
@@ -30,29 +31,21 @@ pub(super) fn order(wanted: &Grid, changed: &[CellPosition], half_blocks: HalfBl
 }
 
 /// Returns the glyph and background colours of a picture cell, equal for a space; `None` for text.
-fn picture_inks(cell: &Cell) -> Option<(Ink, Ink)> {
-    let is_rgb = |ink| matches!(ink, Ink::Rgb(_));
-    match cell.glyph {
-        Glyph::Char('▄' | '▀') if cell.attributes.is_empty() && is_rgb(cell.fg) && is_rgb(cell.bg) => {
-            Some((cell.fg, cell.bg))
-        }
-        Glyph::Char(' ') if cell.attributes.is_empty() && is_rgb(cell.bg) => Some((cell.bg, cell.bg)),
-        _ => None,
+fn picture_inks(cell: PackedCell) -> Option<(PackedInk, PackedInk)> {
+    if !cell.attributes().is_empty() || !cell.bg.is_rgb() {
+        return None;
     }
-}
-
-/// Returns a colour as a number to sort by.
-fn sort_key(ink: Ink) -> u32 {
-    match ink {
-        Ink::Rgb(c) => u32::from_be_bytes([0, c.r, c.g, c.b]),
-        Ink::Default | Ink::Indexed(_) => u32::MAX,
+    match cell.character()? {
+        '▄' | '▀' if cell.fg.is_rgb() => Some((cell.fg, cell.bg)),
+        ' ' => Some((cell.bg, cell.bg)),
+        _ => None,
     }
 }
 
 /// A pair of colours, and all cells that have it.
 struct Pair {
-    fg: Ink,
-    bg: Ink,
+    fg: PackedInk,
+    bg: PackedInk,
     /// The range of the pair's cells in `Tour::positions`, in reading order.
     positions: Range<usize>,
     /// The indices of the pair's colours in `Tour::colors`; both are equal for spaces.
@@ -74,7 +67,7 @@ struct Tour<'a> {
     positions: Vec<CellPosition>,
     /// The pairs in reading order of their first cells.
     pairs: Vec<Pair>,
-    /// The colours of the picture, sorted by key.
+    /// The colours of the picture, sorted.
     colors: Vec<Color>,
     /// The indices of the pairs that contain each colour: a range for each (see [`Color::pairs`]).
     // A single list, because one list per colour would take an allocation for each.
@@ -83,7 +76,7 @@ struct Tour<'a> {
 
 /// A colour of the picture, and the pairs that contain it.
 struct Color {
-    sort_key: u32,
+    ink: PackedInk,
     /// The range of the colour's pairs in `Tour::pairs_by_color`, used as a stack with the first
     /// pair in reading order on top.
     // A visited pair is dropped once it is on top, which is cheaper than searching for it when it is visited.
@@ -104,19 +97,19 @@ const MEAN_LOOKUPS_PER_PAIR: usize = 8;
 
 impl<'a> Tour<'a> {
     fn new(wanted: &'a Grid, picture: &[CellPosition], half_blocks: HalfBlocks, pen: Pen) -> Self {
-        let mut cells: Vec<(u32, u32, CellPosition)> =
-            picture.iter().map(|&position| with_sort_keys(wanted, position, half_blocks)).collect();
+        let mut cells: Vec<(PackedInk, PackedInk, CellPosition)> =
+            picture.iter().map(|&position| with_colors(wanted, position, half_blocks)).collect();
         // The sort is stable, so the cells of a pair stay in reading order.
-        cells.sort_by_key(|&(a, b, _)| u64::from(a) << 32 | u64::from(b));
-        let mut sort_keys: Vec<u32> = cells.iter().flat_map(|&(a, b, _)| [a, b]).collect();
-        sort_keys.sort_unstable();
-        sort_keys.dedup();
+        cells.sort_by_key(|&(a, b, _)| (a, b));
+        let mut inks: Vec<PackedInk> = cells.iter().flat_map(|&(a, b, _)| [a, b]).collect();
+        inks.sort_unstable();
+        inks.dedup();
         let mut pairs: Vec<Pair> = Vec::new();
         let mut start = 0;
         for group in cells.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)) {
             let (a, b, position) = group[0];
-            let (fg, bg) = picture_inks(wanted.cell(position.column, position.row)).unwrap_or_default();
-            let colors = [a, b].map(|key| sort_keys.binary_search(&key).unwrap_or(0));
+            let (fg, bg) = picture_inks(wanted.packed_cell(position.column, position.row)).unwrap_or_default();
+            let colors = [a, b].map(|key| inks.binary_search(&key).unwrap_or(0));
             pairs.push(Pair { fg, bg, positions: start..start + group.len(), colors, visited: false });
             start += group.len();
         }
@@ -124,9 +117,9 @@ impl<'a> Tour<'a> {
             let first = cells[pair.positions.start].2;
             (first.row, first.column)
         });
-        let (colors, pairs_by_color) = pairs_by_color(&sort_keys, &pairs);
+        let (colors, pairs_by_color) = pairs_by_color(&inks, &pairs);
         let positions = cells.into_iter().map(|(_, _, position)| position).collect();
-        let pen_colors = [pen.fg, pen.bg].map(|ink| sort_keys.binary_search(&sort_key(ink)).ok());
+        let pen_colors = [pen.fg, pen.bg].map(|ink| inks.binary_search(&ink).ok());
         Self {
             wanted,
             half_blocks,
@@ -210,7 +203,7 @@ impl<'a> Tour<'a> {
         let [a, b] = pair.colors;
         self.pen_colors = if a == b {
             [self.pen_colors[0], Some(a)]
-        } else if self.colors[a].sort_key == sort_key(self.pen.fg) {
+        } else if self.colors[a].ink == self.pen.fg {
             [Some(a), Some(b)]
         } else {
             [Some(b), Some(a)]
@@ -225,9 +218,8 @@ impl<'a> Tour<'a> {
 }
 
 /// Returns the colours, and for all of them the list of pairs that their ranges refer to.
-fn pairs_by_color(sort_keys: &[u32], pairs: &[Pair]) -> (Vec<Color>, Vec<usize>) {
-    let mut colors: Vec<Color> =
-        sort_keys.iter().map(|&sort_key| Color { sort_key, pairs: 0..0, unvisited: 0 }).collect();
+fn pairs_by_color(inks: &[PackedInk], pairs: &[Pair]) -> (Vec<Color>, Vec<usize>) {
+    let mut colors: Vec<Color> = inks.iter().map(|&ink| Color { ink, pairs: 0..0, unvisited: 0 }).collect();
     for color in pairs.iter().flat_map(|pair| distinct_colors(&pair.colors)) {
         colors[*color].unvisited += 1;
     }
@@ -252,10 +244,9 @@ fn distinct_colors(colors: &[usize; 2]) -> &[usize] {
     if colors[0] == colors[1] { &colors[..1] } else { colors }
 }
 
-/// Returns the sort keys of a cell's two colours, the smaller first if the cell may be flipped, and
+/// Returns a cell's two colours, the smaller first if the cell may be flipped, and
 /// its position.
-fn with_sort_keys(wanted: &Grid, position: CellPosition, half_blocks: HalfBlocks) -> (u32, u32, CellPosition) {
-    let (fg, bg) = picture_inks(wanted.cell(position.column, position.row)).unwrap_or_default();
-    let (a, b) = (sort_key(fg), sort_key(bg));
+fn with_colors(wanted: &Grid, position: CellPosition, half_blocks: HalfBlocks) -> (PackedInk, PackedInk, CellPosition) {
+    let (a, b) = picture_inks(wanted.packed_cell(position.column, position.row)).unwrap_or_default();
     if half_blocks == HalfBlocks::Either && b < a { (b, a, position) } else { (a, b, position) }
 }

@@ -17,11 +17,10 @@
 
 use super::halves::{Halves, half_block_cell, picture_halves, squared_difference};
 use super::moves::CellPosition;
-use crate::grid::{Cell, Grid, HalfBlocks};
+use crate::grid::{Grid, HalfBlocks, PackedCell};
 use colors::Palette;
 use pairs::{Colors, Pairs};
 use std::cell::RefCell;
-use std::mem;
 
 mod colors;
 mod pairs;
@@ -101,7 +100,7 @@ struct Scratch {
     /// The cells to write.
     cells: Vec<WrittenCell>,
     /// The cells that the frame replaces, with their indices.
-    replaced: Vec<(usize, Cell)>,
+    replaced: Vec<(usize, PackedCell)>,
     changed: Vec<CellPosition>,
 }
 
@@ -186,10 +185,11 @@ impl Scratch {
         self.replaced.clear();
         self.changed.clear();
         for cell in &self.cells {
-            let new = half_block_cell(cell.halves, &frame.wanted.cells()[cell.at]);
-            let old = &mut frame.shown.cells_mut()[cell.at];
-            if *old != new {
-                self.replaced.push((cell.at, mem::replace(old, new)));
+            let new = half_block_cell(cell.halves, frame.wanted.packed()[cell.at]);
+            let old = frame.shown.packed()[cell.at];
+            if old != new {
+                frame.shown.set_packed(cell.at, new);
+                self.replaced.push((cell.at, old));
                 let (column, row) = (cell.at % columns, cell.at / columns);
                 self.changed.push(CellPosition { column: column as u16, row: row as u16 });
             }
@@ -199,7 +199,7 @@ impl Scratch {
     /// Undoes what [`apply`](Self::apply) did.
     fn restore(&mut self, shown: &mut Grid) {
         for (at, cell) in self.replaced.drain(..).rev() {
-            shown.cells_mut()[at] = cell;
+            shown.set_packed(at, cell);
         }
     }
 }
@@ -213,8 +213,9 @@ const MAX_APPEARING: usize = 64;
 
 /// Returns whether few enough cells of the picture replace text for a frame under a limit.
 pub(super) fn is_possible(shown: &Grid, wanted: &Grid) -> bool {
-    let cells = shown.cells().iter().zip(wanted.cells());
-    let appearing = cells.filter(|(shown, wanted)| picture_halves(shown).is_none() && picture_halves(wanted).is_some());
+    let cells = shown.packed().iter().zip(wanted.packed());
+    let appearing =
+        cells.filter(|&(&shown, &wanted)| picture_halves(shown).is_none() && picture_halves(wanted).is_some());
     appearing.count() <= MAX_APPEARING
 }
 
@@ -222,33 +223,33 @@ pub(super) fn is_possible(shown: &Grid, wanted: &Grid) -> bool {
 ///
 /// `None` if the terminal shows these already.
 pub(super) fn with_text(shown: &Grid, wanted: &Grid) -> Option<Grid> {
-    let is_text = |(shown, wanted): (&Cell, &Cell)| {
-        shown != wanted && (picture_halves(wanted).is_none() || picture_halves(shown).is_none())
+    let is_text = |(of_shown, of_wanted): (PackedCell, PackedCell)| {
+        (picture_halves(of_wanted).is_none() || picture_halves(of_shown).is_none())
+            && !shown.is_same(of_shown, wanted, of_wanted)
     };
-    if !shown.cells().iter().zip(wanted.cells()).any(is_text) {
+    let cells = || shown.packed().iter().copied().zip(wanted.packed().iter().copied());
+    if !cells().any(is_text) {
         return None;
     }
     let mut grid = shown.clone();
-    for (shown, wanted) in grid.cells_mut().iter_mut().zip(wanted.cells()) {
-        if is_text((shown, wanted)) {
-            shown.clone_from(wanted);
-        }
+    for (at, cells) in cells().enumerate().filter(|&(_, cells)| is_text(cells)) {
+        grid.copy_cell(at, wanted, cells.1);
     }
     Some(grid)
 }
 
 /// Returns whether a cell of the picture does not show its wanted halves.
 pub(super) fn is_inexact(shown: &Grid, wanted: &Grid) -> bool {
-    let cells = shown.cells().iter().zip(wanted.cells());
+    let cells = shown.packed().iter().zip(wanted.packed());
     cells
-        .filter_map(|(shown, wanted)| Some((shown, picture_halves(wanted)?)))
+        .filter_map(|(&shown, &wanted)| Some((shown, picture_halves(wanted)?)))
         .any(|(shown, wanted)| picture_halves(shown) != Some(wanted))
 }
 
 /// Collects the cells whose error is worth a byte.
 fn find_active(shown: &Grid, wanted: &Grid, rate: ExchangeRate, active: &mut Vec<ActiveCell>) {
     active.clear();
-    for (at, (shown, wanted)) in shown.cells().iter().zip(wanted.cells()).enumerate() {
+    for (at, (&shown, &wanted)) in shown.packed().iter().zip(wanted.packed()).enumerate() {
         let (Some(shown), Some(wanted)) = (picture_halves(shown), picture_halves(wanted)) else { continue };
         let stay = error(shown, wanted);
         if stay > rate {

@@ -11,7 +11,7 @@ impl Encoder {
     /// Marks a shown cell as unknown, so that the next frame writes it.
     pub(super) fn forget_cell(&mut self, CellPosition { column, row }: CellPosition) {
         if let Some(known) = &mut self.known {
-            *known.shown.cell_mut(column, row) = Cell::FOREIGN;
+            known.shown.set(column, row, &Cell::FOREIGN);
         }
     }
 

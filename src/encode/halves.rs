@@ -1,7 +1,7 @@
 //! The colours of the two halves of a picture cell, and the tolerance of their differences.
 
 use crate::color::{Oklab, Srgb8};
-use crate::grid::{Cell, Glyph, Ink};
+use crate::grid::{PackedCell, PackedInk};
 
 /// The largest allowed difference between the shown and the wanted colour of a half cell.
 #[derive(Clone, Copy)]
@@ -34,23 +34,30 @@ pub(super) type Halves = [Srgb8; 2];
 
 /// Returns the colours of the halves of a truecolor half block or space; `None` for text.
 // A space counts as picture only without a glyph colour. Panels give their blanks one, so these are never lossy.
-pub(super) fn picture_halves(cell: &Cell) -> Option<Halves> {
-    let (Ink::Rgb(bg), true) = (cell.bg, cell.attributes.is_empty()) else { return None };
-    match (&cell.glyph, cell.fg) {
-        (Glyph::Char(' '), Ink::Default) => Some([bg; 2]),
-        (Glyph::Char('▄'), Ink::Rgb(fg)) => Some([bg, fg]),
-        (Glyph::Char('▀'), Ink::Rgb(fg)) => Some([fg, bg]),
+#[inline]
+pub(super) fn picture_halves(cell: PackedCell) -> Option<Halves> {
+    let bg = cell.bg.color()?;
+    match (cell.code(), cell.fg.color()) {
+        (SPACE, None) if cell.fg == PackedInk::DEFAULT => Some([bg; 2]),
+        (LOWER_HALF, Some(fg)) => Some([bg, fg]),
+        (UPPER_HALF, Some(fg)) => Some([fg, bg]),
         _ => None,
     }
 }
 
+/// Codes of cells without attributes.
+const SPACE: u32 = ' ' as u32;
+const LOWER_HALF: u32 = '▄' as u32;
+const UPPER_HALF: u32 = '▀' as u32;
+
 /// Returns a cell that shows these halves, with the half block of `wanted`.
-pub(super) fn half_block_cell([upper, lower]: Halves, wanted: &Cell) -> Cell {
+pub(super) fn half_block_cell(halves: Halves, wanted: PackedCell) -> PackedCell {
+    let [upper, lower] = halves.map(PackedInk::rgb);
     if upper == lower {
-        Cell::new(' ', Ink::Default, Ink::Rgb(upper))
-    } else if wanted.glyph == '▀' {
-        Cell::new('▀', Ink::Rgb(upper), Ink::Rgb(lower))
+        PackedCell::new(' ', PackedInk::DEFAULT, upper)
+    } else if wanted.has_char('▀') {
+        PackedCell::new('▀', upper, lower)
     } else {
-        Cell::new('▄', Ink::Rgb(lower), Ink::Rgb(upper))
+        PackedCell::new('▄', lower, upper)
     }
 }

@@ -10,7 +10,7 @@
 use super::Quality;
 use super::halves::{Halves, Tolerance, half_block_cell, picture_halves, squared_difference};
 use super::palette;
-use crate::grid::{Grid, HalfBlocks, Ink};
+use crate::grid::{Grid, HalfBlocks, PackedInk};
 use std::cmp::Reverse;
 
 /// The limits of a quality on the difference between the shown and the wanted picture.
@@ -44,7 +44,7 @@ pub(super) struct LossyFrame<'a> {
     /// round.
     pub(super) half_blocks: HalfBlocks,
     /// The pen's foreground and background colours.
-    pub(super) pen: [Ink; 2],
+    pub(super) pen: [PackedInk; 2],
     /// Returns whether the cell at an index has waited long enough and is to be made exact now.
     pub(super) has_waited: &'a dyn Fn(usize) -> bool,
 }
@@ -102,14 +102,14 @@ impl<'a> Plan<'a> {
     }
 
     fn find_differences(&mut self) {
-        let wanted = self.frame.wanted.cells();
-        let shown = self.frame.shown.cells();
-        for (at, cell) in wanted.iter().enumerate() {
+        let wanted = self.frame.wanted.packed();
+        let shown = self.frame.shown.packed();
+        for (at, &cell) in wanted.iter().enumerate() {
             let Some(wanted) = picture_halves(cell) else {
                 self.text.push(at);
                 continue;
             };
-            let shown = picture_halves(&shown[at]);
+            let shown = picture_halves(shown[at]);
             if shown != Some(wanted) {
                 self.differences.push(Difference { at, wanted, shown, urgency: Urgency::Appears });
             }
@@ -143,7 +143,7 @@ impl<'a> Plan<'a> {
 
     /// Returns the largest allowed sum of the squared differences of all half cells.
     fn square_budget(&self) -> f64 {
-        let halves = 2 * (self.frame.wanted.cells().len() - self.text.len());
+        let halves = 2 * (self.frame.wanted.packed().len() - self.text.len());
         self.frame.caps.mean_square * (3 * halves) as f64
     }
 
@@ -200,7 +200,7 @@ impl<'a> Plan<'a> {
         };
         let mut grid = self.shown_with_text();
         for (write, halves) in written.iter().zip(snapped) {
-            grid.cells_mut()[write.at] = half_block_cell(halves, &self.frame.wanted.cells()[write.at]);
+            grid.set_packed(write.at, half_block_cell(halves, self.frame.wanted.packed()[write.at]));
         }
         grid
     }
@@ -219,7 +219,7 @@ impl<'a> Plan<'a> {
     fn shown_with_text(&self) -> Grid {
         let mut grid = self.frame.shown.clone();
         for &at in &self.text {
-            grid.cells_mut()[at].clone_from(&self.frame.wanted.cells()[at]);
+            grid.copy_cell(at, self.frame.wanted, self.frame.wanted.packed()[at]);
         }
         grid
     }
@@ -227,7 +227,7 @@ impl<'a> Plan<'a> {
     /// Returns the indices of the picture cells that differ between `grid` and the wanted grid.
     pub(super) fn inexact_cells(&self, grid: &Grid) -> impl Iterator<Item = usize> {
         let is_inexact =
-            |difference: &&Difference| picture_halves(&grid.cells()[difference.at]) != Some(difference.wanted);
+            |difference: &&Difference| picture_halves(grid.packed()[difference.at]) != Some(difference.wanted);
         self.differences.iter().filter(is_inexact).map(|difference| difference.at)
     }
 }

@@ -6,7 +6,7 @@
 
 use super::halves::{Halves, Tolerance, squared_difference};
 use crate::color::{Oklab, Srgb8};
-use crate::grid::{HalfBlocks, Ink};
+use crate::grid::{HalfBlocks, PackedInk};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::mem;
@@ -15,7 +15,12 @@ use std::mem;
 ///
 /// With [`HalfBlocks::Either`] a pair of colours counts as the same pair in either order. The pen's colours are also
 /// candidates for the palette.
-pub(super) fn snap_to_palette(cells: &mut [&mut Halves], pen: [Ink; 2], tolerance: Tolerance, half_blocks: HalfBlocks) {
+pub(super) fn snap_to_palette(
+    cells: &mut [&mut Halves],
+    pen: [PackedInk; 2],
+    tolerance: Tolerance,
+    half_blocks: HalfBlocks,
+) {
     let table = ColorTable::from_cells_and_pen(cells, pen);
     let choices = table.choices_by_color(tolerance);
     let wanted: Vec<[usize; 2]> = cells.iter().map(|cell| cell.map(|color| table.index(color))).collect();
@@ -50,8 +55,8 @@ const MAX_CHOICES: usize = 4;
 const LIGHTNESS_NEIGHBOURS: usize = 24;
 
 impl ColorTable {
-    fn from_cells_and_pen(cells: &[&mut Halves], pen: [Ink; 2]) -> Self {
-        let of_pen = pen.into_iter().filter_map(|ink| if let Ink::Rgb(color) = ink { Some((color, 0)) } else { None });
+    fn from_cells_and_pen(cells: &[&mut Halves], pen: [PackedInk; 2]) -> Self {
+        let of_pen = pen.into_iter().filter_map(|ink| Some((ink.color()?, 0)));
         let of_cells = cells.iter().flat_map(|cell| cell.map(|color| (color, 1)));
         let mut all: Vec<(Srgb8, usize)> = of_cells.chain(of_pen).collect();
         all.sort_unstable();

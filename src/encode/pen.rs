@@ -1,15 +1,15 @@
 //! The pen (a terminal's current colours and attributes), and the SGR sequences that change it.
 
 use super::numbers::{channel_digit_count, digit_count, write_channels, write_number};
-use crate::grid::{Attributes, Cell, Glyph, Ink};
+use crate::grid::{Attributes, Grid, Ink, PackedCell, PackedInk};
 use std::mem;
 
 /// The colours and attributes with which the terminal would write the next character.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Pen {
-    pub(super) fg: Ink,
-    pub(super) bg: Ink,
-    pub(super) underline: Ink,
+    pub(super) fg: PackedInk,
+    pub(super) bg: PackedInk,
+    pub(super) underline: PackedInk,
     pub(super) attributes: Attributes,
 }
 
@@ -22,20 +22,20 @@ impl Pen {
 
     /// Appends a cell for an exported file: the sequences that change the pen, and the glyph.
     // Colours are always in the long form, so that savings for the screen do not change the bytes of exported files.
-    pub(crate) fn write_cell(&mut self, cell: &Cell, bytes: &mut Vec<u8>) {
+    pub(crate) fn write_cell(&mut self, grid: &Grid, cell: PackedCell, bytes: &mut Vec<u8>) {
         let wanted = self.plain_pen_for(cell);
         self.write_sgr(Self { fg: self.after_attributes(wanted.attributes).fg, ..wanted }, InkForm::Long, bytes);
         self.write_sgr(wanted, InkForm::Long, bytes);
-        write_glyph(&cell.glyph, bytes);
+        write_glyph(grid, cell, bytes);
     }
 
     /// Returns the cheapest pen with which to write a cell.
     // A space whose background is the pen's glyph colour is cheapest in reverse video: SGR 7 takes four bytes, setting
     // the background about nineteen. The result is the same, pixel by pixel, in xterm, kitty, alacritty, st and foot.
     #[inline]
-    pub(super) fn pen_for(&self, cell: &Cell) -> Self {
+    pub(super) fn pen_for(&self, cell: PackedCell) -> Self {
         // The common case first: nearly every cell of a picture is a block without attributes.
-        if cell.glyph != ' ' && cell.attributes.is_empty() && self.attributes.is_empty() {
+        if !cell.has_char(' ') && cell.attributes().is_empty() && self.attributes.is_empty() {
             return Self { fg: cell.fg, bg: cell.bg, ..*self };
         }
         self.pen_for_any(cell)
@@ -43,12 +43,12 @@ impl Pen {
 
     /// Returns the cheapest pen for any cell, with or without reverse video.
     // Separate from `pen_for`, so that only the test of the common case is inlined.
-    fn pen_for_any(&self, cell: &Cell) -> Self {
+    fn pen_for_any(&self, cell: PackedCell) -> Self {
         if self.can_show_reversed(cell) { self.pen_for_space(cell) } else { self.plain_pen_for(cell) }
     }
 
     /// Returns the cheaper of two pens for a space: plain, or in reverse video.
-    fn pen_for_space(&self, cell: &Cell) -> Self {
+    fn pen_for_space(&self, cell: PackedCell) -> Self {
         let plain = self.plain_pen_for(cell);
         let exchanged = Self { attributes: Attributes::REVERSED, ..*self };
         if self.switch_cost(&exchanged) < self.switch_cost(&plain) { exchanged } else { plain }
@@ -56,18 +56,18 @@ impl Pen {
 
     /// Returns whether a space in reverse video, in the pen's colours, looks like the cell.
     // The default glyph colour cannot be set as a background, so it cannot be reversed.
-    fn can_show_reversed(&self, cell: &Cell) -> bool {
+    fn can_show_reversed(&self, cell: PackedCell) -> bool {
         is_plain_space(cell)
             && self.fg == cell.bg
-            && cell.bg != Ink::Default
+            && cell.bg != PackedInk::DEFAULT
             && Attributes::REVERSED.contains(self.attributes)
     }
 
     /// Returns the pen for a cell without reverse video.
     // Invisible colours keep the pen's value, which costs nothing: the glyph colour of a space, the colour of a missing
     // underline.
-    fn plain_pen_for(&self, cell: &Cell) -> Self {
-        let mut pen = self.after_attributes(cell.attributes);
+    fn plain_pen_for(&self, cell: PackedCell) -> Self {
+        let mut pen = self.after_attributes(cell.attributes());
         pen.bg = cell.bg;
         if !is_plain_space(cell) {
             pen.fg = cell.fg;
@@ -128,7 +128,7 @@ impl Pen {
     pub(super) fn switch_cost_with_lens(&self, wanted: &Self, lens: [usize; 2]) -> usize {
         // The background is compared first: it is never the default in a picture, which makes the whole comparison
         // rare.
-        if wanted.bg == Ink::Default && *wanted == Self::default() {
+        if wanted.bg == PackedInk::DEFAULT && *wanted == Self::default() {
             return if self == wanted { 0 } else { SGR_RESET.len() };
         }
         if self.attributes == wanted.attributes {
@@ -224,7 +224,7 @@ impl Pen {
     fn is_split(&self, wanted: &Self, form: InkForm) -> bool {
         let from = self.after_attributes(wanted.attributes);
         let [fg, bg] = wanted.ink_forms(form);
-        let numbers = |from: Ink, to: Ink, form| if from == to { 0 } else { ink_parameter_count(to, form) };
+        let numbers = |from: PackedInk, to: PackedInk, form| if from == to { 0 } else { ink_parameter_count(to, form) };
         let colors = numbers(from.fg, wanted.fg, fg) + numbers(from.bg, wanted.bg, bg);
         let attributes = self.attribute_codes(wanted.attributes).count();
         attributes > 0 && colors > 0 && attributes + colors > MAX_SGR_PARAMETERS
@@ -255,35 +255,34 @@ enum InkForm {
 }
 
 /// Returns whether a colour is one of the first eight indexed colours, which have a short form.
-fn is_basic(ink: Ink) -> bool {
-    matches!(ink, Ink::Indexed(..8))
+fn is_basic(ink: PackedInk) -> bool {
+    matches!(ink.ink(), Ink::Indexed(..8))
 }
 
 /// Returns whether two cells look the same in every terminal.
-pub(super) fn look_alike(a: &Cell, b: &Cell) -> bool {
-    (a.bg, a.attributes) == (b.bg, b.attributes)
-        && a.glyph == b.glyph
+pub(super) fn look_alike(a: PackedCell, b: PackedCell) -> bool {
+    (a.bg, a.code()) == (b.bg, b.code())
         && (a.fg == b.fg || is_plain_space(a))
         && (a.underline == b.underline || !is_underlined(a))
 }
 
 /// Returns whether a cell is a space without attributes, so that only its background is visible.
-pub(super) fn is_plain_space(cell: &Cell) -> bool {
-    cell.glyph == ' ' && cell.attributes.is_empty()
+pub(super) fn is_plain_space(cell: PackedCell) -> bool {
+    cell.code() == u32::from(' ')
 }
 
 /// Returns whether the underline of a cell is visible.
-fn is_underlined(cell: &Cell) -> bool {
-    cell.attributes.contains(Attributes::UNDERLINED)
+fn is_underlined(cell: PackedCell) -> bool {
+    cell.attributes().contains(Attributes::UNDERLINED)
 }
 
 /// Appends the glyph's characters in UTF-8.
-pub(super) fn write_glyph(glyph: &Glyph, bytes: &mut Vec<u8>) {
-    match glyph {
-        Glyph::Char(character) => write_char(*character, bytes),
-        Glyph::Cluster(text) => bytes.extend_from_slice(text.as_bytes()),
-        Glyph::Covered => {}
-        Glyph::Foreign => bytes.push(b' '),
+pub(super) fn write_glyph(grid: &Grid, cell: PackedCell, bytes: &mut Vec<u8>) {
+    match (cell.character(), grid.cluster(cell)) {
+        (Some(character), _) => write_char(character, bytes),
+        (None, Some(text)) => bytes.extend_from_slice(text.as_bytes()),
+        (None, None) if cell.is_covered() => {}
+        (None, None) => bytes.push(b' '),
     }
 }
 
@@ -295,8 +294,8 @@ pub(super) fn write_char(character: char, bytes: &mut Vec<u8>) {
 
 /// Appends the SGR parameters of a colour. Their first digit is `tens`: 3 for glyphs, 4 for
 /// backgrounds.
-fn write_ink(ink: Ink, tens: u8, form: InkForm, bytes: &mut Vec<u8>) {
-    match ink {
+fn write_ink(ink: PackedInk, tens: u8, form: InkForm, bytes: &mut Vec<u8>) {
+    match ink.ink() {
         Ink::Default => bytes.extend_from_slice(&[tens, b'9']),
         Ink::Indexed(index) if is_basic(ink) && form == InkForm::Short => {
             bytes.extend_from_slice(&[tens, b'0' + index]);
@@ -314,8 +313,8 @@ fn write_ink(ink: Ink, tens: u8, form: InkForm, bytes: &mut Vec<u8>) {
 
 /// Returns the number of bytes that [`write_ink`] appends.
 // Colours 8 to 15 have no short form, because not every terminal that supports `38;5` supports 90 to 97.
-fn ink_len(ink: Ink, form: InkForm) -> usize {
-    match ink {
+fn ink_len(ink: PackedInk, form: InkForm) -> usize {
+    match ink.ink() {
         Ink::Default => 2,
         Ink::Indexed(_) if is_basic(ink) && form == InkForm::Short => 2,
         Ink::Indexed(index) => 5 + digit_count(index.into()),
@@ -324,8 +323,8 @@ fn ink_len(ink: Ink, form: InkForm) -> usize {
 }
 
 /// Returns the number of SGR parameters that [`write_ink`] appends.
-fn ink_parameter_count(ink: Ink, form: InkForm) -> usize {
-    match ink {
+fn ink_parameter_count(ink: PackedInk, form: InkForm) -> usize {
+    match ink.ink() {
         Ink::Default => 1,
         Ink::Indexed(_) if is_basic(ink) && form == InkForm::Short => 1,
         Ink::Indexed(_) => 3,
@@ -336,8 +335,8 @@ fn ink_parameter_count(ink: Ink, form: InkForm) -> usize {
 /// Appends the sequence that sets the colour of the underline.
 // A separate sequence, with colons: a terminal without this colour ignores it, whereas it would read the parameters of
 // `58;2` as other codes, such as 2 as dim.
-fn write_underline(ink: Ink, bytes: &mut Vec<u8>) {
-    match ink {
+fn write_underline(ink: PackedInk, bytes: &mut Vec<u8>) {
+    match ink.ink() {
         Ink::Default => bytes.extend_from_slice(b"\x1b[59"),
         Ink::Indexed(index) => {
             bytes.extend_from_slice(b"\x1b[58:5:");
@@ -356,8 +355,8 @@ fn write_underline(ink: Ink, bytes: &mut Vec<u8>) {
 }
 
 /// Returns the number of bytes that [`write_underline`] appends.
-fn underline_len(ink: Ink) -> usize {
-    match ink {
+fn underline_len(ink: PackedInk) -> usize {
+    match ink.ink() {
         Ink::Default => 5,
         Ink::Indexed(_) => 3 + ink_len(ink, InkForm::Long),
         Ink::Rgb(_) => 4 + ink_len(ink, InkForm::Long),

@@ -7,7 +7,7 @@
 use super::moves::{CellPosition, Move, cheapest_move};
 use super::pen::{Pen, is_plain_space, write_char, write_glyph};
 use super::widths;
-use crate::grid::{Cell, Glyph, Grid, HalfBlocks, Ink};
+use crate::grid::{Grid, HalfBlocks, PackedCell, PackedInk};
 use std::ops::Range;
 
 /// A cell, the form in which it is written, and the pen that writes it.
@@ -27,7 +27,7 @@ pub(super) fn choose_strokes(
 ) -> Vec<Stroke> {
     let forms = choose_forms(wanted, order, half_blocks, pen);
     let stroke = |(&position, form): (&CellPosition, BlockForm)| {
-        pen = form.pen(wanted.cell(position.column, position.row), &pen);
+        pen = form.pen(wanted.packed_cell(position.column, position.row), &pen);
         Stroke { position, form, pen }
     };
     order.iter().zip(forms).map(stroke).collect()
@@ -41,7 +41,7 @@ pub(super) fn share_next_fg(wanted: &Grid, strokes: &mut [Stroke]) {
         let next = strokes[at].pen;
         let stroke = &mut strokes[at - 1];
         let only_fg = stroke.pen.attributes.is_empty() && Pen { fg: next.fg, ..stroke.pen } == next;
-        if only_fg && is_plain_space(wanted.cell(stroke.position.column, stroke.position.row)) {
+        if only_fg && is_plain_space(wanted.packed_cell(stroke.position.column, stroke.position.row)) {
             stroke.pen = next;
         }
     }
@@ -71,14 +71,14 @@ pub(super) fn write_strokes(
 // Before a wide cluster, blanks clear its cells: some terminals draw it in the first one only.
 fn write_cell(wanted: &Grid, stroke: &Stroke, bytes: &mut Vec<u8>) {
     let CellPosition { column, row } = stroke.position;
-    let glyph = &wanted.cell(column, row).glyph;
-    if matches!(glyph, Glyph::Cluster(_)) && widths::width_at(wanted, column, row) > 1 {
+    let cell = wanted.packed_cell(column, row);
+    if cell.is_cluster() && widths::width_at(wanted, column, row) > 1 {
         bytes.extend(std::iter::repeat_n(b' ', widths::width_at(wanted, column, row).into()));
         Move::To(stroke.position).write(bytes);
     }
     match stroke.form {
-        BlockForm::AsWanted => write_glyph(glyph, bytes),
-        BlockForm::Flipped => write_char(other_half_block(glyph).unwrap_or(' '), bytes),
+        BlockForm::AsWanted => write_glyph(wanted, cell, bytes),
+        BlockForm::Flipped => write_char(other_half_block(cell).unwrap_or(' '), bytes),
     }
 }
 
@@ -93,7 +93,7 @@ enum BlockForm {
 
 impl BlockForm {
     /// Returns the pen that writes `cell` in this form, given the pen `before` it.
-    fn pen(self, cell: &Cell, before: &Pen) -> Pen {
+    fn pen(self, cell: PackedCell, before: &Pen) -> Pen {
         let plain = before.pen_for(cell);
         match self {
             Self::AsWanted => plain,
@@ -107,21 +107,21 @@ fn swapped_colors(pen: Pen) -> Pen {
     Pen { fg: pen.bg, bg: pen.fg, ..pen }
 }
 
-fn other_half_block(glyph: &Glyph) -> Option<char> {
-    match glyph {
-        Glyph::Char('▄') => Some('▀'),
-        Glyph::Char('▀') => Some('▄'),
+fn other_half_block(cell: PackedCell) -> Option<char> {
+    match cell.character()? {
+        '▄' => Some('▀'),
+        '▀' => Some('▄'),
         _ => None,
     }
 }
 
 /// Returns whether a cell looks the same with the other half block and exchanged colours.
 // Default colours cannot be exchanged: the default background cannot be set as a glyph colour, nor the reverse.
-fn can_be_flipped(cell: &Cell) -> bool {
-    other_half_block(&cell.glyph).is_some()
-        && cell.attributes.is_empty()
-        && cell.fg != Ink::Default
-        && cell.bg != Ink::Default
+fn can_be_flipped(cell: PackedCell) -> bool {
+    other_half_block(cell).is_some()
+        && cell.attributes().is_empty()
+        && cell.fg != PackedInk::DEFAULT
+        && cell.bg != PackedInk::DEFAULT
 }
 
 /// The cheapest path to one form of a cell: the pen after it, and the cost so far.
@@ -149,11 +149,11 @@ fn choose_forms(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, 
     // For each cell and each of its two forms, the form of the previous cell on the cheapest path.
     let mut predecessors = Vec::with_capacity(order.len());
     for position in order {
-        let cell = wanted.cell(position.column, position.row);
+        let cell = wanted.packed_cell(position.column, position.row);
         // Written out for each element, because `map` over arrays of pens copies them in pieces, which took a third of
         // the encoder's time.
         let pens = [paths[0].pen.pen_for(cell), paths[1].pen.pen_for(cell)];
-        let is_lower = cell.glyph == '▄';
+        let is_lower = cell.has_char('▄');
         if is_plain_space(cell) {
             // A space keeps the pen's glyph colour, so the two paths stay distinct.
             predecessors.push([0, 1]);
@@ -177,7 +177,7 @@ fn choose_forms(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, 
     let mut last = u8::from(paths[1].cost < paths[0].cost);
     let mut forms = vec![BlockForm::AsWanted; order.len()];
     for (at, position) in order.iter().enumerate().rev() {
-        if last == 1 && can_be_flipped(wanted.cell(position.column, position.row)) {
+        if last == 1 && can_be_flipped(wanted.packed_cell(position.column, position.row)) {
             forms[at] = BlockForm::Flipped;
         }
         last = predecessors[at][usize::from(last)];
@@ -229,7 +229,7 @@ fn move_to(
     let start = bytes.len();
     let is_there = columns_between(cursor, position).is_some_and(|mut between| {
         between.all(|column| {
-            let character = char_shown_by_pen(wanted.cell(column, position.row), half_blocks, pen);
+            let character = char_shown_by_pen(wanted.packed_cell(column, position.row), half_blocks, pen);
             character.is_some_and(|glyph| {
                 write_char(glyph, bytes);
                 bytes.len() - start <= by_move.len()
@@ -252,13 +252,13 @@ fn columns_between(cursor: Option<CellPosition>, position: CellPosition) -> Opti
 /// Returns the character that shows a cell if it is written with `pen` unchanged; `None` if there
 /// is none.
 // Only ASCII and half blocks are considered: other glyphs take more bytes than a move, or more than one column.
-fn char_shown_by_pen(cell: &Cell, half_blocks: HalfBlocks, pen: &Pen) -> Option<char> {
+fn char_shown_by_pen(cell: PackedCell, half_blocks: HalfBlocks, pen: &Pen) -> Option<char> {
     let shows = |form: BlockForm| form.pen(cell, pen) == *pen;
-    match (&cell.glyph, other_half_block(&cell.glyph)) {
+    match (cell.character(), other_half_block(cell)) {
         (_, Some(other)) if half_blocks == HalfBlocks::Either && can_be_flipped(cell) && shows(BlockForm::Flipped) => {
             Some(other)
         }
-        (Glyph::Char(own), other) if (other.is_some() || own.is_ascii()) && shows(BlockForm::AsWanted) => Some(*own),
+        (Some(own), other) if (other.is_some() || own.is_ascii()) && shows(BlockForm::AsWanted) => Some(own),
         _ => None,
     }
 }
@@ -267,7 +267,7 @@ fn char_shown_by_pen(cell: &Cell, half_blocks: HalfBlocks, pen: &Pen) -> Option<
 // The position depends on the terminal in the last column, and after a cluster: terminals disagree on the width of
 // flags, families and letters with marks. The next move then has to be absolute.
 pub(super) fn cursor_after(wanted: &Grid, position: CellPosition) -> Option<CellPosition> {
-    if matches!(wanted.cell(position.column, position.row).glyph, Glyph::Cluster(_)) {
+    if wanted.packed_cell(position.column, position.row).is_cluster() {
         return None;
     }
     let column = position.column + widths::width_at(wanted, position.column, position.row);

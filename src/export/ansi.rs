@@ -5,7 +5,7 @@ use super::format_row::{Contents, FormatRow};
 use super::text::text;
 use crate::capabilities::Colors;
 use crate::encode::Pen;
-use crate::grid::{Glyph, Grid};
+use crate::grid::Grid;
 
 pub(super) const KIND: FormatRow = FormatRow {
     name: "ansi",
@@ -39,9 +39,9 @@ pub fn ansi_or_text(grid: &Grid, colors: Colors) -> Vec<u8> {
 pub fn ansi(grid: &Grid) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut pen = Pen::default();
-    for row in grid.rows() {
-        for cell in row.iter().filter(|cell| cell.glyph != Glyph::Covered) {
-            pen.write_cell(cell, &mut bytes);
+    for row in grid.packed_rows() {
+        for &cell in row.iter().filter(|cell| !cell.is_covered()) {
+            pen.write_cell(grid, cell, &mut bytes);
         }
         // Reset before the line feed, because some terminals fill the rest of the line, and new lines, with the
         // background.

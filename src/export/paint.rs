@@ -67,9 +67,9 @@ pub(super) fn paths(grid: &Grid) -> String {
     // Parts of cells lie over the backgrounds of their cells, so their paths come later.
     let mut parts = Paths::default();
     for (row, cells) in grid.rows().enumerate() {
-        for (column, cell) in cells.iter().enumerate() {
-            if let Some(block) = fine_block(cell) {
-                write_block(parts.outline(cell_colors(cell)[0]), column, row, block);
+        for (column, cell) in cells.enumerate() {
+            if let Some(block) = fine_block(&cell) {
+                write_block(parts.outline(cell_colors(&cell)[0]), column, row, block);
             }
         }
     }
@@ -143,9 +143,11 @@ fn areas(grid: &Grid) -> Vec<ColorArea> {
     // Only runs with the same columns and colour are merged, in one pass. Other merges would find few more rectangles
     // in pictures.
     let mut above: HashMap<(usize, usize, Srgb8), usize> = HashMap::new();
-    let half_rows = grid.rows().flat_map(|row| [0, 1].map(|half| row.iter().map(move |cell| half_colors(cell)[half])));
+    let half_rows = grid.rows().flat_map(|row| {
+        let colors: Vec<_> = row.map(|cell| half_colors(&cell)).collect();
+        [0, 1].map(|half| colors.iter().map(|halves| halves[half]).collect::<Vec<_>>())
+    });
     for (y, colors) in half_rows.enumerate() {
-        let colors: Vec<Srgb8> = colors.collect();
         let mut here = HashMap::new();
         let mut x = 0;
         for run in colors.chunk_by(|a, b| a == b) {
@@ -191,11 +193,11 @@ fn ink_color(ink: Ink, default: Srgb8) -> Srgb8 {
 
 /// Returns the text runs of a row. Blanks between texts of equal style belong to one run; other
 /// blanks to none.
-pub(super) fn text_runs(row: &[Cell]) -> Vec<TextRun> {
+pub(super) fn text_runs(row: impl Iterator<Item = Cell>) -> Vec<TextRun> {
     let mut runs: Vec<TextRun> = Vec::new();
-    for (column, cell) in row.iter().enumerate() {
-        let (color, attributes) = (cell_colors(cell)[0], cell.attributes);
-        let Some(text) = text_of(cell) else {
+    for (column, cell) in row.enumerate() {
+        let (color, attributes) = (cell_colors(&cell)[0], cell.attributes);
+        let Some(text) = text_of(&cell) else {
             if let Some(run) = runs.last_mut().filter(|run| cell.glyph == Glyph::Covered && run.end() == column) {
                 run.columns += 1;
             }

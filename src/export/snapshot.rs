@@ -74,7 +74,7 @@ pub fn styled(grid: &Grid) -> String {
     let mut out = framed(grid);
     let legend = Legend::of_grid(grid);
     for row in grid.rows() {
-        let codes: String = row.iter().map(|cell| legend.code(cell)).collect();
+        let codes: String = row.map(|cell| legend.code(&cell)).collect();
         let _ = writeln!(out, "|{codes}|");
     }
     out.push_str(&border(usize::from(grid.size().columns) * legend.code_len));
@@ -164,7 +164,7 @@ struct Legend {
 impl Legend {
     fn of_grid(grid: &Grid) -> Self {
         let (mut styles, mut numbers) = (Vec::new(), HashMap::new());
-        for style in grid.cells().iter().map(CellStyle::of_cell).filter(|style| !style.is_plain()) {
+        for style in grid.cells().map(|cell| CellStyle::of_cell(&cell)).filter(|style| !style.is_plain()) {
             numbers.entry(style).or_insert_with(|| {
                 styles.push(style);
                 styles.len() - 1

@@ -21,7 +21,7 @@ pub(super) const KIND: FormatRow = FormatRow {
 
 fn tally(grid: &Grid) -> String {
     let mut counts: BTreeMap<String, u32> = BTreeMap::new();
-    grid.cells().iter().for_each(|cell| *counts.entry(cell.glyph.to_string()).or_default() += 1);
+    grid.cells().for_each(|cell| *counts.entry(cell.glyph.to_string()).or_default() += 1);
     counts.iter().fold(String::new(), |mut text, (glyph, count)| {
         let _ = writeln!(text, "{glyph} {count}");
         text

@@ -25,7 +25,7 @@ pub(super) const KIND: FormatRow = FormatRow {
 pub fn text(grid: &Grid) -> String {
     let mut text = String::with_capacity(grid.cells().len() + usize::from(grid.size().rows));
     for row in grid.rows() {
-        text.extend(row.iter().map(|cell| cell.glyph.to_string()));
+        text.extend(row.map(|cell| cell.glyph.to_string()));
         text.push('\n');
     }
     text

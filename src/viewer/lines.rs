@@ -124,7 +124,7 @@ impl<'f> Plot<'f> {
         for ([x, y], (color, bits)) in self.dots {
             if x < size.columns && y < size.rows {
                 let glyph = char::from_u32(0x2800 + u32::from(bits)).filter(|_| has_dots).unwrap_or('.');
-                let background = background(canvas.grid.cell(x, y));
+                let background = background(&canvas.grid.cell(x, y));
                 canvas.grid.put(x, y, &Cell::new(glyph, Ink::Indexed(color), background), 1);
             }
         }

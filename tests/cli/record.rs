@@ -74,7 +74,7 @@ fn halves_wanted(grid: &Grid) -> Vec<[Option<avt::Color>; 2]> {
     };
     let text = termtrace::export::text(grid);
     let glyphs = text.chars().filter(|&glyph| glyph != '\n');
-    let halves = |(glyph, cell): (char, &termtrace::Cell)| match glyph {
+    let halves = |(glyph, cell): (char, termtrace::Cell)| match glyph {
         ' ' => [color(cell.bg); 2],
         '▄' => [color(cell.bg), color(cell.fg)],
         _ => [color(cell.fg), color(cell.bg)],

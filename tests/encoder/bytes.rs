@@ -151,7 +151,7 @@ fn moves_are_the_cheapest() {
     encoded(&mut encoder, &grid);
     let mut change = |cells: &[(u16, u16)]| {
         for &(column, row) in cells {
-            let cell = grid.cell_mut(column, row);
+            let mut cell = grid.cell_mut(column, row);
             cell.glyph = if cell.glyph == 'x' { 'y' } else { 'x' }.into();
         }
         encoded(&mut encoder, &grid)

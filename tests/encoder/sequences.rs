@@ -117,7 +117,7 @@ fn cells_at_rest_are_exact() {
         let mut since = vec![Duration::ZERO; SMALL.cell_count()];
         let mut last = &frames[0].1;
         for (now, grid) in &frames {
-            for (since, (a, b)) in since.iter_mut().zip(last.cells().iter().zip(grid.cells())) {
+            for (since, (a, b)) in since.iter_mut().zip(last.cells().zip(grid.cells())) {
                 *since = if halves(a) == halves(b) { *since } else { *now };
             }
             last = grid;

@@ -42,7 +42,7 @@ fn shows_above(screen: &Screen, picture: &Picture) -> bool {
     let wanted = cell::grid_from_picture(CellMode::HALF_BLOCK, picture);
     let columns = usize::from(SIZE.columns);
     let above = usize::from(SIZE.rows - 1) * columns;
-    wanted.cells()[..above].iter().enumerate().all(|(at, cell)| {
+    wanted.cells().take(above).enumerate().all(|(at, cell)| {
         let shown = screen.cell(at % columns, at / columns);
         let glyph = ['▄', '▀', ' '].into_iter().find(|&glyph| cell.glyph == glyph).expect("a picture");
         halves_of(glyph, cell.fg.into(), cell.bg.into()) == halves_of(shown.glyph, shown.foreground, shown.background)

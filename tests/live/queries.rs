@@ -301,7 +301,7 @@ fn a_light_background_inverts_ink() {
     // Ink is blank, and blank is ink.
     session.wait_for("dark on light", SOON, |seen| {
         let inked = |screen: &pty::Screen, at: usize| screen.cell(at % 80, at / 80).glyph != ' ';
-        let turned = dark.cells().iter().enumerate().filter(|(_, cell)| cell.glyph == ' ');
+        let turned = dark.cells().enumerate().filter(|(_, cell)| cell.glyph == ' ');
         turned.clone().count() > 0 && turned.into_iter().all(|(at, _)| inked(seen.screen(), at))
     });
     leave(&mut session);

@@ -65,7 +65,7 @@ fn upper_half_shows(session: &mut Session, text: &str) -> bool {
     let wanted = pty::picture(&scene, CellMode::HALF_BLOCK, termtrace::Size::new(80, 24), 2.0);
     (0..12 * 80).all(|at| {
         let shown = session.seen().screen().cell(at % 80, at / 80);
-        let cell = &wanted.cells()[at];
+        let cell = wanted.at(at);
         let glyph = cell.glyph.to_string().chars().next().unwrap_or(' ');
         let wanted = pty::halves_of(glyph, cell.fg.into(), cell.bg.into());
         wanted.is_some() && pty::halves_of(shown.glyph, shown.foreground, shown.background) == wanted

@@ -81,7 +81,7 @@ fn motion(name: &str, step: f32, glyphs: Glyphs) -> [f64; 2] {
         let cells = |at: usize| (0..80 * 24).filter(|&cell| is_counted(at, cell)).count();
         (1..58).map(cells).sum::<usize>() as f64 / f64::from(57 * 80 * 24)
     };
-    let glyph = |frame: usize, cell: usize| &frames[frame].cells()[cell].glyph;
+    let glyph = |frame: usize, cell: usize| frames[frame].at(cell).glyph;
     let changes = |at, cell| glyph(at, cell) != glyph(at - 1, cell);
     let returns = |at, cell| [at + 1, at + 2].into_iter().any(|then| glyph(then, cell) == glyph(at - 1, cell));
     [share(&changes), share(&|at, cell| changes(at, cell) && returns(at, cell))]

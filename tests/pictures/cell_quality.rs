@@ -165,8 +165,8 @@ fn pixels(grid: &Grid) -> Picture {
     let lower = |cell: &termtrace::Cell| shown(if cell.glyph == ' ' { cell.bg } else { cell.fg });
     let (width, height) = (u32::from(grid.size().columns), 2 * u32::from(grid.size().rows));
     let rows = grid.rows().flat_map(|row| {
-        let upper = row.iter().map(|cell| shown(cell.bg));
-        upper.chain(row.iter().map(lower))
+        let row: Vec<termtrace::Cell> = row.collect();
+        row.iter().map(|cell| shown(cell.bg)).chain(row.iter().map(lower)).collect::<Vec<_>>()
     });
     Picture::from_pixels(width, height, rows.collect()).expect("all its pixels")
 }

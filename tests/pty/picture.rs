@@ -30,7 +30,7 @@ impl From<Ink> for Colour {
 /// Of a picture the colours of the halves count, with either half block.
 pub(crate) fn shows(screen: &Screen, grid: &Grid) -> bool {
     let columns = usize::from(grid.size().columns);
-    grid.cells().iter().enumerate().all(|(at, wanted)| {
+    grid.cells().enumerate().all(|(at, wanted)| {
         let shown = screen.cell(at % columns, at / columns);
         let (fg, bg) = (Colour::from(wanted.fg), Colour::from(wanted.bg));
         let same = wanted.glyph == shown.glyph && shown.foreground == fg && shown.background == bg;

@@ -18,7 +18,7 @@ fn text(
     let picture = Picture { width, height, pixels: (0..columns * rows * ACROSS * DOWN).map(pixel).collect() };
     let mut grid = Grid::new(Size::new(columns as u16, rows as u16));
     fill(&mut grid, &picture, &geometry, (background, Colors::None), None);
-    grid.rows().map(|row| row.iter().map(|cell| cell.glyph.to_string()).collect()).collect()
+    grid.rows().map(|row| row.map(|cell| cell.glyph.to_string()).collect()).collect()
 }
 
 /// Checks the character in the middle of a cell that a straight border crosses.
@@ -106,6 +106,6 @@ fn colours_are_the_hues_of_objects() {
     ] {
         let mut grid = Grid::new(Size::new(2, 1));
         fill(&mut grid, &picture, &geometry, (background, colors), None);
-        assert_eq!(*grid.cell(1, 0), Cell::new('o', expected, Ink::Default), "{colors:?} {background:?}");
+        assert_eq!(grid.cell(1, 0), Cell::new('o', expected, Ink::Default), "{colors:?} {background:?}");
     }
 }

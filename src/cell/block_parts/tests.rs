@@ -121,6 +121,6 @@ fn light_pixels_are_ink_without_colors() {
     let picture = Picture::from_pixels(4, 8, pixels).expect("a pixel for each place");
     for (glyphs, right) in [(Glyphs::Blocks, '▐'), (Glyphs::Octants, '▐'), (Glyphs::Braille, '⢸')] {
         let grid = grid_from_picture(CellMode { glyphs, colors: Colors::None }, &picture);
-        assert_eq!(*grid.cell(0, 0), Cell::new(right, Ink::Default, Ink::Default));
+        assert_eq!(grid.cell(0, 0), Cell::new(right, Ink::Default, Ink::Default));
     }
 }

@@ -69,7 +69,7 @@ fn samples(kinds: &[Glyphs], capabilities: &Capabilities) -> Grid {
         let sample = Painter::new(mode).with_light_background(light_background).grid(&disc);
         for (row, cells) in (0..).zip(sample.rows()) {
             for (column, cell) in (left..).zip(cells) {
-                samples.cell_mut(column, row).clone_from(cell);
+                *samples.cell_mut(column, row) = cell;
             }
         }
         left += size.columns + 1;
@@ -86,22 +86,19 @@ fn grid(capabilities: &Capabilities) -> Grid {
     // column of the stripes does the same here, so that a seam would show.
     if capabilities.half_blocks == HalfBlocks::Either {
         let is_upper = |column: usize| column >= usize::from(STRIPES) && column % 2 == 1;
-        for row in grid.rows_mut() {
-            row.iter_mut()
-                .enumerate()
-                .filter(|(column, _)| is_upper(*column))
-                .for_each(|(_, cell)| use_upper_half(cell));
+        for at in (0..grid.cells().len()).filter(|at| is_upper(at % usize::from(COLUMNS))) {
+            let cell = grid.at(at);
+            grid.set_at(at, &with_upper_half(cell));
         }
     }
     grid
 }
 
-/// Replaces a lower half block by an upper one with the colours exchanged, which shows the same two
-/// halves.
-fn use_upper_half(cell: &mut Cell) {
-    if cell.glyph == '▄' {
-        *cell = Cell::new('▀', cell.bg, cell.fg);
-    }
+/// Returns a cell with an upper instead of a lower half block, and its colours exchanged.
+///
+/// It shows the same two halves.
+fn with_upper_half(cell: Cell) -> Cell {
+    if cell.glyph == '▄' { Cell::new('▀', cell.bg, cell.fg) } else { cell }
 }
 
 /// Returns a picture of `size` cells, whose pixels have the colours that `color` returns.

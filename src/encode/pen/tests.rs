@@ -6,6 +6,7 @@ use crate::color::Srgb8;
 #[test]
 fn costs_are_true() {
     let inks = [Ink::Default, Ink::Indexed(7), Ink::Indexed(200), Ink::Rgb(Srgb8::new(0, 10, 100))];
+    let inks = inks.map(PackedInk::from);
     let reversed = Attributes::REVERSED;
     let attributes = [Attributes::empty(), reversed, Attributes::BOLD, Attributes::BOLD | reversed, Attributes::all()];
     let colors = || inks.into_iter().flat_map(|fg| inks.map(|bg| (fg, bg)));

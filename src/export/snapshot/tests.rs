@@ -21,9 +21,9 @@ fn blanks_are_within_the_frame() {
 fn any_number_of_styles_has_distinct_codes() {
     for columns in [1, 62, 63, 300, 4000] {
         let mut grid = Grid::new(Size::new(columns, 1));
-        for (at, cell) in (0_u32..).zip(grid.cells_mut()) {
+        for at in 0..u32::from(columns) {
             let [_, r, g, b] = at.to_be_bytes();
-            *cell = Cell::new('x', Ink::Rgb(Srgb8::new(r, g, b)), Ink::Default);
+            grid.set_at(at as usize, &Cell::new('x', Ink::Rgb(Srgb8::new(r, g, b)), Ink::Default));
         }
         let styled = styled(&grid);
         let legend: std::collections::BTreeSet<&str> =

@@ -1,0 +1,222 @@
+//! Cells as grids keep them, in 16 bytes.
+
+use super::{Attributes, Cell, Glyph, Ink};
+use crate::color::Srgb8;
+use std::sync::Arc;
+
+/// A colour in 32 bits: its kind in the highest eight, and its value below.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) struct PackedInk(u32);
+
+impl PackedInk {
+    pub(crate) const DEFAULT: Self = Self(0);
+    const INDEXED: u32 = 1 << 24;
+    const RGB: u32 = 2 << 24;
+
+    pub(crate) const fn rgb(Srgb8 { r, g, b }: Srgb8) -> Self {
+        Self(Self::RGB | u32::from_be_bytes([0, r, g, b]))
+    }
+
+    const fn new(ink: Ink) -> Self {
+        match ink {
+            Ink::Default => Self::DEFAULT,
+            Ink::Indexed(index) => Self(Self::INDEXED | index as u32),
+            Ink::Rgb(color) => Self::rgb(color),
+        }
+    }
+
+    /// Returns the colour, if it is in truecolor.
+    #[inline]
+    pub(crate) const fn color(self) -> Option<Srgb8> {
+        let [kind, r, g, b] = self.0.to_be_bytes();
+        if kind == 2 { Some(Srgb8 { r, g, b }) } else { None }
+    }
+
+    #[inline]
+    pub(crate) const fn is_rgb(self) -> bool {
+        self.0 >= Self::RGB
+    }
+
+    #[inline]
+    pub(crate) fn ink(self) -> Ink {
+        match self.0.to_be_bytes() {
+            [0, ..] => Ink::Default,
+            [1, .., index] => Ink::Indexed(index),
+            [_, r, g, b] => Ink::Rgb(Srgb8 { r, g, b }),
+        }
+    }
+}
+
+impl From<Ink> for PackedInk {
+    fn from(ink: Ink) -> Self {
+        Self::new(ink)
+    }
+}
+
+/// A cell in 16 bytes.
+///
+/// A cluster is an index into the list of the cell's grid, so that such a cell means nothing outside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct PackedCell {
+    /// The glyph and the attributes.
+    // From the highest bit: a flag for clusters, nine attributes, and in 22 bits the character, the index of the
+    // cluster, or a number beyond all characters.
+    code: u32,
+    pub(crate) fg: PackedInk,
+    pub(crate) bg: PackedInk,
+    pub(crate) underline: PackedInk,
+}
+
+/// The number of bits of a glyph.
+const GLYPH_BITS: u32 = 22;
+const GLYPH_MASK: u32 = (1 << GLYPH_BITS) - 1;
+const CLUSTER: u32 = 1 << 31;
+/// Beyond the last character, U+10FFFF.
+const COVERED: u32 = 0x11_0000;
+const FOREIGN: u32 = COVERED + 1;
+
+impl PackedCell {
+    pub(crate) const BLANK: Self = Self::new(' ', PackedInk::DEFAULT, PackedInk::DEFAULT);
+    pub(crate) const FOREIGN: Self = Self { code: FOREIGN, ..Self::BLANK };
+
+    /// Returns a cell with a character in these colours, without attributes.
+    pub(crate) const fn new(character: char, fg: PackedInk, bg: PackedInk) -> Self {
+        Self { code: character as u32, fg, bg, underline: PackedInk::DEFAULT }
+    }
+
+    /// Returns the glyph and the attributes in one number.
+    ///
+    /// Without attributes it is the number of the character.
+    #[inline]
+    pub(crate) const fn code(self) -> u32 {
+        self.code
+    }
+
+    /// Returns whether the glyph is this character.
+    #[inline]
+    pub(crate) const fn has_char(self, character: char) -> bool {
+        self.code & (GLYPH_MASK | CLUSTER) == character as u32
+    }
+
+    /// Returns the character; `None` for other glyphs.
+    #[inline]
+    pub(crate) fn character(self) -> Option<char> {
+        if self.is_cluster() { None } else { char::from_u32(self.code & GLYPH_MASK) }
+    }
+
+    #[inline]
+    pub(crate) const fn is_cluster(self) -> bool {
+        self.code & CLUSTER != 0
+    }
+
+    #[inline]
+    pub(crate) const fn is_covered(self) -> bool {
+        self.code & (GLYPH_MASK | CLUSTER) == COVERED
+    }
+
+    #[inline]
+    pub(crate) const fn is_foreign(self) -> bool {
+        self.code & (GLYPH_MASK | CLUSTER) == FOREIGN
+    }
+
+    #[inline]
+    pub(crate) const fn attributes(self) -> Attributes {
+        Attributes::from_bits_truncate((self.code >> GLYPH_BITS) as u16)
+    }
+
+    /// Returns a digest of the cell, without the text of a cluster.
+    #[inline]
+    pub(crate) const fn digest(self) -> u32 {
+        let code = if self.is_cluster() { self.code & !GLYPH_MASK } else { self.code };
+        // Multiplicative hashing (Knuth 1973), in steps that differ for any two values of one field.
+        let mixed = code.wrapping_mul(0x9e37_79b1);
+        let mixed = (mixed ^ mixed >> 15 ^ self.fg.0).wrapping_mul(0x85eb_ca77);
+        let mixed = (mixed ^ mixed >> 13 ^ self.bg.0).wrapping_mul(0xc2b2_ae3d);
+        (mixed ^ mixed >> 16 ^ self.underline.0).wrapping_mul(0x9e37_79b1)
+    }
+
+    /// Returns the cell with the glyph of another one.
+    pub(crate) const fn with_glyph_of(self, other: Self) -> Self {
+        let glyph = GLYPH_MASK | CLUSTER;
+        Self { code: self.code & !glyph | other.code & glyph, ..self }
+    }
+
+    /// Returns the cell with a blank instead of its glyph.
+    pub(super) const fn blanked(self) -> Self {
+        Self { code: self.code & !(GLYPH_MASK | CLUSTER) | ' ' as u32, ..self }
+    }
+}
+
+/// The grapheme clusters of a grid.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Clusters(Vec<Arc<str>>);
+
+impl Clusters {
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Returns whether the list is long enough that unused clusters have to be dropped.
+    pub(super) fn is_crowded(&self, cell_count: usize) -> bool {
+        self.0.len() > 2 * cell_count.max(32)
+    }
+
+    /// Drops the clusters that no cell has.
+    pub(super) fn drop_unused(&mut self, cells: &mut [PackedCell]) {
+        let all = std::mem::take(&mut self.0);
+        for cell in cells.iter_mut().filter(|cell| cell.is_cluster()) {
+            cell.code = self.add(all[(cell.code & GLYPH_MASK) as usize].clone()) | cell.code & !(GLYPH_MASK | CLUSTER);
+        }
+    }
+
+    /// Returns the text of a cell's cluster; `None` for other glyphs.
+    #[inline]
+    pub(super) fn text(&self, cell: PackedCell) -> Option<&Arc<str>> {
+        if cell.is_cluster() { self.0.get((cell.code & GLYPH_MASK) as usize) } else { None }
+    }
+
+    /// Packs a cell.
+    #[inline]
+    pub(super) fn pack(&mut self, cell: &Cell) -> PackedCell {
+        let glyph = match &cell.glyph {
+            Glyph::Char(character) => u32::from(*character),
+            Glyph::Cluster(text) => self.add(text.clone()),
+            Glyph::Covered => COVERED,
+            Glyph::Foreign => FOREIGN,
+        };
+        let attributes = u32::from(cell.attributes.bits()) << GLYPH_BITS;
+        let [fg, bg, underline] = [cell.fg, cell.bg, cell.underline].map(PackedInk::new);
+        PackedCell { code: glyph | attributes, fg, bg, underline }
+    }
+
+    /// Adds a cluster, and returns its code.
+    // A grid of more than four million clusters shows some of them as U+FFFD.
+    fn add(&mut self, text: Arc<str>) -> u32 {
+        let index = self.0.len() as u32;
+        if index > GLYPH_MASK {
+            return u32::from(char::REPLACEMENT_CHARACTER);
+        }
+        self.0.push(text);
+        CLUSTER | index
+    }
+
+    /// Returns a cell with its glyph.
+    #[inline]
+    pub(super) fn unpack(&self, cell: PackedCell) -> Cell {
+        let glyph = match (cell.character(), self.text(cell)) {
+            (Some(character), _) => Glyph::Char(character),
+            (None, Some(text)) => Glyph::Cluster(text.clone()),
+            (None, None) if cell.is_covered() => Glyph::Covered,
+            (None, None) => Glyph::Foreign,
+        };
+        let [fg, bg, underline] = [cell.fg, cell.bg, cell.underline].map(PackedInk::ink);
+        Cell { glyph, fg, bg, underline, attributes: cell.attributes() }
+    }
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;
