@@ -31,7 +31,7 @@ pub(crate) struct PrimitiveId {
 
 /// The ids of eight primitives, as the bits of f32, so that the operations on floats gather and
 /// select them.
-// There is no arithmetic with them, so ids whose bits are a NaN stay unchanged.
+// No arithmetic is done on these floats, so ids whose bits happen to be a NaN stay unchanged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PrimitiveIds<N> {
     object: N,
@@ -55,7 +55,7 @@ impl PrimitiveIds<F32x8> {
         PrimitiveId { object: self.object.0[lane].to_bits(), index: self.index.0[lane].to_bits() }
     }
 
-    /// Returns the mask of primitives of an object.
+    /// Returns the mask of the lanes whose primitive is part of the object with this index.
     #[inline(always)]
     pub(crate) fn mask_of_object<N: Lanes>(&self, object: u32) -> u32 {
         N::load(&self.object).has_bits(object).bits()
@@ -88,7 +88,7 @@ impl<N: Lanes> PrimitiveIds<N> {
     }
 }
 
-/// Expands by the group of a surface, which is `list` or `tree`.
+/// Chooses code by the group of a surface: `list` for unbounded surfaces, `tree` for bounded ones.
 ///
 /// With `of`, it expands to the type that stores the surface's primitives; with `from`, to the type that collects them
 /// for the build; with `in`, to the code that follows, if the groups on both sides of `in` are the same.
@@ -120,7 +120,7 @@ macro_rules! accelerator {
         }
 
         impl Accelerator {
-            /// Visits all lists, then all trees, each in the order of the table.
+            /// Visits all lists, then all trees, each in the order of the table of surfaces.
             #[inline(always)]
             pub(crate) fn visit<'a>(&'a self, visitor: &mut impl Visitor<'a>) {
                 $($(#[$on])* { only! { list in $group visitor.visit_list(&self.$name); } })*
@@ -436,8 +436,9 @@ impl<S> Tree<S> {
     }
 }
 
-/// The number of leaves from which on all threads fill them.
-// Below it the start of rayon's pool is not worth its time: 0.15 ms of the first picture, for one leaf of four spheres.
+/// The least number of leaves that are filled on all threads.
+// For fewer leaves the start of rayon's pool is not worth its time: it would take 0.15 ms of the first picture of four
+// spheres, which are one leaf.
 const MIN_PARALLEL_LEAVES: usize = 1024;
 
 /// The bounded primitives of one kind, in the order of the scene, before the build.

@@ -35,7 +35,7 @@ pub use source::Source;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Outcome {
-    /// The reason why it ended.
+    /// The reason why the live view ended.
     pub ending: Ending,
     /// The last camera, if the user has moved it.
     pub moved: Option<Camera>,

@@ -25,7 +25,8 @@ pub struct Bounds {
 }
 
 /// The relative widening of a ray's interval in a box at both ends: 16 units of 2^-24.
-// `culling.md`, 3: three units for the rounding of an end, one for this product, twelve for a surface's own t.
+// Three units cover the rounding of an end, one that of its widening, and twelve the error of a surface's own t
+// (`culling.md`, 3).
 const CROSSING_SLACK: f32 = 16.0 / 16_777_216.0;
 
 impl Bounds {

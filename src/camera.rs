@@ -81,9 +81,10 @@ pub struct Basis {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewRectangle {
-    /// The width divided by the focal length; `None` if it follows from the picture's aspect ratio.
+    /// The width of the rectangle divided by the focal length; `None` if it follows from the picture's
+    /// aspect ratio.
     width: Option<f32>,
-    /// The height divided by the focal length.
+    /// The height of the rectangle divided by the focal length.
     height: f32,
     /// The offset of the rectangle's middle from the w axis, to the right and upwards, in heights
     /// of the rectangle.
@@ -458,7 +459,7 @@ impl ViewRectangle {
         let towards = Vec2::new(sin_right, sin_up * cos_right);
         let half = 0.5 * Vec2::new(width.unwrap_or(0.0), height);
         let least_depth = 1.0 - towards.dot(shift * height) - towards.abs().dot(half);
-        // Without tilt the depth is 1, or NaN for sides beyond the range of f32, which other checks refuse.
+        // Without tilt `least_depth` is 1, or NaN for sides beyond the range of f32, which other checks refuse.
         if tilt == Vec2::ZERO || least_depth > 0.0 { Ok(self) } else { Err(CameraError::BehindEye) }
     }
 

@@ -37,7 +37,7 @@ pub struct Keyframe {
 pub struct PathError {
     /// The time of the first invalid camera, in seconds.
     pub time: f64,
-    /// The error of that camera.
+    /// The error of the first invalid camera.
     pub error: CameraError,
 }
 
@@ -124,7 +124,7 @@ impl CameraPath {
 
 /// Returns the camera with its eye turned about the target and the up vector by an angle in
 /// radians.
-// The formula adds a difference to the eye, so that angle 0 gives the same bits.
+// The formula adds the change of position to the eye, so that an angle of 0 leaves the bits of the eye unchanged.
 fn turned(camera: &Camera, angle: f64) -> Result<Camera, CameraError> {
     let pose = camera.pose();
     let [eye, target, up] = [pose.eye, pose.target, pose.up].map(Vec3::as_dvec3);

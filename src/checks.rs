@@ -24,7 +24,7 @@ const MAX_LIGHT: f64 = 1e12;
 // Products with light stay far below the largest f32, 3.4e38.
 const MAX_EXPOSURE: f64 = 1e6;
 
-/// The largest ratio of two lengths of a view rectangle.
+/// The largest ratio between two of a view rectangle's width, height and focal length.
 const MAX_RATIO: f64 = 1e6;
 
 /// The message for an invalid value: one line without a full stop, which says what would be right
@@ -53,7 +53,7 @@ impl SceneFault {
         Self { subject: subject.into(), message: message.into() }
     }
 
-    /// Returns the message without the name: that of the same error in a scene file.
+    /// Returns the message without the value's name, as the same error in a scene file has it.
     #[doc(hidden)]
     pub fn message(&self) -> &str {
         &self.message

@@ -197,7 +197,7 @@ impl Oklab {
         Self::from_linear(LinearRgb::from_srgb8(color))
     }
 
-    /// Converts light to OKLab, with the matrices of the source.
+    /// Converts linear light to OKLab, with Ottosson's matrices.
     pub(crate) fn from_linear(light: LinearRgb) -> Self {
         let LinearRgb { r, g, b } = light;
         // `libm` instead of the platform's `cbrt`, so that the encoder's choices, and so its bytes, are the same on

@@ -117,7 +117,7 @@ impl Description<'_> {
                 "- object {}, {}: {}, {} of the picture, {}{}",
                 object + 1,
                 self.name_of(object, part),
-                position(part.rect(resolution)),
+                position(part.covered_rect(resolution)),
                 percent(part.pixels, resolution.pixel_count()),
                 distance(part.nearest, part.farthest),
                 self.occlusions(object)

@@ -81,7 +81,7 @@ pub enum Quality {
 /// The limits on a lossy frame: its quality and number of bytes, and its time.
 #[derive(Clone, Copy, Debug)]
 pub struct Allowance {
-    /// The quality of the picture.
+    /// How far the picture's colours may differ from the wanted ones.
     pub quality: Quality,
     /// The time at which the frame is sent, since any start that is the same for all frames.
     pub now: Duration,

@@ -49,7 +49,7 @@ struct Shared {
 #[derive(Default)]
 struct Pause {
     is_on: bool,
-    /// The end of the thread's last pause.
+    /// Time at which the tracing thread's last pause ended; `None` before the first one.
     ended: Option<Instant>,
 }
 
@@ -59,7 +59,7 @@ pub(super) struct Order {
     /// The position of the line between the two maps of a wipe, as a share of the width.
     pub(super) wipe: f32,
     pub(super) folder: PathBuf,
-    /// The stem of the file's name.
+    /// The stem of the picture file's name.
     pub(super) stem: String,
     /// The number of tracing threads of the live view; `None` for one per core.
     pub(super) threads: Option<usize>,

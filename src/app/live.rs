@@ -41,9 +41,9 @@ pub(super) struct Live {
     viewer: Viewer,
     terminal: Terminal,
     clock: Clock,
-    /// The bytes of the last frame.
-    // The buffer is reused, because a new one would have to grow: with the buffer and the grid kept, the time from a
-    // key to its frame at 200x60 fell from 1.08 to 0.98 of what it was before the viewer became a module of its own.
+    /// The buffer for the encoded bytes of a frame.
+    // Reused for all frames, because a new buffer would have to grow: with the buffer and the grid kept, the time from
+    // a key to its frame at 200x60 fell from 1.08 to 0.98 of what it was before the viewer became a module of its own.
     bytes: Vec<u8>,
     /// The names of the scenes.
     names: Vec<SceneName>,
@@ -53,7 +53,7 @@ pub(super) struct Live {
     threads: Option<usize>,
     large_picture: Option<LargePicture>,
     recording: Option<SessionRecording>,
-    /// The view that the user was last asked to confirm.
+    /// The view or scene that the user was last asked to confirm writing to a file.
     proposed: Option<Proposal>,
 }
 
@@ -137,7 +137,8 @@ impl Live {
                 terminal::reach("resize")?;
                 self.viewer.resize(self.terminal.window()?)?;
             }
-            // Repeated in each turn, because the modes depend on replies; a mode that is on already costs nothing.
+            // Repeated in each turn of the loop, because the wanted modes depend on the terminal's replies; a mode that
+            // is on already costs nothing.
             for mode in self.viewer.modes() {
                 self.terminal.switch_on(mode)?;
             }
@@ -277,7 +278,7 @@ impl Live {
         Ok((folder, picture_export::file_stem(self.shown_name().map_or("scene", |scene| &scene.name))))
     }
 
-    /// Starts the large picture of the wanted view.
+    /// Starts to trace a large picture of the current view in the background, for a PNG file.
     fn start_large_picture(&mut self, signals: &Signals) -> io::Result<()> {
         let Some((job, wipe)) = self.viewer.large_picture() else { return Ok(()) };
         let ((folder, stem), waker) = (self.export_place()?, signals.waker()?);

@@ -212,7 +212,8 @@ pub(super) fn frame_of(
         let seen = trace_map(map, resolution, &camera)?;
         cost += seen.cost;
         parts.push(seen.picture);
-        // Two views side by side meet within a cell, so they are drawn without geometry.
+        // Geometry is kept only of a view that fills the picture: two views side by side may meet within a cell, which
+        // has only one geometry.
         geometry = seen.geometry.filter(|_| resolution == shot.resolution);
     }
     let combined = shot.layout.combined(&parts, INITIAL_WIPE).or_else(|| parts.pop());
@@ -240,7 +241,7 @@ fn trace_once(job: &Job) -> Result<Frame, Cancelled> {
     frame_of(job, trace_map)
 }
 
-/// The state of a tracing thread.
+/// The state that a tracing thread keeps from frame to frame.
 #[derive(Default)]
 pub(crate) struct Tracer {
     /// The last picture with its samples, if it can be refined.
@@ -268,10 +269,10 @@ impl RefinablePicture {
 }
 
 impl Tracer {
-    /// Traces or refines a frame on the threads of the current rayon pool, or returns that it was
-    /// cancelled.
+    /// Traces or refines a frame on the threads of the current rayon pool, unless `token` cancels it.
     ///
-    /// Without a kept picture, or if that is another viewer's, a refinement traces all samples anew.
+    /// A new frame with one sample per pixel is traced on the calling thread and ignores `token`. A refinement traces
+    /// all samples anew if no picture is kept, or one of another viewer.
     #[cfg(feature = "serve")]
     pub(crate) fn trace_for_any(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
         if job.refines || !has_one_sample(job.sampling) {

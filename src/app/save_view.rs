@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 
 /// Something to write that the user is asked to confirm.
 pub(super) enum Proposal {
-    /// A view, into a scene file that exists.
+    /// A view to add to a scene file that exists.
     View(ProposedView),
-    /// The text of a scene, into a new file at this path.
+    /// The path of a new scene file, and its text.
     Scene(PathBuf, String),
 }
 

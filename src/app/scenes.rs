@@ -24,7 +24,7 @@ pub(super) struct Scenes<E> {
     watching: Option<Watching>,
     /// The files of the current scene that are not watched yet.
     unwatched: Option<Vec<Dependency>>,
-    /// The reason why changes are not noticed that the user was told last.
+    /// The reason that the user was last told why changes of the files are not noticed.
     reported_problem: Option<String>,
 }
 

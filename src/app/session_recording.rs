@@ -44,7 +44,7 @@ impl SessionRecording {
     /// Adds the bytes of a frame on a screen of this size.
     ///
     /// # Errors
-    /// If writing fails; nothing is kept then.
+    /// If writing fails; the recording then ends and leaves no file.
     pub(super) fn add(&mut self, bytes: &[u8], size: Size, now: Duration) -> io::Result<()> {
         self.now = now;
         if size != self.size {
@@ -62,7 +62,7 @@ impl SessionRecording {
     /// Finishes the file, and returns its name.
     ///
     /// # Errors
-    /// If writing fails; nothing is kept then.
+    /// If writing fails; no file is left then.
     pub(super) fn finish(&mut self, now: Duration) -> io::Result<String> {
         self.now = now;
         self.write("o", END)?;

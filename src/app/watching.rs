@@ -36,14 +36,18 @@ pub(super) struct Watching {
 #[derive(Default)]
 struct Shared {
     /// The folders and symbolic links on the paths to the scene's files.
+    ///
+    /// If one of them changes, a path may lead to another file.
     steps: HashSet<PathBuf>,
     /// The paths of the scene's files, with all symbolic links resolved.
     ends: HashSet<PathBuf>,
+    /// The most significant change since the last [`Watching::take_changed`].
     change: FileChange,
 }
 
-/// The most significant change since [`Watching::take_changed`], from the least to the most
-/// significant.
+/// A change of the scene's files or of the paths to them.
+///
+/// The variants are ordered from the least to the most significant change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 enum FileChange {
     #[default]

@@ -148,7 +148,8 @@ impl Camera {
     #[cfg(feature = "live")]
     fn upright_tilt(&self) -> f32 {
         let up = self.pose.up.normalize_or_zero();
-        // The normal is perpendicular to `up` if its parts along v and in the plane of u and w cancel out.
+        // At this angle the rectangle's normal is perpendicular to `up`: the dot products of `up` with the normal's
+        // part along v and with its part in the plane of u and w cancel out.
         libm::atanf(libm::cosf(self.rectangle.tilt.x) * up.dot(self.basis.w) / up.dot(self.basis.v))
     }
 

@@ -24,7 +24,7 @@ pub enum Grip {
 }
 
 /// The angle of an orbit for a drag over the whole height of the picture, in radians.
-// With half a turn one drag brings the back of an object to the front.
+// With half a turn, one drag over the whole height brings the back of an object to the front.
 const ORBIT_PER_HEIGHT: f32 = std::f32::consts::PI;
 
 /// The factor by which one notch of the wheel multiplies the distance.

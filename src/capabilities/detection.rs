@@ -18,7 +18,7 @@ pub enum Source {
     User,
     /// The environment variable with this name.
     Variable(&'static str),
-    /// The window, by its size in cells and in pixels.
+    /// The window: its size in cells and in pixels.
     Window,
     /// The terminal itself.
     Reply,
@@ -119,7 +119,7 @@ fn forced_by_variable(clues: &Clues<'_>) -> Option<Detected<Colors>> {
 }
 
 /// Returns truecolor if `COLORTERM` is `truecolor` or `24bit`.
-// Other values announce colours, but not their number.
+// Other values of `COLORTERM` announce colours, but not how many.
 pub(super) fn colorterm(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let colorterm = non_empty_variable(clues, "COLORTERM")?.to_ascii_lowercase();
     let is_truecolor = colorterm == "truecolor" || colorterm == "24bit";
@@ -127,7 +127,7 @@ pub(super) fn colorterm(clues: &Clues<'_>) -> Option<Detected<Colors>> {
 }
 
 /// Returns truecolor if the terminal replied that it kept the test colour.
-// If it did not, it may have any smaller number of colours, so later sources decide.
+// A terminal that did not keep it may have any smaller number of colours, so other sources decide.
 fn replied_truecolor(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let kept = clues.truecolor_reply?;
     kept.then_some(Detected { value: Colors::Truecolor, source: Source::Reply })

@@ -181,7 +181,7 @@ fn build(scene: &Scene) -> (f64, usize) {
     (start.elapsed().as_secs_f64(), again.tree_bytes())
 }
 
-/// The figures of one round.
+/// The results of one round of the benchmark.
 enum Round {
     Traced(TracedRound),
     Drawn(DrawnRound),
@@ -207,7 +207,8 @@ impl Round {
     }
 }
 
-/// The pixels that show an object, their depths, and the time of drawing all objects.
+/// The results of one round of drawing with a depth buffer: the number of pixels that show an
+/// object, the sum of their depths, and the time.
 struct DrawnRound {
     hits: u64,
     depths: f64,

@@ -99,7 +99,7 @@ impl CellArgs {
 
     /// Returns the hints from which a terminal's capabilities are detected: these flags, and
     /// environment variables.
-    pub(super) fn hints(&self, cell_aspect: Option<f32>) -> Hints {
+    pub(super) fn detection_hints(&self, cell_aspect: Option<f32>) -> Hints {
         let mut hints = Hints::gather(&|name| std::env::var(name).ok(), &terminfo_colors);
         hints.color = self.color_choice();
         hints.glyphs = self.glyph_choice();

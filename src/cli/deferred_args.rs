@@ -28,8 +28,8 @@ impl<T: Args> FromArgMatches for DeferredArgs<T> {
     }
 }
 
-/// Adds arguments to a command by `list`, and keeps the command's description, which clap's derived
-/// code would replace.
+/// Returns the command with the arguments that `list` adds, and with its own description, which
+/// clap's derived code would replace.
 fn keep_about(command: Command, list: fn(Command) -> Command) -> Command {
     let about = command.get_about().cloned().unwrap_or_default();
     let more = format!("termtrace {} --help lists all options, with examples.", command.get_name());

@@ -38,7 +38,7 @@ const QUERY_TIMEOUT: Duration = Duration::from_secs(2);
 
 pub(super) fn run(given: &ArgMatches) -> CommandResult {
     let settings = Settings::gather(given)?;
-    let hints = settings.args.terminal.hints();
+    let hints = settings.args.terminal.detection_hints();
     let mut questions = InitialQueries::all(&hints);
     let mut cell = CellShape::default();
     let is_terminal = io::stdout().is_terminal();

@@ -54,7 +54,7 @@ enum OrderArg {
 enum QualityArg {
     /// Every half cell has its exact colour
     Exact,
-    // Distances of colours are those of OKLab.
+    // The distances in these texts of the help are those of colours in OKLab.
     /// Within a distance of 0.01, which is invisible, and 44 dB; half the bytes or less
     Equal,
     /// Within 0.02, and 41 dB; fewer bytes still
@@ -86,7 +86,7 @@ impl OrderArgs {
 
 impl LossArgs {
     /// Returns the value of `--quality`, if given.
-    pub(super) fn quality(&self) -> Option<encode::Quality> {
+    pub(super) fn given_quality(&self) -> Option<encode::Quality> {
         self.quality.map(|quality| match quality {
             QualityArg::Exact => encode::Quality::Exact,
             QualityArg::Equal => encode::Quality::Equal,
@@ -95,7 +95,7 @@ impl LossArgs {
     }
 
     /// Returns the value of `--max-rate` in bytes per second, if given.
-    pub(super) fn max_rate(&self) -> Option<u32> {
+    pub(super) fn given_max_rate(&self) -> Option<u32> {
         self.max_rate
     }
 }

@@ -83,10 +83,10 @@ impl ViewArgs {
     /// Returns the options of the live view from the effective `settings`, which already include
     /// this command line's flags.
     fn options(&self, settings: &SettingArgs, keymap: Keymap, occasion: Occasion) -> Options {
-        let mut options = Options::new(settings.terminal.hints());
+        let mut options = Options::new(settings.terminal.detection_hints());
         options.order = self.order.order();
-        options.quality = settings.loss.quality();
-        options.max_rate = settings.loss.max_rate();
+        options.quality = settings.loss.given_quality();
+        options.max_rate = settings.loss.given_max_rate();
         options.max_frames = settings.fps;
         options.sampling = settings.samples;
         options.key_speed = settings.key_speed();
@@ -191,7 +191,7 @@ pub(super) fn open_view(
 }
 
 /// Returns the text about the camera on exit: a line of a scene file, and the same as flags.
-// The rest is comments of such a file, so that all three lines can be pasted.
+// The other lines are comments of a scene file, so that all three can be pasted into one.
 fn last_view(camera: &Camera) -> String {
     format!("// your last view, for a scene file or as flags:\n{},\n// {}\n", camera.to_ron(), camera.to_flags())
 }
@@ -211,7 +211,7 @@ fn sources(args: &LiveArgs) -> Result<Vec<Source<Failure>>, Failure> {
 pub(super) fn live_source(scene: SceneSource, camera_args: &CameraArgs) -> Source<Failure> {
     let file = if let SceneSource::File(path) = &scene { Some(path.clone()) } else { None };
     let (name, camera_args) = (scene.to_string(), camera_args.clone());
-    // A file is read later, on another thread, so that its name alone decides.
+    // A file is read later, on another thread, so its name alone decides whether it is a mesh.
     let is_mesh = scene.is_mesh();
     let source = Source::turnable(name, move |watcher, up| camera_args.load_draft(&scene, up, watcher));
     let source = if is_mesh { source.orbited() } else { source };

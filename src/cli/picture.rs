@@ -116,7 +116,7 @@ impl PictureArgs {
             return self.size.resolution_in(cells, aspect, mode);
         }
         let is_default = self.size.size.is_none() && self.size.pixels.is_none() && self.scale.is_none();
-        // The default resolution of a kind has square pixels, whatever the shape of a cell.
+        // The default resolution of a picture file has square pixels, whatever the shape of a cell.
         kind.resolution().filter(|_| is_default).map_or_else(|| self.size.resolution(mode), Ok)
     }
 
@@ -135,7 +135,7 @@ impl PictureArgs {
         self.samples
     }
 
-    /// Returns the value of `--scale`: the file pixels along the shorter side of each pixel.
+    /// Returns the value of `--scale`: the pixels of the file along the shorter side of a traced pixel.
     pub(super) fn scale(&self) -> u32 {
         self.scale.unwrap_or(1)
     }

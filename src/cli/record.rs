@@ -229,8 +229,8 @@ impl RecordArgs {
                 let cast = Cast::begin(BufWriter::new(out), film.cells(), encoder, film.fps)?;
                 Sink::Cast(
                     Box::new(Painter::new(film.mode)),
-                    cast.with_quality(self.encoding.loss.quality().unwrap_or(Quality::Equal))
-                        .with_max_rate(self.encoding.loss.max_rate()),
+                    cast.with_quality(self.encoding.loss.given_quality().unwrap_or(Quality::Equal))
+                        .with_max_rate(self.encoding.loss.given_max_rate()),
                 )
             }
             FilmFormat::Gif(path) => {

@@ -163,7 +163,7 @@ impl CameraArgs {
         if let Some(degrees) = self.fov {
             rectangle = rectangle.with_vertical_fov(degrees.to_radians())?;
         }
-        // In f64, as an angle in a scene file is.
+        // Converted in f64, as the angles of a scene file are, so that the same tilt gives the same camera.
         let radians = |degrees: Vec2| degrees.as_dvec2() * 1_f64.to_radians();
         let tilt = self.tilt.map_or(own.tilt(), |degrees| radians(degrees).as_vec2());
         Ok(camera.with_rectangle(rectangle.with_shift(self.shift.unwrap_or(own.shift()))?.with_tilt(tilt)?))

@@ -56,8 +56,8 @@ pub(super) struct TerminalArgs {
 impl TerminalArgs {
     /// Returns the hints from which the terminal's capabilities are detected: these flags, and
     /// environment variables.
-    pub(super) fn hints(&self) -> Hints {
-        self.cells.hints(self.cell_aspect)
+    pub(super) fn detection_hints(&self) -> Hints {
+        self.cells.detection_hints(self.cell_aspect)
     }
 }
 

@@ -71,7 +71,7 @@ pub struct Binding {
     pub mode: KeyMode,
     /// The keys; empty if the user has unbound them all.
     pub keys: Vec<Key>,
-    /// The command of each key.
+    /// The command that each of the keys runs.
     pub command: Command,
 }
 

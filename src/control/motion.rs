@@ -72,7 +72,7 @@ impl Held {
         self.share * (full.as_secs_f32() + left(from) - left(to))
     }
 
-    /// Releases the key at time `now`. The rest of its tap follows at a falling speed.
+    /// Releases the key at time `now`. If its step is not complete, the rest follows at a falling speed.
     fn release(&mut self, now: Duration) {
         let rest = TAP_TIME.saturating_sub(now.saturating_sub(self.pressed));
         self.full_until = now;
@@ -90,8 +90,8 @@ fn physical_key(key: &KeyEvent) -> PhysicalKey {
 }
 
 /// Length of a tap's motion, as the time that it would take at full speed.
-// A thirteenth of the distance to the target, or seven degrees: small enough to place the eye precisely, large enough
-// to be visible.
+// A tap moves the eye by a thirteenth of the distance to the target, or turns it by seven degrees: small enough to
+// place the eye precisely, large enough to be visible.
 pub const TAP_TIME: Duration = Duration::from_millis(150);
 /// Time after a press of a key within which another press of it continues the motion instead of
 /// starting a new one.
@@ -164,7 +164,7 @@ impl Motion {
         self.fast = fast;
         let mut held = Held { key, command, pressed, full_until: Duration::MAX, ends: Duration::MAX, share: 1.0 };
         match (self.reports_releases, again) {
-            // The terminal reports the release, or that the window has lost the focus.
+            // The key moves until the terminal reports its release, or that the window has lost the focus.
             (true, _) => {}
             (false, true) => (held.full_until, held.ends) = (now + COAST_TIME, now + COAST_TIME),
             (false, false) => held.release(now),
@@ -246,13 +246,13 @@ impl Motion {
 /// The motion of all held keys, in seconds at full speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct NetMotion {
-    /// Translation along the camera's u, up and w.
+    /// Seconds of translation along the camera's u, up and w.
     way: Vec3,
-    /// Rotation of the view direction: to the left about the up vector, and upwards about u.
+    /// Seconds of turning the view direction: to the left about the up vector, and upwards about u.
     turn: Vec2,
-    /// Rotation of the eye about the target: to the left, and upwards.
+    /// Seconds of rotating the eye about the target: to the left, and upwards.
     around: Vec2,
-    /// Change of the eye's distance to the target: 1 for nearer, -1 for farther.
+    /// Seconds of moving the eye towards the target; negative for moving away from it.
     nearer: f32,
 }
 

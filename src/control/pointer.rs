@@ -12,7 +12,7 @@ use std::time::Duration;
 pub enum Gesture {
     /// A button is pressed.
     Press {
-        /// The position of the pointer.
+        /// The pointer's position, in shares of the screen's width and height.
         at: Vec2,
         /// The motion that the button and Shift select.
         grip: Grip,
@@ -32,7 +32,7 @@ pub enum Gesture {
     DoubleClick,
     /// The wheel is turned.
     Wheel {
-        /// The position of the pointer.
+        /// The pointer's position, in shares of the screen's width and height.
         at: Vec2,
         /// Number of notches, positive if turned away from the user.
         notches: f32,

@@ -26,17 +26,17 @@ pub struct Facts {
 pub struct ObjectFacts {
     /// The object's number in the scene file, from 1.
     pub number: u32,
-    /// The name of its kind, such as `sphere`.
+    /// The kind of the object's shape, such as `sphere`.
     pub kind: &'static str,
-    /// The colour in words.
+    /// The object's colour in words.
     pub color: String,
-    /// The colour, kind and size as a noun phrase.
+    /// The object's colour, kind and size as a noun phrase.
     pub name: String,
     /// The visible part of the object, or the reason why there is none.
     pub seen: Result<SeenFacts, String>,
-    /// The objects that it hides at least partly.
+    /// The numbers of the objects that this object hides at least partly.
     pub in_front_of: Vec<u32>,
-    /// The objects that hide it at least partly.
+    /// The numbers of the objects that hide this object at least partly.
     pub behind: Vec<u32>,
     /// Whether the eye is inside the object.
     pub eye_is_inside: bool,
@@ -45,24 +45,24 @@ pub struct ObjectFacts {
 /// The facts about the visible part of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeenFacts {
-    /// The place in the picture, in words.
+    /// The object's position in the picture, in words.
     pub position: &'static str,
-    /// The share of the picture, from 0 to 1.
+    /// The object's share of the picture, from 0 to 1.
     pub share: f32,
-    /// The distance from the eye to the nearest visible point.
+    /// The distance from the eye to the object's nearest visible point.
     pub nearest: f32,
-    /// The distance from the eye to the farthest visible point.
+    /// The distance from the eye to the object's farthest visible point.
     pub farthest: f32,
 }
 
 /// The facts about a light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightFacts {
-    /// The colour in words.
+    /// The light's colour in words.
     pub color: &'static str,
     /// The direction from the target to the light, in words.
     pub direction: String,
-    /// The position; `None` for a light at infinity.
+    /// The light's position; `None` for a light at infinity.
     pub position: Option<Vec3>,
 }
 
@@ -85,7 +85,7 @@ impl Description<'_> {
         let numbers = |objects: Vec<u32>| objects.into_iter().map(|object| object + 1).collect();
         let shape = &self.scene.objects()[object as usize].shape;
         let seen = |part: &Coverage| SeenFacts {
-            position: position(part.rect(resolution)),
+            position: position(part.covered_rect(resolution)),
             share: share(part.pixels),
             nearest: part.nearest,
             farthest: part.farthest,

@@ -46,10 +46,10 @@ pub(super) struct Coverage {
 /// A rectangle in the picture, in shares of the picture's width and height, from the upper left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PictureRect {
-    /// The mean position of the covered pixels.
+    /// The mean position of the covered pixels, in shares of the picture's width and height.
     // The mean position, not the rectangle's centre: a thin part that sticks out would move that away from most pixels.
     pub(super) middle: [f32; 2],
-    /// The width and height of the rectangle.
+    /// The rectangle's width and height, in shares of the picture's width and height.
     pub(super) extent: [f32; 2],
 }
 
@@ -77,8 +77,8 @@ impl Coverage {
         }
     }
 
-    /// Returns the rectangle around the covered pixels, in a picture of this resolution.
-    pub(super) fn rect(&self, resolution: Resolution) -> PictureRect {
+    /// Returns the rectangle around the covered pixels, in shares of the picture's width and height.
+    pub(super) fn covered_rect(&self, resolution: Resolution) -> PictureRect {
         let sides = [resolution.width(), resolution.height()].map(|side| side as f32);
         let middle = [0, 1].map(|axis| (self.sum[axis] as f32 / self.pixels as f32 + 0.5) / sides[axis]);
         let extent = [self.columns, self.rows].map(|[first, end]| (end - first) as f32);

@@ -35,7 +35,9 @@ struct ActiveCell {
     wanted: Halves,
     /// The error if the cell is not written.
     stay: f32,
-    /// The error and the bytes of the cheapest way so far, the bytes at the exchange rate.
+    /// The least cost of this cell among the choices tried so far.
+    ///
+    /// A cost is the error that is left, plus the bytes written times the exchange rate.
     cost: f32,
     /// The key of the pair with which the cell is written; `None` to keep what it shows.
     pair: Option<u16>,

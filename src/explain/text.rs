@@ -33,6 +33,7 @@ impl SurfaceName {
     }
 }
 
+/// Writes the name, such as `sphere #1`, or `face 5 of #2` in a mesh.
 impl fmt::Display for SurfaceName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { object, kind, face } = self;
@@ -181,8 +182,8 @@ pub fn cell_of_pixel([x, y]: [u32; 2], mode: CellMode) -> String {
     format!("cell ({}, {}), {place}", x / across, y / down)
 }
 
-/// Formats the roots of a tested surface's equation. The root that is the crossing is replaced by
-/// the traced t.
+/// Formats the roots of a tested surface's equation, with the tracer's t in the place of the root
+/// of the crossing.
 // The equation is solved in f64, so its root may differ slightly from the t of the tracer, which the picture shows.
 fn root_values(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
     let Equation { roots, without_root, is_outside, .. } = equation;

@@ -116,7 +116,7 @@ fn marked(a: [u8; 3], b: [u8; 3]) -> Srgb8 {
             let grey = (a.iter().map(|&channel| u16::from(channel)).sum::<u16>() / 6) as u8;
             Srgb8::new(grey, grey, grey)
         }
-        // Even the smallest difference is seen.
+        // From 160 on, so that even the smallest difference is visible.
         distance => Srgb8::new(160 + (distance / 3).min(95), 0, 0),
     }
 }

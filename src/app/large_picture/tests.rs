@@ -1,6 +1,6 @@
 use super::*;
 
-/// Without an end of the live view's motion the pause is on for ever.
+/// A large picture is traced even if the live view moves, and so requests a pause, without end.
 #[test]
 fn a_picture_goes_on_beside_an_endless_motion() {
     let shared = Shared::default();

@@ -56,7 +56,7 @@ fn a_refinement_given_up_too_late_is_thrown_away() {
     assert_eq!(renderer.tracing(), None);
 }
 
-/// The loop traces frames like the last small one, with the same picture as the thread's.
+/// After a fast frame the loop traces small frames of the scene itself, to the thread's picture.
 #[test]
 fn small_frames_are_done_at_once() {
     let scene = three_spheres();

@@ -11,8 +11,9 @@ use std::path::{Component, Path, PathBuf};
 /// limit.
 const MAX_LINKS: usize = 40;
 
-/// The folders and links that a path leads through, each with its own path, which contains no
-/// further link.
+/// The folders and links that a path leads through, and the file at its end.
+///
+/// Each folder and link has a path of its own, which contains no other link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ResolvedPath {
     /// The folders and links on the path, each of which may be replaced.

@@ -29,7 +29,7 @@ fn straight_borders_have_the_characters_that_run_along_them() {
         (|x, _| x < 1.5, '|'),
         (|_, y| y < 1.55, '-'),
         (|_, y| y < 1.95, '_'),
-        // From one corner of the cell to the other, which is twice as high as wide.
+        // The diagonals of the middle cell, which is 1.0..2.0 in x and y: positions are in cells.
         (|x, y| x + y < 3.0, '/'),
         (|x, y| x - y < 0.0, '\\'),
         // Through the upper and the lower part of the cell.

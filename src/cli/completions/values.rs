@@ -44,7 +44,7 @@ impl Values {
                 word if word.starts_with(|c: char| c.is_ascii_lowercase()) => {
                     words.push((word.to_owned(), String::new()));
                 }
-                // A number or a vector: there are no words to offer.
+                // The value is a number or a vector, for which no words can be offered.
                 _ => (),
             }
         }

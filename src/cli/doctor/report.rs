@@ -19,7 +19,7 @@ pub(super) enum QueryOutcome {
     TimedOut,
 }
 
-/// The inputs of the table.
+/// The inputs of the report that `termtrace doctor` prints.
 pub(super) struct Report<'a> {
     pub(super) settings: &'a Settings,
     pub(super) hints: &'a Hints,

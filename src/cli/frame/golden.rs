@@ -48,10 +48,11 @@ pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> CommandResult 
     Err(Failure::Reported(1))
 }
 
-/// The characters of the ramp in the order that they had when it was the default of text frames.
+/// The characters of [`RAMP`] in the order of earlier versions, where text frames had this ramp.
 const RAMP_BEFORE: &[u8; RAMP.len()] = b" .:-=+*#%@";
 
-/// Returns how to compare a golden text frame that has the characters of another kind of glyphs.
+/// Returns advice if the golden text frame seems to differ only by its glyphs: their kind, or the
+/// order of the ramp.
 fn glyphs_hint(golden: &[u8], frame: &[u8]) -> Option<String> {
     let now = |byte: &u8| RAMP_BEFORE.iter().position(|before| before == byte).map_or(*byte, |at| RAMP[at]);
     if golden.len() == frame.len() && golden.iter().map(now).eq(frame.iter().copied()) {
@@ -68,7 +69,7 @@ fn probable_glyphs(text: &[u8]) -> Option<Glyphs> {
     } else if !text.is_ascii() {
         std::str::from_utf8(text).is_ok_and(|text| text.chars().all(|c| " ▀▄█\n".contains(c))).then_some(Glyphs::Half)
     } else {
-        // The fills of `ascii` have these three letters, and its outlines none.
+        // The glyphs of `ascii` have no other letters: fills have these three, outlines none.
         let is_of_shape = |byte: &u8| byte.is_ascii_alphanumeric() && !b"oxX".contains(byte);
         Some(if text.iter().any(is_of_shape) { Glyphs::Shape } else { Glyphs::Ascii })
     }

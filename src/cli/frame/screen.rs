@@ -26,7 +26,7 @@ impl Screen {
         let (columns, rows) = (window.ws_col, window.ws_row);
         let aspect = capabilities::cell_aspect(columns, rows, window.ws_xpixel, window.ws_ypixel);
         let shape = CellShape { aspect, ..CellShape::default() };
-        let found = Findings::new(&cells.hints(None), shape, &Replies::default()).capabilities();
+        let found = Findings::new(&cells.detection_hints(None), shape, &Replies::default()).capabilities();
         // A terminal that does not know its size reports 0 columns and 0 rows.
         let cells = if columns == 0 || rows == 0 { (80, 23) } else { (columns.into(), u32::from(rows - 1).max(1)) };
         Some(Self { mode: found.cell_mode, cells, cell_aspect: found.cell_aspect })

@@ -4,7 +4,7 @@ use crate::cli::outcome::{CommandResult, Failure};
 use clap::{ArgMatches, Args};
 use std::ffi::OsString;
 
-/// The arguments of the command: any.
+/// Any arguments: the command ignores them, and only tells how to get the server.
 #[derive(Args)]
 pub(in crate::cli) struct ServeArgs {
     #[arg(hide = true, trailing_var_arg = true, allow_hyphen_values = true)]

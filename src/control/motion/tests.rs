@@ -151,7 +151,9 @@ fn movement_is_per_second_not_per_step() {
     assert!(at_once.pose().target.abs_diff_eq(in_steps.pose().target, 1e-4));
 }
 
-/// Returns how far the eye moves forward from time 0 to `end`, in ms, if the key `w` has `events`.
+/// Returns the world units that the eye moves forward until `end` with these events of the key `w`.
+///
+/// `end` and the times of `events` are in milliseconds from 0.
 fn way(motion: &mut Motion, events: &[(u64, KeyEventKind)], end: u64) -> f32 {
     let (mut camera, mut last) = (camera(), ms(0));
     for &(at, kind) in events {
