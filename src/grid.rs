@@ -99,8 +99,8 @@ impl HalfBlocks {
     /// Returns the half blocks for cells of this height in pixels: either one if the height is
     /// even.
     // Compared pixel by pixel, xterm, st, kitty, alacritty and foot divide cells of even height at the same line for
-    // both. At odd heights some terminals draw the middle row in one half and some in the other, depending on the
-    // glyph, so a mix of both blocks is visible.
+    // the upper and the lower half block. At odd heights it depends on the terminal and the glyph to which half the
+    // middle row of pixels belongs, so that a mix of both blocks would be visible.
     pub(crate) fn of_cell_height(height: u16) -> Self {
         if height > 0 && height.is_multiple_of(2) { Self::Either } else { Self::Lower }
     }
@@ -149,8 +149,10 @@ pub enum Glyph {
     Cluster(Arc<str>),
     /// No glyph: the wide glyph to the left also covers this cell.
     Covered,
-    /// Foreign contents. In a wanted grid such a cell is not written; in a shown grid its contents
-    /// are unknown.
+    /// Contents of another program, or unknown contents.
+    ///
+    /// In a wanted grid (what the screen is to show) the cell is not written; in a shown grid (what the screen shows)
+    /// its contents are unknown.
     Foreign,
 }
 
@@ -160,6 +162,7 @@ impl From<char> for Glyph {
     }
 }
 
+/// Compares with a character; a glyph of any other kind equals none.
 impl PartialEq<char> for Glyph {
     fn eq(&self, character: &char) -> bool {
         matches!(self, Self::Char(own) if own == character)
@@ -199,7 +202,7 @@ impl Cell {
     #[doc(hidden)]
     pub const BLANK: Self = Self::new(' ', Ink::Default, Ink::Default);
 
-    /// A cell with foreign contents.
+    /// A cell that is not written in a wanted grid, and has unknown contents in a shown grid.
     #[cfg(any(feature = "backend", all(test, unit_tests)))]
     pub(crate) const FOREIGN: Self = Self::with_glyph(Glyph::Foreign, Ink::Default, Ink::Default);
 
@@ -364,8 +367,9 @@ impl Grid {
         self.cells.resize(count, PackedCell::BLANK);
     }
 
-    /// Returns a grid of foreign cells: a shown grid of unknown contents, or a wanted grid without
-    /// any wanted cell.
+    /// Returns a grid in which each cell has [`Glyph::Foreign`].
+    ///
+    /// As the shown grid it represents a screen of unknown contents; as the wanted grid it changes no cell.
     ///
     /// # Panics
     /// If it has more than 16,777,216 cells.
@@ -572,7 +576,8 @@ impl Grid {
         self.split_wide_glyph(column, row);
         self.split_wide_glyph(end, row);
         for covered in column + 1..end {
-            // Covered cells also have the glyph's colours, so that comparing them detects a change of any.
+            // A covered cell repeats the colours and attributes of the glyph, so that comparing it detects their
+            // change.
             self.set(covered, row, &Cell { glyph: Glyph::Covered, ..*cell });
         }
         self.set(column, row, cell);

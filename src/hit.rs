@@ -133,7 +133,7 @@ impl EightHits {
 /// Finds the closest hit of each active ray in front of its origin.
 ///
 /// Of hits at the same t, the primitive that comes first in the scene wins.
-// Without this rule the picture would depend on the order of traversal, and so on the kernel.
+// If any of the hits at the same t could win, the picture would depend on the order of traversal, and so on the kernel.
 pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mut Vec<EightHits>) {
     hits.clear();
     let accel = scene.accelerator();

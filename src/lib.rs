@@ -444,7 +444,7 @@ pub use glam;
 pub use ratatui_core;
 
 /// The examples of the documentation's pages, which are compiled and run with the others.
-// The package lacks the pages and the files of `unit_tests`.
+// The published package lacks these pages and the larger unit tests, so `unit_tests` is not set there.
 #[cfg(all(doctest, unit_tests))]
 #[doc = include_str!("../docs/library.md")]
 #[doc = include_str!("../docs/snapshots.md")]

@@ -79,7 +79,7 @@ pub enum Map {
 }
 
 /// The colour of pixels without a hit, in all maps except `Cost` and `Contrast`.
-// A dark blue, which differs from all greys and from an object in the dark.
+// A dark blue, which can be told from all greys of the maps and from the black of an unlit object.
 const NO_HIT: Srgb8 = Srgb8::new(16, 20, 56);
 /// The colour of front sides, the sides to which the normal points.
 // Blue and orange-red, which people with red-green blindness can tell apart.
@@ -186,7 +186,7 @@ impl Map {
     }
 
     /// Returns the map's name and the meaning of its colours, in at most 38 ASCII characters.
-    // Together with a border, the legend then fits into a terminal of 40 columns.
+    // 38 characters and a border on either side fit into a terminal of 40 columns.
     #[doc(hidden)]
     pub fn legend(self, scene: &Scene, camera: &Camera) -> String {
         let meaning = match self {

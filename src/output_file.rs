@@ -101,7 +101,8 @@ impl OutputFile {
         }
     }
 
-    /// Starts a file in a folder, for [`finish_unused`](Self::finish_unused).
+    /// Starts a file in `folder` that [`finish_unused`](Self::finish_unused) will complete and
+    /// name.
     ///
     /// # Errors
     /// If the folder does not allow a new file.

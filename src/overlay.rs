@@ -84,7 +84,7 @@ fn glyph_from_ratatui(cell: &ratatui_core::buffer::Cell) -> (Glyph, u16) {
 }
 
 /// Returns whether a character is a regional indicator, two of which form a flag.
-// Terminals disagree on the width of a single one, so it is stored as a cluster.
+// Terminals disagree on the width of a single regional indicator, so it is stored as a cluster.
 fn is_regional_indicator(character: char) -> bool {
     matches!(character, '\u{1f1e6}'..='\u{1f1ff}')
 }
@@ -176,7 +176,7 @@ fn ratatui_from_cell(cell: &Cell) -> ratatui_core::buffer::Cell {
         Glyph::Cluster(text) => {
             to.set_symbol(text);
         }
-        // In ratatui the cell after a wide character is blank.
+        // ratatui leaves the cell after a wide character empty, so `to` is returned without the colours.
         Glyph::Covered => return to,
         Glyph::Foreign => {
             to.set_diff_option(CellDiffOption::Skip);

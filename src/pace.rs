@@ -99,10 +99,11 @@ pub struct Link {
     replies: ReplyTracker,
     /// Share that the last frame used of the bytes that it was allowed.
     utilisation: f64,
-    /// Time at which everything sent has been transmitted at the sending rate, less the credit for
-    /// an earlier pause.
+    /// Time at which everything sent has been transmitted, less the credit for an earlier pause.
+    ///
+    /// It is computed with the sending rate: the estimated rate times [`PACING_GAIN`], at most `max_rate`.
     free_at: Duration,
-    /// Time at which everything sent has been transmitted at the sending rate.
+    /// Time at which everything sent has been transmitted, computed with the sending rate.
     drained_at: Duration,
 }
 
@@ -225,7 +226,8 @@ impl Link {
             <= self.bandwidth_delay_product(rate)
     }
 
-    /// Returns the limit on a frame if the link is slow, that is, for screens of `screen` bytes.
+    /// Returns the limit on a frame if the link is too slow to show screens of `screen` bytes
+    /// smoothly.
     ///
     /// Also records whether the link is slow, for [`is_slow`](Self::is_slow).
     pub fn slow_limit(&mut self, screen: usize) -> Option<Limit> {
@@ -278,8 +280,8 @@ impl Link {
     /// flight.
     fn congestion_window(&self) -> f64 {
         let Some(rate) = self.replies.rates.best() else { return 0.0 };
-        // Bytes that the last frame left unused may be used by other frames: without this, a fifth of the link was
-        // idle.
+        // Bytes that the last frame was allowed but did not use are added to the window: without them, a fifth of the
+        // link was idle.
         let spare = if self.is_slow() { ((1.0 - self.utilisation) * self.frame_bytes(rate)).max(0.0) } else { 0.0 };
         // The first replies may mislead if one of them is lost or duplicated: the window at most doubles with each
         // round trip, as in TCP's slow start.
@@ -298,7 +300,7 @@ impl Link {
     /// rate.
     fn record_sent(&mut self, bytes: usize, now: Duration) {
         let measured = self.replies.rates.best().filter(|rate| rate.is_limit || self.is_slow());
-        // Without replies, an estimate that is too low would never be corrected.
+        // During a resync no reply corrects an estimate that is too high, so only half of the usual share is sent.
         let share = if matches!(self.replies.state, State::Resyncing { .. }) { PACING_GAIN / 2.0 } else { PACING_GAIN };
         let measured = measured.map_or(f64::INFINITY, |rate| share * rate.bytes_per_second);
         let rate = measured.min(self.max_rate.unwrap_or(f64::INFINITY));

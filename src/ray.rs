@@ -57,7 +57,8 @@ impl<N: Number> Rays<N> {
         Self {
             origin,
             direction,
-            // Infinite for a zero coordinate, on purpose: slabs then decide by sign (`culling.md`, 2).
+            // The reciprocal of a zero coordinate is infinite, on purpose: for a ray parallel to the planes of a box,
+            // the slab test then depends only on the sides on which the origin lies (`culling.md`, 2).
             inverse: Vector { x: one / x, y: one / y, z: one / z },
             squared_length,
             inverse_squared_length: one / squared_length,
@@ -179,7 +180,7 @@ enum DominantAxis<M> {
 }
 
 impl<N: Number> Shear<N> {
-    /// Returns a placeholder for rays that are not tested against triangles.
+    /// Returns a placeholder, a shear of zeros, for rays that are not tested against triangles.
     #[inline(always)]
     fn none() -> Self {
         let zero = N::splat(0.0);

@@ -59,9 +59,9 @@ pub enum WrittenBackground {
     Color(WrittenColor),
     /// `Gradient(bottom: ..., top: ...)`
     Gradient {
-        /// The colour straight down.
+        /// The colour when looking straight down.
         bottom: Option<WrittenColor>,
-        /// The colour straight up.
+        /// The colour when looking straight up.
         top: Option<WrittenColor>,
     },
 }

@@ -104,7 +104,7 @@ pub struct Group<'a> {
 pub struct Name<'a> {
     /// The word.
     pub text: &'a str,
-    /// The span of the word.
+    /// The range of the word's bytes in the text.
     pub span: Span,
 }
 

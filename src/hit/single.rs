@@ -25,7 +25,7 @@ pub(super) struct SingleRay<'p, N: Lanes, const ANY: bool, W = NoObserver> {
 }
 
 impl<'p, N: Lanes, const ANY: bool> SingleRay<'p, N, ANY> {
-    /// Returns a ray without an observer.
+    /// Returns a single ray, the ray of lane `lane`, whose tests are not observed.
     #[inline(always)]
     pub(super) fn new(accel: &'p Accelerator, rays: &'p Rays<N>, lane: usize, within: Interval) -> Self {
         Self::observed(accel, rays, lane, within, NoObserver)
@@ -176,7 +176,7 @@ struct Search<'a, 'p, N: Lanes, S, const ANY: bool, W> {
 impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> SimdKernel for Search<'_, '_, N, S, ANY, W> {
     type Output = ();
 
-    // `Same` is the `N` of the ray, which `call_no_inline` passes on.
+    // `Same` is the type `N`: `call_no_inline` of `N` runs a kernel with vectors of type `N`.
     #[inline(always)]
     fn run<Same: Lanes>(self) {
         let Self { ray, from, tree, stack } = self;

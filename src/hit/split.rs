@@ -12,35 +12,40 @@ use crate::bvh::GROUPS;
 use crate::lanes::set_bits;
 
 /// The largest number of rays at a node that leave the packet to go on as single rays.
-// With 8 instead of 6, and all groups counted, 1,000 spheres took 1.14 times as long.
+// With 8 instead of 6 rays, and the rays of all groups counted, 1,000 spheres took 1.14 times as long.
 const MAX_SINGLE_RAYS: u32 = 6;
 
-/// The largest number of single rays at a node, as [`MAX_SINGLE_RAYS`], per group that may hit it.
+/// The largest number of rays that leave the packet at a node, per group that may hit the node.
 ///
-/// The larger of the two limits applies.
+/// The larger of this limit and [`MAX_SINGLE_RAYS`] applies.
 const MAX_SINGLE_RAYS_PER_GROUP: u32 = 2;
 
-/// The largest number of groups at a node for which the rays of all groups are counted.
-// Counting more groups takes longer than the test of the node. With more, only one group of shadow rays is counted, as
-// a sample, and eye rays are not counted at all: at such nodes they were never found to be few, as their groups are as
-// narrow as their pixels. Not counting eye rays makes the bunny 1.10 times as fast (51.7 to 56.8 Mrays/s).
+/// The largest number of groups of eight at a node for which their rays are always counted.
+///
+/// The count decides whether the rays leave the packet.
+// Counting the rays of more groups takes longer than the test of the node. If more groups may hit the node, shadow rays
+// of one group are counted first, as a sample, and eye rays are not counted at all: at such nodes they were never found
+// to be few, as the rays of a group are as close together as pixels. Not counting eye rays makes the bunny 1.10 times
+// as fast (51.7 to 56.8 Mrays/s).
 const MAX_COUNTED_GROUPS: u32 = 5;
 
 /// The largest number of hits in the sampled group for which the rays of all groups are counted.
-// With 2 instead of 1, shadow rays of 100,000 spheres took 1.03 times as long.
+// With 2 instead of 1 hit in the sample, shadow rays of 100,000 spheres took 1.03 times as long.
 const MAX_SAMPLED_RAYS: u32 = 1;
 
-/// Returns the number of a node's boxes that a packet must hit for its rays to be counted.
-// With fewer boxes the packet has less work than the count. When rays were counted before the boxes were tested, shadow
-// rays of 1,000 spheres and eye rays of 100,000 spheres took 1.05 times as long. With 3 instead of 2 for shadow rays,
-// those of 100,000 spheres take 1.08 times as long.
+/// Returns the least number of a node's boxes that a packet must hit for its rays to be counted.
+///
+/// The count decides whether the rays leave the packet. `any` is whether any hit is wanted, as for shadow rays.
+// If the packet hits fewer boxes, tracing it takes less time than counting its rays. When rays were counted before the
+// boxes were tested, shadow rays of 1,000 spheres and eye rays of 100,000 spheres took 1.05 times as long. With 3
+// instead of 2 boxes, shadow rays of 100,000 spheres take 1.08 times as long.
 pub(super) const fn min_boxes_to_split(any: bool) -> u32 {
     if any { 2 } else { 4 }
 }
 
 /// The largest number of visited leaves with which a packet that its rays left is inefficient.
-// Such a packet did the work of a packet and of single rays. With the rest of its tile traced singly, dragon 871k at
-// 100x60 takes 0.91 instead of 1.10 ms.
+// An inefficient packet does the work of a packet and then that of single rays. If the rest of its tile is traced by
+// single rays, dragon 871k at 100x60 takes 0.91 instead of 1.10 ms.
 const MAX_INEFFICIENT_LEAVES: u32 = 6;
 
 /// The rays of a packet at a node.

@@ -28,7 +28,7 @@ pub(super) struct Tokeniser(vte::Parser);
 impl Tokeniser {
     /// Puts the tokeniser into the state after `ESC [`.
     pub(super) fn begin_csi(&mut self) {
-        // The caller has not passed on the ESC before, because its meaning depends on this byte.
+        // The caller has not passed the ESC to `vte`, because its meaning depends on the next byte, here `[`.
         self.0.advance(&mut Tokens { tokens: Vec::new(), text: &[] }, b"\x1b[");
     }
 

@@ -104,7 +104,8 @@ fn mean_of_square_wave<N: Number>(middle: N, width: N) -> N {
     let (start, end) = (middle - half, middle + half);
     let (first, last) = (start.floor(), end.floor());
     let sign = N::select(is_even(first), one, -one);
-    // The mean across a single edge: the part before the edge minus the part after it.
+    // The mean over an interval with one edge of the wave: the share before the edge minus the share after it, with the
+    // sign of the wave before the edge.
     let over_one = sign * ((last - start) - (end - last)) / (end - start);
     let over_more = (triangle_wave(end) - triangle_wave(start)) / (end - start);
     let over_edges = N::select((last - first).eq(one), over_one, over_more);

@@ -14,24 +14,25 @@ use std::time::Duration;
 /// counts as lost.
 ///
 /// This is one more than occur while a queue drains (see [`SECOND_QUERY_TOLERANCE`]).
-// With three, a link that becomes ten times slower is taken for one that has lost a reply, and a key waits for 3.8 s.
-// The same happens if the time is compared with queries newer than the second oldest, too.
+// With three replies, a link that becomes ten times slower is taken for one that has lost a reply, and a key waits for
+// 3.8 s. The same happens if a reply is also compared with the due times of queries newer than the second oldest.
 const MIN_MISALIGNED_REPLIES: u32 = 4;
 /// Greatest difference from the due time at which a reply may belong to the second oldest query.
 ///
-/// If a queue drains by a seventh of the frame interval per frame, three consecutive replies are within it.
+/// While a queue drains by a seventh of the frame interval per frame, three consecutive replies differ by less.
 const SECOND_QUERY_TOLERANCE: Duration = Duration::from_millis(5);
 /// Greatest difference from the due time at which a reply may belong to the oldest query.
-// Twice the tolerance for the second oldest query, because a false alarm costs a second without queries.
+// Twice the tolerance for the second oldest query, so that a reply in doubt counts as the reply to the oldest: a false
+// alarm costs a second without queries.
 const OLDEST_QUERY_TOLERANCE: Duration = Duration::from_millis(10);
 
 /// The evidence of a misalignment so far.
 #[derive(Default)]
 pub(super) struct Alignment {
-    /// The last estimated rate in bytes per second by which a reply to the oldest query was on
-    /// time.
+    /// The last estimate of the rate in bytes per second that correctly predicted the arrival of a
+    /// reply to the oldest query.
     ///
-    /// After a loss this is the estimate from before it.
+    /// After the loss of a reply this is an estimate from before the loss.
     rate: Option<f64>,
     /// Number of consecutive replies that arrived when the reply to the second oldest query was
     /// due.
@@ -60,8 +61,8 @@ impl Alignment {
                 self.rate = Some(rate);
             }
             let fits = |query: &InFlight, tolerance| {
-                // If all replies so far were misaligned, the estimated rate is wrong. Small frames show that, because
-                // their transmission takes hardly any time.
+                // If all replies so far were matched to the wrong query, the estimated rate is wrong. Small frames show
+                // the misalignment nevertheless, because their transmission takes hardly any time at any rate.
                 let is_small = query.bytes <= MIN_FRAME_BYTES;
                 is_on_time(query, self.rate.unwrap_or(rate), tolerance)
                     || is_small && is_on_time(query, f64::INFINITY, tolerance)

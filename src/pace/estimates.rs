@@ -22,8 +22,8 @@ const MIN_SERVICE_TIME: Duration = Duration::from_millis(20);
 /// Greatest error of a measured time, because of the clock and the scheduler.
 const JITTER: Duration = Duration::from_millis(5);
 /// Weight of the previous bytes and times in the mean rate; each frame multiplies it once more.
-// The rate of a single frame, which a slow link transmits in about 28 ms, varies by a quarter with a jitter of 5 ms.
-// With the mean over several frames, recovery from a tenfold drop became faster by 0.2 s.
+// A slow link transmits a frame in about 28 ms, so a jitter of 5 ms changes the rate of a single frame by a quarter.
+// With the mean over several frames, recovery from a tenfold drop of the rate became faster by 0.2 s.
 const SMOOTHING: f64 = 0.75;
 /// Least number of bytes of a frame that gives the rate; at low rates a fiftieth of the bytes per
 /// second suffices.
@@ -31,10 +31,11 @@ const SMOOTHING: f64 = 0.75;
 const MIN_SAMPLE_BYTES: f64 = 512.0;
 
 /// Least service time of a frame after which [`FrameFloor`] grows.
-// Frames of a slow link take 28 ms, if they are larger than the floor.
+// A slow link transmits a frame that is larger than the floor in 28 ms (36 frames a second); a longer time means that
+// the terminal draws.
 const MIN_DRAWING_TIME: Duration = Duration::from_millis(50);
 /// Time for which [`FrameFloor`] does not grow after larger frames have taken longer.
-// On a near link of 3 KB/s, one frame in this time takes 133 ms instead of 67.
+// Each attempt to grow costs time: on a near link of 3 KB/s, one frame in two seconds takes 133 ms instead of 67.
 const FLOOR_PAUSE: Duration = Duration::from_secs(2);
 /// Greatest number of doublings of [`FrameFloor`]: to 51 kB, half a picture of 200x60 cells.
 const MAX_DOUBLINGS: u32 = 8;
@@ -44,19 +45,19 @@ const MAX_DOUBLINGS: u32 = 8;
 pub(super) struct RoundTrip {
     /// The shortest round trip of the previous interval and of the current one.
     shortest: [Option<Duration>; 2],
-    /// Time at which the current interval began.
+    /// Time at which the current interval, one of [`ROUND_TRIP_INTERVAL`], began.
     since: Duration,
     /// The last estimate before [`invalidate`](Self::invalidate).
     before: Duration,
 }
 
 impl RoundTrip {
-    /// Records a round trip. `is_own` is whether the link transmitted the query at once, so that it
-    /// is the link's own.
+    /// Records a round trip; `is_own` is whether it is the link's own, without transmission of a
+    /// frame.
     ///
-    /// Only such a round trip starts a new interval. Otherwise, if only replies to frames arrived during an interval,
-    /// the transmission time of frames would be taken for a part of the link's round trip, and the rate for a very
-    /// high one.
+    /// Only a round trip of the link's own starts a new interval. Otherwise, if only replies to frames arrived during
+    /// an interval, the transmission time of frames would be taken for a part of the link's round trip, and the rate
+    /// for a very high one.
     pub(super) fn record(&mut self, round_trip: Duration, is_own: bool, now: Duration) {
         if is_own && now.saturating_sub(self.since) >= ROUND_TRIP_INTERVAL {
             self.shortest = [self.shortest[1], None];
@@ -71,12 +72,13 @@ impl RoundTrip {
         *self = Self { before: self.expected(), ..Self::default() };
     }
 
-    /// Returns the estimate, or the last one before it was dropped.
+    /// Returns the estimated shortest round trip, or the last estimate before it was dropped.
     pub(super) fn expected(&self) -> Duration {
         self.shortest.into_iter().flatten().min().unwrap_or(self.before)
     }
 
-    /// Returns whether there is an estimate.
+    /// Returns whether the shortest round trip is known: recorded since the estimate was dropped
+    /// last.
     pub(super) fn is_known(&self) -> bool {
         self.shortest[1].is_some()
     }
@@ -87,7 +89,7 @@ impl RoundTrip {
         round_trip + JITTER < self.shortest().mul_f64(0.9)
     }
 
-    /// Returns the estimate; zero without one.
+    /// Returns the estimated shortest round trip; zero if it is unknown.
     pub(super) fn shortest(&self) -> Duration {
         self.shortest.into_iter().flatten().min().unwrap_or_default()
     }
@@ -127,7 +129,7 @@ impl BusyPeriod {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rate {
     pub(super) bytes_per_second: f64,
-    /// Whether it is the link's limit; otherwise it is a lower bound.
+    /// Whether the rate is the link's limit; otherwise it is a lower bound of the limit.
     pub(super) is_limit: bool,
 }
 
@@ -139,16 +141,16 @@ pub(super) struct Rate {
 // terminal got 1 % of what it could draw; now it gets a quarter or more.
 #[derive(Default)]
 pub(super) struct FrameFloor {
-    /// Number of times that the size was doubled.
+    /// Number of times that the floor was doubled.
     doublings: u32,
-    /// The service time of frames of half the size.
+    /// Service time of a frame before the last doubling, with which the next frame's is compared.
     before: Option<Duration>,
-    /// Time until which the size is not doubled, because that took longer.
+    /// Time until which the floor is not doubled, because larger frames took longer.
     waits_until: Duration,
 }
 
 impl FrameFloor {
-    /// Returns the number of bytes.
+    /// Returns the number of bytes that a frame may always have.
     pub(super) fn bytes(&self) -> usize {
         MIN_FRAME_BYTES << self.doublings
     }
@@ -176,7 +178,7 @@ pub(super) struct Rates {
     rates: VecDeque<(Duration, Rate)>,
     /// The decaying sums of bytes and times whose quotient is the last sample.
     ///
-    /// Zero if that sample was only a lower bound.
+    /// Both are zero if the last sample was only a lower bound of the rate.
     last: (f64, Duration),
 }
 

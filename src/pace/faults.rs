@@ -68,11 +68,11 @@ struct World {
     frames: Vec<(Duration, usize, Duration)>,
     /// The replies on their way, with their times of arrival.
     due: Vec<(Duration, Reply)>,
-    /// Time before which no reply arrives.
+    /// Time before which no reply of the simulated terminal arrives, as [`Fault::Held`] sets it.
     held_until: Duration,
     /// Time at which the first round trip was known.
     first_reply: Option<Duration>,
-    /// Bytes of a frame if the link sets no lower limit.
+    /// Bytes of each frame that the program sends, unless the link's limit is lower.
     wanted: usize,
     /// Delay of the first reply, because the terminal is busy starting.
     start: Duration,
@@ -273,8 +273,9 @@ fn the_first_picture_of_a_slow_link_is_waited_for() {
     }
 }
 
-/// Returns whether a fault makes the rate of a slow link unmeasurable: replies stop, or come more
-/// than a second late, from one of the first on.
+/// Returns whether a fault of one of the first replies makes the rate of a slow link unmeasurable.
+///
+/// From that reply on, all replies are missing or more than a second late.
 fn hides_rate(fault: Fault) -> bool {
     matches!(fault, Fault::Held(late) if late > ms(1_000)) || fault == Fault::Stopped
 }

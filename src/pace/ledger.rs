@@ -48,7 +48,7 @@ pub(super) struct InFlight {
     /// Number of bytes from the end of the previous query to the end of this one; 0 for a query
     /// without a frame.
     pub(super) bytes: usize,
-    /// Time at which the first of these bytes was sent.
+    /// Time at which the first of the bytes that `bytes` counts was sent; `sent` if there are none.
     pub(super) first_sent: Duration,
     /// Whether the query has timed out, and no later reply has shown the timeout to be spurious.
     timed_out: bool,
@@ -138,7 +138,7 @@ impl Ledger {
     }
 
     /// Returns whether a reply without a number may belong to a query that has timed out.
-    pub(super) fn is_ambiguous(&self) -> bool {
+    pub(super) fn is_counted_reply_ambiguous(&self) -> bool {
         self.queries.iter().any(|query| query.timed_out && query.query.is_counted())
     }
 

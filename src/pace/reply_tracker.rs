@@ -19,14 +19,14 @@ const RTO_MARGIN: Duration = Duration::from_millis(150);
 // 280 ms apart.
 const SLOW_RTO_MARGIN: Duration = Duration::from_millis(300);
 /// Time after the first frame until its reply counts as missing.
-// The effect of a key that is pressed at once is then visible within 500 ms. With a shorter timeout more would be sent
-// to a terminal that is still busy starting.
+// With this timeout the effect of a key that is pressed at once is visible within 500 ms. With a shorter one, more
+// would be sent to a terminal that is still busy starting.
 const FIRST_RTO: Duration = Duration::from_millis(400);
 /// Time after a timeout until a terminal that has not replied is considered silent: two more
 /// timeouts.
 const SILENCE_TIMEOUT: Duration = Duration::from_millis(300);
 /// Time after a timeout on a slow link until a terminal that has not replied is considered silent.
-// Longer than on a fast link, where frames to a terminal that merely pauses do not queue for seconds.
+// Longer than on a fast link: a slow one needs seconds for the frames that are sent to a terminal that merely pauses.
 const SLOW_SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
 /// Time after the first timeout until a terminal that has never replied is considered silent.
 ///
@@ -56,12 +56,12 @@ const IMMEDIATE_REPLY_TOLERANCE: Duration = Duration::from_millis(10);
 const MAX_ROUND_TRIP: Duration = Duration::from_secs(1);
 
 /// Time after a reply was due on a slow link from which on the link is known to have become slower.
-// Until then frames are sent at the old rate. With 50 ms, recovery from a tenfold drop takes 1.65 to 1.87 s of
-// simulated time; with 100 ms it took 1.73 to 1.94 s.
+// Until a reply is that late, frames are sent at the old rate. With a margin of 50 ms, recovery from a tenfold drop of
+// the rate takes 1.65 to 1.87 s of simulated time; with 100 ms it took 1.73 to 1.94 s.
 const LATE_REPLY_MARGIN: Duration = Duration::from_millis(50);
 /// Least rate in bytes per second that is assumed after the first resync.
-// After a pause, the bytes that have arrived since the first query show too low a rate. This one allows a frame of
-// about 200 bytes every 28 ms, the least that shows the rate to be too low.
+// After a pause, the rate computed from the bytes that have arrived since the first query is too low. At 7,500 bytes
+// per second a frame has about 200 bytes (36 frames a second), the least that shows a rate to be too low.
 const MIN_RESYNC_RATE: f64 = 7_500.0;
 /// Number of replies that must arrive in order after a resync until several queries may be in
 /// flight again.
@@ -100,7 +100,7 @@ pub(super) struct ReplyTracker {
     /// Number of bytes known to have arrived since the estimates were dropped last, which limits
     /// the window (slow start).
     pub(super) delivered: f64,
-    /// Time of the first query since then.
+    /// Time of the first query since the estimates were dropped last.
     begun: Option<Duration>,
     /// Whether the link was slow when the last limit was computed.
     slow: bool,
@@ -132,10 +132,11 @@ pub(super) enum State {
 pub(super) enum TagSupport {
     /// The terminal has answered no DECRQM, and might print it.
     Unknown,
-    /// The terminal answers DECRQM of other modes; a [`Query::Both`] finds out about nonexistent
-    /// ones.
+    /// The terminal has answered a DECRQM, but perhaps does not answer one of a nonexistent mode.
+    ///
+    /// The reply to a [`Query::Both`] will show whether it does.
     Possible,
-    /// The terminal repeats the number.
+    /// The terminal answers DECRQM of a nonexistent mode, and repeats the number of the mode.
     Known,
 }
 
@@ -276,8 +277,9 @@ impl ReplyTracker {
 
     /// Returns the kind of query to send next.
     ///
-    /// While replies are missing it is DECRQM and DA1 together, if the terminal answers the former: a terminal that
-    /// does not may have taken its place, as after a detach.
+    /// A terminal that repeats numbers gets a DECRQM; once it is silent it gets a DA1 as well, because another terminal
+    /// that does not answer a DECRQM may have taken its place, as after a detach. A terminal that perhaps repeats
+    /// numbers gets both while replies are missing. In all other cases the query is a DA1.
     pub(super) fn next_query(&mut self) -> Query {
         let doubts = matches!(self.state, State::Recovering { .. } | State::Silent);
         match self.tag_support {
@@ -310,8 +312,8 @@ impl ReplyTracker {
             return self.resync(now);
         }
         let first = self.last_reply.replace(now).is_none();
-        let in_order =
-            !self.ledger.is_ambiguous() || self.state != State::Silent && (first || self.is_reply_to_first_frame(now));
+        let in_order = !self.ledger.is_counted_reply_ambiguous()
+            || self.state != State::Silent && (first || self.is_reply_to_first_frame(now));
         let is_unclear = if in_order { self.is_too_early(oldest, now) } else { self.slow };
         if is_unclear {
             return self.resync(now);
@@ -365,7 +367,8 @@ impl ReplyTracker {
     /// Returns whether a reply without a number that arrives now shows that an earlier one was lost
     /// on a slow link.
     fn is_misaligned(&mut self, now: Duration) -> bool {
-        let Some(rate) = self.rates.best().filter(|_| self.slow && !self.ledger.is_ambiguous()) else { return false };
+        let is_decidable = self.slow && !self.ledger.is_counted_reply_ambiguous();
+        let Some(rate) = self.rates.best().filter(|_| is_decidable) else { return false };
         let round_trip = self.round_trip.shortest();
         self.alignment.is_misaligned(self.ledger.counted_queries(), round_trip, rate.bytes_per_second, now)
     }
@@ -409,7 +412,8 @@ impl ReplyTracker {
         let had_round_trip = self.round_trip.is_known();
         self.record_round_trip(matched, now);
         let tells_rate = matches!(matched.validity, Validity::Exact | Validity::Spurious);
-        // The first round trip after the estimate was dropped is the shortest, so the transmission time would be zero.
+        // The first round trip after the estimate was dropped is itself the shortest one, so that the transmission time
+        // computed from it would be zero.
         if tells_rate && (had_round_trip || self.rates.best().is_none()) {
             self.record_rate(matched, now);
         }
@@ -441,10 +445,11 @@ impl ReplyTracker {
         self.rates.record(bytes, service, is_late, now);
     }
 
-    /// Returns whether a reply of this validity shows how long a near terminal draws.
+    /// Returns whether a reply with a match of this validity shows how long a near terminal draws.
     fn shows_drawing_time(&self, validity: Validity) -> bool {
-        // Over a long way a small frame takes long because the link is slow. Replies without numbers may be matched
-        // wrongly while the first picture is on its way: at 5 KB/s the floor then grew to 6 kB.
+        // If the round trip is long, a small frame takes long because the link is slow, not because the terminal draws.
+        // While the first picture is on its way, a reply without a number may be matched to the wrong query: at 5 KB/s
+        // the frame floor then grew to 6 kB.
         let is_matched = self.tag_support == TagSupport::Known || self.delivered >= MIN_DELIVERED_BYTES;
         self.slow && self.is_local() && is_matched && validity == Validity::Exact
     }
@@ -462,10 +467,10 @@ impl ReplyTracker {
         if self.slow {
             self.rates.keep_limits();
             if self.serial_replies == 0 && self.delivered < MIN_DELIVERED_BYTES {
-                // If the first reply is lost, the reply to the first picture counts as that to the first query. The
-                // round trip then seems longer by the picture's transmission, so the rate of 50 KB/s was estimated as
-                // 137, each resync kept that, and keys took up to 1.4 s for good. The link has been idle for half of
-                // the time since the first query at most, waiting for replies, so it transmits twice of what arrived.
+                // If the first reply is lost, the reply to the first picture is matched to the first query. The round
+                // trip then seems longer by the picture's transmission: 50 KB/s were estimated as 137, each resync kept
+                // that, and from then on a key took up to 1.4 s. Waiting for replies, the link has been idle for at
+                // most half of the time since the first query, so its rate is at most twice that of what arrived.
                 let arrived = self.delivered / now.saturating_sub(self.begun.unwrap_or_default()).as_secs_f64();
                 self.rates.cap((2.0 * arrived).max(MIN_RESYNC_RATE));
             }

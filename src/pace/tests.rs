@@ -33,7 +33,7 @@ pub(super) struct World {
     pub(super) round_trip: Duration,
     /// Whether the terminal replies to queries.
     pub(super) replies: bool,
-    /// Bytes of a frame, unless `fits` and the link's limit is lower.
+    /// Bytes of each frame that the program sends; with `fits`, at most the link's limit.
     pub(super) frame: usize,
     /// Whether frames obey the link's limit.
     pub(super) fits: bool,
@@ -240,8 +240,8 @@ fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
     };
     let mut late: Vec<_> = (0..70).step_by(5).map(late).collect();
     late.sort_unstable();
-    // Before the drop is noticed, 86 % of the old rate are sent for a round trip and a frame; these bytes take 2 s at
-    // the new rate.
+    // Until the drop is noticed, after a round trip and a frame, bytes are sent at 86 % of the old rate. At the new
+    // rate the link takes 2 s to transmit them.
     assert!(late[late.len() / 2] <= 1_850 && late[late.len() - 1] <= 2_000, "{late:?} ms");
 }
 

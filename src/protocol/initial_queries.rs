@@ -92,8 +92,8 @@ impl InitialQueries {
         let replies = &mut self.replies;
         match reply {
             Reply::DeviceAttributes(_) => return self.close(),
-            // The position is queried for the half block's width only. A user's Shift+F3 looks the same, and is
-            // harmless here.
+            // The cursor's position is queried only to measure the width of a half block. Shift+F3 is encoded like the
+            // reply, but here that key is harmless.
             Reply::CursorPosition { column, .. } => replies.take_cursor(*column),
             &Reply::Mode { mode, state } => replies.take_mode(mode, state),
             &Reply::CellPixels { width, height } => replies.cell_pixels = Some((width, height)),

@@ -9,7 +9,7 @@ use std::time::Duration;
 const ESCAPE_TIMEOUT: Duration = Duration::from_millis(50);
 /// Timeout if a lone `ESC` is probably the first byte of a reply, or cannot be the Escape key
 /// because all keys are sequences.
-// A slow link may deliver a reply in two parts, whose distance is below this longest plausible round trip.
+// A slow link may deliver a reply in two parts, less than a second apart: the longest plausible round trip.
 const SEQUENCE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A parser of a terminal's bytes that also tracks outstanding replies and timeouts.

@@ -21,9 +21,9 @@ pub struct CommonOrigin<N: Lanes> {
     ///
     /// A ray's offset is the ray's slope minus `slope`.
     pub centers: [N; 2],
-    /// The half extents of each group's offsets around `centers`.
+    /// Half of the width and height of each group's offsets, which lie around `centers`.
     pub half_extents: [N; 2],
-    /// The largest absolute coordinate of an offset, at most 1.
+    /// The largest absolute x or y of the offset of a ray, at most 1.
     pub max_offset: N,
     /// The range of the rays' origins along z, relative to the common origin.
     ///
@@ -35,7 +35,8 @@ pub struct CommonOrigin<N: Lanes> {
 /// (`culling.md`, 14).
 ///
 /// Between them, the underflow is at most 2^-117, and depths below 2^95 do not overflow.
-// Without the limit, a packet with directions of length 2^120 was culled wrongly.
+// If a ray's length is outside these limits, `depth_range` is infinite, and the packet's error bound decides no ray.
+// Without the limits, a packet with directions of length 2^120 was culled wrongly.
 const SAFE_LENGTHS: [f32; 2] = [1.0 / 4_294_967_296.0, 4_294_967_296.0];
 
 impl<N: Lanes> CommonOrigin<N> {
@@ -49,18 +50,20 @@ impl<N: Lanes> CommonOrigin<N> {
         // Offsets are measured from a ray near the middle of the tile, so that they and all bounds are small.
         let middle = &groups[LANES / 2];
         let start = middle.origin.splat_lane(0);
-        // Eye rays share their origin bit for bit: no error, and no second search.
+        // Eye rays start at the same point, bit for bit: `origin_error` is zero, and their ends need no comparison.
         if max_distance(groups, zero, start).le(zero).all() {
             return Self::around(start, zero, groups);
         }
         let direction = middle.direction.splat_lane(0);
         let end = middle.origin.splat_lane(0) + direction;
         let off = max_distance(groups, N::splat(1.0), end);
-        // With a larger origin error the bounds would cull nothing. No statement depends on the exact number 4096.
+        // If the ends are farther apart than this, the bounds on errors would be too wide to cull anything. No
+        // statement of `culling.md` depends on the exact number 4096.
         if !(off * N::splat(4096.0)).le(direction.largest()).all() {
             return None;
         }
-        // Statement 9: twice the distance found, in units of 2^-24, and twice the rounding of each end.
+        // `origin_error` is twice the distance found, in units of 2^-24, and twice the rounding of `end` (statement 9
+        // of `culling.md`).
         Self::around(end, off * N::splat(33_554_432.0) + end.largest() * N::splat(2.0), groups)
     }
 
@@ -74,14 +77,14 @@ impl<N: Lanes> CommonOrigin<N> {
         let (mut depth_range, mut share_axis) = ([N::splat(f32::INFINITY), N::splat(f32::NEG_INFINITY)], true);
         for (at, rays) in groups.iter().enumerate() {
             let (direction, inverse) = (axis.rotate_to_z(rays.direction), axis.rotate_to_z(rays.inverse));
-            // A product with the known inverse is cheaper than a division, with two units of error instead of one
-            // (statement 11).
+            // A product with the known inverse is cheaper than a division, but is off by two units instead of one
+            // (statement 11 of `culling.md`).
             xs[at] = direction.x * inverse.z - slope[0];
             ys[at] = direction.y * inverse.z - slope[1];
-            // Comparisons with NaN are false, so NaN does not count as near.
+            // Comparisons with NaN are false, so a ray whose offset is NaN does not count as near.
             are_near = are_near & xs[at].abs().le(one) & ys[at].abs().le(one);
             let depth = axis.rotate_to_z(rays.origin - origin).z;
-            // In this order `min` and `max` skip NaN.
+            // With `depth` as the first operand, `min` and `max` ignore a `depth` of NaN.
             depth_range = [depth.min(depth_range[0]), depth.max(depth_range[1])];
             share_axis &= rays.shear.axis.is_same_for_all(axis);
             let length = rays.shear.length;
@@ -91,7 +94,8 @@ impl<N: Lanes> CommonOrigin<N> {
         let (y0, y1) = (N::min_of_each(&ys), N::max_of_each(&ys));
         let half = N::splat(0.5);
         let centers = [(x0 + x1) * half, (y0 + y1) * half];
-        // Widens by 4 units of 2^-24, for the roundings of the center and of the half extent (statement 12).
+        // Half extents are widened by 4 units of 2^-24, for the rounding of `centers` and their own (statement 12 of
+        // `culling.md`).
         let more = N::splat(1.0 + 1.0 / 4_194_304.0);
         let half_extents =
             [(x1 - centers[0]).max(centers[0] - x0) * more, (y1 - centers[1]).max(centers[1] - y0) * more];
@@ -116,8 +120,8 @@ impl<N: Lanes> CommonOrigin<N> {
 
     /// Transforms a point to coordinates in which the ray with `slope` runs along z.
     ///
-    /// The coordinates are relative to the common origin. For their errors see statement 10; the rounding of `slope`
-    /// adds none, as offsets are relative to the rounded slope.
+    /// The coordinates are relative to the common origin. For their errors see statement 10 of `culling.md`; the
+    /// rounding of `slope` adds none, as offsets are relative to the rounded slope.
     #[inline(always)]
     pub fn apply(&self, point: Vector<N>) -> Vector<N> {
         let Vector { x, y, z } = self.axis.rotate_to_z(point - self.origin);

@@ -46,6 +46,7 @@ const HIDE_CURSOR: &[u8] = b"\x1b[?25l";
 /// Shows the cursor.
 const SHOW_CURSOR: &[u8] = b"\x1b[?25h";
 
+/// Writes the frame rate and the number of frames; the output need not be `Debug`.
 impl<W: Write> fmt::Debug for Cast<W> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { frames_per_second, frame, .. } = self;
@@ -79,11 +80,11 @@ impl<W: Write> Cast<W> {
         Self { quality, ..self }
     }
 
-    /// Sets the rate of the link in bytes per second.
+    /// Sets the rate, in bytes per second, of the link over which the film is played; `None` for
+    /// any.
     ///
     /// Frames are dropped (their events are empty) until a link of this rate has delivered the bytes before them. The
-    /// last
-    /// frame is always sent.
+    /// last frame is always sent.
     #[doc(hidden)]
     pub fn with_max_rate(self, max_rate: Option<u32>) -> Self {
         Self { max_rate, ..self }

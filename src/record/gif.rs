@@ -109,9 +109,10 @@ impl<W: Write> Gif<W> {
     fn kept_pixels(&mut self, picture: &Picture) -> Vec<bool> {
         let mut kept = vec![false; picture.pixels.len()];
         self.outdated.resize(picture.pixels.len(), 0);
-        // Without a frame before this one there is nothing to keep.
+        // For the first frame `shown` is empty, so no pixel keeps its colour.
         for (at, (&shown, &wanted)) in self.shown.iter().zip(&picture.pixels).enumerate() {
-            // A pixel between others that are kept may differ more: single changed pixels cost the most bytes.
+            // A pixel whose left and upper neighbours keep their colours may differ more from the wanted colour,
+            // because single changed pixels cost the most bytes.
             let is_between = at > 0 && kept[at - 1] && at.checked_sub(picture.width as usize).is_none_or(|up| kept[up]);
             let most = if is_between { MAX_DIFFERENCE_BETWEEN } else { MAX_DIFFERENCE };
             let pairs = [(shown.r, wanted.r), (shown.g, wanted.g), (shown.b, wanted.b)];
@@ -153,18 +154,21 @@ impl<W: Write> Gif<W> {
 const MAX_COLORS: usize = 127;
 /// Largest difference of a channel at which a pixel keeps its colour.
 const MAX_DIFFERENCE: u8 = 8;
-/// The same, for a pixel whose neighbours to the left and above keep theirs.
+/// Largest difference of a channel at which a pixel keeps its colour if its left and upper
+/// neighbours keep theirs.
 const MAX_DIFFERENCE_BETWEEN: u8 = 14;
-/// Largest difference of a channel that is not seen even where it lasts.
+/// Largest difference of a channel that is invisible even if it lasts for many frames.
 const MAX_LASTING_DIFFERENCE: u8 = 4;
-/// Number of frames after which a pixel with a larger difference is replaced.
+/// Number of frames after which a pixel that differs by more than [`MAX_LASTING_DIFFERENCE`] gets
+/// its wanted colour.
 const MAX_OUTDATED_FRAMES: u8 = 7;
 
 /// The colours of a frame.
 struct Palette {
-    /// As many as the format stores: [`MAX_COLORS`], and one that stands at the transparent index.
+    /// The colours of pixels, filled up to [`MAX_COLORS`], and an unused one at the transparent
+    /// index.
     colors: Vec<Srgb8>,
-    /// Finds the index of a colour; `None` where all colours are in the palette.
+    /// The quantiser, which finds the index of the nearest colour; `None` if `colors` has them all.
     quantiser: Option<NeuQuant>,
 }
 
@@ -198,7 +202,7 @@ impl Palette {
 }
 
 /// Returns the quantiser's sampling step for a number of pixels, from 1 (every pixel) to 30.
-// The quantiser then reads about 50,000 pixels, which bounds its time per frame.
+// With this step the quantiser reads about 50,000 pixels, which bounds its time per frame.
 fn sampling_step(pixels: usize) -> i32 {
     i32::try_from(pixels / 50_000).map_or(30, |sampling_step| sampling_step.clamp(1, 30))
 }

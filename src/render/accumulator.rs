@@ -58,10 +58,10 @@ impl Accumulator {
     }
 
     /// Adds samples; each channel of their light is a slice.
-    pub(super) fn add(&mut self, [r, g, b]: [&[f32]; 3]) {
+    pub(super) fn add_samples(&mut self, [r, g, b]: [&[f32]; 3]) {
         let lights = || r.iter().zip(g).zip(b).map(|((&r, &g), &b)| LinearRgb::new(r, g, b));
         lights().for_each(|light| self.light += light);
-        // Only the last pass reads the range, before it adds its own samples.
+        // The samples of the last pass do not widen the range, which is read only before they are added.
         if self.count < RANGE_SAMPLES {
             lights().for_each(|light| widen(&mut self.range, light));
         }

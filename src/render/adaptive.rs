@@ -155,7 +155,8 @@ fn is_at_edge(tiles: &Tiles, first: &[Vec<FirstSample>], tile: usize, pixel: usi
 fn record_first_samples(first: &mut [FirstSample], buffers: &Buffers) {
     for (ray, &pixel) in buffers.pixels.iter().enumerate() {
         let (group, lane) = (ray / LANES, ray % LANES);
-        // Added to zero as in `Accumulator`: a sum is never -0, so a pixel with one sample has the same bits in both.
+        // Adding to zero turns -0 into 0, as the sums in `uniform` do, so that a pixel with one sample has the same
+        // bits.
         let light = LinearRgb::BLACK + shade::lane_light(&buffers.lights[group], lane);
         let lit_by = buffers.arriving[group].lit_by[lane];
         first[usize::from(pixel)] = FirstSample::new(light, buffers.points[group].object_and_normal(lane), lit_by);
@@ -167,6 +168,7 @@ fn record_first_samples(first: &mut [FirstSample], buffers: &Buffers) {
 fn add_samples(accumulators: &mut [Accumulator], buffers: &Buffers, per_pixel: usize) {
     let channels = buffers.channels();
     for (first, &pixel) in buffers.pixels.iter().enumerate().step_by(per_pixel) {
-        accumulators[usize::from(pixel)].add(channels.each_ref().map(|channel| &channel[first..first + per_pixel]));
+        let lights = channels.each_ref().map(|channel| &channel[first..first + per_pixel]);
+        accumulators[usize::from(pixel)].add_samples(lights);
     }
 }

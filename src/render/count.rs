@@ -25,8 +25,7 @@ pub struct Counts {
     /// Lights behind the surface count as well.
     // The normals are not used, because only tracing is measured, and compared with ray tracers that do not use them.
     pub lit: u64,
-    /// The sum of the depths of all hits, in world units along the view direction, which are their
-    /// t.
+    /// The sum of the depths (the t) of all hits, in world units along the view direction.
     pub depths: f64,
 }
 

@@ -47,7 +47,7 @@ impl GBufferSample {
 pub struct PixelValues<T> {
     /// One value per pixel, row by row from the top.
     pub pixels: Vec<T>,
-    /// The number of rays traced for `pixels`, and the time spent on tracing them.
+    /// The cost of tracing the rays of all pixels.
     pub cost: Cost,
 }
 

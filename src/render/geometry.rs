@@ -31,11 +31,11 @@ pub(crate) struct Facet {
     pub object: u32,
     /// The shading normal, in units of 1/127.
     normal: [i8; 3],
-    /// The extent of the object.
+    /// Whether the ray meets nothing, a bounded object, or a level or upright plane.
     pub extent: Extent,
 }
 
-/// The extent of the object that an eye ray meets.
+/// The kind of object that an eye ray meets: none, a bounded one, or a plane by its inclination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Extent {
     /// No object: the background.
@@ -82,15 +82,16 @@ pub struct Geometry {
     width: usize,
     /// The facet of each pixel's first ray.
     facets: Vec<Facet>,
-    /// The constant part of the least jump of the depth at a crease.
+    /// The constant term, in world units, of the least bend of the depth that
+    /// [`jumps`](Self::jumps) reports.
     least_jump: f32,
     /// For each cell, the index in `fine`, or [`NOT_FINE`].
     fine_indices: Vec<u32>,
-    /// The facets of cells with more rays, four by eight, row by row.
+    /// The fine facets of each cell in or beside which an edge may be: four by eight, row by row.
     fine: Vec<[Facet; FINE[0] * FINE[1]]>,
 }
 
-/// The index of cells without more rays.
+/// The entry in `fine_indices` of a cell without fine facets.
 const NOT_FINE: u32 = u32::MAX;
 
 impl Geometry {
@@ -159,7 +160,7 @@ impl Geometry {
         self.pixel(y.min(self.height() - 1) * self.width + x.min(self.width - 1))
     }
 
-    /// Returns whether surfaces meet in or beside a cell, so that it has more rays.
+    /// Returns whether surfaces may meet in or beside a cell, so that it has fine facets.
     pub(crate) fn has_edge(&self, column: usize, row: usize) -> bool {
         self.fine_indices[row * self.columns() + column] != NOT_FINE
     }
@@ -214,7 +215,7 @@ impl Geometry {
         crossed
     }
 
-    /// Returns the indices of the cells with one of these pixels.
+    /// Returns the indices of the cells in which at least one pixel is set in the mask `pixels`.
     fn cells_with(&self, pixels: &[bool]) -> Vec<usize> {
         let mut cells = vec![false; self.fine_indices.len()];
         for at in (0..pixels.len()).filter(|&at| pixels[at]) {
@@ -239,7 +240,7 @@ pub(crate) fn render_with_geometry(
 ) -> (Rendered, Geometry) {
     let scale = if sampling == Sampling::Coarse { 2 } else { 1 };
     if let Sampling::Coarse | Sampling::Each(NonZeroU32::MIN) | Sampling::UpTo(NonZeroU32::MIN) = sampling {
-        // One ray serves for both light and geometry.
+        // The single ray of a pixel gives both its light and its facet.
         let tiles = Tiles::new(camera, resolution, scale);
         let (pixels, mut cost) = trace_facets(executor, scene, &tiles, Stage::Reflected);
         let mut framebuffer = Framebuffer::new(resolution);
@@ -284,7 +285,7 @@ fn trace_facets(
     let cost = executor.trace(&job, tiles.split(&mut pixels), |tile, mut part| {
         tile.trace(&batches, |buffers, _, _| {
             for (ray, &pixel) in buffers.pixels.iter().enumerate() {
-                // Added to zero as in `uniform`, so that the light has the same bits.
+                // Adding to zero turns -0 into 0, as the sums in `uniform` do, so that the light has the same bits.
                 let light = buffers
                     .lights
                     .get(ray / LANES)
@@ -304,7 +305,7 @@ fn facet(scene: &Scene, Buffers { points, hits, .. }: &Buffers, ray: usize) -> F
         .map_or(Facet::NOTHING, |(object, normal)| Facet::of_hit(scene, object, normal, hits[group].t.0[lane]))
 }
 
-/// Returns the geometry of traced pixels, with more rays where an edge may be.
+/// Returns the geometry of traced pixels, and traces fine facets where an edge may be.
 fn with_fine_facets(
     executor: Executor<'_>,
     scene: &Scene,
@@ -315,7 +316,7 @@ fn with_fine_facets(
     let resolution = coarse.resolution;
     let facets = pixels.into_iter().map(|(_, facet)| facet).collect();
     let mut geometry = Geometry::new(resolution, facets, 0.012 * camera.pose().eye.distance(camera.pose().target));
-    // Coarse pictures are those of machines that are too slow for more rays.
+    // Coarse pictures, with one ray for two by two pixels, are made by machines that are too slow for fine facets.
     if coarse.scale > 1 {
         return (geometry, Cost::default());
     }
@@ -323,7 +324,7 @@ fn with_fine_facets(
     let (width, fine_size) = (geometry.width, [2 * resolution.width(), 2 * resolution.height()]);
     let fine =
         Resolution::new(fine_size[0], fine_size[1]).and_then(|size| size.with_pixel_aspect(resolution.pixel_aspect()));
-    // A picture whose fine samples would be too large has none.
+    // A picture that would have too many pixels at twice the resolution gets no fine facets.
     let Ok(fine) = fine else { return (geometry, Cost::default()) };
     let tiles = Tiles::new(camera, fine, 1);
     let mut traced = vec![Vec::new(); tiles.count()];

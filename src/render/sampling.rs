@@ -76,9 +76,9 @@ const MAX_BATCH_SAMPLES: u32 = 64;
 /// A range of samples, divided into batches.
 pub(super) struct SampleBatches {
     samples: Range<u32>,
-    /// The first batches, as many as there are passes.
-    // The later batches are computed for each tile. That is cheap compared with tracing them, and storing all batches
-    // of MAX_SAMPLES would take 2 MB.
+    /// The first batches of the range, at most as many as there are [`PASSES`].
+    // All further batches are computed anew for each tile. That is cheap compared with tracing them, and storing all
+    // batches of MAX_SAMPLES would take 2 MB.
     kept: Vec<SampleBatch>,
 }
 
@@ -157,7 +157,8 @@ pub(super) fn sample_position(sample: u32) -> (f32, f32) {
 /// Returns the side of a sample's footprint as a fraction of the pixel's side.
 ///
 /// It is 1 for the first sample, and a half for those that are added up to four.
-// The fraction depends on the pass, not on the final number of samples, as adding samples must not change earlier ones.
+// The footprint of a sample does not depend on the final number of samples, because adding samples must not change
+// earlier ones.
 pub(super) fn footprint_share(sample: u32) -> f32 {
     match sample {
         0 => 1.0,

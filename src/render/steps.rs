@@ -28,7 +28,7 @@ pub(super) enum Stage {
 /// The unit in which the progress of a picture is counted.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ProgressUnit {
-    /// One unit per eye ray.
+    /// One unit of progress for each eye ray.
     Ray,
     /// A fixed number of units per tile, if the number of rays is not known in advance.
     Tile(u64),

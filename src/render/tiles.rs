@@ -157,7 +157,7 @@ impl Tiles {
     pub(super) fn q<N: Number>(&self, [x, y]: [N; 2], [sx, sy]: [N; 2]) -> [N; 2] {
         let (width, height) = (N::splat(self.resolution.width() as f32), N::splat(self.resolution.height() as f32));
         let scale = N::splat(self.scale as f32);
-        // Rows are counted from the top, the lecture's qv from the bottom.
+        // `y` is counted from the top of the picture, the lecture's qv from the bottom.
         [(x + sx) * scale / width, (height - (y + sy) * scale) / height]
     }
 

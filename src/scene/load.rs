@@ -415,7 +415,7 @@ impl shape::Meshes for Meshes<'_> {
 }
 
 /// The largest memory per byte of a scene file, including the trees of its objects.
-// Measured: 26 bytes with 300,000 spheres.
+// A scene of 300,000 spheres takes 26 bytes of memory for each byte of its file.
 const PEAK_PER_TEXT_BYTE: usize = 32;
 
 /// Reads the bytes of a file named by the user.

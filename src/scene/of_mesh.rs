@@ -32,8 +32,8 @@ const ASPECT_RATIO: f32 = 4.0 / 3.0;
 
 /// The lights: their directions from the middle of the mesh, in multiples of its radius, and their
 /// colours with intensity.
-// A warm key light, a weak blue light from the other side, and a rose one from behind, which parts the mesh from the
-// background. (`#ffe6c8`, `#7fa4ff` and `#ffd0e0` times 0.8, 0.16 and 0.3.)
+// A warm key light, a weak blue light from the other side, and a rose one from behind, which sets the mesh off from the
+// background: `#ffe6c8`, `#7fa4ff` and `#ffd0e0` times 0.8, 0.16 and 0.3.
 const LIGHTS: [(Vec3, LinearRgb); 3] = [
     (Vec3::new(-2.6, 3.9, 3.6), LinearRgb::new(0.8, 0.634, 0.462)),
     (Vec3::new(4.2, 1.4, 2.2), LinearRgb::new(0.034, 0.059, 0.16)),
@@ -43,7 +43,7 @@ const LIGHTS: [(Vec3, LinearRgb); 3] = [
 /// The colours of the floor's squares, `#6d737d` and `#5d636d`.
 const FLOOR: [LinearRgb; 2] = [LinearRgb::new(0.153, 0.171, 0.205), LinearRgb::new(0.109, 0.125, 0.153)];
 
-/// The background, `#2a2d34` at the bottom and `#0e1016` at the top.
+/// The gradient of the scene's background, `#2a2d34` straight down and `#0e1016` straight up.
 const BACKGROUND: [LinearRgb; 2] = [LinearRgb::new(0.0232, 0.0262, 0.0343), LinearRgb::new(0.0044, 0.0052, 0.008)];
 
 /// The side of a square of the floor, as a multiple of the mesh's radius.
@@ -130,13 +130,13 @@ impl Scene {
 }
 
 impl Draft {
-    /// Returns the draft of [`Scene::of_mesh`].
+    /// Returns the scene of [`Scene::of_mesh`] as a draft, without trees.
     pub fn of_mesh(mesh: MeshFile) -> Option<Self> {
         Self::around_mesh(mesh, MeshOrigin { format: "", up: UpAxis::Y, is_guess: false })
     }
 
-    /// Returns the draft of [`Scene::of_mesh`] for a mesh of this origin, turned so that its axis
-    /// points up.
+    /// Returns the scene of [`Scene::of_mesh`] as a draft, with the mesh turned so that the axis
+    /// `origin.up` points up.
     pub(super) fn around_mesh(mesh: MeshFile, origin: MeshOrigin) -> Option<Self> {
         let mesh = mesh.turned_up(origin.up)?;
         let bounds = Bounds::of(mesh.positions().iter().copied());

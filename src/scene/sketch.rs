@@ -8,7 +8,8 @@ use crate::shape::{Mesh, Shape};
 const MIN_SKETCHED_TRIANGLES: u32 = 1 << 17;
 
 /// The approximate number of cubes into which decimation divides the longest side of a mesh.
-// As many as a small screen resolves. Several meshes share the number, so that their sketch takes no longer.
+// A small screen resolves about 64 details across. In a scene with several meshes each is divided into fewer cubes, so
+// that the sketch takes no longer.
 const DETAILS: f32 = 64.0;
 
 impl Draft {
@@ -20,7 +21,7 @@ impl Draft {
         if meshes().map(Mesh::triangle_count).fold(0, u32::saturating_add) < MIN_SKETCHED_TRIANGLES {
             return None;
         }
-        // The number of triangles grows with the square of the number of cubes along a side.
+        // The number of triangles of a decimated mesh grows with the square of the number of cubes along its side.
         let details = DETAILS / (meshes().count() as f32).sqrt();
         let sketched = |object: &Object| match mesh_of(&object.shape) {
             Some(mesh) => {

@@ -98,8 +98,8 @@ fn with_insertions(text: &str, additions: Vec<Addition>) -> String {
 }
 
 /// Returns the number of views in the text of a scene file, or `None` if it does not parse.
-pub fn count_views(text: &str) -> Option<usize> {
-    let root = parse(text).ok()?;
+pub fn count_views(scene_text: &str) -> Option<usize> {
+    let root = parse(scene_text).ok()?;
     Some(SceneFile::read(&root, &Reporter::silent(), &mut Faults::default()).views.len())
 }
 

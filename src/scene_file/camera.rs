@@ -28,14 +28,14 @@ pub struct WrittenCamera {
 /// The intrinsic parameters as written, in one of two forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WrittenLens {
-    /// By field of view.
+    /// The lens given by its vertical field of view and aspect ratio.
     FieldOfView {
         /// The vertical field of view in degrees; 45 if not given.
         vertical_fov: Option<WrittenNumber>,
         /// Width divided by height; the picture's if not given.
         aspect_ratio: Option<WrittenNumber>,
     },
-    /// By the lecture's f, w and h.
+    /// The lens given by focal length, width and height: the lecture's f, w and h.
     FocalLength {
         /// The focal length f.
         focal_length: Option<WrittenNumber>,

@@ -3,9 +3,9 @@ use super::*;
 const CLOSEST: bool = false;
 const ANY: bool = true;
 
-/// A node with the hit masks of some groups, as pairs of group and mask.
+/// A node, given by pairs of a group's index and the mask of the group's rays that hit the node.
 ///
-/// Panics if another group is counted.
+/// Panics if the rays of a group that is not given are counted.
 struct Masks<'m>(&'m [(usize, u32)]);
 
 impl NodeRays for Masks<'_> {

@@ -15,7 +15,7 @@ fn read(sun: &str, objects: &str) -> Scene {
     Scene::from_ron("sun.ron", &scene(sun, objects)).expect("a scene")
 }
 
-/// The floor's light is the reflectance 0.5 times the cosine 0.8, or 0 if an object blocks the sun.
+/// Checks that a sun lights the floor by 0.5 (reflectance) times 0.8 (cosine), or 0 in the shadow.
 #[test]
 fn its_light_is_that_of_the_closed_form() {
     let resolution = Resolution::square(9, 9);

@@ -11,12 +11,12 @@ fn only_edges_are_drawn_and_small_triangles_fainter() {
     assert_eq!(at(0.3, 0.3, 0.01), 0.0);
     assert_eq!(at(0.3, 0.0, 0.01), 1.0);
     assert_eq!(at(0.3, 0.005, 0.01), 0.5);
-    // Four pixels across, and less than one.
+    // First the triangle is four pixels wide, then half a pixel.
     assert!((0.3..0.6).contains(&at(0.3, 0.0, 0.25)));
     assert_eq!(at(0.3, 0.0, 2.0), LEAST_OPACITY);
 }
 
-/// The lines along a sliver would cover it, however long it is.
+/// Checks that the edges of a long, thin triangle are faint, as full edges would cover all of it.
 #[test]
 fn slivers_are_as_faint_as_they_are_thin() {
     let sliver = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.02, 0.0)]).expect("a triangle");

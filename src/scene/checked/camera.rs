@@ -77,7 +77,7 @@ impl Validator<'_> {
         let [right, up] = written.map(|angle| radians(angle.value));
         match rectangle?.with_tilt(Vec2::new(right, up)) {
             Ok(tilted) => Some(tilted),
-            // The fault is at the larger angle, which turns an edge farther back.
+            // The larger of both angles is reported, because it turns an edge of the rectangle farther back.
             Err(error) => self.camera_fault(written[usize::from(up.abs() >= right.abs())].span, error),
         }
     }
@@ -106,7 +106,8 @@ impl Validator<'_> {
     }
 
     pub(super) fn up(&mut self, written: WrittenVector) -> Option<Vec3> {
-        // Called for its message only. The camera keeps the vector as written, so that it is written back unchanged.
+        // `unit_vector` is called only to report faults: the camera keeps the vector with its length as in the file, so
+        // that it is written back unchanged.
         self.unit_vector("up vector", written)?;
         let up = self.point(written)?;
         if !checks::is_long(up) {

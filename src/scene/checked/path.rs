@@ -8,7 +8,7 @@ use crate::scene_text::Faults;
 use crate::written::{Spanned, Validator, WrittenNumber};
 
 /// The largest time in seconds: more than eleven days.
-// Up to it, f64 represents the time of each frame to a nanosecond.
+// f64 represents every time up to this limit to a nanosecond.
 const MAX_SECONDS: f64 = 1e6;
 
 /// Returns the path, or `None` after all faults have been added to `faults`.

@@ -41,7 +41,7 @@ fn all_else_stays_as_it_is() {
         ("// \"é\" ☃\nScene(C, ambient: 1)", "// \"é\" ☃\nScene(C, views: [+], ambient: 1)"),
     ] {
         assert_eq!(added(text), wanted, "{text}");
-        // Inserts a second view into the result.
+        // Checks that a second view can be added to the text in which the first was inserted.
         added(&wanted.replace('+', "V"));
     }
 }
