@@ -29,8 +29,8 @@ impl Resolution {
     /// The largest number of pixels of a picture: 33,554,432, more than an 8K picture has.
     ///
     /// Rendering such a picture takes some 900 MB at one sample per pixel.
-    // The constructors check it before anything is allocated. Without the check, a render with a large resolution
-    // aborted the process when memory ran out.
+    // The constructors check the number of pixels before anything is allocated. Without the check, a render with a
+    // large resolution aborted the process when memory ran out.
     #[doc(hidden)]
     pub const MAX_PIXELS: u32 = 1 << 25;
 

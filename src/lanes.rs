@@ -49,7 +49,8 @@ where
     /// Compares with `==`; false for NaN.
     #[inline(always)]
     fn eq(self, other: Self) -> Self::Mask {
-        // Two comparisons, not an instruction for each register type, as only ties of hits and patterns use it.
+        // `eq` takes two comparisons, and not an instruction of each register type, as only ties of hits and patterns
+        // use it.
         self.le(other) & other.le(self)
     }
 

@@ -265,7 +265,7 @@ impl Link {
 
     /// Returns the bytes of a query without a frame if such a query is due; otherwise no bytes.
     ///
-    /// Its round trip is the link's own at any rate, because there is nothing to transmit.
+    /// The round trip of such a query contains no transmission time, however low the link's rate is.
     pub fn probe(&mut self, now: Duration) -> Vec<u8> {
         self.replies.check_timeouts(now);
         let mut bytes = Vec::new();

@@ -204,7 +204,7 @@ impl<N: Number> Shear<N> {
             DominantAxis::Z
         };
         let Vector { x, y, z } = axis.rotate_to_z(direction);
-        // Divisions, not products with 1 / z: statement 6 of `culling.md` counts one rounding per factor.
+        // Divisions instead of products with 1 / z, because statement 6 of `culling.md` counts one rounding per factor.
         Self { axis, factor: Vector { x: x / z, y: y / z, z: N::splat(1.0) / z }, length: z.abs() }
     }
 

@@ -81,7 +81,7 @@ fn text(grid: &Grid, cell_height: f64) -> String {
 }
 
 /// Rounds a length to a thousandth of a unit.
-// Smaller differences are invisible. Rounding keeps the numbers short, and the same on every machine.
+// Differences below a thousandth are invisible. Rounding keeps the numbers short, and the same on every machine.
 fn rounded(value: f64) -> f64 {
     (1000.0 * value).round() / 1000.0
 }

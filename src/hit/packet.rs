@@ -16,8 +16,8 @@ use crate::shape::{Crossable, Endless, SoaLeaf};
 use std::ops::Range;
 
 /// The rays of a packet in groups of eight, and their hits.
-// About 5 kB, so one packet per call is created and reused: a new one for every 64 rays, moved around, was a part of
-// why three_spheres at 1024x1024 took 40 instead of 16 ms.
+// A packet has about 5 kB, so each call creates one and reuses it. A new packet for every 64 rays, which was also moved
+// in memory, was one reason why three_spheres at 1024x1024 took 40 instead of 16 ms.
 pub(super) struct PacketRays<'p, N: Lanes, const ANY: bool> {
     kernel: Kernel,
     accel: &'p Accelerator,
@@ -306,8 +306,8 @@ struct InTree<'a, 'p, N: Lanes, S, const ANY: bool> {
 }
 
 /// The common origin of a packet's rays, computed at the packet's first leaf.
-// It is not computed before the first leaf, because packets that reach no leaf do not need it: eye rays are 1 to 2 %
-// faster where meshes cover half of the picture.
+// The origin is not computed before the first leaf, because packets that reach no leaf do not need it. This makes eye
+// rays 1 to 2 % faster where meshes cover half of the picture.
 enum CommonOriginCache<N: Lanes> {
     Unknown,
     Absent,
@@ -322,9 +322,9 @@ impl<N: Lanes, S, const ANY: bool> Prefetch for InTree<'_, '_, N, S, ANY> {
 }
 
 impl<N: Lanes, S: SoaLeaf, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, ANY> {
-    // Any hit may be the farthest one, so sorting gains little: without it and edge tests, dragon 871k with shadows is
-    // 1.10 times as fast, 1,000 spheres 1.03 times. Closest hits use both (without edge tests dragon 203k is 8 %
-    // slower).
+    // A shadow ray ends at any hit, even the farthest one, so sorting nodes by distance gains little: without sorting
+    // and edge tests, dragon 871k with shadows is 1.10 times as fast, 1,000 spheres 1.03 times. The search for closest
+    // hits uses both (without edge tests dragon 203k is 8 % slower).
     const NEAREST_FIRST: bool = !ANY;
 
     const MIN_CHILDREN_TO_SPLIT: u32 = split::min_boxes_to_split(ANY);

@@ -45,7 +45,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
         Self { accel, rays, lane, within, primitive: None, observer }
     }
 
-    /// Returns the ray with the hit at `within.max` that its packet has found.
+    /// Returns the ray with `primitive` as its hit so far, found by its packet at `within.max`.
     #[inline(always)]
     pub(super) fn with_known_hit(self, primitive: Option<u32>) -> Self {
         Self { primitive, ..self }

@@ -9,8 +9,8 @@ use std::path::Path;
 /// Opens a plain file and returns its size in bytes.
 // Pipes are refused, because each system has another way to wait for them.
 pub(super) fn open(path: &Path, _: Accepted) -> io::Result<(File, u64)> {
-    // Checked before it is opened, because opening a device may have an effect, and again afterwards, because the name
-    // may have been replaced.
+    // The file is checked before it is opened, because opening a device may have an effect, and again afterwards,
+    // because another file may have got its name in between.
     check(&path.metadata()?)?;
     let file = File::open(path)?;
     let data = file.metadata()?;

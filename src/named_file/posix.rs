@@ -17,8 +17,8 @@ const PIPE_TIMEOUT: Duration = Duration::from_secs(1);
 /// Opens a file, and returns the size in bytes that the system reports: 0 for a pipe, and too small
 /// for a file that grows.
 pub(super) fn open(path: &Path, accepted: Accepted) -> io::Result<(File, u64)> {
-    // Checked before it is opened, because opening a device may have an effect, and again afterwards, because the name
-    // may have been replaced.
+    // The file is checked before it is opened, because opening a device may have an effect, and again afterwards,
+    // because another file may have got its name in between.
     check(&path.metadata()?, accepted)?;
     // Without this flag, opening a FIFO waits for its writer.
     let flags = OFlags::NONBLOCK | OFlags::NOCTTY;

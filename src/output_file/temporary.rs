@@ -36,7 +36,7 @@ impl Temporary {
     }
 
     /// Creates a temporary file that will replace an existing one, readable by the owner only.
-    // The existing file may be secret. Its mode is copied when the contents are complete.
+    // The file to be replaced may be secret. The temporary file gets its mode only when the contents are complete.
     pub(super) fn private(target: &Path) -> io::Result<Self> {
         Self::create_beside(target, 0o600)
     }
@@ -62,7 +62,7 @@ impl Temporary {
 
     /// Locks a file just created; returns `None` if another process is removing it as a leftover.
     fn lock_new(path: PathBuf, file: File) -> io::Result<Option<Self>> {
-        // Other errors of locking are ignored: without a lock, no other process removes the file either.
+        // Other errors of locking are ignored: where files cannot be locked, no process removes leftovers.
         let is_taken = try_lock(&file) == Err(Errno::WOULDBLOCK);
         if is_taken || !has_path(&file, &path)? {
             return Ok(None);

@@ -16,7 +16,7 @@ const ROUND_TRIP_INTERVAL: Duration = Duration::from_secs(5);
 const RATE_AGE: Duration = Duration::from_millis(500);
 /// Least transmission time of a frame whose rate counts as the link's limit.
 ///
-/// A frame with a shorter one gives only a lower bound of the rate.
+/// A frame that is transmitted in less time gives only a lower bound of the rate.
 // Terminals that draw 60 times a second delay replies by up to 17 ms, which must not be taken for transmission time.
 const MIN_SERVICE_TIME: Duration = Duration::from_millis(20);
 /// Greatest error of a measured time, because of the clock and the scheduler.

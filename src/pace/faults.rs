@@ -237,7 +237,7 @@ fn no_key_waits_longer_than_500_ms_before_a_local_terminal_has_replied() {
 }
 
 /// Even if the first round trip is longer than the others and frames are small, lost replies do not
-/// make the rate low.
+/// make the estimated rate low.
 #[test]
 fn a_near_terminal_that_loses_replies_is_not_taken_for_a_slow_link() {
     each_fault(ms(250), |tags, fault, at| {

@@ -6,7 +6,7 @@
 use std::time::Duration;
 
 /// Greatest number of bytes in all frames that are sent until a reply arrives.
-// 40 ms of a link of 50 KB/s. A link of 2 KB/s, the slowest considered, transmits them in a second.
+// A link of 50 KB/s transmits these bytes in 40 ms, and one of 2 KB/s, the slowest considered, in a second.
 const INITIAL_BYTES: usize = 2_000;
 /// Least useful size of a frame in bytes.
 // Smaller frames change too few cells to show the effect of a key.
@@ -16,8 +16,8 @@ const MIN_USEFUL_BYTES: usize = 120;
 const REFILL_BYTES: usize = 300;
 /// Time between two frames of [`REFILL_BYTES`].
 ///
-/// With the timeout of 150 ms, the effect of a key is then visible within 250 ms. With an interval of 200 ms it took
-/// 360 ms if the terminal replies to DA1 only.
+/// With this interval and a timeout of 150 ms, the effect of a key is visible within 250 ms. With an interval of 200 ms
+/// it took 360 ms if the terminal replies to DA1 only.
 const REFILL_INTERVAL: Duration = Duration::from_millis(90);
 
 /// The budget of bytes that may be sent before the rate is known.
@@ -40,8 +40,9 @@ impl InitialWindow {
         if self.is_spent() { REFILL_BYTES } else { self.left / 2 }
     }
 
-    /// Returns the time at which the next frame may be sent; once the budget is spent it depends on
-    /// `has_replied`.
+    /// Returns the time at which the next frame may be sent.
+    ///
+    /// Once the budget is spent, only a terminal that `has_replied` before gets further frames, at intervals.
     pub(super) fn opens_at(&self, has_replied: bool) -> Duration {
         match self.is_spent() {
             false => Duration::ZERO,

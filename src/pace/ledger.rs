@@ -114,7 +114,7 @@ impl Ledger {
         self.last
     }
 
-    /// Records that a query is sent now after this many bytes.
+    /// Records that a query is sent now, at the end of `bytes` bytes.
     pub(super) fn record(&mut self, query: Query, bytes: usize, now: Duration) {
         let (first_sent, before) = self.unqueried.take().unwrap_or((now, 0));
         let bytes = before + bytes;

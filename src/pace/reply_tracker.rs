@@ -119,8 +119,8 @@ pub(super) enum State {
     /// A reply is missing: frames are sent one at a time, until `until`, when the terminal is
     /// considered silent.
     Recovering { until: Duration },
-    /// Which query the next reply belongs to is unknown: no query is sent until replies stop.
-    /// Contains the time of the last one.
+    /// It is unknown to which query the next reply belongs: no query is sent until replies stop.
+    /// Contains the time of the last reply.
     Resyncing { last_reply: Duration },
     /// The terminal is considered silent.
     Silent,
@@ -173,7 +173,8 @@ impl ReplyTracker {
         }
     }
 
-    /// Appends a query without a frame, whose round trip is the link's own, and records it.
+    /// Appends a query without a frame, whose round trip contains no transmission time, and records
+    /// it.
     pub(super) fn append_probe(&mut self, bytes: &mut Vec<u8>, now: Duration) {
         self.last_probe = Some(now);
         self.append_query(bytes, false, now);
@@ -445,7 +446,9 @@ impl ReplyTracker {
         self.rates.record(bytes, service, is_late, now);
     }
 
-    /// Returns whether a reply with a match of this validity shows how long a near terminal draws.
+    /// Returns whether the reply to a frame shows for how long a near terminal has drawn it.
+    ///
+    /// `validity` says how certainly the reply belongs to the frame's query.
     fn shows_drawing_time(&self, validity: Validity) -> bool {
         // If the round trip is long, a small frame takes long because the link is slow, not because the terminal draws.
         // While the first picture is on its way, a reply without a number may be matched to the wrong query: at 5 KB/s
@@ -456,10 +459,9 @@ impl ReplyTracker {
 
     /// Gives up matching replies to queries until no more replies arrive.
     ///
-    /// The rate of a slow link is kept, to send at it meanwhile. Other estimates may stem from mismatches and are
-    /// dropped.
-    // Dropping only the query whose reply was lost was tried: a late reply then counts twice, and a key waits for 1.8
-    // s.
+    /// The rate of a slow link is kept, because frames are sent at that rate meanwhile. Other estimates may stem from
+    /// replies matched to wrong queries, and are dropped.
+    // Rejected: to drop only the query whose reply was lost. A late reply then counts twice, and a key waits for 1.8 s.
     fn resync(&mut self, now: Duration) {
         self.ledger.clear();
         self.alignment = Alignment::default();

@@ -391,8 +391,8 @@ fn a_shorter_round_trip_is_noticed() {
     }
 }
 
-/// After the round trip became shorter, key times and throughput are about those of a link that
-/// always had it.
+/// After the round trip became shorter, key times and throughput are about those of a link whose
+/// round trip was always that short.
 #[test]
 fn a_slightly_shorter_round_trip_is_used_fully() {
     for round_trip in [150, 100, 50] {

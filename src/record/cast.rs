@@ -40,7 +40,7 @@ pub struct Cast<W: Write> {
     last: Option<(Grid, Vec<u8>)>,
 }
 
-// The two sequences are part of the first and the last frame, so that a film has exactly one event per frame.
+// `HIDE_CURSOR` and `SHOW_CURSOR` belong to the first and the last frame, so that a film has one event per frame.
 /// Hides the cursor, which would blink in the picture (DECTCEM).
 const HIDE_CURSOR: &[u8] = b"\x1b[?25l";
 /// Shows the cursor.

@@ -104,8 +104,8 @@ const RANGE_SAMPLES: u32 = 16;
 
 /// The relative difference among [`RANGE_SAMPLES`] samples from which on their mean may be visibly
 /// wrong.
-// Compared with the difference between single samples. The error of the mean of 16 samples is a quarter of theirs, so
-// at four times `EDGE_CONTRAST` it is about the contrast of a visible edge.
+// This is a difference between single samples. The error of the mean of 16 samples is a quarter of theirs, so with four
+// times `EDGE_CONTRAST` the error of the mean is about the contrast of a visible edge.
 const NOISE_CONTRAST: f32 = 0.2;
 
 /// Returns whether two lights differ in a channel by more than the fraction `share` of the greater

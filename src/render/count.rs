@@ -23,7 +23,8 @@ pub struct Counts {
     /// The number of pairs of a hit and a light without an object between them.
     ///
     /// Lights behind the surface count as well.
-    // The normals are not used, because only tracing is measured, and compared with ray tracers that do not use them.
+    // No normals are used to exclude such lights, because only tracing is measured, and compared with ray tracers that
+    // do not use them either.
     pub lit: u64,
     /// The sum of the depths (the t) of all hits, in world units along the view direction.
     pub depths: f64,

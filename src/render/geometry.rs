@@ -165,7 +165,9 @@ impl Geometry {
         self.fine_indices[row * self.columns() + column] != NOT_FINE
     }
 
-    /// Returns whether a cell, which has these pixels, has the same facets in both geometries.
+    /// Returns whether both geometries have the same facets in a cell.
+    ///
+    /// `cell` is the index of the cell, and `pixels` are the indices of its pixels.
     pub(crate) fn has_same_facets(&self, other: &Self, cell: usize, pixels: &[usize]) -> bool {
         let fine = |geometry: &Self| geometry.fine.get(geometry.fine_indices[cell] as usize).copied();
         pixels.iter().all(|&pixel| self.facets[pixel] == other.facets[pixel]) && fine(self) == fine(other)

@@ -156,7 +156,7 @@ pub(super) fn sample_position(sample: u32) -> (f32, f32) {
 
 /// Returns the side of a sample's footprint as a fraction of the pixel's side.
 ///
-/// It is 1 for the first sample, and a half for those that are added up to four.
+/// It is 1 for the first sample, 1/2 for those added up to four, 1/4 up to 16, and 1/8 for all others.
 // The footprint of a sample does not depend on the final number of samples, because adding samples must not change
 // earlier ones.
 pub(super) fn footprint_share(sample: u32) -> f32 {

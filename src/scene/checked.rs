@@ -79,7 +79,7 @@ impl Validator<'_> {
         }
         let object = |written: &WrittenObject| {
             let (shape, material) = (written.shape.check(self, meshes), self.material_of(written, file, &materials));
-            // Both have been checked, so that the faults of both are reported.
+            // The shape and the material have been checked by now, so that the faults of both are reported.
             let (shape, material) = (shape?, material?);
             Some(Object { shape, material })
         };
