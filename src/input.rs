@@ -58,8 +58,8 @@ use state::{State, Text};
 use token::{Token, Tokeniser};
 
 /// Limit on the bytes of an OSC, DCS or APC string. A longer string is dropped as a whole.
-// Truncated, a reply could have another meaning. The longest reply in use has about 40 bytes; the limit bounds the
-// memory that a hostile terminal can make the parser use.
+// Longer strings are not truncated, because a truncated reply could have another meaning. The longest reply in use has
+// about 40 bytes; the limit bounds the memory that a hostile terminal can make the parser use.
 const MAX_STRING_BYTES: usize = 4096;
 
 /// Limit on the bytes of a CSI or SS3 sequence that are kept.

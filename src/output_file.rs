@@ -197,8 +197,8 @@ fn rename_to_unused(temporary: &mut Temporary, target: &Path) -> io::Result<()> 
 /// Replaces a file by renaming, or overwrites it if renaming would change more than its contents.
 fn rename_or_overwrite(temporary: &mut Temporary, existing: &Metadata, target: &Path) -> io::Result<()> {
     if existing.nlink() == 1 && temporary.copy_owner_and_mode(existing).is_ok() {
-        // Synced before the rename; otherwise, after a power failure, some file systems have an empty file under the
-        // name.
+        // The file is synced before it is renamed; otherwise, after a power failure, some file systems have an empty
+        // file under the name.
         temporary.sync()?;
         match temporary.rename(target) {
             Err(error) if is_replacement_refused(&error) => {}
@@ -210,7 +210,7 @@ fn rename_or_overwrite(temporary: &mut Temporary, existing: &Metadata, target: &
 
 /// Returns whether an error means that the folder does not allow a new file or a rename over the
 /// target.
-// Examples are another user's file in a sticky folder, and a mount point.
+// Files that cannot be replaced are, for example, another user's file in a sticky folder, and a mount point.
 fn is_replacement_refused(error: &io::Error) -> bool {
     use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem, ResourceBusy};
     matches!(error.kind(), PermissionDenied | ReadOnlyFilesystem | ResourceBusy)

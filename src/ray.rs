@@ -79,7 +79,7 @@ impl<N: Lanes> Rays<N> {
     }
 
     /// Returns the ray of `lane` in all lanes.
-    // By shuffles within registers: through memory, single rays in three spheres were 22 % slower.
+    // Numbers are spread by shuffles within registers: through memory, single rays in three spheres were 22 % slower.
     #[inline(always)]
     pub(crate) fn splat_lane(&self, lane: usize) -> Self {
         Self {

@@ -151,7 +151,7 @@ impl<'a> SyntaxNode<'a> {
 
     /// Returns the span at which something missing in the value is reported: its name, or its first
     /// bracket.
-    // The whole value may be a thousand lines long.
+    // The span is not that of the whole value, which may be a thousand lines long.
     pub fn head(&self) -> Span {
         match &self.value {
             Value::Group(group) => match group.name {

@@ -30,7 +30,7 @@ pub(super) struct PacketRays<'p, N: Lanes, const ANY: bool> {
     t: [N; GROUPS],
     /// The index of each ray's hit primitive, as the bits of a float.
     primitive: [N; GROUPS],
-    /// The largest `t_max` of each group.
+    /// The largest `t_max` of the rays of each group.
     group_t_max: F32x8,
     /// An upper bound of all `t_max`: the largest one at the last update.
     // Stored, because computing it from `group_t_max` at each node and leaf made packets about 1 % slower.
@@ -109,7 +109,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
         }
     }
 
-    /// Terminates all rays of the groups in a range, without a hit.
+    /// Terminates all rays of the groups with these indices, without a hit.
     #[inline(always)]
     fn reset(&mut self, groups: Range<usize>) {
         for group in groups {
@@ -164,7 +164,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
         }
     }
 
-    /// Tests a group against unbounded primitives, and against trees of a single leaf.
+    /// Tests the rays of a group against unbounded primitives, and against trees of a single leaf.
     // Called while the group's rays are still in registers, before they are stored for the traversal of the trees.
     #[inline(always)]
     fn test_unculled(&self, rays: &Rays<N>, active: u32) -> GroupHits<N, ANY> {
@@ -175,7 +175,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
         hits
     }
 
-    /// Tests a group against a primitive of a leaf.
+    /// Tests the rays of a group against a primitive of a leaf.
     #[inline(always)]
     fn test_primitive<C: Crossable<N>>(&mut self, group: usize, shape: &C, primitive: u32, error_bound: N) {
         let mut hits = GroupHits::<N, ANY> { t: self.t[group], primitive: self.primitive[group] };

@@ -29,8 +29,8 @@ const MAX_SINGLE_RAYS_PER_GROUP: u32 = 2;
 // as fast (51.7 to 56.8 Mrays/s).
 const MAX_COUNTED_GROUPS: u32 = 5;
 
-/// The largest number of hits in the sampled group for which the rays of all groups are counted.
-// With 2 instead of 1 hit in the sample, shadow rays of 100,000 spheres took 1.03 times as long.
+/// The largest number of rays of the sampled group that may hit a node for all rays to be counted.
+// With 2 instead of 1 ray of the sampled group, shadow rays of 100,000 spheres took 1.03 times as long.
 const MAX_SAMPLED_RAYS: u32 = 1;
 
 /// Returns the least number of a node's boxes that a packet must hit for its rays to be counted.

@@ -28,7 +28,7 @@ pub(super) struct Paste {
 impl Paste {
     /// Appends a byte to the paste. Returns whether the byte completes [`END`], and so the paste.
     pub(super) fn ends_with(&mut self, byte: u8) -> bool {
-        // Reset by every byte, because only timeouts in a row end a paste.
+        // Every byte resets the number of timeouts, because only timeouts in a row end a paste.
         self.waits = 0;
         if byte != END[self.matched] {
             // The partly matched bytes belong to the paste. A new match can begin only at this byte, because ESC occurs
@@ -53,7 +53,7 @@ impl Paste {
     /// Returns the paste as an event and starts a new one.
     pub(super) fn finish(&mut self) -> Event {
         let paste = std::mem::take(self);
-        // Lossy, because the limit may cut a character in two.
+        // The conversion is lossy, because the limit on bytes may cut a character in two.
         Event::Paste(String::from_utf8_lossy(&paste.text).into_owned())
     }
 

@@ -22,7 +22,7 @@ pub enum Reply {
     Mode {
         /// The number of the mode.
         mode: u16,
-        /// 0 not recognised, 1 set, 2 reset, 3 permanently set, 4 permanently reset.
+        /// The state: 0 not recognised, 1 set, 2 reset, 3 permanently set, 4 permanently reset.
         state: u16,
     },
     /// `CSI 6 ; height ; width t`: the size of a cell in pixels.

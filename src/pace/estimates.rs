@@ -25,8 +25,8 @@ const JITTER: Duration = Duration::from_millis(5);
 // A slow link transmits a frame in about 28 ms, so a jitter of 5 ms changes the rate of a single frame by a quarter.
 // With the mean over several frames, recovery from a tenfold drop of the rate became faster by 0.2 s.
 const SMOOTHING: f64 = 0.75;
-/// Least number of bytes of a frame that gives the rate; at low rates a fiftieth of the bytes per
-/// second suffices.
+/// Least number of bytes of a frame from which the rate is estimated; at low rates a fiftieth of
+/// the bytes per second suffices.
 // The round trips of smaller frames consist of jitter and the terminal's own delay.
 const MIN_SAMPLE_BYTES: f64 = 512.0;
 
@@ -188,7 +188,7 @@ impl Rates {
     /// If the reply `is_late`, the rate has fallen, and all higher samples are dropped.
     pub(super) fn record(&mut self, bytes: usize, service: Duration, is_late: bool, now: Duration) {
         let bytes = bytes as f64;
-        // Determined before old samples are removed, so that the estimate survives a pause.
+        // The estimate is read before old samples are removed, so that it survives a pause.
         let (best, limit) = (self.best(), self.highest_limit());
         if bytes < best.map_or(MIN_SAMPLE_BYTES, |best| MIN_SAMPLE_BYTES.min(best.bytes_per_second / 50.0)) {
             return;

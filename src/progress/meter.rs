@@ -12,7 +12,7 @@ pub(crate) struct Meter<'a> {
     next: usize,
 }
 
-/// The number of bytes between two reports.
+/// The number of bytes that a parser reads between two progress reports.
 // 256 KiB take one or two milliseconds to parse: a cancel takes effect within a frame, and reports cost hardly any
 // time.
 const REPORT_STRIDE: usize = 256 << 10;

@@ -12,7 +12,7 @@ use crate::lanes::{LANES, Lanes, Mask, Vector};
 pub struct CommonOrigin<N: Lanes> {
     origin: Vector<N>,
     /// An upper bound of the distance of a ray's line from `origin` along any axis, times 2^24
-    /// (statement 9).
+    /// (statement 9 of `culling.md`).
     pub origin_error: N,
     axis: DominantAxis<N::Mask>,
     /// The slopes in x and y, per unit of the dominant axis, of a ray in the middle of the packet.

@@ -111,7 +111,7 @@ const NOISE_CONTRAST: f32 = 0.2;
 /// Returns whether two lights differ in a channel by more than the fraction `share` of the greater
 /// one.
 fn differ(a: LinearRgb, b: LinearRgb, share: f32, white: f32) -> bool {
-    // Half a percent of white is added to the limit, as relative differences between dark lights are invisible.
+    // Half a percent of white is added to the relative limit, as relative differences of dark lights are invisible.
     const MIN_CONTRAST: f32 = 0.005;
     [(a.r, b.r), (a.g, b.g), (a.b, b.b)]
         .into_iter()

@@ -22,7 +22,7 @@ const CELL: [usize; 2] = [2, 4];
 const FINE: [usize; 2] = [2 * CELL[0], 2 * CELL[1]];
 
 /// The surface that an eye ray hits.
-// Twelve bytes: with a normal of three floats, a frame of 200x60 cells would move twice the memory.
+// A facet has twelve bytes. With a normal of three floats, a frame of 200x60 cells would move twice the memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Facet {
     /// The depth of the hit, or infinity.

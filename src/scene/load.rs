@@ -366,7 +366,8 @@ fn draft_around_mesh(
     let mesh =
         MeshFile::of_file(path, stated, bytes, reporter).map_err(|unfinished| unfinished.map(LoadError::Mesh))?;
     let format = mesh_file::format_name(&path.to_string_lossy(), stated, bytes);
-    // Neither format states the axis: STL files come mostly from programs for parts, in which +z points up.
+    // STL and PLY files do not state the axis. Most STL files come from programs for mechanical parts, in which +z
+    // points up.
     let usual = match format {
         "STL" => Some(UpAxis::Z),
         "PLY" => Some(UpAxis::Y),

@@ -124,7 +124,7 @@ impl SceneError {
     #[doc(hidden)]
     pub fn new(name: &str, text: &str, faults: impl Into<Faults>) -> Self {
         let Faults { mut kept, more } = faults.into();
-        // Sorted, as faults of fields and faults of checks are found in two passes.
+        // Faults are sorted here because those of fields and those of checks are found in two passes.
         kept.sort_by_key(|fault| (fault.span.start, fault.span.end));
         let mut counter = LineCounter::new(text);
         let reports = kept.iter().map(|fault| counter.report(fault)).collect();
