@@ -47,14 +47,14 @@ mod visit;
 /// Time to wait after an error of accepting a connection, such as too many open files.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 
-/// A scene that visitors may see.
+/// A scene that the server shows to its viewers.
 #[derive(Clone, Debug)]
 pub struct HostedScene {
-    /// The name that visitors type.
+    /// The name by which clients ask for the scene, as in `ssh HOST NAME`.
     pub name: String,
-    /// The name of the scene on the command line at home.
+    /// The scene's file in the command that is printed on leaving: `termtrace FILE ...`.
     pub file: String,
-    /// A line about its contents.
+    /// One line on what the scene shows, for the list of scenes.
     pub title: String,
     /// The scene.
     pub scene: Scene,
@@ -73,7 +73,7 @@ pub struct Settings {
     pub max_viewers: usize,
     /// The most connections from one address.
     pub max_per_address: usize,
-    /// The longest time without a key.
+    /// The longest time without a key, after which a viewer has to leave.
     pub idle: Duration,
     /// The longest visit.
     pub session_max: Duration,
@@ -83,15 +83,15 @@ pub struct Settings {
     pub max_frames: f32,
     /// The threads that draw; `None` for one per core.
     pub threads: Option<usize>,
-    /// The keys of those who may see it; `None` for everybody.
+    /// The public keys of the users who may log in; `None`: everybody may.
     pub authorized_keys: Option<Vec<PublicKey>>,
     /// The text that clients print before the login.
     pub banner: Option<String>,
-    /// The link in the welcome and on leaving.
+    /// The URL that is shown in the welcome line and printed when a viewer leaves.
     pub link: Option<String>,
     /// The longest time that a client may take to log in.
     pub login_time: Duration,
-    /// The longest time in which a client takes no bytes.
+    /// The longest time in which a client takes no bytes; after it the connection is closed.
     pub patience: Duration,
     /// The time that viewers have to leave when the server ends.
     pub drain: Duration,
@@ -144,13 +144,13 @@ pub struct Server {
     ended: Arc<AtomicBool>,
 }
 
-/// A receiver of a server's lines for a log.
+/// A function that receives the lines of a server's log.
 pub type Log = Arc<dyn Fn(&str) + Send + Sync>;
 
 impl Server {
-    /// Starts a server, which shows the first scene unless a visitor asks for another one.
+    /// Starts a server, which shows the first scene unless a client names another one.
     ///
-    /// `on_end` is called when it has drained.
+    /// `on_end` is called when the server has ended after [`drain`](Self::drain).
     ///
     /// # Errors
     /// If there is no scene, the host key cannot be read or made, or the address cannot be used; the error names it.
@@ -171,20 +171,20 @@ impl Server {
         let cores = || thread::available_parallelism().map_or(1, usize::from);
         let (stage, threads) = Stage::start(settings.threads.unwrap_or_else(cores))?;
         let fingerprint = host_key::fingerprint(&key);
-        let config = Arc::new(config(&settings, key));
+        let config = Arc::new(ssh_config(&settings, key));
         let house = Arc::new(House::new(scenes, settings, stage));
         let (ended, shared) = (Arc::new(AtomicBool::new(false)), Arc::clone(&house));
         let flag = Arc::clone(&ended);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         let sockets = thread::Builder::new().name("sockets".to_owned()).spawn(move || {
-            runtime.block_on(welcome_all(shared, config, listener, log));
+            runtime.block_on(serve_until_drained(shared, config, listener, log));
             flag.store(true, Ordering::SeqCst);
             on_end();
         })?;
         Ok(Self { house, address, fingerprint, sockets: Some(sockets), threads, ended })
     }
 
-    /// Returns the address that it listens at.
+    /// Returns the address that the server listens at.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
@@ -199,7 +199,7 @@ impl Server {
         self.house.stage.seat_count()
     }
 
-    /// Makes the turn of a viewer panic that sends this byte.
+    /// Makes each turn panic whose input contains `byte`, for tests.
     #[cfg(feature = "test-hooks")]
     pub fn panic_at(&self, byte: u8) {
         let _ = self.house.stage.panics.set(byte);
@@ -210,12 +210,12 @@ impl Server {
         self.house.drain(self.house.stage.now() + self.house.settings.drain);
     }
 
-    /// Returns whether it has drained and ended.
+    /// Returns whether the server has ended after [`drain`](Self::drain).
     pub fn has_ended(&self) -> bool {
         self.ended.load(Ordering::SeqCst)
     }
 
-    /// Waits until it has drained.
+    /// Waits until the server has ended after [`drain`](Self::drain), and ends its threads.
     pub fn join(mut self) {
         if let Some(sockets) = self.sockets.take() {
             let _ = sockets.join();
@@ -247,7 +247,7 @@ pub fn run(
     loop {
         let _ = poll(&mut [PollFd::from_borrowed_fd(signals.wake_pipe(), PollFlags::IN)], None);
         signals.drain();
-        // A terminal in which it runs was resized, or it was stopped and continued.
+        // These signals do not ask the server to end: its own terminal was resized, or it was stopped and continued.
         let is_other = signals.take_resized() | signals.take_continued();
         if server.has_ended() {
             server.join();
@@ -265,8 +265,9 @@ pub fn run(
     }
 }
 
-/// Returns what the server agrees to.
-fn config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
+/// Returns the configuration of SSH: the host key, the ways to log in, and the limits of a
+/// connection.
+fn ssh_config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
     let with_keys = settings.authorized_keys.is_some();
     let macs = [mac::HMAC_SHA256_ETM, mac::HMAC_SHA512_ETM, mac::HMAC_SHA256, mac::HMAC_SHA512];
     Config {
@@ -275,7 +276,7 @@ fn config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
         auth_rejection_time: Duration::from_millis(500),
         auth_rejection_time_initial: Some(Duration::ZERO),
         keys: vec![key],
-        // Input is keys; only output is large.
+        // Small windows suffice, because input is only keys; output is large.
         window_size: 16 * 1024,
         maximum_packet_size: 4 * 1024,
         channel_buffer_size: 4,
@@ -289,7 +290,7 @@ fn config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
 }
 
 /// Accepts connections until the server drains, and waits until the last viewer has left.
-async fn welcome_all(house: Arc<House>, config: Arc<Config>, listener: TcpListener, log: Log) {
+async fn serve_until_drained(house: Arc<House>, config: Arc<Config>, listener: TcpListener, log: Log) {
     let listener = match tokio::net::TcpListener::from_std(listener) {
         Ok(listener) => listener,
         Err(error) => return log(&format!("the socket cannot be used: {error}")),
@@ -298,7 +299,7 @@ async fn welcome_all(house: Arc<House>, config: Arc<Config>, listener: TcpListen
     let accepting = tokio::spawn(accept_all(Arc::clone(&house), config, listener, log));
     while house.drained_at().is_none() && changes.changed().await.is_ok() {}
     accepting.abort();
-    // The last second is for the replies of terminals, and for what is still to be sent.
+    // Viewers get up to three seconds more, for the last replies of their terminals and the last bytes to them.
     let end = house.drained_at().unwrap_or_default() + Duration::from_secs(3);
     while house.stage.seat_count() > 0 && house.stage.now() < end {
         let _ = timeout(Duration::from_millis(200), changes.changed()).await;
@@ -317,10 +318,12 @@ async fn accept_all(house: Arc<House>, config: Arc<Config>, listener: tokio::net
                         tokio::spawn(connection);
                     }
                     // A closed connection costs the least; a message would need the whole handshake.
-                    Err(refusal) => log(&format!("refused {}: {}", limits::shortened(address.ip()), words(refusal))),
+                    Err(refusal) => {
+                        log(&format!("refused {}: {}", limits::anonymized(address.ip()), refusal_text(refusal)));
+                    }
                 }
             }
-            // Such as too many open files: others may end meanwhile.
+            // The error may pass: if too many files are open, for example, other connections may end meanwhile.
             Err(error) => {
                 log(&format!("cannot accept a connection: {error}"));
                 sleep(ACCEPT_PAUSE).await;
@@ -329,7 +332,7 @@ async fn accept_all(house: Arc<House>, config: Arc<Config>, listener: tokio::net
     }
 }
 
-fn words(refusal: Refusal) -> &'static str {
+fn refusal_text(refusal: Refusal) -> &'static str {
     match refusal {
         Refusal::Busy => "too many connections",
         Refusal::Address => "too many connections from this address",

@@ -163,7 +163,7 @@ pub(crate) struct Viewer {
     playback: Playback,
     /// Which maps the picture shows, and how they are arranged.
     layout: ViewLayout,
-    /// Whether the tracer is seen from outside, by a second camera.
+    /// Whether a second camera shows the first one from outside.
     outside: Outside,
     pointer: PointerState,
     screen: Screen,
@@ -173,7 +173,7 @@ pub(crate) struct Viewer {
     requests: VecDeque<Request>,
     /// The names of the scenes, by the index of the scene.
     names: Vec<String>,
-    /// The time of the last call.
+    /// The current time, which the last call passed.
     now: Duration,
     /// The time of the last key or movement of the mouse; 0 before the first.
     last_event: Duration,
@@ -256,7 +256,7 @@ impl Viewer {
     pub(crate) fn resize(&mut self, window: Window) -> Result<(), OutOfMemory> {
         let before = *self.display.capabilities();
         self.display.set_window(window);
-        // A new font may have another cell shape, on which it depends which half blocks join without gaps.
+        // A new font may have cells of another shape, which decides which half blocks join without gaps.
         self.apply_changed_capabilities(&before)?;
         self.display.check_memory()?;
         self.redraw();
@@ -297,7 +297,7 @@ impl Viewer {
     pub(crate) fn show_sketch(&mut self, sketch: Scene, index: usize, orbits: bool) {
         if self.scenes.shown() != Some(index) {
             self.screen.close::<ErrorPanel>();
-            self.open(sketch, index, orbits);
+            self.open_scene(sketch, index, orbits);
         }
     }
 
@@ -310,10 +310,10 @@ impl Viewer {
         // delay that frame.
         self.screen.close_quietly::<ProgressPanel>();
         self.screen.close::<ErrorPanel>();
-        self.open(scene, index, orbits);
+        self.open_scene(scene, index, orbits);
     }
 
-    fn open(&mut self, scene: Scene, index: usize, orbits: bool) {
+    fn open_scene(&mut self, scene: Scene, index: usize, orbits: bool) {
         self.end_outside();
         let (before, shown) = (self.scenes.shown(), scene.clone());
         for warning in scene.darkness().map(str::to_owned).into_iter().chain(scene.invisible_formulas()) {
@@ -340,7 +340,7 @@ impl Viewer {
         // A scene that is loaded again goes on at its time.
         self.playback.start(shown.moves() && !self.options.reduced_motion, self.now);
         self.screen.set_name(self.names.get(index).map_or("", String::as_str));
-        // Also for a scene whose view is kept: its file may have got other views.
+        // Needed also if the view is kept, because a reloaded file may contain other views.
         self.eye.set_scene(&shown);
     }
 
@@ -374,9 +374,9 @@ impl Viewer {
         self.screen.open(warnings);
     }
 
-    /// Returns the first page of the caption of `scene`, whose index is `of`, if it has a caption.
-    fn caption(&self, scene: &Scene, of: usize) -> Option<Caption> {
-        let place = self.options.tour.map(|count| (of + 1, count));
+    /// Returns the first page of the caption of `scene`, whose index is `index`, if it has a caption.
+    fn caption(&self, scene: &Scene, index: usize) -> Option<Caption> {
+        let place = self.options.tour.map(|count| (index + 1, count));
         Some(Caption::new(Arc::clone(scene.caption()?), place))
     }
 
@@ -419,8 +419,8 @@ impl Viewer {
         match decide(&self.facts(busy), now) {
             Action::GiveUp => Step::GiveUp,
             Action::Draw => Step::Draw,
-            Action::Trace => self.trace(),
-            Action::Refine => self.refine(),
+            Action::Trace => self.begin_new_view(),
+            Action::Refine => self.begin_refinement(),
             // An incomplete escape sequence needs a wake-up of its own: no bytes may follow.
             Action::Wait(until) => {
                 Step::Wait(until.into_iter().chain(self.receiver.escape_due(now)).chain(fades_at).min())
@@ -456,7 +456,7 @@ impl Viewer {
     /// Begins a frame of a shot that no frame has been begun for.
     ///
     /// The returned step sends a query first, which measures the link's round trip without a frame's bytes.
-    fn trace(&mut self) -> Step {
+    fn begin_new_view(&mut self) -> Step {
         let Some((scene, shot)) = self.scene().zip(self.wanted_shot()) else { return Step::Wait(None) };
         let probe = self.pacing.probe(self.now);
         self.receiver.sent(&probe, self.now);
@@ -465,7 +465,7 @@ impl Viewer {
     }
 
     /// Begins the next refinement of the last frame.
-    fn refine(&self) -> Step {
+    fn begin_refinement(&self) -> Step {
         let wanted = self.scene().zip(self.wanted_shot()).zip(self.next_refinement());
         let Some(((scene, shot), sampling)) = wanted else { return Step::Wait(None) };
         Step::Trace(Vec::new(), Job { scene, shot, sampling, refines: true })

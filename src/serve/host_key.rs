@@ -44,7 +44,7 @@ fn make(path: &Path) -> io::Result<PrivateKey> {
     let mut file = OutputFile::create_secret(path)?;
     file.write_all(key.to_openssh(LineEnding::LF).map_err(io::Error::other)?.as_bytes())?;
     match file.finish() {
-        // Another replica has just made one.
+        // Another process has made a key in the same place meanwhile: reads that key.
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => load_or_make(path),
         done => done.map(|()| key),
     }

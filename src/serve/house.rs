@@ -1,4 +1,4 @@
-//! The state that all connections share: scenes, settings, limits, and the stage.
+//! The state that all connections share: scenes, settings, limits, and the threads that draw.
 
 use super::client_terminal::ClientTerminal;
 use super::limits::{Door, Places};
@@ -44,7 +44,7 @@ impl House {
     pub(super) fn new(scenes: Vec<HostedScene>, settings: Settings, stage: Arc<Stage>) -> Self {
         let mut keymap = Keymap::default();
         keymap.remove(&LEFT_OUT);
-        // Some connections only ask for text, and some wait for a place.
+        // More connections than viewers, because some only ask for text, and some wait for a place.
         let connections = 2 * settings.max_viewers + 64;
         Self {
             door: Mutex::new(Door::new(connections, settings.max_per_address)),
@@ -61,16 +61,16 @@ impl House {
     }
 
     /// Returns the options of a new viewer, whose window has this number of columns.
-    pub(super) fn options(&self, terminal: &ClientTerminal, columns: u16) -> Options {
-        let mut options = Options::new(terminal.hints(&|name| self.terminfo(name)));
+    pub(super) fn viewer_options(&self, terminal: &ClientTerminal, columns: u16) -> Options {
+        let mut options = Options::new(terminal.hints(&|name| self.terminal_colors(name)));
         options.max_rate = self.settings.max_rate;
         options.max_frames = Some(self.settings.max_frames);
         options.keymap = self.keymap.clone();
-        options.welcome = Some(welcome(self.scenes.len(), self.settings.link.as_deref(), columns));
+        options.welcome = Some(welcome_line(self.scenes.len(), self.settings.link.as_deref(), columns));
         options
     }
 
-    fn terminfo(&self, name: &str) -> Option<Colors> {
+    fn terminal_colors(&self, name: &str) -> Option<Colors> {
         let mut known = locked(&self.terminals);
         if let Some(colors) = known.get(name) {
             return *colors;
@@ -88,7 +88,7 @@ impl House {
     }
 
     /// Returns the list of scenes.
-    pub(super) fn list(&self) -> String {
+    pub(super) fn scene_list(&self) -> String {
         let width = self.scenes.iter().map(|scene| scene.name.len()).max().unwrap_or(0);
         self.scenes.iter().fold(String::new(), |mut list, HostedScene { name, title, .. }| {
             let _ = write!(list, "{}\r\n", format!("{name:width$}  {title}").trim_end());
@@ -118,8 +118,8 @@ impl House {
 
 /// Returns the line that is shown until the first key: the main keys, or fewer if there is no room
 /// beside the link.
-fn welcome(scenes: usize, link: Option<&str>, columns: u16) -> String {
-    let next = if scenes > 1 { ", n next scene" } else { "" };
+fn welcome_line(scene_count: usize, link: Option<&str>, columns: u16) -> String {
+    let next = if scene_count > 1 { ", n next scene" } else { "" };
     let link = link.map(|link| format!("  {link}")).unwrap_or_default();
     let line = format!("drag or WASD moves, t turns{next}, ? all keys, q quits{link}");
     // A note has a blank at each side.
@@ -159,14 +159,14 @@ impl Drop for Place {
 
 #[cfg(all(test, unit_tests))]
 mod tests {
-    use super::welcome;
+    use super::welcome_line;
 
     #[test]
     fn the_link_has_room_beside_the_keys() {
         let link = "https://example.org/demo";
-        assert_eq!(welcome(1, None, 80), "drag or WASD moves, t turns, ? all keys, q quits");
-        assert_eq!(welcome(2, Some(link), 80), format!("? all keys, q quits  {link}"));
+        assert_eq!(welcome_line(1, None, 80), "drag or WASD moves, t turns, ? all keys, q quits");
+        assert_eq!(welcome_line(2, Some(link), 80), format!("? all keys, q quits  {link}"));
         let wide = format!("drag or WASD moves, t turns, n next scene, ? all keys, q quits  {link}");
-        assert_eq!(welcome(2, Some(link), 90), wide);
+        assert_eq!(welcome_line(2, Some(link), 90), wide);
     }
 }

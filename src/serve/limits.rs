@@ -10,10 +10,11 @@ use std::time::Duration;
 const MAX_LOGGING_IN: usize = 64;
 /// The most connections from one address that have not logged in.
 const MAX_LOGGING_IN_PER_ADDRESS: usize = 8;
-/// New connections from one address at once; more are allowed at one each [`REFILL_TIME`].
+/// Greatest number of new connections from one address at once; each [`REFILL_TIME`] allows one
+/// more.
 const BURST: f64 = 20.0;
 const REFILL_TIME: Duration = Duration::from_millis(200);
-/// The most addresses without a connection that are remembered.
+/// The most addresses that a [`Door`] remembers.
 ///
 /// All others share one allowance, so that an attacker with many addresses does not make the table grow.
 const MAX_REMEMBERED: usize = 10_000;
@@ -23,7 +24,7 @@ const MAX_REMEMBERED: usize = 10_000;
 enum Origin {
     V4([u8; 4]),
     V6([u8; 8]),
-    /// All that are not remembered.
+    /// All addresses that are not remembered, counted together.
     Others,
 }
 
@@ -39,8 +40,8 @@ impl Origin {
     }
 }
 
-/// Returns an address without what tells one user from another, for logs.
-pub(super) fn shortened(address: IpAddr) -> String {
+/// Returns an address without the part that identifies a user, for logs: `192.0.2.0/24`.
+pub(super) fn anonymized(address: IpAddr) -> String {
     match Origin::of(address) {
         Origin::V4([a, b, c, _]) => format!("{a}.{b}.{c}.0/24"),
         Origin::V6([a, b, c, d, e, f, ..]) => {
@@ -51,7 +52,7 @@ pub(super) fn shortened(address: IpAddr) -> String {
     }
 }
 
-/// The connections of one origin.
+/// The connections from one origin, and the number of new ones that it may still open at once.
 #[derive(Clone, Copy, Debug)]
 struct Visitor {
     connected: usize,
@@ -71,14 +72,14 @@ pub(super) enum Refusal {
     Rate,
 }
 
-/// A connection that was let in.
+/// A connection that the [`Door`] has admitted and counts.
 #[derive(Debug)]
 pub(super) struct Entry {
     origin: Origin,
     logging_in: bool,
 }
 
-/// The connections that there are, by origin.
+/// The counts of connections, in total and by origin, by which new ones are admitted or refused.
 #[derive(Debug)]
 pub(super) struct Door {
     per_address: usize,
@@ -89,19 +90,19 @@ pub(super) struct Door {
 }
 
 impl Door {
-    /// Returns a door for at most `total` connections, and `per_address` from one address.
+    /// Returns a door that admits at most `total` connections, and `per_address` from one address.
     pub(super) fn new(total: usize, per_address: usize) -> Self {
         Self { per_address, total, connected: 0, logging_in: 0, visitors: HashMap::new() }
     }
 
-    /// Lets a connection in, or tells why not.
+    /// Admits and counts a new connection, or returns the reason to refuse it.
     pub(super) fn enter(&mut self, address: IpAddr, now: Duration) -> Result<Entry, Refusal> {
         // The limits of one address are lifted together, for a load test from one machine.
         let most_logging_in = MAX_LOGGING_IN_PER_ADDRESS.max(self.per_address / 2);
         if self.connected >= self.total || self.logging_in >= MAX_LOGGING_IN.max(self.per_address / 2) {
             return Err(Refusal::Busy);
         }
-        let origin = self.remembered(Origin::of(address), now);
+        let origin = self.remembered_or_others(Origin::of(address), now);
         let burst = BURST.max(self.per_address as f64);
         let visitor =
             self.visitors.entry(origin).or_insert(Visitor { connected: 0, logging_in: 0, allowance: burst, seen: now });
@@ -142,7 +143,7 @@ impl Door {
     }
 
     /// Returns `origin`, or [`Origin::Others`] if it is new and there is no room for another one.
-    fn remembered(&mut self, origin: Origin, now: Duration) -> Origin {
+    fn remembered_or_others(&mut self, origin: Origin, now: Duration) -> Origin {
         if self.visitors.len() >= MAX_REMEMBERED && !self.visitors.contains_key(&origin) {
             let refilled = REFILL_TIME * BURST as u32;
             self.visitors.retain(|_, visitor| visitor.connected > 0 || visitor.seen + refilled > now);
@@ -164,7 +165,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// Returns `most` free places.
+    /// Returns the places for `most` viewers, all of them free.
     pub(super) fn new(most: usize) -> Self {
         Self { most, taken: 0, waiting: VecDeque::new(), next: 0 }
     }

@@ -14,10 +14,11 @@ use tokio::sync::Notify;
 /// The connection is not read while they wait.
 const MAX_INPUT: usize = 4096;
 
-/// The most bytes that wait to be sent while input is taken.
+/// The most bytes that may wait to be sent; while there are more, no input is taken.
 const MAX_OUTPUT: usize = 64 * 1024;
 
-/// The line between a connection and its seat.
+/// The buffers between a connection and its seat: input in one direction, bytes to send in the
+/// other.
 #[derive(Debug, Default)]
 pub(super) struct Line {
     inbox: Mutex<Inbox>,
@@ -57,13 +58,13 @@ pub(super) struct Outgoing {
 }
 
 /// Returns the value of a mutex, also if a thread has panicked while it had the lock.
-// Each field that is locked so is valid by itself.
+// A panic leaves no invalid value behind, because each field that is locked so is valid by itself.
 pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Line {
-    /// Appends input, and waits for room if there is too much of it.
+    /// Appends input, and waits while there is more of it than the seat has taken in its turns.
     pub(super) async fn push(&self, bytes: &[u8]) {
         for part in bytes.chunks(MAX_INPUT) {
             loop {
@@ -83,12 +84,12 @@ impl Line {
         }
     }
 
-    /// Sets the window's new size. Only the last one counts.
+    /// Sets the window's new size; of several sizes before a turn only the last one counts.
     pub(super) fn resize(&self, window: Window) {
         locked(&self.inbox).arrived.window = Some(window);
     }
 
-    /// Announces when the server ends.
+    /// Tells the seat the time at which the server ends.
     pub(super) fn drain(&self, at: Duration) {
         locked(&self.inbox).arrived.drained_at = Some(at);
     }
@@ -107,9 +108,10 @@ impl Line {
         locked(&self.inbox).hung_up
     }
 
-    /// Takes the input that has arrived; nothing while many bytes are to be sent.
+    /// Takes the input that has arrived; nothing while more than [`MAX_OUTPUT`] bytes are to be
+    /// sent.
     ///
-    /// Input leads to more of them.
+    /// Input would lead to more bytes.
     pub(super) fn take_arrived(&self) -> Arrived {
         if locked(&self.outbox).bytes.len() > MAX_OUTPUT {
             return Arrived::default();
@@ -125,7 +127,7 @@ impl Line {
         outbox.sending || !outbox.bytes.is_empty()
     }
 
-    /// Hands over bytes to send, and the exit status if they are the last ones.
+    /// Appends bytes to those to send, and sets the exit status if they are the last ones.
     pub(super) fn send(&self, mut bytes: Vec<u8>, ended: Option<u32>) {
         if bytes.is_empty() && ended.is_none() {
             return;
@@ -159,7 +161,7 @@ impl Line {
     }
 
     /// Records that the bytes of [`outgoing`](Self::outgoing) have been sent.
-    pub(super) fn sent(&self) {
+    pub(super) fn record_sent(&self) {
         locked(&self.outbox).sending = false;
     }
 

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::{sleep, timeout};
 
-/// The most bytes in one message.
+/// The most bytes in one SSH message to a client.
 // The connection's buffer keeps the size of its largest message for ever.
 const MAX_MESSAGE: usize = 8 * 1024;
 /// Time that a client which was told to leave has to close the connection.
@@ -40,7 +40,7 @@ impl Reception {
         let (house, now) = (&self.house, self.house.stage.now());
         let settings = &house.settings;
         let stay = Stay { idle: settings.idle, ends: now + settings.session_max };
-        let options = house.options(terminal, window.size.columns);
+        let options = house.viewer_options(terminal, window.size.columns);
         let mut first = Vec::new();
         let scenes = Arc::clone(&house.scenes);
         let seat = Seat::new(scenes, scene, (options, settings.link.clone()), window, stay, now, &mut first);
@@ -59,7 +59,7 @@ impl Reception {
             if !self.send(&bytes).await {
                 break;
             }
-            self.line.sent();
+            self.line.record_sent();
             match ended {
                 Some(status) => return self.end(status).await,
                 None => house.stage.wake(id),
@@ -123,8 +123,8 @@ impl Reception {
 
     /// Sends bytes, and returns whether the connection has taken them.
     ///
-    /// A client that grants no room for them for too long is shown out. (One that does not read its socket is noticed
-    /// by the socket.)
+    /// A client is disconnected if its SSH window has no room for the bytes for too long. (A client that does not read
+    /// its socket at all is noticed by `Socket`.)
     async fn send(&self, bytes: &[u8]) -> bool {
         for message in bytes.chunks(MAX_MESSAGE) {
             let sent = timeout(self.house.settings.patience, self.handle.data(self.channel, message.to_vec())).await;

@@ -26,12 +26,12 @@ pub(super) enum Class {
     Refinement,
 }
 
-/// The wish of a seat after its turn.
+/// The state in which a turn leaves its seat: ready for another turn, asleep, or ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Next {
     /// Another turn.
     Turn(Class),
-    /// A turn at this time, unless it is woken before; `None` sleeps until it is woken.
+    /// The seat sleeps until this time or until it is woken; `None`: only until it is woken.
     Sleep(Option<Duration>),
     /// No more turns.
     End,
@@ -41,18 +41,18 @@ pub(super) enum Next {
 enum State {
     Asleep(Option<Duration>),
     Ready(Class, Duration),
-    /// Its turn is being carried out.
+    /// The seat's turn is being carried out.
     Running {
         /// The virtual time at which the turn started.
         start: Duration,
-        /// Whether it was woken since then.
+        /// Whether the seat was woken during this turn.
         woken: bool,
     },
 }
 
 #[derive(Debug)]
 struct Seat {
-    /// The virtual time at which its last turn ended.
+    /// The virtual time at which the seat's last turn ended.
     finish: Duration,
     state: State,
 }
@@ -63,7 +63,7 @@ pub(super) struct RunQueue {
     seats: BTreeMap<SeatId, Seat>,
     ready: BTreeSet<(Class, Duration, SeatId)>,
     timers: BTreeSet<(Duration, SeatId)>,
-    /// The virtual time: the start of the last turn.
+    /// The virtual time of the queue: the latest virtual start of a turn for a picture.
     virtual_time: Duration,
     running: usize,
 }

@@ -12,11 +12,11 @@ use base64::Engine;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Time before the end in which it is counted down.
+/// Time before the end of a visit in which the remaining seconds are shown.
 const COUNTDOWN: Duration = Duration::from_secs(30);
 /// Greatest time that leaving waits for the terminal's last replies.
 const LAST_REPLIES: Duration = Duration::from_secs(1);
-/// The most decisions in one turn. A turn has one frame of a new view, and what follows from it.
+/// The most actions of the viewer in one turn, such as tracing a frame and drawing it.
 const MAX_STEPS: usize = 8;
 
 /// The reason why a viewer leaves.
@@ -26,7 +26,7 @@ pub(super) enum Parting {
     Quit,
     /// No key was pressed for too long.
     Idle,
-    /// The greatest time of a visit is over.
+    /// The visit has lasted for the longest time that is allowed.
     TimeOver,
     /// The server ends.
     Drained,
@@ -35,8 +35,9 @@ pub(super) enum Parting {
 }
 
 impl Parting {
-    /// Returns what is counted down before it, if it can be foreseen.
-    fn notice(self, seconds: u64) -> String {
+    /// Returns the note with the seconds that are left until the viewer has to leave for this
+    /// reason.
+    fn countdown_text(self, seconds: u64) -> String {
         let what = match self {
             Self::Idle => "no key for a while: any key stays, else you leave",
             Self::TimeOver => "your time is over: you leave",
@@ -46,7 +47,7 @@ impl Parting {
     }
 
     /// Returns the sentence that is printed on leaving; empty if the user knows why.
-    fn sentence(self) -> &'static str {
+    fn farewell(self) -> &'static str {
         match self {
             Self::Quit => "",
             Self::Idle => "no key for a while; come back at any time\r\n",
@@ -57,10 +58,10 @@ impl Parting {
     }
 }
 
-/// The times that limit a visit.
+/// The limits on the duration of a visit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stay {
-    /// The longest time without a key.
+    /// The longest time without a key, after which the visit ends.
     pub(super) idle: Duration,
     /// The time at which the visit ends.
     pub(super) ends: Duration,
@@ -88,9 +89,9 @@ pub(super) struct Seat {
     stay: Stay,
     began: Duration,
     drained_at: Option<Duration>,
-    /// The seconds that were counted down last.
+    /// The seconds that the last note of the countdown showed; `None` before the countdown.
     counted: Option<u64>,
-    /// Since when the viewer leaves; its terminal is restored then.
+    /// The time at which the viewer began to leave and its terminal was restored; `None` before.
     leaving: Option<Duration>,
 }
 
@@ -128,7 +129,8 @@ impl Seat {
         }
     }
 
-    /// Takes what has arrived, decides, and appends the bytes to send.
+    /// Handles the input that has arrived, carries out the viewer's actions, and appends the bytes
+    /// to send.
     ///
     /// `sending` tells whether earlier bytes are still to be sent, and `class` what the turn may be used for. At most
     /// one frame of a new view is traced.
@@ -151,12 +153,12 @@ impl Seat {
         if self.carry_out_requests(out) {
             return self.leave(Parting::Quit, now, out);
         }
-        let (end, parting) = self.end();
+        let (end, parting) = self.next_end();
         if now >= end {
             return self.leave(parting, now, out);
         }
         let counted = self.count_down(end, parting, now);
-        match self.decide((sending, class), clock, trace, out) {
+        match self.carry_out_steps((sending, class), clock, trace, out) {
             Next::Sleep(until) => Next::Sleep(until.into_iter().chain([counted]).min()),
             next => next,
         }
@@ -175,14 +177,15 @@ impl Seat {
     }
 
     /// Returns when, and why, the visit ends if no key is pressed.
-    fn end(&self) -> (Duration, Parting) {
+    fn next_end(&self) -> (Duration, Parting) {
         let idle = (self.viewer.last_event().max(self.began) + self.stay.idle, Parting::Idle);
         let ends = [(self.stay.ends, Parting::TimeOver), idle];
         let drained = self.drained_at.map(|at| (at, Parting::Drained));
         drained.into_iter().chain(ends).min_by_key(|&(at, _)| at).expect("there are two")
     }
 
-    /// Shows how many seconds are left, if few are, and returns the time at which that changes.
+    /// Shows the number of seconds left, if it is small, and returns the time at which this note
+    /// changes.
     fn count_down(&mut self, end: Duration, parting: Parting, now: Duration) -> Duration {
         let countdown = if parting == Parting::Idle { COUNTDOWN.min(self.stay.idle / 2) } else { COUNTDOWN };
         let left = end.saturating_sub(now);
@@ -193,13 +196,13 @@ impl Seat {
         let seconds = left.as_secs() + u64::from(left.subsec_nanos() > 0);
         // Shown once a second: each note is a change, which is drawn.
         if self.counted.replace(seconds) != Some(seconds) {
-            self.viewer.show_note(parting.notice(seconds));
+            self.viewer.show_note(parting.countdown_text(seconds));
         }
         end.saturating_sub(Duration::from_secs(seconds - 1))
     }
 
     /// Draws, and traces at most one frame of a new view.
-    fn decide(
+    fn carry_out_steps(
         &mut self,
         (mut sending, class): (bool, Class),
         clock: &dyn Fn() -> Duration,
@@ -228,7 +231,7 @@ impl Seat {
                         Some(frame) => self.viewer.take_frame(frame),
                         None => return Next::Turn(Class::Refinement),
                     }
-                    // What it leads to is drawn at once; another frame is for the next turn.
+                    // The first frame of a turn is drawn at once; after a second one, the next turn goes on.
                     if std::mem::replace(&mut traced, true) {
                         return Next::Turn(class);
                     }
@@ -258,7 +261,7 @@ impl Seat {
                     self.viewer.show_note(note);
                 }
                 Request::ShowMetadata => self.viewer.show_metadata(self.scenes[self.shown].name.clone()),
-                // Only the last one stays on the clipboard, and many would be much longer than the keys.
+                // Only the last text stays on the clipboard. Sending each of them would take many bytes for a few keys.
                 Request::Copy(text) => copied = Some(text),
                 _ => {}
             }
@@ -273,7 +276,7 @@ impl Seat {
     /// Restores the terminal, and appends what is left on the screen.
     pub(super) fn leave(&mut self, parting: Parting, now: Duration, out: &mut Vec<u8>) -> Next {
         self.modes_off(now, out);
-        out.extend_from_slice(parting.sentence().as_bytes());
+        out.extend_from_slice(parting.farewell().as_bytes());
         let HostedScene { file, .. } = &self.scenes[self.shown];
         let camera = self.viewer.moved().map(|camera| format!(" {}", camera.rounded().to_flags()));
         let command = format!("this view at home: termtrace {file}{}\r\n", camera.unwrap_or_default());

@@ -18,7 +18,7 @@ pub(super) struct Socket {
     stream: Arc<TcpStream>,
     /// Greatest time in which a client that is to get bytes takes none.
     patience: Duration,
-    /// The end of the patience, while the client takes no bytes.
+    /// A timer of `patience`, which runs while the client takes no bytes.
     stalled: Option<Pin<Box<Sleep>>>,
 }
 
@@ -38,10 +38,10 @@ impl Kick {
 impl Socket {
     /// Returns the socket of a new connection.
     pub(super) fn new(stream: TcpStream, patience: Duration) -> Self {
-        // What the system refuses here is a matter of speed only.
+        // Errors are ignored, because these options affect only the speed.
         let _ = stream.set_nodelay(true);
         let _ = sockopt::set_socket_send_buffer_size(&stream, SEND_BUFFER);
-        // A host that vanished is noticed without any bytes of ours.
+        // With keepalive a client's host that has vanished is noticed even if the server sends nothing.
         let _ = sockopt::set_socket_keepalive(&stream, true);
         let _ = sockopt::set_tcp_keepidle(&stream, Duration::from_secs(60));
         Self { stream: Arc::new(stream), patience, stalled: None }

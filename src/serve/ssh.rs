@@ -21,7 +21,7 @@ pub(super) struct Client {
     pub(super) house: Arc<House>,
     pub(super) line: Arc<Line>,
     pub(super) kick: Kick,
-    /// Taken when the connection ends.
+    /// The connection's entry in the `Door`; taken when the connection ends.
     pub(super) entry: Option<Entry>,
     pub(super) terminal: ClientTerminal,
     /// The one channel of the connection.
@@ -57,15 +57,15 @@ impl Client {
         Auth::Accept
     }
 
-    /// Starts what the client asks for, once.
-    fn start(&mut self, channel: ChannelId, command: &[u8], session: &mut Session) -> Result<(), Error> {
+    /// Starts the visit that the client's first request asks for, and refuses later requests.
+    fn start_visit(&mut self, channel: ChannelId, command: &[u8], session: &mut Session) -> Result<(), Error> {
         if std::mem::replace(&mut self.asked, true) {
             return session.channel_failure(channel);
         }
         session.channel_success(channel)?;
         self.line.asked.notify_one();
         let names = self.house.scenes.iter().map(|scene| scene.name.as_str());
-        let visit = visit::parse(command, names);
+        let visit = visit::parse_command(command, names);
         let reception = reception::Reception {
             house: Arc::clone(&self.house),
             line: Arc::clone(&self.line),
@@ -78,7 +78,7 @@ impl Client {
             match (visit, terminal.window) {
                 (Ok(Visit::Scene(scene)), Some(window)) => reception.show(scene, &terminal, window).await,
                 (Ok(Visit::Scene(scene)), None) => reception.print(reception.house.text_frame(scene)).await,
-                (Ok(Visit::List), _) => reception.print(&reception.house.list()).await,
+                (Ok(Visit::List), _) => reception.print(&reception.house.scene_list()).await,
                 (Err(message), _) => reception.refuse(&message).await,
             }
         });
@@ -111,7 +111,7 @@ impl Handler for Client {
         reply: ChannelOpenHandle,
         _session: &mut Session,
     ) -> Result<(), Error> {
-        // A dropped reply refuses a second channel.
+        // A second channel is refused by dropping `reply`.
         if self.channel.is_none() {
             self.channel = Some(channel.id());
             reply.accept().await;
@@ -175,11 +175,11 @@ impl Handler for Client {
     }
 
     async fn shell_request(&mut self, channel: ChannelId, session: &mut Session) -> Result<(), Error> {
-        self.start(channel, b"", session)
+        self.start_visit(channel, b"", session)
     }
 
     async fn exec_request(&mut self, channel: ChannelId, command: &[u8], session: &mut Session) -> Result<(), Error> {
-        self.start(channel, command, session)
+        self.start_visit(channel, command, session)
     }
 
     async fn subsystem_request(&mut self, channel: ChannelId, _name: &str, session: &mut Session) -> Result<(), Error> {

@@ -16,7 +16,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// A seat with its line.
+/// A seat, and the buffers between it and its connection.
 struct Staged {
     seat: Mutex<Seat>,
     line: Arc<Line>,
@@ -27,7 +27,7 @@ struct Shared {
     queue: RunQueue,
     seats: HashMap<SeatId, Arc<Staged>>,
     next_id: SeatId,
-    /// The threads that wait for work.
+    /// The number of threads that wait for work.
     resting: usize,
     /// Cancels the refinements in progress; replaced when it is used.
     refinements: Cancellation,
@@ -47,7 +47,8 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    /// Starts the stage with this number of threads.
+    /// Starts `threads` threads that carry out the turns of seats, and returns the stage with their
+    /// handles.
     pub(super) fn start(threads: usize) -> io::Result<(Arc<Self>, Vec<JoinHandle<()>>)> {
         let stage = Arc::new(Self {
             shared: Mutex::default(),
@@ -90,7 +91,7 @@ impl Stage {
         self.rouse(&mut shared);
     }
 
-    /// Announces to all seats when the server ends.
+    /// Tells all seats the time at which the server ends.
     pub(super) fn drain(&self, at: Duration) {
         let mut shared = locked(&self.shared);
         let ids: Vec<_> = shared.seats.iter().map(|(&id, staged)| (staged.line.drain(at), id).1).collect();
@@ -120,7 +121,7 @@ impl Stage {
         }
     }
 
-    /// Serves seats until the stage is closed.
+    /// Carries out the turns of seats, one after the other, until the stage is closed.
     fn serve(&self) {
         // The thread is a pool by itself. Without a pool each `rayon::join` would go to the global one.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
@@ -133,7 +134,7 @@ impl Stage {
                 Err(_) => turn(),
             }));
             let next = turned.unwrap_or_else(|_| {
-                // The panic hook has reported it. Only this viewer ends, with a clean terminal.
+                // The panic hook has already printed the message. Only this viewer ends, with a clean terminal.
                 tracer = Tracer::default();
                 let mut out = Vec::new();
                 locked(&staged.seat).abandon(&mut out);
@@ -148,7 +149,9 @@ impl Stage {
         }
     }
 
-    /// Waits for the next turn. Returns the seat, the load, and the token of refinements.
+    /// Waits for the next turn. Returns its seat, the load, and the token that cancels refinements.
+    ///
+    /// The load is the number of seats that run or are ready for a picture. `None` if the stage is closed.
     fn next_turn(&self) -> Option<(SeatId, Arc<Staged>, usize, Cancellation)> {
         let mut shared = locked(&self.shared);
         loop {
@@ -184,7 +187,8 @@ impl Stage {
         let never = Cancellation::default();
         let mut trace = |job: &Job, may_interrupt: bool| -> Option<Frame> {
             let mut frame = tracer.trace_for_any(job, if may_interrupt { token } else { &never }).ok()?;
-            // The time that a frame takes at this viewer's share: by it the number of samples is chosen.
+            // Counts the time as longer if there are more seats than threads: the viewer chooses the number of samples
+            // by it.
             frame.trace = frame.trace.mul_f64(share);
             Some(frame)
         };

@@ -3,7 +3,7 @@
 /// The most bytes of a command; no scene has a longer name.
 const MAX_COMMAND: usize = 256;
 
-/// The wish of a client.
+/// The request of a client: a scene, or the list of scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Visit {
     /// The view of the scene with this index.
@@ -12,17 +12,17 @@ pub(super) enum Visit {
     List,
 }
 
-/// Returns what a command asks for, of a server with scenes of these names.
+/// Returns the request that a command makes of a server with scenes of these names.
 ///
 /// # Errors
 /// The message for the client, of printable characters.
-pub(super) fn parse<'a>(command: &[u8], names: impl Iterator<Item = &'a str>) -> Result<Visit, String> {
+pub(super) fn parse_command<'a>(command: &[u8], scene_names: impl Iterator<Item = &'a str>) -> Result<Visit, String> {
     let wrong = || "a command is the name of a scene, or --list, which prints their names".to_owned();
     let command = std::str::from_utf8(command).ok().filter(|command| command.len() <= MAX_COMMAND).ok_or_else(wrong)?;
     match command.trim() {
         "" => Ok(Visit::Scene(0)),
         "--list" => Ok(Visit::List),
-        name => names.into_iter().position(|known| known == name).map(Visit::Scene).ok_or_else(wrong),
+        name => scene_names.into_iter().position(|known| known == name).map(Visit::Scene).ok_or_else(wrong),
     }
 }
 
@@ -32,7 +32,7 @@ mod tests {
 
     #[test]
     fn only_names_of_scenes_are_understood() {
-        let parse = |command: &[u8]| parse(command, ["balls", "corridor"].into_iter());
+        let parse = |command: &[u8]| parse_command(command, ["balls", "corridor"].into_iter());
         assert_eq!(parse(b"corridor"), Ok(Visit::Scene(1)));
         assert_eq!(parse(b" corridor\n"), Ok(Visit::Scene(1)));
         assert_eq!(parse(b""), Ok(Visit::Scene(0)));

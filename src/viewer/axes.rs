@@ -12,7 +12,8 @@ const REACH: f32 = 5.0;
 /// Number of cells that an axis is drawn with: dots, and the letter at its end.
 const POINTS: u16 = 4;
 
-/// The axes of the scene. For a mesh file without a scene, the axes of the file.
+/// The layer that draws the axes of the scene, or for a mesh file without a scene those of the
+/// file.
 pub(super) struct Axes;
 
 impl Layer for Axes {

@@ -25,7 +25,7 @@ pub(super) struct Caption {
 }
 
 impl Caption {
-    /// Returns the first page of a caption with one paragraph a line.
+    /// Returns the first page of the caption `text`, in which each line is a paragraph.
     pub(super) fn new(text: Arc<str>, place: Option<(usize, usize)>) -> Self {
         Self { text, place, page: 0 }
     }
@@ -39,7 +39,7 @@ impl Caption {
     /// Returns the lines of each page on a screen of this size. The row of keys is not included.
     fn pages(&self, screen: Rect) -> Vec<Vec<String>> {
         let width = usize::from(screen.width.min(MAX_COLUMNS).saturating_sub(2)).max(1);
-        let rows = rows(screen).saturating_sub(1).max(1);
+        let rows = caption_rows(screen).saturating_sub(1).max(1);
         let mut pages = vec![Vec::new()];
         for paragraph in self.text.lines() {
             let lines = wrapped(paragraph, width);
@@ -70,9 +70,9 @@ impl Caption {
     }
 }
 
-/// Returns the number of rows: an eighth of the screen, which covers no object that the picture is
-/// about, and at least three.
-fn rows(screen: Rect) -> usize {
+/// Returns the number of a caption's rows: an eighth of the screen, which covers no object that the
+/// picture is about, and at least three.
+fn caption_rows(screen: Rect) -> usize {
     usize::from(screen.height / 8).max(3)
 }
 

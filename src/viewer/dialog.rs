@@ -26,7 +26,7 @@ pub(super) enum Dialog {
     Save,
 }
 
-/// The answer to a question.
+/// The answer that a key press gives to an open question.
 pub(super) enum Answer {
     Save(u8),
     Export(Format),
@@ -128,7 +128,7 @@ impl Dialog {
             Command::Write(format) => format.name().to_owned(),
             command => command.description().to_owned(),
         };
-        // Any key without a meaning here dismisses the question, so that its key need not be shown.
+        // Any other key dismisses the question, so the key of `Command::No` need not be shown.
         let answers = self.answers(keymap).filter(|row| row.command != Command::No);
         let answers: Vec<_> =
             answers.filter_map(|row| Some(format!("{} {}", row.keys.first()?, meaning(row)))).collect();

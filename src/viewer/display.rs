@@ -60,7 +60,7 @@ impl Display {
     /// Sets the window's size.
     pub(super) fn set_window(&mut self, window: Window) {
         self.window = window;
-        self.conclude();
+        self.conclude_capabilities();
     }
 
     /// Records a reply to the initial queries.
@@ -69,7 +69,7 @@ impl Display {
     pub(super) fn take_reply(&mut self, reply: &Reply) -> bool {
         let was_last = self.queries.take(reply);
         if was_last {
-            self.conclude();
+            self.conclude_capabilities();
         }
         was_last
     }
@@ -78,12 +78,12 @@ impl Display {
     pub(super) fn close_queries(&mut self) -> bool {
         let was_open = self.queries.close();
         if was_open {
-            self.conclude();
+            self.conclude_capabilities();
         }
         was_open
     }
 
-    fn conclude(&mut self) {
+    fn conclude_capabilities(&mut self) {
         let findings = Findings::new(&self.hints, self.window.cell, self.queries.replies());
         self.capabilities = findings.capabilities();
     }

@@ -52,7 +52,7 @@ impl ErrorPanel {
 
     /// Returns the panel's area, above the lowest `below` rows of the screen.
     fn area(&self, screen: Rect, below: u16) -> Rect {
-        let lines = self.lines(text_width(screen.width)).len() as u16;
+        let lines = self.lines(text_columns(screen.width)).len() as u16;
         let height = lines.min(MAX_ERROR_ROWS).min(screen.height / 3);
         Rect { y: (screen.bottom() - height).saturating_sub(below), height, ..screen }
     }
@@ -60,14 +60,14 @@ impl ErrorPanel {
     fn paint(&self, theme: Theme, area: Rect, buffer: &mut Buffer) {
         Clear.render(area, buffer);
         let lines: Vec<_> =
-            self.lines(text_width(area.width)).into_iter().map(|line| Line::from(format!(" {line}"))).collect();
+            self.lines(text_columns(area.width)).into_iter().map(|line| Line::from(format!(" {line}"))).collect();
         Paragraph::new(lines).style(theme.style()).render(area, buffer);
     }
 }
 
 /// Returns the columns for text in a panel of this width, which leaves one blank on each side.
-fn text_width(width: u16) -> usize {
-    usize::from(width.saturating_sub(2)).max(1)
+fn text_columns(panel_width: u16) -> usize {
+    usize::from(panel_width.saturating_sub(2)).max(1)
 }
 
 /// Wraps the text to lines of at most `width` columns, between words where possible.

@@ -50,7 +50,8 @@ impl Viewer {
     /// # Errors
     /// As for [`receive`](Self::receive).
     pub(crate) fn receive_typed(&mut self, mut typed: Vec<Input>, now: Duration) -> Result<(), OutOfMemory> {
-        // The other program may have reset the keyboard flags; the reply to the new query sets them again.
+        // The other program may have reset the keyboard flags, so keys are read in the legacy encoding until the reply
+        // to the new query.
         self.receiver.set_keys_are_sequences(false);
         typed.retain(|input| !matches!(input, Input::Reply(_)));
         self.take_inputs(&typed, now)
@@ -86,14 +87,14 @@ impl Viewer {
     /// Handles a reply. Those to the initial queries take effect together, with the last one.
     fn take_reply(&mut self, reply: &Reply) -> Result<(), OutOfMemory> {
         if let &Reply::KeyboardFlags(flags) = reply {
-            self.take_keyboard(flags);
+            self.take_keyboard_flags(flags);
         }
         let (size, capabilities) = (self.size(), *self.display.capabilities());
         match reply {
             // Terminals reply in order, so once the initial queries are answered this is a reply to a frame's query.
             Reply::DeviceAttributes(_) if !self.display.queries().is_open() => self.pacing.take_reply(self.now),
-            // The initial queries were sent before any frame, so a reply to a frame shows that their fence's reply is
-            // lost.
+            // The initial queries were sent before any frame. So a reply to a frame's query shows that the reply to
+            // their last query is lost.
             &Reply::Mode { mode, .. } if self.pacing.take_mode(mode, self.now) => drop(self.display.close_queries()),
             reply => drop(self.display.take_reply(reply)),
         }
@@ -107,7 +108,7 @@ impl Viewer {
     }
 
     /// Handles a reply with the flags of the kitty keyboard protocol.
-    fn take_keyboard(&mut self, flags: u16) {
+    fn take_keyboard_flags(&mut self, flags: u16) {
         let reports_releases = self.display.knows_keyboard() && flags & KEYBOARD == KEYBOARD;
         self.eye.set_reports_releases(reports_releases, self.now);
         self.receiver.set_keys_are_sequences(reports_releases);
@@ -121,7 +122,8 @@ impl Viewer {
             self.screen.close::<Warnings>();
         }
         let meant = self.keymap().command(&self.screen.active_modes(self.size()), key);
-        // The help lies over everything. Releases go on: keys may have been pressed before it was opened.
+        // The help takes all keys without Ctrl. It takes no releases, because their keys may have been pressed before
+        // it was opened.
         let is_ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
         if key.kind != KeyEventKind::Release && !is_ctrl && self.take_help_key(key, meant) {
             return;
@@ -192,7 +194,7 @@ impl Viewer {
             Command::TurnMesh => self.turn_mesh(),
             Command::Front | Command::FromRight | Command::FromAbove => self.look_from(command),
             Command::Wireframe => self.layout.toggle_wire(),
-            Command::Outside => self.change_outside(),
+            Command::Outside => self.show_next_outside_view(),
             Command::Axes => self.toggle_axes(),
             Command::Metadata => self.toggle_metadata(),
             // Keys of motion have been passed to the eye, and answers do nothing without an open question.

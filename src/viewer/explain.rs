@@ -25,7 +25,7 @@ use ratatui_widgets::block::Block;
 use ratatui_widgets::clear::Clear;
 use ratatui_widgets::paragraph::Paragraph;
 
-use placement::{marks, panel_area};
+use placement::{cursor_marks, panel_area};
 
 /// The explained pixel and its explanation.
 pub(super) struct ExplainPanel {
@@ -74,13 +74,13 @@ impl Layer for ExplainPanel {
         let keys = help::key_names(canvas.keymap, canvas.modes, &[Command::ScrollUp, Command::ScrollDown]);
         let keys = keys.unwrap_or_default();
         match canvas.frame.filter(|frame| frame.shot.outside.is_some()) {
-            // Seen from outside, the ray is drawn in the other picture, which the panel would cover.
+            // If there is a picture from outside, the ray is drawn into it, and the panel would cover the ray.
             Some(frame) => draw_eye_ray(canvas, frame, &self.explanation),
             None => canvas.lay(panel_area(above, self.cell(mode)), |theme, panel, buffer| {
                 self.paint(&keys, theme, mode, panel, buffer);
             }),
         }
-        for mark in marks(self, canvas.theme(), mode, screen) {
+        for mark in cursor_marks(self, canvas.theme(), mode, screen) {
             overlay::lay_over(canvas.grid, &mark);
         }
     }

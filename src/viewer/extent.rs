@@ -13,7 +13,7 @@ use crate::memory::{self, OutOfMemory};
 // (in truecolor, with a wipe or on a slow link). Without a limit, a window that claimed 65535x65535 cells took 4.6 GB.
 pub const MAX_PIXELS: u32 = 1 << 21;
 
-/// Returns the size that the picture covers, from the window's upper left corner.
+/// Returns the size in cells of the part of the window that the picture covers, at the upper left.
 pub(super) fn covered_size(window: Size, mode: CellMode) -> Size {
     let (across, down) = mode.pixels_per_cell();
     let (most, cells) = ((MAX_PIXELS / (across * down)) as usize, window.cell_count());

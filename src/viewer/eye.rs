@@ -48,7 +48,7 @@ pub(super) struct ViewState {
     orbits: bool,
     /// The views that the scene file stores.
     written: Vec<Camera>,
-    /// The views saved by the user, by number.
+    /// The views that the user has saved, by number.
     saved: [Option<Camera>; 9],
     history: JumpHistory,
 }
@@ -75,7 +75,7 @@ impl ViewState {
 }
 
 /// Time for which a key counts as held at each press with reduced motion, which moves in steps.
-// A step is then a tenth of the distance to the target, or nine degrees: large enough to see a change between two still
+// Such a step is a tenth of the distance to the target, or nine degrees: large enough to see a change between two still
 // pictures.
 const REDUCED_MOTION_STEP: Duration = Duration::from_millis(200);
 
@@ -110,7 +110,7 @@ impl Eye {
         self.view.as_ref().map(|view| view.camera)
     }
 
-    /// Returns the camera if it has been moved.
+    /// Returns the camera if it is not the scene's own one.
     pub(super) fn moved(&self) -> Option<Camera> {
         self.view.as_ref().filter(|view| view.camera != view.home).map(|view| view.camera)
     }
@@ -125,7 +125,7 @@ impl Eye {
         self.moved_until
     }
 
-    /// Returns whether anything moves.
+    /// Returns whether anything moves the eye: keys, the turntable or a jump.
     pub(super) fn is_moving(&self) -> bool {
         self.moved_until.is_some()
     }
@@ -170,7 +170,7 @@ impl Eye {
         }
     }
 
-    /// Jumps to the camera that `to` returns, and records the one that it leaves.
+    /// Jumps to the camera that `to` returns, and records the camera that the jump leaves.
     pub(super) fn jump(&mut self, now: Duration, to: impl FnOnce(&Camera) -> Camera) {
         self.jump_with(now, |view| {
             let to = to(&view.camera);
@@ -197,8 +197,8 @@ impl Eye {
         if self.reduced_motion {
             view.camera = to;
         } else if to != view.camera {
-            // The jump starts a little earlier, so that its first frame already differs, as the first frame of a key
-            // does.
+            // The jump counts as begun one frame earlier, so that its first frame already differs from the view that it
+            // leaves.
             let start = now.saturating_sub(FIRST_FRAME_MOTION);
             self.jump = Some(Jump::new(view.camera, to, start));
             self.moved_until = Some(start);
@@ -293,7 +293,7 @@ impl Eye {
         self.turntable &= key.kind == KeyEventKind::Release || !meant.is_some_and(|(command, _)| command.moves());
         self.motion.take_key(key, meant, now);
         if let (Some(scene), Some(view)) = (&self.scene, &self.view) {
-            self.motion.shorten_taps(now, |motion| is_free(motion, view, scene, now));
+            self.motion.shorten_taps(now, |motion| passes_no_surface(motion, view, scene, now));
         }
         self.start_motion(now);
     }
@@ -307,7 +307,7 @@ impl Eye {
         motion.take_key(&KeyEvent { kind: KeyEventKind::Press, ..*key }, meant, Duration::ZERO);
         let moved = motion.step(&view.camera, view.speed, Duration::ZERO, REDUCED_MOTION_STEP);
         let short = self.scene.as_ref().and_then(|scene| short_of_surface(scene, view, &moved));
-        // A surface stops one step; the next one starts close to it and passes it.
+        // A surface stops a step. If the eye is already close to the surface, as after such a stop, the step passes it.
         let way = |camera: &Camera| camera.pose().eye.distance(view.camera.pose().eye);
         view.camera = short.filter(|short| way(short) > LEAST_STEP * way(&moved)).unwrap_or(moved);
     }
@@ -347,8 +347,8 @@ impl Eye {
     }
 }
 
-/// Returns whether the motion that taps have left neither passes a surface nor ends close to one.
-fn is_free(motion: &Motion, view: &ViewState, scene: &Scene, now: Duration) -> bool {
+/// Returns whether the rest of the motion by taps neither passes a surface nor ends close to one.
+fn passes_no_surface(motion: &Motion, view: &ViewState, scene: &Scene, now: Duration) -> bool {
     let end = motion.step(&view.camera, view.speed, now.saturating_sub(FIRST_FRAME_MOTION), now + AGAIN_TIME);
     let (origin, end) = (view.camera.pose().eye, end.pose().eye);
     let within = Interval { min: 0.0, max: SURFACE_MARGIN };
@@ -369,14 +369,16 @@ fn short_of_surface(scene: &Scene, view: &ViewState, moved: &Camera) -> Option<C
 }
 
 /// Time for which a surface stops a held key, which passes it after that.
-// Longer than a press that is meant as a tap, even with Shift; short enough not to seem an end.
+// Longer than a press that is meant as a tap, even with Shift; short enough that the surface does not seem impassable.
 const PASSING_TIME: Duration = Duration::from_millis(500);
 
-/// The least part of a step of reduced motion that a surface may leave of it.
+/// Share of a step of reduced motion: if a surface leaves less of the step free, the step passes
+/// it.
 const LEAST_STEP: f32 = 0.05;
 
-/// The way that has to be free of surfaces for a motion, as a multiple of it.
-// The way of an orbit is longer than the line that is tested.
+/// Length that has to be free of surfaces in front of the eye, as a multiple of the motion's
+/// length.
+// The path of an orbit is longer than the straight line that is tested for surfaces.
 const SURFACE_MARGIN: f32 = 1.1;
 
 #[cfg(all(test, unit_tests))]

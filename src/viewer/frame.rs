@@ -20,11 +20,12 @@ pub(crate) struct Shot {
     /// The time of a scene that moves, else 0.
     pub(crate) time: Duration,
     pub(crate) camera: Camera,
-    /// The camera of the right one of two pictures, which shows the tracer from outside.
+    /// The camera of the right picture, which shows the first camera and its rays from outside, if
+    /// there is one.
     pub(crate) outside: Option<Camera>,
     pub(crate) resolution: Resolution,
     pub(crate) layout: ViewLayout,
-    /// Whether the cells show geometry, which is traced besides the picture.
+    /// Whether the glyphs of the cells show the geometry, which is then traced besides the picture.
     pub(crate) geometry: bool,
 }
 
@@ -63,7 +64,8 @@ pub(crate) struct Frame {
     pub(crate) scene: Scene,
     pub(crate) shot: Shot,
     pub(crate) picture: Picture,
-    /// The geometry that the cells show; `None` for other glyphs and for two views side by side.
+    /// The geometry that the glyphs of the cells show; `None` for other glyphs and for two views
+    /// side by side.
     pub(crate) geometry: Option<Arc<Geometry>>,
     /// The two maps that `picture` is combined from in a wipe, so that moving the line traces
     /// nothing.

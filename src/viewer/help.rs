@@ -23,8 +23,8 @@ const COLUMN_GAP: usize = 2;
 /// right.
 const PANEL_BORDER: (u16, u16) = (4, 2);
 
-/// Limit on the characters of the filter.
-// A filter of this length fits into the title on the smallest screen that shows panels.
+/// Limit on the characters of the help's filter.
+// A filter of this length fits into the help's title on the smallest screen that shows panels.
 const MAX_FILTER: usize = 12;
 
 /// The open help. Keys go to it first; characters filter its rows.
@@ -57,7 +57,7 @@ pub(super) enum HelpKey {
 }
 
 impl HelpPanel {
-    /// Returns the first page of all rows.
+    /// Returns the open help with all rows, at its first page.
     pub(super) fn new(states: Vec<(Command, String)>) -> Self {
         Self { page: 0, filter: String::new(), states }
     }
@@ -85,7 +85,7 @@ impl HelpPanel {
     }
 
     /// Carries out the effect of a key. Returns whether the help stays open.
-    pub(super) fn take(&mut self, key: HelpKey, keymap: &Keymap, modes: &[KeyMode], screen: Rect) -> bool {
+    pub(super) fn take_key(&mut self, key: HelpKey, keymap: &Keymap, modes: &[KeyMode], screen: Rect) -> bool {
         let pages = self.laid_out(keymap, modes, screen).pages.len();
         match key {
             HelpKey::Close => return false,
@@ -173,8 +173,8 @@ impl Help {
     /// Returns the panel's area: in the middle, as large as its text, at most the screen.
     fn area(&self, page: usize, screen: Rect) -> Rect {
         let columns = &self.pages[page];
-        let text =
-            columns.iter().map(|column| width(column)).sum::<usize>() + COLUMN_GAP * columns.len().saturating_sub(1);
+        let text = columns.iter().map(|column| max_width(column)).sum::<usize>()
+            + COLUMN_GAP * columns.len().saturating_sub(1);
         let lines = columns.iter().map(Vec::len).max().unwrap_or(0) as u16;
         let around = self.title(page).width().max(self.keys(usize::from(screen.width) - 2).width());
         let width = (text as u16 + PANEL_BORDER.0).max(around as u16 + 2).min(screen.width);
@@ -195,7 +195,7 @@ impl Help {
             };
             let text: Vec<_> = column.iter().map(line).collect();
             Paragraph::new(text).style(theme.style()).render(rest, buffer);
-            let taken = (width(column) + COLUMN_GAP).min(rest.width.into()) as u16;
+            let taken = (max_width(column) + COLUMN_GAP).min(rest.width.into()) as u16;
             rest = Rect { x: rest.x + taken, width: rest.width - taken, ..rest };
         }
     }
@@ -209,7 +209,7 @@ fn pages(lines: &[Line], [width_of_page, height]: [usize; 2]) -> Vec<Vec<Vec<Lin
         let mut pages: Vec<Vec<Vec<Line>>> = Vec::new();
         let mut taken = 0;
         for column in columns(lines, height) {
-            let needed = width(&column) + COLUMN_GAP;
+            let needed = max_width(&column) + COLUMN_GAP;
             match pages.last_mut() {
                 Some(page) if taken + needed <= width_of_page + COLUMN_GAP => page.push(column),
                 _ => {
@@ -244,7 +244,7 @@ fn columns(lines: &[Line], height: usize) -> Vec<Vec<Line>> {
     columns
 }
 
-fn width(lines: &[Line]) -> usize {
+fn max_width(lines: &[Line]) -> usize {
     lines.iter().map(|line| line.text().width()).max().unwrap_or(0)
 }
 

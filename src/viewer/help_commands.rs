@@ -18,7 +18,7 @@ impl Viewer {
         }
     }
 
-    /// Passes a key to the help. Returns whether it is open.
+    /// Passes a key to the help if that is open, and returns whether it is.
     pub(super) fn take_help_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>) -> bool {
         let Some(help) = self.screen.get::<HelpPanel>() else { return false };
         let mut effect = help.effect(key.code, meant.map(|(command, _)| command));

@@ -138,8 +138,8 @@ pub(super) struct Canvas<'a> {
     pub(super) figures: FrameStatistics,
     /// Number of rows that the status line takes at the bottom of the screen.
     pub(super) status_rows: u16,
-    /// Number of rows that the note takes there, or one without a note, so that the next one covers
-    /// nothing.
+    /// Number of rows that the note takes at the bottom of the screen; one without a note, so that
+    /// a note opened later covers nothing.
     pub(super) note_rows: u16,
 }
 
@@ -178,7 +178,7 @@ impl Canvas<'_> {
     pub(super) fn lay(&mut self, area: Rect, draw: impl FnOnce(Theme, Rect, &mut Buffer)) {
         let mut buffer = Buffer::empty(area);
         draw(self.theme(), area, &mut buffer);
-        // The buffer has the size of the area, because laying it over the grid visits each of its cells.
+        // The buffer is only as large as the area, because `lay_over` visits each of its cells.
         overlay::lay_over(self.grid, &buffer);
     }
 

@@ -14,7 +14,7 @@ pub(super) struct LightMarker {
     /// The light's position in world space.
     pub(super) light: Vec3,
     /// The surface point straight below the light, if there is one.
-    // A position on the screen alone does not tell how far away the light is.
+    // The line down to this point shows how far away the light is, which the marker alone does not.
     pub(super) below: Option<Vec3>,
 }
 
@@ -52,7 +52,7 @@ impl Layer for LightMarker {
 /// The picture that the marker is on: of two maps side by side the left one.
 struct PictureOnScreen {
     aspect_ratio: f32,
-    /// The size in cells.
+    /// The size of the picture in cells.
     cells: Vec2,
     screen: Rect,
 }
@@ -103,7 +103,7 @@ impl PictureOnScreen {
         let Some([Some(from), Some(to)]) = ends else { return Vec::new() };
         let Some([first, last]) = range_in_box([from, to], self.cells) else { return Vec::new() };
         let [from, to] = [first, last].map(|share| from + share * (to - from));
-        // A dot in every second cell, from the surface on.
+        // Places a dot in every second cell, starting at the surface point.
         let share = 2.0 / (to - from).abs().max_element().max(1.0);
         let dot = |at: u16| {
             let cell = to.lerp(from, share * f32::from(at));

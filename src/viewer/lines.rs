@@ -18,17 +18,17 @@ const DOTS: Vec2 = Vec2::new(2.0, 4.0);
 /// The most dots of a line, which a line across a screen of 1000 columns has.
 const MAX_DOTS: f32 = 4000.0;
 
-/// The share of the way to a point in which a surface hides it.
-// A surface at the point itself does not, as hits lie on surfaces.
+/// Share of the way from the eye to a point within which a surface hides the point.
+// Less than 1, because a point that lies on a surface must not be hidden by that surface.
 const IN_THE_WAY: Interval = Interval { min: 0.0, max: 0.99 };
 
 /// The part of the screen that a picture covers, and the camera of that picture.
 pub(super) struct Plot<'f> {
     camera: Camera,
     aspect_ratio: f32,
-    /// The upper left corner of the part, in cells.
+    /// The upper left corner of the picture on the screen, in cells.
     corner: Vec2,
-    /// The size of the part, in cells.
+    /// The size of the picture, in cells.
     cells: Vec2,
     /// The scene whose surfaces hide lines.
     scene: Option<&'f Scene>,
@@ -38,7 +38,8 @@ pub(super) struct Plot<'f> {
 }
 
 impl<'f> Plot<'f> {
-    /// Returns an empty plot over a part of the frame that starts at this column of pixels.
+    /// Returns an empty plot over the part of the frame that starts at column `start` of its
+    /// pixels.
     pub(super) fn new(canvas: &Canvas<'_>, camera: Camera, part: Resolution, start: u32) -> Self {
         let (across, down) = canvas.cell_mode.pixels_per_cell();
         let cells = Vec2::new(part.width() as f32 / across as f32, part.height() as f32 / down as f32);
@@ -55,8 +56,8 @@ impl<'f> Plot<'f> {
         Some(Self { scene: Some(&frame.scene), ..plot })
     }
 
-    /// Returns the position of a point in cells of the part, or `None` if it is not in front of the
-    /// eye.
+    /// Returns the position of a point in the picture, in cells, or `None` if it is not in front of
+    /// the eye.
     pub(super) fn place(&self, point: Vec3) -> Option<Vec2> {
         Some(self.camera.project(point, self.aspect_ratio)? * self.cells)
     }
@@ -80,7 +81,7 @@ impl<'f> Plot<'f> {
         }
     }
 
-    /// Adds a line between two positions in cells of the part.
+    /// Adds a line between two positions in the picture, in cells.
     pub(super) fn segment(&mut self, [from, to]: [Vec2; 2], color: u8) {
         let count = ((to - from) * DOTS).abs().max_element().clamp(1.0, MAX_DOTS).ceil();
         for dot in 0..=count as u32 {
@@ -117,7 +118,9 @@ impl<'f> Plot<'f> {
         }
     }
 
-    /// Draws all lines, and the letters over them. The picture is the background of the dots.
+    /// Draws the plot: its lines as Braille dots over the picture, and its letters over the lines.
+    ///
+    /// A cell with dots keeps the picture's colour as its background. Without block glyphs the dots are full stops.
     pub(super) fn draw(self, canvas: &mut Canvas<'_>) {
         let size = canvas.grid.size();
         let has_dots = canvas.cell_mode.glyphs.has_blocks();
@@ -155,7 +158,7 @@ fn background(cell: &Cell) -> Ink {
 pub(super) fn clipped_to_front(camera: &Camera, ends: [Vec3; 2]) -> Option<[Vec3; 2]> {
     let (eye, w) = (camera.pose().eye, camera.rectangle_basis().w);
     let depths = ends.map(|end| (eye - end).dot(w));
-    // Nearer points are projected to huge columns and rows.
+    // Lines are cut off at this depth, because nearer points are projected to huge columns and rows.
     let near = 1e-3 * depths[0].abs().max(depths[1].abs());
     let at_front = |behind: usize| {
         let (other, depth) = (1 - behind, depths[behind]);

@@ -15,7 +15,9 @@ use unicode_width::UnicodeWidthStr;
 // ends the search, so that it takes time only if nothing is visible.
 const RAYS: [u32; 2] = [40, 24];
 
-/// The notice in several versions, longest first. The first one that fits into the row is shown.
+/// The notice that nothing of the scene is visible, in several versions, longest first.
+///
+/// The first version that fits into the row is shown.
 #[derive(PartialEq)]
 pub(super) struct LostNotice(Vec<String>);
 

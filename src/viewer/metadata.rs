@@ -12,7 +12,7 @@ use ratatui_widgets::clear::Clear;
 use ratatui_widgets::paragraph::Paragraph;
 use unicode_width::UnicodeWidthStr;
 
-/// The lines of the panel.
+/// The panel of metadata, as lines of text.
 pub(super) struct Metadata(Vec<String>);
 
 impl Metadata {

@@ -137,7 +137,7 @@ impl Viewer {
     fn scene_point_at(&self, at: Vec2) -> Option<Vec3> {
         let (frame, pose) = (self.screen.frame()?, self.eye.camera()?.pose());
         let ray = self.eye_ray_at(at)?;
-        // As far as the target, where the ray of the target would end.
+        // Without a hit, the ray ends as far away as the ray towards the target, at the target.
         let miss = pose.eye.distance(pose.target) * self.eye.camera()?.rectangle().plane_distance();
         let t = closest_hit(&frame.scene, &ray).map_or(miss, |hit| hit.t);
         Some(ray.at(t))

@@ -17,7 +17,7 @@ pub(super) struct Note {
     above: Option<String>,
     /// Whether the note stays until the next key.
     lasts: bool,
-    /// Time at which it fades; `None` before it was shown.
+    /// Time at which the note fades; `None` before it was shown.
     fades_at: Option<Duration>,
 }
 

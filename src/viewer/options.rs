@@ -56,7 +56,7 @@ pub struct Options {
     pub keymap: Keymap,
 }
 
-/// The defaults, without any hints about the terminal.
+/// The default options, for a terminal about which nothing is known.
 impl Default for Options {
     fn default() -> Self {
         Self::new(Hints::default())

@@ -13,7 +13,7 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use glam::Vec3;
 
-/// Whether the tracer is seen from outside, and the camera that keys do not move.
+/// Whether a second camera shows the first one from outside, and the camera that keys do not move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Outside {
     /// The ordinary view.
@@ -28,9 +28,11 @@ pub(super) enum Outside {
 }
 
 impl Viewer {
-    /// Shows the tracer from outside; then lets keys move the first camera; then shows the horizon
-    /// and vanishing points in the ordinary view; then the ordinary view alone.
-    pub(super) fn change_outside(&mut self) {
+    /// Switches to the next of four views.
+    ///
+    /// In the first two, a second camera shows the first one from outside, and keys move the second or the first
+    /// camera. Then come the ordinary view with the horizon and vanishing points, and the ordinary view alone.
+    pub(super) fn show_next_outside_view(&mut self) {
         if !theme::has_room(theme::area(self.size())) {
             return self.show_note(theme::needs_room("the view from outside"));
         }
@@ -54,7 +56,7 @@ impl Viewer {
         let moved = match (self.outside, next) {
             (Outside::MovesSecond { first }, _) => first,
             (_, Outside::MovesSecond { .. }) => match self.screen.frame() {
-                Some(frame) => beside(&frame.scene, &camera, 0.5 * self.resolution().aspect_ratio()),
+                Some(frame) => camera_beside(&frame.scene, &camera, 0.5 * self.resolution().aspect_ratio()),
                 None => camera,
             },
             _ => camera,
@@ -62,14 +64,14 @@ impl Viewer {
         self.eye.change(self.now, |_, _| moved);
         self.set_outside(next);
         if let Outside::MovesSecond { .. } = next {
-            self.choose_middle_pixel();
+            self.explain_middle_pixel();
         }
         let hint = self.hint(crate::control::Command::Outside, "next");
         self.show_note(format!("{text}{hint}"));
     }
 
     /// Opens the explanation of the pixel in the middle of the left picture, whose ray is drawn.
-    fn choose_middle_pixel(&mut self) {
+    fn explain_middle_pixel(&mut self) {
         if self.screen.get::<ExplainPanel>().is_none() {
             self.screen.toggle_explaining();
         }
@@ -91,7 +93,7 @@ impl Viewer {
         self.set_outside(Outside::Off);
     }
 
-    /// Returns the camera of the picture, which is not the moved one while keys move a second one.
+    /// Returns the first camera: that of the left picture if a second one is shown beside it.
     pub(super) fn first_camera(&self) -> Option<Camera> {
         match self.outside {
             Outside::MovesSecond { first } => Some(first),
@@ -99,7 +101,7 @@ impl Viewer {
         }
     }
 
-    /// Returns the second camera, from which the tracer is seen.
+    /// Returns the second camera, which shows the first one from outside, if there is one.
     pub(super) fn second_camera(&self) -> Option<Camera> {
         match self.outside {
             Outside::MovesSecond { .. } => self.eye.camera(),
@@ -108,7 +110,7 @@ impl Viewer {
         }
     }
 
-    /// Returns the layout of the picture: the map twice while there are two cameras.
+    /// Returns the layout of the picture; with two cameras, one picture of the same map for each.
     pub(super) fn shown_layout(&self) -> ViewLayout {
         if self.second_camera().is_some() { self.layout.twice() } else { self.layout }
     }
@@ -116,7 +118,7 @@ impl Viewer {
 
 /// Returns a camera from which another one, its view rectangle and its target are seen from the
 /// side, unless a surface is in the way.
-fn beside(scene: &Scene, camera: &Camera, aspect_ratio: f32) -> Camera {
+fn camera_beside(scene: &Scene, camera: &Camera, aspect_ratio: f32) -> Camera {
     let (Pose { eye, target, up }, Basis { u, v, w }) = (camera.pose(), camera.basis());
     let distance = camera.target_distance();
     let around = Vec3::splat(0.3 * distance);

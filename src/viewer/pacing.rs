@@ -25,8 +25,8 @@ struct Begun {
 }
 
 impl Pacing {
-    pub(super) fn new(options: &Options, may_ask: bool) -> Self {
-        let link = Link::new(options.max_rate, options.max_frames, may_ask);
+    pub(super) fn new(options: &Options, may_query: bool) -> Self {
+        let link = Link::new(options.max_rate, options.max_frames, may_query);
         Self { link, quality: QualityControl::new(options.sampling), begun: None }
     }
 
@@ -82,8 +82,9 @@ impl Pacing {
         self.link.free_at(now)
     }
 
-    /// Returns the limits for a frame sent now, or `None` if there are none; `usual_bytes` are
-    /// those of a whole screen.
+    /// Returns the limits on the bytes of a frame sent now, or `None` if there are none.
+    ///
+    /// `usual_bytes` is the usual number of bytes of a frame that changes the whole screen.
     pub(super) fn limit(&mut self, usual_bytes: usize, now: Duration) -> Option<Limit> {
         self.link.limit(usual_bytes, now)
     }

@@ -51,7 +51,7 @@ impl PointerState {
     }
 
     /// Returns the object that was under the pointer when the button was pressed.
-    // After a double click it is the object of the first click, because that click may have shifted the picture.
+    // After a double click this is the object of the first click, because that click may have shifted the picture.
     pub(super) fn object(&self) -> Option<u32> {
         self.object
     }

@@ -27,14 +27,14 @@ const MAX_MOTION_LEVEL: usize = 3;
 // third of all.
 const INITIAL_COST_RATIOS: [f64; MAX_MOTION_LEVEL + 1] = [1.0, 4.0, 2.0, 3.0];
 /// Share of a frame's time that tracing may take.
-// The rest is for making cells and bytes, and for the terminal, which draws on the same cores.
+// The rest of the time is for making cells and bytes, and for the terminal, which draws on the same cores.
 const TRACING_SHARE: f64 = 0.75;
 /// A finer level is tried only if it is predicted to take at most this share of the time for
 /// tracing.
 // Less than 1, so that the level does not oscillate: a level that takes more is kept but not tried. The test
 // `no_level_flickers` covers all frame times up to 40 ms with a noise of a tenth.
 const FINER_LEVEL_SHARE: f64 = 0.8;
-/// Number of frames in a row that must have room for a finer level before it is tried.
+/// Number of frames in a row that must be fast enough for a finer level before it is tried.
 // An eighth of a second at 60 frames per second: a finer level this much later goes unnoticed, but an attempt that
 // fails costs a late frame.
 const FRAMES_BEFORE_FINER: u32 = 8;
@@ -46,14 +46,14 @@ const LATE_FRAMES_BEFORE_COARSER: u32 = 2;
 pub(super) struct QualityControl {
     /// The sampling that the user has fixed, if any.
     forced: Option<Sampling>,
-    /// Index of the level of pictures in motion.
+    /// Index in [`LEVELS`] of the level that is chosen for pictures in motion.
     level: usize,
     /// The level of the last picture, and the seconds that it took.
     last: Option<(usize, f64)>,
     /// Ratio of each level's time to that of the level before it: initial values, updated by
     /// measurements.
     cost_ratios: [f64; MAX_MOTION_LEVEL + 1],
-    /// Number of pictures in a row with room for a finer level.
+    /// Number of pictures in a row that were fast enough for a finer level.
     frames_with_room: u32,
     /// Number of late pictures in a row.
     late_frames: u32,
@@ -74,7 +74,7 @@ impl QualityControl {
 
     /// Returns the sampling of the first picture of a new view.
     ///
-    /// Not `in_motion`, that is after a rest, there is at most one sample per pixel.
+    /// After a rest, when the view is not `in_motion`, it has at most one sample per pixel.
     pub(super) fn for_new_view(&self, in_motion: bool) -> Sampling {
         // The user waits for the first frame after a rest, which is refined anyway if the view then stays.
         let level = if in_motion { self.level } else { self.level.min(ONE_SAMPLE_LEVEL) };
@@ -98,8 +98,8 @@ impl QualityControl {
         self.last.is_some_and(|last| self.predicted_time(last, MAX_MOTION_LEVEL) <= time.as_secs_f64())
     }
 
-    /// Records the time that tracing a picture of a new view took, and updates the level of the
-    /// next ones.
+    /// Records the time that tracing a picture of a new view took, and updates the sampling level
+    /// of the next pictures.
     ///
     /// `frame` is the time between two frames, of which tracing may take [`TRACING_SHARE`].
     pub(super) fn record_time(&mut self, sampling: Sampling, time: Duration, frame: Duration) {

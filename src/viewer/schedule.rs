@@ -129,8 +129,9 @@ impl Facts {
             return Duration::ZERO;
         }
         let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + self.min_frame_interval);
-        // If the view has changed, its frame is due a frame time after the last one was begun. If the eye is moving,
-        // its next step also waits for a further frame time of motion, or the loop would spin.
+        // If the view has changed, its frame is due a frame time after the last one was begun. If the eye is moving and
+        // its view has not changed yet, the next step waits until a frame time after `moved_until`, or the driver would
+        // loop without a pause.
         let at = if self.picture == PictureState::Stale {
             next(self.begun)
         } else {

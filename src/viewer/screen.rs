@@ -199,7 +199,7 @@ impl Screen {
     pub(super) fn take_help_key(&mut self, key: HelpKey, keymap: &Keymap, size: Size) {
         let (modes, screen) = (self.active_modes(size), theme::area(size));
         if let Some(help) = self.content.layers.get_mut::<HelpPanel>()
-            && !help.take(key, keymap, &modes, screen)
+            && !help.take_key(key, keymap, &modes, screen)
         {
             self.close::<HelpPanel>();
         }
@@ -220,7 +220,8 @@ impl Screen {
 
     /// Sets whether the view moves.
     pub(super) fn set_in_motion(&mut self, is_in_motion: bool) {
-        // A picture at rest is drawn again, because its glyphs depend on nothing but the picture.
+        // When a motion ends, the picture is drawn once more: at rest its glyphs do not depend on those of the frame
+        // before.
         if self.is_in_motion && !is_in_motion && self.painter.mode().shows_geometry() {
             self.content.mark_changed();
         }

@@ -16,7 +16,7 @@ use unicode_width::UnicodeWidthStr;
 pub(super) struct StatusLine;
 
 impl StatusLine {
-    /// Returns the number of rows: one for the statistics, and one for the keys if there is room
+    /// Returns the height of the status line: a row of statistics, and one of keys if there is room
     /// for panels.
     pub(super) fn rows(screen: Rect) -> u16 {
         // On a small screen the keys would not fit into a row anyway.

@@ -78,7 +78,7 @@ fn add_rectangle(plot: &mut Plot<'_>, camera: &Camera, part: Resolution) {
         plot.line([camera.pose().eye, corner], GREY);
     }
     let [columns, rows] = [part.width(), part.height()];
-    // A grid of single pixels would fill the rectangle, unless one is close to it.
+    // Draws a coarser grid than that of single pixels, which would fill the rectangle unless the camera is close to it.
     let size = |a: Vec3, b: Vec3| plot.place(a).zip(plot.place(b)).map_or(0.0, |(a, b)| a.distance(b));
     let widths = [size(corners[0], corners[1]) / columns as f32, size(corners[0], corners[3]) / rows as f32];
     let step = widths.map(|width| (0..16).map(|k| 1 << k).find(|&step| step as f32 * width >= MIN_GRID_CELLS));
@@ -119,7 +119,7 @@ pub(super) fn draw_eye_ray(canvas: &mut Canvas<'_>, frame: &Frame, explanation: 
     // A ray without a hit visibly passes the scene.
     plot.line([ray.origin, ray.at(hit.map_or(2.0 * distance, |shaded| shaded.hit.t))], WHITE);
     plot.letter(ray.at(near), "q", BLUE);
-    // Over the ends of the rays.
+    // Adds these letters again, because the rays end at them and would cover them.
     add_letters(&mut plot, frame);
     if let Some(hit) = hit {
         plot.letter(hit.point.position, "p", WHITE);

@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-/// A value, and whether it was borrowed mutably since the last [`settle`](Tracked::settle).
+/// A value, and whether it was borrowed mutably since [`mark_unchanged`](Tracked::mark_unchanged).
 ///
 /// So no method that changes the value can forget to set a flag.
 pub(super) struct Tracked<T> {

@@ -4,7 +4,7 @@ use super::error_panel::wrapped;
 use super::layers::{Canvas, Layer, Level};
 use ratatui_core::layout::Rect;
 
-/// Limit on the rows of all warnings.
+/// Limit on the rows of all warnings together.
 const MAX_ROWS: usize = 4;
 
 /// The warnings about a scene: faults of its files despite which it is shown.
@@ -19,7 +19,8 @@ impl Warnings {
         }
     }
 
-    /// Returns the lines that fit into this width.
+    /// Returns the warnings, wrapped into lines for a row of this width; at most [`MAX_ROWS`]
+    /// lines.
     fn lines(&self, width: u16) -> Vec<String> {
         let lines = self.0.iter().flat_map(|warning| wrapped(warning, usize::from(width.saturating_sub(2)).max(1)));
         lines.take(MAX_ROWS).collect()

@@ -3,7 +3,7 @@
 use super::Viewer;
 use crate::control::Side;
 
-/// Distance that a key press moves the line, as a share of the width.
+/// Distance that a key press moves the line between two maps, as a share of the width.
 // A held key, which repeats, moves the line across the picture in about a second.
 const WIPE_STEP: f32 = 1.0 / 32.0;
 

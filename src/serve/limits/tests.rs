@@ -67,7 +67,7 @@ fn the_table_is_bounded() {
         }
     }
     assert_eq!(door.visitors.len(), MAX_REMEMBERED + 1);
-    // Later they are forgotten.
+    // Later the addresses without connections are forgotten.
     assert!(door.enter(v4(60_000), 60 * SECOND).is_ok());
     assert!(door.visitors.len() < 10);
 }

@@ -48,7 +48,7 @@ fn a_seat_that_rested_is_served_first_and_gains_no_share() {
     let (most, least) = (turns.values().max().unwrap(), turns.values().min().unwrap());
     assert!(most - least <= 2, "{turns:?}");
 
-    // After a long rest it goes before all that have been running.
+    // After a long rest, seat 9 goes before all seats that have been running.
     let mut queue = RunQueue::default();
     (0..10).for_each(|id| queue.add(id));
     while let Some(id) = queue.take(Duration::ZERO) {
@@ -87,7 +87,7 @@ fn a_seat_sleeps_until_its_time_or_until_it_is_woken() {
     queue.finish(7, MS, Next::Sleep(Some(10 * MS)));
     assert_eq!((queue.take(9 * MS), queue.next_timer()), (None, Some(10 * MS)));
     assert_eq!((queue.take(10 * MS), queue.next_timer()), (Some(7), None));
-    // Woken during its turn, it has another one.
+    // A seat that is woken during its turn gets another turn.
     queue.wake(7);
     queue.finish(7, MS, Next::Sleep(None));
     assert_eq!(queue.take(10 * MS), Some(7));

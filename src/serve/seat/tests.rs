@@ -52,7 +52,8 @@ impl Sitting {
         self.turn_for(Class::Refinement, Arrived { bytes: input.to_vec(), ..Arrived::default() })
     }
 
-    /// Lets it have turns until it sleeps, with answers to all queries.
+    /// Lets the seat have turns, with replies to all queries, until it sleeps, and returns its
+    /// wake-up time.
     fn rest(&mut self) -> Option<Duration> {
         loop {
             let answers = b"\x1b[?62c".repeat(self.bytes.windows(3).filter(|bytes| *bytes == b"\x1b[c").count());
@@ -75,13 +76,13 @@ fn it_rests_until_the_countdown() {
     let mut sitting = Sitting::new(STAY);
     sitting.turn(&[]);
     assert!(sitting.sent().contains("\x1b[?1049h") && sitting.traced > 0);
-    // Thirty seconds before the end of 100 without a key.
+    // The countdown begins 30 s before the end, which is 100 s after the start at 1 s if no key is pressed.
     assert_eq!(sitting.rest(), Some(71 * SECOND));
     sitting.now.set(71 * SECOND);
     sitting.turn(&[]);
     assert!(sitting.sent().contains("30 s") || !sitting.bytes.is_empty());
     assert_eq!(sitting.rest(), Some(72 * SECOND));
-    // A reply is no key, a key is one.
+    // A terminal's reply does not count as a key, but `i` does.
     sitting.turn(b"\x1b[?62c");
     assert_eq!(sitting.rest(), Some(72 * SECOND));
     sitting.turn(b"i");
@@ -111,7 +112,7 @@ fn leaving_waits_for_the_last_reply() {
     let sent = sitting.sent();
     assert!(sent.contains("\x1b[?1049l") && sent.contains("\x1b[c"), "{sent:?}");
     assert!(sent.contains("this view at home: termtrace one.ron\r\n"), "{sent:?}");
-    // Keys are no replies.
+    // Keys do not end the wait for the terminal's last replies.
     assert_eq!(sitting.turn(b"qqq"), Next::Sleep(Some(2 * SECOND)));
     let replies = b"\x1b[?62c".repeat(20);
     assert_eq!(sitting.turn(&replies), Next::End);
@@ -128,7 +129,7 @@ fn a_refinement_waits_for_its_class() {
     let mut sitting = Sitting::new(STAY);
     sitting.rest();
     let before = sitting.traced;
-    // A press zooms for a short time. Each frame of it is traced; more samples of the last one have to wait.
+    // The key `]` zooms by a step: the frame of the new view is traced, but its refinement has to wait.
     let key = Arrived { bytes: b"]".to_vec(), ..Arrived::default() };
     let mut next = sitting.turn_for(Class::Picture, key);
     for _ in 0..20 {

@@ -10,8 +10,8 @@ fn caption(text: &str) -> Caption {
     Caption::new(text.into(), None)
 }
 
-/// With its row of keys no page has more than an eighth of the rows, or three, and no line reaches
-/// the right edge.
+/// A page and its row of keys take at most an eighth of the screen's rows, or three, and no line
+/// reaches the right edge.
 #[test]
 fn pages_leave_the_picture_free() {
     let text = ["A title", &"word ".repeat(60), &"word ".repeat(30), "Keys: W."].join("\n");

@@ -85,7 +85,7 @@ impl Inset {
         let area = Rect { height: area.height - 1, ..area };
         let (across, down) = mode.pixels_per_cell();
         let cell_aspect = resolution.pixel_aspect() * down as f32 / across as f32;
-        let [x, y] = self.bounds(f32::from(area.width), f32::from(area.height) * cell_aspect);
+        let [x, y] = self.drawn_ranges(f32::from(area.width), f32::from(area.height) * cell_aspect);
         // Braille dots are square at the usual cell aspect of 2, half blocks are too coarse for lines.
         let marker = if mode.glyphs.has_blocks() { Marker::Braille } else { Marker::Custom('*') };
         let ink = |color: Color| if mode.colors == Colors::None { Color::Reset } else { color };
@@ -136,12 +136,12 @@ impl Inset {
         spans.collect()
     }
 
-    /// Returns the ranges of x and y to draw in a room of this width and height, both in units of a
-    /// cell's width.
+    /// Returns the ranges of x and y to draw in an area of this width and height, which are in
+    /// units of a cell's width.
     ///
     /// The eye, the view rectangle and the ray are centred in them, with a margin.
-    fn bounds(&self, width: f32, height: f32) -> [[f64; 2]; 2] {
-        // Spheres and lights may lie outside: a distant one would shrink the ray to a dot.
+    fn drawn_ranges(&self, width: f32, height: f32) -> [[f64; 2]; 2] {
+        // Spheres and lights may lie outside: including a distant one would shrink the ray to a dot.
         let points = [Vec2::ZERO, self.rectangle[0], self.rectangle[1], self.end];
         let min = points.into_iter().reduce(Vec2::min).unwrap_or_default();
         let max = points.into_iter().reduce(Vec2::max).unwrap_or_default();

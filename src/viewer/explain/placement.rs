@@ -54,7 +54,7 @@ pub(super) fn split_panel(inside: Rect, lines: u16) -> [Rect; 2] {
 
 /// Returns the cursor as one-cell buffers beside, above and below the explained cell, which itself
 /// stays uncovered.
-pub(super) fn marks(explaining: &ExplainPanel, theme: Theme, mode: CellMode, screen: Rect) -> Vec<Buffer> {
+pub(super) fn cursor_marks(explaining: &ExplainPanel, theme: Theme, mode: CellMode, screen: Rect) -> Vec<Buffer> {
     let [column, row] = explaining.cell(mode);
     let [beside, above] = match explaining.row_in_cell(mode) {
         _ if !mode.glyphs.has_blocks() => [[">", "<"], ["v", "^"]],

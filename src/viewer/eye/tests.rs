@@ -24,8 +24,8 @@ fn shipped_scenes() -> Vec<(String, Scene)> {
     scenes.map(|path| (path.display().to_string(), Scene::load(&path).unwrap())).collect()
 }
 
-/// A tap, with Shift too, neither crosses the floor nor goes through any other surface, and shows
-/// another picture.
+/// A tap of a movement key, with Shift too, passes no surface, not even the floor, but changes the
+/// picture.
 #[test]
 fn no_tap_passes_a_surface_of_a_shipped_scene() {
     let scenes = shipped_scenes();
@@ -65,7 +65,8 @@ fn assert_passes_nothing(eye: &mut Eye, scene: &Scene, what: &str) {
     }
 }
 
-/// Many taps stop before a surface; a key that is held passes it after a stop.
+/// Many taps of a key leave the eye in front of a surface; a held key moves it through, after a
+/// stop.
 #[test]
 fn taps_never_pass_a_surface_and_held_keys_do() {
     let scene = Scene::load(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/three_spheres.ron").as_ref()).unwrap();
@@ -83,7 +84,8 @@ fn taps_never_pass_a_surface_and_held_keys_do() {
     assert!(eye.camera().unwrap().pose().eye.y < -1.0);
 }
 
-/// Where releases are reported, a key held with Shift stops at the floor, and then passes it.
+/// If releases are reported, a key held with Shift moves the eye to the floor, stops it, and then
+/// moves it on.
 #[test]
 fn a_held_key_stops_at_a_surface_for_half_a_second() {
     let (mut eye, _) = looking_at_spheres(false);
@@ -100,7 +102,7 @@ fn a_held_key_stops_at_a_surface_for_half_a_second() {
     press(&mut eye, KeyEvent { kind: KeyEventKind::Release, ..key }, None, ms(1_600));
     let height = height_at(&mut eye, 1_600, 2_900);
     assert!(height > 0.0 && height < 0.1 && !eye.is_moving(), "{height}");
-    // Every press stops anew, and one that goes on passes the floor.
+    // Each press stops the eye at the floor again; if the key stays down, the eye then passes the floor.
     press(&mut eye, key, None, ms(3_000));
     assert!(height_at(&mut eye, 3_000, 3_400) > 0.0);
     assert!(height_at(&mut eye, 3_400, 4_000) < -1.0);

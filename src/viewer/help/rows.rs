@@ -98,7 +98,7 @@ fn shared_rows() -> Vec<(Vec<Command>, &'static str)> {
     ]
 }
 
-/// Keys and what they do.
+/// A row of the help: keys and what they do.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Row {
     pub(super) group: Group,
@@ -235,7 +235,8 @@ impl Line {
     }
 }
 
-/// Largest width in columns of the keys with which the descriptions of a group are aligned.
+/// Largest width of a row's keys, in columns, with which the row is aligned with the others of its
+/// group.
 // In a row with longer keys the description starts farther right, so that the other rows fit into 36 columns.
 const MAX_ALIGNED: usize = 12;
 

@@ -52,7 +52,7 @@ fn all_of_it_is_shown_wherever_there_is_room_for_panels() {
     }
 }
 
-/// Every key in force is in some row, and every command that has one.
+/// Every key in force is in some row of the help, and so is every command that has a key.
 #[test]
 fn each_group_lists_its_keys() {
     let keymap = Keymap::default();
@@ -98,7 +98,7 @@ fn it_goes_by_what_is_bound() {
     assert_eq!(key_names(&keymap, &fly, &[Command::Export]), None);
 }
 
-/// A key bound in a higher mode is not listed for the lower one.
+/// A key that a higher mode binds is not listed for the modes below it.
 #[test]
 fn a_key_is_told_of_once() {
     let modes = [KeyMode::Explain, KeyMode::Fly, KeyMode::Always];
@@ -115,7 +115,7 @@ fn typing_filters_and_keys_turn_pages() {
     let press = |panel: &mut HelpPanel, code: KeyCode| {
         let meant = keymap.command(&modes, &code.into()).map(|(command, _)| command);
         let key = panel.effect(code, meant);
-        panel.take(key, &keymap, &modes, small)
+        panel.take_key(key, &keymap, &modes, small)
     };
     let title = |panel: &HelpPanel| panel.laid_out(&keymap, &modes, small).title(panel.page);
     for (code, page) in

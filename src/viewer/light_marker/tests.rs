@@ -43,7 +43,7 @@ fn a_dotted_line_leads_to_the_surface_below_the_light() {
     let column = |of: Vec<Rect>| of.into_iter().map(|dot| (dot.x, dot.y)).collect::<Vec<_>>();
     let inside = column(picture.line(&camera, Vec3::Y, Vec3::NEG_Y));
     assert_eq!(inside, [(40, 17), (40, 15), (40, 13), (40, 11), (40, 9), (40, 7)]);
-    // Of a line from a light above the picture or behind the eye the part in the picture is left.
+    // If the light is above the picture or behind the eye, only the part of the line in the picture is left.
     let from_above = column(picture.line(&camera, 100.0 * Vec3::Y, Vec3::NEG_Y));
     assert_eq!((from_above.first(), from_above.last()), (Some(&(40, 17)), Some(&(40, 1))));
     let from_behind = column(picture.line(&camera, Vec3::new(0.5, 0.5, 9.0), Vec3::NEG_Y));

@@ -17,8 +17,8 @@ fn dot_count(plot: &Plot<'_>) -> u32 {
     plot.dots.values().map(|(_, bits)| bits.count_ones()).sum()
 }
 
-/// The middle of the picture is in the middle of its part, and a line across has a dot in each half
-/// of its cells.
+/// The camera's target is in the middle of the plot, and a line across the picture has two dots in
+/// each cell.
 #[test]
 fn a_line_is_where_its_points_are_projected() {
     let mut plot = plot(None);

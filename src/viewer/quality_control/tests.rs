@@ -40,7 +40,7 @@ fn as_many_samples_as_fit_the_time() {
         let mut control = QualityControl::new(None);
         let levels = fly(&mut control, 300, |_, level| time(level));
         assert!(levels[60..].iter().all(|&it| it == level), "{one} ms: {levels:?}");
-        // At most two steps up from the first level, and one failed attempt, which counts up and down.
+        // At most two changes up from the first level, and two by a failed attempt at a finer one: up and down.
         assert!(changes(&levels) <= 4, "{one} ms: {levels:?}");
     }
 }
@@ -92,7 +92,7 @@ fn one_late_frame_changes_nothing() {
     assert_eq!(changes(&levels[1..]), 0, "{levels:?}");
 }
 
-/// A finer level is tried only after several frames in a row with room for it.
+/// A finer level is tried only after several frames in a row that were fast enough for it.
 #[test]
 fn room_now_and_then_is_no_room() {
     let mut control = QualityControl::new(None);

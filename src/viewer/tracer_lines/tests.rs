@@ -12,7 +12,7 @@ fn the_horizon_is_at_the_height_of_the_eye() {
     // Points beside the eye have no place in the picture; rounding decides on which side of it they are.
     let ahead = points.iter().filter(|&&point| (point - pose.eye).dot(camera.basis().w) < -0.01);
     let heights: Vec<_> = ahead.filter_map(|&point| camera.project(point, 1.5)).map(|place| place.y).collect();
-    // It looks down by 25.4 degrees, so the horizon is tan(25.4) / (2 tan(0.5)) of the height above the middle.
+    // The camera looks down by 25.4 degrees, so the horizon is tan(25.4) / (2 tan(0.5)) of the height above the middle.
     let expected = 0.5 - libm::tanf(libm::atanf(1.5 / 10_f32.sqrt())) / (2.0 * libm::tanf(0.5));
     assert!(heights.len() > 20 && heights.iter().all(|height| (height - expected).abs() < 1e-4), "{heights:?}");
 }
