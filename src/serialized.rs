@@ -13,8 +13,8 @@ use std::num::NonZeroU32;
 
 /// Implements `Serialize` and `Deserialize` for `$Type` through `$Form`, a type with the structure
 /// of the format: a conversion into `$Form`, and a checked conversion back.
-// Not derived for the types themselves, because derived impls would bypass the constructors' checks, and private fields
-// would become part of the format.
+// The impls are not derived, because derived ones would bypass the constructors' checks and make private fields a part
+// of the format.
 macro_rules! serialize_as {
     ($($Type:ty as $Form:ty: $to:expr, $from:expr;)*) => {
         $(impl Serialize for $Type {
@@ -103,7 +103,7 @@ struct RectangleForm {
     width: Option<f32>,
     height: f32,
     shift: [f32; 2],
-    // Files of older versions have none.
+    // Files of older versions have no `tilt`.
     #[serde(default)]
     tilt: [f32; 2],
 }

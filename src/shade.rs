@@ -193,25 +193,26 @@ fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32)
 /// Computes the light that each ray carries to the eye: reflected light, or the background's
 /// without a hit.
 ///
-/// `steps` are the changes of direction to the neighbouring rays in the picture, from which footprints are computed.
+/// `direction_steps` are the changes of direction to the neighbouring rays in the picture, from which footprints are
+/// computed.
 pub fn reflect(
     scene: &Scene,
     rays: &[EightRays],
-    steps: [Vec3; 2],
+    direction_steps: [Vec3; 2],
     hits: &[EightHits],
     points: &[EightPoints],
     arriving: &[EightArriving],
     lights: &mut Vec<EightLights>,
 ) {
     lights.clear();
-    simd::dispatch(Reflect { scene, rays, steps, hits, points, arriving, lights });
+    simd::dispatch(Reflect { scene, rays, direction_steps, hits, points, arriving, lights });
 }
 
 /// The SIMD kernel of [`reflect`].
 struct Reflect<'w> {
     scene: &'w Scene,
     rays: &'w [EightRays],
-    steps: [Vec3; 2],
+    direction_steps: [Vec3; 2],
     hits: &'w [EightHits],
     points: &'w [EightPoints],
     arriving: &'w [EightArriving],
@@ -268,7 +269,7 @@ impl Reflect<'_> {
             (material, shape) => {
                 let uv = [N::load(&points.uv[0]), N::load(&points.uv[1])];
                 let direction = self.rays[at].direction.load();
-                material.reflectance(uv, shape.footprint(direction, N::load(&self.hits[at].t), self.steps))
+                material.reflectance(uv, shape.footprint(direction, N::load(&self.hits[at].t), self.direction_steps))
             }
         }
     }
@@ -277,7 +278,7 @@ impl Reflect<'_> {
 /// The light that arrives at a point from one light source, if it is not blocked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Incidence {
-    /// The lecture's **l**: the direction to the light. Unit length.
+    /// The direction to the light, **l** in the lecture. Unit length.
     pub l: Vec3,
     /// The distance to the light in world units, possibly infinite.
     pub distance: f32,

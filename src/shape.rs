@@ -74,9 +74,9 @@ pub trait Surface {
     /// Returns the footprint of a pixel: its extent in each coordinate of [`uv`](SurfacePoint::uv).
     ///
     /// It is measured from the crossing at `t` to the crossings of the neighbouring rays, whose directions differ by
-    /// `steps`. Zero if the surface has no coordinates.
+    /// `direction_steps`. Zero if the surface has no coordinates.
     #[inline(always)]
-    fn footprint<N: Number>(&self, _direction: Vector<N>, _t: N, _steps: [Vec3; 2]) -> [N; 2] {
+    fn footprint<N: Number>(&self, _direction: Vector<N>, _t: N, _direction_steps: [Vec3; 2]) -> [N; 2] {
         [N::splat(0.0); 2]
     }
 }
@@ -200,7 +200,7 @@ pub trait SoaLeaf: Clone {
     /// Whether the formula needs the [shear](Rays::shear) of rays.
     const NEED_SHEAR: bool = false;
 
-    /// Packs up to eight surfaces.
+    /// Packs up to eight surfaces into a leaf.
     fn of(shapes: &[Self::Shape]) -> Self;
 
     /// Returns the up to eight surfaces, one per lane, for tests against one ray in all lanes.
@@ -229,7 +229,7 @@ pub trait SoaLeaf: Clone {
 /// A point on a surface, as seen from where the ray came.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
-    /// The lecture's **p**, moved onto the surface up to the precision of f32.
+    /// The hit point, **p** in the lecture, moved onto the surface up to the precision of f32.
     pub position: Vec3,
     /// The shading normal **n**, on the side that the ray came from: on smooth meshes interpolated.
     ///
@@ -290,7 +290,7 @@ macro_rules! surfaces {
                 doc = "All points whose difference from a given point is perpendicular to the normal.";
             tree triangles: Triangle as $crate::shape::TriangleN<$crate::lanes::F32x8>,
                 doc = "The part of a plane between three points.";
-            // Hidden, until the form of a formula in code is promised.
+            // Hidden, because the way to write a formula in Rust code may still change.
             tree implicits: Implicit as $crate::shape::ScalarLeaf<$crate::shape::Implicit>,
                 doc(hidden);
             #[cfg(all(test, unit_tests))]
@@ -340,9 +340,9 @@ macro_rules! shapes {
             /// Returns the [footprint](Surface::footprint) of the surface; zero for a mesh.
             #[doc(hidden)]
             #[inline(always)]
-            pub fn footprint<N: Number>(&self, direction: Vector<N>, t: N, steps: [Vec3; 2]) -> [N; 2] {
+            pub fn footprint<N: Number>(&self, direction: Vector<N>, t: N, direction_steps: [Vec3; 2]) -> [N; 2] {
                 match self {
-                    $($(#[$on])* Self::$surface(surface) => surface.footprint(direction, t, steps),)*
+                    $($(#[$on])* Self::$surface(surface) => surface.footprint(direction, t, direction_steps),)*
                     Self::Mesh(_) => [N::splat(0.0); 2],
                 }
             }

@@ -45,7 +45,7 @@ pub trait InSceneFile {
     /// The name before the fields: "Sphere".
     const NAME: &'static str;
 
-    /// The name with an article, for messages.
+    /// The name of the kind of value with an article, for messages: "a Sphere".
     const OWNER: &'static str;
 
     /// The full form for messages: "Sphere(center: ..., radius: ...)".

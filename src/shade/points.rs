@@ -112,9 +112,9 @@ fn gather_surfaces<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &Eight
     at.uv = [points.uv[0].store(), points.uv[1].store()];
 }
 
-/// The visitor that computes the surface points of all hits in the tree of a primitive.
+/// The visitor that computes the surface points of all hits in the tree that contains `primitive`.
 ///
-/// For an unbounded primitive, those of its own hits.
+/// If `primitive` is unbounded, and so in a list, it computes those of the hits of `primitive` alone.
 struct SurfacesOfPrimitive<'h, N: Lanes> {
     primitive: u32,
     rays: &'h EightRays,

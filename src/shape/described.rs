@@ -8,7 +8,7 @@ use glam::Vec3;
 
 /// A surface that can be described in words, with the equation for its crossings.
 pub trait Described {
-    /// The name of its kind: "sphere".
+    /// The name of the surface's kind: "sphere".
     const KIND: &'static str;
 
     /// Returns a noun phrase for the surface in a colour: "a red sphere of radius 1".
@@ -35,7 +35,7 @@ pub trait Described {
 macro_rules! described {
     ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:meta;)*) => {
         impl Shape {
-            /// Returns the name of its kind: "sphere".
+            /// Returns the name of the shape's kind: "sphere".
             #[doc(hidden)]
             pub fn kind(&self) -> &'static str {
                 match self {

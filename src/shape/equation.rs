@@ -7,7 +7,7 @@
 /// behind it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equation {
-    /// The computation, line by line.
+    /// The solution of the equation, line by line.
     pub steps: Vec<Step>,
     /// The values of t at which the line crosses the surface or its plane, ascending.
     pub roots: Vec<f64>,
@@ -17,7 +17,7 @@ pub struct Equation {
     pub is_outside: bool,
 }
 
-/// A line of a computation, in ASCII.
+/// A line of the written-out solution of an [`Equation`], in ASCII.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
     /// A formula and its value.

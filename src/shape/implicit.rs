@@ -20,7 +20,7 @@ const MAX_ROOTS: usize = 2;
 const MAX_SHOWN: usize = 48;
 
 /// A surface f(x, y, z) = 0, drawn within bounds, at which it is cut open.
-// Shared, because a leaf of the tree has copies of its surfaces.
+// The definition is shared, because each leaf of the tree has copies of its surfaces.
 #[doc(hidden)]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Implicit(Arc<Definition>);
@@ -35,7 +35,7 @@ struct Definition {
     bounds: Bounds,
     /// The ball that cuts the surface, if the bounds are not a box.
     ball: Option<Ball>,
-    /// Why nothing is seen, if that is certain.
+    /// The reason why nothing of the surface is visible, if that is certain.
     warning: Option<&'static str>,
 }
 
@@ -84,7 +84,7 @@ impl Implicit {
         Some(LinearRgb::new(r, g, b))
     }
 
-    /// Returns why nothing of the surface is seen, if that is certain.
+    /// Returns the reason why nothing of the surface is visible, if that is certain.
     pub(crate) fn warning(&self) -> Option<&'static str> {
         self.0.warning
     }
@@ -107,7 +107,7 @@ impl Implicit {
     }
 
     /// Returns the formula as an equation on one line, shortened if it is long.
-    fn shown(&self) -> String {
+    fn equation_text(&self) -> String {
         let text = &self.0.text;
         if text.chars().count() <= MAX_SHOWN {
             return text.clone();
@@ -185,7 +185,7 @@ impl Described for Implicit {
 
     fn described(&self, color: &str) -> String {
         let zero = if self.0.text.contains('=') { "" } else { " = 0" };
-        format!("a {color} implicit surface, {}{zero}, {}", self.shown(), size_in_words(&self.0.bounds))
+        format!("a {color} implicit surface, {}{zero}, {}", self.equation_text(), size_in_words(&self.0.bounds))
     }
 
     /// Finds the first roots of f(o + t d) within the bounds, in front of the eye.
@@ -358,7 +358,8 @@ fn check_bounds(written: &WrittenBounds, validator: &mut Validator<'_>) -> Optio
 /// Returns the span of a part of a text in the file.
 fn span_in(text: &Spanned<String>, part: std::ops::Range<usize>) -> Span {
     let (start, end) = (text.span.start as usize, text.span.end as usize);
-    // The quotes, and the r and hashes of a raw string. No character of a formula needs an escape.
+    // The length of the opening quote, with the r and hashes of a raw string. No character of a formula needs an
+    // escape.
     let opening = (end - start).saturating_sub(text.value.len()).div_ceil(2);
     let at = |offset: usize| (start + opening + offset).min(end);
     Span::new(at(part.start), at(part.end))

@@ -92,7 +92,7 @@ impl Mesh {
         self.file.has_normals()
     }
 
-    /// Returns the positions, triangles and materials.
+    /// Returns the content of the mesh's file: positions, triangles and materials.
     #[doc(hidden)]
     pub fn file(&self) -> &MeshFile {
         &self.file
@@ -137,7 +137,7 @@ impl Surface for Facet<'_> {
 }
 
 impl Facet<'_> {
-    /// Returns the flat triangle.
+    /// Returns the triangle through the three corners, which is flat even in a smooth mesh.
     pub fn triangle(&self) -> &Triangle {
         &self.triangle
     }

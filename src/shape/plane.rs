@@ -112,17 +112,16 @@ impl Surface for Plane {
         AtCrossing::points_at(self, &Probe::new(*ray).rays, t).point()
     }
 
-    /// Uses that a neighbouring ray p + t (d + e) crosses the plane at t - t e.n / d.n, to first
-    /// order.
+    /// Computes to first order: a ray with direction d + e crosses the plane at t - t e.n / d.n.
     ///
-    /// (Igehy, Tracing Ray Differentials, 1999.)
+    /// Here d is `direction`, and e is one of `direction_steps` (Igehy, Tracing Ray Differentials, 1999).
     #[inline(always)]
-    fn footprint<N: Number>(&self, d: Vector<N>, t: N, steps: [Vec3; 2]) -> [N; 2] {
+    fn footprint<N: Number>(&self, direction: Vector<N>, t: N, direction_steps: [Vec3; 2]) -> [N; 2] {
         let (normal, u, v) = (Vector::splat(self.normal), Vector::splat(self.u), Vector::splat(self.v));
         let [mut along_u, mut along_v] = [N::splat(0.0); 2];
-        for step in steps {
+        for step in direction_steps {
             let e = Vector::splat(step);
-            let moved = (e - d * (e.dot(normal) / d.dot(normal))) * t;
+            let moved = (e - direction * (e.dot(normal) / direction.dot(normal))) * t;
             along_u = along_u + moved.dot(u).abs();
             along_v = along_v + moved.dot(v).abs();
         }

@@ -13,12 +13,13 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScalarLeaf<S> {
     surfaces: Arc<[S]>,
-    /// The index of each lane's surface; an unused lane has one that does not exist.
+    /// The index of each lane's surface; an unused lane has an index without a surface.
     lanes: [u8; LANES],
 }
 
 impl<S> ScalarLeaf<S> {
-    /// Returns the same surfaces in other lanes.
+    /// Returns a leaf with the same surfaces; `surface_of` returns the index of the surface for a
+    /// lane.
     fn with_lanes(&self, surface_of: impl FnMut(usize) -> u8) -> Self {
         Self { surfaces: Arc::clone(&self.surfaces), lanes: from_fn(surface_of) }
     }

@@ -47,19 +47,19 @@ impl Sphere {
         Self { center, radius }
     }
 
-    /// Returns the center, the lecture's **c**.
+    /// Returns the center, **c** in the lecture.
     #[doc(hidden)]
     pub fn center(&self) -> Vec3 {
         self.center
     }
 
-    /// Returns the radius, the lecture's r; greater than 0.
+    /// Returns the radius, r in the lecture; greater than 0.
     #[doc(hidden)]
     pub fn radius(&self) -> f32 {
         self.radius
     }
 
-    fn lanes(&self) -> SphereN<f32> {
+    fn as_one_lane(&self) -> SphereN<f32> {
         SphereN { center: Vector::splat(self.center), radius: self.radius }
     }
 }
@@ -194,12 +194,12 @@ impl Surface for Sphere {
 
     #[inline]
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let (crosses, t) = self.lanes().first_crossing(&probe.rays, within.min)?;
+        let (crosses, t) = self.as_one_lane().first_crossing(&probe.rays, within.min)?;
         (crosses && t <= within.max).then_some(t)
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        self.lanes().points_at(&Probe::new(*ray).rays, t).point()
+        self.as_one_lane().points_at(&Probe::new(*ray).rays, t).point()
     }
 }
 

@@ -330,7 +330,7 @@ impl Triangle {
         self.corners
     }
 
-    fn lanes(&self) -> TriangleN<f32> {
+    fn as_one_lane(&self) -> TriangleN<f32> {
         TriangleN(self.corners.map(Vector::splat))
     }
 }
@@ -374,12 +374,12 @@ impl Surface for Triangle {
     }
 
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let (crosses, t) = self.lanes().first_crossing(&probe.rays, within.min)?;
+        let (crosses, t) = self.as_one_lane().first_crossing(&probe.rays, within.min)?;
         (crosses && t <= within.max).then_some(t)
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        AtCrossing::points_at(&self.lanes(), &Probe::new(*ray).rays, t).point()
+        AtCrossing::points_at(&self.as_one_lane(), &Probe::new(*ray).rays, t).point()
     }
 }
 

@@ -71,7 +71,7 @@ macro_rules! written {
                 }
             }
 
-            /// Returns the name with an article, for messages.
+            /// Returns the name of the kind of shape with an article, for messages: "a Sphere".
             pub(crate) fn owner(&self) -> &'static str {
                 match self {
                     $($(#[$on])* Self::$surface(_) => super::$surface::OWNER,)*
@@ -107,7 +107,7 @@ surfaces! { written }
 macro_rules! of_kind {
     ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:meta;)*) => {
         impl Shape {
-            /// Returns the name with an article, for messages.
+            /// Returns the name of the kind of shape with an article, for messages: "a Sphere".
             pub(crate) fn owner(&self) -> &'static str {
                 match self {
                     $($(#[$on])* Self::$surface(_) => super::$surface::OWNER,)*

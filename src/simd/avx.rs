@@ -53,7 +53,7 @@ impl<M> Register<M> {
     }
 }
 
-/// Runs an instruction of AVX2, or of AVX-512 in the methods of its mask type.
+/// Calls an intrinsic of AVX2, or in the methods of its mask type one of AVX-512.
 macro_rules! avx {
     ($instruction:expr) => {
         // SAFETY: a `Register` or a mask exists only within `MaskOps::run`, whose caller guarantees the instruction
@@ -67,7 +67,7 @@ pub(super) use avx;
 /// Reduces eight registers to one, whose lanes are the minimum or maximum of each register.
 ///
 /// The reduction transposes: first neighbours are combined, then pairs, then halves.
-// The reduction takes three rounds; scalars from memory would take eight loads per register.
+// Transposing takes three rounds. Loading the numbers one by one would take eight loads per register.
 macro_rules! of_each {
     ($choose:ident, $eights:expr) => {{
         let [a, b, c, d, e, f, g, h] = *$eights;

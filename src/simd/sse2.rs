@@ -47,7 +47,7 @@ struct Masks([__m128; 2]);
 /// The magnitude from which on all f32 are integers: 2^23.
 const INTEGERS_FROM: f32 = 8_388_608.0;
 
-/// Runs an instruction of SSE2.
+/// Calls an intrinsic of SSE2, which every x86-64 CPU supports.
 macro_rules! sse {
     ($instruction:expr) => {
         // SAFETY: every x86-64 CPU has SSE2. Loads and stores access four numbers of an `F32x8`, which is aligned.

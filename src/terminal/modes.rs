@@ -11,7 +11,7 @@ use std::fs::File;
 use std::io;
 use std::time::{Duration, Instant};
 
-/// The modes that are on.
+/// The terminal modes that are on.
 #[derive(Default)]
 pub(super) struct Modes {
     /// The terminal's settings before raw mode; `None` if it is off.

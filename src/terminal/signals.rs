@@ -42,26 +42,27 @@ const CAUGHT: [i32; 4] = [SIGTERM, SIGHUP, SIGINT, SIGQUIT];
 /// Signals that [`before_death`] catches besides [`CAUGHT`].
 ///
 /// They end a program by default, and signal-hook can reset their disposition. Blocking them, as the live view does, is
-/// impossible when threads are running already. Real-time signals, SIGIO, SIGPWR and SIGSTKFLT are missing: after them
-/// the next run removes temporary files.
+/// impossible when threads are running already. Real-time signals, SIGIO, SIGPWR and SIGSTKFLT are missing: if one of
+/// them ends the program, its next run removes the temporary files.
 const CAUGHT_BEFORE_DEATH: [i32; 8] = [SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGSYS, SIGTRAP];
 
 /// Signals that are never blocked.
 const UNBLOCKED: &[Signal] = &[
-    // The system does not allow blocking these.
+    // The system does not allow blocking these signals.
     Signal::SIGKILL,
     Signal::SIGSTOP,
     // Faults of the program itself; the standard library reports a stack overflow from their handlers.
     Signal::SIGSEGV,
     Signal::SIGBUS,
-    // Their default action does not end the process.
+    // The default action of these signals does not end the process.
     Signal::SIGCHLD,
     Signal::SIGURG,
     Signal::SIGTTIN,
     Signal::SIGTTOU,
     #[cfg(target_os = "macos")]
     Signal::SIGINFO,
-    // A write that would cause these fails with an error: by `fail_large_writes`, and by the standard library.
+    // A write that would cause these signals fails with an error instead, by `fail_large_writes` and by the standard
+    // library.
     Signal::SIGXFSZ,
     Signal::SIGPIPE,
     // Handlers are installed for the following signals.
@@ -407,7 +408,8 @@ impl Waker {
 pub fn die_of(signal: i32) {
     // This call does not return for signals that signal-hook knows to end a process.
     let _ = signal_hook::low_level::emulate_default_handler(signal);
-    // For other signals, which are blocked: unblocking delivers those pending for this thread, as by `raise`, first.
+    // All other signals are blocked. `raise` makes the signal pending for this thread, and unblocking delivers signals
+    // that are pending for the thread before those that are pending for the process.
     let _ = signal_hook::low_level::raise(signal);
     let _ = signals_to_block().thread_unblock();
 }

@@ -27,7 +27,7 @@ pub(super) struct Shot {
     pub(super) scene: Scene,
     pub(super) camera: Camera,
     pub(super) size: Size,
-    /// The size in pixels, derived from the size in cells.
+    /// The size of the picture in pixels, derived from that in cells.
     pub(super) resolution: Resolution,
     pub(super) options: Options,
 }
@@ -49,10 +49,11 @@ impl Shot {
         self.scene.is_copy_of(&other.scene) && of(self) == of(other)
     }
 
-    /// Returns the samples per pixel of the refinement, if a picture with one sample comes first.
+    /// Returns the samples per pixel of the final picture, if one with one sample per pixel is
+    /// shown before it.
     fn refinement_samples(&self) -> Option<NonZeroU32> {
         match self.options.sampling {
-            // Only adaptive sampling has such a first picture, because its first sample is that of one per pixel.
+            // Only adaptive sampling has this first picture, because it begins with one sample per pixel.
             Sampling::UpTo(samples) if samples > NonZeroU32::MIN && self.options.map.refines() => Some(samples),
             _ => None,
         }

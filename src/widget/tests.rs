@@ -157,7 +157,8 @@ fn a_shown_picture_is_not_traced_again() {
 
 /// A state whose background thread stops after each picture, until the test lets it continue.
 struct Held {
-    // Dropped before `state`, which waits for the thread, so that the thread is not halted.
+    // Fields are dropped in this order: without `go_on` the thread is not halted, and `state`, when dropped, waits for
+    // it.
     go_on: Sender<()>,
     state: SceneState,
     woken: Receiver<()>,

@@ -99,7 +99,7 @@ impl Worker {
 
 impl Drop for Worker {
     /// Cancels the shot in progress and joins the thread.
-    // Each tracing thread finishes its current batch, of at most 256 rays.
+    // The wait is short: each tracing thread only finishes its current batch, of at most 256 rays.
     fn drop(&mut self) {
         let mut state = self.shared.lock();
         state.is_closed = true;

@@ -134,7 +134,7 @@ impl<'f> NodeReader<'f> {
         read(self, node)
     }
 
-    /// Reads an optional field, for which the word `None` is read as a value.
+    /// Reads an optional field in which the word `None` is a value, not the absence of one.
     pub(crate) fn optional_word<T>(
         &mut self,
         fields: &Fields<'_>,

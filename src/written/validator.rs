@@ -28,7 +28,7 @@ impl Validator<'_> {
 
     /// Checks that all three coordinates are within the range that rays can be traced in.
     pub(crate) fn coordinates(&mut self, written: WrittenVector) -> Option<DVec3> {
-        // Checks all three before a fault ends the function, so that each fault is reported.
+        // Checks all three coordinates before a fault ends the function, so that each fault is reported.
         let near =
             written.components.map(|number| self.accept(number.span, checks::coordinate(number.value)).is_some());
         (near == [true; 3]).then(|| DVec3::from_array(written.components.map(|component| component.value)))

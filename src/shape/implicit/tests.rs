@@ -20,7 +20,7 @@ fn rays(count: usize, from: f32) -> Vec<Ray> {
     (0..count).map(|at| Ray { origin: Vec3::new(0.1, 0.2, from), direction: direction(at) }).collect()
 }
 
-/// The formula of a sphere is met where a sphere is, with the same normal.
+/// Rays hit a sphere given by a formula where they hit the shape `Sphere`, with the same normal.
 #[test]
 fn a_sphere_is_a_sphere() {
     let (formula, sphere) = (scene(BALL), scene("Sphere(center: (0, 0, 0), radius: 1.25)"));

@@ -15,9 +15,11 @@ use crate::ray::CommonOrigin;
 // same time. Testing each ray's offset culled as many but was not faster, as the same branch was mispredicted
 // elsewhere.
 pub struct EdgeFunctions {
-    /// For each corner's edge function: the coefficients of an offset's x and y, and the constant.
+    /// For each corner's edge function: the coefficients of a ray offset's x and y, and the
+    /// constant.
     weights: [Vector<F32x8>; 3],
-    /// An upper bound of the error of an edge function at any offset of a group (`culling.md`, 12).
+    /// An upper bound of the error of an edge function at any ray offset of a group (`culling.md`,
+    /// 12).
     error_bound: F32x8,
     /// An upper bound of the `weight_error_bound` of all rays of the packet (`culling.md`, 14).
     pub packet_error_bound: F32x8,
@@ -38,7 +40,7 @@ impl EdgeFunctions {
     }
 }
 
-/// Returns the range of an edge function over the offsets of each group.
+/// Returns the range of an edge function over the ray offsets of each group.
 #[inline(always)]
 fn range<N: Lanes>(weight: &Vector<F32x8>, lane: usize, common_origin: &CommonOrigin<N>) -> [N; 2] {
     let Vector { x, y, z } = Vector::<N>::splat(weight.of_lane(lane));
@@ -49,11 +51,11 @@ fn range<N: Lanes>(weight: &Vector<F32x8>, lane: usize, common_origin: &CommonOr
 }
 
 impl<N: Lanes> TriangleN<N> {
-    /// Computes the edge functions and their error bounds.
+    /// Computes the edge functions and their error bounds, in units of 2^-24.
     ///
-    /// With s the largest x or y (`across`), r the largest z or origin error (`along`) and w the largest offset:
-    /// 96 (s + w r)(s + r) units for a group (`culling.md`, 12), and 25 instead of 24 units for a packet's rays
-    /// (`culling.md`, 14).
+    /// s is the largest x or y (`across`), r the largest z or origin error (`along`), and w the largest ray offset. The
+    /// bound for a group is 96 (s + w r)(s + r) (`culling.md`, 12). The bound for all rays of a packet has the form of
+    /// [`weight_error_bound`], with 25 instead of 24 (`culling.md`, 14).
     #[inline(always)]
     pub(super) fn edge_functions(&self, common_origin: &CommonOrigin<N>) -> EdgeFunctions {
         let [a, b, c] = self.0;
