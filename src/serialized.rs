@@ -38,7 +38,7 @@ serialize_as! {
     Srgb8 as [u8; 3]: |color| [color.r, color.g, color.b], |channels| Ok::<_, Infallible>(Self::from(channels));
     Size as SizeForm: |&Size { columns, rows }| SizeForm { columns, rows },
         |SizeForm { columns, rows }| Ok::<_, Infallible>(Self { columns, rows });
-    // The name of a map, not its number, so that new maps do not change the meaning of old files.
+    // A map is stored by its name, not its number, so that new maps do not change the meaning of old files.
     Map as String: |map| map.name().to_owned(), |name: String| name.parse::<Self>();
     Sampling as SamplingForm: |&sampling| sampling.into(), |form: SamplingForm| Ok::<_, Infallible>(form.into());
     Pose as PoseForm: |&Pose { eye, target, up }| PoseForm { eye: eye.into(), target: target.into(), up: up.into() },

@@ -53,7 +53,7 @@ fn has_avx2() -> bool {
 
 #[cfg(all(target_arch = "x86_64", compiler_has_avx512))]
 #[inline]
-// Requires VL for masks over registers of eight floats, and DQ for moves of eight-bit masks.
+// The kernels require VL for masks over registers of eight floats, and DQ for moves of eight-bit masks.
 fn has_avx512() -> bool {
     has_avx2()
         && is_x86_feature_detected!("avx512f")

@@ -190,7 +190,8 @@ impl Terminal {
         ];
         let timeout = timeout.map(timespec);
         let readable = match poll(&mut fds, timeout.as_ref()) {
-            // Interrupted by a signal: its handler has written to the wake pipe, which the next call finds readable.
+            // The wait was interrupted by a signal: its handler has written to the wake pipe, which the next call finds
+            // readable.
             Err(rustix::io::Errno::INTR) => Readable::default(),
             Err(error) => return Err(error.into()),
             // Keys may come from another terminal than that of the output, whose hang-up is noticed only here.

@@ -111,8 +111,8 @@ fn apply_curve(curve: ToneCurve, light: LinearRgb) -> LinearRgb {
 
 /// Applies Krzysztof Narkowicz's fit (2015) of the ACES transforms to a channel.
 fn filmic(x: f32) -> f32 {
-    // Clamped far beyond white, because the squares of much brighter light are infinite in f32, and their quotient NaN,
-    // which is displayed as black.
+    // The value is clamped far beyond white, because the squares of much brighter light are infinite in f32, and their
+    // quotient NaN, which is displayed as black.
     let x = x.min(1e6);
     (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)
 }

@@ -44,7 +44,7 @@ impl House {
     pub(super) fn new(scenes: Vec<HostedScene>, settings: Settings, stage: Arc<Stage>) -> Self {
         let mut keymap = Keymap::default();
         keymap.remove(&LEFT_OUT);
-        // More connections than viewers, because some only ask for text, and some wait for a place.
+        // There may be more connections than viewers, because some only ask for text, and some wait for a place.
         let connections = 2 * settings.max_viewers + 64;
         Self {
             door: Mutex::new(Door::new(connections, settings.max_per_address)),

@@ -194,7 +194,7 @@ impl Seat {
             return end.saturating_sub(countdown);
         }
         let seconds = left.as_secs() + u64::from(left.subsec_nanos() > 0);
-        // Shown once a second: each note is a change, which is drawn.
+        // The note is set only once a second, because each new note counts as a change, which is drawn.
         if self.counted.replace(seconds) != Some(seconds) {
             self.viewer.show_note(parting.countdown_text(seconds));
         }

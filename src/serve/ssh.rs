@@ -16,7 +16,7 @@ use russh::server::{Auth, ChannelOpenHandle, Handler, Msg, Session, VerifiedPubl
 use russh::{Channel, ChannelId, Error, Pty};
 use std::sync::Arc;
 
-/// One connection.
+/// The state of one client's connection.
 pub(super) struct Client {
     pub(super) house: Arc<House>,
     pub(super) line: Arc<Line>,

@@ -96,7 +96,7 @@ impl Implicit {
         let (d, from_center) = (probe.ray.direction.as_dvec3(), probe.ray.origin.as_dvec3() - center);
         let (squared, half_b) = (d.dot(d), from_center.dot(d));
         let nearest = from_center - d * (half_b / squared);
-        // NaN for a line that misses the ball; the comparisons of the caller reject it.
+        // The root is NaN for a line that misses the ball, and the comparisons of the caller then reject the line.
         let root = ((radius * radius - nearest.dot(nearest)) / squared).sqrt();
         let middle = -half_b / squared;
         let (enters, leaves) = ((middle - root) as f32, (middle + root) as f32);

@@ -136,8 +136,8 @@ impl<N: Number> TriangleN<N> {
     ) -> Option<(N::Mask, N)> {
         // This is the first division of the test; most tests end before it.
         let t = crossing.t / crossing.sum;
-        // Rejects before the box test, because a shadow ray always crosses the plane of the triangle that it starts on:
-        // pictures with shadows are 1.3 to 1.9 % faster.
+        // Crossings before `min` are rejected before the box test, because a shadow ray always crosses the plane of the
+        // triangle that it starts on: pictures with shadows are 1.3 to 1.9 % faster.
         let crosses = crosses & min.le(t);
         if !crosses.any() {
             return None;
@@ -176,7 +176,7 @@ impl<N: Number> TriangleN<N> {
 ///
 /// The sign of each weight is that of the exact weight or zero, and triangles that share an edge get the same sign for
 /// it (`culling.md`, 8).
-// Cold, as one ray of thousands needs it.
+// The function is cold, because only one ray of thousands needs it.
 #[cold]
 fn crossing_in_f64([is_active, ax, ay, az, bx, by, bz, cx, cy, cz, ox, oy, oz, dx, dy, dz]: [f32; 16]) -> [f32; 5] {
     if is_active == 0.0 {

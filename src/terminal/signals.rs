@@ -51,7 +51,7 @@ const UNBLOCKED: &[Signal] = &[
     // The system does not allow blocking these signals.
     Signal::SIGKILL,
     Signal::SIGSTOP,
-    // Faults of the program itself; the standard library reports a stack overflow from their handlers.
+    // These report faults of the program itself; the standard library reports a stack overflow from their handlers.
     Signal::SIGSEGV,
     Signal::SIGBUS,
     // The default action of these signals does not end the process.

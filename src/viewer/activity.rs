@@ -14,7 +14,7 @@ pub(crate) struct Activity {
 }
 
 impl Activity {
-    /// Returns whether there is anything to show.
+    /// Returns whether there is any work in the background to show.
     pub(super) fn is_any(self) -> bool {
         self != Self::default()
     }

@@ -30,7 +30,7 @@ impl Viewer {
 
     /// Switches between flight and orbit about the point in the middle of the picture.
     pub(super) fn change_mode(&mut self) {
-        // Computed from the shown frame, which may be older than the camera.
+        // The point is computed from the shown frame, which may be older than the camera.
         let in_the_middle = self.point_in_the_middle();
         self.eye.change_mode(in_the_middle);
         self.screen.set_moving(self.eye.mode());

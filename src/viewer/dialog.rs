@@ -16,13 +16,13 @@ use unicode_width::UnicodeWidthStr;
 
 /// An open question. Keys answer it until it is closed.
 pub(super) enum Dialog {
-    /// In which format to export the picture.
+    /// Asks in which format to export the picture.
     Export,
-    /// Whether to write a view into the scene file of this name.
+    /// Asks whether to write a view into the scene file of this name.
     SaveToFile(String),
-    /// Whether to write a new scene file of this name, with the mesh and this view.
+    /// Asks whether to write a new scene file of this name, with the mesh and this view.
     NewScene(String),
-    /// Under which number to save the view.
+    /// Asks under which number to save the view.
     Save,
 }
 

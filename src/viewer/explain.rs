@@ -94,7 +94,7 @@ impl ExplainPanel {
     }
 
     fn at_pixel(frame: &Frame, pixel: [u32; 2], page: usize) -> Self {
-        // Of two cameras, the pixels of the first one are explained.
+        // If there are two cameras, only pixels of the first one's picture are explained.
         let first = frame.shot.outside.map(|_| frame.part_at([0, 0]).0.width().saturating_sub(1));
         let pixel = first.map_or(pixel, |last| [pixel[0].min(last), pixel[1]]);
         let (resolution, part) = frame.part_at(pixel);

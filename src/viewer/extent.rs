@@ -9,8 +9,9 @@ use crate::memory::{self, OutOfMemory};
 /// This is 1,048,576 cells of half blocks or of the ramp, or 262,144 cells of shapes. Windows of real terminals have
 /// less than a tenth of it: a 4K screen has 100,000 cells of 8 by 10 pixels. In a larger window the picture covers the
 /// upper left part, in the window's shape, and the rest stays empty.
-// Chosen to stay below 600 MB of memory: a picture of this size takes 490 MB at the peak, one of twice the size 770 MB
-// (in truecolor, with a wipe or on a slow link). Without a limit, a window that claimed 65535x65535 cells took 4.6 GB.
+// The number is chosen to stay below 600 MB of memory: a picture of this size takes 490 MB at the peak, one of twice
+// the size 770 MB (in truecolor, with a wipe or on a slow link). Without a limit, a window that claimed 65535x65535
+// cells took 4.6 GB.
 pub const MAX_PIXELS: u32 = 1 << 21;
 
 /// Returns the size in cells of the part of the window that the picture covers, at the upper left.

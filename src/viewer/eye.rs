@@ -135,7 +135,8 @@ impl Eye {
         let Some(since) = self.moved_until else { return };
         let jump = self.jump.take();
         self.jump = jump.filter(|jump| !jump.has_ended(now));
-        // Determined before `Motion::step`: a motion that ends within this step has moved the eye as well.
+        // This is determined before `Motion::step`, because a motion that ends within this step has moved the eye as
+        // well.
         let moves = self.turntable || self.motion.is_moving(now) || self.jump.is_some();
         self.moved_until = moves.then_some(now);
         let Some(view) = &mut self.view else { return };
@@ -369,7 +370,8 @@ fn short_of_surface(scene: &Scene, view: &ViewState, moved: &Camera) -> Option<C
 }
 
 /// Time for which a surface stops a held key, which passes it after that.
-// Longer than a press that is meant as a tap, even with Shift; short enough that the surface does not seem impassable.
+// This is longer than a press that is meant as a tap, even with Shift, and short enough that the surface does not seem
+// impassable.
 const PASSING_TIME: Duration = Duration::from_millis(500);
 
 /// Share of a step of reduced motion: if a surface leaves less of the step free, the step passes

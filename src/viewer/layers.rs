@@ -70,7 +70,7 @@ impl Layers {
     /// Opens a layer and replaces the open one of its type.
     pub(super) fn open<L: Layer>(&mut self, layer: L) {
         self.close::<L>();
-        // On top of the layers of the same level, so that the layer opened last is visible.
+        // The layer is put on top of the layers of the same level, so that the layer opened last is visible.
         let at = self.stack.partition_point(|below| below.level() <= layer.level());
         self.stack.insert(at, Box::new(layer));
     }
@@ -100,7 +100,8 @@ impl Layers {
         if let Some(question) = self.stack.iter().find(|layer| layer.takes_all_keys()) {
             return question.mode(screen).into_iter().chain([KeyMode::Always]).collect();
         }
-        // From the lowest layer up, so that keys of a mark on the picture take precedence over those of a panel.
+        // The modes are taken from the lowest layer up, so that keys of a mark on the picture take precedence over
+        // those of a panel.
         let layers = self.stack.iter().filter_map(|layer| layer.mode(screen));
         layers.chain([movement_mode, KeyMode::Always]).collect()
     }

@@ -11,8 +11,8 @@ use ratatui_core::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 /// Columns and rows of the grid of rays by which [`Hiding::find`] searches for something visible.
-// At 80x24 cells one ray for every second pixel in either direction. The first ray that hits the front of a surface
-// ends the search, so that it takes time only if nothing is visible.
+// At 80x24 cells this is one ray for every second pixel in either direction. The first ray that hits the front of a
+// surface ends the search, so that it takes time only if nothing is visible.
 const RAYS: [u32; 2] = [40, 24];
 
 /// The notice that nothing of the scene is visible, in several versions, longest first.

@@ -28,7 +28,7 @@ impl Layer for ProgressPanel {
 }
 
 /// The panel's width in columns, on screens that are wide enough.
-// Enough for the verb and file names of 34 characters; longer names lose their beginning.
+// It is enough for the verb and file names of 34 characters; longer names lose their beginning.
 const PROGRESS_WIDTH: u16 = 46;
 const PROGRESS_HEIGHT: u16 = 4;
 
@@ -74,7 +74,7 @@ fn progress_bar(progress: &Progress, theme: Theme, width: usize) -> String {
         return String::new();
     }
     let share = (progress.done as f64 / progress.total as f64).min(1.0);
-    // Rounded down, so that 100 % means that nothing is left.
+    // The percentage is rounded down, so that 100 % means that nothing is left.
     let per_cent = format!(" {:3.0} %", (100.0 * share).floor());
     let room = width.saturating_sub(per_cent.len());
     let filled = (share * room as f64) as usize;

@@ -31,7 +31,7 @@ const INITIAL_COST_RATIOS: [f64; MAX_MOTION_LEVEL + 1] = [1.0, 4.0, 2.0, 3.0];
 const TRACING_SHARE: f64 = 0.75;
 /// A finer level is tried only if it is predicted to take at most this share of the time for
 /// tracing.
-// Less than 1, so that the level does not oscillate: a level that takes more is kept but not tried. The test
+// It is less than 1, so that the level does not oscillate: a level that takes more is kept but not tried. The test
 // `no_level_flickers` covers all frame times up to 40 ms with a noise of a tenth.
 const FINER_LEVEL_SHARE: f64 = 0.8;
 /// Number of frames in a row that must be fast enough for a finer level before it is tried.
@@ -138,7 +138,8 @@ impl QualityControl {
         let (coarse, fine) = if before.0 < at_last.0 { (before, at_last) } else { (at_last, before) };
         if fine.0 == coarse.0 + 1 && coarse.1 > 0.0 {
             let growth = &mut self.cost_ratios[fine.0];
-            // Averaged with the previous ratio, because either picture may have been delayed by another process.
+            // The new ratio is averaged with the previous one, because either picture may have been delayed by another
+            // process.
             *growth = (0.5 * (*growth + fine.1 / coarse.1)).clamp(1.0, 8.0);
         }
     }

@@ -40,8 +40,8 @@ pub(super) struct Screen {
     painter: Painter,
     encoder: Encoder,
     /// The cells of the frame that is drawn.
-    // Kept between frames, because allocating it takes longer than filling it: with the grid and the buffer of bytes
-    // kept, a key press at 200x60 causes 210 page faults instead of 571.
+    // The grid is kept between frames, because allocating it takes longer than filling it: with the grid and the buffer
+    // of bytes kept, a key press at 200x60 causes 210 page faults instead of 571.
     grid: Grid,
     order: Option<Order>,
     quality: Option<Quality>,
@@ -150,7 +150,7 @@ impl Screen {
 
     /// Closes the layer of a type, if open, and returns it.
     pub(super) fn close<L: Layer>(&mut self) -> Option<L> {
-        // Checked first, because any access for writing counts as a change, which draws the screen.
+        // This is checked first, because any access for writing counts as a change, which draws the screen.
         self.get::<L>()?;
         self.content.layers.close()
     }
@@ -212,7 +212,8 @@ impl Screen {
 
     /// Sets whether the eye flies or orbits.
     pub(super) fn set_moving(&mut self, moving: KeyMode) {
-        // Written only if it differs, because any access for writing counts as a change, which draws the screen.
+        // The mode is written only if it differs, because any access for writing counts as a change, which draws the
+        // screen.
         if self.content.moving != moving {
             self.content.moving = moving;
         }

@@ -94,7 +94,7 @@ fn milliseconds(time: Duration) -> String {
 /// Returns the samples per pixel as text, or their maximum: `1/4 sample`, `64 samples`.
 fn samples(sampling: Sampling) -> String {
     match sampling {
-        // One ray for 2x2 pixels.
+        // Coarse sampling traces one ray for 2x2 pixels.
         Sampling::Coarse => "1/4 sample".to_owned(),
         Sampling::Split => "1/4 to 1 sample".to_owned(),
         Sampling::Each(samples) | Sampling::UpTo(samples) if samples.get() == 1 => "1 sample".to_owned(),

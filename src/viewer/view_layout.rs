@@ -137,7 +137,7 @@ const LINE: Srgb8 = Srgb8::new(255, 208, 64);
 ///
 /// In a picture too narrow for two maps, the left one has all columns and the right one none.
 fn side_by_side_sizes(whole: Resolution) -> [Resolution; 2] {
-    // At least one column for each map and one for the line.
+    // Both maps and the line between them need at least one column each.
     let left = if whole.width() < 3 { whole.width() } else { (whole.width() - 1) / 2 };
     [left, whole.width().saturating_sub(left + 1)].map(|width| whole.with_width(width))
 }

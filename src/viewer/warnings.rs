@@ -33,7 +33,7 @@ impl Layer for Warnings {
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
-        // Above the rows in which a note may be shown at the same time.
+        // The warnings are above the rows in which a note may be shown at the same time.
         let row = canvas.row_from_bottom(canvas.status_rows.max(canvas.note_rows));
         let lines = self.lines(row.width);
         for (above, line) in (0..).zip(lines.iter().rev()).take_while(|&(above, _)| above < row.y) {

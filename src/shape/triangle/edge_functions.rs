@@ -55,7 +55,7 @@ impl<N: Lanes> TriangleN<N> {
     ///
     /// s is the largest x or y (`across`), r the largest z or origin error (`along`), and w the largest ray offset. The
     /// bound for a group is 96 (s + w r)(s + r) (`culling.md`, 12). The bound for all rays of a packet has the form of
-    /// [`weight_error_bound`], with 25 instead of 24 (`culling.md`, 14).
+    /// `weight_error_bound`, with 25 instead of 24 (`culling.md`, 14).
     #[inline(always)]
     pub(super) fn edge_functions(&self, common_origin: &CommonOrigin<N>) -> EdgeFunctions {
         let [a, b, c] = self.0;
@@ -72,7 +72,7 @@ impl<N: Lanes> TriangleN<N> {
         let off = across + common_origin.max_offset * along + (along + far) * N::splat(256.0 / 16_777_216.0);
         let packet_error_bound = off * (off + far) * N::splat(25.0 / 16_777_216.0);
         EdgeFunctions {
-            // Stored to memory, from which each lane will be broadcast for the groups.
+            // The edge functions are stored to memory, from which each lane is broadcast when the groups are culled.
             weights: [c.cross(b).store(), a.cross(c).store(), b.cross(a).store()],
             error_bound: (error_bound + N::splat(f32::MIN_POSITIVE)).store(),
             packet_error_bound: (packet_error_bound + N::splat(2.0 * f32::MIN_POSITIVE)).store(),

@@ -55,7 +55,7 @@ fn signals_do_not_end_the_wait_for_a_terminal() {
             }
             far.set_nonblocking(true).expect("a socket has flags");
             while far.read(&mut [0; 4096]).is_ok() {}
-            // Returned, so that it is closed only after the wait: a closed socket counts as writable, too.
+            // Returns the far end, so that it is closed only after the wait: a closed socket counts as writable, too.
             far
         });
         assert!(is_writable(&near, Duration::from_secs(60)));

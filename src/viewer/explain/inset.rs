@@ -38,7 +38,7 @@ pub(super) struct Inset {
 
 /// Length at which a ray without a hit is drawn, as a multiple of the distance from the eye to the
 /// target.
-// Greater than 1, so that the ray visibly passes the scene.
+// It is greater than 1, so that the ray visibly passes the scene.
 const MISS_LENGTH: f32 = 1.5;
 
 /// Distance from the eye at which the view rectangle is drawn, as a share of the ray's length.
@@ -58,7 +58,7 @@ impl Inset {
         let sphere = shaded.and_then(|shaded| shaded.hit.surface(scene).circle());
         let sphere = sphere.map(|(center, radius)| (from_side(center), radius));
         let lights = shaded.map_or(Vec::new(), |shaded| {
-            // For a light at infinity a line as long as the ray is drawn in the light's direction.
+            // For a light at infinity, the line to it is drawn as long as the ray, in the light's direction.
             let far = |lit: &LightContribution| shaded.point.position + lit.incidence.l * t;
             let end =
                 |(light, lit): (&Light, &LightContribution)| from_side(light.position().unwrap_or_else(|| far(lit)));

@@ -76,7 +76,7 @@ fn shared_rows() -> Vec<(Vec<Command>, &'static str)> {
     use Direction::{Back, Down, Forward, Left, Right, Up};
     let toward = |command: fn(Toward) -> Command| HJKL.map(command).to_vec();
     vec![
-        // In the order in which the keys are usually named: W A S D.
+        // The directions are in the order in which their keys are usually named: W A S D.
         ([Forward, Left, Back, Right].map(Command::Move).to_vec(), "move"),
         ([Left, Right].map(Command::Move).to_vec(), "left, right"),
         ([Up, Down].map(Command::Move).to_vec(), "up, down"),
@@ -155,7 +155,7 @@ fn key_rows(keymap: &Keymap, modes: &[KeyMode], states: &[(Command, String)]) ->
             }
         }
     }
-    // Moves the row of Shift behind those of the keys that it makes faster.
+    // The row of Shift is moved behind those of the keys that it makes faster.
     let last = rows.iter().rposition(|row| row.group == Group::Move).unwrap_or(0);
     rows[..=last].rotate_left(1);
     rows
@@ -247,7 +247,7 @@ pub(super) fn lines(rows: &[Row]) -> Vec<Line> {
         lines.push(Line::Heading(format!("{:?}", rows[0].group)));
         let widths = rows.iter().map(|row| row.keys.width());
         let keys = widths.filter(|&width| width <= MAX_ALIGNED).max().unwrap_or(0);
-        // Padded by columns, not by characters as the width of a format is.
+        // The keys are padded by columns, whereas the width of a format counts characters.
         let pad = |row: &Row| " ".repeat(keys.saturating_sub(row.keys.width()));
         let text = |row: &Row| format!("{}{}  {}", row.keys, pad(row), row.does);
         lines.extend(rows.iter().map(|row| Line::Row(text(row))));

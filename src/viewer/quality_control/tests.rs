@@ -40,7 +40,8 @@ fn as_many_samples_as_fit_the_time() {
         let mut control = QualityControl::new(None);
         let levels = fly(&mut control, 300, |_, level| time(level));
         assert!(levels[60..].iter().all(|&it| it == level), "{one} ms: {levels:?}");
-        // At most two changes up from the first level, and two by a failed attempt at a finer one: up and down.
+        // There are at most two changes up from the first level, and two by a failed attempt at a finer one: up and
+        // down.
         assert!(changes(&levels) <= 4, "{one} ms: {levels:?}");
     }
 }
@@ -76,7 +77,7 @@ fn no_level_flickers() {
         let time = machine(f64::from(tenth) / 10.0);
         let mut control = QualityControl::new(None);
         fly(&mut control, 200, |_, level| time(level));
-        // Pseudorandom noise of up to a tenth.
+        // The factor of a frame's time is 1 with pseudorandom noise of up to a tenth.
         let noise = |frame: u32| 0.9 + 0.2 * f64::from(frame.wrapping_mul(2_654_435_769) >> 16) / 65_536.0;
         let levels = fly(&mut control, 600, |frame, level| time(level) * noise(frame));
         assert!(changes(&levels[1..]) <= 6, "{tenth} tenths of a millisecond: {levels:?}");
