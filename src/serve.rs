@@ -75,7 +75,7 @@ pub struct Settings {
     pub max_per_address: usize,
     /// The longest time without a key, after which a viewer has to leave.
     pub idle: Duration,
-    /// The longest visit.
+    /// The longest time that a visit may last.
     pub session_max: Duration,
     /// The most bytes per second for one viewer.
     pub max_rate: Option<u32>,
@@ -134,7 +134,7 @@ pub fn authorized_keys(path: &Path) -> io::Result<Vec<PublicKey>> {
     parsed.collect()
 }
 
-/// A running server.
+/// A running server of views over SSH.
 pub struct Server {
     house: Arc<House>,
     address: SocketAddr,

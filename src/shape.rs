@@ -310,7 +310,7 @@ macro_rules! shapes {
         #[non_exhaustive]
         pub enum Shape {
             $(#[$of] $(#[$on])* $surface($surface),)*
-            /// Many triangles.
+            /// A mesh of triangles.
             Mesh(Arc<Mesh>),
         }
 

@@ -112,7 +112,7 @@ const FIRST_REFINEMENT: Duration = Duration::from_millis(4);
 /// A request to the driver.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Request {
-    /// Leave the view.
+    /// Leave the live view: the user quits.
     Leave,
     /// Stop the job, as Ctrl-Z does.
     Suspend,

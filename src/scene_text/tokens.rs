@@ -6,9 +6,9 @@ use super::{Fault, Span};
 /// A token of RON.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Token<'a> {
-    /// `(`, `[` or `{`.
+    /// An opening bracket: `(`, `[` or `{`.
     Open(char),
-    /// `)`, `]` or `}`.
+    /// A closing bracket: `)`, `]` or `}`.
     Close(char),
     Comma,
     Colon,

@@ -82,7 +82,7 @@ impl House {
         colors
     }
 
-    /// Returns one frame of a scene as text.
+    /// Returns a frame of 80x24 cells of a scene as text, for clients without a terminal.
     pub(super) fn text_frame(&self, scene: usize) -> &str {
         self.text_frames[scene].get_or_init(|| text_frame(&self.scenes[scene].scene, Size::new(80, 24)))
     }

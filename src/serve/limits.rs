@@ -191,7 +191,7 @@ impl Places {
         Ok(())
     }
 
-    /// Leaves the queue.
+    /// Removes a visitor from the queue.
     pub(super) fn give_up(&mut self, visitor: u64) {
         self.waiting.retain(|&waiting| waiting != visitor);
     }

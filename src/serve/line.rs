@@ -64,7 +64,7 @@ pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Line {
-    /// Appends input, and waits while there is more of it than the seat has taken in its turns.
+    /// Appends input in parts, and waits while the seat has more than two parts to take.
     pub(super) async fn push(&self, bytes: &[u8]) {
         for part in bytes.chunks(MAX_INPUT) {
             loop {

@@ -29,11 +29,11 @@ pub(super) enum Class {
 /// The state in which a turn leaves its seat: ready for another turn, asleep, or ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Next {
-    /// Another turn.
+    /// The seat is ready for another turn, for this kind of work.
     Turn(Class),
     /// The seat sleeps until this time or until it is woken; `None`: only until it is woken.
     Sleep(Option<Duration>),
-    /// No more turns.
+    /// The seat gets no more turns.
     End,
 }
 

@@ -59,7 +59,7 @@ pub(crate) struct Job {
     pub(crate) refines: bool,
 }
 
-/// A finished frame.
+/// A traced frame, with the shot that it shows.
 pub(crate) struct Frame {
     pub(crate) scene: Scene,
     pub(crate) shot: Shot,

@@ -8,7 +8,7 @@ use crate::control::KeyMode;
 use glam::{Vec2, Vec3};
 use ratatui_core::layout::Rect;
 
-/// The marker of a light.
+/// The layer that marks the position of the held light.
 #[derive(PartialEq)]
 pub(super) struct LightMarker {
     /// The light's position in world space.

@@ -137,7 +137,7 @@ impl Viewer {
     fn scene_point_at(&self, at: Vec2) -> Option<Vec3> {
         let (frame, pose) = (self.screen.frame()?, self.eye.camera()?.pose());
         let ray = self.eye_ray_at(at)?;
-        // Without a hit, the ray ends as far away as the ray towards the target, at the target.
+        // Without a hit, the ray ends at the t at which the ray towards the target reaches the target.
         let miss = pose.eye.distance(pose.target) * self.eye.camera()?.rectangle().plane_distance();
         let t = closest_hit(&frame.scene, &ray).map_or(miss, |hit| hit.t);
         Some(ray.at(t))

@@ -18,7 +18,7 @@ const fn up_to(samples: u32) -> Sampling {
 
 /// Index of the level of one sample per pixel.
 const ONE_SAMPLE_LEVEL: usize = 1;
-/// Index of the highest level in motion.
+/// Index of the finest level that pictures in motion may have.
 // The final level, of up to 64 samples, takes several times as long, and a picture at rest is refined to it in one step
 // anyway.
 const MAX_MOTION_LEVEL: usize = 3;

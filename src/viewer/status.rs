@@ -55,7 +55,7 @@ struct Status<'a> {
     name: &'a str,
     cells: Size,
     sampling: Sampling,
-    /// Time that tracing took.
+    /// Time that tracing the last frame took.
     trace: Duration,
     figures: FrameStatistics,
     eye: Vec3,

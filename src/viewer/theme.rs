@@ -59,7 +59,7 @@ impl Theme {
         Style { add_modifier: self.style.add_modifier, ..self.mark }
     }
 
-    /// Returns the style of text.
+    /// Returns the style of text in panels.
     pub(super) fn style(self) -> Style {
         self.style
     }

@@ -77,7 +77,7 @@ pub(super) struct Tracer {
 }
 
 impl Tracer {
-    /// Traces a shot.
+    /// Traces a shot and turns the picture into cells.
     pub(super) fn trace(&mut self, shot: Shot) -> RenderedShot {
         // Only a token cancels, and this one is new.
         let seen = traced(&shot, shot.options.sampling, &Cancellation::default()).expect("not cancelled");
@@ -128,7 +128,7 @@ impl Tracer {
     }
 }
 
-/// Traces what a shot shows.
+/// Traces the map that a shot shows, with this sampling.
 fn traced(shot: &Shot, sampling: Sampling, token: &Cancellation) -> Result<TracedMap, Cancelled> {
     let Shot { scene, camera, resolution, options, .. } = shot;
     options.cells.trace(options.map, Executor::Cancellable(token), scene, camera, *resolution, sampling)
