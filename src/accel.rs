@@ -135,7 +135,8 @@ macro_rules! accelerator {
                 has_tree_nodes
             }
 
-            /// Returns whether rays need their [shear](crate::ray::Rays::shear).
+            /// Returns whether any tree needs the [shear](crate::ray::Rays::shear) of rays for its
+            /// primitives.
             #[inline(always)]
             pub(crate) fn needs_shear(&self) -> bool {
                 let mut needs_shear = false;
@@ -390,7 +391,7 @@ impl<S> Tree<S> {
         self.first + (leaf * LANES + lane) as u32
     }
 
-    /// Returns the index after the last leaf.
+    /// Returns the index after that of the last leaf's last lane.
     #[inline(always)]
     pub(crate) fn end_index(&self) -> u32 {
         self.first + (self.leaves.len() * LANES) as u32

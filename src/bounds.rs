@@ -91,7 +91,7 @@ pub fn crossed<N: Number>([min, max]: [Vector<N>; 2], rays: &Rays<N>) -> [N; 2] 
     intersect_slabs([x, y, z])
 }
 
-/// Returns the intersection of the intervals of the three axes, widened.
+/// Returns the t at which rays enter and leave a box, from those of its slabs, widened.
 #[inline(always)]
 pub fn intersect_slabs<N: Number>([x, y, z]: [[N; 2]; 3]) -> [N; 2] {
     // A ray in the plane of a face has NaN there, 0 times infinity, and that face must not bound its interval: if the

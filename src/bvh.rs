@@ -112,8 +112,8 @@ impl Node {
 /// For t >= 0 the interval computed with it contains that of [`Bounds::crossed`] (`culling.md`, 4).
 struct Slabs<N> {
     origin: [N; 3],
-    /// The negated inverse direction, widened so that the ray enters a slab earlier; in `far`, so that
-    /// it leaves later.
+    /// The negated inverse direction, widened so that the ray enters a slab earlier; in `far`, so
+    /// that it leaves later.
     // Negated, because `origin - plane` lets the CPU subtract a memory operand: incoherent rays are 1 to 5 % faster,
     // together with smaller leaves.
     near: [N; 3],
@@ -361,7 +361,7 @@ impl RayStack {
         Some(self.entries[self.len])
     }
 
-    /// Makes room for the children of one node.
+    /// Makes room on the stack for the children of one node.
     #[inline(always)]
     fn make_room(&mut self) {
         #[cold]

@@ -81,8 +81,8 @@ pub struct Basis {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewRectangle {
-    /// The width of the rectangle divided by the focal length; `None` if it follows from the picture's
-    /// aspect ratio.
+    /// The width of the rectangle divided by the focal length; `None` if it follows from the
+    /// picture's aspect ratio.
     width: Option<f32>,
     /// The height of the rectangle divided by the focal length.
     height: f32,
@@ -527,7 +527,7 @@ impl ViewRectangle {
     /// Returns the point that the w axis pierces, on the plane at distance 1 along the normal.
     ///
     /// Its coordinates are along the sides of the rectangle; (0, 0) unless the rectangle is tilted.
-    fn pierced(&self) -> Vec2 {
+    fn pierced_point(&self) -> Vec2 {
         let Vec2 { x: right, y: up } = self.tilt;
         -Vec2::new(libm::tanf(right) / libm::cosf(up), libm::tanf(up))
     }
@@ -544,7 +544,7 @@ impl ViewRectangle {
         };
         let distance = self.plane_distance();
         let shift = self.shift * (self.height / distance);
-        (width / distance, height / distance, self.pierced() + shift)
+        (width / distance, height / distance, self.pierced_point() + shift)
     }
 }
 

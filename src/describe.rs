@@ -14,7 +14,7 @@ use glam::{Vec2, Vec3};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use survey::{Coverage, Survey};
-use words::{color, distance, number, percent, points, position};
+use words::{color, distance, number, percent, point_text, position};
 
 mod facts;
 mod survey;
@@ -95,8 +95,8 @@ impl Description<'_> {
             "{name}: {} and {}, seen from {} towards {}; {} degree vertical field of view{tilt}.\n",
             counted(self.scene.objects().len(), "object"),
             counted(self.scene.lights().len(), "light"),
-            points(eye),
-            points(target),
+            point_text(eye),
+            point_text(target),
             number(degrees)
         )
     }

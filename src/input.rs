@@ -194,7 +194,7 @@ impl Parser {
             State::OldMouse => self.take_old_mouse(byte, out),
             State::Text(kind) => self.take_text(kind, byte, out),
             State::TextEscape(kind) => self.take_text_escape(kind, byte, out),
-            State::Paste if self.paste.ends_with(byte) => self.finish_paste(out),
+            State::Paste if self.paste.append_and_check_end(byte) => self.finish_paste(out),
             State::Paste => {}
         }
     }
@@ -312,7 +312,7 @@ impl Parser {
             b'0'..=b'9' | b';' => self.keep_byte(byte, MAX_SEQUENCE_BYTES),
             0x20..=0x7e => {
                 let meaning = key::from_ss3(&self.text, byte).map_or(Meaning::Nothing, Meaning::Key);
-                self.finish(meaning, out);
+                self.finish_sequence(meaning, out);
             }
             _ => self.drop_and_parse(byte, out),
         }
@@ -334,14 +334,14 @@ impl Parser {
         }
         if (0x40..=0x7e).contains(&byte) {
             // The tokeniser returns no token for a malformed sequence, which ends here nevertheless.
-            self.finish(meaning.unwrap_or(Meaning::Nothing), out);
+            self.finish_sequence(meaning.unwrap_or(Meaning::Nothing), out);
         }
     }
 
     fn take_linux_function(&mut self, byte: u8, out: &mut Vec<Input>) {
         match byte {
-            b'A'..=b'E' => self.finish(Meaning::Key(key::function_key(byte - b'A' + 1)), out),
-            0x20..=0x7e => self.finish(Meaning::Nothing, out),
+            b'A'..=b'E' => self.finish_sequence(Meaning::Key(key::function_key(byte - b'A' + 1)), out),
+            0x20..=0x7e => self.finish_sequence(Meaning::Nothing, out),
             _ => self.drop_and_parse(byte, out),
         }
     }
@@ -354,7 +354,7 @@ impl Parser {
         self.keep_byte(byte, MAX_SEQUENCE_BYTES);
         if let [button, column, row] = self.text[..] {
             let event = mouse::from_bytes(button, column, row);
-            self.finish(event.map_or(Meaning::Nothing, Meaning::Event), out);
+            self.finish_sequence(event.map_or(Meaning::Nothing, Meaning::Event), out);
         }
     }
 
@@ -394,7 +394,7 @@ impl Parser {
             Text::Apc => Meaning::Reply(Reply::Apc(text)),
             Text::Other => Meaning::Nothing,
         };
-        self.finish(meaning, out);
+        self.finish_sequence(meaning, out);
     }
 
     fn finish_paste(&mut self, out: &mut Vec<Input>) {
@@ -404,7 +404,7 @@ impl Parser {
 
     /// Reports the meaning of a complete sequence, and enters the next state: usually the ground
     /// state.
-    fn finish(&mut self, meaning: Meaning, out: &mut Vec<Input>) {
+    fn finish_sequence(&mut self, meaning: Meaning, out: &mut Vec<Input>) {
         let late = self.late.is_some();
         if let Meaning::Key(mut key) = meaning {
             // An additional ESC before a key means Alt. Before any other sequence it was the Escape key.

@@ -89,7 +89,7 @@ pub trait SimdKernel {
 
 /// A vector of eight numbers, in an array or in registers.
 pub trait Lanes: Number<Mask: LaneMask> {
-    /// Runs the kernel in a function that is not inlined, compiled with the same target features.
+    /// Runs the kernel in a function that is not inlined, but has the caller's target features.
     // When single-ray traversal was inlined into packet traversal, its numbers were in memory instead of in registers.
     // As a separate function, and with a new slab test and new stack entries, it took 14 % fewer instructions.
     fn call_no_inline<K: SimdKernel>(kernel: K) -> K::Output;

@@ -192,7 +192,7 @@ impl Map {
         let meaning = match self {
             Self::Shaded => return self.name().to_owned(),
             Self::Lambert => "n.l, no shadows".to_owned(),
-            Self::Depth => format!("white 0, grey {}, black far", colors::short(target_distance(camera))),
+            Self::Depth => format!("white 0, grey {}, black far", colors::length_text(target_distance(camera))),
             Self::Normal => "red x, green y, blue z".to_owned(),
             Self::Object => format!("{} colours", scene.objects().len()),
             Self::Shadow => format!("white lit by {}, dark by 0", scene.lights().len()),
@@ -314,7 +314,7 @@ fn trace_partial(
             None => NO_HIT,
         }),
         Map::Cost => of_surfaces(&|sample| colors::heat(cost::test_count(scene, sample))),
-        Map::Facing => of_surfaces(&|sample| facing(scene, sample)),
+        Map::Facing => of_surfaces(&|sample| facing_color(scene, sample)),
         Map::Wire => of_surfaces(&|sample| wire::color(scene, camera, resolution, sample).unwrap_or(NO_HIT)),
         Map::Contrast => contrast::trace(executor, scene, camera, resolution, sampling),
     }
@@ -330,7 +330,7 @@ fn lambert_color(scene: &Scene, sample: &GBufferSample) -> Srgb8 {
 /// Returns the colour of the visible side, times the cosine between the normal and the ray.
 ///
 /// A plane, which has no end, is left out: it would fill the picture with one colour.
-fn facing(scene: &Scene, sample: &GBufferSample) -> Srgb8 {
+fn facing_color(scene: &Scene, sample: &GBufferSample) -> Srgb8 {
     let is_bounded = |hit: Hit| scene.objects()[hit.object as usize].shape.bounds().is_some();
     let Some(surface) = sample.surface(scene).filter(|_| sample.hit.is_some_and(is_bounded)) else { return NO_HIT };
     let side = match surface.side {

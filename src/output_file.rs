@@ -90,7 +90,7 @@ impl OutputFile {
     /// # Errors
     /// As for [`create_new`](Self::create_new).
     pub fn create_secret(path: &Path) -> io::Result<Self> {
-        Self::create_new_by(path, Temporary::private)
+        Self::create_new_by(path, Temporary::new_private_file)
     }
 
     fn create_new_by(path: &Path, create: impl FnOnce(&Path) -> io::Result<Temporary>) -> io::Result<Self> {
@@ -177,7 +177,7 @@ impl Write for OutputFile {
 /// Returns the destination for contents that are to replace an existing file.
 fn destination_over(target: &Path, existing: Metadata) -> io::Result<Destination> {
     target::check_writable(target, &existing)?;
-    match Temporary::private(target) {
+    match Temporary::new_private_file(target) {
         Ok(temporary) => Ok(Destination::Replace(temporary, existing)),
         Err(error) if is_replacement_refused(&error) => Ok(Destination::InPlace(Vec::new())),
         Err(error) => Err(error),

@@ -160,7 +160,7 @@ impl Link {
     }
 
     /// Returns the bytes that a frame on a slow link of this rate may have.
-    fn frame_bytes(&self, rate: Rate) -> f64 {
+    fn max_frame_bytes(&self, rate: Rate) -> f64 {
         rate.bytes_per_second / self.frames_per_second()
     }
 
@@ -222,7 +222,7 @@ impl Link {
     fn has_room_beside_largest(&self) -> bool {
         let Some(rate) = self.replies.rates.best().filter(|_| self.is_slow()) else { return false };
         let largest = self.replies.ledger.in_flight().map(|query| query.bytes as f64).fold(0.0, f64::max);
-        self.replies.ledger.bytes_in_flight() - largest + self.utilisation * self.frame_bytes(rate)
+        self.replies.ledger.bytes_in_flight() - largest + self.utilisation * self.max_frame_bytes(rate)
             <= self.bandwidth_delay_product(rate)
     }
 
@@ -258,8 +258,9 @@ impl Link {
         } else if self.replies.state == State::Steady {
             self.replies.ledger.record_unqueried(frame.len(), now);
         }
-        self.replies.spend(frame.len(), now);
-        self.utilisation = self.replies.rates.best().map_or(0.0, |rate| frame.len() as f64 / self.frame_bytes(rate));
+        self.replies.spend_initial_window(frame.len(), now);
+        self.utilisation =
+            self.replies.rates.best().map_or(0.0, |rate| frame.len() as f64 / self.max_frame_bytes(rate));
         self.record_sent(frame.len(), now);
     }
 
@@ -282,7 +283,7 @@ impl Link {
         let Some(rate) = self.replies.rates.best() else { return 0.0 };
         // Bytes that the last frame was allowed but did not use are added to the window: without them, a fifth of the
         // link was idle.
-        let spare = if self.is_slow() { ((1.0 - self.utilisation) * self.frame_bytes(rate)).max(0.0) } else { 0.0 };
+        let spare = if self.is_slow() { ((1.0 - self.utilisation) * self.max_frame_bytes(rate)).max(0.0) } else { 0.0 };
         // The first replies may mislead if one of them is lost or duplicated: the window at most doubles with each
         // round trip, as in TCP's slow start.
         let is_known = !self.is_slow() || self.replies.round_trip.is_known();

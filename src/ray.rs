@@ -63,7 +63,7 @@ impl<N: Number> Rays<N> {
             squared_length,
             inverse_squared_length: one / squared_length,
             // The callers set the shear, whose division is not needed in scenes without triangles.
-            shear: Shear::none(),
+            shear: Shear::placeholder(),
         }
     }
 }
@@ -74,7 +74,7 @@ impl<N: Lanes> Rays<N> {
     #[inline(always)]
     pub fn load(rays: &EightRays, needs_shear: bool) -> Self {
         let direction = rays.direction.load();
-        let shear = if needs_shear { Shear::of(direction) } else { Shear::none() };
+        let shear = if needs_shear { Shear::of(direction) } else { Shear::placeholder() };
         Self { shear, ..Self::without_shear(rays.origin.load(), direction) }
     }
 
@@ -182,7 +182,7 @@ enum DominantAxis<M> {
 impl<N: Number> Shear<N> {
     /// Returns a placeholder, a shear of zeros, for rays that are not tested against triangles.
     #[inline(always)]
-    fn none() -> Self {
+    fn placeholder() -> Self {
         let zero = N::splat(0.0);
         Self { axis: DominantAxis::Z, factor: Vector { x: zero, y: zero, z: zero }, length: zero }
     }

@@ -102,7 +102,7 @@ pub fn render_by(
 }
 
 /// Returns the total number of [progress units](steps::ProgressUnit) of a picture.
-fn units(resolution: Resolution, sampling: Sampling) -> u64 {
+fn progress_units(resolution: Resolution, sampling: Sampling) -> u64 {
     let pixels = resolution.pixel_count() as u64;
     match sampling.bounded() {
         Sampling::Coarse => u64::from(resolution.width().div_ceil(2)) * u64::from(resolution.height().div_ceil(2)),

@@ -225,7 +225,7 @@ impl Live {
                     let name = self.shown_name().map_or_else(String::new, SceneName::short);
                     self.viewer.show_metadata(name);
                 }
-                Request::TurnMesh(shown) => scenes.turn_up(shown)?,
+                Request::TurnMesh(shown) => scenes.turn_next_axis_up(shown)?,
                 Request::Copy(text) => self.terminal.copy(&text)?,
                 Request::Export(format) => {
                     let note = self.export(format).map_or_else(

@@ -236,8 +236,9 @@ pub(super) fn frame_of(
 /// little time.
 fn trace_once(job: &Job) -> Result<Frame, Cancelled> {
     let one = Sampling::Each(NonZeroU32::MIN);
-    let trace_map =
-        |map, part, camera: &Camera| trace(&job.shot)(map, Executor::CurrentThread, &job.scene, camera, part, one);
+    let trace_map = |map, part, camera: &Camera| {
+        trace_function(&job.shot)(map, Executor::CurrentThread, &job.scene, camera, part, one)
+    };
     frame_of(job, trace_map)
 }
 
@@ -269,7 +270,7 @@ impl RefinablePicture {
 }
 
 impl Tracer {
-    /// Traces or refines a frame on the threads of the current rayon pool, unless `token` cancels it.
+    /// Traces or refines a frame on the threads of the current rayon pool; `token` may cancel it.
     ///
     /// A new frame with one sample per pixel is traced on the calling thread and ignores `token`. A refinement traces
     /// all samples anew if no picture is kept, or one of another viewer.
@@ -303,7 +304,7 @@ impl Tracer {
         let samples = match job.sampling {
             Sampling::UpTo(samples) if map.refines() => samples,
             sampling => {
-                return trace(shot)(map, Executor::Cancellable(token), scene, camera, resolution, sampling);
+                return trace_function(shot)(map, Executor::Cancellable(token), scene, camera, resolution, sampling);
             }
         };
         let mut kept = kept.unwrap_or_else(|| RefinablePicture::new(scene, *camera, resolution));
@@ -327,7 +328,7 @@ impl Tracer {
 }
 
 /// Returns the function that traces what a shot shows.
-fn trace(shot: &Shot) -> TraceMap {
+fn trace_function(shot: &Shot) -> TraceMap {
     if shot.geometry { maps::trace_with_geometry } else { maps::trace }
 }
 

@@ -52,7 +52,7 @@ impl Proposal {
     /// Writes the file and returns a note that says so, or why not.
     pub(super) fn carry_out(&self) -> String {
         match self {
-            Self::View(view) => match view.write() {
+            Self::View(view) => match view.add_to_file() {
                 Ok(number) => format!("saved as view {number} in {}", visible(&self.file_name())),
                 Err(error) => format!("scene file left unchanged: {error}"),
             },
@@ -92,7 +92,7 @@ impl ProposedView {
     /// # Errors
     /// If the file cannot be written, is not a scene file, or has changed since the user was asked; it is then left as
     /// it was.
-    pub(super) fn write(&self) -> io::Result<usize> {
+    fn add_to_file(&self) -> io::Result<usize> {
         let path = self.file.path();
         let text = fs::read_to_string(path)?;
         let written = with_view(&text, &self.camera).ok_or_else(|| io::Error::other("this is not a scene file"))?;

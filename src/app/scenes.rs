@@ -105,9 +105,9 @@ impl<E: Send + 'static> Scenes<E> {
 
     /// Reads the current scene again; if it is a mesh, with the next axis of its file pointing up,
     /// after `shown`.
-    pub(super) fn turn_up(&mut self, shown: UpAxis) -> io::Result<()> {
+    pub(super) fn turn_next_axis_up(&mut self, shown: UpAxis) -> io::Result<()> {
         if let Some(source) = self.sources.get_mut(self.wanted) {
-            source.turn_up(shown);
+            source.turn_next_axis_up(shown);
         }
         self.read_again()
     }

@@ -89,7 +89,7 @@ impl<E> Source<E> {
 
     /// Makes later readings of a mesh file turn it so that the next axis points up: the one after
     /// the chosen axis, or after `shown` if none is chosen.
-    pub(super) fn turn_up(&mut self, shown: UpAxis) {
+    pub(super) fn turn_next_axis_up(&mut self, shown: UpAxis) {
         // The axis after the shown one would be wrong if the user presses the key again before the turned mesh is
         // shown.
         self.up = Some(self.up.unwrap_or(shown).next());

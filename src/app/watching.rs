@@ -96,7 +96,7 @@ impl Watching {
     /// Returns whether one has changed since it was read.
     pub(super) fn watch(&mut self, dependencies: Vec<Dependency>) -> bool {
         self.dependencies = dependencies;
-        self.update_watches(true)
+        self.watch_and_find_change(true)
     }
 
     /// Returns whether a file has changed since the last call.
@@ -104,8 +104,8 @@ impl Watching {
         let change = std::mem::take(&mut lock(&self.shared).change);
         let has_changed = match change {
             FileChange::Nothing => false,
-            FileChange::Gone => self.update_watches(false),
-            FileChange::Moved => self.update_watches(true),
+            FileChange::Gone => self.watch_and_find_change(false),
+            FileChange::Moved => self.watch_and_find_change(true),
             FileChange::Written => true,
         };
         if has_changed {
@@ -124,9 +124,10 @@ impl Watching {
 
     /// Resolves the paths to the files and watches their folders.
     ///
-    /// Returns whether a file has changed: any file if `all`, otherwise one whose folder was not watched before. (In a
-    /// folder that was, an event follows when the file's writer closes it; until then it might be incomplete.)
-    fn update_watches(&mut self, all: bool) -> bool {
+    /// Returns whether a file has changed: any file if `compares_all`, otherwise one whose folder was not watched
+    /// before. (In a folder that was, an event follows when the file's writer closes it; until then it might be
+    /// incomplete.)
+    fn watch_and_find_change(&mut self, compares_all: bool) -> bool {
         let mut fresh = HashSet::new();
         for _ in 0..MAX_RESOLUTIONS {
             let paths = self.resolve_paths();
@@ -141,7 +142,7 @@ impl Watching {
             ResolvedPath::resolve(dependency.path())
                 .is_some_and(|path| path.end().parent().is_some_and(|folder| fresh.contains(folder)))
         };
-        self.dependencies.iter().any(|dependency| (all || is_fresh(dependency)) && dependency.has_changed())
+        self.dependencies.iter().any(|dependency| (compares_all || is_fresh(dependency)) && dependency.has_changed())
     }
 
     fn resolve_paths(&self) -> Vec<ResolvedPath> {

@@ -76,8 +76,8 @@ fn total_range<N: Lanes>([low, high]: [N; 2]) -> [N; 2] {
 }
 
 impl<N: Lanes> AxisRanges<N> {
-    /// Returns the sign of the directions along an axis, and the ranges over each group and over all
-    /// rays.
+    /// Returns the sign of the directions along an axis, and the ranges over each group and over
+    /// all rays.
     #[inline(always)]
     fn sign_and_ranges(origin: [N; GROUPS], inverse: [N; GROUPS]) -> (DirectionSign, [Self; 2]) {
         let origin = group_ranges(origin);
@@ -105,26 +105,39 @@ impl<N: Lanes> AxisRanges<N> {
     }
 
     #[inline(always)]
-    fn of_one_sign(sign: DirectionSign, [first, last]: [N; 2], [low, high]: [N; 2]) -> Self {
+    fn of_one_sign(
+        sign: DirectionSign,
+        [least_origin, greatest_origin]: [N; 2],
+        [least_inverse, greatest_inverse]: [N; 2],
+    ) -> Self {
         let (less, more) = (N::splat(1.0 - PACKET_SLACK), N::splat(1.0 + PACKET_SLACK));
         match sign {
-            DirectionSign::Backward => Self { origin: [first, last], inverse: [high * less, low * more] },
-            _ => Self { origin: [last, first], inverse: [low * less, high * more] },
+            DirectionSign::Backward => Self {
+                origin: [least_origin, greatest_origin],
+                inverse: [greatest_inverse * less, least_inverse * more],
+            },
+            _ => Self {
+                origin: [greatest_origin, least_origin],
+                inverse: [least_inverse * less, greatest_inverse * more],
+            },
         }
     }
 
     #[inline(always)]
-    fn of_mixed_signs([first, last]: [N; 2], [above, below]: [N; 2]) -> Self {
+    fn of_mixed_signs([least_origin, greatest_origin]: [N; 2], [least_positive, greatest_negative]: [N; 2]) -> Self {
         let (less, half) = (N::splat(1.0 - PACKET_SLACK), N::splat(0.5));
         // A subnormal inverse has too few digits for a relative widening, so it is halved. The half is not zero, as no
         // inverse is below 2^-128.
+        let (above, below) = (least_positive, greatest_negative);
         let above = N::select(above.lt(N::splat(MIN_INVERSE)), above * half, above * less);
         let below = N::select(N::splat(-MIN_INVERSE).lt(below), below * half, below * less);
-        Self { origin: [last, first], inverse: [above, below] }
+        Self { origin: [greatest_origin, least_origin], inverse: [above, below] }
     }
 
-    /// Returns a lower bound of the t at which rays enter the slab from `min` to `max`, and an upper
-    /// bound of the t at which they leave it. The bounds hold for rays that are inside at some t >= 0.
+    /// Returns a lower bound of the t at which rays enter the slab from `min` to `max`, and an
+    /// upper bound of the t at which they leave it.
+    ///
+    /// The bounds hold for rays that are in the slab at some t >= 0.
     // With directions of one sign the least entry is the least distance times the least inverse, and the greatest exit
     // the product of the greatest ones. For planes behind the origin the distance is negative, and only the sign of the
     // product counts. So one product per side suffices. With two, one for each end of the inverses, packets took up to
@@ -229,10 +242,10 @@ pub trait Visitor<N>: Prefetch {
     /// Returns the lower end of the rays' interval: 0 or more.
     fn t_min(&self) -> f32;
 
-    /// Returns the largest upper end of the intervals of each group's rays.
+    /// Returns the largest upper end of the rays' intervals in each group, one group per lane.
     fn t_max(&self) -> N;
 
-    /// Returns the largest upper end of the intervals of all rays, or more.
+    /// Returns an upper bound of the upper ends of all rays' intervals.
     fn max_t_max(&self) -> f32;
 
     /// Tests the primitives of a leaf.

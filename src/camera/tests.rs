@@ -13,7 +13,7 @@ fn camera(eye: Vec3, target: Vec3) -> Camera {
 }
 
 /// Returns the position of a point in the picture, from -1 at the left and lower border to 1.
-fn place(camera: &Camera, point: Vec3, aspect_ratio: f32) -> Vec2 {
+fn position_in_picture(camera: &Camera, point: Vec3, aspect_ratio: f32) -> Vec2 {
     let place = camera.project(point, aspect_ratio).expect("it is in front of the eye");
     (2.0 * place - 1.0) * Vec2::new(1.0, -1.0)
 }
@@ -62,7 +62,8 @@ fn all_corners_of_what_is_framed_are_in_the_picture_and_one_is_at_its_side() {
                     let before = before.with_rectangle(before.rectangle().with_tilt(tilt).expect("in front"));
                     let after = before.framing(&bounds, aspect_ratio);
                     assert!(after.basis().w.abs_diff_eq(before.basis().w, 1e-4), "the direction stays");
-                    let places = corners(&bounds).map(|corner| place(&after, corner, aspect_ratio).abs().max_element());
+                    let places = corners(&bounds)
+                        .map(|corner| position_in_picture(&after, corner, aspect_ratio).abs().max_element());
                     let most = places.fold(0.0, f32::max);
                     assert!(
                         (most - FRAMED_SHARE).abs() < 1e-3,
@@ -147,11 +148,11 @@ fn a_dragged_point_follows_the_pointer() {
     let aspect_ratio = 1.6;
     let by = Vec2::new(0.2, 0.1);
     let after = start.panned(by, aspect_ratio);
-    // `place` counts from the middle, in halves of the picture, upwards.
-    let at = place(&after, Vec3::ZERO, aspect_ratio);
+    // `position_in_picture` counts from the middle, in halves of the picture, upwards.
+    let at = position_in_picture(&after, Vec3::ZERO, aspect_ratio);
     assert!(at.abs_diff_eq(Vec2::new(0.4, -0.2), 1e-5), "{at}");
     assert!(after.basis().w.abs_diff_eq(Vec3::Z, 1e-6));
-    let at = place(&start.dragged_view(by, aspect_ratio), Vec3::ZERO, aspect_ratio);
+    let at = position_in_picture(&start.dragged_view(by, aspect_ratio), Vec3::ZERO, aspect_ratio);
     assert!(at.abs_diff_eq(Vec2::new(0.4, -0.2), 0.02), "the middle stays about under the pointer: {at}");
     let around = start.dragged_around(Vec2::new(0.5 / aspect_ratio, 0.0), aspect_ratio).pose();
     assert!(around.eye.abs_diff_eq(-5.0 * Vec3::X, 1e-4), "what is before it goes to the right: {around:?}");
@@ -168,7 +169,10 @@ fn the_wheel_comes_nearer_to_a_point_which_stays_where_it_is() {
             let nearer = [start.wheeled_around(point, notches, 1.0), start.wheeled(point, notches)];
             let share = libm::powf(WHEEL_NOTCH_FACTOR, notches);
             for (after, target) in nearer.into_iter().zip([5.0 * share, 5.0]) {
-                assert!(place(&after, point, 1.6).abs_diff_eq(place(&start, point, 1.6), 1e-4), "{notches}");
+                assert!(
+                    position_in_picture(&after, point, 1.6).abs_diff_eq(position_in_picture(&start, point, 1.6), 1e-4),
+                    "{notches}"
+                );
                 let found = after.pose().eye.distance(point) / start.pose().eye.distance(point);
                 assert!((found - share).abs() < 1e-4, "{notches}");
                 assert!((after.target_distance() - target).abs() < 1e-4, "{notches}");

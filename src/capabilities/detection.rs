@@ -60,7 +60,7 @@ pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {
             forced => forced,
         },
     };
-    let found = colorterm(clues).or_else(|| replied_truecolor(clues)).unwrap_or_else(|| by_term(clues));
+    let found = colorterm(clues).or_else(|| replied_truecolor(clues)).unwrap_or_else(|| colors_by_term(clues));
     least.filter(|least| least.value > found.value).unwrap_or(found)
 }
 
@@ -135,22 +135,22 @@ fn replied_truecolor(clues: &Clues<'_>) -> Option<Detected<Colors>> {
 
 /// Returns the colours by terminfo and the name in `TERM`.
 // A name that implies truecolor precedes terminfo's number, which is 256 for such terminals (alacritty, st).
-fn by_term(clues: &Clues<'_>) -> Detected<Colors> {
-    let (terminfo, name) = (by_terminfo(clues), by_name(clues));
+fn colors_by_term(clues: &Clues<'_>) -> Detected<Colors> {
+    let (terminfo, name) = (colors_by_terminfo(clues), colors_by_name(clues));
     match terminfo {
         Some(terminfo) if terminfo.value == Colors::Truecolor || name.value != Colors::Truecolor => terminfo,
         _ => name,
     }
 }
 
-fn by_terminfo(clues: &Clues<'_>) -> Option<Detected<Colors>> {
+fn colors_by_terminfo(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let value = (clues.terminfo)(&non_empty_variable(clues, "TERM")?)?;
     Some(Detected { value, source: Source::Terminfo })
 }
 
 /// Returns the colours that the name in `TERM` implies.
 // Unknown names imply 256 colours, which every emulator of the last twenty years has.
-fn by_name(clues: &Clues<'_>) -> Detected<Colors> {
+fn colors_by_name(clues: &Clues<'_>) -> Detected<Colors> {
     let Some(term) = non_empty_variable(clues, "TERM") else {
         return Detected { value: Colors::Indexed256, source: Source::Assumed };
     };

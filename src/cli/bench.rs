@@ -123,7 +123,7 @@ impl BenchArgs {
         Ok((name, scene.with_shadows(shadows)))
     }
 
-    /// Refuses flags that a depth buffer has no use for.
+    /// Refuses `--samples` with `--algorithm rasterize`, which draws one sample per pixel.
     fn check_algorithm(&self) -> CommandResult {
         if self.algorithm == Algorithm::Rasterize && self.samples > 1 {
             let message = "--algorithm rasterize draws one sample per pixel; --samples is for --algorithm raytrace";
@@ -156,7 +156,7 @@ pub(super) fn run(args: &BenchArgs) -> CommandResult {
     // The trees are built in the same pool, so that `--threads` also applies to the measured time of the build.
     on_threads(args.threads, || {
         let (name, scene) = args.load_scene()?;
-        let (built, bytes) = build(&scene);
+        let (built, bytes) = build_seconds_and_bytes(&scene);
         if args.json {
             let rounds: Vec<_> = (0..args.rounds).map(|_| args.round(&scene, resolution).as_json()).collect();
             return json::print(
@@ -173,7 +173,7 @@ pub(super) fn run(args: &BenchArgs) -> CommandResult {
 }
 
 /// Builds the scene's trees, and returns the time in seconds and their size in bytes.
-fn build(scene: &Scene) -> (f64, usize) {
+fn build_seconds_and_bytes(scene: &Scene) -> (f64, usize) {
     // The trees are built a second time to be timed: loading the scene includes parsing it.
     let objects = scene.objects().to_vec();
     let start = Instant::now();

@@ -56,14 +56,14 @@ pub(super) fn run(args: &ConfigArgs, given: &ArgMatches) -> CommandResult {
     }
     text.push('\n');
     for name in USER_FILES {
-        let _ = writeln!(text, "{name:<16}{}", status(name, no_config));
+        let _ = writeln!(text, "{name:<16}{}", file_status(name, no_config));
     }
     // Made printable, because paths and environment variables may contain escape sequences.
     write_stdout(visible_lines(&text).as_bytes())
 }
 
 /// Returns a line about a user's file such as `config.ron`: its path, and whether it was read.
-fn status(name: &str, is_ignored: bool) -> String {
+fn file_status(name: &str, is_ignored: bool) -> String {
     let Some(path) = path_of(name) else {
         return "nowhere: neither XDG_CONFIG_HOME nor HOME is the path of a folder".to_owned();
     };
@@ -80,7 +80,7 @@ fn as_json(settings: &Settings, no_config: bool) -> Value {
     let held = held.map(|held| (held.name.clone(), json!({ "value": held.value, "source": held.source.to_string() })));
     let files = USER_FILES.map(|name| {
         let path = path_of(name).map(|path| path.to_string_lossy().into_owned());
-        (name.to_owned(), json!({ "path": path, "status": status(name, no_config) }))
+        (name.to_owned(), json!({ "path": path, "status": file_status(name, no_config) }))
     });
     json!({ "settings": held.collect::<Map<_, _>>(), "files": Map::from_iter(files) })
 }

@@ -10,11 +10,11 @@ pub(super) struct DeferredArgs<T>(pub(super) T);
 
 impl<T: Args> Args for DeferredArgs<T> {
     fn augment_args(command: Command) -> Command {
-        command.defer(|command| keep_about(command, T::augment_args))
+        command.defer(|command| with_args_and_own_about(command, T::augment_args))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
-        command.defer(|command| keep_about(command, T::augment_args_for_update))
+        command.defer(|command| with_args_and_own_about(command, T::augment_args_for_update))
     }
 }
 
@@ -30,7 +30,7 @@ impl<T: Args> FromArgMatches for DeferredArgs<T> {
 
 /// Returns the command with the arguments that `list` adds, and with its own description, which
 /// clap's derived code would replace.
-fn keep_about(command: Command, list: fn(Command) -> Command) -> Command {
+fn with_args_and_own_about(command: Command, list: fn(Command) -> Command) -> Command {
     let about = command.get_about().cloned().unwrap_or_default();
     let more = format!("termtrace {} --help lists all options, with examples.", command.get_name());
     let command = list(command).about(about).after_help(more);

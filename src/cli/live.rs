@@ -93,9 +93,9 @@ impl ViewArgs {
         options.reduced_motion = settings.reduced_motion();
         options.map = settings.map.map();
         options.exports = Some(PathBuf::from("."));
-        options.welcome = settings.hint().then(|| hint(&keymap, occasion));
+        options.welcome = settings.shows_hint().then(|| hint(&keymap, occasion));
         options.tour = if let Occasion::Tour(scenes) = occasion { Some(scenes) } else { None };
-        options.few_colors = settings.hint().then(|| "256 colours; try --color truecolor".to_owned());
+        options.few_colors = settings.shows_hint().then(|| "256 colours; try --color truecolor".to_owned());
         options.keymap = keymap;
         options
     }

@@ -50,7 +50,7 @@ pub(super) fn page(command: Command, exit_status: &str) -> io::Result<Vec<u8>> {
         }
     }
     if has_commands {
-        section(&mut sections, "Keys", &keys());
+        section(&mut sections, "Keys", &keys_section());
         section(&mut sections, "Files", FILES);
         section(&mut sections, "Environment", ENVIRONMENT);
     }
@@ -60,7 +60,7 @@ pub(super) fn page(command: Command, exit_status: &str) -> io::Result<Vec<u8>> {
     Ok(page)
 }
 
-/// Adds a section whose lines are not filled.
+/// Adds a section whose lines roff keeps as they are, instead of filling them up.
 fn section(page: &mut String, heading: &str, body: &str) {
     let _ = writeln!(page, ".SH {}\n.nf", heading.to_uppercase());
     for line in body.lines() {
@@ -71,7 +71,7 @@ fn section(page: &mut String, heading: &str, body: &str) {
 }
 
 /// Returns the text of the section on keys: the built-in bindings of each mode.
-fn keys() -> String {
+fn keys_section() -> String {
     let keymap = Keymap::default();
     let mut text = String::from("The mouse: a drag turns the view, the wheel moves towards the pointer.");
     for mode in KeyMode::ALL {

@@ -79,7 +79,7 @@ pub(super) fn print_clap_message(message: &clap::Error) -> ExitCode {
 
 /// Writes a help text to standard output, coloured if that is a terminal.
 pub(super) fn write_help(text: &str) -> CommandResult {
-    let text = if style::is_colored(&io::stdout()) { style::help(text) } else { text.to_owned() };
+    let text = if style::is_colored(&io::stdout()) { style::colored_help(text) } else { text.to_owned() };
     write_stdout(text.as_bytes())
 }
 
@@ -99,7 +99,7 @@ pub(super) fn print_error(text: &str) {
     // With `stty tostop`, SIGTTOU suspends a background process that writes to the terminal. A failed write is ignored:
     // there is no other place for the message, and the exit code reports the failure.
     if termtrace::internals::terminal::stderr_accepts_message() {
-        let text = if style::is_colored(&io::stderr()) { style::error(text) } else { text.to_owned() };
+        let text = if style::is_colored(&io::stderr()) { style::colored_error(text) } else { text.to_owned() };
         let _ = io::stderr().write_all(text.as_bytes());
     }
 }

@@ -26,7 +26,7 @@ impl FrameKind {
     }
 
     /// Returns the default resolution; `None` if the default size is 80x24 cells.
-    fn resolution(self) -> Option<Resolution> {
+    fn default_resolution(self) -> Option<Resolution> {
         match self {
             Self::Cells => None,
             Self::Picture => Some(Resolution::square(1280, 800)),
@@ -34,7 +34,7 @@ impl FrameKind {
         }
     }
 
-    fn samples(self, mode: CellMode) -> Sampling {
+    fn default_samples(self, mode: CellMode) -> Sampling {
         match self {
             Self::Cells => mode.sampling(),
             Self::Picture | Self::Gif => Sampling::BEST,
@@ -117,7 +117,7 @@ impl PictureArgs {
         }
         let is_default = self.size.size.is_none() && self.size.pixels.is_none() && self.scale.is_none();
         // The default resolution of a picture file has square pixels, whatever the shape of a cell.
-        kind.resolution().filter(|_| is_default).map_or_else(|| self.size.resolution(mode), Ok)
+        kind.default_resolution().filter(|_| is_default).map_or_else(|| self.size.resolution(mode), Ok)
     }
 
     /// Returns the value of `--cell-aspect`: a cell's height over its width.
@@ -127,7 +127,7 @@ impl PictureArgs {
 
     /// Returns the sampling of a frame of this kind; `mode` is that of its cells.
     pub(super) fn samples(&self, kind: FrameKind, mode: CellMode) -> Sampling {
-        self.samples.unwrap_or_else(|| kind.samples(mode))
+        self.samples.unwrap_or_else(|| kind.default_samples(mode))
     }
 
     /// Returns the value of `--samples`, if given.
@@ -135,7 +135,7 @@ impl PictureArgs {
         self.samples
     }
 
-    /// Returns the value of `--scale`: the pixels of the file along the shorter side of a traced pixel.
+    /// Returns the value of `--scale`: pixels of the file along the shorter side of a traced pixel.
     pub(super) fn scale(&self) -> u32 {
         self.scale.unwrap_or(1)
     }

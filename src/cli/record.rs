@@ -322,7 +322,7 @@ impl Film {
 
     /// Adds the frame's file name to an error of writing it. A closed pipe, as after `| head`,
     /// becomes [`Stop::NoReader`].
-    fn written<T>(&self, frame: usize, result: io::Result<T>) -> Result<T, Stop> {
+    fn with_named_error<T>(&self, frame: usize, result: io::Result<T>) -> Result<T, Stop> {
         result.map_err(|error| match self.format {
             FilmFormat::Cast(None) if error.kind() == io::ErrorKind::BrokenPipe => Stop::NoReader,
             _ => Stop::Failure(Failure::runtime(self.file(frame).display(), reason(&error))),
@@ -360,13 +360,13 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
     });
     // The bar is first drawn after the signal handler is installed: before, a signal would leave it on the screen.
     bar.tick();
-    let mut sink = film.written(0, args.sink(film, &mut outputs))?;
+    let mut sink = film.with_named_error(0, args.sink(film, &mut outputs))?;
     for frame in 0..film.cameras.len() {
-        film.written(frame, sink.write_frame(film, args.map.map(), frame, &mut outputs))?;
+        film.with_named_error(frame, sink.write_frame(film, args.map.map(), frame, &mut outputs))?;
         bar.inc(1);
     }
     // `end` gives an asciicast or GIF its name, so an interrupted film leaves no file.
-    film.written(0, sink.end())?;
+    film.with_named_error(0, sink.end())?;
     if let Some(summary) = film.summary(args.output.as_deref(), args.picture.scale()) {
         // Without a terminal, where the progress bar is hidden, a successful command prints nothing.
         let is_shown = !bar.is_hidden();

@@ -109,7 +109,7 @@ impl SettingArgs {
     }
 
     /// Returns whether the view starts with a line that shows the main keys.
-    pub(super) fn hint(&self) -> bool {
+    pub(super) fn shows_hint(&self) -> bool {
         self.hint.unwrap_or(true)
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn is_colored(stream: &impl IsTerminal) -> bool {
 /// Returns an error message or warning with coloured `error:` or `warning:`, tips and carets.
 ///
 /// `text` must contain no control characters of quoted arguments: the caller replaces them before.
-pub(super) fn error(text: &str) -> String {
+pub(super) fn colored_error(text: &str) -> String {
     text.split_inclusive('\n').fold(String::new(), |colored, line| colored + &error_line(line))
 }
 
@@ -42,7 +42,7 @@ fn error_line(line: &str) -> String {
 }
 
 /// Returns a help text with coloured headings, flags and commands.
-pub(super) fn help(text: &str) -> String {
+pub(super) fn colored_help(text: &str) -> String {
     let mut is_in_commands = false;
     text.split_inclusive('\n').fold(String::new(), |colored, line| {
         let text = line.trim_start();

@@ -7,7 +7,7 @@ use clap::error::{ContextKind, ContextValue};
 const RENAMED: [(&str, &str); 1] = [("view", "map")];
 
 /// Returns the new name of the setting `old`, if it was renamed.
-pub(super) fn setting(old: &str) -> Option<&'static str> {
+pub(super) fn renamed_setting(old: &str) -> Option<&'static str> {
     RENAMED.iter().find(|(name, _)| *name == old).map(|(_, new)| *new)
 }
 
@@ -15,7 +15,7 @@ pub(super) fn setting(old: &str) -> Option<&'static str> {
 fn tip(flag: &str) -> Option<String> {
     match flag {
         "-v" => Some("the version is printed by '-V'".to_owned()),
-        _ => flag.strip_prefix("--").and_then(setting).map(|new| format!("the name is now '--{new}'")),
+        _ => flag.strip_prefix("--").and_then(renamed_setting).map(|new| format!("the name is now '--{new}'")),
     }
 }
 

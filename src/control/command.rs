@@ -173,7 +173,7 @@ macro_rules! commands {
         const COMMANDS: &[Command] = &[$($($command)+),*];
 
         /// Returns the command's name in the keymap and its description in the help.
-        const fn words(command: Command) -> (&'static str, &'static str) {
+        const fn name_and_description(command: Command) -> (&'static str, &'static str) {
             match command {
                 $($($command)+ => ($name, $does),)*
                 Command::Write(format) => (format.command(), format.title()),
@@ -294,14 +294,14 @@ impl Command {
     ///
     /// Names never change, because users' files contain them.
     pub fn name(self) -> &'static str {
-        words(self).0
+        name_and_description(self).0
     }
 
     /// Returns a description for the help, of at most 24 characters.
     ///
     /// With this limit, two lists of keys fit side by side on a screen of 80 columns.
     pub fn description(self) -> &'static str {
-        words(self).1
+        name_and_description(self).1
     }
 
     /// Returns whether the command lasts as long as its key is held.

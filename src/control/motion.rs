@@ -72,7 +72,7 @@ impl Held {
         self.share * (full.as_secs_f32() + left(from) - left(to))
     }
 
-    /// Releases the key at time `now`. If its step is not complete, the rest follows at a falling speed.
+    /// Releases the key at time `now`. The rest of an incomplete step follows at a falling speed.
     fn release(&mut self, now: Duration) {
         let rest = TAP_TIME.saturating_sub(now.saturating_sub(self.pressed));
         self.full_until = now;

@@ -77,7 +77,7 @@ impl Coverage {
         }
     }
 
-    /// Returns the rectangle around the covered pixels, in shares of the picture's width and height.
+    /// Returns the rectangle around the covered pixels, in shares of the picture's sides.
     pub(super) fn covered_rect(&self, resolution: Resolution) -> PictureRect {
         let sides = [resolution.width(), resolution.height()].map(|side| side as f32);
         let middle = [0, 1].map(|axis| (self.sum[axis] as f32 / self.pixels as f32 + 0.5) / sides[axis]);
@@ -138,11 +138,10 @@ impl Survey {
         of_object.map(|(&(before, _), _)| before).collect()
     }
 
-    /// Returns whether `pixels`, the number of hidden pixels of an object, is enough to be
-    /// mentioned.
-    // A twentieth of the visible pixels is significant; fewer are usually single pixels at edges.
-    fn is_significant(&self, object: u32, pixels: usize) -> bool {
-        20 * pixels >= self.covered.get(&object).map_or(0, |covered| covered.pixels)
+    /// Returns whether an object has enough hidden pixels to be mentioned.
+    // A twentieth of its visible pixels suffices; fewer are usually single pixels at edges.
+    fn is_significant(&self, object: u32, hidden_pixels: usize) -> bool {
+        20 * hidden_pixels >= self.covered.get(&object).map_or(0, |covered| covered.pixels)
     }
 }
 

@@ -62,7 +62,7 @@ pub(super) fn number(value: f32) -> String {
 }
 
 /// Formats a point as a scene file writes it.
-pub(super) fn points(point: Vec3) -> String {
+pub(super) fn point_text(point: Vec3) -> String {
     format!("({}, {}, {})", number(point.x), number(point.y), number(point.z))
 }
 

@@ -2,7 +2,7 @@
 
 use super::difference;
 use super::format_row::{Contents, FormatRow};
-use super::paint::{escaped, paths, text_runs};
+use super::paint::{escaped, svg_paths, text_runs};
 use crate::grid::{Grid, Size};
 use std::fmt::Write;
 
@@ -63,7 +63,7 @@ svg,pre{{position:absolute;width:100%;height:100%;margin:0;font:inherit;line-hei
 </html>
 "#,
         escaped(title),
-        paths(grid)
+        svg_paths(grid)
     )
 }
 

@@ -59,7 +59,7 @@ pub(super) fn escaped(text: &str) -> String {
 /// Returns the backgrounds and block characters as SVG paths, one per colour.
 ///
 /// A unit is a column in width and half a cell in height.
-pub(super) fn paths(grid: &Grid) -> String {
+pub(super) fn svg_paths(grid: &Grid) -> String {
     let mut halves = Paths::default();
     for ColorArea { x, y, width, height, color } in areas(grid) {
         let _ = write!(halves.outline(color), "M{x} {y}h{width}v{height}h-{width}");

@@ -88,7 +88,7 @@ fn difference(golden: &[u8], frame: &[u8]) -> GoldenDifference {
     }
     let pixels = || golden.pixels().zip(frame.pixels()).enumerate();
     let count = pixels().filter(|(_, (a, b))| a != b).count();
-    let largest = pixels().map(|(_, (a, b))| distance(a, b)).max().unwrap_or(0);
+    let largest = pixels().map(|(_, (a, b))| largest_channel_difference(a, b)).max().unwrap_or(0);
     let Some((first, (a, b))) = pixels().find(|(_, (a, b))| a != b) else {
         return "the pixels are equal; only what the files say beside them differs\n".to_owned().into();
     };
@@ -97,21 +97,21 @@ fn difference(golden: &[u8], frame: &[u8]) -> GoldenDifference {
         "{count} of {} pixels differ, by at most {largest} of 255\nfirst: pixel ({x}, {y}) was {a:?}, is {b:?}\n",
         golden.width * golden.height
     );
-    let marked = pixels().map(|(_, (a, b))| marked(a, b)).collect();
+    let marked = pixels().map(|(_, (a, b))| difference_color(a, b)).collect();
     let picture = Picture::from_pixels(golden.width as u32, golden.height as u32, marked);
     GoldenDifference { text, picture: picture.and_then(|picture| png(&picture, 1.0, 1).ok()) }
 }
 
 /// Returns the largest difference of a channel.
-fn distance(a: [u8; 3], b: [u8; 3]) -> u8 {
+fn largest_channel_difference(a: [u8; 3], b: [u8; 3]) -> u8 {
     a.into_iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
 }
 
 /// Returns a pixel of the picture of differences: dim grey for equal pixels, otherwise red.
 ///
 /// The larger the difference, the brighter the red.
-fn marked(a: [u8; 3], b: [u8; 3]) -> Srgb8 {
-    match distance(a, b) {
+fn difference_color(a: [u8; 3], b: [u8; 3]) -> Srgb8 {
+    match largest_channel_difference(a, b) {
         0 => {
             let grey = (a.iter().map(|&channel| u16::from(channel)).sum::<u16>() / 6) as u8;
             Srgb8::new(grey, grey, grey)

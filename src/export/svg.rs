@@ -2,7 +2,7 @@
 
 use super::difference;
 use super::format_row::{Contents, FormatRow};
-use super::paint::{DEFAULT_TEXT, hex, paths, text_runs};
+use super::paint::{DEFAULT_TEXT, hex, svg_paths, text_runs};
 use crate::grid::{Grid, Size};
 use std::fmt::Write;
 
@@ -47,15 +47,15 @@ pub fn svg(grid: &Grid, cell_aspect: f32) -> String {
 <g transform="scale({CELL_WIDTH} {half})" shape-rendering="crispEdges">
 {}</g>
 "#,
-        paths(grid)
+        svg_paths(grid)
     );
-    svg.push_str(&text(grid, cell_height));
+    svg.push_str(&text_elements(grid, cell_height));
     svg.push_str("</svg>\n");
     svg
 }
 
 /// Returns the SVG elements of the grid's text; empty if there is no text.
-fn text(grid: &Grid, cell_height: f64) -> String {
+fn text_elements(grid: &Grid, cell_height: f64) -> String {
     // If cells are low, the font size is limited by their height, so that lines do not overlap.
     let font_size = (CELL_WIDTH / FONT_ADVANCE).min(0.85 * cell_height);
     let mut lines = String::new();

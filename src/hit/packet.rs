@@ -87,7 +87,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     pub(super) fn trace(&mut self, rays: &'p [EightRays], stacks: &mut Stacks) {
         (self.rays, self.rays_left, self.leaves) = (rays, 0, 0);
         // An inactive group is replaced by an active one, so that it does not widen the packet's bounds.
-        let Some(one) = rays.iter().find(|rays| rays.active != 0) else { return self.reset(0..GROUPS) };
+        let Some(one) = rays.iter().find(|rays| rays.active != 0) else { return self.terminate_groups(0..GROUPS) };
         let accel = self.accel;
         let (has_tree_nodes, needs_shear) = (accel.has_tree_nodes(), accel.needs_shear());
         for (group, group_rays) in rays.iter().enumerate() {
@@ -100,7 +100,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
             }
         }
         if has_tree_nodes {
-            self.reset(rays.len()..GROUPS);
+            self.terminate_groups(rays.len()..GROUPS);
             self.group_t_max = N::max_of_each(&self.t).store();
             for group in rays.len()..GROUPS {
                 self.groups[group] = self.groups[0];
@@ -111,7 +111,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
 
     /// Terminates all rays of the groups with these indices, without a hit.
     #[inline(always)]
-    fn reset(&mut self, groups: Range<usize>) {
+    fn terminate_groups(&mut self, groups: Range<usize>) {
         for group in groups {
             self.t[group] = N::splat(TERMINATED);
             self.primitive[group] = N::splat(index_as_lane(NO_PRIMITIVE));
@@ -224,22 +224,22 @@ impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
     fn record_closest(&mut self, primitive: u32, crossing: Option<(N::Mask, N)>, accel: &Accelerator) -> bool {
         let Some((crosses, t)) = crossing else { return false };
         if ANY {
-            return self.record(crosses & t.le(self.t), N::splat(TERMINATED), primitive);
+            return self.record_where(crosses & t.le(self.t), N::splat(TERMINATED), primitive);
         }
         // At equal t the primitive that comes first in the scene wins, whatever the order of the tests.
         let is_as_close = crosses & t.eq(self.t);
         let mut is_closest = crosses & t.lt(self.t);
         if is_as_close.any() {
-            let first = precedes_in_scene(accel, primitive, &self.primitive.store());
+            let first = mask_of_later_primitives(accel, primitive, &self.primitive.store());
             is_closest = is_closest | (is_as_close & N::mask_from_bits(first));
         }
-        self.record(is_closest, t, primitive)
+        self.record_where(is_closest, t, primitive)
     }
 
     /// Records a primitive as the hit of the rays in the mask `is_hit`, and returns whether there
     /// are any.
     #[inline(always)]
-    fn record(&mut self, is_hit: N::Mask, t: N, primitive: u32) -> bool {
+    fn record_where(&mut self, is_hit: N::Mask, t: N, primitive: u32) -> bool {
         let is_any = is_hit.any();
         if is_any {
             self.t = N::select(is_hit, t, self.t);
@@ -291,7 +291,7 @@ impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Unculled<'_, N, ANY> 
 /// Returns the mask of lanes of `others` whose primitive comes after `primitive` in the scene.
 // Cold: two surfaces at exactly the same t are rare.
 #[cold]
-fn precedes_in_scene(accel: &Accelerator, primitive: u32, others: &F32x8) -> u32 {
+fn mask_of_later_primitives(accel: &Accelerator, primitive: u32, others: &F32x8) -> u32 {
     let is_first = |other: u32| other == NO_PRIMITIVE || accel.id(primitive) < accel.id(other);
     others.0.iter().rev().fold(0, |first, other| first << 1 | u32::from(is_first(other.to_bits())))
 }

@@ -77,7 +77,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
                 self.observer.primitive_tested(PrimitiveTest::from_crossing(*id, crossing));
             }
             if let Some(t) = crossing {
-                self.record(t, primitive);
+                self.record_if_closest(t, primitive);
             }
         }
     }
@@ -120,7 +120,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
         }
         let t = t.store();
         for lane in set_bits(hit_mask) {
-            self.record(t.0[lane], tree.primitive(leaf, lane));
+            self.record_if_closest(t.0[lane], tree.primitive(leaf, lane));
         }
     }
 
@@ -136,7 +136,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
     /// Records a crossing at `t` if it is closer than the hit so far, or as close and earlier in
     /// the scene.
     #[inline(always)]
-    fn record(&mut self, t: f32, primitive: u32) {
+    fn record_if_closest(&mut self, t: f32, primitive: u32) {
         let is_first = |other: u32| self.accel.id(primitive) < self.accel.id(other);
         if t < self.within.max || t == self.within.max && self.primitive.is_none_or(is_first) {
             self.primitive = Some(primitive);

@@ -61,7 +61,7 @@ impl Sequence<'_> {
     }
 
     /// Returns the parameters if there are exactly `N` and none has subparameters.
-    fn exactly<const N: usize>(&self) -> Option<[u16; N]> {
+    fn exact_params<const N: usize>(&self) -> Option<[u16; N]> {
         let plain = self.params.iter().all(|param| param.len() == 1);
         plain.then(|| self.numbers().try_into().ok()).flatten()
     }
@@ -78,12 +78,12 @@ impl Sequence<'_> {
             'I' if self.is_bare() => Some(Meaning::Event(Event::FocusGained)),
             'O' if self.is_bare() => Some(Meaning::Event(Event::FocusLost)),
             'M' => {
-                let [code, column, row] = self.exactly()?;
+                let [code, column, row] = self.exact_params()?;
                 mouse::from_rxvt(code, column, row).map(Meaning::Event)
             }
             // `R` with parameters is a cursor report; without, it is F3.
             'R' if !self.is_bare() => self.cursor_position().map(Meaning::Reply),
-            'n' => self.exactly().map(|[status]| Meaning::Reply(Reply::Status(status))),
+            'n' => self.exact_params().map(|[status]| Meaning::Reply(Reply::Status(status))),
             't' => Some(Meaning::Reply(self.window_reply())),
             _ => self.key().map(Meaning::Key),
         }
@@ -107,7 +107,7 @@ impl Sequence<'_> {
     fn private_reply(&self) -> Option<Reply> {
         match self.last {
             'c' => Some(Reply::DeviceAttributes(self.numbers())),
-            'u' => self.exactly().map(|[flags]| Reply::KeyboardFlags(flags)),
+            'u' => self.exact_params().map(|[flags]| Reply::KeyboardFlags(flags)),
             'R' => self.cursor_position(),
             _ => None,
         }
@@ -115,16 +115,17 @@ impl Sequence<'_> {
 
     /// Returns the cursor position. Some terminals add a third parameter, the page.
     fn cursor_position(&self) -> Option<Reply> {
-        let [row, column] = self.exactly().or_else(|| self.exactly().map(|[row, column, _page]| [row, column]))?;
+        let [row, column] =
+            self.exact_params().or_else(|| self.exact_params().map(|[row, column, _page]| [row, column]))?;
         Some(Reply::CursorPosition { row, column })
     }
 
     fn mode_reply(&self) -> Option<Reply> {
-        self.exactly().map(|[mode, state]| Reply::Mode { mode, state })
+        self.exact_params().map(|[mode, state]| Reply::Mode { mode, state })
     }
 
     fn window_reply(&self) -> Reply {
-        match self.exactly() {
+        match self.exact_params() {
             Some([4, height, width]) => Reply::TextPixels { width, height },
             Some([6, height, width]) => Reply::CellPixels { width, height },
             Some([8, rows, columns]) => Reply::TextCells { columns, rows },
@@ -133,7 +134,7 @@ impl Sequence<'_> {
     }
 
     fn sgr_mouse(&self) -> Option<Event> {
-        let [code, column, row] = self.exactly()?;
+        let [code, column, row] = self.exact_params()?;
         match self.last {
             'M' => mouse::from_sgr(code, column, row, false),
             'm' => mouse::from_sgr(code, column, row, true),

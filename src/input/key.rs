@@ -107,16 +107,17 @@ pub(super) fn from_letter_with_modifiers(letter: char, params: &[&[u16]]) -> Opt
     }
     match letter {
         // Shift+Tab. The legacy form has no parameter for Shift.
-        'Z' => Some(press.press(KeyCode::BackTab, KeyModifiers::SHIFT)),
+        'Z' => Some(press.key_event(KeyCode::BackTab, KeyModifiers::SHIFT)),
         // F3, only without parameters: with them `CSI R` is a cursor report and is not passed to this function.
-        'R' => Some(press.press(KeyCode::F(3), KeyModifiers::NONE)),
-        _ => from_letter(letter, KeyModifiers::NONE).map(|key| press.press(key.code, KeyModifiers::NONE)),
+        'R' => Some(press.key_event(KeyCode::F(3), KeyModifiers::NONE)),
+        _ => from_letter(letter, KeyModifiers::NONE).map(|key| press.key_event(key.code, KeyModifiers::NONE)),
     }
 }
 
-/// Decodes `CSI number ; modifiers : kind ~`. `more` are modifiers that rxvt encodes by another
-/// final byte than `~`.
-pub(super) fn from_number(params: &[&[u16]], more: KeyModifiers) -> Option<KeyEvent> {
+/// Decodes `CSI number ; modifiers : kind ~`.
+///
+/// `more_modifiers` are those that rxvt encodes by another final byte than `~`.
+pub(super) fn from_number(params: &[&[u16]], more_modifiers: KeyModifiers) -> Option<KeyEvent> {
     let press = Press::from_params(params.get(1))?;
     let [number] = *params[0] else {
         return None;
@@ -137,7 +138,7 @@ pub(super) fn from_number(params: &[&[u16]], more: KeyModifiers) -> Option<KeyEv
         _ => return None,
     };
     // With more parameters the sequence is not a key, but another kind of report.
-    (params.len() <= 2).then(|| press.press(code, more))
+    (params.len() <= 2).then(|| press.key_event(code, more_modifiers))
 }
 
 /// Decodes `CSI 27 ; modifiers ; code ~`: xterm's `modifyOtherKeys`.
@@ -167,10 +168,10 @@ pub(super) fn from_kitty(params: &[&[u16]]) -> Option<KeyEvent> {
         return None;
     }
     if let Some(key) = functional_key(code) {
-        return Some(press.press(key, KeyModifiers::NONE));
+        return Some(press.key_event(key, KeyModifiers::NONE));
     }
     if let Some(key) = keypad_key(code) {
-        let mut event = press.press(key, KeyModifiers::NONE);
+        let mut event = press.key_event(key, KeyModifiers::NONE);
         event.state |= KeyEventState::KEYPAD;
         return Some(event);
     }
@@ -193,7 +194,7 @@ fn key_from_code(code: u16, shifted: Option<u16>, press: Press) -> Option<KeyEve
         0x1b => KeyCode::Esc,
         _ => return Some(press.press_char(char_from_code(code)?, shifted.and_then(char_from_code))),
     };
-    Some(press.press(key, KeyModifiers::NONE))
+    Some(press.key_event(key, KeyModifiers::NONE))
 }
 
 /// Returns the character of a code point; `None` if it cannot be typed.
@@ -231,8 +232,8 @@ impl Press {
         Some(Self { modifiers: modifiers_from_mask(mask), kind, state: state_from_mask(mask) })
     }
 
-    fn press(self, code: KeyCode, more: KeyModifiers) -> KeyEvent {
-        KeyEvent::new_with_kind_and_state(code, self.modifiers | more, self.kind, self.state)
+    fn key_event(self, code: KeyCode, more_modifiers: KeyModifiers) -> KeyEvent {
+        KeyEvent::new_with_kind_and_state(code, self.modifiers | more_modifiers, self.kind, self.state)
     }
 
     /// Returns the event of a character key, in the form that the legacy encoding would lead to.
@@ -241,10 +242,10 @@ impl Press {
     /// the shifted character.
     fn press_char(self, c: char, shifted: Option<char>) -> KeyEvent {
         if !self.modifiers.contains(KeyModifiers::SHIFT) {
-            return self.press(KeyCode::Char(c), KeyModifiers::NONE);
+            return self.key_event(KeyCode::Char(c), KeyModifiers::NONE);
         }
         let shown = shifted.unwrap_or_else(|| upper_case(c));
-        let mut event = self.press(KeyCode::Char(shown), KeyModifiers::NONE);
+        let mut event = self.key_event(KeyCode::Char(shown), KeyModifiers::NONE);
         // A shifted character already contains Shift. Only capitals keep the modifier, as crossterm reports them.
         if shifted.is_some() && !shown.is_uppercase() {
             event.modifiers.remove(KeyModifiers::SHIFT);

@@ -27,7 +27,7 @@ pub(super) struct Paste {
 
 impl Paste {
     /// Appends a byte to the paste. Returns whether the byte completes [`END`], and so the paste.
-    pub(super) fn ends_with(&mut self, byte: u8) -> bool {
+    pub(super) fn append_and_check_end(&mut self, byte: u8) -> bool {
         // Every byte resets the number of timeouts, because only timeouts in a row end a paste.
         self.waits = 0;
         if byte != END[self.matched] {

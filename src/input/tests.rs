@@ -19,7 +19,7 @@ fn parse(pieces: &[&[u8]]) -> Vec<Input> {
 }
 
 /// Returns a parser for a terminal that sends every key as a sequence (kitty keyboard protocol).
-fn of_sequences() -> Parser {
+fn parser_of_sequences() -> Parser {
     let mut parser = Parser::new();
     parser.set_keys_are_sequences(true);
     parser
@@ -97,7 +97,7 @@ fn a_string_whose_terminator_is_late_is_still_a_reply() {
 
 /// Parses `begun`, then a timeout, then `later`. Returns the inputs up to the timeout and those
 /// after it.
-fn given_up(begun: &[u8], later: &[u8]) -> (Vec<Input>, Vec<Input>) {
+fn parse_around_timeout(begun: &[u8], later: &[u8]) -> (Vec<Input>, Vec<Input>) {
     let (mut parser, mut at_once, mut out) = (Parser::new(), Vec::new(), Vec::new());
     parser.feed(begun, &mut at_once);
     assert!(parser.is_waiting(), "{}", begun.escape_ascii());
@@ -110,18 +110,18 @@ fn given_up(begun: &[u8], later: &[u8]) -> (Vec<Input>, Vec<Input>) {
 #[test]
 fn a_lone_escape_is_the_escape_key() {
     let escape = || key(KeyCode::Esc, NONE);
-    assert_eq!(given_up(b"\x1b", b"x"), (vec![escape()], vec![letter('x', NONE)]));
-    assert_eq!(given_up(b"\x1b\x1b", b"x"), (vec![escape(), escape()], vec![letter('x', NONE)]));
-    assert_eq!(given_up(b"\x1b\x1b[1", b"\x03"), (vec![escape()], vec![letter('c', CONTROL)]));
+    assert_eq!(parse_around_timeout(b"\x1b", b"x"), (vec![escape()], vec![letter('x', NONE)]));
+    assert_eq!(parse_around_timeout(b"\x1b\x1b", b"x"), (vec![escape(), escape()], vec![letter('x', NONE)]));
+    assert_eq!(parse_around_timeout(b"\x1b\x1b[1", b"\x03"), (vec![escape()], vec![letter('c', CONTROL)]));
 }
 
 #[test]
 fn an_incomplete_sequence_is_dropped_with_its_late_rest() {
     for begun in [&b"\x1b["[..], b"\x1b[1;", b"\x1bO", b"\x1bO5"] {
-        assert_eq!(given_up(begun, b"Ax"), (vec![], vec![letter('x', NONE)]));
+        assert_eq!(parse_around_timeout(begun, b"Ax"), (vec![], vec![letter('x', NONE)]));
     }
     for begun in [&b"\xc3"[..], b"\xf0\x9f", b"\x1b[[", b"\x1b[M #", b"\x1bX", b"\x1b]", b"\x1bP"] {
-        assert_eq!(given_up(begun, b"x"), (vec![], vec![letter('x', NONE)]));
+        assert_eq!(parse_around_timeout(begun, b"x"), (vec![], vec![letter('x', NONE)]));
     }
 }
 
@@ -129,16 +129,16 @@ fn an_incomplete_sequence_is_dropped_with_its_late_rest() {
 fn an_incomplete_sequence_drops_a_bounded_number_of_late_bytes() {
     let interrupt = vec![letter('c', CONTROL)];
     for begun in [&b"\x1b["[..], b"\x1b[1;", b"\x1bO", b"\x1b]11;", b"\x1bP1$", b"\x1b_G", b"\x1b]0\x1b"] {
-        assert_eq!(given_up(begun, b"\x03").1, interrupt, "{}", begun.escape_ascii());
-        assert_eq!(given_up(begun, b"\x1b[A").1, [key(KeyCode::Up, NONE)]);
+        assert_eq!(parse_around_timeout(begun, b"\x03").1, interrupt, "{}", begun.escape_ascii());
+        assert_eq!(parse_around_timeout(begun, b"\x1b[A").1, [key(KeyCode::Up, NONE)]);
         let typed = [b'1'; 400];
-        assert!(given_up(begun, &typed).1.len() > 100, "{}", begun.escape_ascii());
+        assert!(parse_around_timeout(begun, &typed).1.len() > 100, "{}", begun.escape_ascii());
     }
 }
 
 #[test]
 fn an_escape_after_a_timed_out_string_ends_it() {
-    let (_, out) = given_up(b"\x1b]11;", b"abc\x1bOAx");
+    let (_, out) = parse_around_timeout(b"\x1b]11;", b"abc\x1bOAx");
     assert_eq!(out, [key(KeyCode::Up, NONE), letter('x', NONE)]);
 }
 
@@ -192,7 +192,7 @@ fn sequences_mean_the_same_with_the_kitty_protocol() {
         // One legacy key of the table is followed by a plain x, which the kitty protocol reports as pressed and
         // released.
         if !bytes.ends_with(b"x") {
-            assert_eq!(parse_with(of_sequences(), &[bytes]), expected, "{}", bytes.escape_ascii());
+            assert_eq!(parse_with(parser_of_sequences(), &[bytes]), expected, "{}", bytes.escape_ascii());
         }
     }
 }
@@ -203,7 +203,7 @@ fn a_plain_character_is_pressed_and_released_with_the_kitty_protocol() {
         [KeyEventKind::Press, KeyEventKind::Release].map(|kind| of_kind(code, modifiers, kind)).to_vec()
     };
     let (w, c) = (KeyCode::Char('w'), KeyCode::Char('c'));
-    let out = parse_with(of_sequences(), &[b"w\x03\x1bw\x1b[1;\x035A"]);
+    let out = parse_with(parser_of_sequences(), &[b"w\x03\x1bw\x1b[1;\x035A"]);
     let mut expected = [typed(w, NONE), typed(c, CONTROL), typed(w, ALT), typed(c, CONTROL)].concat();
     expected.push(key(KeyCode::Up, CONTROL));
     assert_eq!(out, expected);
@@ -211,8 +211,8 @@ fn a_plain_character_is_pressed_and_released_with_the_kitty_protocol() {
 
 #[test]
 fn a_lone_escape_is_not_a_key_with_the_kitty_protocol() {
-    let given_up = |begun: &[u8], later: &[u8]| {
-        let (mut parser, mut out) = (of_sequences(), Vec::new());
+    let inputs_after_timeout = |begun: &[u8], later: &[u8]| {
+        let (mut parser, mut out) = (parser_of_sequences(), Vec::new());
         parser.feed(begun, &mut out);
         parser.give_up_waiting(&mut out);
         assert!(!parser.is_waiting());
@@ -221,17 +221,17 @@ fn a_lone_escape_is_not_a_key_with_the_kitty_protocol() {
         out
     };
     for begun in [&b"\x1b"[..], b"\x1b\x1b"] {
-        assert_eq!(given_up(begun, b"\x1b[27u"), [key(KeyCode::Esc, NONE)]);
+        assert_eq!(inputs_after_timeout(begun, b"\x1b[27u"), [key(KeyCode::Esc, NONE)]);
     }
     // A key sequence completed after the timeout is dropped, unless it is a release.
     let released = || of_kind(KeyCode::Char('w'), NONE, KeyEventKind::Release);
     for at in 1..b"\x1b[119;1:3u".len() {
         let (begun, rest) = b"\x1b[119;1:3u".split_at(at);
-        assert_eq!(given_up(begun, rest), [released()], "{at}");
+        assert_eq!(inputs_after_timeout(begun, rest), [released()], "{at}");
         let (begun, rest) = b"\x1b[119;1:1u".split_at(at);
-        assert_eq!(given_up(begun, rest), [], "{at}");
+        assert_eq!(inputs_after_timeout(begun, rest), [], "{at}");
     }
-    assert_eq!(given_up(b"\x1b", b"[?62c"), [reply(Reply::DeviceAttributes(vec![62]))]);
+    assert_eq!(inputs_after_timeout(b"\x1b", b"[?62c"), [reply(Reply::DeviceAttributes(vec![62]))]);
 }
 
 /// Generates random bytes in which escape sequences are frequent.
@@ -250,7 +250,7 @@ proptest! {
     fn noise_is_parsed_alike_however_it_is_split(bytes in noise(), at in any::<prop::sample::Index>()) {
         let (first, second) = bytes.split_at(at.index(bytes.len() + 1));
         prop_assert_eq!(parse(&[first, second]), parse(&[&bytes]));
-        prop_assert_eq!(parse_with(of_sequences(), &[first, second]), parse_with(of_sequences(), &[&bytes]));
+        prop_assert_eq!(parse_with(parser_of_sequences(), &[first, second]), parse_with(parser_of_sequences(), &[&bytes]));
     }
 
     #[test]

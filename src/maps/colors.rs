@@ -76,7 +76,7 @@ pub(super) fn heat(count: u32) -> Srgb8 {
 }
 
 /// Formats a length with two to four digits; below 0.01 and from 10,000 on, with an exponent.
-pub(super) fn short(length: f32) -> String {
+pub(super) fn length_text(length: f32) -> String {
     match length {
         l if !(0.01..1e4).contains(&l) => format!("{l:.1e}"),
         l if l >= 100.0 => format!("{l:.0}"),

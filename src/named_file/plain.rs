@@ -11,14 +11,14 @@ use std::path::Path;
 pub(super) fn open(path: &Path, _: Accepted) -> io::Result<(File, u64)> {
     // The file is checked before it is opened, because opening a device may have an effect, and again afterwards,
     // because another file may have got its name in between.
-    check(&path.metadata()?)?;
+    check_kind(&path.metadata()?)?;
     let file = File::open(path)?;
     let data = file.metadata()?;
-    check(&data)?;
+    check_kind(&data)?;
     Ok((file, data.len()))
 }
 
-fn check(data: &Metadata) -> io::Result<()> {
+fn check_kind(data: &Metadata) -> io::Result<()> {
     if data.is_file() {
         Ok(())
     } else if data.is_dir() {

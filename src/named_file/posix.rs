@@ -19,16 +19,16 @@ const PIPE_TIMEOUT: Duration = Duration::from_secs(1);
 pub(super) fn open(path: &Path, accepted: Accepted) -> io::Result<(File, u64)> {
     // The file is checked before it is opened, because opening a device may have an effect, and again afterwards,
     // because another file may have got its name in between.
-    check(&path.metadata()?, accepted)?;
+    check_kind(&path.metadata()?, accepted)?;
     // Without this flag, opening a FIFO waits for its writer.
     let flags = OFlags::NONBLOCK | OFlags::NOCTTY;
     let file = OpenOptions::new().read(true).custom_flags(flags.bits().cast_signed()).open(path)?;
     let data = file.metadata()?;
-    check(&data, accepted)?;
+    check_kind(&data, accepted)?;
     Ok((file, data.len()))
 }
 
-fn check(data: &Metadata, accepted: Accepted) -> io::Result<()> {
+fn check_kind(data: &Metadata, accepted: Accepted) -> io::Result<()> {
     let kind = data.file_type();
     let with_pipes = accepted == Accepted::FilesAndPipes;
     let what = match kind {

@@ -37,7 +37,7 @@ impl Temporary {
 
     /// Creates a temporary file that will replace an existing one, readable by the owner only.
     // The file to be replaced may be secret. The temporary file gets its mode only when the contents are complete.
-    pub(super) fn private(target: &Path) -> io::Result<Self> {
+    pub(super) fn new_private_file(target: &Path) -> io::Result<Self> {
         Self::create_beside(target, 0o600)
     }
 

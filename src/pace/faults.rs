@@ -105,7 +105,7 @@ impl World {
         }
     }
 
-    fn slow(self) -> Self {
+    fn with_slow_link(self) -> Self {
         Self { rate: 50_000.0, round_trip: ms(200), ..self }
     }
 
@@ -154,15 +154,15 @@ impl World {
         let tagged = bytes.strip_suffix(FENCE).unwrap_or(bytes);
         if let Some(query) = tagged.last_chunk::<8>().filter(|query| query.ends_with(b"$p") && self.tags) {
             let digits = query[3..6].iter().fold(0, |number, digit| 10 * number + u16::from(digit - b'0'));
-            self.reply(Reply::Mode(digits), at);
+            self.schedule_reply(Reply::Mode(digits), at);
         }
         if bytes.ends_with(FENCE) {
-            self.reply(Reply::Attributes, at);
+            self.schedule_reply(Reply::Attributes, at);
         }
         self.free_at + self.round_trip / 2
     }
 
-    fn reply(&mut self, reply: Reply, at: Duration) {
+    fn schedule_reply(&mut self, reply: Reply, at: Duration) {
         self.replies += 1;
         let at = if self.replies == 1 { at + self.start } else { at };
         let third = self.replies >= self.at && (self.replies - self.at).is_multiple_of(3);
@@ -185,7 +185,7 @@ impl World {
 
     /// Returns the longest time until the effect of a key is visible, for keys pressed between
     /// `start` and `end`.
-    fn worst_key(&self, start: Duration, end: Duration) -> Duration {
+    fn worst_key_delay(&self, start: Duration, end: Duration) -> Duration {
         let keys = (start.as_millis()..end.as_millis()).map(|at| ms(at as u64));
         let mut frames: VecDeque<_> = self.frames.iter().collect();
         keys.map(|pressed| {
@@ -204,7 +204,7 @@ impl World {
 ///
 /// # Panics
 /// If a returned time is longer than `limit`.
-fn each_fault(limit: Duration, mut worst: impl FnMut(bool, Fault, usize) -> Duration) {
+fn check_each_fault(limit: Duration, mut worst: impl FnMut(bool, Fault, usize) -> Duration) {
     let mut late = Vec::new();
     for tags in [true, false] {
         for fault in FAULTS {
@@ -220,19 +220,19 @@ fn each_fault(limit: Duration, mut worst: impl FnMut(bool, Fault, usize) -> Dura
 
 #[test]
 fn no_key_waits_longer_than_250_ms_once_a_local_terminal_has_replied() {
-    each_fault(ms(250), |tags, fault, at| {
+    check_each_fault(ms(250), |tags, fault, at| {
         let mut world = World::new(tags, fault, at);
         world.simulate(ms(25_000));
-        world.worst_key(world.first_reply.unwrap_or(ms(2_000)), ms(25_500))
+        world.worst_key_delay(world.first_reply.unwrap_or(ms(2_000)), ms(25_500))
     });
 }
 
 #[test]
 fn no_key_waits_longer_than_500_ms_before_a_local_terminal_has_replied() {
-    each_fault(ms(500), |tags, fault, at| {
+    check_each_fault(ms(500), |tags, fault, at| {
         let mut world = World::new(tags, fault, at);
         world.simulate(ms(3_000));
-        world.worst_key(ms(1_000), world.first_reply.unwrap_or(ms(3_000)))
+        world.worst_key_delay(ms(1_000), world.first_reply.unwrap_or(ms(3_000)))
     });
 }
 
@@ -240,12 +240,12 @@ fn no_key_waits_longer_than_500_ms_before_a_local_terminal_has_replied() {
 /// make the estimated rate low.
 #[test]
 fn a_near_terminal_that_loses_replies_is_not_taken_for_a_slow_link() {
-    each_fault(ms(250), |tags, fault, at| {
+    check_each_fault(ms(250), |tags, fault, at| {
         let mut world = World { wanted: 800, start: ms(3), round_trip: ms(1), ..World::new(tags, fault, at) };
         world.simulate(ms(5_000));
         let limit = world.link.replies.rates.best().filter(|rate| rate.is_limit);
         assert_eq!(limit, None, "with numbers: {tags}, {fault:?} at {at}");
-        world.worst_key(world.first_reply.unwrap_or(ms(2_000)), ms(5_500))
+        world.worst_key_delay(world.first_reply.unwrap_or(ms(2_000)), ms(5_500))
     });
 }
 
@@ -264,12 +264,12 @@ fn little_is_sent_between_the_first_picture_and_the_first_reply() {
 #[test]
 fn the_first_picture_of_a_slow_link_is_waited_for() {
     for tags in [true, false] {
-        let mut world = World::new(tags, Fault::Doubled, 1_000_000).slow();
+        let mut world = World::new(tags, Fault::Doubled, 1_000_000).with_slow_link();
         world.simulate(ms(500));
         let sent: usize = world.frames[1..].iter().map(|frame| frame.1).sum();
         assert!(sent <= 2_000, "{sent} bytes");
         world.simulate(ms(5_000));
-        assert!(world.worst_key(ms(4_000), ms(5_500)) <= ms(350));
+        assert!(world.worst_key_delay(ms(4_000), ms(5_500)) <= ms(350));
     }
 }
 
@@ -286,13 +286,13 @@ fn hides_rate(fault: Fault) -> bool {
 /// Silence from the first or second reply on is left out: nothing then shows that the link is slow.
 #[test]
 fn no_key_waits_much_longer_on_a_slow_link() {
-    each_fault(ms(800), |tags, fault, at| {
+    check_each_fault(ms(800), |tags, fault, at| {
         if at <= 2 && hides_rate(fault) {
             return Duration::ZERO;
         }
-        let mut world = World::new(tags, fault, at).slow();
+        let mut world = World::new(tags, fault, at).with_slow_link();
         world.simulate(ms(25_000));
-        world.worst_key(ms(4_000), ms(25_000))
+        world.worst_key_delay(ms(4_000), ms(25_000))
     });
 }
 
@@ -358,7 +358,7 @@ fn a_terminal_that_no_longer_repeats_numbers_is_asked_without() {
 /// estimated rate is right.
 #[test]
 fn after_a_loss_one_query_is_in_flight_on_a_slow_link() {
-    let mut world = World::new(false, Fault::EachThird, 5).slow();
+    let mut world = World::new(false, Fault::EachThird, 5).with_slow_link();
     world.simulate(ms(4_000));
     for _ in 0..6_000 {
         world.simulate(ms(1));
@@ -389,7 +389,7 @@ fn a_near_link_that_is_slow_gets_small_frames() {
     for (tags, rate) in [(true, 3_000.0), (false, 3_000.0), (true, 11_500.0), (false, 11_500.0)] {
         let mut world = World { rate, ..World::new(tags, Fault::Doubled, usize::MAX) };
         world.simulate(ms(30_000));
-        let worst = world.worst_key(ms(15_000), ms(30_000));
+        let worst = world.worst_key_delay(ms(15_000), ms(30_000));
         assert!(worst < ms(250), "tags {tags}, {rate} bytes per second: {worst:?}");
     }
 }

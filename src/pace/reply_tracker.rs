@@ -51,8 +51,8 @@ const RESYNC_TIME: Duration = Duration::from_secs(1);
 const LOCAL_ROUND_TRIP: Duration = Duration::from_millis(20);
 /// Time by which a reply may exceed the shortest round trip and still count as immediate.
 const IMMEDIATE_REPLY_TOLERANCE: Duration = Duration::from_millis(10);
-/// Time from which on a round trip is ignored after a spurious timeout, because the terminal was
-/// probably suspended.
+/// Least round trip that is ignored after a spurious timeout, because the terminal was probably
+/// suspended.
 const MAX_ROUND_TRIP: Duration = Duration::from_secs(1);
 
 /// Time after a reply was due on a slow link from which on the link is known to have become slower.
@@ -202,7 +202,7 @@ impl ReplyTracker {
 
     /// Subtracts bytes that are sent now from the budget of `initial_window`, if the rate is
     /// unknown.
-    pub(super) fn spend(&mut self, bytes: usize, now: Duration) {
+    pub(super) fn spend_initial_window(&mut self, bytes: usize, now: Duration) {
         if self.lacks_rate() {
             self.initial_window.spend(bytes, now);
         }
@@ -225,7 +225,7 @@ impl ReplyTracker {
         self.rates.best().is_some_and(|rate| rate.is_limit || self.delivered >= MIN_DELIVERED_BYTES)
     }
 
-    /// Returns whether the oldest reply on a slow link is late.
+    /// Returns whether the reply to the oldest query on a slow link is late.
     ///
     /// If so, the link is slower than estimated, and further bytes would only queue.
     pub(super) fn is_late(&self, now: Duration) -> bool {

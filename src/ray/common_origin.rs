@@ -52,7 +52,7 @@ impl<N: Lanes> CommonOrigin<N> {
         let start = middle.origin.splat_lane(0);
         // Eye rays start at the same point, bit for bit: `origin_error` is zero, and their ends need no comparison.
         if max_distance(groups, zero, start).le(zero).all() {
-            return Self::around(start, zero, groups);
+            return Self::with_origin(start, zero, groups);
         }
         let direction = middle.direction.splat_lane(0);
         let end = middle.origin.splat_lane(0) + direction;
@@ -64,11 +64,11 @@ impl<N: Lanes> CommonOrigin<N> {
         }
         // `origin_error` is twice the distance found, in units of 2^-24, and twice the rounding of `end` (statement 9
         // of `culling.md`).
-        Self::around(end, off * N::splat(33_554_432.0) + end.largest() * N::splat(2.0), groups)
+        Self::with_origin(end, off * N::splat(33_554_432.0) + end.largest() * N::splat(2.0), groups)
     }
 
     #[inline(always)]
-    fn around(origin: Vector<N>, origin_error: N, groups: &[Rays<N>; LANES]) -> Option<Self> {
+    fn with_origin(origin: Vector<N>, origin_error: N, groups: &[Rays<N>; LANES]) -> Option<Self> {
         let Shear { axis, factor, .. } = Shear::of(groups[LANES / 2].direction.splat_lane(0));
         let slope = [factor.x, factor.y];
         let (zero, one) = (N::splat(0.0), N::splat(1.0));

@@ -93,7 +93,7 @@ impl<W: Write> Gif<W> {
             if *stays {
                 return MAX_COLORS as u8;
             }
-            let index = palette.index(pixel);
+            let index = palette.index_of(pixel);
             *shown = palette.colors[usize::from(index)];
             index
         };
@@ -165,8 +165,7 @@ const MAX_OUTDATED_FRAMES: u8 = 7;
 
 /// The colours of a frame.
 struct Palette {
-    /// The colours of pixels, filled up to [`MAX_COLORS`], and an unused one at the transparent
-    /// index.
+    /// The colours of pixels, padded to [`MAX_COLORS`], and an unused one at the transparent index.
     colors: Vec<Srgb8>,
     /// The quantiser, which finds the index of the nearest colour; `None` if `colors` has them all.
     quantiser: Option<NeuQuant>,
@@ -193,7 +192,7 @@ impl Palette {
         Self { colors, quantiser }
     }
 
-    fn index(&self, Srgb8 { r, g, b }: Srgb8) -> u8 {
+    fn index_of(&self, Srgb8 { r, g, b }: Srgb8) -> u8 {
         match &self.quantiser {
             Some(quantiser) => quantiser.index_of(&[r, g, b, u8::MAX]) as u8,
             None => self.colors.iter().position(|color| *color == Srgb8 { r, g, b }).unwrap_or_default() as u8,

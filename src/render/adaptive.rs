@@ -166,7 +166,7 @@ fn record_first_samples(first: &mut [FirstSample], buffers: &Buffers) {
 /// Adds the samples of a batch, which has `per_pixel` for each pixel, to the accumulators of its
 /// tile.
 fn add_samples(accumulators: &mut [Accumulator], buffers: &Buffers, per_pixel: usize) {
-    let channels = buffers.channels();
+    let channels = buffers.light_channels();
     for (first, &pixel) in buffers.pixels.iter().enumerate().step_by(per_pixel) {
         let lights = channels.each_ref().map(|channel| &channel[first..first + per_pixel]);
         accumulators[usize::from(pixel)].add_samples(lights);

@@ -1,7 +1,7 @@
 //! The builder of a render.
 
 use super::report::Report;
-use super::{Executor, Sampling, render_partial, units};
+use super::{Executor, Sampling, progress_units, render_partial};
 use crate::camera::Camera;
 use crate::framebuffer::{Framebuffer, Resolution};
 use crate::progress::{Cancellation, Cancelled};
@@ -135,7 +135,7 @@ impl<'a> Render<'a> {
         let Some(callback) = callback else {
             return render(Executor::Cancellable(&token));
         };
-        let report = Report::new(&callback, token, units(resolution, sampling));
+        let report = Report::new(&callback, token, progress_units(resolution, sampling));
         let framebuffer = render(Executor::Reporting(&report))?;
         let _ = callback(1.0);
         Ok(framebuffer)

@@ -6,11 +6,11 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The time since the last report after which the next finished batch reports again.
+/// The time after a progress report from which on the next finished batch makes another one.
 // A render of 1920x1080 with best samples made 198 reports, at most 27 ms apart.
 const MAX_REPORT_PERIOD: Duration = Duration::from_millis(10);
 
-/// The progress since the last report after which the next finished batch reports again, as a
+/// The progress after a report from which on the next finished batch makes another one, as a
 /// fraction of the work.
 // Half a percent gives even a render of a few milliseconds enough reports to draw a bar.
 const MIN_REPORT_STEP: f32 = 0.005;
@@ -54,7 +54,7 @@ impl<'a> Report<'a> {
     /// Adds finished units, and calls the callback if a report is due.
     ///
     /// The end is not reported here, as only the caller that collects the results knows when all work is done.
-    pub(super) fn add(&self, units: u64) {
+    pub(super) fn add_finished(&self, units: u64) {
         // If the callback panics, the render ends. Until then other threads may still lock, and must not panic as well.
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
         done.units += units;
@@ -63,14 +63,14 @@ impl<'a> Report<'a> {
             && (part - done.reported >= MIN_REPORT_STEP || done.at.elapsed() >= MAX_REPORT_PERIOD)
             && !self.is_cancelled()
         {
-            self.call(part);
+            self.call_callback(part);
             done.reported = part;
             done.at = Instant::now();
         }
     }
 
-    fn call(&self, part: f32) {
-        if (self.callback)(part).is_break() {
+    fn call_callback(&self, done_share: f32) {
+        if (self.callback)(done_share).is_break() {
             self.token.cancel();
         }
     }

@@ -60,7 +60,7 @@ impl Executor<'_> {
             let mut tile = Tile { executor: self, job, number, buffers, cost: Cost::default() };
             trace(&mut tile, part);
             if let (Self::Reporting(report), ProgressUnit::Tile(units)) = (self, job.unit) {
-                report.add(units);
+                report.add_finished(units);
             }
             tile.cost
         };
@@ -124,7 +124,7 @@ impl Tile<'_> {
                 let pixels = range.len();
                 sink(buffers, &batch, range);
                 if let (Executor::Reporting(report), ProgressUnit::Ray) = (executor, job.unit) {
-                    report.add((pixels * batch.per_pixel()) as u64);
+                    report.add_finished((pixels * batch.per_pixel()) as u64);
                 }
             }
         }

@@ -75,7 +75,7 @@ pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y
     buffers.arriving[0].light = [F32x8([1.0; LANES]); 3];
     buffers.reflect(&job, &batch);
     PixelTrace {
-        q: tiles.q([x as f32, y as f32], sample_position(0).into()).into(),
+        q: tiles.picture_position([x as f32, y as f32], sample_position(0).into()).into(),
         ray: buffers.rays[0].ray(0),
         hit: buffers.hits[0].hit(scene, 0),
         arriving,

@@ -97,11 +97,11 @@ impl Buffers {
     /// Computes the reflected light from the arriving light.
     pub(super) fn reflect(&mut self, &RenderJob { scene, tiles, .. }: &RenderJob<'_>, batch: &SampleBatch) {
         let Self { rays, hits, points, arriving, lights, .. } = self;
-        shade::reflect(scene, rays, tiles.steps(batch.samples.start), hits, points, arriving, lights);
+        shade::reflect(scene, rays, tiles.direction_steps(batch.samples.start), hits, points, arriving, lights);
     }
 
     /// Returns the reflected light of all rays as one array per channel.
-    pub(super) fn channels(&self) -> [[f32; MAX_BATCH_RAYS]; 3] {
+    pub(super) fn light_channels(&self) -> [[f32; MAX_BATCH_RAYS]; 3] {
         let mut channels = [[0.0; MAX_BATCH_RAYS]; 3];
         for (number, channel) in channels.iter_mut().enumerate() {
             for (eight, light) in channel.as_chunks_mut().0.iter_mut().zip(&self.lights) {

@@ -64,7 +64,7 @@ impl Tiles {
 
     /// Returns the column and row of a pixel of a tile in the picture.
     pub(super) fn position(&self, tile: usize, pixel: u8) -> [u32; 2] {
-        let ([left, top], [x, y]) = (self.corner(tile), coordinates(pixel.into()));
+        let ([left, top], [x, y]) = (self.corner(tile), coordinates_in_tile(pixel.into()));
         [left + x, top + y]
     }
 
@@ -108,7 +108,7 @@ impl Tiles {
     /// Writes the value of one traced pixel to all pixels of the picture that it covers.
     pub(super) fn write<T: Copy>(&self, pixel: u8, value: T, part: &mut [&mut [T]]) {
         let scale = self.scale as usize;
-        let [x, y] = coordinates(pixel.into()).map(|at| at as usize * scale);
+        let [x, y] = coordinates_in_tile(pixel.into()).map(|at| at as usize * scale);
         for row in part.iter_mut().skip(y).take(scale) {
             row.iter_mut().skip(x).take(scale).for_each(|pixel| *pixel = value);
         }
@@ -117,7 +117,7 @@ impl Tiles {
     /// Returns the ranges of columns and rows of a pixel and its neighbours, clipped to the
     /// picture.
     pub(super) fn neighbourhood(&self, tile: usize, pixel: usize) -> [Range<u32>; 2] {
-        let ([left, top], [x, y]) = (self.corner(tile), coordinates(pixel));
+        let ([left, top], [x, y]) = (self.corner(tile), coordinates_in_tile(pixel));
         let beside = |at: u32, end: u32| at.saturating_sub(1)..(at + 2).min(end);
         [beside(left + x, self.columns), beside(top + y, self.rows)]
     }
@@ -136,7 +136,7 @@ impl Tiles {
         let [right, bottom] = [self.columns - left, self.rows - top];
         if right < SIDE || bottom < SIDE {
             pixels.retain(|&pixel| {
-                let [x, y] = coordinates(pixel.into());
+                let [x, y] = coordinates_in_tile(pixel.into());
                 x < right && y < bottom
             });
         }
@@ -154,7 +154,7 @@ impl Tiles {
     ///
     /// `x` and `y` are the pixels' columns and rows, `sx` and `sy` the samples' positions in their pixels.
     #[inline(always)]
-    pub(super) fn q<N: Number>(&self, [x, y]: [N; 2], [sx, sy]: [N; 2]) -> [N; 2] {
+    pub(super) fn picture_position<N: Number>(&self, [x, y]: [N; 2], [sx, sy]: [N; 2]) -> [N; 2] {
         let (width, height) = (N::splat(self.resolution.width() as f32), N::splat(self.resolution.height() as f32));
         let scale = N::splat(self.scale as f32);
         // `y` is counted from the top of the picture, the lecture's qv from the bottom.
@@ -163,7 +163,7 @@ impl Tiles {
 
     /// Returns the change of an eye ray's direction over the footprint of a sample, to the right
     /// and upwards.
-    pub(super) fn steps(&self, sample: u32) -> [Vec3; 2] {
+    pub(super) fn direction_steps(&self, sample: u32) -> [Vec3; 2] {
         let share = self.scale as f32 * footprint_share(sample);
         self.eye_rays.steps(self.resolution.width(), self.resolution.height()).map(|step| step * share)
     }
@@ -184,7 +184,7 @@ pub(super) static ALL_PIXELS: [u8; PIXELS] = {
 /// Returns the column and row of a pixel in its tile.
 // The bits of the index are, from the lowest: x, x, y (in a group of 4x2), x, y, y (in a square of 8x8), x, y (in the
 // tile of 16x16).
-pub(super) const fn coordinates(pixel: usize) -> [u32; 2] {
+pub(super) const fn coordinates_in_tile(pixel: usize) -> [u32; 2] {
     let at = pixel as u32;
     [at & 3 | (at >> 3 & 1) << 2 | (at >> 6 & 1) << 3, at >> 2 & 1 | (at >> 4 & 3) << 1 | (at >> 7 & 1) << 3]
 }
@@ -194,7 +194,7 @@ static PIXEL_COORDINATES: [[f32; PIXELS]; 2] = {
     let mut all = [[0.0; PIXELS]; 2];
     let mut pixel = 0;
     while pixel < PIXELS {
-        let [x, y] = coordinates(pixel);
+        let [x, y] = coordinates_in_tile(pixel);
         (all[0][pixel], all[1][pixel]) = (x as f32, y as f32);
         pixel += 1;
     }
@@ -206,7 +206,7 @@ static PIXELS_BY_ROW: [[u8; SIDE as usize]; SIDE as usize] = {
     let mut rows = [[0; SIDE as usize]; SIDE as usize];
     let mut pixel = 0;
     while pixel < PIXELS {
-        let [x, y] = coordinates(pixel);
+        let [x, y] = coordinates_in_tile(pixel);
         rows[y as usize][x as usize] = pixel as u8;
         pixel += 1;
     }
@@ -241,7 +241,8 @@ impl SimdKernel for MakeEyeRays<'_> {
             for lane in pixels.len()..LANES {
                 (sx.0[lane], sy.0[lane]) = (sx.0[last], sy.0[last]);
             }
-            let [qu, qv] = tiles.q([left + N::load(&x), top + N::load(&y)], [N::load(&sx), N::load(&sy)]);
+            let [qu, qv] =
+                tiles.picture_position([left + N::load(&x), top + N::load(&y)], [N::load(&sx), N::load(&sy)]);
             let direction = eye_rays.direction(qu, qv).store();
             rays.push(EightRays { origin, direction, active: ALL >> (LANES - pixels.len()) });
         }

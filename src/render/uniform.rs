@@ -38,7 +38,7 @@ fn add_lights(sums: &mut [EightLights], buffers: &Buffers, batch: &SampleBatch, 
         }
         return;
     }
-    for (channel, lights) in buffers.channels().iter().enumerate() {
+    for (channel, lights) in buffers.light_channels().iter().enumerate() {
         for (pixel, lights) in pixels.clone().zip(lights.chunks_exact(per_pixel)) {
             let sum = &mut sums[pixel / LANES][channel].0[pixel % LANES];
             *sum = lights.iter().fold(*sum, |sum, light| sum + light);

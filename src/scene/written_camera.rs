@@ -114,10 +114,10 @@ fn parses_as(text: &str, is_right: impl Fn(f64) -> bool) -> bool {
 /// lecture's f, w and h with f = 1. `None` for the default angle.
 fn lens_fields(rectangle: &ViewRectangle) -> Option<String> {
     let Some(width) = rectangle.width() else {
-        let degrees = degrees(rectangle).unwrap_or_else(|| approximate_degrees(rectangle).to_string());
+        let degrees = fov_degrees_text(rectangle).unwrap_or_else(|| approximate_degrees(rectangle).to_string());
         return (degrees != DEFAULT_FOV_DEGREES.to_string()).then(|| format!("vertical_fov: {degrees}"));
     };
-    Some(match (degrees(rectangle), aspect_ratio(rectangle, width)) {
+    Some(match (fov_degrees_text(rectangle), aspect_ratio_text(rectangle, width)) {
         // If the angle or the ratio needs more digits, the author probably gave f, w and h.
         (Some(degrees), Some(ratio)) if degrees.len() <= 6 && ratio.len() <= 9 => {
             format!("vertical_fov: {degrees}, aspect_ratio: {ratio}")
@@ -140,7 +140,7 @@ fn approximate_degrees(rectangle: &ViewRectangle) -> f64 {
 }
 
 /// Returns the vertical field of view in degrees, with the fewest digits that give the same height.
-fn degrees(rectangle: &ViewRectangle) -> Option<String> {
+fn fov_degrees_text(rectangle: &ViewRectangle) -> Option<String> {
     let gives_the_height = |value: f64| {
         ViewRectangle::from_vertical_fov(radians(value)).is_ok_and(|read| read.height() == rectangle.height())
     };
@@ -148,7 +148,7 @@ fn degrees(rectangle: &ViewRectangle) -> Option<String> {
 }
 
 /// Returns the aspect ratio with the fewest digits that give the same width.
-fn aspect_ratio(rectangle: &ViewRectangle, width: f32) -> Option<String> {
+fn aspect_ratio_text(rectangle: &ViewRectangle, width: f32) -> Option<String> {
     let gives_the_width = |value: f64| rectangle.height() * value as f32 == width;
     shortest_decimal(f64::from(width) / f64::from(rectangle.height()), gives_the_width)
 }

@@ -39,7 +39,7 @@ impl Display {
     /// Sets the kind of glyphs, as the user chooses it.
     pub(super) fn choose_glyphs(&mut self, glyphs: Glyphs) {
         self.hints.choose_glyphs(glyphs);
-        self.conclude();
+        self.conclude_capabilities();
     }
 
     /// Returns the size of the whole window.

@@ -4,7 +4,7 @@ use crate::cli::shipped::ShippedScene;
 use clap::builder::{PossibleValue, StyledStr};
 use clap::{Arg, ArgAction, Command};
 
-/// The extensions of the scene and mesh files that are offered.
+/// The extensions of the scene and mesh files that are offered as completions.
 pub(super) const SCENE_ENDINGS: [&str; 6] = ["ron", "obj", "stl", "ply", "gltf", "glb"];
 
 /// A word and its description, which may be empty.

@@ -35,7 +35,7 @@ impl NumberedFiles {
                 return Err(wrong(path, NUMBER));
             }
         }
-        let Some(digits) = digits else { return Err(wrong(path, &without_number(path))) };
+        let Some(digits) = digits else { return Err(wrong(path, &message_for_missing_number(path))) };
         after.push_str(rest);
         Ok(Self { before, digits, after })
     }
@@ -58,7 +58,7 @@ fn least_digits(width: &str) -> Option<usize> {
     }
 }
 
-fn without_number(path: &Path) -> String {
+fn message_for_missing_number(path: &Path) -> String {
     let stem = path.with_extension("");
     format!("each frame is a separate file; show where its number goes, as in {}-%04d.png", stem.display())
 }

@@ -178,7 +178,7 @@ fn hosted(source: &SceneSource) -> Result<HostedScene, Failure> {
     let title = scene.caption().and_then(|caption| caption.lines().next()).unwrap_or_default().to_owned();
     let path = source.to_string();
     let part = |part: Option<&std::ffi::OsStr>| visible(&part.unwrap_or_default().to_string_lossy());
-    // Visitors learn the names of files, but not where these are.
+    // The server's viewers see the names of files, but not their folders.
     let (name, file) = (part(Path::new(&path).file_stem()), part(Path::new(&path).file_name()));
     Ok(HostedScene { name, file, title, scene, orbits: source.is_mesh() })
 }

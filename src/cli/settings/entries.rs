@@ -33,7 +33,7 @@ pub(super) fn read(file: &UserFile, command: &Command) -> Result<Vec<Entry>, Sce
             // KiB.
             if fields[..i].iter().any(|before| before.name.text == name) {
                 faults.add(span, || format!("duplicate setting \"{name}\""));
-            } else if let Some(text) = text_of(field, command, faults) {
+            } else if let Some(text) = value_text(field, command, faults) {
                 let (line, _) = line_and_column(&file.text, span.start as usize);
                 entries.push(Entry { name: name.to_owned(), text, line });
             }
@@ -44,7 +44,7 @@ pub(super) fn read(file: &UserFile, command: &Command) -> Result<Vec<Entry>, Sce
 
 /// Returns a field's value as it would be written after the flag; `None` if it is faulty or is
 /// `None` in the file, which counts as unset.
-fn text_of(field: &Field<'_>, command: &Command, faults: &mut Faults) -> Option<String> {
+fn value_text(field: &Field<'_>, command: &Command, faults: &mut Faults) -> Option<String> {
     let Field { name, value } = field;
     let Some(setting) = command.get_arguments().find(|setting| setting.get_id() == name.text) else {
         faults.add(name.span, || unknown(name.text, command));
@@ -71,7 +71,7 @@ fn text_of(field: &Field<'_>, command: &Command, faults: &mut Faults) -> Option<
 }
 
 fn unknown(name: &str, command: &Command) -> String {
-    if let Some(new) = tips::setting(name) {
+    if let Some(new) = tips::renamed_setting(name) {
         return format!("unknown setting \"{name}\"; the name is now \"{new}\"");
     }
     let known: Vec<_> = command.get_arguments().map(|setting| setting.get_id().as_str()).collect();

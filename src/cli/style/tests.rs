@@ -8,7 +8,7 @@ fn plain(text: &str) -> String {
 #[test]
 fn errors_are_colored_by_their_parts() {
     let text = "error: a.ron:1:2: unknown field; did you mean \"b\"?\n  a\n  ^\n\n  tip: c\n\nUsage: termtrace\n";
-    let colored = error(text);
+    let colored = colored_error(text);
     assert_eq!(plain(&colored), text);
     for part in [
         format!("{RED}error:"),
@@ -19,15 +19,15 @@ fn errors_are_colored_by_their_parts() {
     ] {
         assert!(colored.contains(&part), "{part:?}: {colored:?}");
     }
-    assert_eq!(error("warning: a: no b\n"), format!("{YELLOW}warning:{PLAIN} a: no b\n"));
-    assert!(!error("error: x: Usage: y\n").contains(GREEN), "only a line's own heading is colored");
+    assert_eq!(colored_error("warning: a: no b\n"), format!("{YELLOW}warning:{PLAIN} a: no b\n"));
+    assert!(!colored_error("error: x: Usage: y\n").contains(GREEN), "only a line's own heading is colored");
 }
 
 #[test]
 fn help_is_colored_by_its_headings_and_literals() {
     let text = "About: it\n\nUsage: termtrace\n\nCommands:\n  frame, record  write\n\n".to_owned()
         + "Options:\n  -h, --help  Print\n      more\n";
-    let colored = help(&text);
+    let colored = colored_help(&text);
     assert_eq!(plain(&colored), text);
     for part in ["Usage:", "Commands:", "Options:"].map(|part| format!("{GREEN}{part}{PLAIN}")) {
         assert!(colored.contains(&part), "{part:?}: {colored:?}");

@@ -47,14 +47,14 @@ fn holding(keys: &str) -> Motion {
 }
 
 /// Returns the eye and the view direction after `time` at a speed of 1 unit per second.
-fn after(motion: &Motion, time: Duration) -> (Vec3, Vec3) {
+fn eye_and_view_after(motion: &Motion, time: Duration) -> (Vec3, Vec3) {
     let pose = motion.step(&camera(), 1.0, ms(0), time).pose();
     (pose.eye, (pose.target - pose.eye).normalize())
 }
 
 #[track_caller]
 fn assert_after_a_second(keys: &str, eye: [f32; 3], view: [f32; 3]) {
-    let (at, looks) = after(&holding(keys), ms(1_000));
+    let (at, looks) = eye_and_view_after(&holding(keys), ms(1_000));
     assert!(at.abs_diff_eq(Vec3::from(eye), 1e-5), "{keys}: eye {at}");
     assert!(looks.abs_diff_eq(Vec3::from(view), 1e-5), "{keys}: view {looks}");
 }
@@ -66,7 +66,7 @@ const HERE: [f32; 3] = [0.0, 0.0, 4.0];
 fn moving_and_turning_have_separate_speeds() {
     let after = |keys, key_speed| {
         let motion = Motion { key_speed, ..holding(keys) };
-        after(&motion, ms(1_000))
+        eye_and_view_after(&motion, ms(1_000))
     };
     let usual = KeySpeed::default();
     let (eye, _) = after("w", KeySpeed { moving: 2.0, ..usual });
@@ -121,7 +121,7 @@ fn opposite_keys_cancel_and_two_keys_of_a_command_count_once() {
     assert_after_a_second("wsa", [-1.0, 0.0, 4.0], AHEAD);
     let mut motion = holding("h");
     motion.key(&KeyCode::Left.into(), ms(0));
-    assert_eq!(after(&motion, ms(1_000)), after(&holding("h"), ms(1_000)));
+    assert_eq!(eye_and_view_after(&motion, ms(1_000)), eye_and_view_after(&holding("h"), ms(1_000)));
     motion.key(&release('h'), ms(150));
     assert!(motion.is_moving(ms(160)), "the other key is still held");
     motion.key(&KeyEvent { kind: KeyEventKind::Release, ..KeyCode::Left.into() }, ms(160));
@@ -154,7 +154,7 @@ fn movement_is_per_second_not_per_step() {
 /// Returns the world units that the eye moves forward until `end` with these events of the key `w`.
 ///
 /// `end` and the times of `events` are in milliseconds from 0.
-fn way(motion: &mut Motion, events: &[(u64, KeyEventKind)], end: u64) -> f32 {
+fn forward_distance(motion: &mut Motion, events: &[(u64, KeyEventKind)], end: u64) -> f32 {
     let (mut camera, mut last) = (camera(), ms(0));
     for &(at, kind) in events {
         camera = motion.step(&camera, 1.0, last, ms(at));
@@ -170,7 +170,7 @@ const RELEASE: KeyEventKind = KeyEventKind::Release;
 
 #[track_caller]
 fn assert_way(motion: &mut Motion, events: &[(u64, KeyEventKind)], wanted: f32) {
-    let way = way(motion, events, 5_000);
+    let way = forward_distance(motion, events, 5_000);
     assert!((way - wanted).abs() < 1e-5, "{way}, not {wanted}: {events:?}");
 }
 
@@ -193,7 +193,7 @@ fn without_releases_a_second_press_soon_and_a_repeat_run_at_full_speed() {
     assert_way(&mut Motion::default(), &[(100, PRESS), (300, PRESS)], first + 0.15);
     assert_way(&mut Motion::default(), &[(100, PRESS), (1_000, REPEAT)], 0.3);
     let mut motion = Motion::default();
-    let way = way(&mut motion, &[(0, PRESS), (300, PRESS), (340, PRESS), (380, PRESS)], 420);
+    let way = forward_distance(&mut motion, &[(0, PRESS), (300, PRESS), (340, PRESS), (380, PRESS)], 420);
     assert!((way - 0.15 - 0.12).abs() < 1e-5, "{way}");
     assert!(motion.is_moving(ms(529)) && !motion.is_moving(ms(530)));
 }
@@ -205,7 +205,7 @@ fn without_releases_a_held_key_rests_until_its_repeats() {
     motion.key(&press('w'), ms(0));
     assert!(motion.is_moving(ms(299)) && !motion.is_moving(ms(300)));
     let repeats: Vec<_> = (660..1_660).step_by(40).map(|at| (at, PRESS)).collect();
-    let way = way(&mut motion, &repeats, 1_660);
+    let way = forward_distance(&mut motion, &repeats, 1_660);
     assert!((way - 1.15).abs() < 0.01, "{way}");
 }
 
@@ -300,7 +300,7 @@ fn keypad_keys_are_separate_keys() {
 fn shift_makes_held_keys_faster_while_it_is_held() {
     let shift =
         |kind, modifiers| KeyEvent::new_with_kind(KeyCode::Modifier(ModifierKeyCode::LeftShift), modifiers, kind);
-    let way = |motion: &Motion| 4.0 - after(motion, ms(100)).0.z;
+    let way = |motion: &Motion| 4.0 - eye_and_view_after(motion, ms(100)).0.z;
     let mut motion = holding("w");
     motion.key(&shift(KeyEventKind::Press, KeyModifiers::NONE), ms(0));
     assert!((way(&motion) - 0.4).abs() < 1e-5, "{}", way(&motion));

@@ -21,7 +21,7 @@ fn colours_have_everyday_names() {
 fn numbers_have_three_digits() {
     let numbers = [0.0, -0.001, 1.0, 2.104, 0.55, 36.04, 123.4, -0.0].map(number);
     assert_eq!(numbers, ["0", "-0.001", "1", "2.1", "0.55", "36", "123", "0"]);
-    assert_eq!(points(Vec3::new(0.0, 2.1, 6.3)), "(0, 2.1, 6.3)");
+    assert_eq!(point_text(Vec3::new(0.0, 2.1, 6.3)), "(0, 2.1, 6.3)");
 }
 
 #[test]

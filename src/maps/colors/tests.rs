@@ -52,6 +52,6 @@ fn objects_have_colours_of_their_own() {
 
 #[test]
 fn lengths_are_short() {
-    let lengths = [0.0012, 6.4126, 12.345, 123.45, 98_765.4].map(short);
+    let lengths = [0.0012, 6.4126, 12.345, 123.45, 98_765.4].map(length_text);
     assert_eq!(lengths, ["1.2e-3", "6.41", "12.3", "123", "9.9e4"]);
 }

@@ -37,7 +37,7 @@ impl Validator<'_> {
         let eye = written.eye.and_then(|eye| self.point(eye));
         let target = written.target.and_then(|target| self.point(target));
         let up = match written.up {
-            Some(up) => self.up(up),
+            Some(up) => self.up_vector(up),
             None => Some(up_if_none),
         };
         let pose = Pose { eye: eye?, target: target?, up: up? };
@@ -105,7 +105,7 @@ impl Validator<'_> {
         self.fault(span, || error.to_string())
     }
 
-    pub(super) fn up(&mut self, written: WrittenVector) -> Option<Vec3> {
+    pub(super) fn up_vector(&mut self, written: WrittenVector) -> Option<Vec3> {
         // `unit_vector` is called only to report faults: the camera keeps the vector with its length as in the file, so
         // that it is written back unchanged.
         self.unit_vector("up vector", written)?;

@@ -33,7 +33,7 @@ impl Validator<'_> {
         let eye = written.eye.and_then(|eye| self.point(eye));
         let target = written.target.and_then(|target| self.point(target));
         let up = match written.up {
-            Some(up) => self.up(up),
+            Some(up) => self.up_vector(up),
             None => Some(camera.pose().up),
         };
         let rectangle = match written.vertical_fov {

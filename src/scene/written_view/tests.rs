@@ -5,7 +5,7 @@ const VIEW: &str = "(eye: (3, 1, 2), target: (0, 0, 0))";
 
 /// Adds a view to the scene `text`, in which `C` stands for a camera, `V` for a view, and `+` for
 /// the added view.
-fn added(text: &str) -> String {
+fn with_added_view(text: &str) -> String {
     let camera = *Scene::from_ron("x", "(camera: (eye: (3, 1, 2), target: (0, 0, 0)))").expect("a scene").camera();
     let text = text
         .replace('C', "camera: (eye: (0, 0, 5), target: (0, 0, 0))")
@@ -40,9 +40,9 @@ fn all_else_stays_as_it_is() {
         ("(C, views: [\n    // none yet\n])", "(C, views: [\n    // none yet\n    +,\n])"),
         ("// \"é\" ☃\nScene(C, ambient: 1)", "// \"é\" ☃\nScene(C, views: [+], ambient: 1)"),
     ] {
-        assert_eq!(added(text), wanted, "{text}");
+        assert_eq!(with_added_view(text), wanted, "{text}");
         // Checks that a second view can be added to the text in which the first was inserted.
-        added(&wanted.replace('+', "V"));
+        with_added_view(&wanted.replace('+', "V"));
     }
 }
 
