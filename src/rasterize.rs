@@ -22,22 +22,17 @@ use triangle::DrawTriangles;
 mod depth_buffer;
 mod projection;
 mod clipped;
+mod comparison;
 mod plane;
 mod sphere;
 mod triangle;
 
+pub use comparison::{Comparison, ObjectSteps, OrderTimes, random_spheres, spheres_in_a_cube};
 pub use depth_buffer::DepthBuffer;
 
 /// Draws all objects of a scene, one after the other, on the calling thread.
 pub fn rasterize(scene: &Scene, camera: &Camera, resolution: Resolution) -> DepthBuffer {
-    let mut rasterizer = Rasterizer::new(camera, resolution);
-    for (object, index) in scene.objects().iter().zip(0..) {
-        for primitive in 0..object.shape.primitive_count() {
-            rasterizer.draw(&object.shape.primitive(primitive), index);
-        }
-    }
-    rasterizer.finish();
-    rasterizer.buffer
+    Rasterizer::drawn(scene, camera, resolution).buffer
 }
 
 /// A picture that is drawn object by object.
@@ -57,6 +52,18 @@ impl Rasterizer {
         let buffer = DepthBuffer::new(resolution);
         let (spheres, triangles) = (Vec::with_capacity(LANES), Vec::with_capacity(LANES));
         Self { projection, buffer, spheres, triangles, tests: 0 }
+    }
+
+    /// Returns the picture of a scene.
+    fn drawn(scene: &Scene, camera: &Camera, resolution: Resolution) -> Self {
+        let mut rasterizer = Self::new(camera, resolution);
+        for (object, index) in scene.objects().iter().zip(0..) {
+            for primitive in 0..object.shape.primitive_count() {
+                rasterizer.draw(&object.shape.primitive(primitive), index);
+            }
+        }
+        rasterizer.finish();
+        rasterizer
     }
 
     /// Draws a primitive of an object, at the latest with [`finish`](Self::finish).

@@ -58,6 +58,7 @@ mod camera_commands;
 mod cell_commands;
 mod note;
 mod options;
+mod orders;
 mod outside;
 mod pacing;
 mod playback;
@@ -87,6 +88,7 @@ pub(crate) use frame::{Frame, Job, Shot};
 use metadata::Metadata;
 use note::Note;
 pub use options::Options;
+use orders::OrdersPanel;
 use outside::Outside;
 use pacing::Pacing;
 use playback::Playback;
@@ -328,7 +330,8 @@ impl Viewer {
             let name = self.names.get(index).cloned().unwrap_or_default();
             self.screen.open(Metadata::for_scene(&scene, name));
         }
-        let caption = self.captions.then(|| self.caption(&scene, index)).flatten();
+        let has_caption = self.captions && self.screen.get::<OrdersPanel>().is_none();
+        let caption = has_caption.then(|| self.caption(&scene, index)).flatten();
         self.screen.set(caption);
         if let Some(view) = self.scenes.show(scene, index, orbits) {
             self.playback = Playback::default();
@@ -345,6 +348,8 @@ impl Viewer {
     }
 
     fn set_outside(&mut self, outside: Outside) {
+        // From behind a wall, the second eye sees the tracer as well.
+        self.eye.set_passes_surfaces(matches!(outside, Outside::MovesSecond { .. }));
         self.outside = outside;
     }
 
@@ -378,6 +383,13 @@ impl Viewer {
     fn caption(&self, scene: &Scene, index: usize) -> Option<Caption> {
         let place = self.options.tour.map(|count| (index + 1, count));
         Some(Caption::new(Arc::clone(scene.caption()?), place))
+    }
+
+    /// Shows the caption of the scene, unless captions are hidden.
+    fn show_caption_again(&mut self) {
+        let shown = self.scene().zip(self.scenes.shown()).filter(|_| self.captions);
+        let caption = shown.and_then(|(scene, index)| self.caption(&scene, index));
+        self.screen.set(caption);
     }
 
     /// Shows the caption of the scene or its next page. After the last page, hides the caption.
@@ -416,15 +428,16 @@ impl Viewer {
         self.mark_light();
         self.note_few_colors();
         let fades_at = self.screen.fade_note(now);
+        let builds_at = self.screen.advance_orders(now);
         match decide(&self.facts(busy), now) {
             Action::GiveUp => Step::GiveUp,
             Action::Draw => Step::Draw,
             Action::Trace => self.begin_new_view(),
             Action::Refine => self.begin_refinement(),
             // An incomplete escape sequence needs a wake-up of its own: no bytes may follow.
-            Action::Wait(until) => {
-                Step::Wait(until.into_iter().chain(self.receiver.escape_due(now)).chain(fades_at).min())
-            }
+            Action::Wait(until) => Step::Wait(
+                until.into_iter().chain(self.receiver.escape_due(now)).chain(fades_at).chain(builds_at).min(),
+            ),
         }
     }
 
@@ -482,9 +495,10 @@ impl Viewer {
         let (lights, camera) = (self.scenes.lights()?, self.first_camera()?);
         let (outside, layout) = (self.second_camera(), self.shown_layout());
         let (scene, resolution) = (self.scenes.count(), self.display.resolution());
+        let (lights, orders) = (lights.moves(), self.screen.get::<OrdersPanel>().is_some());
         let geometry = self.display.capabilities().cell_mode.shows_geometry();
         let time = self.playback.time();
-        Some(Shot { scene, lights: lights.moves(), time, camera, outside, resolution, layout, geometry })
+        Some(Shot { scene, lights, time, camera, outside, resolution, layout, orders, geometry })
     }
 
     /// Returns the sampling of the shown frame's next refinement, or `None` if it cannot be

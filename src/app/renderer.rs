@@ -6,6 +6,7 @@ use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::maps::{self, Map, TracedMap};
 use crate::progress::{Cancellation, Cancelled};
+use crate::rasterize::Comparison;
 use crate::render::{Cost, Executor, Geometry, ProgressiveRender, Sampling, trace_geometry};
 use crate::scene::Scene;
 use crate::terminal::{self, Waker};
@@ -164,6 +165,10 @@ impl Renderer {
     ///
     /// The prediction is the time per pixel of the last frame of the same scene and maps.
     fn is_small(&self, job: &Job) -> bool {
+        // Measuring both orders takes longer.
+        if job.shot.orders {
+            return false;
+        }
         let pixels = job.shot.resolution.pixel_count() as f64;
         let is_short = |(shot, seconds): (Shot, f64)| {
             // The camera may differ, because its effect on the time is small from frame to frame.
@@ -216,18 +221,27 @@ pub(super) fn frame_of(
         // has only one geometry.
         geometry = seen.geometry.filter(|_| resolution == shot.resolution);
     }
+    let trace = start.elapsed();
     let combined = shot.layout.combined(&parts, INITIAL_WIPE).or_else(|| parts.pop());
     let picture = combined.expect("at least one picture is shown");
     if !shot.layout.is_wipe() {
         parts.clear();
     }
+    let orders = match *shot.layout.map_sizes(shot.resolution) {
+        [(_, left), (_, right)] if shot.orders && !refines => {
+            Some(Arc::new(Comparison::new(&scene, &shot.camera, [left, right])))
+        }
+        _ => None,
+    };
     let legends = match shot.outside {
+        // The panel of both orders has their names.
+        None if shot.orders => Vec::new(),
         Some(_) => ["first camera", "from outside: o eye, q on rectangle, p hit, n normal, * light"]
             .map(str::to_owned)
             .to_vec(),
         None => shot.layout.legends(&scene, &shot.camera),
     };
-    Ok(Frame { scene, shot, picture, geometry, parts, sampling, legends, refines, cost, trace: start.elapsed() })
+    Ok(Frame { scene, shot, picture, geometry, parts, sampling, legends, orders, refines, cost, trace })
 }
 
 /// Traces a frame with one sample per pixel on the calling thread.

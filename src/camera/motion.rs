@@ -107,29 +107,30 @@ impl Camera {
         rectangle.scaled(wanted / height).map_or(*self, |rectangle| self.with_rectangle(rectangle))
     }
 
-    /// Returns the camera with its view rectangle shifted upwards by a number of steps.
+    /// Returns the camera with its view rectangle shifted by steps to the right and upwards.
     ///
     /// A step is 0.05 heights, and ends at a multiple of it.
     ///
     /// # Errors
     /// If the rectangle cannot be shifted farther.
     #[cfg(feature = "live")]
-    pub(crate) fn shifted_rectangle(&self, steps: f32) -> Result<Self, CameraError> {
-        let Vec2 { x: right, y: up } = self.rectangle.shift;
-        let shift = Vec2::new(right, (up / SHIFT_STEP + steps).round() * SHIFT_STEP);
+    pub(crate) fn shifted_rectangle(&self, steps: Vec2) -> Result<Self, CameraError> {
+        let shift = stepped(self.rectangle.shift / SHIFT_STEP, steps) * SHIFT_STEP;
         Ok(self.with_rectangle(self.rectangle.with_shift(shift)?))
     }
 
-    /// Returns the camera with its view rectangle tilted upwards by a number of steps of 2 degrees.
+    /// Returns the camera with its view rectangle tilted to the right and upwards by some steps.
     ///
-    /// A step ends early where the rectangle becomes parallel to the up vector, so that one finds this angle by hand.
+    /// A step is 2 degrees. A vertical one ends early where the rectangle becomes parallel to the up vector, so that
+    /// one finds this angle by hand.
     ///
     /// # Errors
     /// If the rectangle cannot be tilted farther.
     #[cfg(feature = "live")]
-    pub(crate) fn tilted_rectangle(&self, steps: f32) -> Result<Self, CameraError> {
+    pub(crate) fn tilted_rectangle(&self, steps: Vec2) -> Result<Self, CameraError> {
         let Vec2 { x: right, y: up } = self.rectangle.tilt;
-        let next = radians(f64::from((up.to_degrees() / TILT_STEP_DEGREES + steps).round() * TILT_STEP_DEGREES));
+        let degrees = Vec2::new(right.to_degrees(), up.to_degrees()) / TILT_STEP_DEGREES;
+        let [right, next] = (stepped(degrees, steps) * TILT_STEP_DEGREES).to_array().map(|angle| radians(angle.into()));
         let upright = self.upright_tilt();
         let passes = (up < upright && upright < next) || (next < upright && upright < up);
         let tilt = Vec2::new(right, if passes { upright } else { next });
@@ -291,4 +292,10 @@ fn rotated(v: Vec3, axis: Vec3, angle: f32) -> Vec3 {
     let (sin, cos) = libm::sincosf(angle);
     let turned = v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
     turned * (v.length() / turned.length())
+}
+
+/// Returns numbers of steps after more steps: along an axis with any, a whole number.
+#[cfg(feature = "live")]
+fn stepped(number: Vec2, steps: Vec2) -> Vec2 {
+    Vec2::select(steps.cmpeq(Vec2::ZERO), number, (number + steps).round())
 }

@@ -30,25 +30,26 @@ macro_rules! shipped {
     };
 }
 
-// In the order of the lecture, which is that of the tour: eye rays, the closest hit, light, meshes, formulas.
+// In the order of the lecture, which is that of the tour: image order and object order, perspective, eye rays, ray
+// intersection, shading; then meshes.
 shipped! {
     "three_spheres",
+    "many_spheres",
     "corridor",
     "near_fov",
     "far_fov",
     "tilted_up",
     "off_centre",
     "tilted_rectangle",
-    "many_spheres",
     "inside_sphere",
-    "bare",
-    "two_lights",
-    "three_lights",
-    "teapots" ["teapot.obj"],
     "heart",
     "tanglecube",
     "barth",
     "gyroid",
+    "bare",
+    "two_lights",
+    "three_lights",
+    "teapots" ["teapot.obj"],
 }
 
 impl ShippedScene {

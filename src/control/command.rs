@@ -23,10 +23,18 @@ pub enum Command {
     Narrower,
     /// Widens the field of view.
     Wider,
+    /// Shifts the view rectangle to the left.
+    ShiftLeft,
+    /// Shifts the view rectangle to the right.
+    ShiftRight,
     /// Shifts the view rectangle down.
     ShiftDown,
     /// Shifts the view rectangle up.
     ShiftUp,
+    /// Tilts the view rectangle to the left.
+    TiltLeft,
+    /// Tilts the view rectangle to the right.
+    TiltRight,
     /// Tilts the view rectangle down, to face lower than the camera looks.
     TiltDown,
     /// Tilts the view rectangle up, to face higher than the camera looks.
@@ -98,6 +106,16 @@ pub enum Command {
     Axes,
     /// Shows the tracer from outside, then other drawings of its geometry, then the ordinary view.
     Outside,
+    /// Starts or ends the comparison of image order with object order.
+    Orders,
+    /// Pauses the pictures of both orders, or lets them be built further.
+    BuildPause,
+    /// Doubles the speed at which both orders build their pictures.
+    BuildFaster,
+    /// Halves the speed at which both orders build their pictures.
+    BuildSlower,
+    /// Lets both orders build their pictures again.
+    BuildAgain,
     /// Shows or hides the name, the format and the size of the scene.
     Metadata,
     /// Shows the picture by the next kind of cells.
@@ -207,8 +225,12 @@ commands! {
     [Command::FrameAll] "Frame", "frame all (when lost)";
     [Command::Narrower] "Narrower", "zoom in (field of view)";
     [Command::Wider] "Wider", "zoom out (field of view)";
+    [Command::ShiftLeft] "ShiftLeft", "shift rectangle left";
+    [Command::ShiftRight] "ShiftRight", "shift rectangle right";
     [Command::ShiftDown] "ShiftDown", "shift rectangle down";
     [Command::ShiftUp] "ShiftUp", "shift rectangle up";
+    [Command::TiltLeft] "TiltLeft", "tilt rectangle left";
+    [Command::TiltRight] "TiltRight", "tilt rectangle right";
     [Command::TiltDown] "TiltDown", "tilt rectangle down";
     [Command::TiltUp] "TiltUp", "tilt rectangle up";
     [Command::Turntable] "Turntable", "turntable on or off";
@@ -256,6 +278,11 @@ commands! {
     [Command::Wireframe] "Wireframe", "wireframe on or off";
     [Command::Axes] "Axes", "axes on or off";
     [Command::Outside] "Outside", "tracer from outside";
+    [Command::Orders] "Orders", "image and object order";
+    [Command::BuildPause] "BuildPause", "pause or go on";
+    [Command::BuildFaster] "BuildFaster", "build faster";
+    [Command::BuildSlower] "BuildSlower", "build slower";
+    [Command::BuildAgain] "BuildAgain", "build again";
     [Command::Metadata] "Metadata", "name, format and size";
     [Command::NextGlyphs] "NextGlyphs", "next kind of cells";
     [Command::TurnMesh] "TurnMesh", "mesh: next axis up";
@@ -318,8 +345,10 @@ impl Command {
     pub fn repeats(self) -> bool {
         // Toggles do not repeat: a key held too long would open and close a panel 25 times a second.
         let of_panels = matches!(self, Self::Point(_) | Self::ScrollUp | Self::ScrollDown | Self::Wipe(_));
-        let of_rectangle = matches!(self, Self::ShiftDown | Self::ShiftUp | Self::TiltDown | Self::TiltUp);
-        of_panels || of_rectangle || self.moves_light() || matches!(self, Self::Narrower | Self::Wider)
+        let shifts = matches!(self, Self::ShiftLeft | Self::ShiftRight | Self::ShiftDown | Self::ShiftUp);
+        let tilts = matches!(self, Self::TiltLeft | Self::TiltRight | Self::TiltDown | Self::TiltUp);
+        let of_build = matches!(self, Self::BuildFaster | Self::BuildSlower);
+        of_panels || shifts || tilts || of_build || self.moves_light() || matches!(self, Self::Narrower | Self::Wider)
     }
 
     /// Returns whether Shift with the key makes the command faster.

@@ -18,6 +18,8 @@ pub enum KeyMode {
     Explain,
     /// A light is selected for moving. This mode is above `Fly`, `Orbit` and `Explain`.
     Light,
+    /// Both orders build their pictures. This mode is above `Fly` and `Orbit`.
+    Orders,
     /// A dialog asks for the format of an export. Any key without an answer dismisses it.
     Export,
     /// A dialog asks whether to save the view to the scene file.
@@ -30,8 +32,8 @@ pub enum KeyMode {
 
 impl KeyMode {
     /// All modes, in the order of the help.
-    pub const ALL: [Self; 7] =
-        [Self::Fly, Self::Orbit, Self::Explain, Self::Light, Self::Export, Self::Keep, Self::Always];
+    pub const ALL: [Self; 8] =
+        [Self::Fly, Self::Orbit, Self::Explain, Self::Light, Self::Orders, Self::Export, Self::Keep, Self::Always];
 
     /// Returns the name of the mode in the user's keymap and in panels.
     pub fn name(self) -> &'static str {
@@ -40,6 +42,7 @@ impl KeyMode {
             Self::Orbit => "orbit",
             Self::Explain => "explain",
             Self::Light => "light",
+            Self::Orders => "orders",
             Self::Export => "export",
             Self::Keep => "keep",
             Self::Always => "always",
@@ -154,6 +157,10 @@ const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Light, &[Key::named(KeyCode::PageUp)], Command::LightFarther),
     (KeyMode::Light, &[Key::named(KeyCode::PageDown)], Command::LightNearer),
     (KeyMode::Light, &[letter('r')], Command::LightBack),
+    (KeyMode::Orders, &[letter(' ')], Command::BuildPause),
+    (KeyMode::Orders, &[letter('+'), letter('=')], Command::BuildFaster),
+    (KeyMode::Orders, &[letter('-')], Command::BuildSlower),
+    (KeyMode::Orders, &[letter('r')], Command::BuildAgain),
     (KeyMode::Export, &[Key::named(KeyCode::Esc)], Command::No),
     (KeyMode::Keep, &[letter('y')], Command::Yes),
     (KeyMode::Keep, &[letter('n'), Key::named(KeyCode::Esc)], Command::No),
@@ -161,8 +168,12 @@ const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Always, &[letter('f')], Command::FrameAll),
     (KeyMode::Always, &[letter('[')], Command::Narrower),
     (KeyMode::Always, &[letter(']')], Command::Wider),
+    (KeyMode::Always, &[letter('&')], Command::ShiftLeft),
+    (KeyMode::Always, &[letter('*')], Command::ShiftRight),
     (KeyMode::Always, &[letter('(')], Command::ShiftDown),
     (KeyMode::Always, &[letter(')')], Command::ShiftUp),
+    (KeyMode::Always, &[letter(';')], Command::TiltLeft),
+    (KeyMode::Always, &[letter(':')], Command::TiltRight),
     (KeyMode::Always, &[letter('{')], Command::TiltDown),
     (KeyMode::Always, &[letter('}')], Command::TiltUp),
     (KeyMode::Always, &[letter('t')], Command::Turntable),
@@ -204,6 +215,7 @@ const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Always, &[letter('B')], Command::NextGlyphs),
     (KeyMode::Always, &[letter('X')], Command::Axes),
     (KeyMode::Always, &[letter('V')], Command::Outside),
+    (KeyMode::Always, &[letter('I')], Command::Orders),
     (KeyMode::Always, &[letter('M')], Command::Metadata),
     (KeyMode::Always, &[letter('?')], Command::Help),
     (KeyMode::Always, &[Key::named(KeyCode::Esc)], Command::Close),

@@ -88,14 +88,14 @@ impl Viewer {
         }
     }
 
-    /// Shifts the view rectangle upwards by a number of steps, and shows the shift in a note.
-    pub(super) fn shift_rectangle(&mut self, steps: f32) {
-        self.change_rectangle("shift", |camera| camera.shifted_rectangle(steps));
+    /// Shifts the view rectangle by steps to the right and upwards, and shows the shift in a note.
+    pub(super) fn shift_rectangle(&mut self, steps: [f32; 2]) {
+        self.change_rectangle("shift", |camera| camera.shifted_rectangle(steps.into()));
     }
 
-    /// Tilts the view rectangle upwards by a number of steps, and shows the tilt in a note.
-    pub(super) fn tilt_rectangle(&mut self, steps: f32) {
-        self.change_rectangle("tilt", |camera| camera.tilted_rectangle(steps));
+    /// Tilts the view rectangle by steps to the right and upwards, and shows the tilt in a note.
+    pub(super) fn tilt_rectangle(&mut self, steps: [f32; 2]) {
+        self.change_rectangle("tilt", |camera| camera.tilted_rectangle(steps.into()));
     }
 
     /// Changes the view rectangle, and shows the changed `offset` or the error in a note.

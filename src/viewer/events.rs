@@ -6,6 +6,7 @@ use super::explain::ExplainPanel;
 use super::help::HelpPanel;
 use super::metadata::Metadata;
 use super::note::Note;
+use super::orders::Pace;
 use super::status::StatusLine;
 use super::warnings::Warnings;
 use super::{Request, Viewer, mouse_actions};
@@ -154,10 +155,14 @@ impl Viewer {
             // Zooming works in steps, not continuously as motion does: a field of view is set once and then left alone.
             Command::Narrower => self.zoom(1.0 / ZOOM_FACTOR),
             Command::Wider => self.zoom(ZOOM_FACTOR),
-            Command::ShiftDown => self.shift_rectangle(-1.0),
-            Command::ShiftUp => self.shift_rectangle(1.0),
-            Command::TiltDown => self.tilt_rectangle(-1.0),
-            Command::TiltUp => self.tilt_rectangle(1.0),
+            Command::ShiftLeft => self.shift_rectangle([-1.0, 0.0]),
+            Command::ShiftRight => self.shift_rectangle([1.0, 0.0]),
+            Command::ShiftDown => self.shift_rectangle([0.0, -1.0]),
+            Command::ShiftUp => self.shift_rectangle([0.0, 1.0]),
+            Command::TiltLeft => self.tilt_rectangle([-1.0, 0.0]),
+            Command::TiltRight => self.tilt_rectangle([1.0, 0.0]),
+            Command::TiltDown => self.tilt_rectangle([0.0, -1.0]),
+            Command::TiltUp => self.tilt_rectangle([0.0, 1.0]),
             Command::Turntable => self.toggle_turntable(),
             Command::Pause => self.toggle_playback(),
             Command::View(number) => self.go_to_view(number),
@@ -195,6 +200,11 @@ impl Viewer {
             Command::Front | Command::FromRight | Command::FromAbove => self.look_from(command),
             Command::Wireframe => self.layout.toggle_wire(),
             Command::Outside => self.show_next_outside_view(),
+            Command::Orders => self.toggle_orders(),
+            Command::BuildPause => self.change_pace(Pace::pause),
+            Command::BuildFaster => self.change_pace(Pace::faster),
+            Command::BuildSlower => self.change_pace(Pace::slower),
+            Command::BuildAgain => self.change_pace(Pace::restart),
             Command::Axes => self.toggle_axes(),
             Command::Metadata => self.toggle_metadata(),
             // Keys of motion have been passed to the eye, and answers do nothing without an open question.
@@ -216,13 +226,14 @@ impl Viewer {
     }
 
     /// Closes the help if it is open; otherwise releases the held light, if any; otherwise closes
-    /// the explanation; otherwise cancels the large picture.
+    /// the explanation, the metadata or the comparison of orders; otherwise cancels the large picture.
     fn close_topmost(&mut self) {
         // The order is that of the layers on the screen, from the topmost.
         if self.screen.close::<HelpPanel>().is_none()
             && !self.release_light()
             && self.screen.close::<ExplainPanel>().is_none()
             && self.screen.close::<Metadata>().is_none()
+            && !self.close_orders()
         {
             self.cancel_large_picture();
         }

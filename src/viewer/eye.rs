@@ -31,6 +31,8 @@ pub(super) struct Eye {
     reduced_motion: bool,
     /// The shown scene, whose surfaces stop the eye.
     scene: Option<Scene>,
+    /// Whether surfaces do not stop the eye.
+    passes_surfaces: bool,
     /// The time at which a surface stopped the held keys; `None` once they are released.
     stopped_at: Option<Duration>,
 }
@@ -105,6 +107,11 @@ impl Eye {
         }
     }
 
+    /// Sets whether surfaces do not stop the eye, as that which sees the tracer from outside.
+    pub(super) fn set_passes_surfaces(&mut self, passes_surfaces: bool) {
+        self.passes_surfaces = passes_surfaces;
+    }
+
     /// Returns the camera; `None` without a scene.
     pub(super) fn camera(&self) -> Option<Camera> {
         self.view.as_ref().map(|view| view.camera)
@@ -146,7 +153,8 @@ impl Eye {
         // After the end of a jump, a held key moves the eye from there.
         let since = jump.map_or(since, |jump| since.max(jump.end()).min(now));
         let moved = self.motion.step(&view.camera, view.speed, since, now);
-        let short = self.scene.as_ref().and_then(|scene| short_of_surface(scene, view, &moved));
+        let scene = self.scene.as_ref().filter(|_| !self.passes_surfaces);
+        let short = scene.and_then(|scene| short_of_surface(scene, view, &moved));
         if short.is_some() {
             self.stopped_at.get_or_insert(now);
         } else if !self.motion.is_moving(now) {
@@ -293,7 +301,7 @@ impl Eye {
         // Any movement key stops the turntable, which would otherwise fight against it.
         self.turntable &= key.kind == KeyEventKind::Release || !meant.is_some_and(|(command, _)| command.moves());
         self.motion.take_key(key, meant, now);
-        if let (Some(scene), Some(view)) = (&self.scene, &self.view) {
+        if let (Some(scene), Some(view), false) = (&self.scene, &self.view, self.passes_surfaces) {
             self.motion.shorten_taps(now, |motion| passes_no_surface(motion, view, scene, now));
         }
         self.start_motion(now);
@@ -307,7 +315,8 @@ impl Eye {
         motion.set_reports_releases(true);
         motion.take_key(&KeyEvent { kind: KeyEventKind::Press, ..*key }, meant, Duration::ZERO);
         let moved = motion.step(&view.camera, view.speed, Duration::ZERO, REDUCED_MOTION_STEP);
-        let short = self.scene.as_ref().and_then(|scene| short_of_surface(scene, view, &moved));
+        let scene = self.scene.as_ref().filter(|_| !self.passes_surfaces);
+        let short = scene.and_then(|scene| short_of_surface(scene, view, &moved));
         // A surface stops a step. If the eye is already close to the surface, as after such a stop, the step passes it.
         let way = |camera: &Camera| camera.pose().eye.distance(view.camera.pose().eye);
         view.camera = short.filter(|short| way(short) > LEAST_STEP * way(&moved)).unwrap_or(moved);

@@ -4,6 +4,7 @@ use super::view_layout::ViewLayout;
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::maps::Map;
+use crate::rasterize::Comparison;
 use crate::render::{Cost, Geometry, Sampling};
 use crate::scene::Scene;
 use crate::tone::Picture;
@@ -25,6 +26,8 @@ pub(crate) struct Shot {
     pub(crate) outside: Option<Camera>,
     pub(crate) resolution: Resolution,
     pub(crate) layout: ViewLayout,
+    /// Whether both orders build the picture, side by side.
+    pub(crate) orders: bool,
     /// Whether the glyphs of the cells show the geometry, which is then traced besides the picture.
     pub(crate) geometry: bool,
 }
@@ -74,6 +77,8 @@ pub(crate) struct Frame {
     pub(crate) sampling: Sampling,
     /// The legends of the maps, from left to right; empty for the shaded picture alone.
     pub(crate) legends: Vec<String>,
+    /// Both orders of the picture; `None` unless the shot has them, and for a refinement.
+    pub(crate) orders: Option<Arc<Comparison>>,
     /// Whether this frame has the same shot as the frame before, with more samples.
     pub(crate) refines: bool,
     /// The cost of tracing, without the cost of the frame that this frame refines.

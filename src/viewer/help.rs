@@ -320,6 +320,12 @@ fn status_line_keys(mode: KeyMode) -> &'static [(&'static [Command], &'static st
             (&[Command::LightBack], "reset"),
             (&[Command::LightFarther, Command::LightNearer], "distance"),
         ],
+        KeyMode::Orders => &[
+            (&[Command::BuildPause], "pause"),
+            (&[Command::BuildFaster, Command::BuildSlower], "speed"),
+            (&[Command::BuildAgain], "again"),
+            (&[Command::Close], "close"),
+        ],
         KeyMode::Export | KeyMode::Keep | KeyMode::Always => &[],
     }
 }

@@ -72,7 +72,7 @@ impl Layer for Metadata {
 }
 
 /// Formats a number with commas between groups of three digits, such as `69,451`.
-fn grouped(number: usize) -> String {
+pub(super) fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (at, digit) in digits.chars().enumerate() {

@@ -3,6 +3,7 @@
 
 use super::Viewer;
 use super::explain::ExplainPanel;
+use super::orders::OrdersPanel;
 use super::theme;
 use super::tracer_lines::{TracerMarks, VanishingPoints};
 use super::view_layout::ViewLayout;
@@ -36,6 +37,7 @@ impl Viewer {
         if !theme::has_room(theme::area(self.size())) {
             return self.show_note(theme::needs_room("the view from outside"));
         }
+        self.close_orders();
         let Some(camera) = self.eye.camera() else { return };
         let (next, text) = match self.outside {
             Outside::Off => {
@@ -110,9 +112,10 @@ impl Viewer {
         }
     }
 
-    /// Returns the layout of the picture; with two cameras, one picture of the same map for each.
+    /// Returns the layout of the picture: the map twice while there are two cameras or two orders.
     pub(super) fn shown_layout(&self) -> ViewLayout {
-        if self.second_camera().is_some() { self.layout.twice() } else { self.layout }
+        let is_twice = self.second_camera().is_some() || self.screen.get::<OrdersPanel>().is_some();
+        if is_twice { self.layout.twice() } else { self.layout }
     }
 }
 
@@ -122,7 +125,9 @@ fn camera_beside(scene: &Scene, camera: &Camera, aspect_ratio: f32) -> Camera {
     let (Pose { eye, target, up }, Basis { u, v, w }) = (camera.pose(), camera.basis());
     let distance = camera.target_distance();
     let around = Vec3::splat(0.3 * distance);
-    let bounds = Bounds { min: eye.min(target - around), max: eye.max(target + around) };
+    // With the end of the drawn axis w, which is the farthest from the target.
+    let end_of_w = eye + 0.2 * distance * w;
+    let bounds = Bounds::of([eye, end_of_w, target - around, target + around]);
     let middle = 0.5 * (bounds.min + bounds.max);
     let from = middle + distance * (0.9 * u + 0.5 * v + 0.8 * w);
     let seen = Camera::look_at(from, middle).and_then(|seen| seen.with_up(up));

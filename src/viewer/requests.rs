@@ -78,7 +78,8 @@ impl Viewer {
     /// line between the two maps of a wipe, as a share of the width.
     pub(crate) fn large_picture(&self) -> Option<(Job, f32)> {
         let (scene, shot) = self.scene().zip(self.wanted_shot())?;
-        let shot = Shot { resolution: large_resolution(shot.resolution), geometry: false, ..shot };
+        let resolution = large_resolution(shot.resolution);
+        let shot = Shot { resolution, orders: false, geometry: false, ..shot };
         Some((Job { scene, shot, sampling: Sampling::BEST, refines: false }, self.screen.wipe()))
     }
 

@@ -178,7 +178,19 @@ impl Driver {
         let legends = shot.layout.legends(&scene, &shot.camera);
         let (cost, trace) = (Cost::default(), Duration::from_millis(milliseconds.into()));
         let parts = if shot.layout.is_wipe() { parts } else { Vec::new() };
-        let frame = Frame { scene, shot, picture, geometry: None, parts, sampling, legends, refines, cost, trace };
+        let frame = Frame {
+            scene,
+            shot,
+            picture,
+            geometry: None,
+            parts,
+            sampling,
+            legends,
+            orders: None,
+            refines,
+            cost,
+            trace,
+        };
         self.viewer.take_frame(frame);
     }
 

@@ -6,6 +6,7 @@ use super::help::{HelpKey, HelpPanel};
 use super::layers::{Canvas, FrameStatistics, Layer, Layers};
 use super::legend::Legends;
 use super::note::Note;
+use super::orders::OrdersPanel;
 use super::progress::ProgressPanel;
 use super::status::StatusLine;
 use super::theme;
@@ -165,6 +166,23 @@ impl Screen {
         Some(fades_at)
     }
 
+    /// Returns the layer of a type, if open, for changes.
+    pub(super) fn get_mut<L: Layer>(&mut self) -> Option<&mut L> {
+        // Checked first, because any access for writing counts as a change, which draws the screen.
+        self.get::<L>()?;
+        self.content.layers.get_mut()
+    }
+
+    /// Lets both orders build their pictures up to `now`. Returns the time of their next step, if
+    /// there is one.
+    pub(super) fn advance_orders(&mut self, now: Duration) -> Option<Duration> {
+        let (has_changed, next) = self.content.quietly().layers.get_mut::<OrdersPanel>()?.advance(now);
+        if has_changed {
+            self.content.mark_changed();
+        }
+        next
+    }
+
     /// Closes the layer of a type without counting it as a change, because the next frame redraws
     /// the screen anyway.
     pub(super) fn close_quietly<L: Layer>(&mut self) {
@@ -315,7 +333,9 @@ impl Screen {
         let grid = &mut self.grid;
         match &content.frame {
             Some(frame) => {
-                self.painter.paint_view(&frame.picture, frame.geometry.as_deref(), self.is_in_motion, grid);
+                let built = content.layers.get::<OrdersPanel>().and_then(|orders| orders.picture(frame));
+                let picture = built.as_ref().unwrap_or(&frame.picture);
+                self.painter.paint_view(picture, frame.geometry.as_deref(), self.is_in_motion, grid);
             }
             None => grid.clear(size),
         }

@@ -44,7 +44,7 @@ fn the_tour_shows_each_scene_with_its_caption_in_three_rows() {
     let rows = session.seen().screen().text();
     assert!(rows[..20].iter().all(|row| !row.contains(char::is_alphabetic)), "{rows:?}");
     turn_to_the_last_page(&mut session);
-    session.wait_for_text("as high as the eye, on the horizon.");
+    session.wait_for_text("also for those that others hide.");
     session.send(b"p");
     session.wait_for_text(" 1 of ");
     leave(&mut session);
@@ -69,7 +69,7 @@ fn a_key_hides_captions_and_shows_them() {
     wait_for_no(&mut session, "Look at");
     // The next scene has no caption either.
     session.send(b"n'");
-    session.wait_for_text("Keys: W walks down the corridor");
+    session.wait_for_text("Keys: I builds it slowly in both orders");
     leave(&mut session);
 }
 

@@ -112,6 +112,12 @@ fn keys_shift_and_tilt_the_view_rectangle_and_show_it() {
     session.wait_for_text("tilt 0 -22");
     session.send(b"}((");
     session.wait_for_text("shift 0 -0.05");
+    session.send(b"*");
+    session.wait_for_text("shift 0.05 -0.05");
+    session.send(b":");
+    session.wait_for_text("tilt 2 -20.87");
+    session.send(b"&;");
+    session.wait_for_text("tilt 0 -20.87: verticals are parallel");
     session.send(b"i");
     session.wait_for_text("tilt 0 -20.87 · eye");
     let camera = camera(&mut session).expect("it was changed");
@@ -146,6 +152,35 @@ fn v_shows_the_tracer_from_outside() {
     let camera = camera(&mut session).expect("it was changed");
     assert_eq!(camera.pose(), load(BALL).camera().pose(), "the second eye has not moved the first camera");
     assert!((camera.rectangle().vertical_fov().to_degrees() - 41.3).abs() < 0.1, "one step of the zoom");
+}
+
+/// `I` builds the picture in both orders, up to the end; keys change the pace.
+#[test]
+fn i_builds_the_picture_in_both_orders() {
+    for (size, left, right) in [
+        (Size::cells(80, 24), "what object is visible at this pixel?", "at what pixels is this object visible?"),
+        (Size::cells(40, 12), "image order", "object order"),
+    ] {
+        let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(BALL).size(size);
+        let mut session = start.says_when_it_rests().spawn();
+        session.wait_for_rest();
+        session.send(b"I");
+        session.wait_for_text(left);
+        session.wait_for_text(right);
+        session.send(b" ");
+        session.wait_for_text("Space goes on; +- speed 1x");
+        session.wait_for_rest();
+        session.send(b"++++++ ");
+        session.wait_for_text("Space pauses; +- speed 64x");
+        session.wait_for_text("10,000");
+        session.wait_for_rest();
+        session.send(b"\x1b");
+        session.wait_for("the ordinary view", SOON, |seen| !seen.screen().text().concat().contains(left));
+        session.send(b"II");
+        session.wait_for_rest();
+        assert!(!session.seen().screen().text().concat().contains(left), "I leaves too");
+        assert_eq!(camera(&mut session), None, "the eye has not moved");
+    }
 }
 
 /// The turntable turns until a command moves the eye; then nothing moves.

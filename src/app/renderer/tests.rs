@@ -13,8 +13,17 @@ fn three_spheres() -> Scene {
 }
 
 fn shot(camera: Camera, resolution: Resolution) -> Shot {
-    let layout = ViewLayout::default();
-    Shot { scene: 1, lights: 0, time: Duration::ZERO, camera, outside: None, resolution, layout, geometry: false }
+    Shot {
+        scene: 1,
+        lights: 0,
+        time: Duration::ZERO,
+        camera,
+        outside: None,
+        orders: false,
+        resolution,
+        layout: ViewLayout::default(),
+        geometry: false,
+    }
 }
 
 fn frame(refines: bool) -> Frame {
@@ -28,6 +37,7 @@ fn frame(refines: bool) -> Frame {
         parts: Vec::new(),
         sampling: Sampling::BEST,
         legends: Vec::new(),
+        orders: None,
         refines,
         cost: Cost::default(),
         trace: Duration::ZERO,

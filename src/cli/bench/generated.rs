@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 use glam::Vec3;
+use termtrace::internals::rasterize::random_spheres;
 use termtrace::{
     Camera, CameraError, LinearRgb, Material, Object, Plane, PointLight, Pose, Scene, Shape, Sphere, ViewRectangle,
 };
@@ -11,8 +12,14 @@ use termtrace::{
 pub(super) enum Generated {
     /// Three spheres on a plane
     Three,
+    /// 10 larger spheres in the same cube
+    S10,
+    /// 100 larger spheres in the same cube
+    S100,
     /// 1,000 spheres in a cube
     S1k,
+    /// 10,000 smaller spheres in the same cube
+    S10k,
     /// 100,000 smaller spheres in the same cube
     S100k,
 }
@@ -34,7 +41,10 @@ impl Generated {
                     .map(|(center, radius)| Sphere::new(Vec3::from_array(center), radius).expect("a sphere").into());
                 [&spheres[..], &[Plane::new(Vec3::ZERO, Vec3::Y).expect("a plane").into()]].concat()
             }
+            Self::S10 => spheres(10, 0.28),
+            Self::S100 => spheres(100, 0.13),
             Self::S1k => spheres(1_000, 0.06),
+            Self::S10k => spheres(10_000, 0.028),
             Self::S100k => spheres(100_000, 0.013),
         }
     }
@@ -47,28 +57,7 @@ fn camera() -> Result<Camera, CameraError> {
 
 /// Returns `count` spheres at random positions in a cube of side 2.4, with radii of 0.5 to 1.5
 /// times `radius`.
-fn spheres(count: usize, radius: f32) -> Vec<Shape> {
-    // The seed is fixed, so that results of different days and programs are about the same scene.
-    let mut random = Xorshift(0x9E37_79B9_7F4A_7C15);
-    let sphere = |_| {
-        let [x, y, z] = [(); 3].map(|()| random.next() * 2.4 - 1.2);
-        Sphere::new(Vec3::new(x, y + 0.4, z), radius * (0.5 + random.next())).expect("a sphere").into()
-    };
-    (0..count).map(sphere).collect()
-}
-
-/// Marsaglia's xorshift generator (Xorshift RNGs, 2003) with 64 bits and the shifts 13, 7 and 17.
-/// Our own, because a crate's generator may change its sequence with a release, and a program in another language needs
-/// the same one.
-struct Xorshift(u64);
-
-impl Xorshift {
-    /// Returns the next random number, uniform in 0..1, from the upper 24 bits of the state: as
-    /// many as an f32 represents exactly.
-    fn next(&mut self) -> f32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 40) as f32 / 16_777_216.0
-    }
+fn spheres(count: u32, radius: f32) -> Vec<Shape> {
+    let sphere = |(center, factor)| Sphere::new(center, radius * factor).expect("a sphere").into();
+    random_spheres(count).map(sphere).collect()
 }

@@ -26,6 +26,7 @@ fn no_two_bindings_collide() {
         &[KeyMode::Orbit, KeyMode::Always],
         &[KeyMode::Explain],
         &[KeyMode::Light],
+        &[KeyMode::Orders],
         &[KeyMode::Export],
         &[KeyMode::Keep],
     ] {

@@ -83,7 +83,7 @@ fn all_errors_are_reported_at_once() {
     assert_eq!(
         faults(text),
         [
-            "2:5 there is no mode \"flying\"; there are fly, orbit, explain, light, export, keep and always",
+            "2:5 there is no mode \"flying\"; there are fly, orbit, explain, light, orders, export, keep and always",
             "4:9 \"PgUp\" is not a key that every terminal sends: a character, Ctrl- and a letter but H, I, J and \
                  M, or a name such as PageUp, Space or F1",
             "5:9 there is no key \"Pageup\"; did you mean \"PageUp\"?",

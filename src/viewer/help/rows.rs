@@ -26,7 +26,17 @@ impl Group {
         use Command as C;
         match command {
             C::Move(_) | C::Around(_) | C::Nearer | C::Farther | C::ChangeMode | C::Turntable | C::Pause => Self::Move,
-            C::Look(_) | C::Narrower | C::Wider | C::ShiftDown | C::ShiftUp | C::TiltDown | C::TiltUp => Self::Look,
+            C::Look(_)
+            | C::Narrower
+            | C::Wider
+            | C::ShiftLeft
+            | C::ShiftRight
+            | C::ShiftDown
+            | C::ShiftUp
+            | C::TiltLeft
+            | C::TiltRight
+            | C::TiltDown
+            | C::TiltUp => Self::Look,
             C::Front
             | C::FromRight
             | C::FromAbove
@@ -46,6 +56,11 @@ impl Group {
             | C::NextGlyphs
             | C::Explain
             | C::Outside
+            | C::Orders
+            | C::BuildPause
+            | C::BuildFaster
+            | C::BuildSlower
+            | C::BuildAgain
             | C::Point(_)
             | C::ScrollUp
             | C::ScrollDown => Self::Maps,
@@ -84,12 +99,13 @@ fn shared_rows() -> Vec<(Vec<Command>, &'static str)> {
         (toward(Command::Around), "orbit"),
         (toward(Command::Look), "look around"),
         (vec![Command::Narrower, Command::Wider], "zoom in, out"),
-        (vec![Command::ShiftDown, Command::ShiftUp], "shift rectangle"),
-        (vec![Command::TiltDown, Command::TiltUp], "tilt rectangle"),
+        (vec![Command::ShiftLeft, Command::ShiftRight, Command::ShiftDown, Command::ShiftUp], "shift rectangle"),
+        (vec![Command::TiltLeft, Command::TiltRight, Command::TiltDown, Command::TiltUp], "tilt rectangle"),
         ((1..=9).map(Command::View).collect(), "go to view 1-9"),
         (vec![Command::NextMap, Command::LastMap], "next, previous map"),
         (vec![Command::Wipe(Side::Left), Command::Wipe(Side::Right)], "divider left, right"),
         (vec![Command::Wireframe, Command::NextGlyphs], "wireframe, kind of cells"),
+        (vec![Command::BuildFaster, Command::BuildSlower], "build faster, slower"),
         (toward(Command::Point), "move the cursor"),
         (vec![Command::ScrollUp, Command::ScrollDown], "turn pages"),
         (toward(Command::MoveLight), "move the light"),

@@ -104,7 +104,7 @@ fn a_key_is_told_of_once() {
     let modes = [KeyMode::Explain, KeyMode::Fly, KeyMode::Always];
     let text = shown(&help(&Keymap::default(), &modes, "", SCREEN), SCREEN);
     assert_eq!(text.matches("arrows").count(), 1, "{text}");
-    assert!(text.contains("HJKL  look around") && text.contains("e c    up, down"), "{text}");
+    assert!(text.contains("HJKL     look around") && text.contains("e c    up, down"), "{text}");
 }
 
 #[test]

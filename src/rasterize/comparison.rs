@@ -1,0 +1,196 @@
+//! Image order beside object order: the tests and the time of each.
+
+use super::{DepthBuffer, Rasterizer};
+use crate::camera::Camera;
+use crate::color::LinearRgb;
+use crate::framebuffer::Resolution;
+use crate::hit::{Observer, PrimitiveTest, closest_hit_observed};
+use crate::material::Material;
+use crate::render::{Executor, GBufferSample, Sampling, TraceDepth, trace_g_buffer_partial};
+use crate::scene::{Object, Scene};
+use crate::shape::Sphere;
+use glam::Vec3;
+use std::num::NonZeroU32;
+use std::time::{Duration, Instant};
+
+/// The times in which the calling thread finds the visible object of each pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrderTimes {
+    /// The time of tracing a ray through each pixel, in trees that are built before.
+    pub image: Duration,
+    /// The time of drawing each object.
+    pub object: Duration,
+}
+
+/// The number of measurements, of which the fastest counts.
+const ROUNDS: u32 = 3;
+
+impl OrderTimes {
+    /// Measures both orders.
+    pub fn measure(scene: &Scene, camera: &Camera, resolution: Resolution) -> Self {
+        let traced = || {
+            let (one, depth) = (Sampling::Each(NonZeroU32::MIN), TraceDepth::Surfaces);
+            let seen = |sample: &GBufferSample| sample.hit.map(|hit| (hit.object, hit.t));
+            trace_g_buffer_partial(Executor::CurrentThread, scene, camera, resolution, one, depth, seen)
+        };
+        Self { image: fastest(traced), object: fastest(|| Rasterizer::drawn(scene, camera, resolution)) }
+    }
+}
+
+/// Returns the shortest time that `run` takes.
+fn fastest<T>(mut run: impl FnMut() -> T) -> Duration {
+    let time = |_| {
+        let start = Instant::now();
+        // Without the black box the optimiser removes a result that is not used.
+        std::hint::black_box(run());
+        start.elapsed()
+    };
+    (0..ROUNDS).map(time).min().unwrap_or_default()
+}
+
+/// Both orders of a picture, which builds them slowly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// The times of both orders.
+    pub times: OrderTimes,
+    /// The number of tests up to each pixel, row by row from the top, of a ray through each.
+    pub image_tests: Vec<u64>,
+    /// The number of tests up to each object, where each triangle of a mesh is one.
+    pub object_tests: Vec<u64>,
+    /// The nearest object of each pixel, as an index into `object_tests`.
+    pub nearest: DepthBuffer,
+    /// The times for growing numbers of spheres in a picture of the same size.
+    pub growth: Vec<(u32, OrderTimes)>,
+}
+
+impl Comparison {
+    /// The numbers of spheres for which both orders are measured.
+    pub const NUMBERS: [u32; 4] = [10, 100, 1_000, 10_000];
+
+    /// Compares both orders: image order in a picture of size `image`, and object order in one of
+    /// size `object`.
+    ///
+    /// The times are those of the first size.
+    pub fn new(scene: &Scene, camera: &Camera, [image, object]: [Resolution; 2]) -> Self {
+        let (width, height) = (image.width(), image.height());
+        let rays = camera.eye_rays(image.aspect_ratio());
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x as f32 + 0.5, y as f32 + 0.5)));
+        let mut count = Count(0);
+        let image_tests = pixels.map(|(x, y)| {
+            let ray = rays.through(x / width as f32, (height as f32 - y) / height as f32);
+            closest_hit_observed(scene, &ray, &mut count);
+            count.0
+        });
+        let growth = Self::NUMBERS.map(|number| {
+            let scene = spheres_in_a_cube(number, scene.camera());
+            (number, OrderTimes::measure(&scene, scene.camera(), image))
+        });
+        let image_tests = image_tests.collect();
+        let (mut steps, mut object_tests) = (ObjectSteps::new(camera, object), Vec::new());
+        while steps.draw_next(scene) {
+            object_tests.push(steps.rasterizer.tests());
+        }
+        let times = OrderTimes::measure(scene, camera, image);
+        Self { times, image_tests, object_tests, nearest: steps.rasterizer.buffer, growth: growth.to_vec() }
+    }
+
+    /// Returns the number of tests of the order that needs more.
+    pub fn total_tests(&self) -> u64 {
+        let last = |tests: &[u64]| tests.last().copied().unwrap_or(0);
+        last(&self.image_tests).max(last(&self.object_tests))
+    }
+
+    /// Returns the number of pixels that image order has drawn after this number of tests.
+    pub fn built_pixels(&self, tests: u64) -> usize {
+        self.image_tests.partition_point(|&until| until <= tests)
+    }
+}
+
+/// A picture that is drawn object by object, where each triangle of a mesh is one.
+pub struct ObjectSteps {
+    rasterizer: Rasterizer,
+    /// The next object of the scene, and the next primitive of its shape.
+    next: (usize, u32),
+    drawn: u32,
+}
+
+impl ObjectSteps {
+    /// Returns an empty picture.
+    pub fn new(camera: &Camera, resolution: Resolution) -> Self {
+        Self { rasterizer: Rasterizer::new(camera, resolution), next: (0, 0), drawn: 0 }
+    }
+
+    /// Draws the next object; returns false after the last one.
+    pub fn draw_next(&mut self, scene: &Scene) -> bool {
+        let Some(shape) = scene.objects().get(self.next.0).map(|object| &object.shape) else { return false };
+        if self.next.1 == shape.primitive_count() {
+            self.next = (self.next.0 + 1, 0);
+            return self.draw_next(scene);
+        }
+        self.rasterizer.draw(&shape.primitive(self.next.1), self.drawn);
+        self.rasterizer.finish();
+        self.next.1 += 1;
+        self.drawn += 1;
+        true
+    }
+
+    /// Returns the number of objects that were drawn.
+    pub fn drawn(&self) -> u32 {
+        self.drawn
+    }
+
+    /// Returns the nearest of these objects at a pixel, by its number from 0, and its depth.
+    pub fn nearest(&self, x: u32, y: u32) -> Option<(u32, f32)> {
+        self.rasterizer.buffer.at(x, y)
+    }
+}
+
+/// An observer that counts the tests of surfaces and of tree nodes.
+struct Count(u64);
+
+impl Observer for Count {
+    fn node_tested(&mut self) {
+        self.0 += 1;
+    }
+
+    fn primitive_tested(&mut self, _: PrimitiveTest) {
+        self.0 += 1;
+    }
+}
+
+/// Returns a scene of spheres at random positions, whose radii shrink with their number so that
+/// their volumes add up to the same sum.
+pub fn spheres_in_a_cube(number: u32, otherwise: &Camera) -> Scene {
+    let radius = 0.6 / libm::cbrtf(number as f32);
+    let grey = Material::diffuse(LinearRgb::grey(0.5)).unwrap_or_default();
+    let object = |(center, factor): (Vec3, f32)| Object::new(Sphere::unchecked(center, radius * factor), grey);
+    let camera = Camera::look_at(Vec3::new(0.0, 1.2, 5.0), Vec3::new(0.0, 0.4, 0.0));
+    let camera = camera.and_then(|camera| camera.with_fov_degrees(40.0)).unwrap_or(*otherwise);
+    Scene::new(camera, random_spheres(number).map(object).collect())
+}
+
+/// Returns random centres in a cube of side 2.4, and random factors of radii from 0.5 to 1.5.
+pub fn random_spheres(number: u32) -> impl Iterator<Item = (Vec3, f32)> {
+    // The seed is fixed, so that results of different days and programs are about the same scene.
+    let mut random = Xorshift(0x9E37_79B9_7F4A_7C15);
+    (0..number).map(move |_| {
+        let [x, y, z] = [(); 3].map(|()| random.next() * 2.4 - 1.2);
+        (Vec3::new(x, y + 0.4, z), 0.5 + random.next())
+    })
+}
+
+/// Marsaglia's xorshift generator (Xorshift RNGs, 2003) with 64 bits and the shifts 13, 7 and 17.
+/// Our own, because a crate's generator may change its sequence with a release, and a program in another language needs
+/// the same one.
+struct Xorshift(u64);
+
+impl Xorshift {
+    /// Returns the next random number, uniform in 0..1, from the upper 24 bits of the state: as
+    /// many as an f32 represents exactly.
+    fn next(&mut self) -> f32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 40) as f32 / 16_777_216.0
+    }
+}

@@ -1,0 +1,118 @@
+//! The pace at which both orders build their pictures.
+
+use std::time::Duration;
+
+/// The time of a whole build at speed 1.
+const BUILD_TIME: Duration = Duration::from_secs(10);
+
+/// The least time between two steps that are shown.
+// Twenty pictures a second; the pixels of image order are as wide as a character.
+const STEP: Duration = Duration::from_millis(50);
+
+/// The number of steps of a build with reduced motion, one for each press of a key.
+const STEPS: u64 = 16;
+
+/// The smallest and the largest power of two of the speed.
+const POWERS: [i32; 2] = [-4, 6];
+
+/// The progress of a build in tests of a ray or pixel against an object.
+pub(in crate::viewer) struct Pace {
+    /// The tests carried out, at most `total`.
+    tests: f64,
+    total: u64,
+    /// The power of two of the speed.
+    power: i32,
+    is_paused: bool,
+    /// Whether the build proceeds by presses of a key alone.
+    by_steps: bool,
+    /// The time up to which the build has been carried out; `None` if it has not begun or pauses.
+    since: Option<Duration>,
+}
+
+impl Pace {
+    pub(super) fn new(by_steps: bool) -> Self {
+        Self { tests: 0.0, total: u64::MAX, power: 0, is_paused: false, by_steps, since: None }
+    }
+
+    /// Begins a build, which is complete at once if it proceeds by steps.
+    pub(super) fn start(&mut self) {
+        self.total = u64::MAX;
+        self.tests = if self.by_steps { f64::INFINITY } else { 0.0 };
+        self.since = None;
+    }
+
+    /// Sets the number of tests of the whole build.
+    pub(super) fn set_total(&mut self, total: u64) {
+        self.total = total;
+        self.tests = self.tests.min(total as f64);
+    }
+
+    /// Returns the number of tests carried out.
+    pub(super) fn tests(&self) -> u64 {
+        self.tests as u64
+    }
+
+    /// Returns the speed as a factor, such as `2x` or `1/2x`.
+    pub(super) fn speed(&self) -> String {
+        let factor = 1_u32 << self.power.unsigned_abs();
+        if self.power < 0 { format!("1/{factor}x") } else { format!("{factor}x") }
+    }
+
+    pub(super) fn is_paused(&self) -> bool {
+        self.is_paused
+    }
+
+    /// Returns whether the build proceeds by presses of a key alone.
+    pub(super) fn is_by_steps(&self) -> bool {
+        self.by_steps
+    }
+
+    /// Proceeds to `now`. Returns whether there was progress, and the time of the next step if
+    /// there is one.
+    pub(super) fn advance(&mut self, total: u64, now: Duration) -> (bool, Option<Duration>) {
+        self.set_total(total);
+        if self.by_steps || self.is_paused || self.tests() >= total {
+            self.since = None;
+            return (false, None);
+        }
+        let since = *self.since.get_or_insert(now);
+        if now < since + STEP {
+            return (false, Some(since + STEP));
+        }
+        self.since = Some(now);
+        let rate = total as f64 / BUILD_TIME.as_secs_f64() * libm::exp2(f64::from(self.power));
+        self.tests += rate * now.saturating_sub(since).as_secs_f64();
+        self.set_total(total);
+        (true, (self.tests() < total).then_some(now + STEP))
+    }
+
+    /// Pauses or goes on; builds a step if the build proceeds by steps.
+    ///
+    /// After the end the build starts again.
+    pub(in crate::viewer) fn pause(&mut self) {
+        let is_at_end = self.tests() >= self.total;
+        if is_at_end {
+            self.tests = 0.0;
+        }
+        if self.by_steps {
+            let step = self.total as f64 / STEPS as f64;
+            self.tests = (self.tests + step).min(self.total as f64);
+        } else {
+            self.is_paused = !is_at_end && !self.is_paused;
+            self.since = None;
+        }
+    }
+
+    pub(in crate::viewer) fn faster(&mut self) {
+        self.power = (self.power + 1).min(POWERS[1]);
+    }
+
+    pub(in crate::viewer) fn slower(&mut self) {
+        self.power = (self.power - 1).max(POWERS[0]);
+    }
+
+    /// Starts the build again.
+    pub(in crate::viewer) fn restart(&mut self) {
+        (self.tests, self.is_paused, self.since) = (0.0, false, None);
+    }
+}

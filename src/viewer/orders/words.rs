@@ -1,0 +1,125 @@
+//! The words and figures of both orders.
+
+use super::pace::Pace;
+use crate::control::Command;
+use crate::rasterize::{Comparison, OrderTimes};
+use crate::viewer::help::key_names;
+use crate::viewer::layers::Canvas;
+use crate::viewer::metadata::grouped;
+use std::time::Duration;
+use unicode_width::UnicodeWidthStr;
+
+/// The columns of each half from which on it holds the lecture's questions.
+const WIDE_HALF: usize = 38;
+
+/// The rows from which on the table of times is shown while the pictures are built.
+const TALL: u16 = 20;
+
+/// The columns of a number of the table.
+const NUMBER: usize = 7;
+
+/// Returns the lines after this number of tests.
+pub(super) fn lines(comparison: &Comparison, tests: u64, columns: u16, rows: u16) -> Vec<String> {
+    // A blank before each half, and the line between the pictures.
+    let half = usize::from((columns - 1) / 2).saturating_sub(1);
+    let is_built = tests >= comparison.total_tests();
+    let (pixels, objects) = (comparison.image_tests.len(), comparison.object_tests.len());
+    let built = comparison.built_pixels(tests);
+    let drawn = comparison.object_tests.partition_point(|&until| until <= tests);
+    let is_wide = half >= WIDE_HALF;
+    let mut pairs = vec![if is_wide {
+        [
+            format!("Image order: {}", progress("pixel", built, pixels)),
+            format!("Object order: {}", progress("object", drawn, objects)),
+        ]
+    } else {
+        ["image order".to_owned(), "object order".to_owned()]
+    }];
+    if is_wide {
+        let questions = ["what object is visible at this pixel?", "at what pixels is this object visible?"];
+        pairs.push(questions.map(str::to_owned));
+    } else if !is_built {
+        pairs.push([progress("pixel", built, pixels), progress("object", drawn, objects)]);
+    }
+    let figures = |of: &[u64], time: Duration| {
+        let all = of.last().copied().unwrap_or(0);
+        let tests =
+            if is_wide { format!("{} of {} tests; ", number(tests.min(all)), number(all)) } else { String::new() };
+        format!("{tests}{} ms", milliseconds(time))
+    };
+    let OrderTimes { image, object } = comparison.times;
+    pairs.push([figures(&comparison.image_tests, image), figures(&comparison.object_tests, object)]);
+    let mut lines: Vec<_> = pairs.into_iter().map(|[left, right]| format!("{left:<half$}  {right}")).collect();
+    if is_built || rows >= TALL {
+        lines.extend(growth(comparison, is_wide));
+    }
+    lines
+}
+
+/// Returns the place of the current pixel or object among all.
+fn progress(name: &str, done: usize, all: usize) -> String {
+    if done == all {
+        format!("{} {name}s", grouped(all))
+    } else {
+        format!("{name} {} of {}", grouped(done + 1), grouped(all))
+    }
+}
+
+/// Returns a table of the times of both orders for growing numbers of spheres.
+fn growth(comparison: &Comparison, is_wide: bool) -> [String; 3] {
+    let names = if is_wide {
+        ["the same for spheres", "image order, ms", "object order, ms"]
+    } else {
+        ["spheres", "image ms", "object ms"]
+    };
+    let first = if is_wide { 20 } else { 9 };
+    let rows: [Vec<String>; 3] = [
+        comparison.growth.iter().map(|(number, _)| grouped(*number as usize)).collect(),
+        comparison.growth.iter().map(|(_, times)| milliseconds(times.image)).collect(),
+        comparison.growth.iter().map(|(_, times)| milliseconds(times.object)).collect(),
+    ];
+    let mut names = names.into_iter();
+    rows.map(|row| {
+        let name = names.next().unwrap_or_default();
+        row.iter().fold(format!("{name:<first$}"), |line, number| line + &format!("{number:>NUMBER$}"))
+    })
+}
+
+/// Returns a time in milliseconds with three digits, or three decimals.
+fn milliseconds(time: Duration) -> String {
+    let time = 1e3 * time.as_secs_f64();
+    let decimals = [1.0, 10.0, 100.0].iter().filter(|&&limit| time < limit).count();
+    format!("{time:.decimals$}")
+}
+
+fn number(tests: u64) -> String {
+    grouped(tests as usize)
+}
+
+/// Returns the row of keys.
+pub(super) fn keys(canvas: &Canvas<'_>, pace: &Pace) -> String {
+    let key = |commands: &[Command], does: &str| {
+        key_names(canvas.keymap, canvas.modes, commands).map(|keys| format!("{keys} {does}"))
+    };
+    let pause = match (pace.is_by_steps(), pace.is_paused()) {
+        (true, _) => "builds a step",
+        (false, true) => "goes on",
+        (false, false) => "pauses",
+    };
+    let speed = format!("speed {}", pace.speed());
+    let mut parts: Vec<_> = [
+        key(&[Command::BuildPause], pause),
+        key(&[Command::BuildFaster, Command::BuildSlower], &speed).filter(|_| !pace.is_by_steps()),
+        key(&[Command::BuildAgain], "again"),
+        key(&[Command::Close], "leaves"),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    let width = usize::from(canvas.screen().width).saturating_sub(2);
+    // The keys that are pressed least go first.
+    while parts.len() > 2 && parts.join("; ").width() > width {
+        parts.remove(parts.len() - 2);
+    }
+    parts.join("; ")
+}
