@@ -21,7 +21,8 @@ const MAX_NUMBERED_NAMES: u32 = 9999;
 /// Returns the contents of a file with the picture, without panels. Formats with a title get
 /// `name`.
 ///
-/// The cells have the glyphs that the terminal shows; they are in truecolor if the format has colours.
+/// The cells have the glyphs that the terminal shows; they are in truecolor if the format has colours. Default colours
+/// are those of the terminal, but light on black where the format draws them so.
 pub(super) fn contents(
     format: Format,
     name: &str,
@@ -29,17 +30,18 @@ pub(super) fn contents(
     geometry: Option<&Geometry>,
     capabilities: &Capabilities,
 ) -> io::Result<Vec<u8>> {
-    let Capabilities { cell_mode, cell_aspect, .. } = *capabilities;
+    let Capabilities { cell_mode, cell_aspect, light_background, .. } = *capabilities;
     match format.contents() {
         Contents::Pixels(write) => {
             let one = cell::resolution(cell_mode, Size::new(1, 1), cell_aspect).map_err(io::Error::other)?;
             write(picture, one.pixel_aspect(), PNG_SCALE)
         }
-        Contents::Cells { has_colors, write } => {
+        Contents::Cells { has_colors, is_on_black, write } => {
             // Truecolor even if the terminal has 16 colours, because the file may be viewed elsewhere.
             let mode = if has_colors { CellMode { colors: Colors::Truecolor, ..cell_mode } } else { cell_mode.plain() };
             let mut grid = Grid::new(Size::new(0, 0));
-            Painter::new(mode).paint(picture, geometry, &mut grid);
+            let light_background = light_background && !is_on_black;
+            Painter::new(mode).with_light_background(light_background).paint(picture, geometry, &mut grid);
             Ok(write(&grid, mode.colors, cell_aspect, name))
         }
     }

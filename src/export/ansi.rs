@@ -14,7 +14,11 @@ pub(super) const KIND: FormatRow = FormatRow {
     key: 'a',
     command: "WriteAnsi",
     title: "ANSI text in colour",
-    contents: Contents::Cells { has_colors: true, write: |grid, colors, _, _| ansi_or_text(grid, colors) },
+    contents: Contents::Cells {
+        has_colors: true,
+        is_on_black: false,
+        write: |grid, colors, _, _| ansi_or_text(grid, colors),
+    },
     difference: difference::by_rows,
 };
 

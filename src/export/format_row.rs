@@ -48,6 +48,8 @@ pub enum Contents {
     Cells {
         /// Whether the format has colours.
         has_colors: bool,
+        /// Whether default colours are light on black in the file, and not those of its reader.
+        is_on_black: bool,
         /// Makes the file from a grid, the colours of its cells, their aspect (height / width), and
         /// the name of the scene.
         write: fn(&Grid, Colors, f32, &str) -> Vec<u8>,

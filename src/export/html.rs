@@ -15,6 +15,7 @@ pub(super) const KIND: FormatRow = FormatRow {
     title: "HTML page",
     contents: Contents::Cells {
         has_colors: true,
+        is_on_black: true,
         write: |grid, _, aspect, name| page(grid, aspect, name).into_bytes(),
     },
     difference: difference::by_rows,

@@ -13,7 +13,11 @@ pub(super) const KIND: FormatRow = FormatRow {
     key: 's',
     command: "WriteSvg",
     title: "SVG drawing",
-    contents: Contents::Cells { has_colors: true, write: |grid, _, aspect, _| svg(grid, aspect).into_bytes() },
+    contents: Contents::Cells {
+        has_colors: true,
+        is_on_black: true,
+        write: |grid, _, aspect, _| svg(grid, aspect).into_bytes(),
+    },
     difference: difference::by_rows,
 };
 

@@ -15,7 +15,11 @@ pub(super) const KIND: FormatRow = FormatRow {
     key: 'x',
     command: "WriteTally",
     title: "tally",
-    contents: Contents::Cells { has_colors: false, write: |grid, _, _, _| tally(grid).into_bytes() },
+    contents: Contents::Cells {
+        has_colors: false,
+        is_on_black: false,
+        write: |grid, _, _, _| tally(grid).into_bytes(),
+    },
     difference: difference::by_rows,
 };
 

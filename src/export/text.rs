@@ -11,7 +11,7 @@ pub(super) const KIND: FormatRow = FormatRow {
     key: 't',
     command: "WriteText",
     title: "plain text",
-    contents: Contents::Cells { has_colors: false, write: |grid, _, _, _| text(grid).into_bytes() },
+    contents: Contents::Cells { has_colors: false, is_on_black: false, write: |grid, _, _, _| text(grid).into_bytes() },
     difference: difference::by_rows,
 };
 

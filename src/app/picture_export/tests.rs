@@ -32,6 +32,16 @@ fn the_shown_picture_is_written_in_each_format() {
     let dots = CellMode { glyphs: Glyphs::Dots, ..CellMode::HALF_BLOCK };
     let in_dots = contents(Format::Text, "ball", &picture, None, &Capabilities { cell_mode: dots, ..capabilities });
     assert_eq!(String::from_utf8_lossy(&in_dots.expect("written")), "oo\noo\n");
+    let on_light = Capabilities { light_background: true, ..capabilities };
+    let on_light = |format| contents(format, "ball", &picture, None, &on_light).expect("written");
+    assert_eq!(String::from_utf8_lossy(&on_light(Format::Text)), "  \n", "white is blank on white");
+    let ascii = CellMode { glyphs: Glyphs::Ascii, ..CellMode::HALF_BLOCK };
+    let in_ascii = |format, light_background| {
+        let capabilities = Capabilities { cell_mode: ascii, light_background, ..capabilities };
+        contents(format, "ball", &picture, None, &capabilities).expect("written")
+    };
+    assert_ne!(in_ascii(Format::Ansi, true), in_ascii(Format::Ansi, false), "the terminal's background");
+    assert_eq!(in_ascii(Format::Svg, true), in_ascii(Format::Svg, false), "a drawing is on black");
     for &format in Format::ALL {
         assert!(!written(format).is_empty(), "{format:?}");
     }
