@@ -167,8 +167,7 @@ fn set_tones(parts: &mut [Part], background: Background, before: Option<&Remembe
         for &at in run {
             let part = &mut parts[at as usize];
             let share = ((part.light - least) / range).clamp(0.0, 1.0);
-            let share = if background == Background::Light { 1.0 - share } else { share };
-            part.tone = tone(part.extent, share, part.kept_fill);
+            part.tone = tone(part.extent, share, background, part.kept_fill);
             (top, bottom) = (top.min(part.rows[0]), bottom.max(part.rows[1]));
         }
         heights.push((object, bottom + 1 - top));
@@ -179,11 +178,19 @@ fn set_tones(parts: &mut [Part], background: Background, before: Option<&Remembe
 /// Returns the tone for a share of the range of an object's light.
 ///
 /// It is the one with the character `kept` if the share is less than a tenth of a step away from that.
-fn tone(extent: Extent, share: f32, kept: Option<u8>) -> Tone {
+///
+/// On a light background the darkest parts get the densest characters.
+// Of planes the tones change places and the limits stay, so that the lightest quarter is blank: with the share inverted
+// as for objects, patterns of a lit floor were single dots and rows that look like edges.
+fn tone(extent: Extent, share: f32, background: Background, kept: Option<u8>) -> Tone {
+    let is_light = background == Background::Light;
+    let plane = |tones: [Tone; 4]| if is_light { [tones[3], tones[2], tones[1], tones[0]] } else { tones };
+    let [level, upright] = [plane(LEVEL), plane(UPRIGHT)];
+    let share = if is_light && extent == Extent::Bounded { 1.0 - share } else { share };
     let (tones, limits): (&[Tone], &[f32]) = match extent {
         Extent::Nothing => return LEVEL[0],
-        Extent::Level => (&LEVEL, &[0.1, 0.4, 0.72]),
-        Extent::Upright => (&UPRIGHT, &[0.1, 0.4, 0.75]),
+        Extent::Level => (&level, &[0.1, 0.4, 0.72]),
+        Extent::Upright => (&upright, &[0.1, 0.4, 0.75]),
         Extent::Bounded => (&OBJECT, &OBJECT_LIMITS),
     };
     let is_near = |&at: &usize| {
