@@ -5,7 +5,7 @@
 
 use super::model::{Continuity, EPSILON as EPSILON_64, Evaluation, Model};
 use super::tape::{Binary, Index, Operation, Tape, Unary};
-use crate::lanes::{F32x8, LANES, LaneMask, Lanes, SimdKernel, set_bits};
+use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Mask, SimdKernel, set_bits};
 use std::f64::consts::FRAC_2_PI;
 
 /// Twice the largest relative rounding error of an f32 operation.
@@ -24,60 +24,170 @@ const LARGEST_ANGLE: f32 = 8000.0;
 /// Eight models in memory: the coefficients, then the error.
 pub(super) type StoredModels = [F32x8; 4];
 
+/// The origins of eight lines, then their directions, axis by axis.
+pub(super) type Lines = [[[f64; LANES]; 3]; 2];
+
+/// Eight values, one per lane.
+pub(super) type EightValues = [f64; LANES];
+
 /// The models of a tape on eight pieces, for the lanes in `lanes`.
 pub(super) struct PacketModels<'a> {
     pub(super) tape: &'a Tape,
-    pub(super) coordinates: [StoredModels; 3],
+    pub(super) lines: &'a Lines,
+    /// The starts of the pieces, then their ends.
+    pub(super) pieces: &'a [[f64; LANES]; 2],
     pub(super) lanes: u32,
     pub(super) scratch: &'a mut Vec<StoredModels>,
 }
 
+/// The models of the whole formula, and what follows for each lane.
+pub(super) struct Outcome {
+    models: StoredModels,
+    may_jump: u32,
+    is_undefined: u32,
+    /// The lanes in which the sign is certain, and the same on the whole piece.
+    is_clear: u32,
+    /// Of these, the lanes in which it is negative.
+    is_negative: u32,
+}
+
+impl Outcome {
+    pub(super) fn model(&self, lane: usize) -> Model {
+        of_lane(&self.models, lane)
+    }
+
+    pub(super) fn continuity(&self, lane: usize) -> Continuity {
+        Continuity { may_jump: self.may_jump >> lane & 1 == 1, is_undefined: self.is_undefined >> lane & 1 == 1 }
+    }
+
+    pub(super) fn is_clear(&self, lane: usize) -> bool {
+        self.is_clear >> lane & 1 == 1
+    }
+
+    /// Returns the sign in a lane that is clear.
+    pub(super) fn sign(&self, lane: usize) -> f64 {
+        if self.is_negative >> lane & 1 == 1 { -1.0 } else { 1.0 }
+    }
+}
+
 impl SimdKernel for PacketModels<'_> {
-    type Output = (StoredModels, [Continuity; LANES]);
+    type Output = Outcome;
 
     #[inline(always)]
     fn run<N: Lanes>(self) -> Self::Output {
-        let Self { tape, coordinates, lanes, scratch } = self;
+        let Self { tape, lines, pieces, lanes, scratch } = self;
+        let coordinates = coordinates(lines, pieces);
         let mut evaluation = PacketEvaluation { lanes, may_jump: 0, is_undefined: 0 };
-        scratch.clear();
-        for &operation in tape.operations() {
-            let of = |index: Index| Models::<N>::load(&scratch[usize::from(index)]);
+        let operations = tape.operations();
+        scratch.resize(operations.len(), [F32x8::ZERO; 4]);
+        for (index, &operation) in operations.iter().enumerate() {
+            let (known, rest) = scratch.split_at_mut(index);
             let models = match operation {
                 Operation::Constant(bits) => Models::constant(f64::from_bits(bits)),
                 Operation::Coordinate(axis) => Models::load(&coordinates[usize::from(axis)]),
                 Operation::Unary(function, a) => {
-                    evaluation.unary(function, of(a), tape.is_non_negative(usize::from(a)))
+                    evaluation.unary(function, Models::of(known, a), tape.is_non_negative(usize::from(a)))
                 }
-                Operation::Binary(function, a, b) => evaluation.binary(function, of(a), of(b)),
+                Operation::Binary(function, a, b) => match (function, tape.factor(a), tape.factor(b)) {
+                    (Binary::Multiply, Some(factor), _) => Models::of(known, b).scaled(N::splat(factor)),
+                    (Binary::Multiply, _, Some(factor)) => Models::of(known, a).scaled(N::splat(factor)),
+                    (Binary::Add, Some(term), _) => Models::of(known, b).shifted(N::splat(term)),
+                    (Binary::Add, _, Some(term)) => Models::of(known, a).shifted(N::splat(term)),
+                    (Binary::Subtract, Some(term), _) => Models::of(known, b).negate().shifted(N::splat(term)),
+                    (Binary::Subtract, _, Some(term)) => Models::of(known, a).shifted(N::splat(-term)),
+                    _ => evaluation.binary(function, Models::of(known, a), Models::of(known, b)),
+                },
             };
-            scratch.push(models.store());
+            rest[0] = models.store();
         }
-        let continuity = |lane: usize| Continuity {
-            may_jump: evaluation.may_jump >> lane & 1 == 1,
-            is_undefined: evaluation.is_undefined >> lane & 1 == 1,
-        };
         let last = scratch.last().copied().unwrap_or(Models::<N>::anything().store());
-        (last, std::array::from_fn(continuity))
+        let PacketEvaluation { may_jump, is_undefined, .. } = evaluation;
+        let [is_positive, is_negative] = Models::<N>::load(&last).signs();
+        let is_clear = (is_positive | is_negative) & !is_undefined;
+        Outcome { models: last, may_jump, is_undefined, is_clear, is_negative }
     }
 }
 
-/// Returns the models of a coordinate on eight pieces, see [`Model::coordinate`].
-pub(super) fn coordinates(o: &[f64; LANES], d: &[f64; LANES], pieces: &[[f64; 2]; LANES]) -> StoredModels {
-    let mut models = [F32x8::ZERO; 4];
-    for lane in 0..LANES {
-        let [from, to] = pieces[lane];
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        let (at_middle, slope) = (middle * d[lane], half * d[lane]);
-        let rounding_64 = o[lane].abs() + at_middle.abs() + (from.abs() + to.abs()) * d[lane].abs();
-        let (c0, c1) = ((o[lane] + at_middle) as f32, slope as f32);
-        let rounding = EPSILON * (c0.abs() + c1.abs()) + (4.0 * EPSILON_64 * rounding_64) as f32;
-        (models[0].0[lane], models[1].0[lane], models[3].0[lane]) = (c0, c1, enlarged(rounding));
+/// The values of a tape at one place of each of eight lines.
+pub(super) struct PacketValues<'a> {
+    pub(super) tape: &'a Tape,
+    pub(super) lines: &'a Lines,
+    pub(super) t: &'a EightValues,
+    pub(super) scratch: &'a mut Vec<EightValues>,
+}
+
+impl SimdKernel for PacketValues<'_> {
+    type Output = EightValues;
+
+    /// Returns the same bits as [`Tape::value`] for each lane, whatever the instruction set.
+    #[inline(always)]
+    fn run<N: Lanes>(self) -> EightValues {
+        let Self { tape, lines: [origins, directions], t, scratch } = self;
+        let operations = tape.operations();
+        scratch.resize(operations.len(), [0.0; LANES]);
+        for (index, &operation) in operations.iter().enumerate() {
+            let (known, rest) = scratch.split_at_mut(index);
+            let (of, to) = (|index: Index| &known[usize::from(index)], &mut rest[0]);
+            match operation {
+                Operation::Constant(bits) => *to = [f64::from_bits(bits); LANES],
+                Operation::Coordinate(axis) => {
+                    let (o, d) = (&origins[usize::from(axis)], &directions[usize::from(axis)]);
+                    (0..LANES).for_each(|lane| to[lane] = o[lane] + d[lane] * t[lane]);
+                }
+                Operation::Unary(function, a) => of_each(function, of(a), to),
+                Operation::Binary(function, a, b) => of_both(function, of(a), of(b), to),
+            }
+        }
+        scratch.last().copied().unwrap_or([f64::NAN; LANES])
+    }
+}
+
+/// Computes a function of each value.
+///
+/// Frequent ones have a loop of their own, which becomes vector instructions.
+#[inline(always)]
+fn of_each(function: Unary, a: &EightValues, to: &mut EightValues) {
+    match function {
+        Unary::Negate => (0..LANES).for_each(|lane| to[lane] = -a[lane]),
+        Unary::Abs => (0..LANES).for_each(|lane| to[lane] = a[lane].abs()),
+        Unary::Square => (0..LANES).for_each(|lane| to[lane] = a[lane] * a[lane]),
+        Unary::Sqrt => (0..LANES).for_each(|lane| to[lane] = a[lane].sqrt()),
+        _ => (0..LANES).for_each(|lane| to[lane] = function.at(a[lane])),
+    }
+}
+
+/// Computes a function of two values in each lane; see [`of_each`].
+#[inline(always)]
+fn of_both(function: Binary, a: &EightValues, b: &EightValues, to: &mut EightValues) {
+    match function {
+        Binary::Add => (0..LANES).for_each(|lane| to[lane] = a[lane] + b[lane]),
+        Binary::Subtract => (0..LANES).for_each(|lane| to[lane] = a[lane] - b[lane]),
+        Binary::Multiply => (0..LANES).for_each(|lane| to[lane] = a[lane] * b[lane]),
+        Binary::Divide => (0..LANES).for_each(|lane| to[lane] = a[lane] / b[lane]),
+        _ => (0..LANES).for_each(|lane| to[lane] = function.at(a[lane], b[lane])),
+    }
+}
+
+/// Returns the models of the coordinates on eight pieces, see [`Model::coordinate`].
+#[inline(always)]
+fn coordinates([origins, directions]: &Lines, [from, to]: &[[f64; LANES]; 2]) -> [StoredModels; 3] {
+    let mut models = [[F32x8::ZERO; 4]; 3];
+    for (axis, [c0, c1, _, error]) in models.iter_mut().enumerate() {
+        let (o, d) = (&origins[axis], &directions[axis]);
+        for lane in 0..LANES {
+            let (middle, half) = (0.5 * (from[lane] + to[lane]), 0.5 * (to[lane] - from[lane]));
+            let (at_middle, slope) = (middle * d[lane], half * d[lane]);
+            let of_f64 = o[lane].abs() + at_middle.abs() + (from[lane].abs() + to[lane].abs()) * d[lane].abs();
+            (c0.0[lane], c1.0[lane]) = ((o[lane] + at_middle) as f32, slope as f32);
+            let rounding = EPSILON * (c0.0[lane].abs() + c1.0[lane].abs()) + (4.0 * EPSILON_64 * of_f64) as f32;
+            error.0[lane] = enlarged(rounding);
+        }
     }
     models
 }
 
 /// Returns the model of one lane.
-pub(super) fn of_lane(models: &StoredModels, lane: usize) -> Model {
+fn of_lane(models: &StoredModels, lane: usize) -> Model {
     let [c0, c1, c2, error] = models.map(|numbers| f64::from(numbers.0[lane]));
     Model { c: [c0, c1, c2], error }
 }
@@ -94,7 +204,7 @@ struct Models<N> {
     error: N,
 }
 
-/// Eight values, as a function of eight models and a hull around each.
+/// A function at c0 of eight models.
 struct Taylor<N> {
     /// The function, its derivative, and half the second derivative, at c0.
     at: [N; 3],
@@ -108,6 +218,12 @@ impl<N: Lanes> Models<N> {
     #[inline(always)]
     fn load(&[c0, c1, c2, error]: &StoredModels) -> Self {
         Self { c: [N::load(&c0), N::load(&c1), N::load(&c2)], error: N::load(&error) }
+    }
+
+    /// Returns the models of the operation at `index`.
+    #[inline(always)]
+    fn of(known: &[StoredModels], index: Index) -> Self {
+        Self::load(&known[usize::from(index)])
     }
 
     #[inline(always)]
@@ -183,15 +299,41 @@ impl<N: Lanes> Models<N> {
         Self::new([a0 * b0, a0 * b1 + a1 * b0, a0 * b2 + a1 * b1 + a2 * b0], beyond + error)
     }
 
+    /// Returns the product with a number, which may itself be rounded.
     #[inline(always)]
     fn scaled(self, factor: N) -> Self {
-        let size = factor.abs();
-        let error = self.error * size + N::splat(EPSILON) * size * self.magnitude();
-        Self::new(self.c.map(|c| c * factor), error)
+        let ([c0, c1, c2], size) = (self.c, factor.abs());
+        let error = self.error * size + N::splat(2.0 * EPSILON) * size * self.magnitude();
+        Self::new([c0 * factor, c1 * factor, c2 * factor], error)
+    }
+
+    /// Returns the sum with a number, which may itself be rounded.
+    #[inline(always)]
+    fn shifted(self, term: N) -> Self {
+        let [c0, c1, c2] = self.c;
+        let rounding = N::splat(EPSILON) * (c0.abs() + term.abs());
+        Self::new([c0 + term, c1, c2], self.error + rounding)
+    }
+
+    /// Returns the lanes in which all values are positive, and those in which all are negative.
+    #[inline(always)]
+    fn signs(self) -> [u32; 2] {
+        let ([c0, c1, c2], error) = (self.c, self.error + N::splat(4.0 * EPSILON) * self.magnitude());
+        // The coefficients in the Bernstein basis, between which the polynomial lies.
+        let (first, middle, last) = (c0 - c1 + c2, c0 - c2, c0 + c1 + c2);
+        let (least, most) = (first.min(middle).min(last), first.max(middle).max(last));
+        let (positive, negative) = (error.lt(least), most.lt(-error));
+        [positive.bits(), negative.bits()]
+    }
+
+    /// Returns the Taylor polynomial of a function of the quantity, or the hull if it is narrower.
+    #[inline(always)]
+    fn function(self, taylor: Taylor<N>, hull: Self) -> Self {
+        self.taylor(taylor).or_if_narrower(hull)
     }
 
     #[inline(always)]
-    fn function(self, Taylor { at: [g, g1, g2], third, off }: Taylor<N>, hull: Self) -> Self {
+    fn taylor(self, Taylor { at: [g, g1, g2], third, off }: Taylor<N>) -> Self {
         let Self { c: [_, c1, c2], error } = self;
         let (two, sizes) = (N::splat(2.0), c1.abs() + c2.abs());
         let spread = sizes + error;
@@ -202,11 +344,8 @@ impl<N: Lanes> Models<N> {
         // A bound that has vanished is none.
         let third = N::select(third.lt(N::splat(f32::MIN_POSITIVE)), N::splat(f32::INFINITY), third);
         let remainder = third * spread * spread * spread;
-        let taylor = Self::new(
-            [g, g1 * c1, linear + square],
-            g1.abs() * error + g2.abs() * beyond + remainder + rounding + of_values,
-        );
-        taylor.or_if_narrower(hull)
+        let error = g1.abs() * error + g2.abs() * beyond + remainder + rounding + of_values;
+        Self::new([g, g1 * c1, linear + square], error)
     }
 
     /// Returns the models with the smaller errors.
@@ -218,10 +357,21 @@ impl<N: Lanes> Models<N> {
 
     #[inline(always)]
     fn squared(self) -> Self {
+        let (Self { c: [c0, c1, c2], error }, size) = (self, self.magnitude());
+        let (two, four) = (N::splat(2.0), N::splat(4.0 * EPSILON));
+        let beyond = (two * c1.abs() + c2.abs()) * c2.abs();
+        let doubled = two * c0;
+        let squares = [c0 * c0, doubled * c1, doubled * c2 + c1 * c1];
+        let taylor = Self::new(squares, beyond + error * (two * size + error) + four * size * size);
+        // The hull is not narrower there. The choice depends on the lane alone, the shortcut on all.
+        let is_close = taylor.error.le(size * size * N::splat(0.25));
+        if is_close.all() {
+            return taylor;
+        }
         let ([low, high], zero) = (self.range(), N::splat(0.0));
         let (one, other) = (low * low, high * high);
         let least = N::select(low.le(zero) & zero.le(high), zero, one.min(other));
-        self.times(self).or_if_narrower(Self::hull(least, one.max(other)))
+        Self::select(is_close, taylor, taylor.or_if_narrower(Self::hull(least, one.max(other))))
     }
 
     /// Returns |a|: `a` itself or its negative, or on a range around 0 the chord.
@@ -259,18 +409,34 @@ impl<N: Lanes> Models<N> {
         self.function(taylor, Self::hull(-one, one))
     }
 
+    /// Returns e to the quantity by its Taylor polynomial.
+    ///
+    /// The numbers are the value at c0, the largest value, and the error of the first.
+    // Not a closure, which would be compiled without the kernel's target features: that took four times as long.
+    #[inline(always)]
+    fn exponential_taylor(self, [value, most, off]: [N; 3]) -> Self {
+        let third = most * N::splat(1.0 / 5.9);
+        self.taylor(Taylor { at: [value, value, N::splat(0.5) * value], third, off })
+    }
+
     #[inline(always)]
     fn exponential(self) -> Self {
-        let ([low, high], zero) = (self.range(), N::splat(0.0));
-        let (value, most) = (exp(self.c[0]), exp(high) * N::splat(1.0 + OF_EXP));
-        let is_in_reach = high.lt(N::splat(87.0));
+        let ([low, high], zero, one) = (self.range(), N::splat(0.0), N::splat(1.0));
+        let value = exp(self.c[0]);
+        let off = N::splat(OF_EXP) * value + N::splat(1e-37);
+        // e^s is at most 1 + s + s^2 up to s = 1, and the hull is not narrower then. The choice depends on the lane
+        // alone, the shortcut on all.
+        let spread = high - self.c[0];
+        let (is_narrow, is_in_reach) = (spread.lt(one) & N::splat(-80.0).lt(self.c[0]), high.lt(N::splat(87.0)));
+        let most = value * (one + spread + spread * spread) * N::splat(1.0 + 2.0 * OF_EXP);
+        let narrow = self.exponential_taylor([value, most, off]);
+        if (is_narrow & is_in_reach).all() {
+            return narrow;
+        }
+        let most = exp(high) * N::splat(1.0 + OF_EXP);
         let least = N::select(low.lt(N::splat(-86.0)), zero, exp(low) * N::splat(1.0 - OF_EXP));
-        let taylor = Taylor {
-            at: [value, value, N::splat(0.5) * value],
-            third: most * N::splat(1.0 / 5.9),
-            off: N::splat(OF_EXP) * value + N::splat(1e-37),
-        };
-        Self::select(is_in_reach, self.function(taylor, Self::hull(least, most)), Self::anything())
+        let wide = self.exponential_taylor([value, most, off]).or_if_narrower(Self::hull(least, most));
+        Self::select(is_in_reach, Self::select(is_narrow, narrow, wide), Self::anything())
     }
 }
 

@@ -11,10 +11,11 @@
 
 use super::Formula;
 use super::model::{Continuity, Model};
-use super::packet::{PacketModels, StoredModels, coordinates, of_lane};
+use super::packet::{EightValues, Lines, PacketModels, PacketValues, StoredModels};
 use crate::lanes::{F32x8, LANES, set_bits};
 use crate::simd;
 use glam::DVec3;
+use std::cell::RefCell;
 
 /// The length of the shortest piece, relative to the range.
 const MIN_PIECE: f64 = 1e-9;
@@ -22,8 +23,12 @@ const MIN_PIECE: f64 = 1e-9;
 /// The relative length of a piece with a sign change at which the search among points begins.
 const BRACKET: f64 = 1.0 / 16_384.0;
 
-/// The relative length of a piece below which models are computed in f64.
-const FINE: f64 = 1.0 / 8192.0;
+/// The relative length of a piece below which a model is computed in f64, if that in f32 is
+/// blurred.
+const SHORT: f64 = 1.0 / 1024.0;
+
+/// The error of a blurred model, relative to the extent of its polynomial.
+const BLUR: f64 = 1.0 / 16.0;
 
 /// The length of the longest stretch of undecided sign that may hide a root, relative to the range.
 // f may be zero on a whole stretch of the ray, which is no surface. Near a triple root it may be zero in f64.
@@ -46,20 +51,29 @@ pub(crate) struct Line {
     pub(crate) direction: DVec3,
 }
 
-/// The search for roots along up to eight lines at once, with its scratch memory.
-#[derive(Debug)]
-pub(crate) struct Solver<'f> {
-    formula: &'f Formula,
+thread_local! {
+    /// The scratch memory of a thread: allocating it for each search took a tenth of the time.
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
+/// Memory for the values of a tape's operations.
+#[derive(Debug, Default)]
+struct Scratch {
     models: Vec<Model>,
     packets: Vec<StoredModels>,
-    values: Vec<f64>,
+    values: Vec<EightValues>,
+}
+
+/// The search for roots of a formula along up to eight lines at once.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Solver<'f> {
+    formula: &'f Formula,
 }
 
 /// Up to eight searches: each lane's line, range, and the t after which its root is not needed.
 #[derive(Clone, Debug)]
 pub(crate) struct Searches {
-    /// The origins, then the directions, axis by axis.
-    lines: [[[f64; LANES]; 3]; 2],
+    lines: Lines,
     walks: [Walk; LANES],
     ends: [[f64; 2]; LANES],
     /// The lanes that still search.
@@ -92,8 +106,17 @@ struct Walk {
 /// The outcome of a piece.
 enum Found {
     Nothing,
-    /// The first root lies between these two.
-    Root([f64; 2]),
+    Root(Root),
+}
+
+/// A stretch in which the first root lies.
+struct Root {
+    low: f64,
+    high: f64,
+    /// The root of a model.
+    guess: f64,
+    /// The slope of the model there, times the sign in front of it; 0 if there is no model.
+    slope: f64,
 }
 
 impl Searches {
@@ -123,28 +146,23 @@ impl Searches {
         self.lanes == 0
     }
 
-    fn line(&self, lane: usize) -> Line {
-        let [origin, direction] = self.lines.map(|axes| DVec3::from_array(axes.map(|numbers| numbers[lane])));
-        Line { origin, direction }
-    }
-
-    /// Returns the next piece of each lane, after the end of those that have arrived.
-    fn pieces(&mut self) -> [[f64; 2]; LANES] {
-        let mut pieces = [[0.0; 2]; LANES];
+    /// Returns the ends of each lane's next piece, without the lanes that have arrived.
+    fn next_pieces(&mut self) -> [[f64; LANES]; 2] {
+        let mut ends = [[0.0; LANES]; 2];
         for lane in set_bits(self.lanes) {
-            let (Walk { t, length, .. }, [to, until]) = (self.walks[lane], self.ends[lane]);
-            if t >= to || t > until {
+            let (Walk { t, length, .. }, [to, until]) = (&self.walks[lane], self.ends[lane]);
+            if *t >= to || *t > until {
                 self.lanes &= !(1 << lane);
             }
-            pieces[lane] = [t, (t + length).min(to)];
+            (ends[0][lane], ends[1][lane]) = (*t, (t + length).min(to));
         }
-        pieces
+        ends
     }
 }
 
 impl<'f> Solver<'f> {
     pub(crate) fn new(formula: &'f Formula) -> Self {
-        Self { formula, models: Vec::new(), packets: Vec::new(), values: Vec::new() }
+        Self { formula }
     }
 
     /// Returns the first root in `start..=end`, unless it is known to lie behind `until`.
@@ -152,99 +170,148 @@ impl<'f> Solver<'f> {
     /// It is the first f32 at which the sign of f, computed in f64, differs from the sign in front of it. `until`
     /// only ends the search early; it does not change a root in front of it. A root at `start` itself is passed, so
     /// that the search from a root finds the next one.
-    pub(crate) fn first_root(&mut self, line: &Line, range: [f32; 2], until: f32) -> Option<f32> {
+    pub(crate) fn first_root(self, line: &Line, range: [f32; 2], until: f32) -> Option<f32> {
         let mut searches = Searches::NONE;
         searches.add(0, line, range, until);
-        let (lanes, roots) = self.first_roots(searches);
+        let (lanes, roots) = self.first_roots(&mut searches);
         (lanes != 0).then_some(roots.0[0])
     }
 
     /// Returns the lanes with a root, and their first roots: each as if it were alone.
-    pub(crate) fn first_roots(&mut self, mut searches: Searches) -> (u32, F32x8) {
-        let (mut found, mut roots) = (0, F32x8::ZERO);
-        for _ in 0..MAX_PIECES {
-            let pieces = searches.pieces();
-            if searches.lanes == 0 {
-                break;
+    pub(crate) fn first_roots(self, searches: &mut Searches) -> (u32, F32x8) {
+        SCRATCH.with_borrow_mut(|scratch| {
+            let (mut found, mut brackets) = (0, [Bracket::NONE; LANES]);
+            for _ in 0..MAX_PIECES {
+                let pieces = searches.next_pieces();
+                if searches.lanes == 0 {
+                    break;
+                }
+                let ended = self.advance(searches, &pieces, &mut brackets, scratch);
+                found |= ended;
+                searches.lanes &= !ended;
             }
-            // Short pieces are left to f64: in f32, their models are rounding errors.
-            let is_short = |lane: &usize| pieces[*lane][1] - pieces[*lane][0] < searches.walks[*lane].range * FINE;
-            let fine = set_bits(searches.lanes).filter(is_short).fold(0, |lanes, lane| lanes | 1 << lane);
-            let coarse = searches.lanes & !fine;
-            let packet = (coarse != 0).then(|| self.packet(&searches, &pieces, coarse));
-            for lane in set_bits(searches.lanes) {
-                let line = searches.line(lane);
-                let (model, continuity) = match &packet {
-                    Some((models, continuity)) if coarse >> lane & 1 == 1 => (of_lane(models, lane), continuity[lane]),
-                    _ => self.model(&line, pieces[lane]),
-                };
-                if let Found::Root(bracket) = searches.walks[lane].advance(&model, continuity, pieces[lane]) {
-                    roots.0[lane] = self.first_change(&line, bracket, searches.walks[lane].sign);
-                    found |= 1 << lane;
-                    searches.lanes &= !(1 << lane);
+            self.narrow(&searches.lines, &mut brackets, found, scratch);
+            (found, F32x8(brackets.map(|bracket| bracket.after)))
+        })
+    }
+
+    /// Advances each walk by a piece, and returns the lanes whose first root is now in a bracket.
+    fn advance(
+        self,
+        searches: &mut Searches,
+        pieces: &[[f64; LANES]; 2],
+        brackets: &mut [Bracket; LANES],
+        scratch: &mut Scratch,
+    ) -> u32 {
+        let (tape, packets) = (&self.formula.tape, &mut scratch.packets);
+        let lines = &searches.lines;
+        let outcome = simd::dispatch(PacketModels { tape, lines, pieces, lanes: searches.lanes, scratch: packets });
+        let mut found = 0;
+        for lane in set_bits(searches.lanes) {
+            let (walk, piece) = (&mut searches.walks[lane], [pieces[0][lane], pieces[1][lane]]);
+            if outcome.is_clear(lane) && walk.passes(outcome.sign(lane), piece) {
+                continue;
+            }
+            let (mut model, mut continuity) = (outcome.model(lane), outcome.continuity(lane));
+            // In f32, models of short pieces may be little more than rounding errors.
+            let is_short = piece[1] - piece[0] < walk.range * SHORT;
+            if is_short && !(model.error < BLUR * (model.c[1].abs() + model.c[2].abs())) {
+                let line = line_of(&searches.lines, lane);
+                let (o, d) = (line.origin.to_array(), line.direction.to_array());
+                let coordinates = [0, 1, 2].map(|axis| Model::coordinate(o[axis], d[axis], piece));
+                (model, continuity) = tape.model(coordinates, &mut scratch.models);
+            }
+            if let Found::Root(root) = walk.advance(&model, continuity, piece) {
+                brackets[lane] = Bracket::new(root, walk.sign);
+                found |= 1 << lane;
+            }
+        }
+        found
+    }
+
+    /// Narrows the brackets of these lanes until `after` is the first f32 of the other sign.
+    fn narrow(self, lines: &Lines, brackets: &mut [Bracket; LANES], mut lanes: u32, scratch: &mut Scratch) {
+        while lanes != 0 {
+            let t = brackets.map(|bracket| f64::from(bracket.next));
+            let (tape, scratch) = (&self.formula.tape, &mut scratch.values);
+            let values = simd::dispatch(PacketValues { tape, lines, t: &t, scratch });
+            for lane in set_bits(lanes) {
+                if brackets[lane].take(values[lane]) {
+                    lanes &= !(1 << lane);
                 }
             }
         }
-        (found, roots)
+    }
+}
+
+/// Two places between which f changes its sign, on the way to neighbouring numbers.
+#[derive(Clone, Copy, Debug)]
+struct Bracket {
+    before: f32,
+    after: f32,
+    /// The sign of f in front of the root.
+    sign: f64,
+    /// The slope of f times the sign, below 0; 0 if it is not known yet.
+    slope: f64,
+    /// The place whose value is needed next.
+    next: f32,
+    /// The place that was evaluated last, and its value times the sign.
+    last: [f64; 2],
+    /// The number of values so far.
+    count: u32,
+}
+
+impl Bracket {
+    const NONE: Self = Self { before: 0.0, after: 0.0, sign: 0.0, slope: 0.0, next: 0.0, last: [0.0; 2], count: 0 };
+
+    fn new(Root { low, high, guess, slope }: Root, sign: f64) -> Self {
+        let (before, after, slope) = (at_most(low), at_least(high), slope.min(0.0));
+        let next = if slope < 0.0 { (guess as f32).max(before).min(after) } else { before };
+        Self { before, after, sign, slope, next, ..Self::NONE }
     }
 
-    fn packet(
-        &mut self,
-        searches: &Searches,
-        pieces: &[[f64; 2]; LANES],
-        lanes: u32,
-    ) -> (StoredModels, [Continuity; LANES]) {
-        let [o, d] = &searches.lines;
-        let coordinates = [0, 1, 2].map(|axis| coordinates(&o[axis], &d[axis], pieces));
-        let scratch = &mut self.packets;
-        simd::dispatch(PacketModels { tape: &self.formula.tape, coordinates, lanes, scratch })
-    }
-
-    fn model(&mut self, line: &Line, piece: [f64; 2]) -> (Model, Continuity) {
-        let (o, d) = (line.origin.to_array(), line.direction.to_array());
-        let coordinates = [0, 1, 2].map(|axis| Model::coordinate(o[axis], d[axis], piece));
-        self.formula.tape.model(coordinates, &mut self.models)
-    }
-
-    fn value(&mut self, line: &Line, t: f32) -> f64 {
-        self.formula.tape.value(line.origin + line.direction * f64::from(t), &mut self.values)
-    }
-
-    /// Returns the first f32 in the bracket at which the sign is no longer `sign`.
-    fn first_change(&mut self, line: &Line, [low, high]: [f64; 2], sign: f64) -> f32 {
-        let (mut before, mut after) = (at_most(low), at_least(high));
-        let (mut value_before, mut value_after) = (self.value(line, before) * sign, self.value(line, after) * sign);
-        if value_after > 0.0 {
-            // The formula changes its sign and changes it back between two neighbouring numbers.
-            return after;
+    /// Takes the value at `next`, and returns whether the bracket is as narrow as possible.
+    fn take(&mut self, value: f64) -> bool {
+        let (t, value) = (f64::from(self.next), value * self.sign);
+        self.count += 1;
+        if self.count == 1 && self.slope == 0.0 {
+            (self.last, self.next) = ([t, value], self.after);
+            return false;
         }
-        let mut is_behind = None;
-        for step in 1_u32.. {
-            let (least, most) = (before.next_up(), after.next_down());
-            if least > most {
-                break;
-            }
-            // The secant's root (after the Illinois method); every fourth time the middle, if the secant is poor.
-            let share = if step % 4 == 0 { 0.5 } else { value_before / (value_before - value_after) };
-            let (from, to) = (f64::from(before), f64::from(after));
-            let guess = (from + (to - from) * if (0.0..=1.0).contains(&share) { share } else { 0.5 }) as f32;
-            // A little beyond the secant's root, seen from the last guess, so that the root is soon enclosed.
-            let guess = match is_behind {
-                Some(true) => guess.next_up().next_up(),
-                Some(false) => guess.next_down().next_down(),
-                None => guess,
-            };
-            let guess = guess.max(least).min(most);
-            let value = self.value(line, guess) * sign;
-            is_behind = Some(value > 0.0);
-            if value > 0.0 {
-                (before, value_before, value_after) = (guess, value, 0.5 * value_after);
-            } else {
-                (after, value_after, value_before) = (guess, value, 0.5 * value_before);
-            }
+        // The values at the ends are not needed where their signs are known.
+        if value > 0.0 {
+            self.before = self.before.max(self.next);
+        } else {
+            self.after = self.after.min(self.next);
         }
-        after
+        let (least, most) = (self.before.next_up(), self.after.next_down());
+        if least > most {
+            return true;
+        }
+        let secant = (value - self.last[1]) / (t - self.last[0]);
+        // Includes NaN. Between neighbours the secant is that of rounding errors.
+        if self.count > 1 && secant < 0.0 && (t - self.last[0]).abs() > 16.0 * f64::from(f32::EPSILON) * t.abs() {
+            self.slope = secant;
+        }
+        self.last = [t, value];
+        self.next = self.guess(t, value).max(least).min(most);
+        false
     }
+
+    /// Returns a place a little beyond the root, seen from the last place, so that the root is soon
+    /// enclosed: by Newton's method, or the middle in turn if that takes long.
+    fn guess(&self, t: f64, value: f64) -> f32 {
+        let root = (t - value / self.slope) as f32;
+        if !root.is_finite() || self.count > 3 && self.count % 2 == 1 {
+            return (0.5 * (f64::from(self.before) + f64::from(self.after))) as f32;
+        }
+        if value > 0.0 { root.next_up() } else { root.next_down() }
+    }
+}
+
+fn line_of(lines: &Lines, lane: usize) -> Line {
+    let of = |axes: &[[f64; LANES]; 3]| DVec3::new(axes[0][lane], axes[1][lane], axes[2][lane]);
+    Line { origin: of(&lines[0]), direction: of(&lines[1]) }
 }
 
 impl Walk {
@@ -266,6 +333,16 @@ impl Walk {
         Self { t: from, length: range, since: from, stride: shortest, shortest, range, ..Self::NOWHERE }
     }
 
+    /// Passes a piece in which f has only this sign, unless that needs a closer look.
+    fn passes(&mut self, sign: f64, [from, to]: [f64; 2]) -> bool {
+        let is_simple = self.skipped == 0.0 && (self.sign == sign || self.sign == 0.0);
+        if is_simple {
+            self.since = to;
+            self.pass(to, 2.0 * (to - from), sign);
+        }
+        is_simple
+    }
+
     /// Moves past the piece, or to where it has to be looked at more closely.
     fn advance(&mut self, model: &Model, continuity: Continuity, piece @ [from, to]: [f64; 2]) -> Found {
         let width = to - from;
@@ -284,7 +361,7 @@ impl Walk {
         }
         (self.undecided, self.stride) = (0, self.shortest);
         if self.sign != 0.0 && sign != self.sign && from - self.since <= MAX_STRETCH * self.range {
-            return Found::Root([self.since, from]);
+            return Found::Root(Root { low: self.since, high: from, guess: from, slope: 0.0 });
         }
         (self.sign, self.since) = (sign, from);
         if b.iter().all(|b| sign * b > model.error) {
@@ -352,7 +429,9 @@ impl Walk {
         if let Some(far) = far {
             let end = (from + far * width).min(to);
             if end - start <= BRACKET * self.range {
-                return Found::Root([start, end]);
+                let at_zero = first_below(b, 0.0).unwrap_or(far);
+                let slope = 2.0 * ((b[1] - b[0]) + at_zero * (b[0] - 2.0 * b[1] + b[2])) / width;
+                return Found::Root(Root { low: start, high: end, guess: from + at_zero * width, slope });
             }
             (self.t, self.length) = (start, (end - start).min(0.75 * width));
             return Found::Nothing;

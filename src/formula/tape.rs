@@ -67,6 +67,12 @@ impl Tape {
         &self.operations
     }
 
+    /// Returns the rounded value of an operation that is a constant, if it is an ordinary number.
+    pub(super) fn factor(&self, index: Index) -> Option<f32> {
+        let Operation::Constant(bits) = self.operations[usize::from(index)] else { return None };
+        Some(f64::from_bits(bits) as f32).filter(|rounded| rounded.is_normal())
+    }
+
     /// Returns whether a value depends on the time.
     pub(super) fn moves(&self) -> bool {
         self.operations.contains(&Operation::Coordinate(TIME))

@@ -1,4 +1,4 @@
-use super::packet::{PacketModels, StoredModels};
+use super::packet::{PacketModels, PacketValues};
 use super::*;
 use crate::lanes::{ALL, LANES};
 use crate::simd;
@@ -78,7 +78,7 @@ fn roots_between(text: &str, [low, high]: [f32; 2]) -> Vec<f32> {
 
 fn roots_of(formula: &Formula, [low, high]: [f32; 2]) -> Vec<f32> {
     let line = Line { origin: DVec3::ZERO, direction: DVec3::X };
-    let (mut solver, mut from, mut found) = (Solver::new(formula), low, Vec::new());
+    let (solver, mut from, mut found) = (Solver::new(formula), low, Vec::new());
     while let Some(root) = solver.first_root(&line, [from, high], high) {
         found.push(root);
         from = root;
@@ -377,20 +377,20 @@ fn models_of_eight_pieces_enclose_all_values() {
             let from = random.between(0.0, 4.0);
             [from, from + random.between(0.0, 1.0) * libm::pow(10.0, -(random.below(5) as f64))]
         });
-        let coordinates = [0, 1, 2].map(|axis: usize| {
-            packet::coordinates(&lines.map(|line| line[0][axis]), &lines.map(|line| line[1][axis]), &pieces)
-        });
+        let by_axis = [0, 1].map(|end: usize| [0, 1, 2].map(|axis: usize| lines.map(|line| line[end][axis])));
+        let ends = [0, 1].map(|end: usize| pieces.map(|piece: [f64; 2]| piece[end]));
         let tape = &formula.tape;
-        let packet = PacketModels { tape, coordinates, lanes: ALL, scratch: &mut scratch };
-        let (stored, continuity) = simd::dispatch(packet);
-        let packet = PacketModels { tape, coordinates, lanes: ALL, scratch: &mut scratch };
-        let (of_arrays, _) = simd::run_scalar(packet);
-        let bits = |models: StoredModels| models.map(|numbers| numbers.0.map(|number| f32::to_bits(number + 0.0)));
-        let is_nan = stored.iter().any(|numbers| numbers.0.iter().any(|number| number.is_nan()));
-        assert!(is_nan || bits(stored) == bits(of_arrays), "{text}: {stored:?}, {of_arrays:?}, seed {SEED:#x}");
+        let packet = PacketModels { tape, lines: &by_axis, pieces: &ends, lanes: ALL, scratch: &mut scratch };
+        let outcome = simd::dispatch(packet);
+        let packet = PacketModels { tape, lines: &by_axis, pieces: &ends, lanes: ALL, scratch: &mut scratch };
+        let of_arrays = simd::run_scalar(packet);
         for lane in 0..LANES {
-            let (model, [o, d], [from, to]) = (packet::of_lane(&stored, lane), lines[lane], pieces[lane]);
+            let (model, [o, d], [from, to]) = (outcome.model(lane), lines[lane], pieces[lane]);
             let [c0, c1, c2] = model.c;
+            let (bits, same) = (model_bits(&model), model_bits(&of_arrays.model(lane)));
+            let is_same = (bits, outcome.is_clear(lane)) == (same, of_arrays.is_clear(lane));
+            assert!(is_same, "{text}: {model:?}, {:?}, seed {SEED:#x}", of_arrays.model(lane));
+            let continuity = outcome.continuity(lane);
             for _ in 0..20 {
                 let t = random.between(from, to);
                 let value = formula.tape.value(o + d * t, &mut values);
@@ -399,10 +399,40 @@ fn models_of_eight_pieces_enclose_all_values() {
                 // The value itself, and u, are rounded.
                 let slack = 1e-11 * (1.0 + value.abs() + c1.abs() + c2.abs());
                 let is_outside = distance > model.error + slack
-                    || (value.is_nan() && model.error.is_finite() && !continuity[lane].may_jump);
+                    || (value.is_nan() && model.error.is_finite() && !continuity.may_jump)
+                    || (outcome.is_clear(lane) && value * outcome.sign(lane) < 0.0);
                 assert!(!is_outside, "{text} at {t} in {from}..{to}: {value}, {model:?}, {o} + t {d}, seed {SEED:#x}");
                 checked += 1;
             }
+        }
+    }
+}
+
+/// Returns the bits of a model, in which all NaN are the same, and 0 and -0.
+fn model_bits(model: &model::Model) -> [u64; 4] {
+    let bits = |number: f64| if number.is_nan() { u64::MAX } else { (number + 0.0).to_bits() };
+    let [c0, c1, c2] = model.c;
+    [c0, c1, c2, model.error].map(bits)
+}
+
+/// Eight values have the bits that each has alone, with all instruction sets.
+#[test]
+fn eight_values_are_those_of_single_points() {
+    const SEED: u64 = 0x5eed_0007;
+    let (mut random, mut scratch, mut values) = (Random(SEED), Vec::new(), Vec::new());
+    for _ in 0..1000 {
+        let text = random.formula(3);
+        let Ok(formula) = Formula::parse(&text, &[]) else { continue };
+        let lines: [[DVec3; 2]; LANES] = from_fn(|_| [random.point(2.0), random.point(1.0)]);
+        let by_axis = [0, 1].map(|end: usize| [0, 1, 2].map(|axis: usize| lines.map(|line| line[end][axis])));
+        let t = from_fn(|_| random.between(0.0, 4.0));
+        let tape = &formula.tape;
+        let eight = simd::dispatch(PacketValues { tape, lines: &by_axis, t: &t, scratch: &mut scratch });
+        let of_arrays = simd::run_scalar(PacketValues { tape, lines: &by_axis, t: &t, scratch: &mut scratch });
+        for lane in 0..LANES {
+            let alone = tape.value(lines[lane][0] + lines[lane][1] * t[lane], &mut values);
+            let is_same = |value: f64| value.to_bits() == alone.to_bits() || value.is_nan() && alone.is_nan();
+            assert!(is_same(eight[lane]) && is_same(of_arrays[lane]), "{text}: {eight:?}, {alone}, seed {SEED:#x}");
         }
     }
 }
@@ -418,7 +448,7 @@ fn eight_searches_find_what_each_finds_alone() {
         let lines: [Line; LANES] = from_fn(|_| Line { origin: random.point(2.0), direction: random.point(1.0) });
         let mut searches = Searches::NONE;
         lines.iter().enumerate().for_each(|(lane, line)| searches.add(lane, line, [0.0, 4.0], 4.0));
-        let (found, roots) = Solver::new(&formula).first_roots(searches);
+        let (found, roots) = Solver::new(&formula).first_roots(&mut searches);
         for (lane, line) in lines.iter().enumerate() {
             let root = (found >> lane & 1 == 1).then_some(roots.0[lane]);
             assert_eq!(root, Solver::new(&formula).first_root(line, [0.0, 4.0], 4.0), "{text}, seed {SEED:#x}");

@@ -115,9 +115,8 @@ impl Implicit {
         text.chars().take(MAX_SHOWN - 3).chain("...".chars()).collect()
     }
 
-    /// Returns the direction in which f grows, of unit length, if it has one at the point.
-    fn normal(&self, at: DVec3) -> Option<DVec3> {
-        let (_, gradient) = self.0.formula.gradient(at);
+    /// Returns the direction of a gradient, of unit length, if it has one.
+    fn normal(gradient: DVec3) -> Option<DVec3> {
         let largest = gradient.abs().max_element();
         // Divides by the largest coordinate first, so that no square overflows or vanishes.
         let scaled = gradient / largest;
@@ -153,7 +152,7 @@ impl Surface for Implicit {
         if searches.is_empty() {
             return (0, F32x8::ZERO);
         }
-        let (found, t) = Solver::new(&self.0.formula).first_roots(searches);
+        let (found, t) = Solver::new(&self.0.formula).first_roots(&mut searches);
         let is_within = |lane: &usize| within[*lane].contains(t.0[*lane]);
         (set_bits(found).filter(is_within).fold(0, |lanes, lane| lanes | 1 << lane), t)
     }
@@ -174,7 +173,9 @@ impl Surface for Implicit {
         let position = if step.abs().max_element() <= rounding { at - step } else { at };
         let size = at.abs().max_element().max(f64::from(self.0.bounds.extent().max_element()));
         let in_front = direction * (f64::from(super::CLEARANCE) * size / direction.length());
-        let normal = self.normal(at).or_else(|| self.normal(at - in_front)).unwrap_or(-direction / direction.length());
+        let normal = Self::normal(gradient)
+            .or_else(|| Self::normal(self.0.formula.gradient(at - in_front).1))
+            .unwrap_or(-direction / direction.length());
         let [position, normal] = [position, normal].map(|vector| Vector::splat(vector.as_vec3()));
         Points::seen_by(&Probe::new(*ray).rays, position, normal, size as f32, [0.0; 2]).point()
     }
@@ -192,7 +193,7 @@ impl Described for Implicit {
     fn equation(&self, ray: &Ray) -> Equation {
         let (probe, line) = (Probe::new(*ray), line_of(ray));
         let Interval { min, max } = self.within_bounds(&probe);
-        let (mut solver, mut roots, mut from) = (Solver::new(&self.0.formula), Vec::new(), min.max(0.0));
+        let (solver, mut roots, mut from) = (Solver::new(&self.0.formula), Vec::new(), min.max(0.0));
         while roots.len() < MAX_ROOTS
             && let Some(root) = solver.first_root(&line, [from, max], max)
         {

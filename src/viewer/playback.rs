@@ -64,3 +64,6 @@ impl Viewer {
         self.show_note(text);
     }
 }
+
+#[cfg(all(test, unit_tests))]
+mod tests;
