@@ -2,7 +2,10 @@
 //!
 //! For the tests and for the fuzzer.
 
+use glam::Vec3;
 use termtrace::internals::control::Keymap;
+use termtrace::internals::hit::{self, Kernel};
+use termtrace::internals::ray::{EightRays, Ray};
 use termtrace::internals::scene_text::text_from;
 use termtrace::{CameraPath, Render, Resolution, Scene, SceneError};
 
@@ -29,6 +32,35 @@ pub(crate) fn formula(bytes: &[u8]) {
             assert!(light.pixels().iter().all(|light| [light.r, light.g, light.b].into_iter().all(is_finite)));
         }
         Err(error) => assert_shown(&error, text.as_bytes()),
+    }
+}
+
+/// The first roots of a formula, after six bytes for the eye and the point that it looks at.
+///
+/// They do not depend on the kernel, nor on how many rays are searched together, and the next root lies behind.
+pub(crate) fn roots(bytes: &[u8]) {
+    let Some((view, formula)) = bytes.split_at_checked(6) else { return };
+    let formula = String::from_utf8_lossy(formula).replace('"', "'");
+    let text = format!(
+        "(camera: (eye: (0, 0, 9), target: (0, 0, 0)), objects: [Implicit(f: r\"{formula}\", \
+         params: {{\"a\": 0.5}}, bounds: Box(min: (-1, -1, -1), max: (1, 1, 1)))])"
+    );
+    let Ok(scene) = Scene::from_bytes("scene.ron", text.as_bytes()) else { return };
+    let [ex, ey, ez, tx, ty, tz] = [0, 1, 2, 3, 4, 5].map(|at| f32::from(view[at].cast_signed()) / 32.0);
+    let direction = |lane: u8| Vec3::new(tx - ex + 0.02 * f32::from(lane), ty - ey, tz - ez + 0.013);
+    let rays: Vec<_> = (0..8).map(|lane| Ray { origin: Vec3::new(ex, ey, ez), direction: direction(lane) }).collect();
+    let hits = |kernel| {
+        let mut hits = Vec::new();
+        hit::closest_hits(kernel, &scene, &[EightRays::of(&rays)], &mut hits);
+        (0..8).map(|lane| hits[0].hit(&scene, lane).map(|hit| hit.t)).collect::<Vec<_>>()
+    };
+    let found = hits(Kernel::Packet);
+    assert_eq!(found, hits(Kernel::Single), "{formula}");
+    assert_eq!(found, hits(Kernel::Scalar), "{formula}");
+    for (ray, t) in rays.iter().zip(found) {
+        let alone = hit::closest_hit(&scene, ray).map(|hit| hit.t);
+        assert_eq!(alone, t, "{formula}");
+        assert!(t.is_none_or(|t| t.is_finite() && t >= 0.0), "{formula}: {t:?}");
     }
 }
 
