@@ -8,16 +8,18 @@
 //! - Numbers are finite and correctly rounded to single precision. Coordinates stay as written, whichever axis is up.
 //! - Colours become linear light. Vertex colours of PLY and OBJ are sRGB, as the programs that write them mean it;
 //!   reflectances (`Kd` of MTL, base colours and vertex colours of glTF) are linear already. Everything is opaque.
-//! - The first fault ends the reading. It is a [`MeshError`]: one line with the position.
+//! - The first fault ends the reading. It is a [`MeshError`]: one line with the position. For a caller that takes
+//!   notices, faulty lines, faces and facets are left out instead, unless no triangle remains or more than one in a
+//!   hundred is faulty; contents that no picture shows, such as lines, are counted. `left_out` makes notices of both.
 //! - Any bytes give a mesh or an error in linear time. Memory is not reserved for a claimed count that the file could
 //!   not hold, so that it stays within a small multiple of the file's size (40 times the JSON of a glTF file that names
 //!   nothing but empty meshes, at most 8 times elsewhere). At most [`MAX_MESH_BYTES`] are read, [`MAX_TRIANGLES`] made,
 //!   and [`MAX_TEXELS`] decoded.
 //!
 //! Side files (MTL files, textures, buffers of glTF) are requested by their path relative to the mesh through a
-//! function passed in; no URL and no absolute path is ever requested. A missing side file is an error, because a
-//! picture without it would look plausible and be wrong. To a caller that takes warnings, missing materials and
-//! textures are reported as such, and their surfaces are clay.
+//! function passed in; no URL and no absolute path is ever requested: of an absolute path only the last part is. A
+//! missing side file is an error, because a picture without it would look plausible and be wrong. To a caller that
+//! takes warnings, missing materials and textures are reported as such, and their surfaces are clay.
 //!
 //! # Crates that were tried
 //!
@@ -56,6 +58,8 @@ mod fault;
 mod gltf;
 #[cfg(feature = "mesh")]
 mod format;
+#[cfg(feature = "mesh")]
+mod left_out;
 mod limits;
 #[cfg_attr(not(feature = "mesh"), allow(dead_code, reason = "only mesh files are turned"))]
 mod up;
@@ -92,7 +96,7 @@ pub use up::UpAxis;
 pub(crate) use up::guessed;
 
 use crate::color::LinearRgb;
-use glam::{Mat3, Vec2, Vec3};
+use glam::{DVec3, Mat3, Vec2, Vec3};
 
 /// The reflectance of a mesh without colours: warm clay, `#d98b5f`.
 pub(crate) const CLAY: LinearRgb = LinearRgb::new(0.694, 0.258, 0.114);
@@ -108,7 +112,7 @@ pub(crate) const CLAY: LinearRgb = LinearRgb::new(0.694, 0.258, 0.114);
 /// assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 2, 3]]);
 ///
 /// let error = MeshFile::from_bytes("x.obj", b"v 0 0 0\nf 1 2 3\n", &mut |_| unreachable!()).unwrap_err();
-/// assert_eq!(error.to_string(), "x.obj:2:5: vertex 2 does not exist: 1 is defined above this line");
+/// assert_eq!(error.to_string(), "x.obj:2:5: vertex 2 does not exist: the file has 1");
 /// # Ok::<(), termtrace::MeshError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -199,6 +203,11 @@ impl MeshFile {
         &self.triangles
     }
 
+    /// Returns the number of triangles without an area, which no ray hits.
+    pub fn flat_triangle_count(&self) -> usize {
+        self.triangles.iter().filter(|&&corners| is_flat(corners, &self.positions)).count()
+    }
+
     /// Returns whether the file has normals.
     pub fn has_normals(&self) -> bool {
         !self.normals.values().is_empty()
@@ -266,6 +275,12 @@ impl MeshFile {
             && self.materials.iter().all(|material| is_reflectance(material.reflectance))
             && self.material_runs.iter().all(|(_, m)| m.is_none_or(|m| (m as usize) < self.materials.len()))
     }
+}
+
+/// Returns whether a triangle has no area.
+fn is_flat(corners: [u32; 3], positions: &[Vec3]) -> bool {
+    let [a, b, c] = corners.map(|corner| positions[corner as usize].as_dvec3());
+    (b - a).cross(c - a) == DVec3::ZERO
 }
 
 fn unit_or_zero(normal: Vec3) -> Vec3 {

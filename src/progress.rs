@@ -59,13 +59,20 @@ pub struct Reporter<'w> {
     on_progress: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync),
     on_dependency: Option<&'w (dyn Fn(&Path) + Sync)>,
     on_warning: Option<&'w (dyn Fn(String) + Sync)>,
+    is_strict: bool,
     cancellation: Cancellation,
 }
 
 impl<'w> Reporter<'w> {
     /// Returns a reporter that calls `on_progress`, which cancels the work by returning `Break`.
     pub fn new(on_progress: &'w (dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Self {
-        Self { on_progress, on_dependency: None, on_warning: None, cancellation: Cancellation::default() }
+        Self {
+            on_progress,
+            on_dependency: None,
+            on_warning: None,
+            is_strict: false,
+            cancellation: Cancellation::default(),
+        }
     }
 
     /// Returns the reporter with a callback that gets the path of each file before the file is
@@ -83,9 +90,9 @@ impl<'w> Reporter<'w> {
         Self { on_warning: Some(on_warning), ..self }
     }
 
-    /// Returns the reporter without a callback for warnings, so that they become errors.
+    /// Returns the reporter for which warnings are errors. Notices stay notices.
     pub fn strict(&self) -> Self {
-        Self { on_warning: None, cancellation: self.cancellation.clone(), ..*self }
+        Self { is_strict: true, cancellation: self.cancellation.clone(), ..*self }
     }
 
     /// Returns the reporter with a token that cancels the work.
@@ -116,12 +123,24 @@ impl<'w> Reporter<'w> {
         }
     }
 
-    /// Reports a warning. Returns false if there is no callback, so that the caller returns an
-    /// error.
+    /// Reports a warning. Returns false if there is no callback or warnings are errors, so that the
+    /// caller returns an error.
     pub fn warn(&self, warning: impl FnOnce() -> String) -> bool {
+        !self.is_strict && self.notice(warning)
+    }
+
+    /// Reports a notice to the callback for warnings, and returns false if there is no callback.
+    ///
+    /// A notice is one line about contents of a file that are not shown.
+    pub fn notice(&self, notice: impl FnOnce() -> String) -> bool {
         if let Some(on_warning) = self.on_warning {
-            on_warning(warning());
+            on_warning(notice());
         }
+        self.takes_notices()
+    }
+
+    /// Returns whether there is a callback for warnings and notices.
+    pub fn takes_notices(&self) -> bool {
         self.on_warning.is_some()
     }
 

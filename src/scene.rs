@@ -193,6 +193,18 @@ impl Scene {
         }
     }
 
+    /// Returns a warning for each mesh with triangles that have no area.
+    #[doc(hidden)]
+    pub fn flat_meshes(&self) -> Vec<String> {
+        let warning = |(at, object): (usize, &Object)| {
+            let Shape::Mesh(mesh) = &object.shape else { return None };
+            let (flat, all) = (mesh.file().flat_triangle_count(), mesh.file().triangles().len());
+            let have = if flat == 1 { "has" } else { "have" };
+            (flat > 0).then(|| format!("object {at}: {flat} of its {all} triangles {have} no area"))
+        };
+        (1..).zip(self.objects()).filter_map(warning).collect()
+    }
+
     /// Returns a warning for each formula that certainly has no surface within its bounds.
     #[doc(hidden)]
     pub fn invisible_formulas(&self) -> Vec<String> {

@@ -32,6 +32,7 @@ pub(super) fn run(args: &CheckArgs) -> CommandResult {
     let lights = count(scene.lights().len(), "light");
     let path = args.scene.display().to_string();
     let faults = scene.darkness().map(str::to_owned).into_iter().chain(scene.invisible_formulas());
+    let faults = faults.chain(scene.flat_meshes());
     let warnings: String = faults.flat_map(|warning| [", but ".to_owned(), warning]).collect();
     write_stdout(format!("{}: OK ({objects}, {lights}){warnings}\n", visible(&path)).as_bytes())
 }

@@ -2,10 +2,12 @@
 
 use super::attribute::Attribute;
 use super::fault::MeshFault;
+use super::left_out::LeftOut;
 use super::limits::MAX_TRIANGLES;
-use super::{MeshFile, MeshMaterial};
+use super::{MeshFile, MeshMaterial, is_flat};
 use crate::color::LinearRgb;
 use glam::{DVec3, Vec2, Vec3};
+use std::collections::HashSet;
 
 /// The triangles and attributes read so far.
 #[derive(Default)]
@@ -17,6 +19,8 @@ pub(super) struct MeshBuilder {
     pub(super) colors: Attribute<LinearRgb>,
     pub(super) materials: Vec<MeshMaterial>,
     pub(super) material_runs: Vec<(u32, Option<u32>)>,
+    /// The features of materials that are not shown: index of the material, name in the singular.
+    pub(super) not_shown: Vec<(u32, &'static str)>,
 }
 
 /// The indices of a triangle's corners, for its positions and each attribute that it has.
@@ -56,27 +60,62 @@ impl MeshBuilder {
         if self.material_runs.last().is_some_and(|&(start, _)| start == from) {
             self.material_runs.pop();
         }
-        if self.material_runs.last().and_then(|&(_, before)| before) != material {
+        if self.last_material() != material {
             self.material_runs.push((from, material));
         }
     }
 
-    /// Returns the mesh. `nothing` describes the contents of a file without triangles, for the
-    /// message.
-    pub(super) fn finish(mut self, nothing: &str) -> Result<MeshFile, MeshFault> {
-        if self.triangles.is_empty() {
-            return Err(MeshFault::of_file(format!("there are no triangles in this file: {nothing}")));
+    /// Returns the material of the triangles added from here on.
+    pub(super) fn last_material(&self) -> Option<u32> {
+        self.material_runs.last().and_then(|&(_, material)| material)
+    }
+
+    /// Returns the mesh, without its triangles that lack a corner.
+    ///
+    /// `nothing` describes the contents of a file without triangles, for the message.
+    pub(super) fn finish(mut self, nothing: &str, left_out: &mut LeftOut<'_>) -> Result<MeshFile, MeshFault> {
+        if self.triangles.is_empty() || (left_out.has_faults() && !self.fill_gaps(left_out)) {
+            return Err(left_out.fault_of_nothing(format!("there are no triangles in this file: {nothing}")));
         }
-        self.shrink_to_fit();
-        let Self { positions, triangles, normals, texture_coordinates, colors, materials, material_runs } = self;
-        let mesh = MeshFile { positions, triangles, normals, texture_coordinates, colors, materials, material_runs };
+        if self.triangles.iter().all(|&corners| is_flat(corners, &self.positions)) {
+            left_out.not_shown("triangle (no triangle of the file has an area)", self.triangles.len());
+        }
+        let used: HashSet<_> = self.material_runs.iter().filter_map(|&(_, material)| material).collect();
+        for &(_, what) in self.not_shown.iter().filter(|(material, _)| used.contains(material)) {
+            left_out.not_shown(what, 1);
+        }
         // Readers have already checked all this, and reported faults with their positions; this is the last line of
         // defence.
-        if mesh.is_valid() {
-            Ok(mesh)
-        } else {
-            Err(MeshFault::of_file("this mesh has numbers or indices out of range"))
+        self.into_mesh().ok_or_else(|| MeshFault::of_file("this mesh has numbers or indices out of range"))
+    }
+
+    /// Returns the mesh; `None` if a number or index is out of range, or there is no triangle.
+    pub(super) fn into_mesh(mut self) -> Option<MeshFile> {
+        self.shrink_to_fit();
+        let Self { positions, triangles, normals, texture_coordinates, colors, materials, material_runs, .. } = self;
+        let mesh = MeshFile { positions, triangles, normals, texture_coordinates, colors, materials, material_runs };
+        mesh.is_valid().then_some(mesh)
+    }
+
+    /// Replaces the positions that were left out, which are not finite.
+    ///
+    /// Triangles that need one are flattened to a point. Returns false if there is no other triangle.
+    // The attributes and material runs refer to triangles by their number, so that none is removed.
+    fn fill_gaps(&mut self, left_out: &mut LeftOut<'_>) -> bool {
+        let is_whole = |triangle: &[u32; 3]| triangle.iter().all(|&i| self.positions[i as usize].is_finite());
+        let Some(&[whole, ..]) = self.triangles.iter().find(|triangle| is_whole(triangle)) else { return false };
+        for triangle in &mut self.triangles {
+            if !triangle.iter().all(|&i| self.positions[i as usize].is_finite()) {
+                *triangle = [whole; 3];
+                left_out.triangle();
+            }
         }
+        // A point of the mesh leaves its extent as it is.
+        let point = self.positions[whole as usize];
+        for position in self.positions.iter_mut().filter(|position| !position.is_finite()) {
+            *position = point;
+        }
+        true
     }
 
     /// Frees unused capacity: a mesh lives as long as its scene, and a vector that grew is up to

@@ -37,7 +37,7 @@ impl MeshFile {
                 break;
             }
         }
-        mesh.finish("").ok()
+        mesh.into_mesh()
     }
 
     /// Returns the cluster (index of a nonempty cube) of each vertex, and the mean position of each

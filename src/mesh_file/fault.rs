@@ -1,9 +1,11 @@
 //! The internal error type of the readers, which becomes a [`MeshError`] once the file's name is
 //! added.
 
+use super::limits::MAX_PATH_BYTES;
 use super::{FilePosition, MeshError};
 use crate::progress::{Cancelled, Unfinished};
 use crate::scene_text::clipped;
+use crate::text::visible;
 
 /// A fault, or a cancellation, before the file's name is added.
 ///
@@ -50,6 +52,11 @@ impl MeshFault {
     #[cold]
     pub(super) fn at_byte(at: usize, message: impl Into<String>) -> Self {
         Self(Box::new(Cause::Here { offset: FaultOffset::Byte(at), message: message.into() }))
+    }
+
+    /// Returns whether the fault is at one place of the mesh file, so that the rest may be read.
+    pub(super) fn is_of_part(&self) -> bool {
+        matches!(*self.0, Cause::Here { offset: FaultOffset::Text(_) | FaultOffset::Byte(_), .. })
     }
 
     /// Returns the error of the file with these bytes.
@@ -110,6 +117,25 @@ fn line_and_column(bytes: &[u8], offset: usize) -> (usize, usize) {
 pub(super) fn shown(bytes: &[u8]) -> String {
     // Messages show only the beginning of a long piece, so the rest is not decoded.
     format!("\"{}\"", clipped(&String::from_utf8_lossy(&bytes[..bytes.len().min(200)])))
+}
+
+/// Returns a path as messages show it: in quotes, printable. Of a long one the end is shown, which
+/// tells more than the folders.
+pub(super) fn shown_path(path: &str) -> String {
+    const MAX_CHARS: usize = 60;
+    let skipped = path.chars().count().saturating_sub(MAX_CHARS);
+    if skipped == 0 {
+        return format!("\"{}\"", visible(path));
+    }
+    // Cut where a name begins, unless the last name alone is too long.
+    let tail: String = path.chars().skip(skipped).collect();
+    let name = path.rsplit(['/', '\\']).next().unwrap_or_default();
+    let end = match tail.find(['/', '\\']) {
+        Some(at) => &tail[at..],
+        None if name.len() <= MAX_PATH_BYTES => name,
+        None => &tail,
+    };
+    format!("\"...{}\"", visible(end))
 }
 
 #[cfg(all(test, unit_tests))]

@@ -74,7 +74,11 @@ pub(super) fn recognised(name: &str, stated: Option<&str>, bytes: &[u8]) -> Resu
     if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
         return Err(MeshFault::of_file(format!("this {what}")));
     }
-    stated.map_or_else(|| by_ending(name), of_ending).ok_or_else(|| MeshFault::of_file(not_known(name, bytes)))
+    match stated.map_or_else(|| by_ending(name), of_ending) {
+        // Binary files are recognised by their size, or named: a text may begin with a comment.
+        Some(MeshFormat::StlBinary) if is_text(bytes) => Ok(MeshFormat::StlText),
+        format => format.ok_or_else(|| MeshFault::of_file(not_known(name, bytes))),
+    }
 }
 
 fn by_content(bytes: &[u8], text: &[u8]) -> Option<MeshFormat> {
@@ -90,14 +94,20 @@ fn by_content(bytes: &[u8], text: &[u8]) -> Option<MeshFormat> {
     }
 }
 
-/// Returns whether the bytes start with the word `solid`, and the first 512 are all possible in
-/// text.
+/// Returns whether the bytes start with the word `solid`, and are text.
 fn is_stl_text(text: &[u8]) -> bool {
-    // A binary file that was cut short may begin with "solid" too, but its count and its first floats contain bytes
-    // that are never part of UTF-8 or Latin text.
     let begins = text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let ends_word = text.get(5).is_none_or(u8::is_ascii_whitespace);
-    begins && ends_word && !text.iter().take(512).any(|&byte| byte == 0 || byte >= 0xf8)
+    begins && ends_word && is_text(text)
+}
+
+/// Returns whether the first 512 bytes are all possible in text.
+// A binary STL file may begin with "solid" too, but its count and its first floats contain bytes that are never part of
+// UTF-8 or Latin text.
+fn is_text(bytes: &[u8]) -> bool {
+    // Old programs end a text with NUL.
+    let end = bytes.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
+    end > 0 && bytes[..end].iter().take(512).all(|byte| (b'\t'..0xf8).contains(byte))
 }
 
 /// Returns whether the first line with content starts with an OBJ keyword.

@@ -1,20 +1,24 @@
 //! glTF 2.0, as JSON and as GLB: the triangles of the default scene, transformed by their nodes,
-//! with normals, colours, base colours and base-colour textures.
+//! with normals, colours, base colours and base-colour textures, moved by their skins and morph targets.
 //!
-//! Not read: skins and morph targets (a mesh is in its modelled pose), cameras and lights, other properties of
-//! materials than the base colour, and samplers (textures repeat).
+//! Not read: animations, cameras and lights, other properties of materials than the base colour, and samplers (textures
+//! repeat).
 
 mod accessor;
 mod buffers;
 mod json;
 mod materials;
 mod nodes;
+mod pose;
 mod primitives;
+mod tree;
 
 use super::MeshFile;
 use super::fault::{MeshFault, shown};
+use super::left_out::LeftOut;
 use super::side_files::SideFiles;
 use crate::progress::Meter;
+use crate::scene_text::clipped;
 use buffers::Buffers;
 use json::Json;
 use serde_json::Value;
@@ -84,11 +88,13 @@ fn read(
 ) -> Result<MeshFile, MeshFault> {
     meter.step()?;
     let text = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
+    // The JSON chunk of a GLB file is padded with spaces, but some programs take NUL.
+    let text = &text[..text.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1)];
     check_count(text)?;
     let document: Value = serde_json::from_slice(text).map_err(|error| syntax_fault(&error, json, text, at))?;
     let root = Json::root(&document)?;
     check_version(root)?;
-    check_extensions(root)?;
+    check_extensions(root, &mut side_files.left_out)?;
     nodes::read(root, &mut Buffers::new(root, json.len(), glb_buffer, side_files), &mut meter)
 }
 
@@ -113,7 +119,9 @@ fn check_count(json: &[u8]) -> Result<(), MeshFault> {
 /// in a GLB file.
 fn syntax_fault(error: &serde_json::Error, json: &[u8], text: &[u8], offset: usize) -> MeshFault {
     let line_start = text.split_inclusive(|&byte| byte == b'\n').take(error.line().saturating_sub(1)).map(<[u8]>::len);
-    let place = json.len() - text.len() + line_start.sum::<usize>() + error.column().saturating_sub(1);
+    let place = if json.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 }
+        + line_start.sum::<usize>()
+        + error.column().saturating_sub(1);
     // serde_json ends its message with a position; the fault has a position of its own, in the whole file.
     let (full, told) = (error.to_string(), format!(" at line {} column {}", error.line(), error.column()));
     let message = format!("this is not JSON: {}", full.strip_suffix(&told).unwrap_or(&full));
@@ -125,31 +133,58 @@ fn check_version(root: Json<'_>) -> Result<(), MeshFault> {
         return Err(MeshFault::of_file("this JSON is not glTF: it lacks asset: {version: \"2.0\"}"));
     };
     let version = asset.required("version")?;
-    if version.string()?.starts_with("2.") {
+    // Some programs write a number.
+    let text =
+        version.number().map_or_else(|_| version.string().map(str::to_owned), |number| Ok(number.to_string()))?;
+    if text == "2" || text.starts_with("2.") {
         return Ok(());
     }
-    Err(version.fault(format!("this is glTF {}; only 2.0 is read", version.string()?)))
+    Err(version.fault(format!("this is glTF {text}; only 2.0 is read")))
 }
 
-/// Refuses a file that requires an unsupported extension: it would be drawn wrong.
-fn check_extensions(root: Json<'_>) -> Result<(), MeshFault> {
+/// Extensions without an effect on the picture, or whose effect is shown or counted otherwise.
+const SHOWN_EXTENSIONS: [&str; 12] = [
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+    "KHR_lights_punctual",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_texture_basisu",
+    "EXT_texture_webp",
+    "EXT_texture_avif",
+    "MSFT_texture_dds",
+    "KHR_xmp_json_ld",
+];
+
+/// Refuses a file that requires an unsupported extension: it would be drawn wrong. Those that are
+/// used only are counted.
+fn check_extensions(root: Json<'_>, left_out: &mut LeftOut<'_>) -> Result<(), MeshFault> {
     for extension in root.list("extensionsRequired")? {
         let name = extension.string()?;
         // Extensions of materials change how light is reflected, not the shape: without them a picture is still useful.
-        let is_known = name.starts_with("KHR_materials_")
-            || ["KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual"].contains(&name);
-        if !is_known {
+        // Textures that cannot be read are reported where a material names them.
+        if !name.starts_with("KHR_materials_") && !SHOWN_EXTENSIONS.contains(&name) {
             let what = match name {
                 "KHR_draco_mesh_compression" => "its triangles are compressed with Draco",
                 "EXT_meshopt_compression" | "KHR_meshopt_compression" => "its triangles are compressed with meshopt",
-                "KHR_texture_basisu" => "its textures are KTX2 files",
-                "EXT_texture_webp" => "its textures are WebP files",
-                "EXT_texture_avif" => "its textures are AVIF files",
                 _ => "it may not be drawn without it",
             };
             let name = shown(name.as_bytes());
             return Err(extension.fault(format!("the extension {name} is not supported: {what}; export it without")));
         }
+    }
+    for extension in root.list("extensionsUsed")? {
+        let name = extension.string()?;
+        if !SHOWN_EXTENSIONS.contains(&name) {
+            left_out.not_shown(format!("extension ({})", clipped(name)), 1);
+        }
+    }
+    left_out.not_shown("animation", root.count("animations")?);
+    left_out.not_shown("camera", root.count("cameras")?);
+    if let Some(lights) = root.extension("KHR_lights_punctual")? {
+        left_out.not_shown("light", lights.count("lights")?);
     }
     Ok(())
 }

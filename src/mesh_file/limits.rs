@@ -10,3 +10,8 @@ pub const MAX_TRIANGLES: usize = 64 << 20;
 
 /// Limit on the texels in all textures of a mesh: 64 Mi, as in one texture of 8192 x 8192.
 pub const MAX_TEXELS: usize = 64 << 20;
+
+/// Limit on the length of a side file's path in bytes: no supported system allows longer file
+/// names, and messages stay readable.
+#[cfg(feature = "mesh")]
+pub(super) const MAX_PATH_BYTES: usize = 255;

@@ -7,7 +7,7 @@ use std::fmt;
 /// characters:
 ///
 /// ```text
-/// bunny.obj:1042:9: vertex 35948 does not exist: 35947 are defined above this line
+/// bunny.obj:1042:9: vertex 35948 does not exist: the file has 35947
 /// bunny.glb: byte 20: this chunk should be JSON, but is "BIN"
 /// ```
 ///
@@ -19,7 +19,7 @@ use std::fmt;
 /// let error = Scene::load(&path).expect_err("there is only one vertex");
 /// std::fs::remove_file(&path)?;
 /// assert!(matches!(error, LoadError::Mesh(_)));
-/// assert!(error.to_string().ends_with(".obj:2:5: vertex 2 does not exist: 1 is defined above this line"));
+/// assert!(error.to_string().ends_with(".obj:2:5: vertex 2 does not exist: the file has 1"));
 /// # Ok::<(), std::io::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! MTL, the materials of OBJ files: `Kd` and `map_Kd`. All other lines are skipped.
 
-use super::fault::{MeshFault, shown};
+use super::fault::{MeshFault, shown_path};
 use super::side_files::{SideFiles, local_path};
 use super::text::TextCursor;
 use super::texture::{self, TexelBudget, Texture, TexturePlacement};
@@ -16,6 +16,7 @@ use std::sync::Arc;
 pub(super) struct Library {
     materials: Vec<MeshMaterial>,
     by_name: HashMap<Box<[u8]>, u32>,
+    not_shown: Vec<(u32, &'static str)>,
     files: HashSet<PathBuf>,
     /// Whether an MTL file is missing, so that a material's name may be unknown.
     is_incomplete: bool,
@@ -24,8 +25,9 @@ pub(super) struct Library {
 }
 
 impl Library {
-    pub(super) fn into_materials(self) -> Vec<MeshMaterial> {
-        self.materials
+    /// Returns the materials, and what is not shown of which of them.
+    pub(super) fn into_materials(self) -> (Vec<MeshMaterial>, Vec<(u32, &'static str)>) {
+        (self.materials, self.not_shown)
     }
 
     pub(super) fn index_of(&self, name: &[u8]) -> Option<u32> {
@@ -59,9 +61,17 @@ pub(super) fn read(
     library.files.insert(path.to_owned());
     let folder = path.parent().unwrap_or(Path::new(""));
     let name = side_files.name_of(path);
-    let mut reader = MtlReader { text: TextCursor::new(bytes), folder, side_files, library };
-    // The error names the MTL file, not the OBJ file that refers to it.
-    reader.read_statements().map_err(|fault| MeshFault::from(fault.into_error(&name, bytes)))
+    let mut reader = MtlReader { text: TextCursor::new(bytes), folder, side_files, library, has_reflectance: false };
+    while reader.text.go_to_statement() {
+        let start = reader.text.at();
+        if let Err(fault) = reader.statement() {
+            // The error names the MTL file, not the OBJ file that refers to it.
+            reader.side_files.warn_of(fault.into_error(&name, bytes))?;
+            reader.text = reader.text.cursor_at(start);
+        }
+        reader.text.skip_line();
+    }
+    Ok(())
 }
 
 struct MtlReader<'a, 'b> {
@@ -69,6 +79,8 @@ struct MtlReader<'a, 'b> {
     folder: &'a Path,
     side_files: &'a mut SideFiles<'b>,
     library: &'a mut Library,
+    /// Whether the last material has a `Kd`.
+    has_reflectance: bool,
 }
 
 /// The reflectance of a material with neither `Kd` nor a texture: light grey. With a texture but no
@@ -76,33 +88,45 @@ struct MtlReader<'a, 'b> {
 const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
 
 impl MtlReader<'_, '_> {
-    fn read_statements(&mut self) -> Result<(), MeshFault> {
-        let mut has_reflectance = false;
-        while self.text.go_to_statement() {
-            let word = self.text.word();
-            let at = self.text.at() - word.len();
-            match word {
-                b"newmtl" => {
-                    has_reflectance = false;
-                    self.new_material();
-                }
-                b"Kd" => {
-                    has_reflectance = true;
-                    self.last_material(at)?.reflectance = self.reflectance()?;
-                }
-                b"map_Kd" => {
-                    let texture = self.texture()?;
-                    let material = self.last_material(at)?;
-                    if !has_reflectance {
-                        material.reflectance = if texture.is_some() { LinearRgb::grey(1.0) } else { CLAY };
-                    }
-                    material.texture = texture;
-                }
-                _ => {}
+    fn statement(&mut self) -> Result<(), MeshFault> {
+        let word = self.text.word();
+        let at = self.text.at() - word.len();
+        match word {
+            b"newmtl" => {
+                self.has_reflectance = false;
+                self.new_material();
             }
-            self.text.skip_line();
+            b"Kd" => {
+                let reflectance = self.color()?;
+                self.last_material(at)?.reflectance = reflectance;
+                self.has_reflectance = true;
+            }
+            b"map_Kd" => {
+                let has_reflectance = self.has_reflectance;
+                self.last_material(at)?;
+                let texture = self.texture();
+                let material = self.last_material(at)?;
+                if !has_reflectance {
+                    let is_shown = matches!(texture, Ok(Some(_)));
+                    material.reflectance = if is_shown { LinearRgb::grey(1.0) } else { CLAY };
+                }
+                material.texture = texture?;
+            }
+            b"d" if self.text.number().is_ok_and(|opacity| opacity < 1.0) => self.not_shown("transparent material"),
+            b"map_d" => self.not_shown("texture of opacity"),
+            b"Ke" if self.color().is_ok_and(|color| color != LinearRgb::BLACK) => self.not_shown("glowing material"),
+            b"map_Ke" => self.not_shown("texture of light"),
+            b"map_Bump" | b"map_bump" | b"bump" | b"norm" => self.not_shown("normal map"),
+            _ => {}
         }
         Ok(())
+    }
+
+    /// Records what is not shown where the last material is used.
+    fn not_shown(&mut self, what: &'static str) {
+        if let Some(last) = self.library.materials.len().checked_sub(1) {
+            self.library.not_shown.push((last as u32, what)); // fewer than bytes
+        }
     }
 
     /// Reads `newmtl` and starts a material. If two have the same name, the later one counts.
@@ -120,7 +144,7 @@ impl MtlReader<'_, '_> {
 
     /// Reads `Kd r g b`, or `Kd r` for a grey. Values are clamped to 0..=1, not refused, as other
     /// programs do.
-    fn reflectance(&mut self) -> Result<LinearRgb, MeshFault> {
+    fn color(&mut self) -> Result<LinearRgb, MeshFault> {
         let r = self.text.number()?.clamp(0.0, 1.0);
         if self.text.is_at_line_end() {
             return Ok(LinearRgb::grey(r));
@@ -148,7 +172,7 @@ impl MtlReader<'_, '_> {
             MeshFault::in_text(at, format!("the texture is missing: {message}; add the file, or remove this line"))
         })?;
         let Some(bytes) = bytes else { return Ok(None) };
-        let name = shown(self.side_files.name_of(&path).as_bytes());
+        let name = shown_path(&self.side_files.name_of(&path));
         let texture = texture::decode(&bytes, &mut self.library.budget)
             .map_err(|what| MeshFault::in_text(at, format!("{name} {what}")))?;
         let texture = Arc::new(texture);

@@ -1,5 +1,5 @@
 //! Wavefront OBJ: polygons, normals, texture coordinates, the colours that some programs write
-//! after a position, and materials of MTL files. Lines, points, curves and surfaces are skipped.
+//! after a position, and materials of MTL files. Lines, points, curves and surfaces are not shown.
 
 use super::builder::{MeshBuilder, TriangleIndices, unit};
 use super::fault::{MeshFault, shown};
@@ -10,7 +10,7 @@ use super::{MeshFile, polygon};
 use crate::color::{LinearRgb, linear_from_srgb};
 use crate::progress::Meter;
 use glam::{Vec2, Vec3};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Reads an OBJ file.
 pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
@@ -19,15 +19,26 @@ pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, mut meter: Mete
         return Err(MeshFault::at_byte(offset, "an OBJ file is text, and this byte is a NUL"));
     }
     let text = TextCursor::new(bytes);
-    let mut reader =
-        ObjReader { text, mesh: MeshBuilder::default(), library: None, corners: FaceCorners::default(), side_files };
+    let mut reader = ObjReader {
+        text,
+        mesh: MeshBuilder::default(),
+        library: None,
+        corners: FaceCorners::default(),
+        early_faces: Vec::new(),
+        side_files,
+    };
     while reader.text.go_to_statement() {
-        meter.advance_to(reader.text.at())?;
-        reader.statement()?;
+        let start = reader.text.at();
+        meter.advance_to(start)?;
+        if let Err(fault) = reader.statement() {
+            reader.side_files.left_out.fault(fault)?;
+            reader.leave_out(start);
+        }
     }
-    let ObjReader { mut mesh, library, .. } = reader;
-    mesh.materials = library.map(Library::into_materials).unwrap_or_default();
-    mesh.finish("it has no faces (f)")
+    reader.early_faces()?;
+    let ObjReader { mut mesh, library, side_files, .. } = reader;
+    (mesh.materials, mesh.not_shown) = library.map(Library::into_materials).unwrap_or_default();
+    mesh.finish("it has no faces (f)", &mut side_files.left_out)
 }
 
 struct ObjReader<'a, 'b> {
@@ -37,17 +48,21 @@ struct ObjReader<'a, 'b> {
     library: Option<Library>,
     /// The corners of the current face; reused for all faces, so that a face costs no allocation.
     corners: FaceCorners,
+    /// The offsets and materials of the faces that come before one of their vertices.
+    early_faces: Vec<(u32, Option<u32>)>,
     side_files: &'a mut SideFiles<'b>,
 }
 
-/// The indices of a face's corners. Either all corners have texture coordinates or none has, and
-/// likewise for normals.
+/// The indices of a face's corners, where [`NONE`] is a corner without one.
 #[derive(Default)]
 struct FaceCorners {
     positions: Vec<u32>,
     texture_coordinates: Vec<u32>,
     normals: Vec<u32>,
 }
+
+/// The index of a texture coordinate or normal that a corner lacks.
+const NONE: u32 = u32::MAX;
 
 impl ObjReader<'_, '_> {
     fn statement(&mut self) -> Result<(), MeshFault> {
@@ -61,6 +76,7 @@ impl ObjReader<'_, '_> {
             b"usemtl" => self.use_material(),
             b"mtllib" => self.library(),
             _ if is_skipped(word) => {
+                self.count_not_shown(word);
                 self.text.skip_line();
                 Ok(())
             }
@@ -68,19 +84,53 @@ impl ObjReader<'_, '_> {
         }
     }
 
-    /// Reads a vertex: `v x y z`, `v x y z w` or `v x y z r g b`. The weight w is for curves and is
-    /// ignored.
+    /// Counts the lines, points, curves or surfaces of a statement with the keyword `word`.
+    fn count_not_shown(&mut self, word: &[u8]) {
+        let (what, count) = match word {
+            b"l" => ("line", 1),
+            b"p" => ("point", std::iter::repeat_with(|| self.text.word()).take_while(|word| !word.is_empty()).count()),
+            b"curv" | b"curv2" => ("curve", 1),
+            b"surf" => ("curved surface", 1),
+            _ => return,
+        };
+        self.side_files.left_out.not_shown(what, count);
+    }
+
+    /// Skips the faulty line that begins at `start`.
+    ///
+    /// A vertex, normal or texture coordinate keeps its number.
+    fn leave_out(&mut self, start: usize) {
+        self.text = self.text.cursor_at(start);
+        match self.text.word() {
+            b"v" => self.mesh.positions.push(Vec3::NAN),
+            b"vn" => self.mesh.normals.values_mut().push(Vec3::ZERO),
+            b"vt" => self.mesh.texture_coordinates.values_mut().push(Vec2::ZERO),
+            _ => {}
+        }
+        self.text.skip_line();
+    }
+
+    /// Reads a vertex: `v x y z`, `v x y z w`, `v x y z r g b` or `v x y z r g b a`.
+    ///
+    /// The weight w is for curves and is ignored, as is the opacity a.
     fn vertex(&mut self) -> Result<(), MeshFault> {
         let position = self.numbers()?;
-        self.mesh.positions.push(Vec3::from(position));
+        let mut color = None;
         if !self.text.is_at_line_end() {
             let fourth = self.text.number()?;
             if !self.text.is_at_line_end() {
-                let (fifth, sixth) = (self.text.number()?, self.text.number()?);
-                self.add_srgb_color([fourth, fifth, sixth]);
+                color = Some([fourth, self.text.number()?, self.text.number()?]);
+                if !self.text.is_at_line_end() {
+                    self.text.number()?;
+                }
             }
         }
-        self.text.end_line()
+        self.text.end_line()?;
+        self.mesh.positions.push(Vec3::from(position));
+        if let Some(color) = color {
+            self.add_srgb_color(color);
+        }
+        Ok(())
     }
 
     fn numbers(&mut self) -> Result<[f32; 3], MeshFault> {
@@ -99,41 +149,94 @@ impl ObjReader<'_, '_> {
         self.mesh.colors.values_mut().resize(count, LinearRgb::grey(1.0));
     }
 
+    /// Reads `vn x y z`. A normal that is not finite counts as none.
     fn normal(&mut self) -> Result<(), MeshFault> {
-        let direction = self.numbers()?;
-        self.mesh.normals.values_mut().push(unit(Vec3::from(direction).as_dvec3()));
-        self.text.end_line()
+        let direction = Vec3::new(self.text.any_number()?, self.text.any_number()?, self.text.any_number()?);
+        self.text.end_line()?;
+        self.mesh.normals.values_mut().push(unit(direction.as_dvec3()));
+        if !direction.is_finite() {
+            self.side_files.left_out.not_shown("normal (not finite)", 1);
+        }
+        Ok(())
     }
 
     /// Reads `vt u`, `vt u v` or `vt u v w`. In OBJ files v is measured from the bottom of the
     /// image, in a `MeshFile` from its top.
     fn texture_coordinate(&mut self) -> Result<(), MeshFault> {
-        let u = self.text.number()?;
-        let v = if self.text.is_at_line_end() { 0.0 } else { self.text.number()? };
-        self.mesh.texture_coordinates.values_mut().push(Vec2::new(u, 1.0 - v));
+        let u = self.text.any_number()?;
+        let v = if self.text.is_at_line_end() { 0.0 } else { self.text.any_number()? };
+        let mut uv = Vec2::new(u, 1.0 - v);
+        if !uv.is_finite() {
+            self.side_files.left_out.not_shown("texture coordinate (not finite)", 1);
+            uv = Vec2::ZERO;
+        }
+        self.mesh.texture_coordinates.values_mut().push(uv);
         // The optional third coordinate w is for 3D textures and is ignored.
         self.text.skip_line();
         Ok(())
     }
 
+    /// Reads a face whose keyword is at `at`.
+    ///
+    /// A face that comes before its vertices is read at the end of the file.
     fn face(&mut self, at: usize) -> Result<(), MeshFault> {
+        let start = self.text.at();
+        match self.face_corners() {
+            Err(Corner::Early(_)) => {
+                self.early_faces.push((start as u32, self.mesh.last_material())); // a file has at most 2^31 bytes
+                self.text.skip_line();
+                return Ok(());
+            }
+            Err(Corner::Faulty(fault)) => return Err(fault),
+            Ok(()) => self.text.skip_line(),
+        }
+        self.triangles_of(at)
+    }
+
+    /// Reads the faces that come before their vertices.
+    fn early_faces(&mut self) -> Result<(), MeshFault> {
+        for (start, material) in std::mem::take(&mut self.early_faces) {
+            self.text = self.text.cursor_at(start as usize);
+            self.mesh.set_material(material);
+            let read = match self.face_corners() {
+                Ok(()) => self.triangles_of(start as usize),
+                Err(Corner::Early(fault) | Corner::Faulty(fault)) => Err(fault),
+            };
+            if let Err(fault) = read {
+                self.side_files.left_out.fault(fault)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn face_corners(&mut self) -> Result<(), Corner> {
         self.corners.positions.clear();
         self.corners.texture_coordinates.clear();
         self.corners.normals.clear();
         while !self.text.is_at_line_end() {
             self.corner()?;
         }
-        self.text.skip_line();
-        let FaceCorners { positions, texture_coordinates, normals } = &self.corners;
+        Ok(())
+    }
+
+    /// Adds the triangles of the face at byte `at`, whose corners have been read.
+    fn triangles_of(&mut self, at: usize) -> Result<(), MeshFault> {
+        let FaceCorners { positions, texture_coordinates, normals } = &mut self.corners;
         let count = positions.len();
         if count < 3 {
             let message = format!("a face has at least 3 corners; this one has {count}");
             return Err(MeshFault::in_text(at, message));
         }
-        let (has_uv, has_normals) = (!texture_coordinates.is_empty(), !normals.is_empty());
-        if (has_uv && texture_coordinates.len() != count) || (has_normals && normals.len() != count) {
+        let mut is_uneven = false;
+        for indices in [texture_coordinates, normals] {
+            if indices.contains(&NONE) {
+                is_uneven |= indices.iter().any(|&index| index != NONE);
+                indices.clear();
+            }
+        }
+        if is_uneven {
             let message = "the corners of this face are not written alike: all v, all v/vt, all v//vn or all v/vt/vn";
-            return Err(MeshFault::in_text(at, message));
+            self.side_files.left_out.fault(MeshFault::in_text(at, message))?;
         }
         self.triangles()
     }
@@ -161,28 +264,29 @@ impl ObjReader<'_, '_> {
         Ok(())
     }
 
-    /// Reads a corner of a face: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-    fn corner(&mut self) -> Result<(), MeshFault> {
+    /// Reads a corner of a face: `v`, `v/vt`, `v//vn` or `v/vt/vn`. After a slash the index may be
+    /// missing.
+    #[inline]
+    fn corner(&mut self) -> Result<(), Corner> {
         let start = self.text.at();
         let vertex = self.index("vertex", self.mesh.positions.len())?;
-        self.corners.positions.push(vertex);
+        let (mut texture_coordinate, mut normal) = (NONE, NONE);
         if self.text.skip_byte(b'/') {
-            if !self.text.skip_byte(b'/') {
+            if !self.text.is_at_slash() && !self.text.is_at_word_end() {
                 let count = self.mesh.texture_coordinates.values().len();
-                let texture_coordinate = self.index("texture coordinate", count)?;
-                self.corners.texture_coordinates.push(texture_coordinate);
-                if !self.text.skip_byte(b'/') {
-                    return self.end_corner(start);
-                }
+                texture_coordinate = self.index("texture coordinate", count)?;
             }
-            let normal = self.index("normal", self.mesh.normals.values().len())?;
-            self.corners.normals.push(normal);
+            if self.text.skip_byte(b'/') && !self.text.is_at_word_end() {
+                normal = self.index("normal", self.mesh.normals.values().len())?;
+            }
         }
-        self.end_corner(start)
-    }
-
-    fn end_corner(&mut self, start: usize) -> Result<(), MeshFault> {
-        if self.text.is_at_word_end() { Ok(()) } else { Err(self.bad_corner(start)) }
+        if !self.text.is_at_word_end() {
+            return Err(Corner::Faulty(self.bad_corner(start)));
+        }
+        self.corners.positions.push(vertex);
+        self.corners.texture_coordinates.push(texture_coordinate);
+        self.corners.normals.push(normal);
+        Ok(())
     }
 
     #[cold]
@@ -194,34 +298,34 @@ impl ObjReader<'_, '_> {
     /// Reads an index that counts from 1 or, if negative, back from the last of `count` items.
     /// Returns it counted from 0.
     #[inline]
-    fn index(&mut self, what: &str, count: usize) -> Result<u32, MeshFault> {
+    fn index(&mut self, what: &str, count: usize) -> Result<u32, Corner> {
         let at = self.text.at();
-        let Some(written) = self.text.digits() else { return Err(self.bad_corner(at)) };
+        let Some(written) = self.text.digits() else { return Err(Corner::Faulty(self.bad_corner(at))) };
         let size = written.unsigned_abs() as usize; // 64 bits on all that termtrace runs on
         let index = if written < 0 { count.checked_sub(size) } else { size.checked_sub(1) };
         match index.filter(|&index| index < count) {
             // No list has 2^31 items, because a file has at most 2^31 bytes.
             Some(index) => Ok(index as u32),
-            None => Err(MeshFault::in_text(at, no_such_index(what, written, count))),
+            None => Err(no_such_index(at, what, written, count)),
         }
     }
 
     fn use_material(&mut self) -> Result<(), MeshFault> {
         let name = self.text.rest_of_line();
         let at = self.text.at() - name.len();
-        let material = match &self.library {
-            Some(library) if !is_no_material(name) => match library.index_of(name) {
-                // With all MTL files at hand, an unknown material is an error. Otherwise it may be in the missing file.
-                None if !library.is_incomplete() => {
-                    let name = shown(name);
-                    let message = format!("material {name} is not in any MTL file named above this line");
-                    return Err(MeshFault::in_text(at, message));
-                }
-                material => material,
-            },
-            // A model without its MTL files is shown without its colours.
-            _ => None,
-        };
+        // A model without its MTL files is shown without its colours.
+        let material = self.library.as_ref().and_then(|library| library.index_of(name));
+        // With all MTL files at hand, an unknown material is a fault. Otherwise it may be in the missing file.
+        if material.is_none()
+            && self.library.as_ref().is_some_and(|library| !library.is_incomplete())
+            && !is_no_material(name)
+        {
+            let name = shown(name);
+            if !self.side_files.warn(&format!("colours missing: material {name} is in no MTL file")) {
+                let message = format!("material {name} is not in any MTL file named above this line");
+                return Err(self.side_files.left_out.fatal(MeshFault::in_text(at, message)));
+            }
+        }
         self.mesh.set_material(material);
         self.text.skip_line();
         Ok(())
@@ -232,38 +336,61 @@ impl ObjReader<'_, '_> {
         let at = self.text.at() - names.len();
         let text = String::from_utf8_lossy(names);
         for name in library_names(&text) {
-            let path = local_path(Path::new(""), name).map_err(|message| MeshFault::in_text(at, message))?;
-            let library = self.library.get_or_insert_default();
-            // Some files repeat the same `mtllib` line before each group.
-            if library.has_file(&path) {
-                continue;
-            }
-            let bytes = self.side_files.read_colors(&path, "materials").map_err(|message| {
-                MeshFault::in_text(
-                    at,
-                    format!("the materials are missing: {message}; add the file, or remove this line"),
-                )
-            })?;
-            match bytes {
-                Some(bytes) => mtl::read(&path, &bytes, self.side_files, library)?,
-                None => library.miss(path),
-            }
+            self.read_library(name).map_err(|message| {
+                let message = format!("the materials are missing: {message}; add the file, or remove this line");
+                self.side_files.left_out.fatal(MeshFault::in_text(at, message))
+            })??;
         }
         self.text.skip_line();
         Ok(())
     }
-}
 
-fn no_such_index(what: &str, written: i64, count: usize) -> String {
-    let are = if count == 1 { "is" } else { "are" };
-    match (written, count) {
-        (0, _) => format!("there is no {what} 0: the first one is 1, the last one before this line -1"),
-        (_, 0) => format!("{what} {written} does not exist: none is defined above this line"),
-        _ => format!("{what} {written} does not exist: {count} {are} defined above this line"),
+    /// Reads an MTL file. The outer error is the message about a file that cannot be read.
+    fn read_library(&mut self, name: &str) -> Result<Result<(), MeshFault>, String> {
+        let library = self.library.get_or_insert_default();
+        let path = match local_path(Path::new(""), name) {
+            Ok(path) => path,
+            Err(message) if self.side_files.warn(&format!("materials missing: {message}")) => {
+                library.miss(PathBuf::from(name));
+                return Ok(Ok(()));
+            }
+            Err(message) => return Err(message),
+        };
+        // Some files repeat the same `mtllib` line before each group.
+        if library.has_file(&path) {
+            return Ok(Ok(()));
+        }
+        if let Some(bytes) = self.side_files.read_colors(&path, "materials")? {
+            return Ok(mtl::read(&path, &bytes, self.side_files, library));
+        }
+        library.miss(path);
+        Ok(Ok(()))
     }
 }
 
-/// Returns whether a name is one of those that exporters write for a face without a material.
+/// The reason why a corner cannot be read now.
+enum Corner {
+    /// Its vertex, texture coordinate or normal may still come.
+    Early(MeshFault),
+    Faulty(MeshFault),
+}
+
+#[cold]
+fn no_such_index(at: usize, what: &str, written: i64, count: usize) -> Corner {
+    let are = if count == 1 { "is" } else { "are" };
+    let message = match (written, count) {
+        (0, _) => format!("there is no {what} 0: the first one is 1, the last one before this line -1"),
+        (1.., 0) => format!("{what} {written} does not exist: the file has none"),
+        (1.., _) => format!("{what} {written} does not exist: the file has {count}"),
+        (_, 0) => format!("{what} {written} does not exist: none is defined above this line"),
+        _ => format!("{what} {written} does not exist: {count} {are} defined above this line"),
+    };
+    let fault = MeshFault::in_text(at, message);
+    if written > 0 { Corner::Early(fault) } else { Corner::Faulty(fault) }
+}
+
+/// Returns whether a name that no MTL file defines is one that exporters write for a face without a
+/// material.
 fn is_no_material(name: &[u8]) -> bool {
     [&b""[..], b"None", b"(null)", b"null"].contains(&name)
 }

@@ -2,7 +2,7 @@
 
 use super::fault::MeshFault;
 use super::format::{self, MeshFormat};
-use super::side_files::SideFiles;
+use super::side_files::{SideFiles, in_any_case};
 use super::{MAX_MESH_BYTES, MeshError, MeshFile, gltf, obj, ply, stl};
 use crate::memory;
 use crate::named_file::{self, Accepted};
@@ -24,15 +24,23 @@ impl MeshFile {
         Self::parse(name, None, bytes, open, &Reporter::silent()).map_err(Unfinished::failure)
     }
 
-    fn parse(
+    /// Returns the mesh as [`from_bytes`](Self::from_bytes) does, without its faulty parts if
+    /// `reporter` takes notices of them. `stated` is the extension of the format if the user states it.
+    ///
+    /// # Errors
+    /// If no mesh can be made of the bytes, or the reporter cancels.
+    pub fn parse(
         name: &str,
         stated: Option<&str>,
         bytes: &[u8],
         open: &mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
         reporter: &Reporter<'_>,
     ) -> Result<Self, Unfinished<MeshError>> {
-        read(name, stated, bytes, &mut SideFiles::new(name, open, reporter), reporter)
-            .map_err(|fault| fault.into_error(name, bytes))
+        let mut side_files = SideFiles::new(name, bytes, open, reporter);
+        let mesh = read(name, stated, bytes, &mut side_files, reporter);
+        let mesh = mesh.map_err(|fault| fault.into_error(name, bytes))?;
+        side_files.left_out.report();
+        Ok(mesh)
     }
 
     /// Loads a mesh file.
@@ -91,7 +99,13 @@ impl MeshFile {
         let mut open = |relative: &Path| {
             let path = folder.join(relative);
             reporter.report_dependency(&path);
-            named_file::read(&path, Accepted::Files, |_| MAX_MESH_BYTES, reporter)
+            let read = |path: &Path| named_file::read(path, Accepted::Files, |_| MAX_MESH_BYTES, reporter);
+            match read(&path) {
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                    in_any_case(folder, relative).map_or(Err(error), |path| read(&path))
+                }
+                read => read,
+            }
         };
         Self::parse(&path.to_string_lossy(), stated, bytes, &mut open, reporter)
     }
@@ -99,7 +113,11 @@ impl MeshFile {
 
 /// Returns whether a file is meant to be a mesh, by its name's extension or its first bytes.
 pub fn is_mesh(name: &str, bytes: &[u8]) -> bool {
-    format::by_ending(name).is_some() || bytes.starts_with(b"ply") || bytes.starts_with(b"glTF")
+    // No text is a binary STL file. OBJ and text STL files are only read by their names.
+    format::by_ending(name).is_some()
+        || bytes.starts_with(b"ply")
+        || bytes.starts_with(b"glTF")
+        || stl::size_fits(bytes)
 }
 
 /// Returns the name of the format of these bytes, for people; empty if they are no mesh.
@@ -123,10 +141,10 @@ fn read(
     // Fallible allocations would need a `Result` in every signature of the readers and the tree builder.
     has_memory(bytes.len() * PEAK_PER_BYTE, "to read it")?;
     let mesh = match format::recognised(name, stated, bytes)? {
-        MeshFormat::Obj => obj::read(bytes, side_files, meter),
-        MeshFormat::StlText => stl::read_text(bytes, meter),
-        MeshFormat::StlBinary => stl::read_binary(bytes, meter),
-        MeshFormat::Ply => ply::read(bytes, meter),
+        MeshFormat::Obj => obj::read(without_end_marks(bytes), side_files, meter),
+        MeshFormat::StlText => stl::read_text(without_end_marks(bytes), &mut side_files.left_out, meter),
+        MeshFormat::StlBinary => stl::read_binary(bytes, &mut side_files.left_out, meter),
+        MeshFormat::Ply => ply::read(bytes, side_files, meter),
         MeshFormat::Gltf => gltf::read_json(bytes, side_files, meter),
         MeshFormat::Glb => gltf::read_binary(bytes, side_files, meter),
     }?;
@@ -135,6 +153,12 @@ fn read(
     let triangles = mesh.triangles().len();
     has_memory(triangles * PEAK_PER_TRIANGLE, &format!("for its {triangles} triangles"))?;
     Ok(mesh)
+}
+
+/// Returns a text without the NUL and Ctrl-Z characters at its end, which old programs write there.
+fn without_end_marks(text: &[u8]) -> &[u8] {
+    let is_text = |byte: &u8| !matches!(byte, 0 | 0x1a);
+    &text[..text.iter().rposition(is_text).map_or(0, |last| last + 1)]
 }
 
 /// The most bytes of memory per byte of a file that reading takes, besides the file itself. PLY

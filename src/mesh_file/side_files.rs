@@ -1,33 +1,43 @@
 //! Reading of a mesh's side files: materials, textures and buffers that the mesh file names.
 
-use super::fault::shown;
-use super::limits::MAX_MESH_BYTES;
+use super::MeshError;
+use super::fault::{MeshFault, shown_path};
+use super::left_out::LeftOut;
+use super::limits::{MAX_MESH_BYTES, MAX_PATH_BYTES};
 use crate::named_file;
-use crate::progress::Reporter;
+use crate::progress::{Reporter, Unfinished};
 use crate::text::visible;
 use std::collections::HashSet;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-/// Reads the side files of one mesh, with a limit on their total number of bytes.
+/// Limit on the warnings about the colours of one mesh; more are only counted.
+const MAX_WARNINGS: usize = 8;
+
+/// Reads the side files of one mesh, with a limit on their total number of bytes, and keeps what is
+/// left out of the mesh.
 pub(super) struct SideFiles<'a> {
     open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     bytes_left: usize,
     /// The path of the mesh file, whose folder messages put before a side file's name.
     mesh: PathBuf,
-    /// The files that were reported as missing.
-    missing: HashSet<PathBuf>,
+    /// The warnings about colours that were reported.
+    warnings: HashSet<String>,
     reporter: &'a Reporter<'a>,
+    pub(super) left_out: LeftOut<'a>,
 }
 
 impl<'a> SideFiles<'a> {
     /// Returns a reader of the side files of the mesh file `name`, whose bytes `open` returns.
     pub(super) fn new(
-        name: &str,
+        name: &'a str,
+        bytes: &'a [u8],
         open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
         reporter: &'a Reporter<'a>,
     ) -> Self {
-        Self { open, bytes_left: MAX_MESH_BYTES, mesh: PathBuf::from(name), missing: HashSet::new(), reporter }
+        let left_out = LeftOut::new(reporter, name, bytes);
+        let mesh = PathBuf::from(name);
+        Self { open, bytes_left: MAX_MESH_BYTES, mesh, warnings: HashSet::new(), reporter, left_out }
     }
 
     /// Returns a side file's name for messages: relative to the user's current folder, like the
@@ -44,36 +54,63 @@ impl<'a> SideFiles<'a> {
 
     /// Returns the bytes of a side file that only adds colours, or the message of a fault.
     ///
-    /// `None` if the file is missing and the reporter has a callback for warnings. `what` names the kind of file in the
-    /// warning.
+    /// A file that is not there is looked for beside the mesh, too. `None` if it is missing and the reporter takes
+    /// warnings. `what` names the kind of file in the warning.
     pub(super) fn read_colors(&mut self, path: &Path, what: &str) -> Result<Option<Vec<u8>>, String> {
-        let opened = (self.open)(path);
-        let is_missing = opened.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::NotFound);
-        if is_missing && self.warn_of_missing(path, what) {
+        let is_missing =
+            |opened: &io::Result<Vec<u8>>| opened.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::NotFound);
+        let mut opened = (self.open)(path);
+        if is_missing(&opened)
+            && let Some(name) = path.file_name().map(Path::new).filter(|name| *name != path)
+        {
+            // Downloads often lose their folders.
+            let beside = (self.open)(name);
+            opened = if beside.is_ok() { beside } else { opened };
+        }
+        if is_missing(&opened) && self.warn(&format!("{what} missing: {}", path.to_string_lossy())) {
             return Ok(None);
         }
         self.counted_bytes(path, opened).map(Some)
     }
 
-    /// Warns of a missing file, once per file. Returns whether the reporter has a callback for
-    /// warnings.
-    fn warn_of_missing(&mut self, path: &Path, what: &str) -> bool {
+    /// Warns of colours that are not shown, once with each message.
+    ///
+    /// Returns false if the caller should return an error.
+    pub(super) fn warn(&mut self, message: &str) -> bool {
         // Many materials of a library may name the same texture.
-        if self.missing.contains(path) {
+        if self.warnings.contains(message) {
             return true;
         }
-        let warning = || format!("{}: {what} missing: {}", visible_path(&self.mesh), visible_path(path));
-        let is_taken = self.reporter.warn(warning);
+        if self.warnings.len() >= MAX_WARNINGS {
+            self.left_out.not_shown("fault of colours", 1);
+            return true;
+        }
+        let is_taken = self.reporter.warn(|| visible(&format!("{}: {message}", self.mesh.to_string_lossy())));
         if is_taken {
-            self.missing.insert(path.to_owned());
+            self.warnings.insert(message.to_owned());
         }
         is_taken
+    }
+
+    /// Warns of a fault that costs colours only.
+    ///
+    /// # Errors
+    /// The fault, if warnings are errors, and a cancellation.
+    pub(super) fn warn_of(&mut self, fault: Unfinished<MeshError>) -> Result<(), MeshFault> {
+        if let Unfinished::Failed(error) = &fault {
+            let is_in_mesh = Path::new(error.name()) == self.mesh;
+            let message = if is_in_mesh { error.message().to_owned() } else { error.to_string() };
+            if self.warn(&format!("colours missing: {message}")) {
+                return Ok(());
+            }
+        }
+        Err(fault.into())
     }
 
     /// Returns the bytes of an opened side file, and counts them towards the limit of the mesh.
     fn counted_bytes(&mut self, path: &Path, opened: io::Result<Vec<u8>>) -> Result<Vec<u8>, String> {
         let name = self.name_of(path);
-        let say = |what: &str| format!("{}: {what}", shown(name.as_bytes()));
+        let say = |what: &str| format!("{}: {what}", shown_path(&name));
         let bytes = opened.map_err(|error| say(&named_file::reason(&error)))?;
         let left = self.bytes_left.checked_sub(bytes.len());
         self.bytes_left = left.ok_or_else(|| say("with this file more than 2 GiB would be read"))?;
@@ -81,20 +118,12 @@ impl<'a> SideFiles<'a> {
     }
 }
 
-fn visible_path(path: &Path) -> String {
-    visible(&path.to_string_lossy())
-}
-
-/// Limit on the length of a path in bytes: no supported system allows longer file names, and
-/// messages stay readable.
-const MAX_PATH_BYTES: usize = 255;
-
 /// Returns the path of a side file relative to the mesh, given the path `written` in a file that
-/// lies in `folder`. `\` is a separator too, as on Windows. URLs, absolute paths and empty names are refused with a
-/// message.
+/// lies in `folder`. `\` is a separator too, as on Windows. Of an absolute path the last part is taken. URLs and names
+/// that are none are refused with a message.
 pub(super) fn local_path(folder: &Path, written: &str) -> Result<PathBuf, String> {
-    let name = shown(written.as_bytes());
-    let say = |what: &str| Err(format!("{name} {what}"));
+    let written = written.strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or(written);
+    let say = |what: &str| Err(format!("{} {what}", shown_path(written)));
     if written.len() > MAX_PATH_BYTES {
         return say("is longer than a path may be");
     }
@@ -102,18 +131,42 @@ pub(super) fn local_path(folder: &Path, written: &str) -> Result<PathBuf, String
     if written.contains("://") || written.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("data:")) {
         return say("is a URL; only files beside this one are read");
     }
-    let path = PathBuf::from(written.replace('\\', "/"));
+    let mut path = PathBuf::from(written.replace('\\', "/"));
+    // Absolute paths would let a downloaded mesh read any file, and `C:` is one on Windows, where it was written. They
+    // name a file of the author's computer, which mostly lies beside the mesh here.
+    let has_drive = written.as_bytes().get(1) == Some(&b':');
+    if has_drive || path.components().any(|part| matches!(part, Component::RootDir | Component::Prefix(_))) {
+        let last = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        path = PathBuf::from(last.rsplit(':').next().unwrap_or_default());
+    }
     // The file name of `.` and `a/..` is `None`: they are folders.
     if written.contains('\0') || path.file_name().is_none() {
         return say("is not a file name");
     }
-    // Absolute paths would let a downloaded mesh read any file, and `C:` is one on Windows, where it was written.
-    let has_drive = written.as_bytes().get(1) == Some(&b':');
-    if has_drive || path.components().any(|part| matches!(part, Component::RootDir | Component::Prefix(_))) {
-        return say("is an absolute path; write it relative to this file");
-    }
     // Without `./` each file has one spelling: files that were already read are looked up by their path.
     Ok(folder.join(path.components().filter(|part| *part != Component::CurDir).collect::<PathBuf>()))
+}
+
+/// Returns the path of an existing file below `folder` that differs from `relative` in upper and
+/// lower case only, as on systems that take both for the same name.
+pub(super) fn in_any_case(folder: &Path, relative: &Path) -> Option<PathBuf> {
+    /// Limit on the names of a folder that are compared.
+    const MAX_LISTED: usize = 10_000;
+    let mut found = folder.to_owned();
+    for part in relative.components() {
+        let exact = found.join(part);
+        if exact.symlink_metadata().is_ok() {
+            found = exact;
+            continue;
+        }
+        let wanted = part.as_os_str().to_string_lossy().to_lowercase();
+        let listed = if found.as_os_str().is_empty() { Path::new(".") } else { &found };
+        let names = std::fs::read_dir(listed).ok()?.take(MAX_LISTED).filter_map(|entry| Some(entry.ok()?.file_name()));
+        // The first one in order, whatever the order of the folder.
+        let name = names.filter(|name| name.to_string_lossy().to_lowercase() == wanted).min()?;
+        found.push(name);
+    }
+    Some(found)
 }
 
 #[cfg(all(test, unit_tests))]

@@ -1,13 +1,15 @@
 //! STL, text and binary: triangles without shared vertices. The facets' normals are not read,
-//! because the corners give them with more digits; nor are the colours that some programs put into the attribute bytes,
-//! each in its own way.
+//! because the corners give them with more digits. Colours are read where the attribute bytes are known to be some.
 
 use super::MeshFile;
+use super::attribute::Attribute;
 use super::builder::{MeshBuilder, TriangleIndices, too_many_triangles};
 use super::fault::{MeshFault, shown};
+use super::left_out::LeftOut;
 use super::limits::MAX_TRIANGLES;
 use super::polygon;
 use super::text::TextCursor;
+use crate::color::{LinearRgb, Srgb8};
 use crate::progress::Meter;
 use glam::Vec3;
 
@@ -31,33 +33,99 @@ pub(super) fn size_fits(bytes: &[u8]) -> bool {
 }
 
 /// Reads a binary STL file.
-pub(super) fn read_binary(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
+///
+/// With another count in its header than its size implies, the facets that the file holds are read.
+pub(super) fn read_binary(
+    bytes: &[u8],
+    left_out: &mut LeftOut<'_>,
+    mut meter: Meter<'_>,
+) -> Result<MeshFile, MeshFault> {
     let size = claimed_size(bytes).ok_or_else(|| {
         let message = "the file ends within the header of 84 bytes that a binary STL file begins with";
         MeshFault::at_byte(bytes.len(), message)
     })?;
+    let facets = bytes[HEADER..].chunks_exact(FACET);
+    left_out.of_parts(facets.len());
     if size != bytes.len() as u64 {
         let (triangles, found) = ((size - HEADER as u64) / FACET as u64, bytes.len());
         let message = format!(
             "a binary STL file of {triangles} triangles, as it says here, has {size} bytes; this file has {found}"
         );
-        return Err(MeshFault::at_byte(HEADER - 4, message));
+        left_out.fault(MeshFault::at_byte(HEADER - 4, message))?;
     }
-    let facets = bytes[HEADER..].chunks_exact(FACET);
     if facets.len() > MAX_TRIANGLES {
         return Err(MeshFault::at_byte(HEADER - 4, too_many_triangles()));
     }
     // Equal corners are not merged: the tracer needs no shared vertices.
     let mut mesh = MeshBuilder { positions: Vec::with_capacity(3 * facets.len()), ..MeshBuilder::default() };
+    let coloring = Coloring::of(bytes);
     for (i, facet) in facets.enumerate() {
         meter.advance_to(HEADER + i * FACET)?;
+        if let Some(coloring) = &coloring {
+            mesh.colors.values_mut().extend([coloring.color(facet); 3]);
+        }
         for corner in 0..3 {
             let at = 12 + 12 * corner;
-            mesh.positions.push(vertex_from(&facet[at..at + 12], HEADER + i * FACET + at)?);
+            match vertex_from(&facet[at..at + 12], HEADER + i * FACET + at) {
+                Ok(vertex) => mesh.positions.push(vertex),
+                Err(fault) => {
+                    left_out.fault(fault)?;
+                    mesh.positions.push(Vec3::NAN);
+                }
+            }
         }
     }
+    if coloring.is_some() {
+        mesh.colors = Attribute::of_positions(std::mem::take(mesh.colors.values_mut()));
+    }
     mesh.triangles = (0..mesh.positions.len() as u32).step_by(3).map(|first| [first, first + 1, first + 2]).collect();
-    mesh.finish("its count is 0")
+    mesh.finish("its count is 0", left_out)
+}
+
+/// How the two attribute bytes of a facet give its colour: five bits to a channel.
+struct Coloring {
+    /// The colour of facets without one of their own.
+    default: LinearRgb,
+    /// The value of the highest bit of facets with a colour.
+    own: bool,
+    /// Whether red has the lowest bits; otherwise blue has them.
+    is_red_low: bool,
+}
+
+impl Coloring {
+    /// Returns the colouring of a file; `None` if the facets have no colours.
+    ///
+    /// It is that of Materialise Magics, whose header has `COLOR=`, or of `VisCAM`, which sets the highest bit.
+    fn of(bytes: &[u8]) -> Option<Self> {
+        const MARK: &[u8] = b"COLOR=";
+        if let Some(at) = bytes[..HEADER - 4].windows(MARK.len()).position(|window| window == MARK)
+            && let Some(&[r, g, b]) = bytes[at + MARK.len()..HEADER - 4].first_chunk()
+        {
+            let default = LinearRgb::from_srgb8(Srgb8::new(r, g, b));
+            return Some(Self { default, own: false, is_red_low: true });
+        }
+        // Other programs write other numbers there, such as checksums.
+        let mut attributes = bytes[HEADER..].chunks_exact(FACET).map(attribute);
+        let is_viscam =
+            attributes.clone().any(|bits| bits != 0) && attributes.all(|bits| bits == 0 || bits & 0x8000 != 0);
+        is_viscam.then_some(Self { default: LinearRgb::grey(0.5), own: true, is_red_low: false })
+    }
+
+    fn color(&self, facet: &[u8]) -> LinearRgb {
+        let bits = attribute(facet);
+        if (bits & 0x8000 != 0) != self.own {
+            return self.default;
+        }
+        let channel = |shift: u16| ((bits >> shift & 0x1f) * 255 / 31) as u8;
+        let [low, middle, high] = [0, 5, 10].map(channel);
+        let [r, b] = if self.is_red_low { [low, high] } else { [high, low] };
+        LinearRgb::from_srgb8(Srgb8::new(r, middle, b))
+    }
+}
+
+/// Returns the attribute bytes of a facet.
+fn attribute(facet: &[u8]) -> u16 {
+    u16::from_le_bytes([facet[FACET - 2], facet[FACET - 1]])
 }
 
 /// Returns the vertex in twelve bytes. `offset` is their offset in the file, for the message of a
@@ -74,16 +142,20 @@ fn vertex_from(bytes: &[u8], offset: usize) -> Result<Vec3, MeshFault> {
 }
 
 /// Reads a text STL file, of one or several solids.
-pub(super) fn read_text(bytes: &[u8], mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
+pub(super) fn read_text(bytes: &[u8], left_out: &mut LeftOut<'_>, mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
     let mut reader = TextReader { text: TextCursor::new(bytes), mesh: MeshBuilder::default(), open: None };
     while reader.text.go_to_statement() {
-        meter.advance_to(reader.text.at())?;
-        reader.statement()?;
+        let start = reader.text.at();
+        meter.advance_to(start)?;
+        if let Err(fault) = reader.statement() {
+            left_out.fault(fault)?;
+            reader.leave_out(start);
+        }
     }
     if reader.open.is_some() {
         return Err(reader.text.expected("the rest of this facet (vertex, endloop, endfacet)"));
     }
-    reader.mesh.finish("it has no facets")
+    reader.mesh.finish("it has no facets", left_out)
 }
 
 struct TextReader<'a> {
@@ -115,10 +187,22 @@ impl TextReader<'_> {
         Ok(())
     }
 
+    /// Skips the faulty line that begins at `start`.
+    fn leave_out(&mut self, start: usize) {
+        self.text = self.text.cursor_at(start);
+        let is_vertex = self.text.word().eq_ignore_ascii_case(b"vertex");
+        self.text.skip_line();
+        if is_vertex && self.open.is_some() {
+            // A corner without a place: its facet is left out.
+            self.mesh.positions.push(Vec3::NAN);
+        }
+    }
+
     fn vertex(&mut self) -> Result<(), MeshFault> {
         let vertex = Vec3::new(self.text.number()?, self.text.number()?, self.text.number()?);
+        self.text.end_line()?;
         self.mesh.positions.push(vertex);
-        self.text.end_line()
+        Ok(())
     }
 
     /// Adds the triangles of a loop. The format allows only triangles, but some programs write
@@ -126,6 +210,7 @@ impl TextReader<'_> {
     fn end_loop(&mut self, offset: usize) -> Result<(), MeshFault> {
         let corners: Vec<u32> = (self.open.take().unwrap_or_default()..self.mesh.positions.len() as u32).collect();
         if corners.len() < 3 {
+            self.mesh.positions.truncate(self.mesh.positions.len() - corners.len());
             let message = format!("this loop has {} vertices; a facet has at least 3", corners.len());
             return Err(MeshFault::in_text(offset, message));
         }

@@ -124,6 +124,12 @@ impl<'a> TextCursor<'a> {
         self.is_word_end(self.at)
     }
 
+    /// Returns whether the next byte is a slash.
+    #[inline]
+    pub(super) fn is_at_slash(&self) -> bool {
+        self.peek() == Some(b'/')
+    }
+
     /// Returns a cursor at byte `offset` of the same text.
     pub(super) fn cursor_at(&self, offset: usize) -> Self {
         Self { bytes: self.bytes, at: offset }
@@ -133,11 +139,22 @@ impl<'a> TextCursor<'a> {
     // `#[inline]` on each function that is called per number: a mesh of a million vertices has ten million numbers.
     #[inline]
     pub(super) fn number(&mut self) -> Result<f32, MeshFault> {
+        let start = self.at;
+        let value = self.any_number()?;
+        if value.is_finite() {
+            return Ok(value);
+        }
+        self.at = start;
+        Err(self.number_fault())
+    }
+
+    /// Reads a word that must be a number; infinity and NaN are numbers too.
+    #[inline]
+    pub(super) fn any_number(&mut self) -> Result<f32, MeshFault> {
         self.skip_blanks();
         // `fast_float2` rounds correctly, as the standard library does, but parses bytes and stops at the first one
         // that is not part of a number: no search for the word's end, no check for UTF-8.
         if let Ok((value, length)) = fast_float2::parse_partial::<f32, _>(&self.bytes[self.at..])
-            && value.is_finite()
             && self.is_word_end(self.at + length)
         {
             self.at += length;
@@ -148,6 +165,7 @@ impl<'a> TextCursor<'a> {
 
     #[cold]
     fn number_fault(&mut self) -> MeshFault {
+        self.skip_blanks();
         let start = self.at;
         let word = self.word();
         match fast_float2::parse::<f64, _>(word) {

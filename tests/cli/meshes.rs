@@ -77,6 +77,46 @@ fn missing_materials_and_textures_are_warnings_except_in_check_and_with_strict()
 }
 
 #[test]
+fn what_is_left_out_of_a_mesh_is_told_by_every_command() {
+    let folder = Folder::new();
+    folder.write("odd.obj", format!("{TRIANGLE}f 1 1 2\nl 1 2\nf 1 2\n"));
+    folder.write("plain.obj", TRIANGLE);
+    let notices = "warning: odd.obj:8:1: a face has at least 3 corners; this one has 2 (ignored)\n\
+                   warning: odd.obj: not shown: 1 line\n";
+    for command in ["frame", "frame --strict", "describe", "check"] {
+        let run = folder.run(&format!("{command} odd.obj"));
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), notices), "{command}");
+    }
+    assert_eq!(folder.run("frame odd.obj").stdout, folder.frame("plain.obj"));
+    let checked = String::from_utf8(folder.run("check odd.obj").stdout).expect("UTF-8");
+    assert!(
+        checked.ends_with("OK (2 objects, 3 lights), but object 1: 1 of its 2 triangles has no area\n"),
+        "{checked}"
+    );
+}
+
+/// A message may leave out folders, but not the name of the file.
+#[test]
+fn the_name_of_a_missing_file_is_told_however_long_its_folder_is() {
+    let folder = Folder::new();
+    let long = "folder_with_a_long_name/".repeat(4);
+    std::fs::create_dir_all(folder.path(&long)).expect("a folder");
+    folder.write(&format!("{long}x.obj"), format!("mtllib the_missing_one.mtl\n{TRIANGLE}"));
+    folder.run(&format!("check {long}x.obj")).fails_in_a_line(2, "/the_missing_one.mtl\": there is no such file");
+}
+
+#[test]
+fn a_binary_stl_file_without_an_ending_in_its_name_is_recognised() {
+    let folder = Folder::new();
+    let number = |x: f32| x.to_le_bytes();
+    let facet = [[0.0; 3], [0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 1.0]].concat().into_iter().flat_map(number);
+    let bytes: Vec<u8> = [0; 80].into_iter().chain(1_u32.to_le_bytes()).chain(facet).chain([0, 0]).collect();
+    folder.write("part", &bytes);
+    folder.write("part.stl", &bytes);
+    assert_eq!(folder.frame("part --mesh-up y"), folder.frame("part.stl --mesh-up y"));
+}
+
+#[test]
 fn a_missing_picture_of_a_gltf_file_is_a_warning_but_not_a_missing_buffer() {
     let folder = Folder::new();
     let positions = "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";

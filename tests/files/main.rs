@@ -11,6 +11,7 @@ mod mesh_files;
 #[path = "../mesh_laws/mod.rs"]
 mod mesh_laws;
 mod mesh_properties;
+mod odd_meshes;
 #[path = "../mesh_writers/mod.rs"]
 mod mesh_writers;
 mod progress;

@@ -3,7 +3,9 @@
 use glam::{Vec2, Vec3};
 use std::io;
 use std::path::Path;
+use std::sync::Mutex;
 use termtrace::internals::mesh_file::{FilePosition, MeshFile};
+use termtrace::internals::progress::Reporter;
 use termtrace::{LinearRgb, MeshError};
 
 /// Asserts that bytes give a valid mesh, or an error that can be printed.
@@ -14,13 +16,29 @@ pub(crate) fn hold_for(name: &str, bytes: &[u8]) {
     let is_obj = Path::new(name).extension().is_some_and(|ending| ending == "obj");
     let parts: Vec<&[u8]> = if is_obj { bytes.splitn(3, |&byte| byte == 0).collect() } else { vec![bytes; 3] };
     let part = |i: usize| parts.get(i).copied().ok_or_else(|| io::Error::from(io::ErrorKind::NotFound));
-    let found = MeshFile::from_bytes(name, parts[0], &mut |path| {
+    let mut open = |path: &Path| {
         assert_local(path);
         part(if path.extension().is_some_and(|ending| ending == "mtl") { 1 } else { 2 }).map(<[u8]>::to_vec)
-    });
-    match found {
-        Ok(mesh) => assert_sound(&mesh),
-        Err(error) => assert_shown(&error, bytes),
+    };
+    let found = MeshFile::from_bytes(name, parts[0], &mut open);
+    let notices = Mutex::new(Vec::new());
+    let on_notice = |notice: String| notices.lock().expect("a lock").push(notice);
+    let reporter = Reporter::silent().with_warnings(&on_notice);
+    match (found, MeshFile::parse(name, None, parts[0], &mut open, &reporter)) {
+        (Ok(mesh), Ok(same)) => {
+            assert_sound(&mesh);
+            assert_eq!(mesh, same, "notices change nothing where there is no fault");
+        }
+        (Err(error), Ok(mesh)) => {
+            assert_shown(&error, bytes);
+            assert_sound(&mesh);
+            assert!(!notices.lock().expect("a lock").is_empty(), "left out without a notice: {error}");
+        }
+        (Err(error), Err(_)) => assert_shown(&error, bytes),
+        (Ok(_), Err(error)) => panic!("refused, although it is valid: {error}"),
+    }
+    for notice in notices.into_inner().expect("a lock") {
+        assert!(!notice.contains(char::is_control) && notice.chars().count() < 1500, "{notice:?}");
     }
 }
 

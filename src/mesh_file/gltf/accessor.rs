@@ -139,7 +139,8 @@ impl<'a> Accessor<'a> {
             "VEC2" => 2,
             "VEC3" => 3,
             "VEC4" => 4,
-            _ => return Err(kind.fault("expected SCALAR, VEC2, VEC3 or VEC4")),
+            "MAT4" => 16,
+            _ => return Err(kind.fault("expected SCALAR, VEC2, VEC3, VEC4 or MAT4")),
         };
         let count = json.required("count")?.index()?;
         let elements = Elements::new(json, width * component.size(), count, buffers)?;

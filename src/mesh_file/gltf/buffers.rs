@@ -2,7 +2,8 @@
 
 use super::json::Json;
 use crate::mesh_file::MAX_TRIANGLES;
-use crate::mesh_file::fault::{MeshFault, shown};
+use crate::mesh_file::fault::{MeshFault, shown_path};
+use crate::mesh_file::left_out::LeftOut;
 use crate::mesh_file::side_files::{SideFiles, local_path};
 use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
@@ -74,6 +75,16 @@ impl<'a, 'b> Buffers<'a, 'b> {
 
     pub(super) fn root(&self) -> Json<'a> {
         self.root
+    }
+
+    pub(super) fn left_out(&mut self) -> &mut LeftOut<'b> {
+        &mut self.side_files.left_out
+    }
+
+    /// Warns of a fault that costs colours only; returns the fault if that is an error.
+    pub(super) fn warn_of(&mut self, fault: MeshFault) -> Result<(), MeshFault> {
+        let error = self.side_files.left_out.error_of(fault);
+        self.side_files.warn_of(error)
     }
 
     /// Returns the limit on the triangles, and on the vertices, of a file of this size: one per
@@ -189,7 +200,7 @@ fn percent_decoded(uri: &str) -> String {
 /// Returns the name of an image for messages: its file, or "the picture" if it is in the mesh file.
 pub(super) fn described(uri: Option<&str>) -> String {
     match uri.filter(|uri| !uri.starts_with("data:")) {
-        Some(uri) => shown(uri.as_bytes()),
+        Some(uri) => shown_path(uri),
         None => "the picture".to_owned(),
     }
 }

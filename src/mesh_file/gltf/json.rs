@@ -156,6 +156,11 @@ impl<'a> Json<'a> {
         self.value.as_f64().filter(|number| number.is_finite()).ok_or_else(|| self.mismatch("a finite number"))
     }
 
+    /// Returns the field `name` as a list of numbers; empty if it is missing.
+    pub(super) fn any_numbers(self, name: &'static str) -> Result<Vec<f64>, MeshFault> {
+        self.list(name)?.map(Self::number).collect()
+    }
+
     /// Returns the field `name` as exactly `N` numbers; `None` if it is missing.
     pub(super) fn numbers<const N: usize>(self, name: &'static str) -> Result<Option<[f64; N]>, MeshFault> {
         let Some(list) = self.field(name)? else { return Ok(None) };

@@ -12,8 +12,27 @@ use std::sync::Arc;
 
 /// A material, and the number of the texture coordinate set (`TEXCOORD_n`) that it uses.
 pub(super) struct Material {
-    pub(super) material: MeshMaterial,
+    pub(super) colors: MeshMaterial,
     pub(super) texture_coordinates: usize,
+    /// The names of what is not shown of it, in the singular.
+    pub(super) not_shown: Vec<&'static str>,
+}
+
+/// Returns the names of what is not shown of a material.
+fn not_shown(json: Json<'_>) -> Result<Vec<&'static str>, MeshFault> {
+    let mut names = Vec::new();
+    match json.field("alphaMode")?.map(Json::string).transpose()? {
+        Some("MASK") => names.push("material with holes"),
+        Some("BLEND") => names.push("transparent material"),
+        _ => {}
+    }
+    if json.numbers::<3>("emissiveFactor")?.is_some_and(|factor| factor != [0.0; 3]) {
+        names.push("glowing material");
+    }
+    if json.field("normalTexture")?.is_some() {
+        names.push("normal map");
+    }
+    Ok(names)
 }
 
 /// Returns all materials of the document.
@@ -37,22 +56,29 @@ impl<'a> MaterialReader<'_, 'a, '_> {
             None => (json.field("pbrMetallicRoughness")?, "baseColorFactor", "baseColorTexture"),
         };
         let white = LinearRgb::grey(1.0);
-        let mut material =
-            Material { material: MeshMaterial { reflectance: white, texture: None }, texture_coordinates: 0 };
+        let mut material = Material {
+            colors: MeshMaterial { reflectance: white, texture: None },
+            texture_coordinates: 0,
+            not_shown: not_shown(json)?,
+        };
         let Some(base) = base else { return Ok(material) };
         if let Some([r, g, b, _]) = base.numbers::<4>(factor)? {
             let [r, g, b] = [r, g, b].map(|channel| channel.clamp(0.0, 1.0) as f32);
-            material.material.reflectance = LinearRgb::new(r, g, b);
+            material.colors.reflectance = LinearRgb::new(r, g, b);
         }
         if let Some(info) = base.field(texture)? {
-            let Some((placement, set)) = self.placement(info)? else {
+            let placement = match self.placement(info) {
+                Ok(placement) => placement,
+                Err(fault) => self.buffers.warn_of(fault).map(|()| None)?,
+            };
+            let Some((placement, set)) = placement else {
                 // White is the factor of a texture that is missing, not the colour of the surface.
-                if material.material.reflectance == white {
-                    material.material.reflectance = CLAY;
+                if material.colors.reflectance == white {
+                    material.colors.reflectance = CLAY;
                 }
                 return Ok(material);
             };
-            material.material.texture = Some(placement);
+            material.colors.texture = Some(placement);
             material.texture_coordinates = set;
         }
         Ok(material)
@@ -62,9 +88,16 @@ impl<'a> MaterialReader<'_, 'a, '_> {
     /// number of its texture coordinate set; `None` if the file of the texture is missing.
     fn placement(&mut self, info: Json<'a>) -> Result<Option<(TexturePlacement, usize)>, MeshFault> {
         let (_, texture) = info.required("index")?.item_of(self.buffers.root(), "textures")?;
-        let Some(source) = texture.field("source")? else {
-            return Err(texture.fault("the texture has no source that is a PNG or JPEG picture"));
-        };
+        // Pictures of other formats are named by extensions; not all of them can be read.
+        let mut source = texture.field("source")?;
+        for extension in ["EXT_texture_webp", "MSFT_texture_dds", "KHR_texture_basisu", "EXT_texture_avif"] {
+            if source.is_none()
+                && let Some(other) = texture.extension(extension)?
+            {
+                source = other.field("source")?;
+            }
+        }
+        let Some(source) = source else { return Err(texture.fault("the texture has no source")) };
         let Some(texture) = self.texture(source)? else { return Ok(None) };
         let mut placement = TexturePlacement::plain(texture);
         let mut set = info.index_or("texCoord", 0)?;

@@ -4,11 +4,12 @@ use super::accessor::Accessor;
 use super::buffers::Buffers;
 use super::json::Json;
 use super::materials;
+use super::pose::{Globals, Pose};
 use crate::color::LinearRgb;
 use crate::mesh_file::MeshFile;
-use crate::mesh_file::builder::{MeshBuilder, TriangleIndices, unit};
+use crate::mesh_file::builder::{MeshBuilder, TriangleIndices};
 use crate::mesh_file::fault::MeshFault;
-use glam::{DMat3, DMat4, Vec2, Vec3};
+use glam::{DMat3, DMat4, Vec2};
 use std::collections::HashMap;
 
 /// A builder of the mesh from the glTF primitives read so far.
@@ -46,10 +47,14 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
     pub(super) fn new(buffers: &'r mut Buffers<'a, 'b>) -> Result<Self, MeshFault> {
         let materials = materials::read(buffers)?;
         let texture_coordinate_sets = materials.iter().map(|material| material.texture_coordinates).collect();
-        let materials = materials.into_iter().map(|material| material.material).collect();
+        let unshown = |(i, material): (usize, &materials::Material)| {
+            material.not_shown.iter().map(move |&what| (i as u32, what)).collect::<Vec<_>>() // fewer than bytes
+        };
+        let not_shown = materials.iter().enumerate().flat_map(unshown).collect();
+        let materials = materials.into_iter().map(|material| material.colors).collect();
         Ok(Self {
             buffers,
-            mesh: MeshBuilder { materials, ..MeshBuilder::default() },
+            mesh: MeshBuilder { materials, not_shown, ..MeshBuilder::default() },
             texture_coordinate_sets,
             positions: Ranges::new(),
             normals: Ranges::new(),
@@ -59,31 +64,48 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
     }
 
     pub(super) fn finish(self) -> Result<MeshFile, MeshFault> {
-        self.mesh.finish("its scene shows no mesh of triangles")
+        self.mesh.finish("its scene shows no mesh of triangles", self.buffers.left_out())
     }
 
-    /// Adds the primitives of a mesh, transformed by the node that shows it.
-    pub(super) fn add_mesh(&mut self, mesh: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<(), MeshFault> {
+    /// Adds the primitives of a mesh, in the pose of the node that shows it.
+    pub(super) fn add_mesh(
+        &mut self,
+        mesh: Json<'a>,
+        node: Json<'a>,
+        transform: DMat4,
+        globals: &Globals,
+    ) -> Result<(), MeshFault> {
         // The buffers hold positions and normals of the previous node, to which that node's transform was applied.
         self.positions.clear();
         self.normals.clear();
+        let mut weights = node.any_numbers("weights")?;
+        if weights.is_empty() {
+            weights = mesh.any_numbers("weights")?;
+        }
+        let mut pose = Pose { node, transform, joints: Vec::new(), weights };
+        if let Some(skin) = node.field("skin")? {
+            pose.joints = globals.joints(skin, self.buffers)?;
+        }
         for primitive in mesh.list("primitives")? {
-            self.add(primitive, node, transform)?;
+            self.add(primitive, &pose)?;
         }
         Ok(())
     }
 
-    fn add(&mut self, primitive: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<(), MeshFault> {
+    fn add(&mut self, primitive: Json<'a>, pose: &Pose<'a>) -> Result<(), MeshFault> {
+        if pose.is_by_primitive() {
+            self.positions.clear();
+            self.normals.clear();
+        }
         let mode = primitive.index_or("mode", 4)?;
         if mode < 4 {
-            // Points and lines have no surface.
-            return Ok(());
+            return self.count_not_shown(primitive, mode);
         }
         let material = primitive.field("material")?.map(|index| index.item_of(self.buffers.root(), "materials"));
         let material = material.transpose()?.map(|(index, _)| index);
         let attributes = primitive.required("attributes")?;
-        let positions = self.positions(attributes, node, transform)?;
-        let normals = self.normals(attributes, transform)?;
+        let positions = self.positions(primitive, attributes, pose)?;
+        let normals = self.normals(primitive, attributes, pose)?;
         let texture_coordinates = self.texture_coordinates(attributes, material)?;
         let colors = self.colors(attributes)?;
         for range in [normals, texture_coordinates, colors].into_iter().flatten() {
@@ -96,7 +118,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         let length = indices.as_ref().map_or(positions.count, Vec::len);
         self.mesh.set_material(material.map(|index| index as u32)); // fewer than bytes
         // glTF: a negative determinant reverses the orientation of the triangles.
-        let is_mirrored = DMat3::from_mat4(transform).determinant() < 0.0;
+        let is_mirrored = DMat3::from_mat4(pose.transform).determinant() < 0.0;
         for mut corners in triangles(mode, length).ok_or_else(|| primitive.fault(format!("there is no mode {mode}")))? {
             if is_mirrored {
                 corners.swap(1, 2);
@@ -113,6 +135,24 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         self.check_size(primitive)
     }
 
+    /// Counts the points or lines of a primitive of mode 0 to 3, which have no surface.
+    fn count_not_shown(&mut self, primitive: Json<'a>, mode: usize) -> Result<(), MeshFault> {
+        let elements = match primitive.field("indices")? {
+            Some(indices) => indices,
+            None => primitive.required("attributes")?.required("POSITION")?,
+        };
+        let (_, accessor) = elements.item_of(self.buffers.root(), "accessors")?;
+        let count = accessor.required("count")?.index()?;
+        let (what, count) = match mode {
+            0 => ("point", count),
+            1 => ("line", count / 2),
+            2 => ("line", count),
+            _ => ("line", count.saturating_sub(1)),
+        };
+        self.buffers.left_out().not_shown(what, count);
+        Ok(())
+    }
+
     fn check_size(&self, json: Json<'_>) -> Result<(), MeshFault> {
         let most = self.buffers.max_elements();
         if self.mesh.triangles.len().max(self.mesh.positions.len()) > most {
@@ -123,7 +163,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         Ok(())
     }
 
-    fn positions(&mut self, attributes: Json<'a>, node: Json<'a>, transform: DMat4) -> Result<Range, MeshFault> {
+    fn positions(&mut self, primitive: Json<'a>, attributes: Json<'a>, pose: &Pose<'a>) -> Result<Range, MeshFault> {
         let index = attributes.required("POSITION")?;
         let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
         if let Some(&range) = self.positions.get(&number) {
@@ -131,28 +171,32 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         }
         let vectors = Accessor::read(index, self.buffers)?.vectors::<3>()?;
         let range = range_after(self.mesh.positions.len(), vectors.len());
-        let place = |vector: [f32; 3]| transform.transform_point3(Vec3::from(vector).as_dvec3()).as_vec3();
-        self.mesh.positions.extend(vectors.into_iter().map(place));
+        self.mesh.positions.extend(pose.placed(primitive, "POSITION", vectors, self.buffers)?);
         if !self.mesh.positions[range.start as usize..].iter().all(|position| position.is_finite()) {
-            return Err(node.fault("this node and those above it put vertices beyond 3.4e38"));
+            return Err(pose.node.fault("this node and those above it put vertices beyond 3.4e38"));
         }
         // Checked here as well as after the triangles: vertices without triangles could exhaust memory too.
-        self.check_size(node)?;
+        self.check_size(pose.node)?;
         self.positions.insert(number, range);
         Ok(range)
     }
 
-    fn normals(&mut self, attributes: Json<'a>, transform: DMat4) -> Result<Option<Range>, MeshFault> {
+    fn normals(
+        &mut self,
+        primitive: Json<'a>,
+        attributes: Json<'a>,
+        pose: &Pose<'a>,
+    ) -> Result<Option<Range>, MeshFault> {
         let Some(index) = attributes.field("NORMAL")? else { return Ok(None) };
         let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
         if let Some(&range) = self.normals.get(&number) {
             return Ok(Some(range));
         }
         let vectors = Accessor::read(index, self.buffers)?.vectors::<3>()?;
+        let normals = pose.placed(primitive, "NORMAL", vectors, self.buffers)?;
         let values = self.mesh.normals.values_mut();
-        let range = range_after(values.len(), vectors.len());
-        let cofactors = cofactors(DMat3::from_mat4(transform));
-        values.extend(vectors.into_iter().map(|vector| unit(cofactors * Vec3::from(vector).as_dvec3())));
+        let range = range_after(values.len(), normals.len());
+        values.extend(normals);
         self.normals.insert(number, range);
         Ok(Some(range))
     }
@@ -232,12 +276,4 @@ fn triangles(mode: usize, length: usize) -> Option<impl Iterator<Item = [usize; 
         5 => [i, i + 1 + i % 2, i + 2 - i % 2],
         _ => [i + 1, i + 2, 0],
     }))
-}
-
-/// Returns the matrix that transforms normals: the inverse transpose times a positive factor.
-/// Unlike the inverse, the matrix of cofactors also exists for singular matrices, which flatten a mesh.
-fn cofactors(matrix: DMat3) -> DMat3 {
-    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = matrix;
-    let sign = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
-    DMat3::from_cols(y.cross(z) * sign, z.cross(x) * sign, x.cross(y) * sign)
 }

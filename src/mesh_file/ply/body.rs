@@ -1,7 +1,9 @@
 //! Reading of the numbers of a PLY body, as text or binary.
 
 use super::header::{Element, Property, PropertyType, ScalarType};
+use crate::mesh_file::builder::MeshBuilder;
 use crate::mesh_file::fault::MeshFault;
+use crate::mesh_file::left_out::LeftOut;
 use crate::mesh_file::text::TextCursor;
 use crate::progress::Meter;
 
@@ -14,6 +16,10 @@ pub(super) trait RowReader {
     fn end_row(&mut self, element: &Element<'_>) -> Result<(), MeshFault>;
     /// Reads a number, which must be finite.
     fn number(&mut self, kind: ScalarType) -> Result<f32, MeshFault>;
+    /// Reads a number, which may be infinite or NaN.
+    fn any_number(&mut self, kind: ScalarType) -> Result<f32, MeshFault>;
+    /// Skips the row that begins at `start`, a byte offset, after a fault within it.
+    fn skip_row(&mut self, element: &Element<'_>, start: usize) -> Result<(), MeshFault>;
     /// Reads an integer of a type that is not a float.
     fn integer(&mut self, kind: ScalarType) -> Result<i64, MeshFault>;
     /// Skips `count` numbers of a type.
@@ -27,12 +33,44 @@ pub(super) trait RowReader {
     /// Returns the fewest bytes that a row of these properties can take.
     fn least_size(&self, properties: &[Property<'_>]) -> usize;
 
+    /// Skips the numbers of properties.
+    fn skip_properties(&mut self, properties: &[Property<'_>]) -> Result<(), MeshFault> {
+        properties.iter().try_for_each(|property| match property.shape {
+            PropertyType::Scalar(kind) => self.skip(kind, 1),
+            PropertyType::List { length, item } => {
+                let length = self.length(length)?;
+                self.skip(item, length)
+            }
+        })
+    }
+
     /// Reads the length of a list, which must not be negative.
     fn length(&mut self, kind: ScalarType) -> Result<usize, MeshFault> {
         let position = self.position();
         let length = self.integer(kind)?;
         usize::try_from(length).map_err(|_| self.fault(position, format!("a list cannot have {length} items")))
     }
+}
+
+/// Calls `read` for each row of an element, and `leave_out` with the numbers of faulty rows.
+pub(super) fn each_row<R: RowReader>(
+    element: &Element<'_>,
+    rows: &mut R,
+    left_out: &mut LeftOut<'_>,
+    mesh: &mut MeshBuilder,
+    mut read: impl FnMut(&mut R, &mut MeshBuilder) -> Result<(), MeshFault>,
+    leave_out: impl Fn(&mut MeshBuilder, usize),
+) -> Result<(), MeshFault> {
+    for row in 0..element.count {
+        rows.begin_row(element, row)?;
+        let start = rows.position();
+        if let Err(fault) = read(rows, mesh).and_then(|()| rows.end_row(element)) {
+            left_out.fault(fault)?;
+            rows.skip_row(element, start)?;
+            leave_out(mesh, row as usize);
+        }
+    }
+    Ok(())
 }
 
 /// A text body, in which each line is a row.
@@ -72,6 +110,17 @@ impl RowReader for AsciiRows<'_> {
     #[inline]
     fn number(&mut self, _kind: ScalarType) -> Result<f32, MeshFault> {
         self.text.number()
+    }
+
+    #[inline]
+    fn any_number(&mut self, _kind: ScalarType) -> Result<f32, MeshFault> {
+        self.text.any_number()
+    }
+
+    fn skip_row(&mut self, _element: &Element<'_>, start: usize) -> Result<(), MeshFault> {
+        self.text = self.text.cursor_at(start);
+        self.text.skip_line();
+        Ok(())
     }
 
     #[inline]
@@ -176,6 +225,16 @@ impl<const BIG_ENDIAN: bool> RowReader for BinaryRows<'_, BIG_ENDIAN> {
         }
         let what = if value.is_finite() { "is too large: numbers go up to 3.4e38" } else { "is not a finite number" };
         Err(self.fault(position, format!("{value:e} {what}")))
+    }
+
+    #[inline]
+    fn any_number(&mut self, kind: ScalarType) -> Result<f32, MeshFault> {
+        Ok(self.value(kind)? as f32)
+    }
+
+    fn skip_row(&mut self, element: &Element<'_>, start: usize) -> Result<(), MeshFault> {
+        self.at = start;
+        self.skip_properties(&element.properties)
     }
 
     #[inline]

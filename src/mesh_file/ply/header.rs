@@ -1,12 +1,15 @@
 //! The PLY header: the elements, and the properties of their rows.
 
 use crate::mesh_file::fault::{MeshFault, shown};
+use crate::mesh_file::left_out::LeftOut;
 use crate::mesh_file::text::TextCursor;
 
 /// A PLY header: the encoding of the body, and the elements in the order of the file.
 pub(super) struct Header<'a> {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element<'a>>,
+    /// The names of the textures, from comments.
+    pub(super) textures: Vec<&'a [u8]>,
     /// The offset in bytes of the body, which follows the header.
     pub(super) end: usize,
 }
@@ -33,6 +36,11 @@ pub(super) struct Property<'a> {
 }
 
 impl Property<'_> {
+    /// Returns whether the property is a list with the name `name`.
+    pub(super) fn is_list(&self, name: &str) -> bool {
+        self.name == name && matches!(self.shape, PropertyType::List { .. })
+    }
+
     /// Returns whether the property lists the corners of a face.
     pub(super) fn is_indices(&self) -> bool {
         let is_list = matches!(self.shape, PropertyType::List { item, .. } if !item.is_float());
@@ -90,8 +98,9 @@ impl ScalarType {
 }
 
 impl<'a> Header<'a> {
-    pub(super) fn read(bytes: &'a [u8]) -> Result<Self, MeshFault> {
-        let mut reader = HeaderReader { text: TextCursor::new(bytes), encoding: None, elements: Vec::new() };
+    pub(super) fn read(bytes: &'a [u8], left_out: &mut LeftOut<'_>) -> Result<Self, MeshFault> {
+        let text = TextCursor::new(bytes);
+        let mut reader = HeaderReader { text, encoding: None, elements: Vec::new(), textures: Vec::new(), left_out };
         // The format was recognised by these bytes, but the whole line must be `ply`.
         if reader.text.rest_of_line() != b"ply" {
             return Err(MeshFault::in_text(0, "a PLY file begins with a line that says ply"));
@@ -108,17 +117,19 @@ impl<'a> Header<'a> {
                 "the header lacks its line `format ascii 1.0` (or binary_little_endian, binary_big_endian)",
             )
         })?;
-        Ok(Self { encoding, elements: reader.elements, end })
+        Ok(Self { encoding, elements: reader.elements, textures: reader.textures, end })
     }
 }
 
-struct HeaderReader<'a> {
+struct HeaderReader<'a, 'b, 'c> {
     text: TextCursor<'a>,
     encoding: Option<Encoding>,
     elements: Vec<Element<'a>>,
+    textures: Vec<&'a [u8]>,
+    left_out: &'c mut LeftOut<'b>,
 }
 
-impl<'a> HeaderReader<'a> {
+impl<'a> HeaderReader<'a, '_, '_> {
     /// Reads a line of the header. Returns `false` after `end_header`, whose line end is left to
     /// the caller.
     fn statement(&mut self) -> Result<bool, MeshFault> {
@@ -131,7 +142,8 @@ impl<'a> HeaderReader<'a> {
             b"format" => self.format()?,
             b"element" => self.element(at)?,
             b"property" => self.property(at)?,
-            b"comment" | b"obj_info" => self.text.skip_line(),
+            b"comment" => self.comment(),
+            b"obj_info" => self.text.skip_line(),
             b"end_header" => {
                 self.text.rest_of_line();
                 return Ok(false);
@@ -139,10 +151,19 @@ impl<'a> HeaderReader<'a> {
             _ => {
                 let message =
                     format!("{} is not a keyword of a header (format, element, property, comment)", shown(word));
-                return Err(MeshFault::in_text(at, message));
+                self.left_out.fault(MeshFault::in_text(at, message))?;
+                self.text.skip_line();
             }
         }
         Ok(true)
+    }
+
+    /// Reads a comment, which may name a texture as `MeshLab` does: `comment TextureFile t.png`.
+    fn comment(&mut self) {
+        if self.text.word().eq_ignore_ascii_case(b"TextureFile") {
+            self.textures.push(self.text.rest_of_line());
+        }
+        self.text.skip_line();
     }
 
     fn format(&mut self) -> Result<(), MeshFault> {

@@ -1,0 +1,176 @@
+//! The pose of a glTF mesh: morph targets, then joints of a skin or the transform of the node.
+
+use super::accessor::Accessor;
+use super::buffers::Buffers;
+use super::json::Json;
+use super::tree::{local_transform, nodes_in};
+use crate::mesh_file::builder::unit;
+use crate::mesh_file::fault::MeshFault;
+use glam::{DMat3, DMat4, Vec3};
+
+/// The transforms of all nodes to the scene's coordinates, for the joints of skins; empty in a file
+/// without skins.
+pub(super) struct Globals(Vec<DMat4>);
+
+impl Globals {
+    pub(super) fn of(root: Json<'_>) -> Result<Self, MeshFault> {
+        let count = if root.count("skins")? > 0 { root.count("nodes")? } else { 0 };
+        let mut globals = vec![DMat4::IDENTITY; count];
+        if count == 0 {
+            return Ok(Self(globals));
+        }
+        let mut is_child = vec![false; count];
+        for node in root.list("nodes")? {
+            for (child, _) in nodes_in(node, "children", root)? {
+                is_child[child] = true;
+            }
+        }
+        let roots = root.list("nodes")?.enumerate().filter(|&(number, _)| !is_child[number]);
+        let mut open: Vec<_> = roots.map(|node| (node, DMat4::IDENTITY)).collect();
+        let mut is_visited = vec![false; count];
+        while let Some(((number, node), parent)) = open.pop() {
+            if std::mem::replace(&mut is_visited[number], true) {
+                return Err(node.fault("this node is reached twice: nodes must form a tree"));
+            }
+            globals[number] = parent * local_transform(node)?;
+            open.extend(nodes_in(node, "children", root)?.into_iter().map(|child| (child, globals[number])));
+        }
+        Ok(Self(globals))
+    }
+
+    /// Returns the matrices of a skin's joints.
+    pub(super) fn joints<'a>(&self, skin: Json<'a>, buffers: &mut Buffers<'a, '_>) -> Result<Vec<DMat4>, MeshFault> {
+        let (_, skin) = skin.item_of(buffers.root(), "skins")?;
+        let joints = nodes_in(skin, "joints", buffers.root())?;
+        let mut matrices: Vec<_> = joints.iter().map(|&(number, _)| self.0[number]).collect();
+        if let Some(index) = skin.field("inverseBindMatrices")? {
+            let inverse = Accessor::read(index, buffers)?.vectors::<16>()?;
+            if inverse.len() < matrices.len() {
+                return Err(skin.fault(format!("{} joints have only {} matrices", matrices.len(), inverse.len())));
+            }
+            for (matrix, inverse) in matrices.iter_mut().zip(inverse) {
+                *matrix *= DMat4::from_cols_array(&inverse.map(f64::from));
+            }
+        }
+        Ok(matrices)
+    }
+}
+
+/// The pose of the mesh of a node.
+pub(super) struct Pose<'a> {
+    /// The node, for faults.
+    pub(super) node: Json<'a>,
+    pub(super) transform: DMat4,
+    /// The matrices of the skin's joints; empty without a skin.
+    pub(super) joints: Vec<DMat4>,
+    /// The weights of the morph targets.
+    pub(super) weights: Vec<f64>,
+}
+
+/// The names of the attributes of skins: joints and weights, four at a time.
+const JOINTS: [[&str; 2]; 2] = [["JOINTS_0", "WEIGHTS_0"], ["JOINTS_1", "WEIGHTS_1"]];
+
+/// Limit on the morph targets that move a mesh at once: all of them are added for each vertex.
+const MAX_TARGETS: usize = 64;
+
+impl<'a> Pose<'a> {
+    /// Returns whether each primitive is moved differently, and not only by the node.
+    pub(super) fn is_by_primitive(&self) -> bool {
+        !self.joints.is_empty() || !self.weights.is_empty()
+    }
+
+    /// Returns the positions or normals of a primitive in the scene's coordinates.
+    pub(super) fn placed(
+        &self,
+        primitive: Json<'a>,
+        name: &'static str,
+        mut vectors: Vec<[f32; 3]>,
+        buffers: &mut Buffers<'a, '_>,
+    ) -> Result<Vec<Vec3>, MeshFault> {
+        self.add_targets(primitive, name, &mut vectors, buffers)?;
+        let matrices = self.matrices(primitive, vectors.len(), buffers)?;
+        let matrix = |i: usize| matrices.as_ref().map_or(self.transform, |matrices| matrices[i]);
+        let place = |(i, vector): (usize, [f32; 3])| {
+            let vector = Vec3::from(vector).as_dvec3();
+            if name == "NORMAL" {
+                return unit(cofactors(DMat3::from_mat4(matrix(i))) * vector);
+            }
+            matrix(i).transform_point3(vector).as_vec3()
+        };
+        Ok(vectors.into_iter().enumerate().map(place).collect())
+    }
+
+    /// Adds the weighted morph targets.
+    fn add_targets(
+        &self,
+        primitive: Json<'a>,
+        name: &'static str,
+        vectors: &mut [[f32; 3]],
+        buffers: &mut Buffers<'a, '_>,
+    ) -> Result<(), MeshFault> {
+        let weighted = primitive.list("targets")?.zip(&self.weights).filter(|&(_, &weight)| weight != 0.0);
+        for (number, (target, &weight)) in weighted.enumerate() {
+            if number == MAX_TARGETS {
+                return Err(primitive.fault(format!("more than {MAX_TARGETS} morph targets have a weight")));
+            }
+            let Some(index) = target.field(name)? else { continue };
+            let offsets = Accessor::read(index, buffers)?.vectors::<3>()?;
+            if offsets.len() != vectors.len() {
+                return Err(target.fault(format!("{} vertices have {} offsets", vectors.len(), offsets.len())));
+            }
+            for (vector, offset) in vectors.iter_mut().zip(offsets) {
+                for (sum, offset) in vector.iter_mut().zip(offset) {
+                    *sum += (weight * f64::from(offset)) as f32;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the matrix of each vertex; `None` without a skin.
+    fn matrices(
+        &self,
+        primitive: Json<'a>,
+        count: usize,
+        buffers: &mut Buffers<'a, '_>,
+    ) -> Result<Option<Vec<DMat4>>, MeshFault> {
+        let attributes = primitive.required("attributes")?;
+        if self.joints.is_empty() || attributes.field(JOINTS[0][0])?.is_none() {
+            return Ok(None);
+        }
+        let mut sums = vec![(DMat4::ZERO, 0.0); count];
+        for [joints, weights] in JOINTS {
+            let (Some(joints), Some(weights)) = (attributes.field(joints)?, attributes.field(weights)?) else {
+                continue;
+            };
+            let indices = Accessor::read(joints, buffers)?;
+            let (numbers, shares) = (indices.vectors::<4>()?, Accessor::read(weights, buffers)?.vectors::<4>()?);
+            if numbers.len() != count || shares.len() != count {
+                return Err(
+                    attributes.fault(format!("{count} vertices have {} joints", numbers.len().min(shares.len())))
+                );
+            }
+            for ((sum, total), (numbers, shares)) in sums.iter_mut().zip(numbers.into_iter().zip(shares)) {
+                for (number, share) in numbers.into_iter().zip(shares).filter(|&(_, share)| share != 0.0) {
+                    let Some(joint) = self.joints.get(number as usize) else {
+                        let joints = self.joints.len();
+                        return Err(indices.fault(format!("joint {number} does not exist: the skin has {joints}")));
+                    };
+                    *sum += *joint * f64::from(share);
+                    *total += f64::from(share);
+                }
+            }
+        }
+        // The weights should have the sum 1. A vertex without weights stays where its node is.
+        let mean = |(sum, total)| if total == 0.0 { self.transform } else { sum * (1.0 / total) };
+        Ok(Some(sums.into_iter().map(mean).collect()))
+    }
+}
+
+/// Returns the matrix that transforms normals: the inverse transpose times a positive factor.
+/// Unlike the inverse, the matrix of cofactors also exists for singular matrices, which flatten a mesh.
+fn cofactors(matrix: DMat3) -> DMat3 {
+    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = matrix;
+    let sign = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
+    DMat3::from_cols(y.cross(z) * sign, z.cross(x) * sign, x.cross(y) * sign)
+}

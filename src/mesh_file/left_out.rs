@@ -1,0 +1,121 @@
+//! Parts of a mesh that its picture does not show: faulty ones, and unsupported contents.
+
+use super::MeshError;
+use super::fault::MeshFault;
+use crate::progress::{Reporter, Unfinished};
+use crate::text::visible;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+/// The parts of one mesh file that are left out, which become one or two notices.
+pub(super) struct LeftOut<'a> {
+    reporter: &'a Reporter<'a>,
+    /// The name and the bytes of the mesh file.
+    name: &'a str,
+    bytes: &'a [u8],
+    /// The first fault that was left out, and the number of all of them.
+    first: Option<MeshFault>,
+    faults: usize,
+    /// Limit on the faults; counted when the first few have been found.
+    limit: Option<usize>,
+    /// Number of triangles that lack a corner because of the faults.
+    triangles: usize,
+    /// Contents that are not shown: name in the singular, and number.
+    not_shown: BTreeMap<Cow<'static, str>, usize>,
+}
+
+/// Number of faults that are left out in a file of any size. In larger files, one part in a hundred
+/// may be faulty.
+const FEW_FAULTS: usize = 5;
+
+impl<'a> LeftOut<'a> {
+    pub(super) fn new(reporter: &'a Reporter<'a>, name: &'a str, bytes: &'a [u8]) -> Self {
+        Self { reporter, name, bytes, first: None, faults: 0, limit: None, triangles: 0, not_shown: BTreeMap::new() }
+    }
+
+    /// Leaves out a faulty line, face or facet.
+    ///
+    /// The parts of a file are its lines, unless [`of_parts`](Self::of_parts) counts others.
+    ///
+    /// # Errors
+    /// If the reporter takes no notices, the fault is not of a part, or too many parts are faulty: the first fault.
+    #[cold]
+    pub(super) fn fault(&mut self, fault: MeshFault) -> Result<(), MeshFault> {
+        if !self.reporter.takes_notices() || !fault.is_of_part() {
+            return Err(fault);
+        }
+        self.faults += 1;
+        let first = self.first.get_or_insert(fault);
+        if self.faults > FEW_FAULTS {
+            let lines = || self.bytes.split(|&byte| byte == b'\n').count();
+            if self.faults > *self.limit.get_or_insert_with(|| lines() / 100) {
+                return Err(std::mem::replace(first, MeshFault::of_file("")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the error of a fault of the mesh file.
+    pub(super) fn error_of(&self, fault: MeshFault) -> Unfinished<MeshError> {
+        fault.into_error(self.name, self.bytes)
+    }
+
+    /// Returns a fault of a part of the mesh file as one that is never left out.
+    pub(super) fn fatal(&self, fault: MeshFault) -> MeshFault {
+        self.error_of(fault).into()
+    }
+
+    /// Sets the number of parts, of which one in a hundred may be faulty.
+    pub(super) fn of_parts(&mut self, count: usize) {
+        self.limit = Some(count / 100);
+    }
+
+    /// Returns whether a fault was left out.
+    pub(super) fn has_faults(&self) -> bool {
+        self.first.is_some()
+    }
+
+    /// Returns the first fault of a mesh of which nothing is left; without one, the fault with the
+    /// message `nothing`.
+    pub(super) fn fault_of_nothing(&mut self, nothing: String) -> MeshFault {
+        self.first.take().unwrap_or_else(|| MeshFault::of_file(nothing))
+    }
+
+    /// Counts a triangle that lacks a corner.
+    pub(super) fn triangle(&mut self) {
+        self.triangles += 1;
+    }
+
+    /// Counts contents that are not shown. `what` is their name in the singular.
+    pub(super) fn not_shown(&mut self, what: impl Into<Cow<'static, str>>, count: usize) {
+        /// Limit on the kinds of contents, so that notices stay readable.
+        const MAX_KINDS: usize = 20;
+        if count > 0 && self.not_shown.len() < MAX_KINDS {
+            *self.not_shown.entry(what.into()).or_default() += count;
+        }
+    }
+
+    /// Reports what was left out.
+    pub(super) fn report(self) {
+        let Self { reporter, name, bytes, first, faults, triangles, not_shown, .. } = self;
+        if let Some(Unfinished::Failed(error)) = first.map(|first| first.into_error(name, bytes)) {
+            let others = counted([("more fault".into(), faults - 1), ("triangle".into(), triangles)]);
+            let with = if others.is_empty() { String::new() } else { format!(", with {others}") };
+            reporter.notice(|| format!("{error} (ignored{with})"));
+        }
+        if !not_shown.is_empty() {
+            reporter.notice(|| visible(&format!("{name}: not shown: {}", counted(not_shown))));
+        }
+    }
+}
+
+/// Returns a list such as "2 skins, 1 line", without those of which there are none.
+fn counted(parts: impl IntoIterator<Item = (Cow<'static, str>, usize)>) -> String {
+    let counted = parts.into_iter().filter(|&(_, count)| count > 0).map(|(what, count)| match what.split_once(" (") {
+        _ if count == 1 => format!("1 {what}"),
+        // The plural goes before a remark in brackets.
+        Some((what, remark)) => format!("{count} {what}s ({remark}"),
+        None => format!("{count} {what}s"),
+    });
+    counted.collect::<Vec<_>>().join(", ")
+}

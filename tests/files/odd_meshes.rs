@@ -1,0 +1,112 @@
+//! Meshes as other programs write them: what is left out is told, and the rest is drawn.
+//!
+//! In `tests/odd_meshes`, `make.py` writes the meshes, `NAME.txt` has the notices about the mesh `NAME` and its
+//! contents, and `beside/` has the files that meshes name. `BLESS=1 cargo test --test files odd_meshes` writes them
+//! anew.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use termtrace::LinearRgb;
+use termtrace::glam::{Vec2, Vec3};
+use termtrace::internals::mesh_file::MeshFile;
+use termtrace::internals::progress::Reporter;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/odd_meshes")
+}
+
+fn meshes() -> Vec<PathBuf> {
+    let is_mesh = |path: &PathBuf| {
+        let ending = path.extension().unwrap_or_default();
+        path.is_file() && !["txt", "py", "png"].iter().any(|other| ending == *other)
+    };
+    let mut meshes: Vec<_> =
+        std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path()).filter(is_mesh).collect();
+    meshes.sort();
+    meshes
+}
+
+/// Returns the notices of reading a mesh, and its contents or the error.
+fn account_of(path: &Path, is_strict: bool) -> String {
+    let lines = Mutex::new(Vec::new());
+    let on_notice = |notice: String| lines.lock().unwrap().push(format!("notice: {notice}"));
+    let reporter = Reporter::silent().with_warnings(&on_notice);
+    let read = MeshFile::load_or_cancel(path, &if is_strict { reporter.strict() } else { reporter });
+    let contents = match read {
+        Ok(mesh) => contents_of(&mesh),
+        Err(error) => format!("error: {error}"),
+    };
+    let mut lines = lines.into_inner().unwrap();
+    lines.push(contents);
+    lines.join("\n").replace(&format!("{}/", folder().display()), "") + "\n"
+}
+
+fn contents_of(mesh: &MeshFile) -> String {
+    let places = mesh.triangles().iter().flatten().map(|&corner| mesh.positions()[corner as usize]);
+    let (least, most) = places.fold((Vec3::MAX, Vec3::MIN), |(least, most), p| (least.min(p), most.max(p)));
+    let colors: BTreeSet<_> = (0..mesh.triangles().len()).map(|triangle| color_of(mesh, triangle)).collect();
+    let colors = colors.into_iter().collect::<Vec<_>>().join(", ");
+    format!("{} triangles from {least} to {most}, {colors}", mesh.triangles().len())
+}
+
+/// Returns the colour at a triangle's first corner.
+fn color_of(mesh: &MeshFile, triangle: usize) -> String {
+    let white = LinearRgb::grey(1.0);
+    let material = mesh.material_of(triangle).map(|index| &mesh.materials()[index]);
+    let uv = mesh.texture_coordinates_of(triangle).map(|uvs| uvs[0]);
+    let texel = |uv: Vec2| {
+        let placement = material?.texture.as_ref()?;
+        Some(placement.texture.color_at(placement.at(uv)))
+    };
+    let own = mesh.colors_of(triangle).map(|colors| colors[0]);
+    if material.is_none() && own.is_none() {
+        return "no colour".to_owned();
+    }
+    let color = material.map_or(white, |material| material.reflectance)
+        * own.unwrap_or(white)
+        * uv.and_then(texel).unwrap_or(white);
+    let [r, g, b] = [color.r, color.g, color.b].map(|channel| (channel * 1e3).round() / 1e3);
+    format!("rgb {r} {g} {b}")
+}
+
+#[test]
+fn what_is_left_out_is_told_and_the_rest_is_drawn() {
+    let meshes = meshes();
+    assert!(meshes.len() >= 70, "only {}", meshes.len());
+    let mut wrong = Vec::new();
+    for path in meshes {
+        let name = path.file_name().unwrap().to_str().unwrap();
+        let found = account_of(&path, false);
+        let expected = folder().join(format!("{name}.txt"));
+        if std::env::var_os("BLESS").is_some() {
+            std::fs::write(&expected, &found).unwrap();
+        }
+        let expected = std::fs::read_to_string(expected).unwrap_or_default();
+        if found != expected {
+            wrong.push(format!("{name}\nexpected:\n{expected}found:\n{found}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// With warnings as errors, faults of colours are errors, and others stay notices.
+#[test]
+fn strict_reading_refuses_a_mesh_without_its_colours() {
+    for (name, error) in [
+        ("b1.obj", Some("b1.obj:1:8: the materials are missing: ")),
+        ("b2.obj", None),
+        ("b3.obj", Some("beside/b3.mtl:2:8: the texture is missing: ")),
+        ("b3.gltf", Some("b3.gltf: images[0].uri: ")),
+        ("b4.obj", Some("b4.obj:8:8: material \"zzz\" is not in any MTL file")),
+        ("b6.obj", Some("beside/b6.mtl:2:8: ")),
+        ("b6.gltf", Some("b6.gltf: images[0]: ")),
+        ("a7_gone.ply", Some("a7_gone.ply: the texture gone.png is missing: ")),
+        ("c5.obj", None),
+        ("b11_high.stl", None),
+    ] {
+        let found = account_of(&folder().join(name), true);
+        assert_eq!(found.starts_with("error: "), error.is_some(), "{found}");
+        assert!(error.is_none_or(|error| found.starts_with(&format!("error: {error}"))), "{found}");
+    }
+}

@@ -1,0 +1,271 @@
+#!/usr/bin/env python3
+"""Writes the meshes of this folder: files as other programs write them, valid or nearly so.
+
+`tests/files/odd_meshes.rs` reads each of them, and compares what is left out and what is drawn with `NAME.txt`.
+"""
+
+import base64
+import json
+import pathlib
+import struct
+import zlib
+
+FOLDER = pathlib.Path(__file__).parent
+BESIDE = FOLDER / "beside"
+BESIDE.mkdir(exist_ok=True)
+
+
+def write(name, content):
+    (FOLDER / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+
+
+def beside(name, content):
+    write("beside/" + name, content)
+
+
+def png(rgb):
+    def chunk(kind, data):
+        body = kind + data
+        return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
+
+    head = struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(b"\0" + bytes(rgb))) + chunk(b"IEND", b"")
+
+
+RED = (255, 0, 0)
+VERTICES = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+SQUARE = VERTICES + "f 1 2 3 4\n"
+TEXTURED = VERTICES + "vt 0 0\nusemtl a\nf 1/1 2/1 3/1 4/1\n"
+
+
+def obj(name, text, **mtl):
+    """Writes an OBJ file, and its MTL file if there is one."""
+    head = f"mtllib beside/{name}.mtl\n" if mtl else ""
+    for content in mtl.values():
+        beside(f"{name}.mtl", content)
+    write(f"{name}.obj", head + text)
+
+
+beside("t.png", png(RED))
+# A: materials
+for name in ["None", "(null)", "null"]:
+    obj(f"a1_{name.strip('()')}{len(name)}", VERTICES + f"usemtl {name}\nf 1 2 3\n", mtl=f"newmtl {name}\nKd 1 0 0\n")
+obj("a1_undefined", VERTICES + "usemtl None\nf 1 2 3\n", mtl="newmtl x\nKd 1 0 0\n")
+obj("a5", VERTICES + "usemtl x\nf 1 2 3\n", mtl="newmtl x\nKd 0 0 0\nKe 1 0 0\nnewmtl unused\nKe 1 1 1\n")
+obj("a9", VERTICES + "usemtl x\nf 1 2 3\n", mtl="newmtl x\nKd 0 0 1\nd 0.2\nmap_d t.png\n")
+obj("a10", SQUARE + "l 1 2 3\nl 3 4\np 1 2 3\np -1\ncurv 0 1 1 2\n")
+obj("a11", VERTICES + "f 1 1 2\nf 3 3 3\n")
+# B: what is missing or cannot be read
+obj("b1", "mtllib gone.mtl\nusemtl a\n" + SQUARE)
+obj("b2", SQUARE + "f 1 2\nf 3\n")
+obj("b3", TEXTURED, mtl="newmtl a\nmap_Kd gone.png\n")
+obj("b4", VERTICES + "usemtl a\nf 1 2 3\nusemtl zzz\nf 1 3 4\n", mtl="newmtl a\nKd 1 0 0\n")
+obj("b5", TEXTURED, mtl="newmtl a\nmap_Kd C:\\art\\t.png\n")
+obj("b5_slash", TEXTURED, mtl="newmtl a\nmap_Kd /home/x/art/t.png\n")
+obj("b5_gone", TEXTURED, mtl="newmtl a\nmap_Kd C:\\art\\gone.png\n")
+obj("b5_folder", TEXTURED, mtl="newmtl a\nmap_Kd textures\\only here.png\n")
+write("only here.png", png((0, 0, 255)))
+obj("b5_mtl", "mtllib C:\\art\\b5_slash.mtl\nusemtl a\n" + SQUARE)
+obj("b6", TEXTURED, mtl="newmtl a\nmap_Kd t.xcf\n")
+beside("t.xcf", b"gimp xcf file\0")
+obj("b7", TEXTURED, mtl="newmtl a\nmap_Kd T.PNG\n")
+obj("b7_quotes", TEXTURED, mtl='newmtl a\nmap_Kd "t.png"\n')
+obj("b7_url", TEXTURED, mtl="newmtl a\nmap_Kd https://example.com/t.png\n")
+obj("b7_mtl", TEXTURED, mtl="Kd 1\nnewmtl a\nKd spectral x.rfl\nmap_Kd t.png\n")
+obj("b8_vertex", VERTICES + "v nan 0 0\nf 1 2 3 4\n")
+obj("b8_used", VERTICES + "v nan 0 0\nf 1 2 3 4\nf 1 2 5\n")
+obj("b8_normal", VERTICES + "vn nan nan nan\nvn 0 0 1\nf 1//1 2//2 3//2\n")
+obj("b8_texture", VERTICES + "vt nan nan\nf 1/1 2/1 3/1\n")
+obj("b9", VERTICES + "f 1// 2// 3//\nvt 0 0\nf 1/ 2/ 4/\nf 1/1/ 3/1/ 4/1/\n")
+obj("b9_mixed", VERTICES + "vt 0 0\nf 1/1 2 3/1\n")
+obj("b9_rgba", "v 0 0 0 1 0 0 1\nv 1 0 0 1 0 0 1\nv 0 1 0 1 0 0 1\nf 1 2 3\n")
+obj("b10_ctrl_z", SQUARE + "\x1a")
+obj("b10_nul", SQUARE + "\0\0\0")
+obj("b13_word", SQUARE + "foo bar\n")
+obj("b13_order", "f 1 2 3\n" + SQUARE + "f 1 2 9\n")
+obj("c5", VERTICES + "f 1 2 3 4\n" * 700 + "f 1 2 x\nv 1 2\nf 5 1 2\nf 0 1 2\nf 1 2 3 -9\nf -1 -2 -3\n" + "f 1 2 3\n" * 100)
+obj("c5_many", VERTICES + "f 1 2 3 4\n" * 100 + "f 1 2\n" * 6)
+
+# STL
+FACET = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+TEXT = "solid x\n" + FACET + "endsolid x\n"
+write("b10_nul.stl", TEXT + "\0")
+write("b10_ctrl_z.stl", TEXT + "\x1a")
+write("b2_loop.stl", TEXT.replace("endsolid", FACET.replace("vertex 1 0 0\n", "") + "endsolid"))
+write("c2_comment.stl", "# made by hand\n" + TEXT)
+write("c2_word.stl", TEXT.replace("endsolid", "hello\nendsolid"))
+write("c5_vertex.stl", TEXT.replace("endsolid", FACET.replace("1 0 0", "1 0") + FACET + "endsolid"))
+write("c3_text", TEXT)
+
+
+def stl(name, count, triangles, tail=b"", header=b"", attribute=0):
+    body = b""
+    for i in range(triangles):
+        corners = [0, 0, i, 1, 0, i, 0, 1, i]
+        body += struct.pack("<12fH", 0, 0, 1, *corners, attribute + i if attribute else 0)
+    write(name, header.ljust(80) + struct.pack("<I", count) + body + tail)
+
+
+stl("b11_zero.stl", 0, 3)
+stl("b11_low.stl", 2, 3)
+stl("b11_high.stl", 9, 3)
+stl("b11_bytes.stl", 3, 3, tail=b"\0\0")
+stl("c3_binary", 3, 3)
+stl("a8_magics.stl", 2, 2, header=b"COLOR=\xff\0\0\xffMATERIAL=", attribute=0x8000)
+stl("a8_bits.stl", 2, 2, attribute=0x8000 | 0x7C00)
+nan = struct.pack("<12fH", 0, 0, 1, 0, 0, 0, float("nan"), 0, 0, 0, 1, 0, 0)
+stl("b8_nan.stl", 2, 1, tail=nan)
+
+
+# PLY
+def ply(name, vertices, faces, vertex="", face="", head="", rows="", body="ascii", more=()):
+    text = f"ply\nformat {body} 1.0\n{head}element vertex {len(vertices)}\n"
+    text += "".join(f"property float {axis}\n" for axis in "xyz") + vertex
+    text += f"element face {len(faces)}\nproperty list uchar int vertex_indices\n{face}{rows}end_header\n"
+    write(name, text + "".join(line + "\n" for line in [*vertices, *faces, *more]))
+
+
+CORNERS = ["0 0 0", "1 0 0", "1 1 0", "0 1 0"]
+RGB = "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+ply("a6.ply", CORNERS, ["3 0 1 2 255 0 0", "3 0 2 3 0 0 255"], face=RGB)
+ST = "property float s\nproperty float t\n"
+ply("a7.ply", [c + " 0 0" for c in CORNERS], ["4 0 1 2 3"], vertex=ST, head="comment TextureFile beside/t.png\n")
+LISTS = "property list uchar float texcoord\n"
+ply("a7_lists.ply", CORNERS, ["3 0 1 2 6 0 0 1 0 1 1"], face=LISTS, head="comment TextureFile beside/t.png\n")
+NUMBERS = LISTS + "property int texnumber\n"
+two = "comment TextureFile beside/t.png\ncomment TextureFile only here.png\n"
+rows = ["3 0 1 2 6 0 0 1 0 1 1 0", "3 0 2 3 6 0 0 1 0 1 1 1"]
+ply("a7_two.ply", CORNERS, rows, face=NUMBERS, head=two)
+ply("a7_gone.ply", [c + " 0 0" for c in CORNERS], ["4 0 1 2 3"], vertex=ST, head="comment TextureFile gone.png\n")
+ply("b2.ply", CORNERS, ["2 0 1", "4 0 1 2 3", "0"])
+ply("b2_index.ply", CORNERS, ["3 0 1 9", "4 0 1 2 3"])
+ply("b8.ply", CORNERS + ["nan 0 0"], ["4 0 1 2 3"])
+NORMALS = "".join(f"property float n{axis}\n" for axis in "xyz")
+ply("b8_normals.ply", [c + " nan nan nan" for c in CORNERS], ["4 0 1 2 3"], vertex=NORMALS)
+ply("b13.ply", CORNERS, ["4 0 1 2 3"], head="Created by x\n")
+ply("c5_row.ply", CORNERS + ["1 x 0"], ["4 0 1 2 3", "3 0 1 4", "3 0 1"])
+edges = "element edge 2\nproperty int vertex1\nproperty int vertex2\n"
+ply("a10_edges.ply", CORNERS, ["4 0 1 2 3"], rows=edges, more=["0 1", "1 2"])
+binary = b"".join(struct.pack("<3f", *map(float, c.split())) for c in CORNERS + ["nan 0 0"])
+binary += struct.pack("<B2i", 2, 0, 1) + struct.pack("<B3i", 3, 0, 1, 2) + struct.pack("<B3i", 3, 0, 1, 7)
+ply("b2_binary.ply", CORNERS + ["0 0 0"], ["", "", ""], body="binary_little_endian")
+text = (FOLDER / "b2_binary.ply").read_bytes()
+write("b2_binary.ply", text[: text.index(b"end_header\n") + 11] + binary)
+
+
+# glTF
+class Gltf:
+    """A document with one triangle or square, whose parts can be changed."""
+
+    def __init__(self):
+        self.bytes = b""
+        self.views = []
+        self.accessors = []
+        self.primitive = {"attributes": {"POSITION": self.floats("VEC3", [0, 0, 0, 1, 0, 0, 0, 1, 0])}}
+        self.json = {
+            "asset": {"version": "2.0"},
+            "scene": 0,
+            "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [self.primitive]}],
+        }
+
+    def view(self, data):
+        self.views.append({"buffer": 0, "byteOffset": len(self.bytes), "byteLength": len(data)})
+        self.bytes += data + bytes(-len(data) % 4)
+        return len(self.views) - 1
+
+    def accessor(self, kind, component, code, numbers, **more):
+        width = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}[kind]
+        view = self.view(struct.pack(f"<{len(numbers)}{code}", *numbers))
+        accessor = {"bufferView": view, "componentType": component, "type": kind, "count": len(numbers) // width}
+        self.accessors.append(accessor | more)
+        return len(self.accessors) - 1
+
+    def floats(self, kind, numbers):
+        return self.accessor(kind, 5126, "f", numbers)
+
+    def document(self, uri):
+        buffer = {"byteLength": len(self.bytes)}
+        if uri:
+            buffer["uri"] = "data:;base64," + base64.b64encode(self.bytes).decode()
+        return json.dumps(self.json | {"accessors": self.accessors, "bufferViews": self.views, "buffers": [buffer]})
+
+    def write(self, name):
+        write(name, self.document(True) + "\n")
+
+    def write_binary(self, name, fill=b" "):
+        text = self.document(False).encode()
+        text += fill * (4 - len(text) % 4)
+        parts = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(self.bytes), b"BIN\0") + self.bytes
+        write(name, struct.pack("<4sII", b"glTF", 2, 12 + len(parts)) + parts)
+
+
+def skinned():
+    mesh = Gltf()
+    mesh.primitive["attributes"] |= {
+        "JOINTS_0": mesh.accessor("VEC4", 5121, "B", [0, 0, 0, 0] * 3),
+        "WEIGHTS_0": mesh.floats("VEC4", [1, 0, 0, 0] * 3),
+    }
+    mesh.json["nodes"] = [{"mesh": 0, "skin": 0, "scale": [0.01] * 3}, {"scale": [1, 3, 1], "translation": [0, 0, 1]}]
+    mesh.json["scenes"] = [{"nodes": [0, 1]}]
+    mesh.json["skins"] = [{"joints": [1]}]
+    return mesh
+
+
+skinned().write("a3.gltf")
+mesh = skinned()
+# The inverse of the joint's own transform: the mesh as it was modelled.
+inverse = [1, 0, 0, 0, 0, 1 / 3, 0, 0, 0, 0, 1, 0, 0, 0, -1, 1]
+mesh.json["skins"][0]["inverseBindMatrices"] = mesh.floats("MAT4", inverse)
+mesh.write("a3_bound.gltf")
+mesh = skinned()
+mesh.json["skins"] = [{"joints": [7]}]
+mesh.write("a3_no_joint.gltf")
+mesh = Gltf()
+mesh.primitive["targets"] = [{"POSITION": mesh.floats("VEC3", [0, 0, 0, 0, 0, 0, 0, 4, 0])}]
+mesh.json["meshes"][0]["weights"] = [1]
+mesh.write("a4.gltf")
+mesh.json["nodes"][0]["weights"] = [0.5]
+mesh.write("a4_node.gltf")
+mesh = Gltf()
+mesh.primitive["material"] = 0
+mesh.json["materials"] = [{"emissiveFactor": [1, 0, 0], "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1]}}]
+mesh.write("a5.gltf")
+mesh.json["materials"] = [{"alphaMode": "MASK"}]
+mesh.write("a9_mask.gltf")
+mesh.json["materials"] = [{"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 1, 0.2]}}]
+mesh.write("a9_blend.gltf")
+mesh = Gltf()
+mesh.json["meshes"][0]["primitives"] += [dict(mesh.primitive, mode=mode) for mode in range(4)]
+mesh.write("a10.gltf")
+mesh = Gltf()
+mesh.accessors.append({"componentType": 5121, "type": "SCALAR", "count": 3})
+mesh.primitive["indices"] = 1
+mesh.write("a11.gltf")
+mesh = Gltf()
+mesh.primitive["material"] = 0
+mesh.primitive["attributes"]["TEXCOORD_0"] = mesh.floats("VEC2", [0, 0] * 3)
+mesh.json |= {
+    "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+    "textures": [{"source": 0}],
+    "images": [{"uri": "gone.png"}],
+}
+mesh.write("b3.gltf")
+mesh.json["images"] = [{"uri": "beside/t.xcf"}]
+mesh.write("b6.gltf")
+mesh.json["images"] = [{"uri": "C:/art/ONLY%20HERE.png"}]
+mesh.write("b5.gltf")
+mesh.json["images"] = [{"uri": "beside/t.png"}]
+mesh.json["textures"] = [{"extensions": {"KHR_texture_basisu": {"source": 0}}}]
+mesh.json["extensionsUsed"] = mesh.json["extensionsRequired"] = ["KHR_texture_basisu"]
+mesh.write("b6_basis.gltf")
+mesh = Gltf()
+mesh.write_binary("b12.glb", fill=b"\0")
+mesh.json["asset"] = {"version": 2.0}
+mesh.write("c4_number.gltf")
+mesh.json["asset"] = {"version": 2}
+mesh.write("c4_integer.gltf")
+mesh = Gltf()
+mesh.json["extensionsUsed"] = mesh.json["extensionsRequired"] = ["ACME_wonder"]
+mesh.write("b14_unknown.gltf")
