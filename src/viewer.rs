@@ -379,7 +379,7 @@ impl Viewer {
         self.screen.open(warnings);
     }
 
-    /// Returns the first page of the caption of `scene`, whose index is `index`, if it has a caption.
+    /// Returns the first page of the caption of `scene`, scene number `index`, if it has one.
     fn caption(&self, scene: &Scene, index: usize) -> Option<Caption> {
         let place = self.options.tour.map(|count| (index + 1, count));
         Some(Caption::new(Arc::clone(scene.caption()?), place))

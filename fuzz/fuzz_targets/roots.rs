@@ -1,4 +1,4 @@
-//! Any formula along any rays: all kernels find the same first roots, and a root is where the sign changes.
+//! Any formula along any rays: all kernels find the same roots, at which the sign changes.
 
 #![no_main]
 #![allow(dead_code, reason = "the other targets ask for more of this module")]

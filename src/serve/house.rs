@@ -123,7 +123,7 @@ fn welcome_line(scene_count: usize, link: Option<&str>, columns: u16) -> String 
     let link = link.map(|link| format!("  {link}")).unwrap_or_default();
     let line = format!("drag or WASD moves, t turns{next}, ? all keys, q quits{link}");
     // A note has a blank at each side.
-    if line.chars().count() + 2 <= columns.into() { line } else { format!("? all keys, q quits{link}") }
+    if line.chars().count() + 2 <= usize::from(columns) { line } else { format!("? all keys, q quits{link}") }
 }
 
 /// A visitor in the queue for a place, which leaves it when it is dropped.
