@@ -356,7 +356,7 @@ fn assert_like_model(line: &Wire, buffer: &ratatui::buffer::Buffer, what: &str) 
     termtrace::lay_over(&mut grid, buffer);
     for at in Rect::from((Position::ORIGIN, SIZE)).positions() {
         for cell in line.cells(at.x, at.y) {
-            assert_eq!(&cell, grid.cell(at.x, at.y), "{at} after {what}\n{}", line.text());
+            assert_eq!(cell, grid.cell(at.x, at.y), "{at} after {what}\n{}", line.text());
         }
     }
 }
