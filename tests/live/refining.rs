@@ -40,11 +40,11 @@ fn assert_comes_to_its_end(scene: &Path, size: Size) {
     assert_refined(&mut session, &mut phases, &wanted, &format!("{what} at first"));
     session.send(b"d");
     phases.count_on("refinement", &mut session, SOON, |seen| !shows(seen.screen(), &wanted));
-    // The space bar stops the refinement.
-    session.send(b" ");
+    // The space bar stops the refinement, and its note goes with the next key.
+    session.send(b" \x1b[24~");
     phases.count_until_rest("refinement", &mut session);
     // The space bar ends the jump at once.
-    session.send(b"r ");
+    session.send(b"r \x1b[24~");
     assert_refined(&mut session, &mut phases, &wanted, &format!("{what} after a key"));
 }
 

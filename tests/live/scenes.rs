@@ -59,6 +59,13 @@ pub(crate) fn sees(session: &mut Session, text: &str) {
     session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
 }
 
+/// Shows the next or the previous scene, whose note then goes with a key that has no command.
+fn turn_to(session: &mut Session, key: &[u8], color: &str) {
+    session.send(key);
+    session.wait_for_text(&format!("{color}.ron ("));
+    session.send(b"\x1b[24~");
+}
+
 /// Returns whether the upper half of the screen shows that scene, whatever covers the lower one.
 fn upper_half_shows(session: &mut Session, text: &str) -> bool {
     let scene = Scene::from_ron("wanted", text).expect("the scene is fine");
@@ -235,7 +242,7 @@ fn several_scenes_are_shown_in_turn() {
         ["red", "lime", "gold"].map(|color| folder.write(&format!("{color}.ron"), ball(color, EYE)));
     let mut session = looking(&[&red, &lime, &gold]);
     for (key, color) in [(b"n", "lime"), (b"n", "gold"), (b"n", "red"), (b"p", "gold"), (b"p", "lime")] {
-        session.send(key);
+        turn_to(&mut session, key, color);
         sees(&mut session, &ball(color, EYE));
     }
     // The scene that is shown is the one that is watched.
@@ -244,7 +251,7 @@ fn several_scenes_are_shown_in_turn() {
     // Each scene keeps its view.
     session.send(b"d");
     session.wait_for_rest();
-    session.send(b"n");
+    turn_to(&mut session, b"n", "gold");
     sees(&mut session, &ball("gold", EYE));
     session.send(b"pi");
     session.wait_for("the moved eye", SOON, |seen| {
