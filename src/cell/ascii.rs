@@ -270,7 +270,7 @@ fn ink(
         (Background::Light, _) => 102,
     };
     let mean = Srgb8::from_linear(light * (1.0 / pixels.len() as f32));
-    inks.nearest(tint::at_brightness(mean, brightness))
+    inks.nearest(tint::scaled_to_brightness(mean, brightness))
 }
 
 /// Returns the character of a cell: its edge, or its fill.

@@ -21,7 +21,7 @@ pub(super) fn brightness(picture: &Picture) -> Picture {
 pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u32), inks: &mut InkConverter) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
-            let color = at_brightness(cell_mean(picture, pixels_per_cell, column, row), 255);
+            let color = scaled_to_brightness(cell_mean(picture, pixels_per_cell, column, row), 255);
             let mut cell = grid.cell_mut(column, row);
             cell.bg = inks.background();
             // Blanks keep their colour, because it is invisible and each change of colour takes bytes.
@@ -46,7 +46,7 @@ pub(super) fn cell_mean(picture: &Picture, (across, down): (u32, u32), column: u
 }
 
 /// Scales a colour so that its brightest channel is `brightness`; black stays black.
-pub(super) fn at_brightness(color: Srgb8, brightness: u8) -> Srgb8 {
+pub(super) fn scaled_to_brightness(color: Srgb8, brightness: u8) -> Srgb8 {
     let max = u32::from(color.r.max(color.g).max(color.b).max(1));
     let scaled = |channel: u8| (u32::from(channel) * u32::from(brightness) / max) as u8; // no channel exceeds `max`
     Srgb8::new(scaled(color.r), scaled(color.g), scaled(color.b))

@@ -60,8 +60,8 @@ struct Held {
 }
 
 impl Held {
-    /// Returns the motion from time `from` to `to`, as seconds at full speed.
-    fn seconds(&self, from: Duration, to: Duration) -> f32 {
+    /// Returns the seconds that a key at full speed takes for the motion from time `from` to `to`.
+    fn full_speed_seconds(&self, from: Duration, to: Duration) -> f32 {
         let full = to.min(self.full_until).saturating_sub(from);
         // The distance left while the speed falls evenly: half of the time left, times the speed at that time.
         let falls = self.ends.saturating_sub(self.full_until).as_secs_f32();
@@ -197,13 +197,13 @@ impl Motion {
 
     /// Returns whether a key causes motion at time `now`.
     pub fn is_moving(&self, now: Duration) -> bool {
-        self.net_motion(|held| held.seconds(now, now + Duration::from_millis(1))) != NetMotion::default()
+        self.net_motion(|held| held.full_speed_seconds(now, now + Duration::from_millis(1))) != NetMotion::default()
     }
 
     /// Returns the camera after the motion from time `from` to `to`, at `speed` world units per
     /// second.
     pub fn step(&self, camera: &Camera, speed: f32, from: Duration, to: Duration) -> Camera {
-        let net = self.net_motion(|held| held.seconds(from, to));
+        let net = self.net_motion(|held| held.full_speed_seconds(from, to));
         let shift = if self.fast { SHIFT_SPEED_FACTOR } else { 1.0 };
         // Strang splitting: half of the turn before the translation and half after it. The error is of third order in
         // the step, so that a curve hardly depends on the frame rate.

@@ -372,7 +372,7 @@ impl<W: Write> EncoderBackend<W> {
         self.send(&bytes)
     }
 
-    /// Sends all drawn cells that are not sent yet, with exact colours.
+    /// Sends all drawn cells that are not sent yet, with exact colours and without a limit.
     fn send_exactly(&mut self) -> io::Result<()> {
         let bytes = self.encode_frame(None);
         self.send(&bytes)

@@ -23,7 +23,7 @@ pub(super) struct ChangeTimes {
 struct LastChange {
     digest: u32,
     /// The time of the change in milliseconds, of which the lowest 32 bits are kept.
-    // After seven weeks a cell appears to have just changed.
+    // The 32 bits overflow after seven weeks: a cell unchanged for that long appears to have just changed.
     since: u32,
 }
 

@@ -30,7 +30,8 @@ const SHORT: f64 = 1.0 / 1024.0;
 /// The error of a blurred model, relative to the extent of its polynomial.
 const BLUR: f64 = 1.0 / 16.0;
 
-/// The length of the longest stretch of undecided sign that may hide a root, relative to the range.
+/// The longest stretch of undecided sign that counts as a root, relative to the range, if f changes
+/// its sign across it.
 // f may be zero on a whole stretch of the ray, which is no surface. Near a triple root it may be zero in f64.
 const MAX_STRETCH: f64 = 1.0 / 256.0;
 

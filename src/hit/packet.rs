@@ -288,8 +288,9 @@ impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Unculled<'_, N, ANY> 
     }
 }
 
-/// Returns the mask of lanes of `others` whose primitive comes after `primitive` in the scene.
-// Cold: two surfaces at exactly the same t are rare.
+/// Returns the mask of lanes of `others` without a primitive, or with one after `primitive` in the
+/// scene.
+// Cold: two surfaces rarely have exactly the same t.
 #[cold]
 fn mask_of_later_primitives(accel: &Accelerator, primitive: u32, others: &F32x8) -> u32 {
     let is_first = |other: u32| other == NO_PRIMITIVE || accel.id(primitive) < accel.id(other);

@@ -145,7 +145,8 @@ pub(super) struct FrameFloor {
     doublings: u32,
     /// Service time of a frame before the last doubling, with which the next frame's is compared.
     before: Option<Duration>,
-    /// Time until which the floor is not doubled, because larger frames took longer.
+    /// Time until which the floor is not doubled again, because frames took longer after it was
+    /// doubled last.
     waits_until: Duration,
 }
 

@@ -108,7 +108,9 @@ impl Default for Ledger {
 }
 
 impl Ledger {
-    /// Returns the next tag of the cycle, the one that has been unused for the longest time.
+    /// Returns the tag for the next query.
+    ///
+    /// Tags are used in a cycle, so it is the one that has been unused for the longest time.
     pub(super) fn next_tag(&mut self) -> Tag {
         self.last = self.last.next();
         self.last

@@ -315,7 +315,7 @@ impl ReplyTracker {
         let first = self.last_reply.replace(now).is_none();
         let in_order = !self.ledger.is_counted_reply_ambiguous()
             || self.state != State::Silent && (first || self.is_reply_to_first_frame(now));
-        let is_unclear = if in_order { self.is_too_early(oldest, now) } else { self.slow };
+        let is_unclear = if in_order { self.is_reply_too_early(oldest, now) } else { self.slow };
         if is_unclear {
             return self.resync(now);
         }
@@ -374,11 +374,11 @@ impl ReplyTracker {
         self.alignment.is_misaligned(self.ledger.counted_queries(), round_trip, rate.bytes_per_second, now)
     }
 
-    /// Returns whether a reply that arrives now is too early for a query sent at `sent`.
+    /// Returns whether a reply that arrives now is too early for a query sent at `query_sent`.
     ///
     /// It then belongs to another query, or the route has become shorter.
-    fn is_too_early(&self, sent: Duration, now: Duration) -> bool {
-        self.round_trip.is_implausible(now.saturating_sub(sent))
+    fn is_reply_too_early(&self, query_sent: Duration, now: Duration) -> bool {
+        self.round_trip.is_implausible(now.saturating_sub(query_sent))
     }
 
     /// Returns whether a reply, which may be late, answers the query after the first picture rather

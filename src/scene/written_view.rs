@@ -51,7 +51,7 @@ fn insertion_into_list(text: &str, list: &SyntaxNode<'_>, view: &str) -> Option<
     let close = list.span.end as usize - 1;
     let last = items.last().map(|item| item.span.end as usize);
     let before = text[..close].trim_end().len();
-    // A list on one line stays on one line.
+    // In a list on one line, the new view follows the last one on that line.
     if !text[before..close].contains('\n') {
         return Some(vec![last.map_or_else(|| (close, view.to_owned()), |end| (end, format!(", {view}")))]);
     }

@@ -33,7 +33,7 @@ pub(super) enum Next {
     Turn(Class),
     /// The seat sleeps until this time or until it is woken; `None`: only until it is woken.
     Sleep(Option<Duration>),
-    /// The seat gets no more turns.
+    /// The visit has ended: the seat gets no more turns.
     End,
 }
 

@@ -177,7 +177,8 @@ impl Signals {
         let Some(stops) = &self.stops else { return };
         let stop_group = || rustix::process::kill_current_process_group(rustix::process::Signal::TSTP);
         if target == StopTarget::Group && stop_group().is_ok() {
-            // The signal comes to this process too, and would stop it a second time.
+            // The group's SIGTSTP comes to this process too. It is received here, or it would stop the process a second
+            // time.
             let _ = stops.recv_timeout(GROUP_SIGNAL_TIMEOUT);
         }
         // `raise` makes the signal pending for this thread, where it is blocked, and not for the process, so that the

@@ -59,7 +59,8 @@ impl Viewer {
                 // The release that follows is not a click.
                 self.pointer.record_motion();
             }
-            // A double click on the line, a light or the cursor counts as two clicks, and does not change the view.
+            // On the line, a light or the cursor, the second press of a double click acts like the first one: the
+            // view does not change.
             Gesture::DoubleClick => self.drag(at, at, Grip::Turn),
             Gesture::Wheel { at, notches } => self.wheel(at, notches),
         }

@@ -14,7 +14,9 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use glam::Vec3;
 
-/// Whether a second camera shows the first one from outside, and the camera that keys do not move.
+/// Whether a second camera shows the first one from outside, and which of the two the keys move.
+///
+/// A variant with a camera holds the one that the keys do not move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Outside {
     /// The ordinary view.
@@ -119,8 +121,9 @@ impl Viewer {
     }
 }
 
-/// Returns a camera from which another one, its view rectangle and its target are seen from the
-/// side, unless a surface is in the way.
+/// Returns a camera that sees another one, its view rectangle and its target from the side.
+///
+/// It is in front of a surface that is in the way, and may then not see all of them.
 fn camera_beside(scene: &Scene, camera: &Camera, aspect_ratio: f32) -> Camera {
     let (Pose { eye, target, up }, Basis { u, v, w }) = (camera.pose(), camera.basis());
     let distance = camera.target_distance();

@@ -130,7 +130,7 @@ impl ViewLayout {
     }
 }
 
-/// The colour of the line between two maps.
+/// The colour of the line between the two maps of a picture, side by side or in a wipe.
 const LINE: Srgb8 = Srgb8::new(255, 208, 64);
 
 /// Returns the sizes of two maps side by side, with a line of one column between them.

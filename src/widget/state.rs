@@ -235,9 +235,9 @@ impl SceneState {
         }
     }
 
-    /// Returns whether the background thread has started on the last request.
+    /// Returns whether the background thread has taken the last request.
     #[cfg(test)]
-    pub(super) fn has_started(&self) -> bool {
-        self.worker.as_ref().is_some_and(Worker::has_started)
+    pub(super) fn has_taken_request(&self) -> bool {
+        self.worker.as_ref().is_some_and(Worker::has_taken_request)
     }
 }

@@ -270,7 +270,7 @@ fn dropping_a_state_cancels_its_picture() {
     let (wake, woken) = channel::<()>();
     let mut state = SceneState::new(scene.camera()).in_background(move || _ = wake.send(()));
     drawn(&SceneView::new(&scene).sampling(NonZeroU32::MAX), AREA, &mut state);
-    while !state.has_started() {
+    while !state.has_taken_request() {
         std::thread::yield_now();
     }
     drop(state);

@@ -90,9 +90,9 @@ impl Worker {
         state.finished.take()
     }
 
-    /// Returns whether no request is waiting.
+    /// Returns whether the thread has taken the last request.
     #[cfg(test)]
-    pub(super) fn has_started(&self) -> bool {
+    pub(super) fn has_taken_request(&self) -> bool {
         self.shared.lock().requested.is_none()
     }
 }
