@@ -66,7 +66,8 @@ pub trait LightSource: InSceneFile + Copy {
 macro_rules! lights {
     ($($(#[$on:meta])* $name:ident: $light:ident, $of:literal;)*) => {
         /// A light source of any kind.
-        // An enum instead of trait objects, as its methods are generic over the lanes and inlined into the kernels.
+        // `Light` is an enum, not a trait object, because its methods are generic over the lanes and inlined into the
+        // kernels.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Light {

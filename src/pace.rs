@@ -65,8 +65,8 @@ const SMOOTH_SCREENS_PER_SECOND: f64 = 16.0;
 const SLOW_LINK_FRAME_RATE: f64 = 36.0;
 /// Number of bytes that a frame may always have, however low the estimated rate is; a terminal that
 /// draws slowly gets more (see [`FrameFloor`](estimates::FrameFloor)).
-// Still smaller frames cannot show that the rate was estimated too low: with them, an estimate that had collapsed after
-// unsolicited replies took seconds to recover.
+// With a lower limit, frames would be too small to show that the rate was estimated too low: an estimate that had
+// collapsed after unsolicited replies then took seconds to recover.
 const MIN_FRAME_BYTES: usize = 200;
 /// Share of the estimated rate at which bytes are sent (the pacing gain of BBR).
 // Less than 1, so that queues drain and the shortest round trip can be measured again. With this gain 85.7 % of a link

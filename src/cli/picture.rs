@@ -49,7 +49,7 @@ pub(super) struct SizeArgs {
     /// The frame's size in cells [default: 80x24]
     #[arg(long, value_name = "COLSxROWS", value_parser = parse_size, conflicts_with = "pixels")]
     size: Option<(u32, u32)>,
-    /// Size in pixels, instead of --size [default: PNG 1280x800, GIF 480x300]
+    /// Size in pixels [default: PNG 1280x800, GIF 480x300]
     ///
     /// In a frame of cells, each cell has two pixels, one above the other; with --glyphs shape two by four,
     /// with sextants four by six, with blocks, octants and braille four by eight.

@@ -96,7 +96,7 @@ pub struct EncoderBackend<W> {
     /// The cursor's state in the terminal, as far as it is known.
     shown_cursor: Cursor,
     /// Whether a frame is open: between `draw` and `flush`.
-    // In between, changes of the cursor are not sent at once, but with the frame in the same write.
+    // While a frame is open, changes of the cursor are not sent at once, but in the same write as the frame.
     is_frame_open: bool,
     /// Whether the last bytes sent were the program's own.
     wrote_foreign_bytes: bool,

@@ -47,7 +47,7 @@ pub(super) struct Outcome {
     is_undefined: u32,
     /// The lanes in which the sign is certain, and the same on the whole piece.
     is_clear: u32,
-    /// Of these, the lanes in which it is negative.
+    /// The lanes in which the sign is negative; meaningful only in the lanes of `is_clear`.
     is_negative: u32,
 }
 

@@ -27,16 +27,16 @@ pub enum Reply {
     },
     /// `CSI 6 ; height ; width t`: the size of a cell in pixels.
     CellPixels {
-        /// Pixels from left to right.
+        /// The width of a cell in pixels.
         width: u16,
-        /// Pixels from top to bottom.
+        /// The height of a cell in pixels.
         height: u16,
     },
     /// `CSI 4 ; height ; width t`: the size of the text area in pixels.
     TextPixels {
-        /// Pixels from left to right.
+        /// The width of the text area in pixels.
         width: u16,
-        /// Pixels from top to bottom.
+        /// The height of the text area in pixels.
         height: u16,
     },
     /// `CSI 8 ; rows ; columns t`: the size of the text area in cells. tmux 3.3a swaps the two.

@@ -66,7 +66,7 @@ impl<'a> Render<'a> {
     #[doc(hidden)]
     pub const MAX_THREADS: usize = 1024;
 
-    /// Returns a builder with the defaults.
+    /// Returns a builder of a picture of `scene`, with the default camera, size and sampling.
     pub fn new(scene: &'a Scene) -> Self {
         Self {
             scene,

@@ -13,7 +13,7 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shape::{Surface, SurfacePoint};
 
-/// Which rays are traced for a G-buffer.
+/// Which rays are traced for a G-buffer: eye rays only, or shadow rays too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceDepth {
     /// Closest hits only.

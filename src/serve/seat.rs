@@ -79,7 +79,7 @@ pub(super) struct Arrived {
 /// Traces a frame; `None` if it was interrupted, which it may be if the flag is set.
 pub(super) type Trace<'a> = dyn FnMut(&Job, bool) -> Option<Frame> + 'a;
 
-/// One viewer: its view, and the modes of its terminal.
+/// The place of one viewer on the server: the viewer's view, terminal modes and remaining time.
 pub(super) struct Seat {
     viewer: Viewer,
     modes: TerminalModes,

@@ -29,7 +29,7 @@ impl<S> ScalarLeaf<S> {
         self.surfaces = self.surfaces.iter().map(by).collect();
     }
 
-    /// Returns the surface of `lane`, if the lane is used.
+    /// Returns the surface that the leaf holds in `lane`, or `None` if the lane is unused.
     fn surface(&self, lane: usize) -> Option<&S> {
         self.surfaces.get(usize::from(self.lanes[lane]))
     }

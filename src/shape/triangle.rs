@@ -88,7 +88,8 @@ impl<N: Number> TriangleN<N> {
         let corners = self.sheared_corners(rays);
         let weights = weights(corners);
         let [agree, differ] = certain_signs(weights, error_bound);
-        // If any lane is uncertain, the bounds of all lanes are computed: a branch cannot be taken by one lane alone.
+        // If `error_bound` leaves a sign uncertain in any lane, each ray's own bound is computed, in all lanes: a
+        // branch cannot be taken by one lane alone.
         if !(agree | differ).all() {
             return self.crossing_from_weights(corners, weights, rays);
         }

@@ -7,7 +7,7 @@
 
 use std::time::Duration;
 
-/// The kind of frame that is being traced.
+/// Whether the frame that is being traced shows a new view or refines the last frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tracing {
     /// A frame of a new view.

@@ -67,7 +67,8 @@ fn a_packet_hits_all_boxes_that_its_rays_hit() {
         let (rays, boxes) = random_case(seed);
         let groups: [Rays<F32x8>; GROUPS] = from_fn(|group| Rays::load(&rays[group], false));
         let packet = Packet::of(&groups);
-        // `culling.md`, 5, does not cover packets of mixed signs whose products round to zero.
+        // Packets of mixed signs whose distances, divided by the direction, may round to zero are skipped:
+        // the proof in `culling.md`, 5, does not cover them.
         let (length, scale) = length_and_distance(seed);
         if scale / length < two_to(-60) && packet.signs.contains(&DirectionSign::Mixed) {
             continue;

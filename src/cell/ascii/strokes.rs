@@ -81,7 +81,8 @@ impl<'g> Window<'g> {
     }
 
     /// Returns the index, plus 1, of the nearest object in the cell and at its lower right sides.
-    // An edge on these sides is the cell's, though the nearer object is beyond it.
+    // The cell also shows the edges to its right and lower neighbours, even where the nearer object of such an edge is
+    // in the neighbour.
     fn nearest_object(&self) -> u32 {
         let rows = self.0[MARGIN..].iter().take(SAMPLES[1] + 1);
         let facets = rows.flat_map(|row| &row[MARGIN..=MARGIN + SAMPLES[0]]).copied();

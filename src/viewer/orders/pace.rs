@@ -111,7 +111,7 @@ impl Pace {
         self.power = (self.power - 1).max(POWERS[0]);
     }
 
-    /// Starts the build again.
+    /// Starts to build the pictures of both orders again from the beginning.
     pub(in crate::viewer) fn restart(&mut self) {
         (self.tests, self.is_paused, self.since) = (0.0, false, None);
     }
