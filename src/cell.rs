@@ -348,7 +348,7 @@ impl Painter {
             Fill::Colored(fill) => fill(grid, negative().as_ref().unwrap_or(picture), &mut self.inks),
             Fill::Lightness(fill) if !has_colors => fill(grid, negative().as_ref().unwrap_or(picture)),
             Fill::Lightness(fill) => {
-                fill(grid, &tint::brightness(picture));
+                fill(grid, &tint::grey_by_brightest_channel(picture));
                 tint::fill(grid, picture, pixels_per_cell, &mut self.inks);
             }
             Fill::Geometry(fill) => {

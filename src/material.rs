@@ -80,7 +80,7 @@ macro_rules! materials {
             }
 
             /// Returns a patterned material's name with an article, and its pattern's name.
-            pub(crate) fn pattern_names(&self) -> Option<(&'static str, &'static str)> {
+            pub(crate) fn material_and_pattern_names(&self) -> Option<(&'static str, &'static str)> {
                 match self {
                     $($(#[$on])* Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
                     Self::Own => None,
@@ -130,7 +130,7 @@ macro_rules! materials {
             }
 
             /// Returns a patterned material's name with an article, and its pattern's name.
-            pub(crate) fn pattern_names(&self) -> Option<(&'static str, &'static str)> {
+            pub(crate) fn material_and_pattern_names(&self) -> Option<(&'static str, &'static str)> {
                 match self {
                     $($(#[$on])* Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
                 }

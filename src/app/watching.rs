@@ -219,7 +219,7 @@ impl Shared {
         }
         let meaning = |path: &PathBuf| match (self.ends.contains(path), self.steps.contains(path)) {
             (true, _) => file_change(event.kind, path),
-            (false, true) => step_change(event.kind),
+            (false, true) => folder_or_link_change(event.kind),
             (false, false) => FileChange::Nothing,
         };
         event.paths.iter().map(meaning).max().unwrap_or_default()
@@ -254,7 +254,7 @@ fn is_about_to_be_written(path: &Path) -> bool {
 }
 
 /// Returns the change that an event at a folder or link on the path to a file indicates.
-fn step_change(kind: EventKind) -> FileChange {
+fn folder_or_link_change(kind: EventKind) -> FileChange {
     match kind {
         EventKind::Access(_) | EventKind::Modify(ModifyKind::Data(_)) => FileChange::Nothing,
         _ => FileChange::Moved,

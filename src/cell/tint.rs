@@ -9,7 +9,7 @@ use crate::tone::Picture;
 /// Returns the picture with each pixel replaced by the grey of its brightest channel.
 // The glyph's colour has its brightest channel at 255, so the glyph's ink has to supply that channel's brightness.
 // Chosen by luminance, glyphs for saturated blue would have hardly any ink.
-pub(super) fn brightness(picture: &Picture) -> Picture {
+pub(super) fn grey_by_brightest_channel(picture: &Picture) -> Picture {
     let grey = |pixel: &Srgb8| {
         let brightest = pixel.r.max(pixel.g).max(pixel.b);
         Srgb8::new(brightest, brightest, brightest)

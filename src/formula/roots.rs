@@ -217,7 +217,7 @@ impl<'f> Solver<'f> {
             // In f32, models of short pieces may be little more than rounding errors.
             let is_short = piece[1] - piece[0] < walk.range * SHORT;
             if is_short && !(model.error < BLUR * (model.c[1].abs() + model.c[2].abs())) {
-                let line = line_of(&searches.lines, lane);
+                let line = line_in_lane(&searches.lines, lane);
                 let (o, d) = (line.origin.to_array(), line.direction.to_array());
                 let coordinates = [0, 1, 2].map(|axis| Model::coordinate(o[axis], d[axis], piece));
                 (model, continuity) = tape.model(coordinates, &mut scratch.models);
@@ -310,7 +310,7 @@ impl Bracket {
     }
 }
 
-fn line_of(lines: &Lines, lane: usize) -> Line {
+fn line_in_lane(lines: &Lines, lane: usize) -> Line {
     let of = |axes: &[[f64; LANES]; 3]| DVec3::new(axes[0][lane], axes[1][lane], axes[2][lane]);
     Line { origin: of(&lines[0]), direction: of(&lines[1]) }
 }

@@ -98,7 +98,7 @@ impl SceneBuilder {
     pub fn build(self) -> Result<Scene, SceneFault> {
         let Self { objects, rest } = self;
         for (at, Object { shape, material }) in objects.iter().enumerate() {
-            if let Some(pattern) = material.pattern_names()
+            if let Some(pattern) = material.material_and_pattern_names()
                 && !shape.has_coordinates()
             {
                 // Objects are counted from 1, as in descriptions and explanations.

@@ -106,7 +106,7 @@ impl Validator<'_> {
                 None => return self.fault(*span, || unknown_material_message(name, file)),
             },
         };
-        if let Some(pattern) = written.pattern_names()
+        if let Some(pattern) = written.material_and_pattern_names()
             && !object.shape.has_coordinates()
         {
             return self.fault(*span, || without_coordinates(pattern, object.shape.owner()));

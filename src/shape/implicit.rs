@@ -124,7 +124,7 @@ impl Implicit {
     }
 }
 
-fn line_of(ray: &Ray) -> Line {
+fn line_of_ray(ray: &Ray) -> Line {
     Line { origin: ray.origin.as_dvec3(), direction: ray.direction.as_dvec3() }
 }
 
@@ -146,7 +146,7 @@ impl Surface for Implicit {
             let inside = self.within_bounds(&Probe::new(*ray));
             let start = inside.min.max(within.min);
             if start <= within.max {
-                searches.add(lane, &line_of(ray), [start, inside.max], within.max);
+                searches.add(lane, &line_of_ray(ray), [start, inside.max], within.max);
             }
         }
         if searches.is_empty() {
@@ -164,7 +164,7 @@ impl Surface for Implicit {
     /// Where the gradient is zero or undefined, as at the tip of a cone, the normal is that of a point a little in
     /// front, or else it is opposite to the ray.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        let Line { origin, direction } = line_of(ray);
+        let Line { origin, direction } = line_of_ray(ray);
         let at = origin + direction * f64::from(t);
         let (value, gradient) = self.0.formula.gradient(at);
         let step = gradient * (value / gradient.dot(gradient));
@@ -191,7 +191,7 @@ impl Described for Implicit {
 
     /// Finds the first roots of f(o + t d) within the bounds, in front of the eye.
     fn equation(&self, ray: &Ray) -> Equation {
-        let (probe, line) = (Probe::new(*ray), line_of(ray));
+        let (probe, line) = (Probe::new(*ray), line_of_ray(ray));
         let Interval { min, max } = self.within_bounds(&probe);
         let (solver, mut roots, mut from) = (Solver::new(&self.0.formula), Vec::new(), min.max(0.0));
         while roots.len() < MAX_ROOTS

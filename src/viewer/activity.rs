@@ -1,6 +1,6 @@
 //! A line about work in the background: a recording of the session, and a large picture.
 
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use super::legend;
 use ratatui_core::layout::Rect;
 
@@ -30,8 +30,8 @@ impl Activity {
 }
 
 impl Layer for Activity {
-    fn level(&self) -> Level {
-        Level::Note
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Note
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {

@@ -1,6 +1,6 @@
 //! A drawing of the directions of the x, y and z axes, in the upper right corner.
 
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use crate::capabilities::Colors;
 use glam::{Mat3, Vec3};
 use ratatui_core::layout::Rect;
@@ -17,8 +17,8 @@ const POINTS: u16 = 4;
 pub(super) struct Axes;
 
 impl Layer for Axes {
-    fn level(&self) -> Level {
-        Level::Mark
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Mark
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {

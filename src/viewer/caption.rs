@@ -2,7 +2,7 @@
 
 use super::error_panel::wrapped;
 use super::help::key_names;
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use super::theme::has_room;
 use crate::control::Command;
 use ratatui_core::layout::Rect;
@@ -77,8 +77,8 @@ fn caption_rows(screen: Rect) -> usize {
 }
 
 impl Layer for Caption {
-    fn level(&self) -> Level {
-        Level::Caption
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Caption
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {

@@ -1,6 +1,6 @@
 //! Questions to the user, and the keys that answer them.
 
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use super::theme::Theme;
 use crate::control::{Binding, Command, KeyMode, Keymap};
 use crate::export::Format;
@@ -36,8 +36,8 @@ pub(super) enum Answer {
 }
 
 impl Layer for Dialog {
-    fn level(&self) -> Level {
-        Level::Question
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Question
     }
 
     fn mode(&self, _screen: Rect) -> Option<KeyMode> {

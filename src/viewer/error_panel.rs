@@ -1,6 +1,6 @@
 //! The error panel at the bottom of the picture.
 
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use super::theme::Theme;
 use crate::text::Notice;
 use ratatui_core::buffer::Buffer;
@@ -20,8 +20,8 @@ const MAX_ERROR_ROWS: u16 = 8;
 pub(super) struct ErrorPanel(pub(super) Notice);
 
 impl Layer for ErrorPanel {
-    fn level(&self) -> Level {
-        Level::Error
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Error
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {

@@ -7,7 +7,7 @@ mod placement;
 
 use super::frame::Frame;
 use super::help;
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use super::theme::{self, Theme};
 use super::tracer_lines::draw_eye_ray;
 use crate::capabilities::CellMode;
@@ -43,8 +43,8 @@ pub(super) struct ExplainPanel {
 }
 
 impl Layer for ExplainPanel {
-    fn level(&self) -> Level {
-        Level::Side
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Side
     }
 
     fn mode(&self, screen: Rect) -> Option<KeyMode> {

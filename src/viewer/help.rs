@@ -2,7 +2,7 @@
 
 mod rows;
 
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use super::theme::{self, Theme};
 use crate::control::{Command, Direction, Key, KeyMode, Keymap, Toward};
 use crossterm::event::KeyCode;
@@ -109,8 +109,8 @@ impl HelpPanel {
 }
 
 impl Layer for HelpPanel {
-    fn level(&self) -> Level {
-        Level::Help
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Help
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {

@@ -16,7 +16,7 @@ use std::time::Duration;
 
 /// The position of a layer in the stack, from the lowest level to the topmost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Level {
+pub(super) enum LayerLevel {
     /// A mark on something in the picture. Marks lie lowest, so that they hide no text.
     Mark,
     /// The caption at the bottom, below all panels that the user opens.
@@ -40,7 +40,7 @@ pub(super) enum Level {
 
 /// A panel or mark over the picture.
 pub(super) trait Layer: Any + Send {
-    fn level(&self) -> Level;
+    fn level(&self) -> LayerLevel;
 
     fn draw(&mut self, canvas: &mut Canvas<'_>);
 

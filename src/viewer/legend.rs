@@ -1,6 +1,6 @@
 //! The legend of a map in the lowest row; with two maps, one in the corner of each.
 
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use super::theme::Theme;
 use crate::capabilities::Colors;
 use crate::color::Srgb8;
@@ -15,8 +15,8 @@ use ratatui_widgets::paragraph::Paragraph;
 pub(super) struct Legends;
 
 impl Layer for Legends {
-    fn level(&self) -> Level {
-        Level::Legend
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Legend
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {

@@ -93,7 +93,7 @@ impl Viewer {
     /// Moves the held light back to its position in the scene file.
     pub(super) fn put_light_back(&mut self) {
         if let Some(lights) = self.scenes.lights_mut()
-            && let Some(home) = lights.written_position()
+            && let Some(home) = lights.held_position_in_file()
         {
             lights.move_held(home);
         }

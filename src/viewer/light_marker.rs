@@ -1,7 +1,7 @@
 //! A marker over the picture at the position of the held light, since point lights are invisible.
 
 use super::frame::Frame;
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use super::lines::{clipped_to_front, range_in_box};
 use crate::camera::Camera;
 use crate::control::KeyMode;
@@ -19,8 +19,8 @@ pub(super) struct LightMarker {
 }
 
 impl Layer for LightMarker {
-    fn level(&self) -> Level {
-        Level::Mark
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Mark
     }
 
     fn mode(&self, _screen: Rect) -> Option<KeyMode> {

@@ -59,7 +59,7 @@ impl Lights {
     }
 
     /// Returns the position of the held light in the scene file.
-    pub(super) fn written_position(&self) -> Option<Vec3> {
+    pub(super) fn held_position_in_file(&self) -> Option<Vec3> {
         self.written.get(self.held?).and_then(Light::position)
     }
 

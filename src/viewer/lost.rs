@@ -1,6 +1,6 @@
 //! A notice that nothing of the scene is visible, with the keys that lead back.
 
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use super::legend;
 use crate::camera::{Camera, Pose};
 use crate::describe::short_name;
@@ -38,8 +38,8 @@ impl LostNotice {
 }
 
 impl Layer for LostNotice {
-    fn level(&self) -> Level {
-        Level::Legend
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Legend
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {

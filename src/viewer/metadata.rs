@@ -1,6 +1,6 @@
 //! The panel of metadata about a scene or mesh, such as its size, in the upper left corner.
 
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use crate::scene::Scene;
 use crate::shape::Shape;
 use crate::text::number;
@@ -51,8 +51,8 @@ impl Metadata {
 }
 
 impl Layer for Metadata {
-    fn level(&self) -> Level {
-        Level::Side
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Side
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {

@@ -1,6 +1,6 @@
 //! A note in the lowest row until the next key, or until it fades.
 
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use super::legend;
 use ratatui_core::layout::Rect;
 use std::time::Duration;
@@ -51,8 +51,8 @@ impl Note {
 }
 
 impl Layer for Note {
-    fn level(&self) -> Level {
-        Level::Note
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Note
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {

@@ -7,7 +7,7 @@
 use super::Viewer;
 use super::caption::Caption;
 use super::frame::Frame;
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use super::theme;
 use crate::color::Srgb8;
 use crate::control::KeyMode;
@@ -97,8 +97,8 @@ impl OrdersPanel {
 }
 
 impl Layer for OrdersPanel {
-    fn level(&self) -> Level {
-        Level::Side
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Side
     }
 
     fn mode(&self, screen: Rect) -> Option<KeyMode> {

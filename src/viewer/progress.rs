@@ -1,6 +1,6 @@
 //! The panel with the progress of loading a scene.
 
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use super::theme::Theme;
 use crate::progress::{Progress, Work};
 use crate::text::visible;
@@ -18,8 +18,8 @@ use unicode_width::UnicodeWidthStr;
 pub(super) struct ProgressPanel(pub(super) Progress);
 
 impl Layer for ProgressPanel {
-    fn level(&self) -> Level {
-        Level::Middle
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Middle
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {

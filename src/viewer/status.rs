@@ -1,7 +1,7 @@
 //! The status line: the scene and statistics of the last frame, and a row of keys above them.
 
 use super::help;
-use super::layers::{Canvas, FrameStatistics, Layer, Level};
+use super::layers::{Canvas, FrameStatistics, Layer, LayerLevel};
 use super::theme;
 use crate::camera::ViewRectangle;
 use crate::grid::Size;
@@ -25,8 +25,8 @@ impl StatusLine {
 }
 
 impl Layer for StatusLine {
-    fn level(&self) -> Level {
-        Level::Status
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Status
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {

@@ -2,7 +2,7 @@
 //! the horizon and the vanishing points of a picture.
 
 use super::frame::Frame;
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use super::lines::Plot;
 use crate::camera::{Basis, Camera};
 use crate::explain::Explanation;
@@ -36,8 +36,8 @@ const MIN_GRID_CELLS: f32 = 1.5;
 pub(super) struct TracerMarks;
 
 impl Layer for TracerMarks {
-    fn level(&self) -> Level {
-        Level::Mark
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Mark
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
@@ -134,8 +134,8 @@ pub(super) struct VanishingPoints;
 const HORIZON_PARTS: u32 = 64;
 
 impl Layer for VanishingPoints {
-    fn level(&self) -> Level {
-        Level::Mark
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Mark
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {

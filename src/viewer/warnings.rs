@@ -1,7 +1,7 @@
 //! Warnings about the shown scene, above the lowest row until the next key.
 
 use super::error_panel::wrapped;
-use super::layers::{Canvas, Layer, Level};
+use super::layers::{Canvas, Layer, LayerLevel};
 use ratatui_core::layout::Rect;
 
 /// Limit on the rows of all warnings together.
@@ -28,8 +28,8 @@ impl Warnings {
 }
 
 impl Layer for Warnings {
-    fn level(&self) -> Level {
-        Level::Warning
+    fn level(&self) -> LayerLevel {
+        LayerLevel::Warning
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {

@@ -3,10 +3,10 @@ use crate::grid::Size;
 
 /// A layer of the given level that draws `LETTER`; `L` has the mode of lights, and `?` takes all
 /// keys.
-struct Letter<const LETTER: char>(Level);
+struct Letter<const LETTER: char>(LayerLevel);
 
 impl<const LETTER: char> Layer for Letter<LETTER> {
-    fn level(&self) -> Level {
+    fn level(&self) -> LayerLevel {
         self.0
     }
 
@@ -45,8 +45,8 @@ fn topmost(layers: &mut Layers) -> String {
 #[test]
 fn layers_are_drawn_by_their_level_whenever_they_were_opened() {
     let mut layers = Layers::default();
-    layers.open(Letter::<'h'>(Level::Help));
-    layers.open(Letter::<'m'>(Level::Mark));
+    layers.open(Letter::<'h'>(LayerLevel::Help));
+    layers.open(Letter::<'m'>(LayerLevel::Mark));
     assert_eq!(topmost(&mut layers), "h");
     assert!(layers.close::<Letter<'h'>>().is_some() && layers.close::<Letter<'h'>>().is_none());
     assert_eq!(topmost(&mut layers), "m");
@@ -56,8 +56,8 @@ fn layers_are_drawn_by_their_level_whenever_they_were_opened() {
 #[test]
 fn a_question_takes_all_keys_and_others_lie_over_movement() {
     let (screen, mut layers) = (Rect::new(0, 0, 80, 24), Layers::default());
-    layers.open(Letter::<'L'>(Level::Mark));
+    layers.open(Letter::<'L'>(LayerLevel::Mark));
     assert_eq!(layers.active_modes(screen, KeyMode::Fly), [KeyMode::Light, KeyMode::Fly, KeyMode::Always]);
-    layers.open(Letter::<'?'>(Level::Question));
+    layers.open(Letter::<'?'>(LayerLevel::Question));
     assert_eq!(layers.active_modes(screen, KeyMode::Fly), [KeyMode::Always]);
 }

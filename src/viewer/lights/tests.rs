@@ -15,6 +15,6 @@ fn a_light_that_is_infinitely_far_cannot_be_held() {
     let taken = [(); 4].map(|()| lights.take_next(first));
     assert_eq!(taken, [Some(1), Some(3), Some(1), Some(3)]);
     lights.move_held(Vec3::Z);
-    assert_eq!((lights.held_position(), lights.written_position()), (Some(Vec3::Z), Some(Vec3::X * 2.0)));
+    assert_eq!((lights.held_position(), lights.held_position_in_file()), (Some(Vec3::Z), Some(Vec3::X * 2.0)));
     assert_eq!(Lights::new(Scene::new(camera, Vec::new()).with_lights([sun])).take_next(first), None);
 }
