@@ -38,6 +38,8 @@ pub(crate) struct PrimitiveIds<N> {
     index: N,
 }
 
+// The methods are `inline(always)` because kernels call them for each group of rays (see `simd`); so are those of the
+// lists and trees below.
 impl PrimitiveIds<F32x8> {
     /// The first primitive of the first object in all lanes.
     pub(crate) const ZERO: Self = Self { object: F32x8::ZERO, index: F32x8::ZERO };

@@ -246,12 +246,14 @@ impl Description<'_> {
         let mut lights: Vec<_> = self.scene.lights().iter().collect();
         let strength = |light: &Light| {
             let to_light = light.to_light(Vector::<f32>::splat(target));
+            // A light may be at the target itself.
             let distance_squared = to_light.dot(to_light).max(f32::MIN_POSITIVE);
             let [r, g, b] = light.irradiance(to_light, distance_squared, 1.0);
             LinearRgb::new(r, g, b).luminance()
         };
         lights.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
         if let Some(darkness) = self.scene.darkness() {
+            // The warning begins with a small letter, because elsewhere it follows the name of a file.
             return format!("N{}.\n", darkness.trim_start_matches('n'));
         }
         let mut text = if lights.is_empty() { "No lights.\n" } else { "Lights, the strongest first:\n" }.to_owned();

@@ -134,7 +134,9 @@ impl LightContribution {
 pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u32; 2]) -> Explanation {
     let trace = trace_pixel(scene, camera, resolution, pixel);
     let mut recorder = TestRecorder::default();
+    // Traced once more for its tests, which the kernels of pictures do not report. The hit is the same.
     hit::closest_hit_observed(scene, &trace.ray, &mut recorder);
+    // A picture of one pixel, because `tone` is the function that gives pictures their bytes.
     let mut one = Framebuffer::new(Resolution::square(1, 1));
     one.pixels_mut()[0] = trace.light;
     Explanation {

@@ -310,6 +310,7 @@ fn trace_partial(
         }),
         Map::Object => of_surfaces(&|sample| sample.hit.map_or(NO_HIT, |hit| colors::object(hit.object))),
         Map::Shadow => traced_to(TraceDepth::Lights, &|sample| match sample.hit {
+            // The mask of lights has 32 bits.
             Some(_) => colors::share_grey(sample.lit_by.count_ones(), scene.lights().len().min(32) as u32),
             None => NO_HIT,
         }),

@@ -71,6 +71,7 @@ impl Rasterizer {
     #[allow(clippy::match_wildcard_for_single_variants, reason = "tests have one surface more")]
     pub fn draw(&mut self, primitive: &Primitive<'_>, object: u32) {
         match primitive {
+            // Spheres and triangles wait until there are eight of a kind, one for each lane of a kernel.
             Primitive::Sphere(sphere) => {
                 self.spheres.push((**sphere, object));
                 if self.spheres.len() == LANES {

@@ -103,6 +103,7 @@ impl Settings {
         Self {
             listen: SocketAddr::from(([127, 0, 0, 1], 2222)),
             host_key,
+            // On two cores, 200 moving views of 80x24 cells were measured at 12 to 28 frames per second each.
             max_viewers: 200,
             max_per_address: 10,
             idle: Duration::from_secs(600),
@@ -113,6 +114,7 @@ impl Settings {
             authorized_keys: None,
             banner: None,
             link: None,
+            // `russh` has no such limit: 500 of 500 connections that sent nothing were still open after 20 seconds.
             login_time: Duration::from_secs(10),
             patience: Duration::from_secs(20),
             drain: Duration::from_secs(30),
@@ -165,7 +167,9 @@ impl Server {
         }
         let named = |what: String| move |error: io::Error| io::Error::new(error.kind(), format!("{what}: {error}"));
         let key = host_key::load_or_make(&settings.host_key).map_err(named(settings.host_key.display().to_string()))?;
+        // Bound here and not by the thread of the sockets, so that an address in use is an error of `start`.
         let listener = TcpListener::bind(settings.listen).map_err(named(settings.listen.to_string()))?;
+        // Needed by `TcpListener::from_std` of tokio.
         listener.set_nonblocking(true)?;
         let address = listener.local_addr()?;
         let cores = || thread::available_parallelism().map_or(1, usize::from);
@@ -175,6 +179,7 @@ impl Server {
         let house = Arc::new(House::new(scenes, settings, stage));
         let (ended, shared) = (Arc::new(AtomicBool::new(false)), Arc::clone(&house));
         let flag = Arc::clone(&ended);
+        // One thread suffices for the sockets, and leaves the cores to the threads that draw.
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         let sockets = thread::Builder::new().name("sockets".to_owned()).spawn(move || {
             runtime.block_on(serve_until_drained(shared, config, listener, log));
@@ -245,6 +250,7 @@ pub fn run(
     started(server.address(), server.fingerprint());
     let mut draining = false;
     loop {
+        // An error, such as an interruption, only leads to another round: what follows asks for the state itself.
         let _ = poll(&mut [PollFd::from_borrowed_fd(signals.wake_pipe(), PollFlags::IN)], None);
         signals.drain();
         // These signals do not ask the server to end: its own terminal was resized, or it was stopped and continued.
@@ -273,6 +279,7 @@ fn ssh_config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
     Config {
         server_id: SshId::Standard(Cow::Borrowed("SSH-2.0-termtrace")),
         methods: if with_keys { MethodSet::from(&[MethodKind::PublicKey][..]) } else { MethodSet::empty() },
+        // Slows down guessing. The first request of OpenSSH's clients only asks for the methods, so it is not delayed.
         auth_rejection_time: Duration::from_millis(500),
         auth_rejection_time_initial: Some(Duration::ZERO),
         keys: vec![key],
@@ -281,6 +288,7 @@ fn ssh_config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
         maximum_packet_size: 4 * 1024,
         channel_buffer_size: 4,
         event_buffer_size: 2,
+        // As in OpenSSH.
         max_auth_attempts: 6,
         // A viewer's own time without a key is limited, and a socket that takes nothing is closed.
         inactivity_timeout: None,
@@ -304,9 +312,12 @@ async fn serve_until_drained(house: Arc<House>, config: Arc<Config>, listener: T
     while house.stage.seat_count() > 0 && house.stage.now() < end {
         let _ = timeout(Duration::from_millis(200), changes.changed()).await;
     }
+    // The tasks of the connections run on this thread, and need time to send their last messages.
     sleep(Duration::from_millis(200)).await;
 }
 
+/// Accepts connections for ever.
+// Not the loop of `russh`, which ends at the first error of `accept`.
 async fn accept_all(house: Arc<House>, config: Arc<Config>, listener: tokio::net::TcpListener, log: Log) {
     loop {
         match listener.accept().await {

@@ -343,6 +343,7 @@ macro_rules! shapes {
             pub fn footprint<N: Number>(&self, direction: Vector<N>, t: N, direction_steps: [Vec3; 2]) -> [N; 2] {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.footprint(direction, t, direction_steps),)*
+                    // Patterns are only on surfaces with coordinates, which a mesh does not have.
                     Self::Mesh(_) => [N::splat(0.0); 2],
                 }
             }

@@ -316,6 +316,7 @@ impl Viewer {
     }
 
     fn open_scene(&mut self, scene: Scene, index: usize, orbits: bool) {
+        // The cameras of the view from outside belong to the scene before.
         self.end_outside();
         let (before, shown) = (self.scenes.shown(), scene.clone());
         for warning in scene.darkness().map(str::to_owned).into_iter().chain(scene.invisible_formulas()) {
@@ -330,12 +331,14 @@ impl Viewer {
             let name = self.names.get(index).cloned().unwrap_or_default();
             self.screen.open(Metadata::for_scene(&scene, name));
         }
+        // The panel of both orders takes the place of the caption.
         let has_caption = self.captions && self.screen.get::<OrdersPanel>().is_none();
         let caption = has_caption.then(|| self.caption(&scene, index)).flatten();
         self.screen.set(caption);
         if let Some(view) = self.scenes.show(scene, index, orbits) {
             self.playback = Playback::default();
             let left = self.eye.open(view);
+            // A scene that is loaded again was not left.
             if let Some((before, left)) = before.zip(left).filter(|(before, _)| *before != index) {
                 self.scenes.record_left(before, left);
             }
@@ -404,6 +407,7 @@ impl Viewer {
             }
             caption
         };
+        // After the last page, captions stay hidden in the next scenes too.
         self.captions = next.is_some();
         self.screen.set(next);
     }

@@ -80,6 +80,7 @@ impl LargePicture {
         let for_progress = Mutex::new(waker.try_clone()?);
         let thread = thread::Builder::new().name("large picture".to_owned()).spawn(move || {
             terminal::yield_to_other_threads();
+            // A panic goes on in the loop, by `ended`, so that the terminal is restored before its message is printed.
             let work = AssertUnwindSafe(|| of_thread.write(&order, &for_progress));
             let _ = done.send(catch_unwind(work));
             waker.wake();
@@ -103,6 +104,7 @@ impl LargePicture {
     /// Cancels the picture, which ends within milliseconds.
     pub(super) fn cancel(&self) {
         self.shared.token.cancel();
+        // A thread that waits in a pause would notice the token only after it.
         self.set_paused(false);
     }
 
@@ -119,6 +121,7 @@ impl LargePicture {
 impl Drop for LargePicture {
     fn drop(&mut self) {
         self.cancel();
+        // Waits for the thread, so that no file is written after the live view has ended.
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }

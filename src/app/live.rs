@@ -159,6 +159,8 @@ impl Live {
                     self.bytes.clear();
                     let now = self.clock.now();
                     self.viewer.draw(now, &mut self.bytes);
+                    // The recording does not get the queries that `end_frame` adds, because a player's terminal would
+                    // answer them.
                     self.record_frame(now);
                     self.viewer.end_frame(&mut self.bytes, self.clock.now());
                     self.terminal.send(&self.bytes)?;
@@ -196,6 +198,7 @@ impl Live {
             // terminal in any state.
             return self.suspend(None, signals);
         }
+        // On Linux a terminal buffers at most 4096 bytes of input, so that one read returns all of it.
         let mut buffer = [0; 4096];
         let bytes = if woken.keys { self.terminal.read(&mut buffer)? } else { &[] };
         // A readable terminal without bytes has hung up, and would stay readable: the loop would spin.
@@ -400,6 +403,7 @@ impl Live {
         // This waits for the foreground, that is, until the shell has handed over the terminal.
         self.terminal.take_again(signals)?;
         if let Some(recording) = &mut self.recording {
+            // The film does not pause for the time of the stop.
             recording.skip(now, self.clock.now());
         }
         // The queries are sent again, because replies to the earlier ones may be lost.

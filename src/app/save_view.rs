@@ -31,6 +31,8 @@ impl Proposal {
             number => mesh.with_file_name(format!("{stem}-{number}.ron")),
         };
         // `write_new` checks the name again, because another program may create the file until then.
+        // The limit bounds the time in a folder with many scenes; with all names taken, `write_new` reports the last
+        // one.
         let path = (1..1000).map(name).find(|path| path.symlink_metadata().is_err()).unwrap_or_else(|| name(1000));
         Self::Scene(path, text)
     }

@@ -26,6 +26,8 @@ pub(super) const KIND: GlyphKind = GlyphKind {
     fill: Fill::Geometry(fill),
 };
 
+// More rays show hardly more: of the outlines of three spheres, two by four rays show 99 %, eight by sixteen 100 %.
+// Where surfaces meet, four times as many are traced.
 const ACROSS: usize = 2;
 const DOWN: usize = 4;
 
@@ -33,6 +35,8 @@ const DOWN: usize = 4;
 type Tone = (u8, f32);
 
 /// The characters of objects. Never blank: the dark side of an object is still an object.
+// With a dark side that starts at `.`, objects stand out less: the inks beside an outline of three spheres differ by
+// 0.34 instead of 0.38.
 const OBJECT: [Tone; 8] =
     [(b':', 0.19), (b';', 0.255), (b'+', 0.41), (b'x', 0.53), (b'o', 0.645), (b'X', 0.725), (b'#', 0.885), (b'@', 1.0)];
 /// The characters of floors and ceilings, and of walls, lighter than those of objects.
@@ -160,6 +164,7 @@ fn set_tones(parts: &mut [Part], background: Background, before: Option<&Remembe
             light(below) + (at - below as f32) * (light(above) - light(below))
         };
         let object = objects[run[0] as usize];
+        // Without the darkest and lightest 3 % of its cells, so that a few of them do not take most of the characters.
         let [low, high] = ranges.add(object, [quantile(0.03), quantile(0.97)], before);
         let range = (high - low).max(LEAST_RANGE);
         let least = 0.5 * (low + high - range);
@@ -209,6 +214,7 @@ impl Heights {
     /// Returns whether an object is less than four and a half cells high.
     fn is_low(&self, object: u32) -> bool {
         let found = self.0.binary_search_by_key(&object, |&(object, _)| object);
+        // At 80x24 the spheres of many_spheres have three by two cells, of which outlines would leave nothing.
         !found.is_ok_and(|at| 2 * self.0[at].1 >= 9 * DOWN)
     }
 }
@@ -222,6 +228,7 @@ struct Crowds {
 
 impl Crowds {
     fn of(parts: &[Part], columns: usize, rows: usize) -> Self {
+        // A summed-area table (Crow 1984): the count of any rectangle takes four of its numbers.
         let width = columns + 1;
         let mut sums = vec![0; width * (rows + 1)];
         for row in 0..rows {
@@ -270,6 +277,7 @@ fn ink(
         (Background::Light, _) => 102,
     };
     let mean = Srgb8::from_linear(light * (1.0 / pixels.len() as f32));
+    // Not a mix of two colours: a character has a single one.
     inks.nearest(tint::scaled_to_brightness(mean, brightness))
 }
 

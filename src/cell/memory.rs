@@ -10,6 +10,8 @@ use crate::tone::Picture;
 pub(super) const LEAST_RANGE: f32 = 0.12;
 
 /// The greatest change of an end of an object's range of light per frame, as a share of the range.
+// An object that moves into the picture has another range in each frame. Without the limit all of its characters would
+// change each time.
 const MAX_RANGE_CHANGE: f32 = 0.05;
 
 /// The frame before, and whether the view moves.

@@ -95,6 +95,7 @@ impl Mixes {
             mixes.push(Mix { mean: colors[darker], contrast: 0.0, colors: [darker as u8; 2], lighter_quarters: 0 });
             for &lighter in &from_dark[place + 1..] {
                 let lightness = square(colors[lighter].l - colors[darker].l);
+                // All colours after this one are lighter still.
                 if lightness >= square(rules.max_lightness) {
                     break;
                 }
@@ -104,6 +105,7 @@ impl Mixes {
                     mixes.extend(rules.quarters.iter().map(|&lighter_quarters| {
                         let share = 0.25 * f32::from(lighter_quarters);
                         let mean = Oklab::from_linear(lights[darker].lerp(lights[lighter], share));
+                        // The pattern is most visible if both colours have equal shares.
                         let contrast = 4.0 * share * (1.0 - share) * contrast;
                         Mix { mean, contrast, colors: [darker as u8, lighter as u8], lighter_quarters }
                     }));

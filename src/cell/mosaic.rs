@@ -105,6 +105,8 @@ impl Mosaic {
         if count == 0 || [fg.r.abs_diff(bg.r), fg.g.abs_diff(bg.g), fg.b.abs_diff(bg.b)].iter().all(|&by| by <= FLAT) {
             return Cell::new(' ', Ink::Default, inks.ink_at(mean(total, pixels), x, y));
         }
+        // A mix of palette colours has a pattern of two rows per cell, as for half blocks: each colour takes one of
+        // them.
         let (fg, bg) = (inks.ink_at(fg, x, y + 1), inks.ink_at(bg, x, y));
         let glyph = match shape {
             _ if fg == bg => return Cell::new(' ', Ink::Default, bg),
@@ -140,6 +142,7 @@ impl Mosaic {
                 lower = plus(lower, row);
                 consider(Shape::Eighths(glyph), lower, 4 * rows);
             }
+            // Four columns of pixels show quarters only: `▎` and `▊`. The half is a mask of parts.
             let [left, .., right] = sums.columns;
             consider(Shape::Eighths('▎'), left, 8);
             consider(Shape::Eighths('▊'), minus(total, right), 24);

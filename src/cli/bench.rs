@@ -220,6 +220,7 @@ impl DrawnRound {
         let start = Instant::now();
         let buffer = rasterize(scene, scene.camera(), resolution);
         let time = start.elapsed();
+        // Summed after the clock has stopped, because it is not a part of drawing.
         let (hits, depths) = buffer.hits_and_depths();
         Self { hits, depths, time }
     }
@@ -250,6 +251,7 @@ impl TracedRound {
         let (trace, frame) = (self.trace.as_secs_f64(), self.frame.as_secs_f64());
         json!({
             "rays": rays, "hits": hits, "lit": lit, "depths": depths,
+            // The hash is text, because many readers of JSON round numbers from 2^53 on.
             "trace_seconds": trace, "frame_seconds": frame, "hash": format!("{:016x}", self.hash),
         })
     }

@@ -29,6 +29,7 @@ fn scenes_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
             "{folder}: this is a directory without a scene (.ron) or mesh (.obj, .stl, .ply, .gltf, .glb)"
         )));
     }
+    // The system returns the names in any order.
     scenes.sort();
     Ok(scenes)
 }

@@ -167,6 +167,7 @@ pub(super) fn open_view(
     options.threads = threads.map(usize::from);
     // Signal handlers are installed before the terminal is put into raw mode, so that no signal can leave it so.
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
+    // Unwind-safe, because after a panic nothing that the view has changed is used again.
     let ended = catch_unwind(AssertUnwindSafe(|| app::open(sources, options, &mut signals)));
     let Outcome { ending, moved, heard, .. } = match ended {
         Ok(outcome) => outcome.map_err(|error| match error {

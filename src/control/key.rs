@@ -107,6 +107,7 @@ impl Key {
         let shift = event.modifiers.contains(KeyModifiers::SHIFT);
         let ctrl = event.modifiers.contains(KeyModifiers::CONTROL);
         let code = match event.code {
+            // With Ctrl both cases are one key: without the kitty protocol, terminals send the same byte for them.
             KeyCode::Char(c) if ctrl => KeyCode::Char(c.to_ascii_lowercase()),
             KeyCode::Char('/') if shift => KeyCode::Char('?'),
             KeyCode::Char(c) if shift => KeyCode::Char(c.to_ascii_uppercase()),

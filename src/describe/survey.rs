@@ -89,6 +89,7 @@ impl Coverage {
 /// Counts of a picture's pixels, from which its description is made.
 pub(super) struct Survey {
     /// The coverage of each visible object, by the object's index.
+    // In the order of the objects, so that texts do not depend on hashes.
     pub(super) covered: BTreeMap<u32, Coverage>,
     /// The number of pixels in which the first object is in front of the second.
     hides: BTreeMap<(u32, u32), usize>,

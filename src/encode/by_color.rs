@@ -137,6 +137,7 @@ impl<'a> Tour<'a> {
     /// Visits all pairs, and appends the positions of their cells to `order`.
     fn visit_all(&mut self, order: &mut Vec<CellPosition>) {
         for next in 0..self.pairs.len() {
+            // Reading order is the fallback, so the tour visits every pair.
             while !self.pairs[next].visited {
                 let pair = self.cheapest_pair(next);
                 self.visit_pair(pair, order);
@@ -161,6 +162,7 @@ impl<'a> Tour<'a> {
                 }
             }
             self.lookups -= tried.len();
+            // In reverse, so that the first pair in reading order is on top again.
             for pair in tried.into_iter().rev() {
                 let end = &mut self.colors[color].pairs.end;
                 self.pairs_by_color[*end] = pair;
@@ -229,6 +231,7 @@ fn pairs_by_color(inks: &[PackedInk], pairs: &[Pair]) -> (Vec<Color>, Vec<usize>
         end += color.unvisited;
     }
     let mut neighbours = vec![0; end];
+    // In reverse for the same reason: the first pair in reading order is on top.
     for (at, pair) in pairs.iter().enumerate().rev() {
         for &color in distinct_colors(&pair.colors) {
             let end = &mut colors[color].pairs.end;

@@ -176,6 +176,7 @@ impl Scratch {
             if ranks > 1 {
                 ranks = self.pairs.ranks_within(ranks, frame.max_bytes as f32 / bytes as f32).max(1);
             } else {
+                // Less than one pair fits: its first cells in reading order are written.
                 most_cells = (self.cells.len() * frame.max_bytes / bytes).min(self.cells.len() - 1);
             }
         }

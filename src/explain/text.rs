@@ -255,6 +255,8 @@ fn light_line(name: &str, LinearRgb { r, g, b }: LinearRgb) -> String {
 
 /// Formats a number, right-aligned in nine columns.
 fn padded_number(x: f32) -> String {
+    // Below 1e-3 four decimals would show one digit; from 1e3 on they would take ten columns with a sign, and from 1e5
+    // on so would two decimals.
     let size = x.abs();
     match size {
         _ if size == 0.0 => format!("{:9.4}", 0.0),

@@ -43,6 +43,7 @@ pub fn html(grid: &Grid, cell_aspect: f32) -> String {
 fn page(grid: &Grid, cell_aspect: f32, title: &str) -> String {
     let Size { columns, rows } = grid.size();
     // All lengths are multiples of the font's `ch`, so that the shape is right with any font and zoom.
+    // A half block is the smallest area, so two units per row make all coordinates integers.
     let half_rows = 2 * u32::from(rows);
     // `pre` would ignore a line feed at its start, but the text starts with a grid's first row, which is never empty.
     let text = text(grid);

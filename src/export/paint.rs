@@ -53,6 +53,7 @@ impl TextRun {
 
 /// Returns the text with the special characters of SVG and HTML escaped.
 pub(super) fn escaped(text: &str) -> String {
+    // Quotes stay, because the text is always the content of an element and never in an attribute.
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
@@ -122,6 +123,7 @@ fn write_block(
 ) {
     let unit = |at: usize, parts: usize, scale: f64| {
         let length = scale * at as f64 / parts as f64;
+        // Thirds have no end in decimal. Three decimals of a column are finer than a pixel of the screen.
         (1000.0 * length).round() / 1000.0
     };
     for y in 0..down {

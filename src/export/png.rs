@@ -113,6 +113,7 @@ fn largest_channel_difference(a: [u8; 3], b: [u8; 3]) -> u8 {
 fn difference_color(a: [u8; 3], b: [u8; 3]) -> Srgb8 {
     match largest_channel_difference(a, b) {
         0 => {
+            // Half of the channels' mean, so that the red of differences stands out.
             let grey = (a.iter().map(|&channel| u16::from(channel)).sum::<u16>() / 6) as u8;
             Srgb8::new(grey, grey, grey)
         }

@@ -35,6 +35,7 @@ impl Formula {
             examined += 1;
             let value = self.tape.value(0.5 * (min + max), &mut values);
             signs = [signs[0] || value < 0.0, signs[1] || value > 0.0];
+            // Between two signs f may jump and have no zero, but that is not certain.
             if signs == [true; 2] || value == 0.0 {
                 return false;
             }

@@ -12,6 +12,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 pub(super) const EPSILON: f64 = f64::EPSILON;
 
 /// A quantity along a piece of a ray.
+// Of order 2: in a prototype order 1 took up to 1.6 times as long, order 3 up to 1.3 times, and order 6, which is exact
+// for most polynomials, up to 2.2 times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Model {
     /// The coefficients of the polynomial.
@@ -34,6 +36,8 @@ impl Model {
 
     /// Returns the model with room for the rounding errors of `error` itself.
     fn new(c: [f64; 3], error: f64) -> Self {
+        // No term of `error` is rounded more than 32 times, each by half of EPSILON at most. Products that vanish add
+        // less than MIN_POSITIVE.
         Self { c, error: error * (1.0 + 16.0 * EPSILON) + f64::MIN_POSITIVE }
     }
 
@@ -44,6 +48,7 @@ impl Model {
 
     /// Returns the model of everything between two numbers.
     fn hull(low: f64, high: f64) -> Self {
+        // Halved first, because the sum may overflow.
         let middle = 0.5 * low + 0.5 * high;
         let rounding = 4.0 * EPSILON * (low.abs() + high.abs());
         Self::new([middle, 0.0, 0.0], 0.5 * high - 0.5 * low + rounding)
@@ -113,7 +118,7 @@ impl Model {
         let beyond = 2.0 * (c1 * c2).abs() + c2 * c2 + error * (2.0 * (c1.abs() + c2.abs()) + error);
         let (linear, square) = (g1 * c2, g2 * c1 * c1);
         let rounding = 8.0 * EPSILON * (g.abs() + (g1 * c1).abs() + linear.abs() + square.abs());
-        // A bound that has vanished is none.
+        // A bound that has underflowed is no bound.
         let third = if third < f64::MIN_POSITIVE { f64::INFINITY } else { third };
         let remainder = third * spread * spread * spread;
         let taylor =
@@ -127,7 +132,8 @@ impl Model {
 pub(super) struct Evaluation<'c>(pub(super) &'c mut Continuity);
 
 impl Evaluation<'_> {
-    /// Returns everything, as the function jumps or is undefined on the range or a part of it.
+    /// Notes that the function may jump or be undefined on the range, and returns
+    /// [`Model::ANYTHING`].
     fn anything(&mut self, is_undefined: bool) -> Model {
         self.0.may_jump = true;
         self.0.is_undefined |= is_undefined;
@@ -136,7 +142,7 @@ impl Evaluation<'_> {
 
     pub(super) fn unary(&mut self, function: Unary, a: Model, is_non_negative: bool) -> Model {
         let [low, high] = a.range();
-        // Includes NaN.
+        // True also if a bound is NaN.
         if !(high - low < f64::INFINITY) {
             return match function {
                 Unary::Negate => a.negate(),
@@ -153,6 +159,8 @@ impl Evaluation<'_> {
             Unary::Square => square(a),
             Unary::Sqrt => self.square_root(a, is_non_negative),
             Unary::Cbrt => cube_root(a),
+            // 5.9 instead of 6, and below 2.9, 15.9 and 1.01 instead of 3, 16 and 1: room for the rounding of the bound
+            // itself.
             Unary::Exp => a.function([value, value, 0.5 * value], around[1] / 5.9, around),
             Unary::Ln if high <= 0.0 => self.anything(true),
             Unary::Ln if low <= 0.0 => self.anything(false),
@@ -237,7 +245,7 @@ impl Evaluation<'_> {
 
     fn quotient(&mut self, a: Model, b: Model) -> Model {
         let [low, high] = b.range();
-        // Includes NaN.
+        // True also if a bound is NaN.
         if !(low > 0.0 || high < 0.0) {
             return self.anything(low == 0.0 && high == 0.0);
         }
@@ -304,7 +312,7 @@ fn cube_root(a: Model) -> Model {
     a.function([value, 1.0 / (3.0 * squared), -1.0 / (9.0 * squared * squared * value)], third, hull)
 }
 
-/// Returns the smaller one if that is decided, else half the sum minus half the distance.
+/// Returns the smaller of two models if that is certain, else the model of (a + b - |a - b|) / 2.
 fn minimum(a: Model, b: Model) -> Model {
     let difference = a.minus(b);
     let [low, high] = difference.range();

@@ -12,13 +12,15 @@ use std::f64::consts::FRAC_2_PI;
 const EPSILON: f32 = f32::EPSILON;
 
 /// A bound of the absolute error of the polynomials for sine and cosine.
-// They are off by 1e-7 at most: the property test of models would find more than this.
+// Measured up to 8000, for every 37th float: 9.3e-8.
 const OF_SINE: f32 = 2.0 * EPSILON;
 
 /// A bound of the relative error of the polynomial for the exponential function.
+// Measured for every 37th float: 8.1e-8.
 const OF_EXP: f32 = 4.0 * EPSILON;
 
 /// The largest angle at which the reduction to a quarter turn is exact enough.
+// Cephes gives 8192 as the limit of this reduction.
 const LARGEST_ANGLE: f32 = 8000.0;
 
 /// Eight models in memory: the coefficients, then the error.
@@ -30,7 +32,7 @@ pub(super) type Lines = [[[f64; LANES]; 3]; 2];
 /// Eight values, one per lane.
 pub(super) type EightValues = [f64; LANES];
 
-/// The models of a tape on eight pieces, for the lanes in `lanes`.
+/// The kernel that computes the models of a tape on eight pieces, for the lanes in `lanes`.
 pub(super) struct PacketModels<'a> {
     pub(super) tape: &'a Tape,
     pub(super) lines: &'a Lines,
@@ -40,7 +42,8 @@ pub(super) struct PacketModels<'a> {
     pub(super) scratch: &'a mut Vec<StoredModels>,
 }
 
-/// The models of the whole formula, and what follows for each lane.
+/// The models of the whole formula on eight pieces, and which lanes may jump or have a certain
+/// sign.
 pub(super) struct Outcome {
     models: StoredModels,
     may_jump: u32,
@@ -108,7 +111,7 @@ impl SimdKernel for PacketModels<'_> {
     }
 }
 
-/// The values of a tape at one place of each of eight lines.
+/// The kernel that computes the values of a tape at one place of each of eight lines.
 pub(super) struct PacketValues<'a> {
     pub(super) tape: &'a Tape,
     pub(super) lines: &'a Lines,
@@ -214,6 +217,7 @@ struct Taylor<N> {
     off: N,
 }
 
+// All of it is inlined: a function by itself would be compiled without the kernel's target features.
 impl<N: Lanes> Models<N> {
     #[inline(always)]
     fn load(&[c0, c1, c2, error]: &StoredModels) -> Self {
@@ -341,7 +345,7 @@ impl<N: Lanes> Models<N> {
         let (linear, square) = (g1 * c2, g2 * c1 * c1);
         let rounding = N::splat(8.0 * EPSILON) * (g.abs() + (g1 * c1).abs() + linear.abs() + square.abs());
         let of_values = off * (N::splat(1.0) + sizes + c1 * c1);
-        // A bound that has vanished is none.
+        // A bound that has underflowed is no bound.
         let third = N::select(third.lt(N::splat(f32::MIN_POSITIVE)), N::splat(f32::INFINITY), third);
         let remainder = third * spread * spread * spread;
         let error = g1.abs() * error + g2.abs() * beyond + remainder + rounding + of_values;
@@ -363,7 +367,8 @@ impl<N: Lanes> Models<N> {
         let doubled = two * c0;
         let squares = [c0 * c0, doubled * c1, doubled * c2 + c1 * c1];
         let taylor = Self::new(squares, beyond + error * (two * size + error) + four * size * size);
-        // The hull is not narrower there. The choice depends on the lane alone, the shortcut on all.
+        // With an error this small the hull is not narrower. Each lane chooses for itself, so that its bits do not
+        // depend on the others; only the shortcut depends on all.
         let is_close = taylor.error.le(size * size * N::splat(0.25));
         if is_close.all() {
             return taylor;
@@ -423,9 +428,10 @@ impl<N: Lanes> Models<N> {
     fn exponential(self) -> Self {
         let ([low, high], zero, one) = (self.range(), N::splat(0.0), N::splat(1.0));
         let value = exp(self.c[0]);
+        // Below -87 `exp` returns its value there, 1.6e-38, for values between 0 and that.
         let off = N::splat(OF_EXP) * value + N::splat(1e-37);
-        // e^s is at most 1 + s + s^2 up to s = 1, and the hull is not narrower then. The choice depends on the lane
-        // alone, the shortcut on all.
+        // e^s is at most 1 + s + s^2 up to s = 1, and the hull is not narrower then. Here, too, each lane chooses for
+        // itself.
         let spread = high - self.c[0];
         let (is_narrow, is_in_reach) = (spread.lt(one) & N::splat(-80.0).lt(self.c[0]), high.lt(N::splat(87.0)));
         let most = value * (one + spread + spread * spread) * N::splat(1.0 + 2.0 * OF_EXP);
@@ -466,7 +472,9 @@ fn sin_cos<N: Lanes>(x: N) -> [N; 2] {
 #[inline(always)]
 fn exp<N: Lanes>(x: N) -> N {
     let number = |value: f64| N::splat(value as f32);
+    // Beyond, `scale` would be subnormal or infinite.
     let x = x.max(number(-87.0)).min(number(88.0));
+    // ln 2 in two parts, of which the product with the first is exact, and the polynomial of Cephes.
     let power = (x * number(std::f64::consts::LOG2_E) + number(0.5)).floor();
     let r = x - power * number(0.693_359_375) + power * number(2.121_944_4e-4);
     let polynomial = [1.398_199_950_7e-3, 8.333_451_907_3e-3, 4.166_579_589_4e-2, 1.666_666_545_9e-1, 0.5];
@@ -510,7 +518,7 @@ impl PacketEvaluation {
         }
     }
 
-    /// Notes the lanes, and returns everything there.
+    /// Notes that the lanes of `mask` may jump, and returns [`Models::anything`] in them.
     #[inline(always)]
     fn anything_where<N: Lanes>(&mut self, mask: N::Mask, is_undefined: N::Mask, else_: Models<N>) -> Models<N> {
         self.may_jump |= mask.bits();

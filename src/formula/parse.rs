@@ -336,6 +336,7 @@ impl Parser<'_> {
                 fits(index, range)
             }
             _ => {
+                // Undefined for a negative base, even where a root exists, as of x^(1/3): `cbrt` is for that.
                 let logarithm = self.unary_of(Unary::Ln, base, range.clone())?;
                 let product = self.binary(Binary::Multiply, exponent, logarithm, range.clone())?;
                 self.unary_of(Unary::Exp, product, range)
@@ -344,6 +345,7 @@ impl Parser<'_> {
     }
 
     fn length(&mut self, operands: &[Index], range: Range<usize>) -> Result<Index, Fault> {
+        // The tape folds this term away.
         let mut sum = self.constant(0.0, range.clone())?;
         for &operand in operands {
             let square = self.unary_of(Unary::Square, operand, range.clone())?;

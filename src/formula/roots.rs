@@ -18,6 +18,7 @@ use glam::DVec3;
 use std::cell::RefCell;
 
 /// The length of the shortest piece, relative to the range.
+// With it, the nearer of two sheets 3e-7 apart was always found. It needs t and lengths in f64.
 const MIN_PIECE: f64 = 1e-9;
 
 /// The relative length of a piece with a sign change at which the search among points begins.
@@ -104,7 +105,7 @@ struct Walk {
     range: f64,
 }
 
-/// The outcome of a piece.
+/// The outcome of a step along a piece.
 enum Found {
     Nothing,
     Root(Root),
@@ -129,7 +130,7 @@ impl Searches {
     pub(crate) fn add(&mut self, lane: usize, line: &Line, [start, end]: [f32; 2], until: f32) {
         let (from, to) = (f64::from(start), f64::from(end));
         let range = to - from;
-        // Also rejects NaN.
+        // Rejects a range that is NaN, too.
         if !(range > 0.0 && range < f64::INFINITY) {
             return;
         }
@@ -191,6 +192,8 @@ impl<'f> Solver<'f> {
                 found |= ended;
                 searches.lanes &= !ended;
             }
+            // To the least f32, so that the root does not depend on the pieces: without this step up to 61 of 24,000
+            // depths did.
             self.narrow(&searches.lines, &mut brackets, found, scratch);
             (found, F32x8(brackets.map(|bracket| bracket.after)))
         })
@@ -214,7 +217,7 @@ impl<'f> Solver<'f> {
                 continue;
             }
             let (mut model, mut continuity) = (outcome.model(lane), outcome.continuity(lane));
-            // In f32, models of short pieces may be little more than rounding errors.
+            // In f32, the model of a short piece may be little more than its rounding errors.
             let is_short = piece[1] - piece[0] < walk.range * SHORT;
             if is_short && !(model.error < BLUR * (model.c[1].abs() + model.c[2].abs())) {
                 let line = line_in_lane(&searches.lines, lane);
@@ -256,7 +259,7 @@ struct Bracket {
     slope: f64,
     /// The place whose value is needed next.
     next: f32,
-    /// The place that was evaluated last, and its value times the sign.
+    /// The t that was evaluated last, and the value of f there times the sign.
     last: [f64; 2],
     /// The number of values so far.
     count: u32,
@@ -290,7 +293,7 @@ impl Bracket {
             return true;
         }
         let secant = (value - self.last[1]) / (t - self.last[0]);
-        // Includes NaN. Between neighbours the secant is that of rounding errors.
+        // A secant that is NaN is not taken. Between neighbours it is that of rounding errors.
         if self.count > 1 && secant < 0.0 && (t - self.last[0]).abs() > 16.0 * f64::from(f32::EPSILON) * t.abs() {
             self.slope = secant;
         }
@@ -310,6 +313,7 @@ impl Bracket {
     }
 }
 
+/// Returns the line of one lane, for models that are computed in f64.
 fn line_in_lane(lines: &Lines, lane: usize) -> Line {
     let of = |axes: &[[f64; LANES]; 3]| DVec3::new(axes[0][lane], axes[1][lane], axes[2][lane]);
     Line { origin: of(&lines[0]), direction: of(&lines[1]) }
@@ -438,7 +442,7 @@ impl Walk {
             return Found::Nothing;
         }
         if width <= 1.5 * self.shortest {
-            // It touches zero as far as can be told.
+            // As far as can be told, f touches zero here and keeps its sign.
             self.since = from;
             return self.pass(to, 2.0 * width, self.sign);
         }
@@ -453,7 +457,7 @@ impl Walk {
 fn first_below(b: [f64; 3], level: f64) -> Option<f64> {
     let (start, slope, curvature) = (b[0] - level, 2.0 * (b[1] - b[0]), b[0] - 2.0 * b[1] + b[2]);
     let under_root = slope * slope - 4.0 * curvature * start;
-    // Also rejects NaN.
+    // True also for NaN.
     if !(under_root >= 0.0) {
         return None;
     }

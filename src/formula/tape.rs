@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 /// The largest number of operations.
+// The models of a packet take 128 bytes for each operation: at most half a megabyte in each thread.
 pub(super) const MAX_OPERATIONS: usize = 4096;
 
 /// The number of the time among the coordinates, in tapes that cannot be evaluated yet.

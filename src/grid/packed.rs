@@ -162,6 +162,8 @@ impl Clusters {
 
     /// Returns whether the list is long enough that unused clusters have to be dropped.
     pub(super) fn is_crowded(&self, cell_count: usize) -> bool {
+        // At least half of the clusters are then unused, and dropping them takes a pass over all cells. A grid of few
+        // cells would do so too often.
         self.0.len() > 2 * cell_count.max(32)
     }
 

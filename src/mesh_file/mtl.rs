@@ -125,14 +125,14 @@ impl MtlReader<'_, '_> {
     /// Records what is not shown where the last material is used.
     fn not_shown(&mut self, what: &'static str) {
         if let Some(last) = self.library.materials.len().checked_sub(1) {
-            self.library.not_shown.push((last as u32, what)); // fewer than bytes
+            self.library.not_shown.push((last as u32, what)); // fewer than the file's bytes
         }
     }
 
     /// Reads `newmtl` and starts a material. If two have the same name, the later one counts.
     fn new_material(&mut self) {
         let name = self.text.rest_of_line();
-        let index = self.library.materials.len() as u32; // fewer than bytes
+        let index = self.library.materials.len() as u32; // fewer than the file's bytes
         self.library.by_name.insert(name.into(), index);
         self.library.materials.push(MeshMaterial { reflectance: DEFAULT_REFLECTANCE, texture: None });
     }

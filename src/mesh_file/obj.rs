@@ -62,6 +62,7 @@ struct FaceCorners {
 }
 
 /// The index of a texture coordinate or normal that a corner lacks.
+// No index is as large, because a file has at most 2^31 bytes.
 const NONE: u32 = u32::MAX;
 
 impl ObjReader<'_, '_> {
@@ -102,6 +103,7 @@ impl ObjReader<'_, '_> {
     fn leave_out(&mut self, start: usize) {
         self.text = self.text.cursor_at(start);
         match self.text.word() {
+            // `MeshBuilder::finish` flattens the triangles at a position that is not finite.
             b"v" => self.mesh.positions.push(Vec3::NAN),
             b"vn" => self.mesh.normals.values_mut().push(Vec3::ZERO),
             b"vt" => self.mesh.texture_coordinates.values_mut().push(Vec2::ZERO),

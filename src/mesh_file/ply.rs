@@ -22,6 +22,7 @@ use std::sync::Arc;
 pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
     let header = Header::read(bytes, &mut side_files.left_out)?;
     let rows = header.elements.iter().map(|element| element.count as usize).sum::<usize>();
+    // The header may claim more rows than the file has bytes.
     side_files.left_out.of_parts(rows.min(bytes.len()));
     match header.encoding {
         Encoding::Ascii => read_body(&header, AsciiRows::new(bytes, header.end, meter), side_files),

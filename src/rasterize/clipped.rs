@@ -11,6 +11,7 @@ use glam::{DVec2, DVec3, Vec3};
 pub(super) fn draw(projection: &Projection, corners: [Vec3; 3], object: u32, buffer: &mut DepthBuffer) -> u64 {
     let corners = corners.map(|corner| projection.in_exact_camera_space(corner));
     let farthest = corners.iter().fold(0.0_f64, |z, corner| z.max(corner.z));
+    // Not 0, because a corner at the depth of the eye would be projected to infinity.
     let near = 1e-6 * farthest;
     if farthest <= 0.0 {
         return 0;
@@ -50,5 +51,6 @@ fn fill(projection: &Projection, corners: [DVec3; 3], object: u32, buffer: &mut 
             }
         }
     }
+    // The triangle itself is counted where it was found to reach behind the eye.
     rectangle.tests() - 1
 }

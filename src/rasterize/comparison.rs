@@ -23,6 +23,7 @@ pub struct OrderTimes {
 }
 
 /// The number of measurements, of which the fastest counts.
+// Other work of the machine only makes a run slower, so the fastest one is the nearest to the time of the work itself.
 const ROUNDS: u32 = 3;
 
 impl OrderTimes {
@@ -180,8 +181,8 @@ pub fn random_spheres(number: u32) -> impl Iterator<Item = (Vec3, f32)> {
 }
 
 /// Marsaglia's xorshift generator (Xorshift RNGs, 2003) with 64 bits and the shifts 13, 7 and 17.
-/// Our own, because a crate's generator may change its sequence with a release, and a program in another language needs
-/// the same one.
+// Not a crate's generator, which may change its sequence with a release: a program in another language must get the
+// same numbers.
 struct Xorshift(u64);
 
 impl Xorshift {

@@ -118,6 +118,7 @@ impl Projection {
     #[inline(always)]
     pub(super) fn range<N: Lanes>(min: N, max: N, size: u32) -> [N; 2] {
         let (zero, half, last) = (N::splat(0.0), N::splat(0.5), N::splat(size as f32));
+        // Numbers have no `ceil`: it is the negative of `floor` of the negative.
         let first = -(half - min).floor();
         let end = (max + half).floor();
         [first, end].map(|edge| edge.max(zero).min(last))

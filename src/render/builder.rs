@@ -137,6 +137,7 @@ impl<'a> Render<'a> {
         };
         let report = Report::new(&callback, token, progress_units(resolution, sampling));
         let framebuffer = render(Executor::Reporting(&report))?;
+        // The picture is complete, so that `Break` no longer cancels it.
         let _ = callback(1.0);
         Ok(framebuffer)
     }

@@ -86,6 +86,7 @@ fn insertion_after(text: &str, field: &Field<'_>, view: &str) -> Vec<Addition> {
 
 /// Returns the text with all insertions, which are sorted by their positions.
 fn with_insertions(text: &str, additions: Vec<Addition>) -> String {
+    // Room for the text and a view, so that it is allocated once.
     let mut written = String::with_capacity(text.len() + 200);
     let mut from = 0;
     for (at, addition) in additions {

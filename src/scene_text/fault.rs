@@ -267,6 +267,7 @@ impl Excerpt {
     /// columns.
     const MAX_EXCERPT_WIDTH: usize = 100;
     /// The column up to which a fault is shown with the whole start of its line.
+    // Beyond it less than a quarter of the excerpt would be left for the text after the fault.
     const WHOLE_START: usize = 75;
     /// The number of columns shown before a fault beyond [`WHOLE_START`](Self::WHOLE_START): half
     /// of the excerpt.

@@ -24,7 +24,7 @@ pub(super) fn load_or_make(path: &Path) -> io::Result<PrivateKey> {
             let wrong = |error| io::Error::other(format!("no private key of OpenSSH: {error}"));
             let key = PrivateKey::from_openssh(&text).map_err(wrong)?;
             if key.is_encrypted() {
-                return Err(io::Error::other("a passphrase protects this key, and nobody could type it"));
+                return Err(io::Error::other("a passphrase protects this key; the server needs one without"));
             }
             Ok(key)
         }
@@ -35,6 +35,7 @@ pub(super) fn load_or_make(path: &Path) -> io::Result<PrivateKey> {
 
 fn make(path: &Path) -> io::Result<PrivateKey> {
     let mut seed = [0; 32];
+    // Read directly, which spares a dependency on a crate for random numbers.
     File::open("/dev/urandom")?.read_exact(&mut seed)?;
     let key = PrivateKey::new(KeypairData::Ed25519(Ed25519Keypair::from_seed(&seed)), "termtrace serve");
     let key = key.map_err(io::Error::other)?;

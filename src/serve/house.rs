@@ -21,6 +21,7 @@ const LEFT_OUT: [Command; 6] =
     [Command::Export, Command::ExportLarge, Command::Record, Command::KeepView, Command::TurnMesh, Command::Suspend];
 
 /// The most names of terminals whose colours are remembered.
+// Clients choose the name, so the map would grow without a limit.
 const MAX_TERMINALS: usize = 256;
 
 /// The state that all connections share.

@@ -15,6 +15,7 @@ use tokio::sync::Notify;
 const MAX_INPUT: usize = 4096;
 
 /// The most bytes that may wait to be sent; while there are more, no input is taken.
+// More than one frame: an exact redraw of 80x24 cells takes 44 kB.
 const MAX_OUTPUT: usize = 64 * 1024;
 
 /// The buffers between a connection and its seat: input in one direction, bytes to send in the
@@ -68,6 +69,7 @@ impl Line {
     pub(super) async fn push(&self, bytes: &[u8]) {
         for part in bytes.chunks(MAX_INPUT) {
             loop {
+                // Before the lock: input that is taken between the check and the wait then still ends the wait.
                 let taken = self.taken.notified();
                 {
                     let mut inbox = locked(&self.inbox);
@@ -134,6 +136,7 @@ impl Line {
         }
         let mut outbox = locked(&self.outbox);
         if outbox.bytes.is_empty() {
+            // The common case: the viewer draws only after the last bytes have been sent.
             outbox.bytes = bytes;
         } else {
             outbox.bytes.append(&mut bytes);

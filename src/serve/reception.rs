@@ -80,6 +80,7 @@ impl Reception {
         };
         let mut told = None;
         loop {
+            // Before the checks, so that a change during them ends the wait below.
             changes.mark_unchanged();
             if self.house.drained_at().is_some() {
                 self.send(b"\r\x1b[Kthe server restarts; come back soon\r\n").await;
@@ -94,6 +95,7 @@ impl Reception {
                 }
                 Err(ahead) => ahead,
             };
+            // Any change wakes all who wait, and most changes leave the number as it is.
             if told.replace(ahead) != Some(ahead) {
                 let text = format!("\r\x1b[Kfull, {ahead} ahead of you; q leaves");
                 self.send(text.as_bytes()).await;
@@ -117,6 +119,7 @@ impl Reception {
     /// Prints an error message and ends the visit.
     pub(super) async fn refuse(&self, message: &str) {
         let message = format!("error: {}\r\n", visible(message));
+        // Stream 1 is the standard error of a client's command.
         let _ = self.handle.extended_data(self.channel, 1, message.into_bytes()).await;
         self.end(2).await;
     }
@@ -143,6 +146,7 @@ impl Reception {
             let _ = self.handle.eof(self.channel).await;
             let _ = self.handle.close(self.channel).await;
         };
+        // These messages wait for room in the queue of the connection, which a client that stalls never makes.
         let _ = timeout(CLOSING_TIME, ending).await;
         sleep(CLOSING_TIME).await;
         self.kick.kick();

@@ -61,6 +61,7 @@ struct Seat {
 #[derive(Debug, Default)]
 pub(super) struct RunQueue {
     seats: BTreeMap<SeatId, Seat>,
+    // In the order of the turns: pictures before refinements, then by virtual start. The number makes entries unique.
     ready: BTreeSet<(Class, Duration, SeatId)>,
     timers: BTreeSet<(Duration, SeatId)>,
     /// The virtual time of the queue: the latest virtual start of a turn for a picture.
@@ -95,6 +96,7 @@ impl RunQueue {
             self.wake(id);
         }
         let &(class, start, id) = self.ready.first()?;
+        // A refinement may start far ahead of the others, which would give rested seats too late a start.
         if class == Class::Picture {
             self.virtual_time = self.virtual_time.max(start);
         }
@@ -112,6 +114,7 @@ impl RunQueue {
         seat.finish = finish;
         match next {
             Next::End => drop(self.seats.remove(&id)),
+            // Input that came during the turn has not been taken, so the seat may not sleep.
             _ if woken => self.set(id, State::Ready(Class::Picture, finish)),
             Next::Turn(class) => self.set(id, State::Ready(class, finish)),
             Next::Sleep(until) => self.set(id, State::Asleep(until)),

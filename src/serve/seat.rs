@@ -17,6 +17,7 @@ const COUNTDOWN: Duration = Duration::from_secs(30);
 /// Greatest time that leaving waits for the terminal's last replies.
 const LAST_REPLIES: Duration = Duration::from_secs(1);
 /// The most actions of the viewer in one turn, such as tracing a frame and drawing it.
+// A trace and a draw are usual; the limit also ends the turn of a viewer that never waits.
 const MAX_STEPS: usize = 8;
 
 /// The reason why a viewer leaves.
@@ -187,12 +188,14 @@ impl Seat {
     /// Shows the number of seconds left, if it is small, and returns the time at which this note
     /// changes.
     fn count_down(&mut self, end: Duration, parting: Parting, now: Duration) -> Duration {
+        // With a short limit on the idle time the note would be on the screen nearly always.
         let countdown = if parting == Parting::Idle { COUNTDOWN.min(self.stay.idle / 2) } else { COUNTDOWN };
         let left = end.saturating_sub(now);
         if left > countdown {
             self.counted = None;
             return end.saturating_sub(countdown);
         }
+        // Rounded up, so that 0 is never shown.
         let seconds = left.as_secs() + u64::from(left.subsec_nanos() > 0);
         // The note is set only once a second, because each new note counts as a change, which is drawn.
         if self.counted.replace(seconds) != Some(seconds) {

@@ -11,10 +11,12 @@ use tokio::net::TcpStream;
 use tokio::time::{Sleep, sleep};
 
 /// The bytes that the system keeps for a client that does not read.
+// Without a limit the system keeps up to several megabytes, all of them older than the newest frame.
 const SEND_BUFFER: usize = 64 * 1024;
 
 /// A client's socket.
 pub(super) struct Socket {
+    // Shared with `Kick`, whose reference is weak, so that it does not keep the socket open.
     stream: Arc<TcpStream>,
     /// Greatest time in which a client that is to get bytes takes none.
     patience: Duration,
@@ -73,6 +75,8 @@ impl AsyncWrite for Socket {
     fn poll_write(mut self: Pin<&mut Self>, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         loop {
             if self.stream.poll_write_ready(cx)?.is_pending() {
+                // The timer starts when a write blocks, and ends with any byte that is taken: a slow client is not a
+                // stalled one.
                 let patience = self.patience;
                 let stalled = self.stalled.get_or_insert_with(|| Box::pin(sleep(patience)));
                 ready!(stalled.as_mut().poll(cx));
@@ -88,6 +92,7 @@ impl AsyncWrite for Socket {
         }
     }
 
+    // The socket has no buffer of its own.
     fn poll_flush(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
         Poll::Ready(Ok(()))
     }

@@ -59,6 +59,7 @@ impl Client {
 
     /// Starts the visit that the client's first request asks for, and refuses later requests.
     fn start_visit(&mut self, channel: ChannelId, command: &[u8], session: &mut Session) -> Result<(), Error> {
+        // SSH allows one `shell`, `exec` or subsystem for a channel.
         if std::mem::replace(&mut self.asked, true) {
             return session.channel_failure(channel);
         }
@@ -126,6 +127,8 @@ impl Handler for Client {
     }
 
     async fn data(&mut self, _channel: ChannelId, data: &[u8], _session: &mut Session) -> Result<(), Error> {
+        // Wakes the seat before the input is complete: `push` waits for the seat as soon as two parts of `MAX_INPUT`
+        // wait.
         for part in data.chunks(1024) {
             self.line.push(part).await;
             self.wake();

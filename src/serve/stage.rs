@@ -127,6 +127,7 @@ impl Stage {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
         let mut tracer = Tracer::default();
         while let Some((id, staged, load, token)) = self.next_turn() {
+            // CPU time, because on a busy machine the elapsed time would charge a seat for the turns of others.
             let started = cpu_time();
             let mut turn = || self.take_turn(&staged, load, &token, &mut tracer);
             let turned = catch_unwind(AssertUnwindSafe(|| match &pool {
@@ -135,6 +136,7 @@ impl Stage {
             }));
             let next = turned.unwrap_or_else(|_| {
                 // The panic hook has already printed the message. Only this viewer ends, with a clean terminal.
+                // The old one may be in an invalid state.
                 tracer = Tracer::default();
                 let mut out = Vec::new();
                 locked(&staged.seat).abandon(&mut out);
@@ -184,6 +186,7 @@ impl Stage {
         }
         let mut seat = locked(&staged.seat);
         let share = (load as f64 / self.threads as f64).max(1.0);
+        // The first picture of a visit is never interrupted: until it is there, the screen is empty.
         let never = Cancellation::default();
         let mut trace = |job: &Job, may_interrupt: bool| -> Option<Frame> {
             let mut frame = tracer.trace_for_any(job, if may_interrupt { token } else { &never }).ok()?;
@@ -199,6 +202,7 @@ impl Stage {
             !self.panics.get().is_some_and(|key| arrived.bytes.contains(key)),
             "a test asked for a panic in a seat"
         );
+        // With a thread for each seat that is ready, a refinement delays no picture of another viewer.
         let class = if load <= self.threads { Class::Refinement } else { Class::Picture };
         let next = seat.take_turn(&arrived, (line.is_sending(), class), &|| self.now(), &mut trace, &mut out);
         line.send(out, (next == Next::End).then_some(0));

@@ -22,6 +22,7 @@ pub(super) fn parse_command<'a>(command: &[u8], scene_names: impl Iterator<Item 
     match command.trim() {
         "" => Ok(Visit::Scene(0)),
         "--list" => Ok(Visit::List),
+        // The name is only compared and never used as a path or given to a shell.
         name => scene_names.into_iter().position(|known| known == name).map(Visit::Scene).ok_or_else(wrong),
     }
 }

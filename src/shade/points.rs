@@ -107,6 +107,7 @@ fn gather_surfaces<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &Eight
     at.ids = ids.store();
     at.position = points.position.store();
     at.geometric_normal = points.geometric_normal.store();
+    // Meshes with normals at their vertices have others, which `interpolate_normals` sets afterwards.
     at.shading_normal = at.geometric_normal;
     at.clearance = points.clearance.store();
     at.uv = [points.uv[0].store(), points.uv[1].store()];

@@ -96,10 +96,11 @@ impl Implicit {
         let (d, from_center) = (probe.ray.direction.as_dvec3(), probe.ray.origin.as_dvec3() - center);
         let (squared, half_b) = (d.dot(d), from_center.dot(d));
         let nearest = from_center - d * (half_b / squared);
-        // The root is NaN for a line that misses the ball, and the comparisons of the caller then reject the line.
+        // The root is NaN for a line that misses the ball.
         let root = ((radius * radius - nearest.dot(nearest)) / squared).sqrt();
         let middle = -half_b / squared;
         let (enters, leaves) = ((middle - root) as f32, (middle + root) as f32);
+        // `max` and `min` would skip NaN and return the interval of the box.
         if root.is_nan() {
             return Interval { min: f32::INFINITY, max: f32::NEG_INFINITY };
         }
@@ -124,6 +125,7 @@ impl Implicit {
     }
 }
 
+/// Returns the ray in f64, in which f is evaluated and its roots are enclosed.
 fn line_of_ray(ray: &Ray) -> Line {
     Line { origin: ray.origin.as_dvec3(), direction: ray.direction.as_dvec3() }
 }

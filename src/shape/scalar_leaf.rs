@@ -12,6 +12,7 @@ use std::sync::Arc;
 /// A lane holds the index of a surface, so that a surface may be of any size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScalarLeaf<S> {
+    // Shared, because `splat` and `gather` make a leaf for each test.
     surfaces: Arc<[S]>,
     /// The index of each lane's surface; an unused lane has an index without a surface.
     lanes: [u8; LANES],

@@ -185,6 +185,7 @@ impl SoaLeaf for SphereN<F32x8> {
 }
 
 /// The sphere of unused lanes, which no ray hits.
+// With its center at infinity the term under the root is NaN, and comparisons with NaN are false.
 const NEVER_HIT: Sphere = Sphere { center: Vec3::INFINITY, radius: 1.0 };
 
 impl Surface for Sphere {

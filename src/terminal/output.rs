@@ -66,6 +66,7 @@ impl Output {
     pub(super) fn write_pending(&mut self) -> io::Result<()> {
         while self.is_pending() {
             match self.write() {
+                // Trying again might loop for ever.
                 Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
                 Ok(count) => self.record_written(count),
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => return fault_injection::reach("frame"),
@@ -194,6 +195,7 @@ pub fn stderr_accepts_message() -> bool {
 /// the device belongs to another user (after `su`); `/dev/tty` then works if it is the terminal of this session.
 fn reopen_non_blocking(terminal: &File) -> Option<File> {
     let open = |name: &[u8]| {
+        // Without NOCTTY, opening might make it the controlling terminal of a session that has none.
         let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits().try_into().ok()?;
         OpenOptions::new().write(true).custom_flags(flags).open(OsStr::from_bytes(name)).ok()
     };

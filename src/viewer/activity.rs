@@ -36,6 +36,7 @@ impl Layer for Activity {
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         let (screen, text) = (canvas.screen(), self.text(!canvas.has_room()));
+        // The line is ASCII, so it has as many columns as bytes.
         let width = (text.len() as u16 + 2).min(screen.width);
         let corner = Rect { x: screen.right() - width, width, height: screen.height.min(1), ..screen };
         canvas.lay(corner, |theme, area, buffer| legend::draw(&text, theme, area, buffer));

@@ -9,9 +9,11 @@ impl Viewer {
         let (before, size) = (*self.display.capabilities(), self.size());
         let shown = before.cell_mode.glyphs;
         let at = Glyphs::ALL.iter().position(|&glyphs| glyphs == shown).unwrap_or(0);
+        // The shown kind itself comes last, so that it stays if the terminal can encode no other.
         let mut others = Glyphs::ALL.iter().cycle().skip(at + 1).take(Glyphs::ALL.len());
         let Some(&next) = others.find(|glyphs| self.options.hints.can_encode(**glyphs)) else { return };
         self.display.choose_glyphs(next);
+        // Kinds with more pixels per cell need more memory for a picture.
         if let Err(error) = self.display.check_memory() {
             self.display.choose_glyphs(shown);
             self.show_note(error.to_string());

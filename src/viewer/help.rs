@@ -252,6 +252,7 @@ fn max_width(lines: &[Line]) -> usize {
 /// into `room` columns.
 pub(super) fn status_line(keymap: &Keymap, modes: &[KeyMode], room: usize) -> String {
     let Some(&mode) = modes.first() else { return String::new() };
+    // Help and quit come first, so that even a narrow line has them.
     let always = [(&[Command::Help][..], "help"), (&[Command::Quit], "quit")];
     let mut line = format!(" {}", mode.name());
     for (commands, description) in always.into_iter().chain(status_line_keys(mode).iter().copied()) {

@@ -79,6 +79,8 @@ fn draw_cost_bar(colors: Colors, area: Rect, buffer: &mut Buffer) {
     let start = area.x + " cost: ".len() as u16;
     for (column, number) in (0_u16..).zip(COSTS.chars()) {
         let color = cost_color(libm::exp2f(0.5 * f32::from(column)).round() as u32);
+        // Ten times the luma, with its weights of 0.3, 0.6 and 0.1: 1280 is in the middle, where black and white text
+        // have equal contrast.
         let luma = 3 * u32::from(color.r) + 6 * u32::from(color.g) + u32::from(color.b);
         let text = if luma > 1280 { Color::Black } else { Color::White };
         if let Some(background) = ink(color)

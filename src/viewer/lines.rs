@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 /// The number of Braille dots in a cell, across and down.
 const DOTS: Vec2 = Vec2::new(2.0, 4.0);
 
-/// The most dots of a line, which a line across a screen of 1000 columns has.
+/// The most dots of a line: those of a line across a screen of 2000 columns or 1000 rows.
 const MAX_DOTS: f32 = 4000.0;
 
 /// Share of the way from the eye to a point within which a surface hides the point.
@@ -104,6 +104,7 @@ impl<'f> Plot<'f> {
         let [x, y] = [place.x.floor(), place.y.floor()];
         let bit = BITS[(4.0 * (place.y - y)) as usize % 4][(2.0 * (place.x - x)) as usize % 2];
         let cell = self.dots.entry([x as u16, y as u16]).or_insert((color, 0));
+        // A cell has a single glyph colour, so the line drawn last decides it.
         *cell = (color, cell.1 | bit);
     }
 
@@ -146,6 +147,7 @@ impl<'f> Plot<'f> {
 /// Returns the colour of the background behind a glyph that replaces a cell of the picture.
 fn background(cell: &Cell) -> Ink {
     match (cell.fg, cell.bg) {
+        // Both colours of a cell of the picture cover a part of it, so neither alone is the picture's colour there.
         (Ink::Rgb(a), Ink::Rgb(b)) if cell.glyph != Glyph::Char(' ') => {
             let mean = |a: u8, b: u8| a.midpoint(b);
             Ink::Rgb(Srgb8::new(mean(a.r, b.r), mean(a.g, b.g), mean(a.b, b.b)))

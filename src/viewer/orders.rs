@@ -59,6 +59,7 @@ impl OrdersPanel {
     pub(super) fn picture(&self, frame: &Frame) -> Option<Picture> {
         let build = self.build.as_ref().filter(|build| self.pace.tests() < build.comparison.total_tests())?;
         let [(_, left), (_, right)] = *frame.shot.layout.map_sizes(frame.resolution()) else { return None };
+        // After a resize, the build is still that of the last frame until the next one is traced.
         if left.width() == 0
             || right.width() == 0
             || right != build.resolution()
@@ -143,6 +144,7 @@ impl Viewer {
         if !theme::has_room(theme::area(self.size())) {
             return self.show_note(theme::needs_room("the comparison of both orders"));
         }
+        // The view from outside and the object order both take the right half of the picture.
         self.end_outside();
         // The panel takes the place of the caption, which returns after it.
         self.screen.close::<Caption>();

@@ -80,6 +80,7 @@ impl Viewer {
             self.screen.toggle_explaining();
         }
         let resolution = self.resolution();
+        // A quarter of the whole width is the middle of the left picture.
         let middle = [resolution.width() / 4, resolution.height() / 2];
         self.screen.explain(|panel, frame| panel.move_to(frame, middle));
     }
@@ -128,7 +129,8 @@ fn camera_beside(scene: &Scene, camera: &Camera, aspect_ratio: f32) -> Camera {
     let (Pose { eye, target, up }, Basis { u, v, w }) = (camera.pose(), camera.basis());
     let distance = camera.target_distance();
     let around = Vec3::splat(0.3 * distance);
-    // With the end of the drawn axis w, which is the farthest from the target.
+    // The box includes the end of the axis w, a little beyond its drawn length of 0.16: no other drawn point is farther
+    // from the target.
     let end_of_w = eye + 0.2 * distance * w;
     let bounds = Bounds::of([eye, end_of_w, target - around, target + around]);
     let middle = 0.5 * (bounds.min + bounds.max);

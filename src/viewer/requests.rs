@@ -15,6 +15,7 @@ const LARGE_SIDE: u32 = 1920;
 /// Returns the size of a large picture, of square pixels, in the shape of the shown one.
 fn large_resolution(shown: Resolution) -> Resolution {
     let aspect = shown.aspect_ratio();
+    // The shorter side of a window of one row or column would be rounded to no pixels.
     let scaled = |by: f32| ((LARGE_SIDE as f32 * by).round() as u32).clamp(1, LARGE_SIDE);
     Resolution::square(scaled(aspect), scaled(1.0 / aspect))
 }
@@ -79,6 +80,8 @@ impl Viewer {
     pub(crate) fn large_picture(&self) -> Option<(Job, f32)> {
         let (scene, shot) = self.scene().zip(self.wanted_shot())?;
         let resolution = large_resolution(shot.resolution);
+        // The file has pixels, so it needs neither the geometry that glyphs show nor the comparison that a panel
+        // explains.
         let shot = Shot { resolution, orders: false, geometry: false, ..shot };
         Some((Job { scene, shot, sampling: Sampling::BEST, refines: false }, self.screen.wipe()))
     }

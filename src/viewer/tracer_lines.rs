@@ -131,6 +131,7 @@ pub(super) fn draw_eye_ray(canvas: &mut Canvas<'_>, frame: &Frame, explanation: 
 pub(super) struct VanishingPoints;
 
 /// The number of parts in which the horizon is drawn.
+// All parts lie in the level plane through the eye, so the line is exactly straight with any number of them.
 const HORIZON_PARTS: u32 = 64;
 
 impl Layer for VanishingPoints {
@@ -149,6 +150,7 @@ impl Layer for VanishingPoints {
             // The point where the eye ray along the direction pierces the view rectangle.
             let point = camera.pose().eye + direction;
             let Some(place) = plot.place(point) else { continue };
+            // Four columns are as long as two rows, because a cell is twice as high as wide.
             for arm in [Vec2::new(4.0, 0.0), Vec2::new(0.0, 2.0)] {
                 plot.segment([place - arm, place + arm], color);
             }

@@ -5,6 +5,8 @@ use clap::Command;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+// bash 3.2, which macOS has, lacks `compopt` and `nosort`. Without them only marks of folders and the order are
+// missing.
 const HEAD: &str = r#"# Made by termtrace completions bash.
 
 _termtrace_words() {

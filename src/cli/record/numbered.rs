@@ -53,6 +53,7 @@ const NUMBER: &str = "one %d or %04d must show where the frame's number goes; a 
 fn least_digits(width: &str) -> Option<usize> {
     let is_number = width.bytes().all(|byte| byte.is_ascii_digit());
     match width.strip_prefix('0') {
+        // The largest 64-bit number has 20 digits.
         Some(width) if is_number => width.parse().ok().filter(|digits| (1..=20).contains(digits)),
         _ => width.is_empty().then_some(1),
     }

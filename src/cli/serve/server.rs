@@ -34,6 +34,7 @@ SIGTERM tells all viewers that they have 30 seconds, and ends; a second one
 ends at once.";
 
 /// The longest link and the largest banner that are shown.
+// The short welcome has 19 columns. With two blanks before the link and one at each side of the note, it fills 80.
 const MAX_LINK: usize = 57;
 const MAX_BANNER: u64 = 4096;
 
@@ -153,6 +154,7 @@ fn banner(path: &Path) -> io::Result<String> {
 
 /// Returns the default file of the host key, in the state folder of systemd or of the user.
 fn default_host_key() -> Option<PathBuf> {
+    // The specification of these variables has programs ignore relative paths.
     let folder = |variable| std::env::var_os(variable).map(PathBuf::from).filter(|path| path.is_absolute());
     let users = || folder("XDG_STATE_HOME").or_else(|| Some(folder("HOME")?.join(".local/state")));
     let state = folder("STATE_DIRECTORY").or_else(|| Some(users()?.join("termtrace")));

@@ -9,6 +9,7 @@ use crate::color::Srgb8;
 use std::cmp::Reverse;
 
 /// Largest number of colours.
+// A colour's number takes seven bits in the results of `nearest_two` and in the keys of pairs.
 pub(super) const MAX_COLORS: usize = 127;
 
 /// The number of slots of the hash table of bins, a power of two.
@@ -90,6 +91,7 @@ impl Palette {
 
     /// Counts the colours of the halves in bins, whose size grows with the exchange rate.
     fn fill_bins(&mut self, active: &[ActiveCell], rate: ExchangeRate) {
+        // With 5 or 6 bits the mean squared error of a bin is 16 or 4, too little at these rates to spend a byte on.
         let bits = if rate > 40.0 {
             5
         } else if rate > 6.0 {
@@ -127,7 +129,7 @@ impl Palette {
             if bin == u16::MAX {
                 break;
             }
-            // A table that is three quarters full takes no more bins.
+            // A table that is three quarters full takes no more bins, since probing takes long in a full one.
             if self.bins[usize::from(bin)].key == key || self.bins.len() > SLOTS / 4 * 3 {
                 return bin;
             }
@@ -144,6 +146,7 @@ impl Palette {
         self.fullest.clear();
         self.fullest.extend(0..self.bins.len() as u16);
         self.fullest.sort_unstable_by_key(|&bin| (Reverse(self.bins[usize::from(bin)].count), bin));
+        // Starts from the radius of the last frame, which is mostly near, because each try compares all bins.
         self.radius = rate.max(self.radius / 4.0);
         while !self.leads_within() {
             self.radius *= 2.0;
@@ -167,8 +170,8 @@ impl Palette {
     }
 
     /// Returns the two nearest colours: squared distances times 128, plus the indices.
-    // In f32, whose 24 bits hold both: in the integers of SSE2 a multiplication and a minimum take several
-    // instructions.
+    // As an f32, whose 24 bits hold a distance and an index: with integers, SSE2 needs several instructions for a
+    // multiplication or a minimum.
     fn nearest_two(&self, color: [i32; 3]) -> [u32; 2] {
         let [r, g, b] = color.map(|channel| channel as f32);
         let min = |a: f32, b: f32| if a < b { a } else { b };
@@ -234,6 +237,7 @@ impl Palette {
             }
             share.loss += (bin.count.cast_signed() * (second - first)) as f32;
         }
+        // A pen with one new colour takes 15 bytes (`pen_len`).
         let is_kept = |share: &Share| share.count > 0 && share.loss >= 15.0 * rate;
         // At least the colour of the most halves stays.
         let most = shares.iter().map(|share| share.count).max().unwrap_or(0);

@@ -7,12 +7,13 @@ use crate::encode::halves::Halves;
 use crate::grid::HalfBlocks;
 
 /// The number of keys of pairs.
+// Two numbers of seven bits each.
 const KEYS: usize = 1 << 14;
 
-/// The end of a list of ways.
+/// The index that ends a list of ways.
 const END: u32 = u32::MAX;
 
-/// A way to write a cell.
+/// A way to write a cell: with a pair, which keeps a list of its ways.
 struct Way {
     /// The cell's index among the active ones.
     cell: u32,
@@ -108,7 +109,7 @@ impl Pairs {
     /// The number is less than `ranks`.
     pub(super) fn ranks_within(&self, ranks: usize, share: f32) -> usize {
         let bytes = |open: &[OpenPair]| open.iter().map(|open| open.bytes).sum::<f32>();
-        // A hundredth less, so that the next try hardly ever fails.
+        // The sum is an estimate. With a hundredth less, the next try hardly ever fails.
         let mut left = 0.99 * share * bytes(&self.open[..ranks]);
         let fits = |open: &&OpenPair| {
             left -= open.bytes;
@@ -158,12 +159,15 @@ impl Pairs {
     /// Opens the pairs that save more than a pen, the best first, and gives each cell the cheapest.
     fn open_pairs(&mut self, active: &mut [ActiveCell], rate: ExchangeRate) {
         let Self { ways, table, used, .. } = self;
+        // The key decides between equal savings, so that the frame does not depend on the order of sorting.
         used.sort_unstable_by(|&a, &b| {
             table[usize::from(b)].saving.total_cmp(&table[usize::from(a)].saving).then(a.cmp(&b))
         });
         for &key in used.iter() {
             let pair = table[usize::from(key)];
             let price = rate * pen_len(key);
+            // The sum of what the cells would save at first only shrinks as other pairs are opened: all later pairs are
+            // out too.
             if pair.saving <= price {
                 break;
             }
@@ -268,6 +272,7 @@ fn is_flat(key: u16) -> bool {
 
 /// Returns the bytes of a glyph: of a space or a half block.
 fn glyph_len(key: u16) -> f32 {
+    // In UTF-8.
     if is_flat(key) { 1.0 } else { 3.0 }
 }
 

@@ -86,6 +86,7 @@ impl<'t> Tokens<'t> {
         let mut rest = self.all[self.at..].iter().map(|&(token, _)| token);
         rest.next() == Some(Token::Name)
             && rest.next() == Some(Token::Sign('='))
+            // Without a semicolon `x = 1` is an equation.
             && rest.any(|token| token == Token::Sign(';'))
     }
 }
@@ -99,7 +100,7 @@ fn number_length(text: &str) -> usize {
     let digits = length_while(text, |c| c.is_ascii_digit() || c == '.');
     let exponent = text[digits..].strip_prefix(['e', 'E']).map(|rest| rest.strip_prefix(['+', '-']).unwrap_or(rest));
     match exponent {
-        // `2e` and `2exp(x)` are faults of another kind.
+        // In `2e` and `2exp(x)` the `e` begins a name: the fault is the missing operator.
         Some(rest) if rest.starts_with(|c: char| c.is_ascii_digit()) => {
             text.len() - rest.len() + length_while(rest, |c| c.is_ascii_digit())
         }

@@ -162,6 +162,7 @@ impl<'a> Accessor<'a> {
 
     /// Returns the first `N` components of each element; all must be finite.
     pub(super) fn vectors<const N: usize>(&self) -> Result<Vec<[f32; N]>, MeshFault> {
+        // More components than `N` are allowed: colours may have an opacity, which is skipped.
         if self.width < N {
             return Err(self.fault(format!("expected elements of {N} numbers, found elements of {}", self.width)));
         }

@@ -122,11 +122,13 @@ impl<'a, 'b> Buffers<'a, 'b> {
                 let bytes = self.resource(uri, Resource::Buffer)?;
                 bytes.ok_or_else(|| buffer.fault("the buffer is missing"))?
             }
+            // glTF: only the first buffer may be the BIN chunk.
             None => match self.glb.filter(|_| index == 0) {
                 Some(bytes) => Bytes::Glb(bytes),
                 None => return Err(buffer.fault("the buffer has no uri, and the file has no BIN chunk for it")),
             },
         };
+        // There may be more bytes: a BIN chunk is padded to a multiple of four.
         if bytes.len() < length {
             let found = bytes.len();
             return Err(

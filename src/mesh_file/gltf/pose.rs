@@ -135,9 +135,11 @@ impl<'a> Pose<'a> {
         buffers: &mut Buffers<'a, '_>,
     ) -> Result<Option<Vec<DMat4>>, MeshFault> {
         let attributes = primitive.required("attributes")?;
+        // A primitive without joints in a mesh with a skin is placed by its node.
         if self.joints.is_empty() || attributes.field(JOINTS[0][0])?.is_none() {
             return Ok(None);
         }
+        // glTF: the joints alone place a vertex with a skin; the transform of its node is ignored.
         let mut sums = vec![(DMat4::ZERO, 0.0); count];
         for [joints, weights] in JOINTS {
             let (Some(joints), Some(weights)) = (attributes.field(joints)?, attributes.field(weights)?) else {

@@ -47,8 +47,9 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
     pub(super) fn new(buffers: &'r mut Buffers<'a, 'b>) -> Result<Self, MeshFault> {
         let materials = materials::read(buffers)?;
         let texture_coordinate_sets = materials.iter().map(|material| material.texture_coordinates).collect();
+        // A file has fewer materials than bytes, so the index fits into 32 bits.
         let unshown = |(i, material): (usize, &materials::Material)| {
-            material.not_shown.iter().map(move |&what| (i as u32, what)).collect::<Vec<_>>() // fewer than bytes
+            material.not_shown.iter().map(move |&what| (i as u32, what)).collect::<Vec<_>>()
         };
         let not_shown = materials.iter().enumerate().flat_map(unshown).collect();
         let materials = materials.into_iter().map(|material| material.colors).collect();
@@ -80,6 +81,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         self.normals.clear();
         let mut weights = node.any_numbers("weights")?;
         if weights.is_empty() {
+            // glTF: the weights of a node go before those of its mesh.
             weights = mesh.any_numbers("weights")?;
         }
         let mut pose = Pose { node, transform, joints: Vec::new(), weights };
@@ -93,6 +95,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
     }
 
     fn add(&mut self, primitive: Json<'a>, pose: &Pose<'a>) -> Result<(), MeshFault> {
+        // Primitives with the same accessor may have different morph targets or joints.
         if pose.is_by_primitive() {
             self.positions.clear();
             self.normals.clear();
@@ -116,7 +119,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         }
         let indices = self.indices(primitive, positions.count)?;
         let length = indices.as_ref().map_or(positions.count, Vec::len);
-        self.mesh.set_material(material.map(|index| index as u32)); // fewer than bytes
+        self.mesh.set_material(material.map(|index| index as u32)); // fewer than the file's bytes
         // glTF: a negative determinant reverses the orientation of the triangles.
         let is_mirrored = DMat3::from_mat4(pose.transform).determinant() < 0.0;
         for mut corners in triangles(mode, length).ok_or_else(|| primitive.fault(format!("there is no mode {mode}")))? {
@@ -143,6 +146,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         };
         let (_, accessor) = elements.item_of(self.buffers.root(), "accessors")?;
         let count = accessor.required("count")?.index()?;
+        // Modes 1, 2 and 3: separate lines, a loop and a strip.
         let (what, count) = match mode {
             0 => ("point", count),
             1 => ("line", count / 2),
@@ -224,6 +228,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
     }
 
     fn colors(&mut self, attributes: Json<'a>) -> Result<Option<Range>, MeshFault> {
+        // Of its three or four components the fourth is an opacity, which is not shown.
         let Some(index) = attributes.field("COLOR_0")? else { return Ok(None) };
         let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
         if let Some(&range) = self.colors.get(&number) {

@@ -98,12 +98,12 @@ impl Face {
     ) -> Result<(), MeshFault> {
         let corners = &self.corners;
         if mesh.materials.len() > 1 && self.texture < mesh.materials.len() {
-            mesh.set_material(Some(self.texture as u32)); // fewer than bytes
+            mesh.set_material(Some(self.texture as u32)); // fewer than the file's bytes
         }
         let own_colors = color.map(|color| index_of_last(mesh.colors.values_mut(), color));
         let first_coordinate = (self.texture_coordinates.len() == 2 * corners.len()).then(|| {
             let values = mesh.texture_coordinates.values_mut();
-            let first = values.len() as u32; // fewer than bytes
+            let first = values.len() as u32; // fewer than the file's bytes
             values.extend(self.texture_coordinates.chunks_exact(2).map(|uv| texture_coordinate(uv[0], uv[1])));
             first
         });
@@ -126,7 +126,7 @@ fn index_of_last(colors: &mut Vec<LinearRgb>, color: LinearRgb) -> u32 {
     if colors.last() != Some(&color) {
         colors.push(color);
     }
-    colors.len() as u32 - 1 // fewer than bytes
+    colors.len() as u32 - 1 // fewer than the file's bytes
 }
 
 fn read_corners(

@@ -55,6 +55,7 @@ impl Inset {
         let t = shaded.map_or_else(|| MISS_LENGTH * pose.eye.distance(pose.target), |shaded| shaded.hit.t);
         let rays = camera.eye_rays(explanation.resolution.aspect_ratio());
         let near = VIEW_RECTANGLE_DISTANCE * t;
+        // Of all surfaces only spheres are drawn, because their outline is the same circle from every side.
         let sphere = shaded.and_then(|shaded| shaded.hit.surface(scene).circle());
         let sphere = sphere.map(|(center, radius)| (from_side(center), radius));
         let lights = shaded.map_or(Vec::new(), |shaded| {

@@ -129,6 +129,7 @@ pub(super) struct Row {
 pub(super) fn rows(keymap: &Keymap, modes: &[KeyMode], states: &[(Command, String)], filter: &str) -> Vec<Row> {
     let rows = [key_rows(keymap, modes, states), mouse_rows(modes)].concat();
     let filter = filter.to_lowercase();
+    // The name of the group counts too, so that the filter `views` finds all rows of that group.
     let contains = |row: &&Row| format!("{:?} {} {}", row.group, row.keys, row.does).to_lowercase().contains(&filter);
     let rows: Vec<_> = rows.iter().filter(contains).collect();
     let of_group = |group| rows.iter().filter(move |row| row.group == group);
@@ -204,6 +205,7 @@ fn joined(keys: &[Key]) -> String {
     if is_arrows(keys) {
         return "arrows".to_owned();
     }
+    // The nine digits of views would be 17 columns wide, more than `MAX_ALIGNED`.
     if let ([first, .., last], 5..) = (&names[..], names.len()) {
         return format!("{first}..{last}");
     }

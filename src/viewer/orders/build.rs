@@ -71,6 +71,7 @@ impl Build {
     pub(super) fn draw(&mut self, tests: u64) {
         let wanted = self.comparison.object_tests.partition_point(|&until| until <= tests);
         self.is_complete = wanted == self.comparison.object_tests.len();
+        // The last objects need not be drawn, because the frame itself is the complete picture.
         if self.is_complete || wanted == self.steps.drawn() as usize {
             return;
         }
@@ -109,6 +110,8 @@ impl Build {
         let [width, height] = [self.resolution.width() as f32, self.resolution.height() as f32];
         let ray = self.rays.through((x as f32 + 0.5) / width, (height - (y as f32 + 0.5)) / height);
         let primitive = number - self.starts[object];
+        // A picture of one pixel is toned by the scene's curve, so that hidden and visible objects have the same
+        // colours.
         let mut light = Framebuffer::new(Resolution::square(1, 1));
         light.pixels_mut()[0] = light_along(&self.scene, &ray, Hit { t, object: object as u32, primitive });
         tone(&light, &self.scene).pixels[0]

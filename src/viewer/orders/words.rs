@@ -10,6 +10,7 @@ use std::time::Duration;
 use unicode_width::UnicodeWidthStr;
 
 /// The columns of each half from which on it holds the lecture's questions.
+// The longer question, "at what pixels is this object visible?", has 38 characters.
 const WIDE_HALF: usize = 38;
 
 /// The rows from which on the table of times is shown while the pictures are built.
@@ -72,6 +73,7 @@ fn growth(comparison: &Comparison, is_wide: bool) -> [String; 3] {
     } else {
         ["spheres", "image ms", "object ms"]
     };
+    // As wide as the longest name.
     let first = if is_wide { 20 } else { 9 };
     let rows: [Vec<String>; 3] = [
         comparison.growth.iter().map(|(number, _)| grouped(*number as usize)).collect(),
