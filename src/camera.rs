@@ -327,7 +327,7 @@ impl ViewRectangle {
     pub(crate) const MAX_TILT_DEGREES: f32 = 89.0;
 
     /// The largest [shift](Self::with_shift) along each axis, in heights of the rectangle.
-    // This is far beyond any lens, and f32 still resolves 6e-5 of a height.
+    // A thousand heights are far beyond any lens, and f32 still resolves 6e-5 of a height there.
     pub(crate) const MAX_SHIFT: f32 = 1e3;
 
     /// Returns the rectangle with a vertical field of view in radians: h = 2 f tan(alpha / 2).
@@ -535,8 +535,8 @@ impl ViewRectangle {
     /// Returns width, height and middle of the rectangle, extended to a picture's aspect ratio.
     ///
     /// They are lengths on the plane at distance 1 along the normal of the rectangle.
-    // It is extended instead of cropped or stretched, so that all of it is visible in a terminal of any shape: to the
-    // left and right in a wider picture, up and down in a narrower one.
+    // The rectangle is extended instead of cropped or stretched, so that all of it is visible in a terminal of any
+    // shape: to the left and right in a wider picture, up and down in a narrower one.
     pub(crate) fn width_height_middle(&self, aspect_ratio: f32) -> (f32, f32, Vec2) {
         let (width, height) = match self.width {
             Some(width) if width > self.height * aspect_ratio => (width, width / aspect_ratio),

@@ -202,7 +202,7 @@ pub fn text_frame(scene: &Scene, size: Size) -> String {
 /// If [`cell::resolution`] is an error: for a screen with more pixels than a picture may have, or an aspect that is not
 /// greater than 0 and finite.
 pub fn frame_grid(scene: &Scene, cell_mode: CellMode, size: Size, cell_aspect: f32) -> Grid {
-    // These are the steps of the live view and of `termtrace frame`, so that a snapshot shows what users see.
+    // The steps are those of the live view and of `termtrace frame`, so that a snapshot shows what users see.
     let resolution =
         cell::resolution(cell_mode, size, cell_aspect).expect("a size and an aspect that pictures can have");
     Painter::new(cell_mode).trace(Map::Shaded, scene, scene.camera(), resolution, NonZeroU32::MIN)

@@ -69,7 +69,7 @@ const SLOW_LINK_FRAME_RATE: f64 = 36.0;
 // collapsed after unsolicited replies then took seconds to recover.
 const MIN_FRAME_BYTES: usize = 200;
 /// Share of the estimated rate at which bytes are sent (the pacing gain of BBR).
-// Less than 1, so that queues drain and the shortest round trip can be measured again. With this gain 85.7 % of a link
+// A gain below 1 drains queues, so that the shortest round trip can be measured again. With this gain 85.7 % of a link
 // of 50 KB/s and 200 ms are used, and the effect of a key is visible after 303 ms in the median.
 const PACING_GAIN: f64 = 0.86;
 /// Transmission time to assume if the computed one is not a valid duration, as for a rate of zero.

@@ -290,7 +290,7 @@ macro_rules! surfaces {
                 doc = "All points whose difference from a given point is perpendicular to the normal.";
             tree triangles: Triangle as $crate::shape::TriangleN<$crate::lanes::F32x8>,
                 doc = "The part of a plane between three points.";
-            // It is hidden, because the way to write a formula in Rust code may still change.
+            // `Implicit` is hidden, because the way to write a formula in Rust code may still change.
             tree implicits: Implicit as $crate::shape::ScalarLeaf<$crate::shape::Implicit>,
                 doc(hidden);
             #[cfg(all(test, unit_tests))]

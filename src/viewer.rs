@@ -346,7 +346,7 @@ impl Viewer {
         // A scene that is loaded again goes on at its time.
         self.playback.start(shown.moves() && !self.options.reduced_motion, self.now);
         self.screen.set_name(self.names.get(index).map_or("", String::as_str));
-        // This is needed even if the view is kept, because a reloaded file may contain other views.
+        // The eye needs the scene even if the view is kept, because a reloaded file may contain other views.
         self.eye.set_scene(&shown);
     }
 

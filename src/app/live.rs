@@ -400,7 +400,7 @@ impl Live {
         if signals.deadly().is_some() {
             return Ok(());
         }
-        // This waits for the foreground, that is, until the shell has handed over the terminal.
+        // `take_again` waits for the foreground, that is, until the shell has handed over the terminal.
         self.terminal.take_again(signals)?;
         if let Some(recording) = &mut self.recording {
             // The film does not pause for the time of the stop.

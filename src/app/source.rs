@@ -55,7 +55,7 @@ impl Source {
 fn load_draft(path: &Path, up: Option<UpAxis>, reporter: &Reporter<'_>) -> Result<Draft, LoadError> {
     Draft::load_turned(path, up, reporter).map_err(|unfinished| match unfinished {
         Unfinished::Failed(error) => error,
-        // This error is never shown, because the result of a cancelled load is dropped.
+        // The error of a cancellation is never shown, because the result of a cancelled load is dropped.
         Unfinished::Cancelled => LoadError::CannotRead { path: path.to_owned(), error: io::Error::other(Cancelled) },
     })
 }

@@ -9,8 +9,8 @@ use glam::Vec3;
 use std::array::from_fn;
 
 /// A box as two rows of four numbers, which fit the CPU's registers.
-// These rows, together with two passes over the items instead of five and with leaves of eight items, shortened the
-// build of the dragon's tree to 0.6 of the time.
+// The rows, together with two passes over the items instead of five and with leaves of eight items, shortened the build
+// of the dragon's tree to 0.6 of the time.
 #[derive(Clone, Copy)]
 #[repr(align(16))]
 pub(super) struct Rows {
@@ -192,7 +192,7 @@ impl Cut {
         }
         let planes = axes.into_iter().zip(&contents);
         let planes = planes.filter_map(|(bins, contents)| Self::cheapest_between(bins?, &contents[..count]));
-        // Of equal costs the first is taken, so that the tree is the same on every machine.
+        // The first of several equal costs is taken, so that the tree is the same on every machine.
         planes.min_by(|a, b| a.cost.total_cmp(&b.cost))
     }
 

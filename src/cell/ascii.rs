@@ -45,7 +45,7 @@ const LEVEL: [Tone; 4] = [(b' ', 0.0), (b'.', 0.095), (b'-', 0.105), (b'~', 0.22
 const UPRIGHT: [Tone; 4] = [(b' ', 0.0), (b'.', 0.095), (b':', 0.19), (b'!', 0.305)];
 
 /// The shares of the range of an object's light from which its later characters are used.
-// Half-way between the inks of two characters.
+// Each limit is half-way between the inks of two characters.
 const OBJECT_LIMITS: [f32; OBJECT.len() - 1] = {
     let mut limits = [0.0; OBJECT.len() - 1];
     let mut at = 0;
@@ -56,7 +56,7 @@ const OBJECT_LIMITS: [f32; OBJECT.len() - 1] = {
     limits
 };
 
-/// The share of a cell that the object takes which most of its rays meet.
+/// The object that most rays of a cell meet, and the share of the cell that it takes.
 struct Part {
     /// The object's index, plus 1; 0 for the background.
     object: u32,
@@ -164,7 +164,8 @@ fn set_tones(parts: &mut [Part], background: Background, before: Option<&Remembe
             light(below) + (at - below as f32) * (light(above) - light(below))
         };
         let object = objects[run[0] as usize];
-        // Without the darkest and lightest 3 % of its cells, so that a few of them do not take most of the characters.
+        // The darkest and the lightest 3 % of the object's cells are left out, so that a few cells do not take most of
+        // the characters.
         let [low, high] = ranges.add(object, [quantile(0.03), quantile(0.97)], before);
         let range = (high - low).max(LEAST_RANGE);
         let least = 0.5 * (low + high - range);
@@ -182,11 +183,12 @@ fn set_tones(parts: &mut [Part], background: Background, before: Option<&Remembe
 
 /// Returns the tone for a share of the range of an object's light.
 ///
-/// It is the one with the character `kept` if the share is less than a tenth of a step away from that.
+/// The character `kept` stays if the share is less than a tenth of a step away from its tone. On a light background the
+/// darkest parts get the densest characters.
 ///
 /// On a light background the darkest parts get the densest characters.
-// Of planes the tones change places and the limits stay, so that the lightest quarter is blank: with the share inverted
-// as for objects, patterns of a lit floor were single dots and rows that look like edges.
+// On planes the order of the tones is reversed and the limits stay, so that the lightest quarter is blank. With the
+// share reversed, as on objects, patterns of a lit floor were single dots and rows that look like edges.
 fn tone(extent: Extent, share: f32, background: Background, kept: Option<u8>) -> Tone {
     let is_light = background == Background::Light;
     let plane = |tones: [Tone; 4]| if is_light { [tones[3], tones[2], tones[1], tones[0]] } else { tones };
@@ -214,12 +216,12 @@ impl Heights {
     /// Returns whether an object is less than four and a half cells high.
     fn is_low(&self, object: u32) -> bool {
         let found = self.0.binary_search_by_key(&object, |&(object, _)| object);
-        // At 80x24 the spheres of many_spheres have three by two cells, of which outlines would leave nothing.
+        // At 80x24 the spheres of many_spheres have three by two cells, which outlines would take altogether.
         !found.is_ok_and(|at| 2 * self.0[at].1 >= 9 * DOWN)
     }
 }
 
-/// The number of cells with a border above and to the left of each cell.
+/// For each cell, the number of cells above and to the left of it that have a border.
 struct Crowds {
     sums: Vec<u32>,
     columns: usize,
@@ -291,7 +293,7 @@ fn glyph(parts: &[Part], columns: usize, cell: usize, heights: &Heights, crowds:
     let right = (column + 1 < columns).then_some(cell + 1);
     let (above, below) = (cell.checked_sub(columns), Some(cell + columns).filter(|&below| below < parts.len()));
     let Some(edge) = part.edge else {
-        // Lines stand free of the texture of planes.
+        // Planes stay blank beside a border, so that its line stands out.
         let is_beside_line = || {
             let has_border = |at: usize| parts[at].edge.is_some_and(|edge| edge.is_border);
             [left, right, above, below].into_iter().flatten().any(has_border)

@@ -35,7 +35,7 @@ impl Colors {
 pub(super) struct TextInks {
     colors: Colors,
     /// The sixteen colours, if there are only those.
-    // Converted once per frame: that of 16 colours takes about a microsecond.
+    // Converted once per frame, because the conversion of 16 colours takes about a microsecond.
     sixteen: Vec<Oklab>,
 }
 

@@ -40,7 +40,7 @@ pub(super) struct KeptCell {
 }
 
 impl Memory {
-    /// Returns the frame before this picture, if the view moves and had the same size.
+    /// Returns the remembered frame, if the view moves and the frame has the size of this picture.
     pub(super) fn before(&self, picture: &Picture) -> Option<&Remembered> {
         let size = |picture: &Picture| (picture.width, picture.height);
         self.frame.as_ref().filter(|frame| self.is_moving && size(&frame.picture) == size(picture))
@@ -52,7 +52,8 @@ impl Memory {
 }
 
 impl Remembered {
-    /// Returns the shown cell, which has these pixels, if its samples are those of the picture.
+    /// Returns the cell that is shown at these pixels if neither they nor their surfaces have
+    /// changed.
     pub(super) fn unchanged(
         &self,
         picture: &Picture,

@@ -14,7 +14,8 @@ pub(super) struct Mix {
     contrast: f32,
     /// The positions of the darker and the lighter colour in the palette.
     pub(super) colors: [u8; 2],
-    /// The number of pixels of four that show the lighter colour; 0 if the mix is the darker alone.
+    /// The number of pixels, out of four, that show the lighter colour; 0 if the mix is the darker
+    /// colour alone.
     pub(super) lighter_quarters: u8,
 }
 

@@ -41,6 +41,7 @@ impl Palette {
 
     /// Returns the palette index of a colour at a pixel of the screen.
     pub(super) fn index(&mut self, color: Srgb8, x: usize, y: usize) -> u8 {
+        // Bayer's matrix of order 2: half of the pixels are a checkerboard.
         const PATTERN: [[u8; 2]; 2] = [[0, 2], [3, 1]];
         let mix = self.mix(color);
         let is_lighter = PATTERN[y % 2][x % 2] < mix.lighter_quarters;

@@ -25,7 +25,7 @@ use std::cell::RefCell;
 mod colors;
 mod pairs;
 
-/// The squared error that a byte has to remove.
+/// An exchange rate of a frame: the squared error that each byte has to remove.
 type ExchangeRate = f32;
 
 /// A cell whose error is large enough to be worth bytes.
@@ -41,7 +41,7 @@ struct ActiveCell {
     cost: f32,
     /// The key of the pair with which the cell is written; `None` to keep what it shows.
     pair: Option<u16>,
-    /// The colours that are nearest to each half and second nearest.
+    /// The indices of the nearest and the second nearest colour of each half.
     nearest: [[u8; 2]; 2],
 }
 
@@ -56,7 +56,8 @@ const LEAST_RATE: ExchangeRate = 0.3;
 /// The shortage of bytes, from frame to frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shortage {
-    /// The exchange rate of the next frame; `None` while the frames of the quality fit.
+    /// The exchange rate of the next frame; `None` while frames of the allowed quality fit the
+    /// limit.
     rate: Option<ExchangeRate>,
 }
 
@@ -66,7 +67,7 @@ impl Shortage {
         self.rate.is_some()
     }
 
-    /// Records that the frame of the quality takes `bytes`, where `max_bytes` are allowed.
+    /// Records that a frame of the allowed quality takes `bytes`, of which `max_bytes` are allowed.
     pub(super) fn begin(&mut self, bytes: usize, max_bytes: usize) {
         let share = bytes as f32 / max_bytes as f32;
         self.rate = Some(2.0 * share * share);
@@ -85,7 +86,7 @@ impl Shortage {
 
 /// A frame under a limit, in which all text is shown already.
 pub(super) struct CappedFrame<'a> {
-    /// The grid that the terminal shows, and after the frame the one that it shows then.
+    /// The grid that the terminal shows; updated to the grid that it shows after the frame.
     pub(super) shown: &'a mut Grid,
     pub(super) wanted: &'a Grid,
     pub(super) half_blocks: HalfBlocks,
@@ -210,8 +211,8 @@ impl Scratch {
 /// Largest number of cells of a frame whose picture replaces text or unknown contents.
 ///
 /// Such cells never wait, and are written exactly, before the exchange rate decides on the others.
-// A shorter status line uncovers a few. When a panel closes, the exact colours of all these cells would take more bytes
-// than those of the frame's quality.
+// A status line that gets shorter uncovers a few cells. When a panel closes, the exact colours of all uncovered cells
+// would take more bytes than those of the frame's quality.
 const MAX_APPEARING: usize = 64;
 
 /// Returns whether few enough cells of the picture replace text for a frame under a limit.

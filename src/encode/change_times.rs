@@ -10,7 +10,7 @@ use std::time::Duration;
 const EXACT_AFTER: Duration = Duration::from_millis(500);
 
 /// A digest of each cell of the last wanted grid, and the time of its last change.
-// In eight bytes a cell. Of four billion changes one is missed, after which the cell is made exact earlier.
+// A digest of 32 bits misses one of four billion changes; the cell is then made exact earlier.
 #[derive(Clone, Debug)]
 pub(super) struct ChangeTimes {
     size: Size,

@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::{BitAnd, BitOr, BitXor};
 
 /// A set of text attributes: bold, underlined and so on.
-// Its own type instead of ratatui's `Modifier`, so that grids and the encoder do not depend on ratatui.
+// A type of its own instead of ratatui's `Modifier`, so that grids and the encoder do not depend on ratatui.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Attributes(u16);
 

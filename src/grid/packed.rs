@@ -68,6 +68,7 @@ pub(crate) struct PackedCell {
 }
 
 /// The number of bits of a glyph.
+// The nine attributes and the mark of a cluster take the other ten bits. A character needs 21.
 const GLYPH_BITS: u32 = 22;
 const GLYPH_MASK: u32 = (1 << GLYPH_BITS) - 1;
 const CLUSTER: u32 = 1 << 31;

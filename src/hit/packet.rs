@@ -45,10 +45,11 @@ pub(super) struct PacketRays<'p, N: Lanes, const ANY: bool> {
 const NO_PRIMITIVE: u32 = EightHits::NO_PRIMITIVE;
 
 /// The `t_max` of a ray that needs no further tests.
-// Less than every t, so that a comparison with `t_max` excludes the ray without a separate mask.
+// The value is less than every t, so that a comparison with `t_max` excludes the ray without a separate mask.
 const TERMINATED: f32 = f32::NEG_INFINITY;
 
 /// Returns the float whose bits are a primitive's index, for storage in a lane.
+// Always inlined, as all functions of a kernel are (see `simd`).
 #[inline(always)]
 fn index_as_lane(primitive: u32) -> f32 {
     f32::from_bits(primitive)

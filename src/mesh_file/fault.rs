@@ -35,6 +35,7 @@ enum FaultOffset {
     Byte(usize),
 }
 
+// Faults are made in cold functions, which keep their messages out of the loops of the parsers.
 impl MeshFault {
     /// Returns a fault of the whole file, or one whose message gives the position.
     #[cold]

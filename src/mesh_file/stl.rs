@@ -193,7 +193,7 @@ impl TextReader<'_> {
         let is_vertex = self.text.word().eq_ignore_ascii_case(b"vertex");
         self.text.skip_line();
         if is_vertex && self.open.is_some() {
-            // A corner without a place: its facet is left out.
+            // The faulty corner gets a position that is not finite, by which its facet is left out.
             self.mesh.positions.push(Vec3::NAN);
         }
     }

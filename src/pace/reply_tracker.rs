@@ -119,8 +119,8 @@ pub(super) enum State {
     /// A reply is missing: frames are sent one at a time, until `until`, when the terminal is
     /// considered silent.
     Recovering { until: Duration },
-    /// It is unknown to which query the next reply belongs: no query is sent until replies stop.
-    /// Contains the time of the last reply.
+    /// The state in which it is unknown to which query the next reply belongs: no query is sent
+    /// until replies stop. Contains the time of the last reply.
     Resyncing { last_reply: Duration },
     /// The terminal is considered silent.
     Silent,

@@ -92,7 +92,7 @@ fn whole_unless<N: Lanes>(is_bounded: N::Mask, [first, end]: [N; 2], size: u32) 
 }
 
 /// Draws a sphere at the pixels of a rectangle whose rays cross it, as `shape::sphere` does.
-// All rays start at the eye, so that a part of the formula there is computed once for all.
+// All rays start at the eye, so that a part of the formula of `shape::sphere` is computed once for all.
 #[inline(always)]
 fn draw<N: Lanes>(
     projection: &Projection,

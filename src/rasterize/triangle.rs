@@ -30,7 +30,7 @@ struct Linear {
 
 /// The values of eight triangles from which they are filled.
 struct SetUp {
-    /// The first columns, the columns after the last, and the same for rows.
+    /// The first columns, the columns after the last, the first rows, and the rows after the last.
     rectangles: [F32x8; 4],
     edges: [Linear; 3],
     /// 1 / t, relative to the first corner.

@@ -151,7 +151,7 @@ impl Draft {
         let floor = Plane::new(Vec3::new(middle.x, bounds.min.y, middle.z), Vec3::Y).ok()?;
         let squares = Material::checker(FLOOR[0], FLOOR[1], SQUARE * radius).ok()?;
         let material = if mesh.has_colors() { Material::Own } else { Material::diffuse(CLAY).ok()? };
-        // There is a floor because the shadows on it show the shape and the height of the mesh.
+        // The scene has a floor because the shadows on it show the shape and the height of the mesh.
         let objects = vec![Object::new(Mesh::of_checked(mesh), material), Object::new(floor, squares)];
         let [bottom, top] = BACKGROUND;
         // The lights are placed relative to the mesh's radius, so that all meshes are lit alike.

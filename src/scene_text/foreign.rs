@@ -46,6 +46,7 @@ pub(super) fn message(name: &str, bytes: &[u8]) -> Option<String> {
         let ending = format.to_lowercase();
         return Some(format!("this looks like {format}, which is read from files whose names end in .{ending}"));
     }
+    // The extension goes before the first bytes: those of USDZ and 3MF are the same as of any ZIP archive.
     let ending = Path::new(name).extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
     let named = ENDINGS.iter().find(|(_, endings)| endings.contains(&&*ending));
     let format = named.map(|(format, _)| format).or_else(|| {

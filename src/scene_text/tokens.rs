@@ -206,7 +206,7 @@ fn is_space(c: char) -> bool {
 fn block_comment_length(text: &str) -> Option<usize> {
     let mut depth = 0_usize;
     let mut at = 0;
-    // This is a loop instead of a recursion, because comments may nest a million deep.
+    // A loop instead of a recursion, because comments may nest a million deep.
     while let Some(step) = text[at..].find(['/', '*']) {
         at += step;
         if text[at..].starts_with("/*") {

@@ -135,7 +135,7 @@ impl<N: Number> TriangleN<N> {
         rays: &Rays<N>,
         (crosses, crossing): (N::Mask, Crossing<N>),
     ) -> Option<(N::Mask, N)> {
-        // This is the first division of the test; most tests end before it.
+        // The test divides here for the first time; most tests end before.
         let t = crossing.t / crossing.sum;
         // Crossings before `min` are rejected before the box test, because a shadow ray always crosses the plane of the
         // triangle that it starts on: pictures with shadows are 1.3 to 1.9 % faster.

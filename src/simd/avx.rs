@@ -46,6 +46,7 @@ pub(super) trait MaskOps: LaneMask {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Register<M>(__m256, PhantomData<M>);
 
+// Always inlined: a function without AVX gets its vectors through memory.
 impl<M> Register<M> {
     #[inline(always)]
     fn of(numbers: __m256) -> Self {

@@ -407,7 +407,7 @@ impl Waker {
 ///
 /// Returns only if that fails.
 pub fn die_of(signal: i32) {
-    // This call does not return for signals that signal-hook knows to end a process.
+    // The call does not return for signals that signal-hook knows to end a process.
     let _ = signal_hook::low_level::emulate_default_handler(signal);
     // All other signals are blocked. `raise` makes the signal pending for this thread, and unblocking delivers signals
     // that are pending for the thread before those that are pending for the process.

@@ -31,7 +31,7 @@ pub(super) enum Answer {
     Save(u8),
     Export(Format),
     SaveToFile,
-    /// Nothing is to be done: the question was dismissed.
+    /// The question was dismissed, and nothing is to be done.
     Nothing,
 }
 

@@ -12,8 +12,8 @@ use ratatui_widgets::paragraph::Paragraph;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// Greatest height of the panel in rows; it also takes at most a third of the screen.
-// These are five rows for the message, two for the excerpt and one for the hint at more errors. The last good picture
-// above the panel should stay recognisable.
+// Five rows are for the message, two for the excerpt and one for the hint at more errors. The last good picture above
+// the panel should stay recognisable.
 const MAX_ERROR_ROWS: u16 = 8;
 
 /// The first error of a scene, with its source line and a caret.

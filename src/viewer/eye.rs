@@ -77,8 +77,8 @@ impl ViewState {
 }
 
 /// Time for which a key counts as held at each press with reduced motion, which moves in steps.
-// Such a step is a tenth of the distance to the target, or nine degrees: large enough to see a change between two still
-// pictures.
+// A step of this time is a tenth of the distance to the target, or nine degrees: large enough to see a change between
+// two still pictures.
 const REDUCED_MOTION_STEP: Duration = Duration::from_millis(200);
 
 impl Eye {
@@ -142,8 +142,8 @@ impl Eye {
         let Some(since) = self.moved_until else { return };
         let jump = self.jump.take();
         self.jump = jump.filter(|jump| !jump.has_ended(now));
-        // This is determined before `Motion::step`, because a motion that ends within this step has moved the eye as
-        // well.
+        // Whether the eye moves is determined before `Motion::step`, because a motion that ends within this step has
+        // moved the eye as well.
         let moves = self.turntable || self.motion.is_moving(now) || self.jump.is_some();
         self.moved_until = moves.then_some(now);
         let Some(view) = &mut self.view else { return };
@@ -379,8 +379,8 @@ fn short_of_surface(scene: &Scene, view: &ViewState, moved: &Camera) -> Option<C
 }
 
 /// Time for which a surface stops a held key, which passes it after that.
-// This is longer than a press that is meant as a tap, even with Shift, and short enough that the surface does not seem
-// impassable.
+// Half a second is longer than a press that is meant as a tap, even with Shift, and short enough that the surface does
+// not seem impassable.
 const PASSING_TIME: Duration = Duration::from_millis(500);
 
 /// Share of a step of reduced motion: if a surface leaves less of the step free, the step passes

@@ -72,7 +72,7 @@ pub(crate) struct Frame {
     pub(crate) geometry: Option<Arc<Geometry>>,
     /// The two maps that `picture` is combined from in a wipe, so that moving the line traces
     /// nothing.
-    // It is empty for one map and for two side by side, to save memory.
+    // The list is empty for one map and for two side by side, to save memory.
     pub(crate) parts: Vec<Picture>,
     pub(crate) sampling: Sampling,
     /// The legends of the maps, from left to right; empty for the shaded picture alone.

@@ -60,7 +60,7 @@ fn legend_areas(texts: &[String], line: f32, row: Rect) -> Vec<(&str, Rect)> {
     }
 }
 
-/// The numbers of tests in the colour bar of the map `cost`, four columns for each.
+/// The labels of the colour bar of the map `cost`: numbers of tests, four columns for each.
 const COSTS: &str = "1   4   16  64  256 1024";
 
 /// Replaces the names of the colours in the legend of the map `cost` by a bar of them.

@@ -19,7 +19,7 @@ const DOTS: Vec2 = Vec2::new(2.0, 4.0);
 const MAX_DOTS: f32 = 4000.0;
 
 /// Share of the way from the eye to a point within which a surface hides the point.
-// It is less than 1, because a point that lies on a surface must not be hidden by that surface.
+// The interval ends before 1, because a point that lies on a surface must not be hidden by that surface.
 const IN_THE_WAY: Interval = Interval { min: 0.0, max: 0.99 };
 
 /// The part of the screen that a picture covers, and the camera of that picture.

@@ -28,7 +28,7 @@ impl Layer for ProgressPanel {
 }
 
 /// The panel's width in columns, on screens that are wide enough.
-// It is enough for the verb and file names of 34 characters; longer names lose their beginning.
+// The width is enough for the verb and file names of 34 characters; longer names lose their beginning.
 const PROGRESS_WIDTH: u16 = 46;
 const PROGRESS_HEIGHT: u16 = 4;
 

@@ -31,7 +31,7 @@ const INITIAL_COST_RATIOS: [f64; MAX_MOTION_LEVEL + 1] = [1.0, 4.0, 2.0, 3.0];
 const TRACING_SHARE: f64 = 0.75;
 /// A finer level is tried only if it is predicted to take at most this share of the time for
 /// tracing.
-// It is less than 1, so that the level does not oscillate: a level that takes more is kept but not tried. The test
+// A share below 1 keeps the level from oscillating: a level that takes more is kept but not tried. The test
 // `no_level_flickers` covers all frame times up to 40 ms with a noise of a tenth.
 const FINER_LEVEL_SHARE: f64 = 0.8;
 /// Number of frames in a row that must be fast enough for a finer level before it is tried.

@@ -151,7 +151,7 @@ impl Screen {
 
     /// Closes the layer of a type, if open, and returns it.
     pub(super) fn close<L: Layer>(&mut self) -> Option<L> {
-        // This is checked first, because any access for writing counts as a change, which draws the screen.
+        // `get` comes first, because any access for writing counts as a change, which draws the screen.
         self.get::<L>()?;
         self.content.layers.close()
     }

@@ -25,7 +25,7 @@ impl Theme {
     pub(super) fn for_cell_mode(cell_mode: CellMode) -> Self {
         let style = match cell_mode.colors {
             Colors::Truecolor => Style::new().fg(Color::Rgb(0xe6, 0xe6, 0xe6)).bg(Color::Rgb(0x18, 0x1c, 0x24)),
-            // These greys are of the fixed part of the palette, because the user may have changed the first 16 colours.
+            // Both greys are of the fixed part of the palette, because the user may have changed the first 16 colours.
             Colors::Indexed256 => Style::new().fg(Color::Indexed(254)).bg(Color::Indexed(234)),
             Colors::Indexed16(_) => Style::new().fg(Color::White).bg(Color::Black),
             Colors::None => Style::new(),

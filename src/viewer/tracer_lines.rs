@@ -10,7 +10,7 @@ use crate::framebuffer::Resolution;
 use crate::light::Light;
 use glam::{Vec2, Vec3};
 
-// These are palette colours that every terminal has, in the user's own shades.
+// Every terminal has these palette colours, in the user's own shades.
 const RED: u8 = 9;
 const GREEN: u8 = 10;
 const YELLOW: u8 = 11;

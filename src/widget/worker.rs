@@ -24,7 +24,7 @@ struct Shared {
 }
 
 /// The current request, the newest picture and the state of the worker.
-// There are slots instead of channels, because a newer request or picture replaces an older one.
+// Slots instead of channels, because a newer request or picture replaces an older one.
 #[derive(Default)]
 struct SharedState {
     /// The shot to trace next.

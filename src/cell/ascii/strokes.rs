@@ -13,7 +13,8 @@ const SAMPLES: [usize; 2] = [4, 8];
 const MARGIN: usize = 2;
 /// The samples of a cell and around it, across and down.
 const WINDOW: [usize; 2] = [SAMPLES[0] + 2 * MARGIN, SAMPLES[1] + 2 * MARGIN];
-/// The points of the pen, which is half a sample wide: 8x16 in a cell.
+/// A mask of the points in and around a cell, row by row. A point is half a sample wide, so that a
+/// cell has 8x16 of them.
 type Points = [u16; 2 * WINDOW[1]];
 
 /// The ink of a stroke between two objects, and of one between two surfaces of an object.
@@ -21,7 +22,8 @@ const BORDER_INK: f32 = 0.75;
 const CREASE_INK: f32 = 0.6;
 /// The least length of a cell's strokes in samples. Shorter ones are left to the next cell.
 const LEAST_LENGTH: u32 = 2;
-/// The mean difference from strokes by which a character replaces the one shown before.
+/// The margin by which a character must be better to replace the one shown before, as a mean
+/// difference per point.
 const CLEAR_DIFFERENCE: f32 = 0.006;
 /// The number of points of the shortest crease in and around a cell, .75 of a cell's width.
 // A cell is eight points wide, and a stroke two points thick: 0.75 * 8 * 2.
@@ -31,11 +33,11 @@ const LEAST_CREASE_POINTS: u32 = 12;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Edge {
     pub(super) glyph: char,
-    /// Whether it separates objects, and not just two surfaces of one.
+    /// Whether the edge separates objects, and not just two surfaces of one.
     pub(super) is_border: bool,
-    /// Whether it runs rather down than across.
+    /// Whether the edge runs down rather than across.
     pub(super) is_steep: bool,
-    /// Whether it crosses the cell, and does not just lie on its side.
+    /// Whether the edge crosses the cell, and does not just lie on a side of the cell.
     pub(super) is_inside: bool,
     /// The nearest object in the cell: its index, plus 1.
     pub(super) owner: u32,
@@ -43,7 +45,7 @@ pub(super) struct Edge {
 
 /// Returns the edge that crosses a cell, if there is one that is long enough.
 ///
-/// It has the character `kept` if no other one is clearly better.
+/// The edge keeps the character `kept`, unless another one is clearly better.
 pub(super) fn edge(geometry: &Geometry, [column, row]: [usize; 2], kept: Option<char>) -> Option<Edge> {
     if !geometry.has_edge(column, row) {
         return None;
@@ -141,7 +143,8 @@ fn separation<'g>(
     if a.object != b.object {
         return Some(Separation::Border);
     }
-    // The depth jumps between the two if it bends at both: at one alone, the jump is beside the other.
+    // The depth jumps between the two middle facets if it bends at both of them. If it bends at one alone, it jumps on
+    // the other side of that one.
     let jumps = || line().is_some_and(|[o, a, b, c]| geometry.jumps([o, a, b]) && geometry.jumps([a, b, c]));
     // Planes have no creases: towards the horizon the depth jumps from each row to the next.
     (a.extent == Extent::Bounded && (a.cosine(b) < CREASE_COSINE || jumps())).then_some(Separation::Crease)
@@ -219,7 +222,7 @@ static MATCHER: LazyLock<Matcher> = LazyLock::new(|| {
 impl Matcher {
     /// Returns the character whose blurred ink differs least from blurred strokes.
     ///
-    /// It is `kept` if no other one is clearly better.
+    /// The character `kept` stays, unless another one is clearly better.
     fn nearest(&self, strokes: &Strokes, kept: Option<char>) -> char {
         let mut differences = self.constants;
         for (y, (border, crease)) in in_cell(&strokes.border).zip(in_cell(&strokes.crease)).enumerate() {

@@ -21,16 +21,16 @@ const LANES: usize = 8;
 #[derive(Default)]
 pub(super) struct Palette {
     colors: Vec<Srgb8>,
-    /// The colours for [`Self::nearest_two`].
+    /// The colours in blocks, as [`Self::nearest_two`] compares them.
     blocks: Vec<Block>,
     bins: Vec<Bin>,
-    /// The index of a bin, or `u16::MAX`.
+    /// The hash table of the bins: the index of a bin, or `u16::MAX` for an empty slot.
     slots: Vec<u16>,
     /// The bin of each half of the active cells.
     bin_of_half: Vec<u16>,
     /// The indices of the bins, the fullest first.
     fullest: Vec<u16>,
-    /// Least squared distance of two colours.
+    /// The least squared distance between two colours of the palette.
     radius: f32,
 }
 
@@ -48,10 +48,10 @@ impl Block {
     const EMPTY: Self = Self { r: [1e4; LANES], g: [1e4; LANES], b: [1e4; LANES], index: [0.0; LANES] };
 }
 
-/// The greatest distance: 128 times a squared distance.
+/// The greatest distance in the units of [`Palette::nearest_two`]: 128 times a squared distance.
 const FARTHEST: f32 = (1 << 24) as f32 - 128.0;
 
-/// Similar colours of halves.
+/// A bin: similar colours of halves, with their number, sum and mean.
 struct Bin {
     key: u32,
     count: u32,
@@ -60,7 +60,7 @@ struct Bin {
     nearest: [u8; 2],
 }
 
-/// The sums over the halves that have a colour of the palette.
+/// The sums over all halves that have the same colour of the palette.
 #[derive(Clone, Copy, Default)]
 struct Share {
     count: u32,
@@ -141,7 +141,7 @@ impl Palette {
         bin
     }
 
-    /// Makes the means of full bins colours, none within the radius of another.
+    /// Makes colours of the means of bins, the fullest first, none within the radius of another.
     fn lead(&mut self, rate: ExchangeRate) {
         self.fullest.clear();
         self.fullest.extend(0..self.bins.len() as u16);
@@ -170,8 +170,8 @@ impl Palette {
     }
 
     /// Returns the two nearest colours: squared distances times 128, plus the indices.
-    // As an f32, whose 24 bits hold a distance and an index: with integers, SSE2 needs several instructions for a
-    // multiplication or a minimum.
+    // The distances are f32, whose 24 bits hold a distance and an index: with integers, SSE2 needs several instructions
+    // for a multiplication or a minimum.
     fn nearest_two(&self, color: [i32; 3]) -> [u32; 2] {
         let [r, g, b] = color.map(|channel| channel as f32);
         let min = |a: f32, b: f32| if a < b { a } else { b };
@@ -185,7 +185,7 @@ impl Palette {
                 first[lane] = min(first[lane], distance);
             }
         }
-        // In halves, since one lane after another would take a third of the time.
+        // The lanes are combined in halves: one after another, they would take a third of the time.
         let mut lanes = LANES / 2;
         while lanes > 0 {
             for lane in 0..lanes {
@@ -224,8 +224,8 @@ impl Palette {
         }
     }
 
-    /// Drops the colours that are missed the least, and moves the others to the mean of their
-    /// halves.
+    /// Drops the colours without which the error grows the least, and moves the others to the mean
+    /// of their halves.
     fn improve(&mut self, rate: ExchangeRate) {
         let mut shares = [Share::default(); MAX_COLORS];
         for bin in &self.bins {

@@ -39,7 +39,7 @@ const UNUSED: Pair = Pair { saving: 0.0, first: END, rank: u16::MAX };
 #[derive(Clone, Copy)]
 struct OpenPair {
     key: u16,
-    /// The error that its cells lose.
+    /// The error that is removed from the pair's cells.
     gain: f32,
     bytes: f32,
 }
@@ -91,8 +91,8 @@ impl Pairs {
         });
         for (cell, shown) in active.iter().filter_map(|cell| Some((cell, shown(cell)?))) {
             let halves = shown.map(|color| means[usize::from(color)]);
-            // The mean is best for all cells that share it. A single one may be farther from it than what it shows,
-            // and would raise the error of the frame if the limit left out the others.
+            // The mean is best for all cells that share it, but a single cell may be farther from it than from what it
+            // shows, and would raise the error of the frame if the limit left out the others.
             if error(halves, cell.wanted) < cell.stay {
                 cells.push(WrittenCell { at: cell.at, halves });
             }

@@ -220,7 +220,7 @@ struct VertexAttributes {
 }
 
 impl VertexAttributes {
-    /// Returns those of a mesh without faces, since faces may add colours and texture coordinates.
+    /// Returns the attributes of the vertices of a mesh that has no faces yet.
     fn of(mesh: &MeshBuilder) -> Self {
         Self {
             normals: !mesh.normals.values().is_empty(),

@@ -38,7 +38,7 @@ pub(super) struct Inset {
 
 /// Length at which a ray without a hit is drawn, as a multiple of the distance from the eye to the
 /// target.
-// It is greater than 1, so that the ray visibly passes the scene.
+// A length above 1 makes the ray visibly pass the scene.
 const MISS_LENGTH: f32 = 1.5;
 
 /// Distance from the eye at which the view rectangle is drawn, as a share of the ray's length.
@@ -55,7 +55,7 @@ impl Inset {
         let t = shaded.map_or_else(|| MISS_LENGTH * pose.eye.distance(pose.target), |shaded| shaded.hit.t);
         let rays = camera.eye_rays(explanation.resolution.aspect_ratio());
         let near = VIEW_RECTANGLE_DISTANCE * t;
-        // Of all surfaces only spheres are drawn, because their outline is the same circle from every side.
+        // Only spheres are drawn, because their outline is the same circle from every side.
         let sphere = shaded.and_then(|shaded| shaded.hit.surface(scene).circle());
         let sphere = sphere.map(|(center, radius)| (from_side(center), radius));
         let lights = shaded.map_or(Vec::new(), |shaded| {
