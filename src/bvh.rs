@@ -411,6 +411,7 @@ fn push_all_but_nearest(
         is_any.then(|| StackEntry { child: node.children[lane], slot, start: starts.0[lane] })
     };
     let mut nearest = take()?;
+    // By insertion, because at most eight children are hit. The entries below `bottom` belong to other nodes.
     let bottom = waiting.len();
     while let Some(mut other) = take() {
         if other.start < nearest.start {

@@ -305,6 +305,7 @@ impl Description<'_> {
 
     /// Returns a text with the number of objects of each kind.
     fn counts_by_kind(&self, objects: impl Iterator<Item = u32>) -> String {
+        // Sorted by kind, so that the text of a scene is always the same.
         let mut counts = BTreeMap::new();
         for object in objects {
             let kind = self.scene.objects()[object as usize].shape.kind();

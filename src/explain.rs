@@ -208,6 +208,7 @@ impl TestRecorder {
         let mut tests = self.tests;
         let order = |test: &PrimitiveTest| (test.object, test.primitive);
         let t = |test: &PrimitiveTest| test.t.unwrap_or(f32::INFINITY);
+        // Surfaces that the ray misses come last, in the order of the scene.
         tests.sort_by(|a, b| t(a).total_cmp(&t(b)).then(order(a).cmp(&order(b))));
         let tested = |PrimitiveTest { object, primitive, t }| {
             let equation = scene.objects()[object as usize].shape.primitive(primitive).equation(ray);

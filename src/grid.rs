@@ -237,6 +237,7 @@ pub struct Grid {
 impl PartialEq for Grid {
     fn eq(&self, other: &Self) -> bool {
         self.size == other.size
+            // Two grids may number the same clusters differently, so that their texts have to be compared.
             && if self.clusters.is_empty() && other.clusters.is_empty() {
                 self.cells == other.cells
             } else {

@@ -120,6 +120,7 @@ impl OutputFile {
     /// used.
     pub fn finish_unused(mut self, names: impl IntoIterator<Item = PathBuf>) -> io::Result<PathBuf> {
         if let Destination::NewOnly(temporary) = &mut self.destination {
+            // Once for all names, because a new name does not change the contents.
             temporary.sync()?;
             for name in names {
                 match rename_to_unused(temporary, &name) {

@@ -111,6 +111,7 @@ impl<'w> Reporter<'w> {
     /// [`Cancelled`], if the work is cancelled.
     pub fn report(&self, progress: Progress) -> Result<(), Cancelled> {
         if (self.on_progress)(progress).is_break() {
+            // The token also ends the work of threads that do not report.
             self.cancellation.cancel();
         }
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }

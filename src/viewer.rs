@@ -224,6 +224,7 @@ impl Viewer {
     /// While the welcome is shown, the note is in the row above it.
     fn note_few_colors(&mut self) {
         let colors = self.display.capabilities().cell_mode.colors;
+        // A reply to come may still report truecolor.
         if self.display.queries().is_open() {
             return;
         }

@@ -156,6 +156,7 @@ impl Shared {
                 TracedMap::new(tone(&render.run()?, scene), Cost::default())
             } else {
                 self.wait_while_paused();
+                // `maps::trace` reports no progress, so that the only place to pause is before it.
                 let executor = Executor::Cancellable(&self.token);
                 maps::trace(map, executor, scene, camera, resolution, order.job.sampling)?
             };

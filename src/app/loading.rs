@@ -142,6 +142,7 @@ struct Worker<E> {
     /// The requests. Shared with threads that wait on pipes, which take no more requests.
     queue: Arc<Mutex<Receiver<LoadRequest<E>>>>,
     threads: Option<usize>,
+    // Locked, because any thread that builds trees may report progress.
     waker: Arc<Mutex<Waker>>,
 }
 
@@ -204,6 +205,7 @@ impl<E: Send> LoadRequest<E> {
         let Self { source, events: sender, cancellation } = self;
         let events = EventSender { events: sender, waker, last_progress: Mutex::new(None) };
         let work = || load(&source, &cancellation, &events, hand_over_queue, pool);
+        // The panic goes on in the loop, which restores the terminal.
         if let Err(panic) = catch_unwind(AssertUnwindSafe(work)) {
             events.send(LoadEvent::Panic(panic));
         }

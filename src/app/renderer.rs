@@ -333,6 +333,7 @@ impl Tracer {
             });
             traced = traced.with_geometry(geometry.clone());
         }
+        // Geometry that was cancelled is incomplete, and must not be kept.
         if token.is_cancelled() {
             return Err(Cancelled);
         }

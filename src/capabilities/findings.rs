@@ -110,6 +110,7 @@ impl Hints {
     /// Returns the queries that the terminal tolerates.
     pub fn safe_queries(&self) -> SafeQueries {
         let Some(term) = self.variable("TERM") else { return SafeQueries::None };
+        // Within tmux and screen `TERM` may have any value, so that their own variables are looked at as well.
         let begins = |names: &[&str]| names.iter().any(|name| term.starts_with(name));
         if begins(&["dumb", "unknown", "vt", "ansi", "eterm", "emacs", "cons", "sun"]) {
             SafeQueries::None

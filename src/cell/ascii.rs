@@ -94,6 +94,7 @@ fn fill(
             continue;
         }
         let glyph = glyph(&parts, columns, cell, &heights, &crowds);
+        // The colour of a blank is invisible, and would take bytes.
         let is_plain = glyph == ' ' || inks.are_default();
         let ink = if is_plain { Ink::Default } else { ink(picture, geometry, &parts[cell], cell, background, &inks) };
         grid.set_at(cell, &Cell::new(glyph, ink, Ink::Default));

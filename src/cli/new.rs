@@ -46,6 +46,7 @@ pub(super) struct NewArgs {
 /// Writes the new scene file, if any, and opens the scene if standard output is a terminal.
 pub(super) fn run(args: &NewArgs, given: &ArgMatches) -> CommandResult {
     let is_live = io::stdout().is_terminal();
+    // Checked before the file is written, so that a faulty formula leaves none.
     let text = match &args.formula {
         Some(formula) => checked_scene(formula, is_live)?,
         None => STARTER.to_owned(),

@@ -380,6 +380,7 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
 
 /// Formats the size of a file in bytes with two or three digits, such as `6.6 MB`.
 fn file_size(bytes: u64) -> String {
+    // Each unit begins where the number before it would be rounded to four digits.
     let (value, unit) = match bytes as f64 {
         v if v >= 999.5e6 => (v / 1e9, "GB"),
         v if v >= 999.5e3 => (v / 1e6, "MB"),

@@ -124,6 +124,7 @@ pub(super) fn read_as_flags(path: PathBuf, command: &Command) -> Result<ArgMatch
     })?;
     let setting = |entry: &Entry| command.get_arguments().find(|setting| setting.get_id() == entry.name.as_str());
     let entries = entries::read(&file, command).map_err(Scene)?;
+    // As words of a command line, so that clap checks them as it checks flags.
     let words = entries.iter().filter_map(|entry| Some(values::word(setting(entry)?, &entry.text)));
     command.clone().try_get_matches_from(words).map_err(usage)
 }

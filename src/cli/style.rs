@@ -26,6 +26,7 @@ fn error_line(line: &str) -> String {
     let text = line.trim();
     let tip = "did you mean ";
     if let Some(message) = line.strip_prefix("error:") {
+        // The message may contain a suggestion, which has a colour of its own.
         format!("{RED}error:{PLAIN}{}", error_line(message))
     } else if let Some(message) = line.strip_prefix("warning:") {
         format!("{YELLOW}warning:{PLAIN}{message}")

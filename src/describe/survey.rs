@@ -151,6 +151,7 @@ fn pixel_content(scene: &Scene, sample: &GBufferSample) -> Option<PixelContent> 
     let own = hit.surface(scene).own_reflectance(surface.position, surface.uv);
     Some(PixelContent {
         object: hit.object,
+        // t counts lengths of the direction, which is not normalised.
         distance: hit.t * sample.ray.direction.length(),
         reflectance: own.unwrap_or(Material::DEFAULT_REFLECTANCE),
         behind: objects_behind(scene, *sample),

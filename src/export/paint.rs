@@ -199,6 +199,7 @@ pub(super) fn text_runs(row: impl Iterator<Item = Cell>) -> Vec<TextRun> {
     let mut runs: Vec<TextRun> = Vec::new();
     for (column, cell) in row.enumerate() {
         let (color, attributes) = (cell_colors(&cell)[0], cell.attributes);
+        // The cells that a wide character covers belong to its run.
         let Some(text) = text_of(&cell) else {
             if let Some(run) = runs.last_mut().filter(|run| cell.glyph == Glyph::Covered && run.end() == column) {
                 run.columns += 1;

@@ -45,6 +45,7 @@ pub fn svg(grid: &Grid, cell_aspect: f32) -> String {
     let Size { columns, rows } = grid.size();
     let cell_height = CELL_WIDTH * f64::from(cell_aspect);
     let (width, height) = (rounded(CELL_WIDTH * f64::from(columns)), rounded(cell_height * f64::from(rows)));
+    // The unit of the paths is a column by half a row, in which half blocks have whole coordinates.
     let half = rounded(0.5 * cell_height);
     let mut svg = format!(
         r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}">

@@ -23,6 +23,7 @@ pub struct Texture {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TexturePlacement {
     /// The image that is placed on the surface.
+    // Shared by the materials that show parts of it.
     pub texture: Arc<Texture>,
     /// The transform from the mesh's texture coordinates (u, v) to the image's (u', v'): the dot
     /// products of the two vectors with (u, v, 1). All numbers are finite.

@@ -157,6 +157,7 @@ fn try_lock(file: &File) -> rustix::io::Result<()> {
 
 /// Returns whether `path` refers to `file`.
 fn has_path(file: &File, path: &Path) -> io::Result<bool> {
+    // Compared by device and number, because the name may belong to another file by now.
     let own = file.metadata()?;
     match fs::symlink_metadata(path) {
         Ok(there) => Ok((there.dev(), there.ino()) == (own.dev(), own.ino())),

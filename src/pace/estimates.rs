@@ -159,9 +159,11 @@ impl FrameFloor {
     /// Records the service time of a frame of this many bytes.
     pub(super) fn record(&mut self, bytes: usize, service: Duration, now: Duration) {
         let floor = self.bytes();
+        // Only a frame of about this size tells whether a larger one would take longer.
         if !(floor / 2..2 * floor).contains(&bytes) {
             return;
         }
+        // Twice the bytes took much longer: the link is slow, and not just the drawing.
         if self.before.take().is_some_and(|before| service > before.mul_f64(1.5)) {
             self.doublings = self.doublings.saturating_sub(1);
             self.waits_until = now + FLOOR_PAUSE;

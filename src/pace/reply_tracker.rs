@@ -266,6 +266,7 @@ impl ReplyTracker {
     /// frame.
     pub(super) fn append_query(&mut self, bytes: &mut Vec<u8>, is_frame: bool, now: Duration) {
         let query = self.next_query();
+        // The DECRQM goes first: if the reply to the DA1 comes alone, the terminal does not answer a DECRQM.
         if let Query::Tagged(tag) | Query::Both(tag) = query {
             bytes.extend_from_slice(&tag.query());
         }

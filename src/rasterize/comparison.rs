@@ -30,6 +30,7 @@ impl OrderTimes {
     /// Measures both orders.
     pub fn measure(scene: &Scene, camera: &Camera, resolution: Resolution) -> Self {
         let traced = || {
+            // On one thread, with one ray for each pixel and without shading, as the rasterizer draws.
             let (one, depth) = (Sampling::Each(NonZeroU32::MIN), TraceDepth::Surfaces);
             let seen = |sample: &GBufferSample| sample.hit.map(|hit| (hit.object, hit.t));
             trace_g_buffer_partial(Executor::CurrentThread, scene, camera, resolution, one, depth, seen)
@@ -129,6 +130,7 @@ impl ObjectSteps {
             return self.draw_next(scene);
         }
         self.rasterizer.draw(&shape.primitive(self.next.1), self.drawn);
+        // Otherwise a sphere or triangle would wait for seven others.
         self.rasterizer.finish();
         self.next.1 += 1;
         self.drawn += 1;

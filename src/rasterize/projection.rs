@@ -60,6 +60,7 @@ impl Projection {
         let (width, height, middle) = camera.rectangle().width_height_middle(aspect_ratio);
         let size = [resolution.width(), resolution.height()];
         let [columns, rows] = size.map(f64::from);
+        // v points up, but rows are counted downwards.
         let scale = DVec2::new(columns / f64::from(width), -rows / f64::from(height));
         let foot = 0.5 * DVec2::new(columns, rows) - middle.as_dvec2() * scale;
         Self { eye: camera.pose().eye, basis: [u, v, -w], scale, foot, size, rays: camera.eye_rays(aspect_ratio) }

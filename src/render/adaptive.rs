@@ -78,6 +78,7 @@ impl ProgressiveRender {
         let batches = SampleBatches::of(PASSES[0].clone());
         let job = RenderJob::new(scene, &self.tiles, Stage::Reflected);
         executor.trace(&job, self.first.iter_mut().collect(), |tile, first| {
+            // By the thread that fills it: one thread took 0.13 to 0.2 ms to zero all of them before the first ray.
             first.resize(PIXELS, FirstSample::default());
             tile.trace(&batches, |buffers, _, _| record_first_samples(first, buffers));
         })

@@ -87,6 +87,7 @@ pub struct Geometry {
     /// [`jumps`](Self::jumps) reports.
     least_jump: f32,
     /// For each cell, the index in `fine`, or [`NOT_FINE`].
+    // An index for each cell, because few cells have fine facets, and those of one take 384 bytes.
     fine_indices: Vec<u32>,
     /// The fine facets of each cell in or beside which an edge may be: four by eight, row by row.
     fine: Vec<[Facet; FINE[0] * FINE[1]]>,

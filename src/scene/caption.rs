@@ -20,6 +20,7 @@ pub(super) fn leading_comment(file: &str) -> Option<String> {
 pub(super) fn shown(written: &str) -> Option<Arc<str>> {
     let mut paragraphs = vec![String::new()];
     let mut bytes = 0;
+    // Cut between lines, so that no character is cut.
     let lines = written.lines().map(str::trim).take_while(|line| {
         bytes += line.len();
         bytes <= MAX_BYTES

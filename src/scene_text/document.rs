@@ -68,6 +68,7 @@ pub fn text_from<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, SceneError>
 
 fn decode(bytes: &[u8]) -> Result<&str, Fault> {
     check_size(bytes.len())?;
+    // Before the check for NUL, of which UTF-16 text is full.
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err(fault_at(0, "the file is UTF-16; save it as UTF-8".to_owned()));
     }

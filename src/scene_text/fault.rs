@@ -36,6 +36,7 @@ impl Faults {
 
     /// Adds a fault. `message` is called only if the fault is stored.
     pub fn add(&mut self, span: Span, message: impl FnOnce() -> String) {
+        // The messages of faults that are only counted are never made.
         if self.kept.len() < Self::MAX_KEPT {
             let message = message();
             self.kept.push(Fault { message, span });

@@ -89,6 +89,7 @@ impl<'a> Parser<'a, '_> {
                 self.advance()?;
                 Value::Number(number)
             }
+            // `advance` returns the token itself, so that the string is not copied.
             Token::String(_) => match self.advance()? {
                 Token::String(string) => Value::String(string),
                 _ => Value::String(Box::default()),

@@ -91,6 +91,7 @@ impl<'a> Tokens<'a> {
     fn read_word(&mut self) -> Token<'a> {
         let word = self.take_while(|c| c == '_' || c.is_alphanumeric());
         match word {
+            // RON has these two as numbers. They are refused later, with a message about the value.
             "inf" => Token::Number(f64::INFINITY),
             "NaN" => Token::Number(f64::NAN),
             _ => Token::Word(word),

@@ -200,6 +200,7 @@ impl Described for Implicit {
             && let Some(root) = solver.first_root(&line, [from, max], max)
         {
             roots.push(f64::from(root));
+            // The search passes a root at its start.
             from = root;
         }
         let mut steps = vec![Step::Formula(self.0.text.clone()), Step::Text("f(o + t d) = 0, in the bounds")];

@@ -225,6 +225,7 @@ impl CheckedShape for Mesh {
     }
 
     fn check(written: &WrittenMesh, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
+        // Checked whatever is wrong with the file, so that all faults are reported at once.
         let placed = checked_placement(validator, written);
         let path = written.path.as_ref()?;
         let mesh = match meshes.mesh(&path.value) {

@@ -215,6 +215,7 @@ impl Described for Sphere {
     fn equation(&self, ray: &Ray) -> Equation {
         let (d, from_center) = (ray.direction.as_dvec3(), ray.origin.as_dvec3() - self.center.as_dvec3());
         let radius = f64::from(self.radius);
+        // In f64 the formula of the lecture is exact enough as it stands, without the steps against cancellation.
         let (a, b, c) = (d.dot(d), from_center.dot(d), from_center.dot(from_center) - radius * radius);
         let under_root = b * b - a * c;
         let root = |sign: f64| (-b + sign * under_root.sqrt()) / a;

@@ -161,6 +161,7 @@ impl<N: Number> TriangleN<N> {
     ) -> (N::Mask, Crossing<N>) {
         let (zero, one) = (N::splat(0.0), N::splat(1.0));
         let ([a, b, c], o, d) = (self.0, rays.origin, rays.direction);
+        // `crossing_in_f64` returns at once for lanes that are certain.
         let is_active = N::select(is_uncertain, one, zero);
         let numbers = [is_active, a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, o.x, o.y, o.z, d.x, d.y, d.z];
         let [crosses, x, y, z, exact_t] = N::map_lanes(numbers, crossing_in_f64);

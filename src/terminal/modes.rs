@@ -36,6 +36,7 @@ impl Modes {
         let mut raw = before.clone();
         raw.make_raw();
         self.before = Some(Box::new(before));
+        // Before the change, so that a panic in between restores the terminal, too.
         panics::set_held(true);
         termios::tcsetattr(keys, OptionalActions::Now, &raw)?;
         fault_injection::reach("raw mode")?;

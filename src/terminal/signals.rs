@@ -103,6 +103,7 @@ impl Signals {
     /// If the operating system refuses.
     pub fn catch() -> io::Result<Self> {
         let (read, write) = UnixStream::pair()?;
+        // `drain` reads until the pipe is empty.
         read.set_nonblocking(true)?;
         let ignored = ignored_signals();
         let deadly = Arc::new(AtomicUsize::new(0));

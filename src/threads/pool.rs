@@ -43,6 +43,8 @@ where
     I: Iterator<Item: Send> + Send,
     T: Send,
 {
+    // Rayon cut the fifteen tiles of a small picture into four pieces at most: with two threads it took 1.46 ms instead
+    // of 1.34.
     items.par_bridge().map_init(state, work).collect()
 }
 

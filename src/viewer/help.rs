@@ -89,6 +89,7 @@ impl HelpPanel {
         let pages = self.laid_out(keymap, modes, screen).pages.len();
         match key {
             HelpKey::Close => return false,
+            // The key that opens the help turns its pages, and closes it after the last one.
             HelpKey::Turn if self.page + 1 >= pages => return false,
             HelpKey::Turn | HelpKey::Next => self.page = (self.page + 1).min(pages.saturating_sub(1)),
             HelpKey::Previous => self.page = self.page.saturating_sub(1),

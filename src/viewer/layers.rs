@@ -63,6 +63,7 @@ pub(super) trait Layer: Any + Send {
 /// The open layers, from the lowest to the topmost; at most one of each type.
 #[derive(Default)]
 pub(super) struct Layers {
+    // Trait objects, so that a new layer is one file with a type, and a line that opens it.
     stack: Vec<Box<dyn Layer>>,
 }
 

@@ -116,6 +116,7 @@ impl Viewer {
 fn nearest_light(lights: &[Light], camera: &Camera, pointer: Vec2, aspect_ratio: f32) -> Option<usize> {
     let away = |position: Vec3| {
         let place = camera.project(position, aspect_ratio);
+        // In heights of the picture along both axes, as the user sees distances.
         place.map_or(f32::INFINITY, |place| ((place - pointer) * Vec2::new(aspect_ratio, 1.0)).length())
     };
     let lights = lights.iter().enumerate().filter_map(|(light, of)| Some((light, away(of.position()?))));

@@ -175,6 +175,7 @@ pub(super) fn range_in_box([from, to]: [Vec2; 2], size: Vec2) -> Option<[f32; 2]
     let way = to - from;
     let (mut first, mut last) = (0.0_f32, 1.0_f32);
     for (start, way, end) in [(from.x, way.x, size.x), (from.y, way.y, size.y)] {
+        // A line along two sides of the box crosses neither.
         if way == 0.0 && !(0.0..=end).contains(&start) {
             return None;
         }

@@ -104,6 +104,7 @@ impl Hiding {
         let of = &scene.objects()[object as usize];
         let hidden = Hidden { number: object + 1, name: short_name(of) };
         match of.shape.bounds() {
+            // A plane has no inside.
             None => Some(Self::Behind(hidden)),
             Some(bounds) if bounds.min.cmple(eye).all() && eye.cmple(bounds.max).all() => Some(Self::Inside(hidden)),
             Some(_) => None,

@@ -90,6 +90,7 @@ impl OrdersPanel {
         self.pace.set_total(build.comparison.total_tests());
         let before = self.pace.tests();
         change(&mut self.pace);
+        // A build only adds to its picture, so that it has to start again to go back.
         if self.pace.tests() < before {
             build.restart();
         }

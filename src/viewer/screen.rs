@@ -158,6 +158,7 @@ impl Screen {
 
     /// Closes the note if its time is over; otherwise returns the time at which it fades.
     pub(super) fn fade_note(&mut self, now: Duration) -> Option<Duration> {
+        // Quietly, because a look at the time is no change that would draw the screen.
         let fades_at = self.content.quietly().layers.get_mut::<Note>()?.fades_at(now)?;
         if fades_at <= now {
             self.close::<Note>();

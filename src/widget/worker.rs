@@ -70,6 +70,7 @@ impl Worker {
     pub(super) fn request(&self, shot: Shot) {
         let mut state = self.shared.lock();
         state.requested = Some(shot);
+        // A first picture is never cancelled: while the camera moves, none would be finished.
         if state.is_refining {
             state.token.cancel();
         }
@@ -127,6 +128,7 @@ impl Shared {
                 return None;
             }
             if let Some(shot) = state.requested.take() {
+                // A cancelled token stays cancelled, so each shot has its own.
                 state.token = Cancellation::default();
                 state.is_refining = false;
                 return Some((shot, state.token.clone()));

@@ -85,6 +85,7 @@ fn option_spec(arg: &Arg, program: &Command) -> String {
     let names = spellings(arg);
     let help = text(arg.get_help()).replace('\\', "\\\\").replace('[', "\\[").replace(']', "\\]");
     let value = value_spec(arg, program);
+    // For `_arguments`, the value of `--name=` or `-n+` may be the next word, that of `--name=-` may not.
     let named = |name: &str| match (takes_value(arg), name.starts_with("--"), arg.is_require_equals_set()) {
         (false, ..) => name.to_owned(),
         (_, _, true) => format!("{name}=-"),

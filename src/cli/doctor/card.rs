@@ -24,6 +24,7 @@ const GAP: u16 = 2;
 pub(super) fn bytes(capabilities: &Capabilities, hints: &Hints) -> Vec<u8> {
     let colors = capabilities.cell_mode.colors;
     let mut bytes = export::ansi_or_text(&grid(capabilities), colors);
+    // Without the kinds that the locale cannot encode, which would be shown as other characters.
     let kinds: Vec<Glyphs> = Glyphs::ALL.iter().copied().filter(|&glyphs| hints.can_encode(glyphs)).collect();
     bytes.extend(export::ansi_or_text(&samples(&kinds, capabilities), colors));
     let mut names = String::new();

@@ -20,6 +20,7 @@ const MAX_GOLDEN_BYTES: usize = 16 << 20;
 /// Returns `Ok` if the file contains exactly the bytes `frame`; otherwise prints a diff to standard
 /// output and fails.
 pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> CommandResult {
+    // With a limit, a wrong path such as `/dev/zero` does not fill the memory.
     let most = MAX_GOLDEN_BYTES.max(4 * frame.len());
     let golden = named_file::read(path, Accepted::FilesAndPipes, |_| most, &Reporter::silent()).map_err(|error| {
         let reason = match error.kind() {

@@ -160,6 +160,7 @@ impl RowReader for AsciiRows<'_> {
 
 /// A binary body, in which rows follow each other without gaps and each number has the size of its
 /// type.
+// The byte order is a constant, so that it is not tested for each number.
 pub(super) struct BinaryRows<'a, const BIG_ENDIAN: bool> {
     bytes: &'a [u8],
     at: usize,
@@ -195,6 +196,7 @@ impl<'a, const BIG_ENDIAN: bool> BinaryRows<'a, BIG_ENDIAN> {
         Ok(match kind {
             ScalarType::F32 => f64::from(f32::from_le_bytes(self.next_bytes()?)),
             ScalarType::F64 => f64::from_le_bytes(self.next_bytes()?),
+            // Exact, because the integers have at most 32 bits.
             kind => self.integer(kind)? as f64,
         })
     }

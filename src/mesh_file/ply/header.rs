@@ -169,6 +169,7 @@ impl<'a> HeaderReader<'a, '_, '_> {
     fn format(&mut self) -> Result<(), MeshFault> {
         let word = self.text.word();
         let at = self.text.at() - word.len();
+        // The version that follows is not read: there is no other than 1.0.
         self.encoding = Some(match word {
             b"ascii" => Encoding::Ascii,
             b"binary_little_endian" => Encoding::LittleEndian,

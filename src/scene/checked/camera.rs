@@ -159,6 +159,7 @@ impl Validator<'_> {
         let f = focal_length.and_then(|f| self.length("focal length", f));
         let w = width.and_then(|w| self.length("width of the view rectangle", w));
         let h = height.and_then(|h| self.length("height of the view rectangle", h));
+        // Only now, so that the faults of all three are reported.
         let (f, w, h) = (f?, w?, h?);
         for (side, written) in [(w, width), (h, height)] {
             if !checks::is_ratio(f64::from(side) / f64::from(f)) {

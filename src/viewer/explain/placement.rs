@@ -58,6 +58,7 @@ pub(super) fn cursor_marks(explaining: &ExplainPanel, theme: Theme, mode: CellMo
     let [column, row] = explaining.cell(mode);
     let [beside, above] = match explaining.row_in_cell(mode) {
         _ if !mode.glyphs.has_blocks() => [[">", "<"], ["v", "^"]],
+        // A half block marks the half of the cell in which the pixel is.
         (row, rows) if 2 * row < rows => [["▀", "▀"], ["│", "│"]],
         _ => [["▄", "▄"], ["│", "│"]],
     };

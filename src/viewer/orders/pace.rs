@@ -74,6 +74,7 @@ impl Pace {
     /// there is one.
     pub(super) fn advance(&mut self, total: u64, now: Duration) -> (bool, Option<Duration>) {
         self.set_total(total);
+        // The time until the next step begins anew, so that a pause does not count.
         if self.by_steps || self.is_paused || self.tests() >= total {
             self.since = None;
             return (false, None);
