@@ -67,8 +67,6 @@ pub struct Basis {
 
 /// The view rectangle: the intrinsic parameters, on the plane that the w axis pierces at distance 1
 /// in front of the eye.
-// The picture depends only on the ratios of the lecture's f, w and h, so the focal length is always scaled to 1. Equal
-// views then have equal values.
 ///
 /// ```
 /// use glam::Vec3;
@@ -79,6 +77,8 @@ pub struct Basis {
 /// assert_eq!(camera.pose(), pose);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+// The picture depends only on the ratios of the lecture's f, w and h, so the focal length is always scaled to 1. Equal
+// views then have equal values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewRectangle {
     /// The width of the rectangle divided by the focal length; `None` if it follows from the

@@ -99,6 +99,7 @@ use crate::color::LinearRgb;
 use glam::{DVec3, Mat3, Vec2, Vec3};
 
 /// The reflectance of a mesh without colours: warm clay, `#d98b5f`.
+// A light grey mesh hardly stands out from a grey floor.
 pub(crate) const CLAY: LinearRgb = LinearRgb::new(0.694, 0.258, 0.114);
 
 /// Triangles and their attributes as in a file. All numbers are finite, all indices in range, and

@@ -119,6 +119,7 @@ struct WrittenCell {
 }
 
 /// Largest number of times that the cells of a frame are chosen.
+// With a single try the PSNR is 0.1 to 0.2 dB lower.
 const MAX_TRIES: usize = 3;
 
 /// Chooses the cells of a frame and their colours, and calls `write` with the grid to show and the

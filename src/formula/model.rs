@@ -223,7 +223,7 @@ impl Evaluation<'_> {
             self.0.may_jump = true;
             return Model::hull(hull[0], hull[1]);
         }
-        // Without the cancellation that 1 - x^2 has near 1.
+        // As a product, which does not cancel near 1 as 1 - x^2 does.
         let inverse = |x: f64| 1.0 / ((1.0 - x) * (1.0 + x)).sqrt();
         let (c0, q, steepest) = (a.c[0], inverse(a.c[0]), inverse(largest));
         let squared = steepest * steepest;

