@@ -119,6 +119,7 @@ pub(super) fn exit_after_panic() -> ! {
     for message in messages {
         print_error(&(visible_lines(&message) + "\n"));
     }
+    // The exit code of a Rust program that panics.
     std::process::exit(101)
 }
 

@@ -440,6 +440,7 @@ impl<N: Lanes> Models<N> {
             return narrow;
         }
         let most = exp(high) * N::splat(1.0 + OF_EXP);
+        // `exp` is exact to `OF_EXP` from -86 on.
         let least = N::select(low.lt(N::splat(-86.0)), zero, exp(low) * N::splat(1.0 - OF_EXP));
         let wide = self.exponential_taylor([value, most, off]).or_if_narrower(Self::hull(least, most));
         Self::select(is_in_reach, Self::select(is_narrow, narrow, wide), Self::anything())

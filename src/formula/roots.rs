@@ -334,6 +334,7 @@ impl Walk {
 
     fn new(from: f64, to: f64) -> Self {
         let range = to - from;
+        // A shorter piece could end at its start, by the rounding of t.
         let shortest = (MIN_PIECE * range).max(16.0 * f64::EPSILON * from.abs().max(to.abs()));
         Self { t: from, length: range, since: from, stride: shortest, shortest, range, ..Self::NOWHERE }
     }
@@ -438,6 +439,7 @@ impl Walk {
                 let slope = 2.0 * ((b[1] - b[0]) + at_zero * (b[0] - 2.0 * b[1] + b[2])) / width;
                 return Found::Root(Root { low: start, high: end, guess: from + at_zero * width, slope });
             }
+            // Shorter than this piece in any case, so that the search comes to an end.
             (self.t, self.length) = (start, (end - start).min(0.75 * width));
             return Found::Nothing;
         }

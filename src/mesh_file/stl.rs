@@ -65,6 +65,7 @@ pub(super) fn read_binary(
             mesh.colors.values_mut().extend([coloring.color(facet); 3]);
         }
         for corner in 0..3 {
+            // The normal of the facet is in front of the corners.
             let at = 12 + 12 * corner;
             match vertex_from(&facet[at..at + 12], HEADER + i * FACET + at) {
                 Ok(vertex) => mesh.positions.push(vertex),

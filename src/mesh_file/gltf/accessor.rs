@@ -46,6 +46,7 @@ impl Component {
     fn read(json: Json<'_>) -> Result<Self, MeshFault> {
         let field = json.required("componentType")?;
         Ok(match field.index()? {
+            // The constants of OpenGL. Signed integers of 32 bits, 5124, are not allowed in glTF.
             5120 => Self::I8,
             5121 => Self::U8,
             5122 => Self::I16,
