@@ -279,6 +279,7 @@ impl Description<'_> {
     /// Returns the name of a light's colour, whatever its intensity.
     fn light_color(light: &Light) -> &'static str {
         let light = light.color();
+        // The hue alone is described, because intensities have no upper end.
         let brightest = light.r.max(light.g).max(light.b).max(f32::MIN_POSITIVE);
         color(light * (1.0 / brightest))
     }

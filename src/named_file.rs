@@ -68,6 +68,7 @@ pub fn read(
         if bytes.len().max(size) > max_len {
             return Err(too_large(max_len));
         }
+        // With room for a byte more than the file has, its end is found without growing the buffer.
         bytes.try_reserve_exact((size + 1).saturating_sub(bytes.len()))?;
     }
 }

@@ -227,6 +227,7 @@ impl Server {
         }
         self.house.stage.close();
         for thread in self.threads.drain(..) {
+            // The panic hook has already reported an error.
             let _ = thread.join();
         }
     }

@@ -179,6 +179,7 @@ impl Renderer {
     }
 
     fn record_time(&mut self, frame: Frame) -> Frame {
+        // Only of the frames that `is_small` decides on.
         if has_one_sample(frame.sampling) && !frame.refines {
             let seconds = frame.cost.work.as_secs_f64() / frame.picture.pixels.len() as f64;
             self.seconds_per_pixel = Some((frame.shot, seconds));

@@ -170,6 +170,7 @@ impl Watching {
         self.folders.retain(|folder, _| {
             let is_wanted = folders.contains(folder);
             if !is_wanted {
+                // An error means that the folder is gone, and its watch with it.
                 let _ = watcher.unwatch(folder);
             }
             is_wanted

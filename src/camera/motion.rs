@@ -202,6 +202,7 @@ impl Camera {
         }
         let [from, to] = [self.pose, end.pose];
         let [a, b] = [from, to].map(|pose| pose.target - pose.eye);
+        // Clamped, because rounding may take the cosine beyond 1.
         let angle = libm::acosf(a.normalize_or_zero().dot(b.normalize_or_zero()).clamp(-1.0, 1.0));
         // Opposite directions have no common normal: the camera turns about its v, that is, horizontally.
         let axis = a.cross(b).try_normalize().unwrap_or(self.basis.v);

@@ -47,6 +47,7 @@ pub(super) fn cell_mean(picture: &Picture, (across, down): (u32, u32), column: u
 
 /// Scales a colour so that its brightest channel is `brightness`; black stays black.
 pub(super) fn scaled_to_brightness(color: Srgb8, brightness: u8) -> Srgb8 {
+    // At least 1, because black has no channel to divide by.
     let max = u32::from(color.r.max(color.g).max(color.b).max(1));
     let scaled = |channel: u8| (u32::from(channel) * u32::from(brightness) / max) as u8; // no channel exceeds `max`
     Srgb8::new(scaled(color.r), scaled(color.g), scaled(color.b))

@@ -49,6 +49,7 @@ impl<'a> LeftOut<'a> {
         if self.faults > FEW_FAULTS {
             let lines = || self.bytes.split(|&byte| byte == b'\n').count();
             if self.faults > *self.limit.get_or_insert_with(|| lines() / 100) {
+                // The fault in its place is never shown.
                 return Err(std::mem::replace(first, MeshFault::of_file("")));
             }
         }

@@ -129,6 +129,7 @@ impl Write for Temporary {
 impl Drop for Temporary {
     fn drop(&mut self) {
         if let Some(path) = &self.path {
+            // After an error the next run removes the file.
             let _ = fs::remove_file(path);
         }
     }

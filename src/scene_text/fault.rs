@@ -320,6 +320,7 @@ impl Excerpt {
         self.source.truncate(self.source.trim_end().len());
         let width = self.source.width();
         self.caret = caret.unwrap_or(width);
+        // An empty span, as at the end of the file, gets a mark as well.
         self.caret_width = caret_end.unwrap_or(width).saturating_sub(self.caret).max(1);
     }
 }

@@ -142,6 +142,7 @@ impl Line {
             outbox.bytes.append(&mut bytes);
         }
         outbox.ended = ended;
+        // Before the notification, so that the task which it wakes need not wait for the lock.
         drop(outbox);
         self.filled.notify_one();
     }

@@ -179,6 +179,7 @@ impl Seat {
 
     /// Returns when, and why, the visit ends if no key is pressed.
     fn next_end(&self) -> (Duration, Parting) {
+        // Without a key so far the time counts from the beginning of the visit.
         let idle = (self.viewer.last_event().max(self.began) + self.stay.idle, Parting::Idle);
         let ends = [(self.stay.ends, Parting::TimeOver), idle];
         let drained = self.drained_at.map(|at| (at, Parting::Drained));

@@ -98,6 +98,7 @@ impl AsyncWrite for Socket {
     }
 
     fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        // An error means that the connection has ended.
         let _ = shutdown(&*self.stream, Shutdown::Write);
         Poll::Ready(Ok(()))
     }

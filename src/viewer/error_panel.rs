@@ -53,6 +53,7 @@ impl ErrorPanel {
     /// Returns the panel's area, above the lowest `below` rows of the screen.
     fn area(&self, screen: Rect, below: u16) -> Rect {
         let lines = self.lines(text_columns(screen.width)).len() as u16;
+        // At least two thirds of a low screen stay with the picture.
         let height = lines.min(MAX_ERROR_ROWS).min(screen.height / 3);
         Rect { y: (screen.bottom() - height).saturating_sub(below), height, ..screen }
     }

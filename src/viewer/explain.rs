@@ -60,6 +60,7 @@ impl Layer for ExplainPanel {
             return;
         }
         let [x, y] = self.pixel;
+        // In u64, because the product of two sizes may exceed 32 bits.
         let scaled = |at: u32, old: u32, new: u32| (u64::from(at) * u64::from(new) / u64::from(old.max(1))) as u32;
         self.move_to(frame, [scaled(x, old.width(), new.width()), scaled(y, old.height(), new.height())]);
     }
@@ -120,6 +121,7 @@ impl ExplainPanel {
     pub(super) fn move_to(&mut self, frame: &Frame, [x, y]: [u32; 2]) {
         let [width, height] = [frame.resolution().width(), frame.resolution().height()];
         if width > 0 && height > 0 {
+            // The frame may have become smaller since the pointer was there.
             *self = Self::at_pixel(frame, [x.min(width - 1), y.min(height - 1)], self.page);
         }
     }

@@ -371,6 +371,7 @@ fn short_of_surface(scene: &Scene, view: &ViewState, moved: &Camera) -> Option<C
     let (origin, pose) = (view.camera.pose().eye, moved.pose());
     let way = pose.eye - origin;
     let t = (way != Vec3::ZERO).then(|| closest_hit(scene, &Ray { origin, direction: way }))??.t;
+    // To the margin in front of the surface, but not behind the start of the way.
     let back = ((t + 1.0 - SURFACE_MARGIN).max(0.0) - 1.0) * way;
     let pose = Pose { eye: pose.eye + back, target: pose.target + back, ..pose };
     // An eye that orbits stays where it is: its target must not move.

@@ -155,6 +155,7 @@ fn wiped(left: &Picture, right: &Picture, wipe: f32) -> Picture {
     let width = left.width as usize;
     let line = ((wipe * width as f32) as usize).min(width.saturating_sub(1));
     let mut picture = right.clone();
+    // `chunks` panics for 0, the width of an empty picture.
     for (row, of_left) in picture.pixels.chunks_mut(width.max(1)).zip(left.pixels.chunks(width.max(1))) {
         row[..line].copy_from_slice(&of_left[..line]);
         row[line] = LINE;

@@ -121,6 +121,7 @@ fn value_action(values: &Values) -> String {
 
 fn described((word, help): &Word) -> String {
     let help: String =
+        // All but letters and digits are escaped, because zsh parses this text as shell words.
         help.chars().flat_map(|c| ['\\', c].into_iter().skip(usize::from(c.is_alphanumeric()))).collect();
     format!("{word}\\:{help}")
 }

@@ -104,6 +104,7 @@ pub(in crate::cli) fn run(mut args: ServeArgs, given: &ArgMatches) -> CommandRes
     let started = |address: SocketAddr, fingerprint: &str| {
         let (ip, port) = (address.ip(), address.port());
         let line = format!("listening on {address}: ssh -p {port} {ip}\nhost key {fingerprint}\n");
+        // The server also runs if the reader of its output has gone.
         let _ = write_stdout(line.as_bytes());
     };
     let ended = serve::run(scenes, settings, &mut signals, &log, started);
