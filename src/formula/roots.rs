@@ -37,6 +37,7 @@ const BLUR: f64 = 1.0 / 16.0;
 const MAX_STRETCH: f64 = 1.0 / 256.0;
 
 /// The number of pieces of undecided sign in a row from which on each is twice as long.
+// With the shortest pieces alone, a stretch of the ray on which f is 0 would take up to a billion of them.
 const STRIDES_FROM: u32 = 8;
 
 /// The relative length of the longest piece that is passed while its sign is undecided.

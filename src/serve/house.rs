@@ -38,6 +38,7 @@ pub(super) struct House {
     /// The colours of terminals according to terminfo, which is read once for each name.
     terminals: Mutex<HashMap<String, Option<Colors>>>,
     /// One frame of each scene as text, made when it is first asked for.
+    // Made once, because a client that asks again and again would otherwise have it traced each time.
     text_frames: Vec<OnceLock<String>>,
 }
 

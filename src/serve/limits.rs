@@ -10,6 +10,7 @@ use std::time::Duration;
 // A handshake costs 0.3 to 0.36 ms of CPU time, and a silent connection keeps its place for the whole login time.
 const MAX_LOGGING_IN: usize = 64;
 /// The most connections from one address that have not logged in.
+// A single address must not take all places of those that log in.
 const MAX_LOGGING_IN_PER_ADDRESS: usize = 8;
 /// Greatest number of new connections from one address at once; each [`REFILL_TIME`] allows one
 /// more.

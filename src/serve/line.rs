@@ -12,6 +12,7 @@ use tokio::sync::Notify;
 /// The size of the parts in which input is taken; at most two of them wait for a seat's turn.
 ///
 /// The connection is not read while they wait.
+// Keys and replies take a few bytes; only a paste is longer.
 const MAX_INPUT: usize = 4096;
 
 /// The most bytes that may wait to be sent; while there are more, no input is taken.

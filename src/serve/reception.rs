@@ -17,6 +17,7 @@ use tokio::time::{sleep, timeout};
 // The connection's buffer keeps the size of its largest message for ever.
 const MAX_MESSAGE: usize = 8 * 1024;
 /// Time that a client which was told to leave has to close the connection.
+// After a disconnect `russh` itself waits for the client to close, without a limit.
 const CLOSING_TIME: Duration = Duration::from_secs(2);
 /// The keys that leave the waiting room: q, Ctrl-C, Ctrl-D.
 const LEAVING: &[u8] = b"q\x03\x04";
