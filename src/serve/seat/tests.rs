@@ -61,7 +61,7 @@ impl Sitting {
             match self.turn(&answers) {
                 Next::Sleep(until) if self.bytes.is_empty() => return until,
                 Next::Sleep(_) | Next::Turn(_) => {}
-                Next::End => panic!("nobody has left"),
+                Next::End => panic!("no viewer has left"),
             }
         }
     }
