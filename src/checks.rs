@@ -53,7 +53,7 @@ impl SceneFault {
         Self { subject: subject.into(), message: message.into() }
     }
 
-    /// Returns the message without the value's name, as the same error in a scene file has it.
+    /// Returns the message without the name of the value: that of the same error in a scene file.
     #[doc(hidden)]
     pub fn message(&self) -> &str {
         &self.message

@@ -63,7 +63,7 @@ struct Part {
     extent: Extent,
     /// The mean luma of the object's pixels in the cell.
     light: f32,
-    /// The rows of pixels from the object's first to its last in the cell.
+    /// The first and the last row of pixels in which the cell shows the object.
     rows: [usize; 2],
     /// The fill of the same object in the frame before, while the view moves.
     kept_fill: Option<u8>,

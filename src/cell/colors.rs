@@ -58,7 +58,7 @@ impl TextInks {
             Colors::None => Ink::Default,
             Colors::Truecolor => Ink::Rgb(color),
             Colors::Indexed256 => {
-                // A level is nearest from the middle between it and the one before.
+                // A level is the nearest one from half-way between it and the level before.
                 let level = |channel: u8| LEVELS.windows(2).filter(|pair| channel > pair[0].midpoint(pair[1])).count();
                 let [r, g, b] = [color.r, color.g, color.b].map(level);
                 Ink::Indexed((16 + 36 * r + 6 * g + b) as u8)

@@ -428,7 +428,7 @@ impl<N: Lanes> Models<N> {
     fn exponential(self) -> Self {
         let ([low, high], zero, one) = (self.range(), N::splat(0.0), N::splat(1.0));
         let value = exp(self.c[0]);
-        // Below -87 `exp` returns its value there, 1.6e-38, for values between 0 and that.
+        // Below -87 `exp` returns 1.6e-38, and the true value is between 0 and that.
         let off = N::splat(OF_EXP) * value + N::splat(1e-37);
         // e^s is at most 1 + s + s^2 up to s = 1, and the hull is not narrower then. Here, too, each lane chooses for
         // itself.

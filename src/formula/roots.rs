@@ -180,7 +180,8 @@ impl<'f> Solver<'f> {
         (lanes != 0).then_some(roots.0[0])
     }
 
-    /// Returns the lanes with a root, and their first roots: each as if it were alone.
+    /// Returns the lanes with a root, and their first roots, none of which depends on the other
+    /// lanes.
     pub(crate) fn first_roots(self, searches: &mut Searches) -> (u32, F32x8) {
         SCRATCH.with_borrow_mut(|scratch| {
             let (mut found, mut brackets) = (0, [Bracket::NONE; LANES]);

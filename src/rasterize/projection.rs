@@ -45,7 +45,7 @@ impl Rectangle {
         self.x[0] / LANES as u32..self.x[1].div_ceil(LANES as u32)
     }
 
-    /// Returns the number of pixels, and one for the primitive.
+    /// Returns the number of tests of a primitive with this rectangle: one, and one for each pixel.
     #[inline(always)]
     pub(super) fn tests(self) -> u64 {
         let [columns, rows] = [self.x, self.y].map(|[first, end]| u64::from(end.saturating_sub(first)));
