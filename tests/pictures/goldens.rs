@@ -12,12 +12,12 @@ use termtrace::{Scene, Size, text_frame};
 
 const SIZE: Size = Size::new(80, 24);
 
-fn folder(name: &str) -> PathBuf {
+pub(crate) fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
 /// Returns the names of a folder's files without this extension.
-fn stems(folder: &Path, ending: &str) -> BTreeSet<String> {
+pub(crate) fn stems(folder: &Path, ending: &str) -> BTreeSet<String> {
     let entries = std::fs::read_dir(folder).expect("the folder is there");
     entries
         .map(|entry| entry.expect("the folder can be read").file_name().into_string().expect("names are UTF-8"))

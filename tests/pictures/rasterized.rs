@@ -1,6 +1,6 @@
 //! Object order beside image order: the same object at every pixel except at edges.
 
-use super::goldens::scenes;
+use super::goldens::{folder, scenes, stems};
 use glam::{Vec2, Vec3};
 use termtrace::internals::hit::closest_hit;
 use termtrace::internals::rasterize::rasterize;
@@ -9,6 +9,21 @@ use termtrace::{Camera, Pose, Resolution, Scene};
 fn scene(name: &str) -> Scene {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.ron"));
     Scene::load(&path).expect("the scene is fine")
+}
+
+/// Returns the scene's own camera, two that have orbited, and two whose rectangle is tilted or
+/// shifted.
+fn cameras(scene: &Scene) -> [(Camera, &'static str); 5] {
+    let own = *scene.camera();
+    let tilted = own.rectangle().with_tilt(Vec2::new(0.3, -0.4)).map(|rectangle| own.with_rectangle(rectangle));
+    let shifted = own.rectangle().with_shift(Vec2::new(-0.6, 0.4)).map(|rectangle| own.with_rectangle(rectangle));
+    [
+        (own, "own"),
+        (own.orbited(0.7, 0.2), "orbited"),
+        (own.orbited(-2.4, 0.5), "from behind"),
+        (tilted.expect("in front of the eye"), "tilted"),
+        (shifted.expect("in front of the eye"), "shifted"),
+    ]
 }
 
 /// Compares both orders at each pixel, and returns the number of pixels that differ.
@@ -32,26 +47,42 @@ fn differing(scene: &Scene, camera: &Camera, name: &str) -> u32 {
             continue;
         }
         different += 1;
-        let around = [(0, 1), (2, 1), (1, 0), (1, 2), (0, 0), (2, 0), (0, 2), (2, 2)];
-        let object = by_object.map(|seen| seen.0);
-        let is_edge = around.iter().any(|(right, down)| {
-            let (x, y) = ((x + right).wrapping_sub(1), (y + down).wrapping_sub(1));
-            traced(x, y).map(|seen| seen.0) == object
-        });
+        let is_edge = is_beside(by_object.map(|seen| seen.0), [x, y], |x, y| traced(x, y).map(|seen| seen.0));
         assert!(is_edge, "{name} ({x}, {y}): the ray meets {by_ray:?}, drawn is {by_object:?}");
     }
     different
+}
+
+/// Returns whether one of the eight pixels around a pixel shows an object, or none for `None`.
+pub(crate) fn is_beside(object: Option<u32>, [x, y]: [u32; 2], shown: impl Fn(u32, u32) -> Option<u32>) -> bool {
+    let around = [(0, 1), (2, 1), (1, 0), (1, 2), (0, 0), (2, 0), (0, 2), (2, 2)];
+    around.iter().any(|(right, down)| shown((x + right).wrapping_sub(1), (y + down).wrapping_sub(1)) == object)
 }
 
 #[test]
 fn both_orders_show_the_same_object_at_every_pixel_except_at_edges() {
     for name in scenes() {
         let scene = scene(&name);
-        let own = *scene.camera();
-        let tilted = own.rectangle().with_tilt(Vec2::new(0.3, -0.4)).map(|rectangle| own.with_rectangle(rectangle));
-        for camera in [own, own.orbited(0.7, 0.2), tilted.expect("in front of the eye")] {
+        for (camera, place) in cameras(&scene) {
             let different = differing(&scene, &camera, &name);
-            assert!(different <= 12, "{name}: {different} pixels differ");
+            assert!(different <= 12, "{name} {place}: {different} pixels differ");
+        }
+    }
+}
+
+/// Formulas are ray-cast within their projected bounds, also where the eye is within the bounds.
+#[test]
+fn both_orders_show_the_same_formulas_at_every_pixel_except_at_edges() {
+    let names = stems(&folder("scenes/formulas"), ".ron");
+    assert!(names.len() >= 10, "{names:?}");
+    for name in names {
+        let scene = scene(&format!("formulas/{name}"));
+        let own = *scene.camera();
+        let Pose { eye, target, up } = own.pose();
+        let within = own.with_pose(Pose { eye: target.lerp(eye, 0.2), target, up }).expect("a pose");
+        for (camera, place) in cameras(&scene).into_iter().chain([(within, "within")]) {
+            let different = differing(&scene, &camera, &name);
+            assert!(different <= 12, "{name} {place}: {different} pixels differ");
         }
     }
 }
