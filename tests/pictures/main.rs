@@ -10,6 +10,7 @@ mod goldens;
 mod hashes;
 mod maps;
 mod odd;
+mod povray;
 mod properties;
 mod rasterized;
 mod sampling;

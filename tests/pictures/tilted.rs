@@ -24,7 +24,7 @@ fn camera(eye: Vec3, target: Vec3, shift: [f32; 2], tilt: [f32; 2]) -> Camera {
     Camera::new(Pose { eye, target, up: Vec3::Y }, rectangle.expect("a rectangle")).expect("a camera")
 }
 
-fn cameras() -> impl Iterator<Item = (Camera, [[f64; 2]; 2])> {
+pub(crate) fn cameras() -> impl Iterator<Item = (Camera, [[f64; 2]; 2])> {
     RECTANGLES.into_iter().map(|(shift, tilt)| {
         let camera = camera(Vec3::new(7.0, -2.0, 9.0), Vec3::new(0.5, 1.0, -0.5), shift, tilt);
         (camera, [shift, tilt].map(|pair| pair.map(f64::from)))
@@ -36,7 +36,7 @@ fn cameras() -> impl Iterator<Item = (Camera, [[f64; 2]; 2])> {
 ///
 /// They are the rows of the matrix that takes POV-Ray's x, y and z, which are the right, up and direction of
 /// `camera { right x up y direction z matrix <...> }`.
-fn matrix(camera: &Camera, [shift, tilt]: [[f64; 2]; 2]) -> [DVec3; 3] {
+pub(crate) fn matrix(camera: &Camera, [shift, tilt]: [[f64; 2]; 2]) -> [DVec3; 3] {
     let Pose { eye, target, up } = camera.pose();
     let forward = (target - eye).as_dvec3().normalize();
     let u = forward.cross(up.as_dvec3()).normalize();
