@@ -144,10 +144,9 @@ impl fmt::Display for CameraError {
             Self::Sides => "a side of the view rectangle must lie between 1e-6 and 1e6 focal lengths",
             Self::AspectRatio => "the aspect ratio must lie between 1e-6 and 1e6",
             Self::Shift => "the view rectangle can be shifted by at most 1000 of its heights",
-            Self::Tilt => "the view rectangle can be tilted by at most 89 degrees; at 90 it would contain the eye",
-            Self::BehindEye => {
-                "the view rectangle passes behind the eye; tilt it less, shift it less, or make it smaller"
-            }
+            // The first part of each fits into a note of 40 columns, which has no room for the second.
+            Self::Tilt => "the tilt can be at most 89 degrees; at 90 the view rectangle would contain the eye",
+            Self::BehindEye => "the rectangle passes behind the eye; tilt it less, shift it less, or make it smaller",
         })
     }
 }

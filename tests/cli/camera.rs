@@ -60,7 +60,7 @@ fn invalid_cameras_are_rejected() {
             ("--fov nan", "field of view"),
             ("--fov inf", "field of view"),
             ("--shift 0,2000", "at most 1000 of its heights"),
-            ("--tilt 0,-90", "at 90 it would contain the eye"),
+            ("--tilt 0,-90", "at 90 the view rectangle would contain the eye"),
             ("--tilt 0,60 --shift 0,2", "passes behind the eye"),
         ] {
             folder.run(&format!("{command} {flags}")).fails_in_a_line(2, words);

@@ -126,6 +126,18 @@ fn keys_shift_and_tilt_the_view_rectangle_and_show_it() {
     assert_eq!(camera.pose(), load(tower).camera().pose());
 }
 
+#[test]
+fn keys_refuse_a_rectangle_that_contains_the_eye_or_passes_behind_it() {
+    for (camera, keys, error) in [
+        (["--tilt", "0,-88", "--fov", "60"], "{", "the tilt can be at most 89 degrees"),
+        (["--tilt", "0,-60", "--fov", "60"], "((((((((((((", "the rectangle passes behind the eye"),
+    ] {
+        let mut session = looking(BALL, &camera);
+        session.send(keys.as_bytes());
+        session.wait_for_text(error);
+    }
+}
+
 /// `V` splits the screen; the keys move first the second eye, then the first camera.
 #[test]
 fn v_shows_the_tracer_from_outside() {
