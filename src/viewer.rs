@@ -24,7 +24,6 @@ use crate::render::Sampling;
 use crate::scene::Scene;
 use crate::text::Notice;
 use std::collections::VecDeque;
-use std::sync::Arc;
 use std::time::Duration;
 
 mod activity;
@@ -354,7 +353,11 @@ impl Viewer {
     fn set_outside(&mut self, outside: Outside) {
         // From behind a wall, the second eye sees the tracer as well.
         self.eye.set_passes_surfaces(matches!(outside, Outside::MovesSecond { .. }));
+        let has_changed = self.outside != outside;
         self.outside = outside;
+        if has_changed {
+            self.show_caption_again();
+        }
     }
 
     /// Opens the panel with the error that ended the loading of a scene.
@@ -383,10 +386,12 @@ impl Viewer {
         self.screen.open(warnings);
     }
 
-    /// Returns the first page of the caption of `scene`, scene number `index`, if it has one.
+    /// Returns the first page of the caption of the view from outside, or else of `scene`, scene
+    /// number `index`, if it has one.
     fn caption(&self, scene: &Scene, index: usize) -> Option<Caption> {
         let place = self.options.tour.map(|count| (index + 1, count));
-        Some(Caption::new(Arc::clone(scene.caption()?), place))
+        let text = self.outside.caption().map_or_else(|| scene.caption().cloned(), |text| Some(text.into()));
+        Some(Caption::new(text?, place, self.outside.keys()))
     }
 
     /// Shows the caption of the scene, unless captions are hidden.

@@ -21,13 +21,15 @@ pub(super) struct Caption {
     text: Arc<str>,
     /// The number of the scene on the tour, from 1, and the number of all its scenes.
     place: Option<(usize, usize)>,
+    /// More keys on a tour, with what they do.
+    more_keys: [(Command, &'static str); 2],
     page: usize,
 }
 
 impl Caption {
     /// Returns the first page of the caption `text`, in which each line is a paragraph.
-    pub(super) fn new(text: Arc<str>, place: Option<(usize, usize)>) -> Self {
-        Self { text, place, page: 0 }
+    pub(super) fn new(text: Arc<str>, place: Option<(usize, usize)>, more_keys: [(Command, &'static str); 2]) -> Self {
+        Self { text, place, more_keys, page: 0 }
     }
 
     /// Returns the next page; `None` after the last one.
@@ -59,14 +61,21 @@ impl Caption {
         pages
     }
 
-    /// Returns the row of keys below a page.
-    fn keys_row(&self, canvas: &Canvas<'_>, is_last: bool) -> String {
+    /// Returns the row of keys below a page, without the last ones if it does not fit into `width`
+    /// columns.
+    fn keys_row(&self, canvas: &Canvas<'_>, is_last: bool, width: usize) -> String {
         let key =
             |command, does: &str| key_names(canvas.keymap, canvas.modes, &[command]).map(|key| format!("{key} {does}"));
         let turn = key(Command::Caption, if is_last { "hides this" } else { "more" });
         let place = self.place.map(|(number, count)| format!("{number} of {count}"));
-        let on = self.place.and_then(|_| key(Command::NextScene, "next scene"));
-        [place, on, turn].into_iter().flatten().collect::<Vec<_>>().join("; ")
+        let on_tour = |command, does| self.place.and_then(|_| key(command, does));
+        let on = on_tour(Command::NextScene, "next scene");
+        let more = self.more_keys.map(|(command, does)| on_tour(command, does));
+        let mut parts: Vec<_> = [place, on, turn].into_iter().chain(more).flatten().collect();
+        while parts.len() > 1 && parts.join("; ").width() > width {
+            parts.pop();
+        }
+        parts.join("; ")
     }
 }
 
@@ -91,7 +100,7 @@ impl Layer for Caption {
         let page = self.page.min(pages.len().saturating_sub(1));
         let is_last = page + 1 >= pages.len();
         let mut lines = if page < pages.len() { pages.swap_remove(page) } else { Vec::new() };
-        lines.push(self.keys_row(canvas, is_last));
+        lines.push(self.keys_row(canvas, is_last, usize::from(screen.width).saturating_sub(2)));
         let width = lines.iter().map(|line| line.trim_end().width() as u16 + 2).max().unwrap_or(0).min(screen.width);
         let height = lines.len() as u16;
         let below = canvas.status_rows.max(canvas.note_rows);

@@ -226,14 +226,17 @@ impl Viewer {
     }
 
     /// Closes the help if it is open; otherwise releases the held light, if any; otherwise closes
-    /// the explanation, the metadata or the comparison of orders; otherwise cancels the large picture.
+    /// the view from outside, the explanation, the metadata, the comparison of orders or the vanishing points;
+    /// otherwise cancels the large picture.
     fn close_topmost(&mut self) {
         // The order is that of the layers on the screen, from the topmost.
         if self.screen.close::<HelpPanel>().is_none()
             && !self.release_light()
+            && !(self.second_camera().is_some() && self.end_outside())
             && self.screen.close::<ExplainPanel>().is_none()
             && self.screen.close::<Metadata>().is_none()
             && !self.close_orders()
+            && !self.end_outside()
         {
             self.cancel_large_picture();
         }

@@ -20,9 +20,7 @@ impl Layer for Legends {
     }
 
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
-        let Some(frame) = canvas.frame.filter(|_| canvas.has_room()) else { return };
-        let line = if frame.shot.layout.is_wipe() { canvas.wipe } else { 0.5 };
-        for (text, area) in legend_areas(&frame.legends, line, canvas.row_from_bottom(canvas.status_rows)) {
+        for (text, area) in shown_legends(canvas) {
             let colors = canvas.cell_mode.colors;
             canvas.lay(area, |theme, area, buffer| {
                 draw(text, theme, area, buffer);
@@ -32,6 +30,13 @@ impl Layer for Legends {
             });
         }
     }
+}
+
+/// Returns the legends of the shown frame with their areas on the screen.
+pub(super) fn shown_legends<'a>(canvas: &Canvas<'a>) -> Vec<(&'a str, Rect)> {
+    let Some(frame) = canvas.frame.filter(|_| canvas.has_room()) else { return Vec::new() };
+    let line = if frame.shot.layout.is_wipe() { canvas.wipe } else { 0.5 };
+    legend_areas(&frame.legends, line, canvas.row_from_bottom(canvas.status_rows))
 }
 
 /// Returns each text with its area, as wide as the text, so that the picture continues beside it.

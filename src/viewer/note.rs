@@ -59,10 +59,19 @@ impl Layer for Note {
         for (below, text) in (0..).zip([Some(&self.text), self.above.as_ref()].into_iter().flatten()) {
             let row = canvas.row_from_bottom(below);
             let text = shortened(text, usize::from(row.width.saturating_sub(2)));
-            let width = (text.width() as u16 + 2).min(row.width);
-            canvas.lay(Rect { width, ..row }, |theme, area, buffer| legend::draw(&text, theme, area, buffer));
+            let area = Rect { width: (text.width() as u16 + 2).min(row.width), ..row };
+            let area = extended(area, legend::shown_legends(canvas).into_iter().map(|(_, area)| area));
+            canvas.lay(area, |theme, area, buffer| legend::draw(&text, theme, area, buffer));
         }
     }
+}
+
+/// Returns the area of a note, extended to the right so that it covers each legend that it touches.
+///
+/// A part of a legend cannot be read.
+fn extended(area: Rect, legends: impl Iterator<Item = Rect>) -> Rect {
+    let ends = legends.filter(|legend| legend.intersects(area)).map(Rect::right);
+    Rect { width: ends.chain([area.right()]).max().unwrap_or(0) - area.x, ..area }
 }
 
 /// Returns the text without as many of its parts, which semicolons separate, as do not fit into

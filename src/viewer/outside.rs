@@ -9,6 +9,7 @@ use super::tracer_lines::{TracerMarks, VanishingPoints};
 use super::view_layout::ViewLayout;
 use crate::bounds::Bounds;
 use crate::camera::{Basis, Camera, Pose};
+use crate::control::Command;
 use crate::hit::closest_hit;
 use crate::ray::Ray;
 use crate::scene::Scene;
@@ -29,6 +30,46 @@ pub(super) enum Outside {
     /// The ordinary view with the horizon and vanishing points.
     Vanishing,
 }
+
+impl Outside {
+    /// Returns the caption that replaces the scene's; `None` for the ordinary view.
+    pub(super) fn caption(&self) -> Option<&'static str> {
+        match self {
+            Self::Off => None,
+            Self::MovesSecond { .. } => Some(SECOND_EYE_CAPTION),
+            Self::MovesFirst { .. } => Some(FIRST_CAMERA_CAPTION),
+            Self::Vanishing => Some(VANISHING_CAPTION),
+        }
+    }
+
+    /// Returns the keys that a caption on a tour names, with what they do.
+    pub(super) fn keys(&self) -> [(Command, &'static str); 2] {
+        let next = match self {
+            Self::Off => return [(Command::Outside, "from outside"), (Command::Orders, "both orders")],
+            Self::MovesSecond { .. } => "moves the first camera",
+            Self::MovesFirst { .. } => "vanishing points",
+            Self::Vanishing => "ordinary view",
+        };
+        [(Command::Outside, next), (Command::Close, "leaves")]
+    }
+}
+
+// The first two rows of each caption are its first page on a screen of 80x24 cells.
+const SECOND_EYE_CAPTION: &str = "\
+The tracer from outside: o is the eye; u points to the right, v up, and the camera looks along -w, through the view \
+rectangle (blue) with its pixel grid.
+The white ray is that of the pixel under the cross: from o through the pixel at q to its hit p, where n is the normal.
+From p a shadow ray leads to each light (*): yellow if the light arrives, grey if it does not.
+Keys: the arrows choose another pixel, W A S D and E C walk around the tracer, which stays.";
+
+const FIRST_CAMERA_CAPTION: &str = "\
+Now the keys move the first camera: o, u, v, w and the view rectangle move along, and the left picture is what it sees.
+Keys: W A S D move the eye o; [ ] resize the view rectangle, ( ) shift it, { } tilt it.";
+
+const VANISHING_CAPTION: &str = "\
+Parallel lines meet in their vanishing point: where the ray from the eye along them goes through the view rectangle.
+Crosses mark it for lines along x, y and z. The white line is the horizon, where all level lines vanish.
+Keys: W A S D move the eye, and the points stay; the arrows turn the camera, and the points move.";
 
 impl Viewer {
     /// Switches to the next of four views.
@@ -70,8 +111,11 @@ impl Viewer {
         if let Outside::MovesSecond { .. } = next {
             self.explain_middle_pixel();
         }
-        let hint = self.hint(crate::control::Command::Outside, "next");
-        self.show_note(format!("{text}{hint}"));
+        let explains =
+            self.outside.caption().filter(|_| !self.captions).map(|_| self.hint(Command::Caption, "explains"));
+        let explains = explains.unwrap_or_default();
+        let hint = self.hint(Command::Outside, "next");
+        self.show_note(format!("{text}{explains}{hint}"));
     }
 
     /// Opens the explanation of the pixel in the middle of the left picture, whose ray is drawn.
@@ -85,17 +129,20 @@ impl Viewer {
         self.screen.explain(|panel, frame| panel.move_to(frame, middle));
     }
 
-    /// Ends the view from outside, with the eye at the first camera.
-    pub(super) fn end_outside(&mut self) {
+    /// Ends the view from outside, with the eye at the first camera. Returns whether there was one,
+    /// or vanishing points.
+    pub(super) fn end_outside(&mut self) -> bool {
         if let Outside::MovesSecond { first } = self.outside {
             self.eye.change(self.now, |_, _| first);
         }
-        if self.outside != Outside::Off {
+        let was_on = self.outside != Outside::Off;
+        if was_on {
             self.screen.close::<TracerMarks>();
             self.screen.close::<ExplainPanel>();
             self.screen.close::<VanishingPoints>();
         }
         self.set_outside(Outside::Off);
+        was_on
     }
 
     /// Returns the first camera: that of the left picture if a second one is shown beside it.

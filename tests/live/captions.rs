@@ -39,6 +39,7 @@ fn the_tour_shows_each_scene_with_its_caption_in_three_rows() {
     let mut session = start(&["tour"], Size::cells(80, 24));
     session.wait_for_text(" 1 of ");
     session.wait_for_text("Look at: the edge of a shadow");
+    session.wait_for_text("V from outside; I both orders");
     session.send(b"n");
     session.wait_for_text(" 2 of ");
     let rows = session.seen().screen().text();
@@ -70,6 +71,40 @@ fn a_key_hides_captions_and_shows_them() {
     // The next scene has no caption either.
     session.send(b"n'");
     session.wait_for_text("Keys: I builds it slowly in both orders");
+    leave(&mut session);
+}
+
+/// The captions of the views from outside replace that of the scene, which returns after them.
+#[test]
+fn views_from_outside_have_captions_of_their_own() {
+    let mut session = start(&["tour"], Size::cells(80, 24));
+    session.wait_for_text("V from outside");
+    for (words, next) in [
+        ("o is the eye; u points to the right, v up", "V moves the first camera"),
+        ("Now the keys move the first camera", "V vanishing points"),
+        ("Parallel lines meet in their vanishing point", "V ordinary view"),
+        ("Three spheres", "V from outside"),
+    ] {
+        session.send(b"V");
+        session.wait_for_text(words);
+        session.wait_for_text(next);
+    }
+    for views in ["V", "VVV"] {
+        session.send(views.as_bytes());
+        session.wait_for_text("Esc leaves");
+        session.send(b"\x1b");
+        session.wait_for_text("Three spheres");
+    }
+    leave(&mut session);
+}
+
+#[test]
+fn outside_a_tour_a_note_names_the_key_of_the_caption() {
+    let mut session = start(&["bare"], Size::cells(80, 24));
+    session.send(b"V");
+    session.wait_for_text("keys move the second eye; ' explains; V next");
+    session.send(b"'");
+    session.wait_for_text("The tracer from outside: o is the eye");
     leave(&mut session);
 }
 

@@ -7,7 +7,7 @@ fn screen(columns: u16, rows: u16) -> Rect {
 }
 
 fn caption(text: &str) -> Caption {
-    Caption::new(text.into(), None)
+    Caption::new(text.into(), None, [(Command::Outside, "from outside"), (Command::Orders, "both orders")])
 }
 
 /// A page and its row of keys take at most an eighth of the screen's rows, or three, and no line

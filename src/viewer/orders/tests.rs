@@ -152,6 +152,9 @@ fn the_words_fit_into_every_screen() {
             assert!(lines.len() < most, "{lines:?}");
             assert!(lines.iter().all(|line| line.width() + 2 <= usize::from(columns)), "{columns}: {lines:?}");
             assert!(lines.iter().any(|line| line.contains("123 ms")), "{lines:?}");
+            // At the end the first line has the factors of the tests: pixels, or objects, and the tests of each.
+            let is_whole = lines[0].contains(" pixels x ") && lines[0].contains("2 objects x ");
+            assert_eq!(is_whole, columns >= 80 && tests == total, "{lines:?}");
         }
     }
 }

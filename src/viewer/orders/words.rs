@@ -29,10 +29,10 @@ pub(super) fn lines(comparison: &Comparison, tests: u64, columns: u16, rows: u16
     let drawn = comparison.object_tests.partition_point(|&until| until <= tests);
     let is_wide = half >= WIDE_HALF;
     let mut pairs = vec![if is_wide {
-        [
-            format!("Image order: {}", progress("pixel", built, pixels)),
-            format!("Object order: {}", progress("object", drawn, objects)),
-        ]
+        let image = tests_each(&comparison.image_tests).filter(|_| built == pixels).unwrap_or_default();
+        let object = tests_each(&comparison.object_tests).filter(|_| drawn == objects).unwrap_or_default();
+        let image = format!("Image order: {}{image}", progress("pixel", built, pixels));
+        [image, format!("Object order: {}{object}", progress("object", drawn, objects))]
     } else {
         ["image order".to_owned(), "object order".to_owned()]
     }];
@@ -66,10 +66,19 @@ fn progress(name: &str, done: usize, all: usize) -> String {
     }
 }
 
+/// Returns the mean number of tests of a pixel or object, as a factor.
+fn tests_each(until: &[u64]) -> Option<String> {
+    let mean = *until.last()? as f64 / until.len() as f64;
+    Some(if mean < 9.95 { format!(" x {mean:.1} tests") } else { format!(" x {mean:.0} tests") })
+}
+
+/// The unit that both orders count, in words beside the table of times, if there is room.
+const TEST: [&str; 3] = ["a test: one ray or pixel", "against one object or one", "box of the tree"];
+
 /// Returns a table of the times of both orders for growing numbers of spheres.
 fn growth(comparison: &Comparison, is_wide: bool) -> [String; 3] {
     let names = if is_wide {
-        ["the same for spheres", "image order, ms", "object order, ms"]
+        ["number of spheres", "image order, ms", "object order, ms"]
     } else {
         ["spheres", "image ms", "object ms"]
     };
@@ -80,10 +89,11 @@ fn growth(comparison: &Comparison, is_wide: bool) -> [String; 3] {
         comparison.growth.iter().map(|(_, times)| milliseconds(times.image)).collect(),
         comparison.growth.iter().map(|(_, times)| milliseconds(times.object)).collect(),
     ];
-    let mut names = names.into_iter();
+    let mut names = names.into_iter().zip(TEST);
     rows.map(|row| {
-        let name = names.next().unwrap_or_default();
-        row.iter().fold(format!("{name:<first$}"), |line, number| line + &format!("{number:>NUMBER$}"))
+        let (name, test) = names.next().unwrap_or_default();
+        let line = row.iter().fold(format!("{name:<first$}"), |line, number| line + &format!("{number:>NUMBER$}"));
+        if is_wide { format!("{line}    {test}") } else { line }
     })
 }
 
