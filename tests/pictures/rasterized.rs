@@ -103,3 +103,21 @@ fn objects_around_the_eye_are_drawn_where_rays_meet_them() {
     let inside = scene.camera().with_pose(inside).expect("a pose");
     assert!(differing(&scene, &inside, "from behind") <= 12);
 }
+
+/// Objects and depths have the same bits on all CPUs, whose instruction sets differ.
+#[test]
+fn depth_buffers_have_the_same_bits_on_every_machine() {
+    let hash = |name| {
+        let (scene, resolution) = (scene(name), Resolution::square(97, 61));
+        let drawn = rasterize(&scene, scene.camera(), resolution);
+        let pixels = (0..61).flat_map(|y| (0..97).map(move |x| (x, y)));
+        let pixels = pixels.map(|(x, y)| drawn.at(x, y).unwrap_or((u32::MAX, 0.0)));
+        let bytes = pixels.flat_map(|(object, t)| [object, t.to_bits()]).flat_map(u32::to_le_bytes);
+        // The hash is FNV-1a.
+        let basis = 0xcbf2_9ce4_8422_2325_u64;
+        let hash = bytes.fold(basis, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+        format!("{hash:016x}")
+    };
+    let hashes = ["many_spheres", "teapots", "tilted_rectangle", "gyroid"].map(hash);
+    assert_eq!(hashes, ["8c5ff1f61bc2ae72", "5b6ff2351bdaa7d8", "bc17fd77e1314546", "174b63df566455c9"]);
+}
