@@ -7,7 +7,7 @@ use crate::bounds::Bounds;
 use crate::bvh::Bvh;
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes};
 use crate::progress::{Cancelled, Progress, Reporter, Work};
-use crate::shape::{Endless, Primitive, Shape, SoaLeaf, Surface, surfaces};
+use crate::shape::{Endless, Primitive, Scalar, ScalarLeaf, Shape, SoaLeaf, Surface, surfaces_in_parts};
 use crate::simd;
 use crate::threads;
 use std::array::from_fn;
@@ -106,7 +106,10 @@ macro_rules! only {
 
 /// Defines the accelerator from the table of [`surfaces`](crate::shape).
 macro_rules! accelerator {
-    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:meta;)*) => {
+    (
+        own {$($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:meta;)*}
+        shared {$($(#[$also_on:meta])* $shared:ident, $also_of:meta;)*}
+    ) => {
         /// The primitives of all shapes of a scene.
         ///
         /// They are numbered through, first in the lists, then in the leaves of the trees. A leaf takes eight indices
@@ -114,6 +117,8 @@ macro_rules! accelerator {
         #[derive(Clone, Default, PartialEq)]
         pub(crate) struct Accelerator {
             $($(#[$on])* $name: only!($group of $kept),)*
+            /// The surfaces of all kinds that share a tree.
+            scalars: Tree<ScalarLeaf<Scalar>>,
             /// Whether any mesh has interpolated normals.
             pub(crate) has_smooth: bool,
             /// Whether any surface depends on the time.
@@ -127,12 +132,13 @@ macro_rules! accelerator {
             pub(crate) fn visit<'a>(&'a self, visitor: &mut impl Visitor<'a>) {
                 $($(#[$on])* { only! { list in $group visitor.visit_list(&self.$name); } })*
                 $($(#[$on])* { only! { tree in $group visitor.visit_tree(&self.$name); } })*
+                visitor.visit_tree(&self.scalars);
             }
 
             /// Returns whether any tree has nodes.
             #[inline(always)]
             pub(crate) fn has_tree_nodes(&self) -> bool {
-                let mut has_tree_nodes = false;
+                let mut has_tree_nodes = self.scalars.has_nodes();
                 $($(#[$on])* { only! { tree in $group has_tree_nodes |= self.$name.has_nodes(); } })*
                 has_tree_nodes
             }
@@ -141,7 +147,7 @@ macro_rules! accelerator {
             /// primitives.
             #[inline(always)]
             pub(crate) fn needs_shear(&self) -> bool {
-                let mut needs_shear = false;
+                let mut needs_shear = self.scalars.needs_shear();
                 $($(#[$on])* { only! { tree in $group needs_shear |= self.$name.needs_shear(); } })*
                 needs_shear
             }
@@ -151,6 +157,7 @@ macro_rules! accelerator {
         #[derive(Default)]
         struct PrimitiveLists {
             $($(#[$on])* $name: only!($group from $surface),)*
+            scalars: TreeBuilder<Scalar>,
         }
 
         impl PrimitiveLists {
@@ -160,6 +167,7 @@ macro_rules! accelerator {
                         only! { list in $group self.$name.push((id, *surface)); }
                         only! { tree in $group self.$name.push(id, surface.clone()); }
                     })*
+                    $($(#[$also_on])* Primitive::$shared(surface) => self.scalars.push(id, surface.clone().into()),)*
                     Primitive::Facet(facet) => self.triangles.push(id, *facet.triangle()),
                 }
             }
@@ -168,6 +176,7 @@ macro_rules! accelerator {
             fn boxes(&self) -> impl Iterator<Item = &Bounds> {
                 let mut boxes: Vec<&[Bounds]> = Vec::new();
                 $($(#[$on])* { only! { tree in $group boxes.push(&self.$name.boxes); } })*
+                boxes.push(&self.scalars.boxes);
                 boxes.into_iter().flatten()
             }
 
@@ -184,13 +193,14 @@ macro_rules! accelerator {
                     built.$name = self.$name.build(end, report)?;
                     end = built.$name.end_index();
                 } })*
+                built.scalars = self.scalars.build(end, report)?;
                 Ok(built)
             }
         }
     };
 }
 
-surfaces! { accelerator }
+surfaces_in_parts! { accelerator }
 
 /// A visitor of all lists and trees.
 pub(crate) trait Visitor<'a> {
@@ -313,7 +323,7 @@ impl Accelerator {
     // Bounds do not move, so the trees stay as they are. Triangles are copied: 100,000 take about a millisecond.
     pub(crate) fn at_time(&self, seconds: f64) -> Self {
         let mut moved = self.clone();
-        moved.implicits.leaves.iter_mut().for_each(|leaf| leaf.replace(|surface| surface.at_time(seconds)));
+        moved.scalars.leaves.iter_mut().for_each(|leaf| leaf.replace(|surface| surface.at_time(seconds)));
         moved
     }
 

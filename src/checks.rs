@@ -108,6 +108,14 @@ pub(crate) fn length(what: &str, value: f64) -> Result<f32, Message> {
     Ok(value as f32)
 }
 
+/// Checks that two points, whose names are given, are apart.
+pub(crate) fn distance(from: &str, to: &str, length: f64) -> Result<f64, Message> {
+    if length < MIN_LENGTH {
+        return Err(format!("{from} and {to} must be different points, at least 1e-9 apart").into());
+    }
+    Ok(length)
+}
+
 /// Checks a scale factor along an axis, which may be negative, to mirror a mesh, but not 0.
 pub(crate) fn factor(value: f64) -> Result<f32, Message> {
     if is_within(value.abs(), MIN_LENGTH, MAX_COORDINATE) {

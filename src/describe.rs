@@ -325,7 +325,7 @@ fn middle(shape: &Shape) -> Option<Vec3> {
 
 /// Returns a number and a noun, in the plural unless the number is 1.
 fn counted(count: usize, what: &str) -> String {
-    let many = if what == "mesh" { "es" } else { "s" };
+    let many = if what.ends_with(['h', 's', 'x']) { "es" } else { "s" };
     format!("{count} {what}{}", if count == 1 { "" } else { many })
 }
 

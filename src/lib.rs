@@ -184,12 +184,12 @@
 //! # What is not here
 //!
 //! - No trait objects in the tracer: a [`Shape`] is an enum, and rays are tested against its primitives. A new
-//!   surface is one file under `shape/`, which implements `Surface`, `Described`, `InSceneFile` and `CheckedShape`, and
-//!   one line in the table of `shape`. The enums, the lists and trees of `accel`, and the code that reads, describes
-//!   and explains it are generated from the table (`shape::cube` is such a surface, for tests). A new material is a
-//!   file under `material/` with a `Reflecting` type and a line in the table of `material`, and a new light a file
-//!   under `light/` with a `LightSource` and a line in the table of `light` (`material::stripes` and `light::sun`, for
-//!   tests).
+//!   surface is one file under `shape/`, which implements `Surface` (or `Exact`, in f64), `Described`, `InSceneFile`
+//!   and `CheckedShape`, and one line in the table of `shape`. The enums, the lists and trees of `accel`, and the code
+//!   that reads, describes and explains it are generated from the table (`shape::cube` is such a surface, for tests).
+//!   Surfaces whose Rust form may still change are hidden: scenes with them are files. A new material is a file under
+//!   `material/` with a `Reflecting` type and a line in the table of `material`, and a new light a file under `light/`
+//!   with a `LightSource` and a line in the table of `light` (`material::stripes` and `light::sun`, for tests).
 //! - No crate reads scenes or meshes: `scene_text` and `mesh_file` list those that were tried, and where each failed.
 //! - No fixed epsilon: see `SurfacePoint::ray_origin`.
 //! - No effect of the tree's order on the picture: see `Bounds::crossed`.

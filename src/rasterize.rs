@@ -68,7 +68,6 @@ impl Rasterizer {
 
     /// Draws a primitive of an object, at the latest with [`finish`](Self::finish).
     #[inline]
-    #[allow(clippy::match_wildcard_for_single_variants, reason = "tests have one surface more")]
     pub fn draw(&mut self, primitive: &Primitive<'_>, object: u32) {
         match primitive {
             // Spheres and triangles wait until there are eight of a kind, one for each lane of a kernel.

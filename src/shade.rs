@@ -268,8 +268,9 @@ impl Reflect<'_> {
             }
             (material, shape) => {
                 let uv = [N::load(&points.uv[0]), N::load(&points.uv[1])];
-                let direction = self.rays[at].direction.load();
-                material.reflectance(uv, shape.footprint(direction, N::load(&self.hits[at].t), self.direction_steps))
+                let (direction, t) = (self.rays[at].direction.load(), N::load(&self.hits[at].t));
+                let normal = || points.geometric_normal.load();
+                material.reflectance(uv, shape.footprint(direction, t, normal, self.direction_steps))
             }
         }
     }

@@ -11,7 +11,7 @@ mod validator;
 pub use colors::WrittenColor;
 pub use node_reader::{Fields, NodeReader};
 pub(crate) use node_reader::{description, group_of_values, values};
-pub use validator::Validator;
+pub use validator::{Axis, Validator};
 
 use crate::scene_text::{Span, SyntaxNode};
 use std::fmt::Debug;

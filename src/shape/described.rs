@@ -33,7 +33,7 @@ pub trait Described {
 
 /// Delegates the methods of shapes and primitives to the surfaces of the table.
 macro_rules! described {
-    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:meta;)*) => {
+    ($($(#[$on:meta])* $surface:ident, $of:meta;)*) => {
         impl Shape {
             /// Returns the name of the shape's kind: "sphere".
             #[doc(hidden)]
@@ -106,8 +106,12 @@ fn bounds_of(mesh: &Mesh) -> Bounds {
 
 /// Returns the size of a box along each axis, in words.
 pub(super) fn size_in_words(bounds: &Bounds) -> String {
-    let Vec3 { x, y, z } = bounds.extent();
-    // Formatted again as f64 by the standard library, which writes no exponents: they do not belong in prose.
-    let [wide, high, deep] = [x, y, z].map(|side| number(side).parse::<f64>().unwrap_or(f64::from(side)));
+    let [wide, high, deep] = bounds.extent().to_array().map(|side| length_in_words(side.into()));
     format!("{wide} wide, {high} high, {deep} deep")
+}
+
+/// Returns a length, rounded and without an exponent, which does not belong in prose.
+pub(super) fn length_in_words(length: f64) -> String {
+    // Formatted again as f64 by the standard library, which writes no exponents.
+    number(length as f32).parse().unwrap_or(length).to_string()
 }

@@ -1,7 +1,8 @@
 //! Implicit surfaces: the points within bounds where a formula is 0 and changes its sign.
 
+use super::cuboid::WrittenBox;
 use super::described::size_in_words;
-use super::{CheckedShape, Described, Equation, Meshes, Points, Shape, Step, Surface, SurfacePoint};
+use super::{CheckedShape, Cuboid, Described, Equation, Meshes, Points, Shape, Step, Surface, SurfacePoint};
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
 use crate::formula::{Formula, Line, Searches, Solver, is_free_name};
@@ -230,7 +231,7 @@ pub struct WrittenImplicit {
 /// The bounds of a formula as written.
 #[derive(Clone, Debug, PartialEq)]
 enum WrittenBounds {
-    Box { min: Option<WrittenVector>, max: Option<WrittenVector>, span: Span },
+    Box(WrittenBox),
     Sphere { center: Option<WrittenVector>, radius: Option<WrittenNumber> },
 }
 
@@ -262,9 +263,7 @@ fn read_bounds(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Wri
     const FORM: &str = "bounds Box(min: ..., max: ...) or Sphere(center: ..., radius: ...)";
     if reader.group_name(node, "a bound", FORM, &["Box", "Sphere"])? == "Box" {
         let fields = reader.fields(node, "a Box", "Box(min: ..., max: ...)", &["min", "max"])?;
-        let min = reader.required(&fields, "min", NodeReader::point);
-        let max = reader.required(&fields, "max", NodeReader::point);
-        return Some(WrittenBounds::Box { min, max, span: node.head() });
+        return Some(WrittenBounds::Box(Cuboid::read(reader, &fields)));
     }
     let fields = reader.fields(node, "a Sphere", "Sphere(center: ..., radius: ...)", &["center", "radius"])?;
     let center = reader.required(&fields, "center", NodeReader::point);
@@ -340,13 +339,8 @@ fn check_formula(text: &Spanned<String>, params: &[(String, f64)], validator: &m
 
 fn check_bounds(written: &WrittenBounds, validator: &mut Validator<'_>) -> Option<(Bounds, Option<Ball>)> {
     match *written {
-        WrittenBounds::Box { min, max, span } => {
-            let min = min.and_then(|min| validator.point(min));
-            let max = max.and_then(|max| validator.point(max));
-            let (min, max) = (min?, max?);
-            if !min.cmplt(max).all() {
-                return validator.fault(span, || "each coordinate of min must be less than that of max".to_owned());
-            }
+        WrittenBounds::Box(corners) => {
+            let [min, max] = corners.check(validator)?.map(DVec3::as_vec3);
             Some((Bounds { min, max }, None))
         }
         WrittenBounds::Sphere { center, radius } => {

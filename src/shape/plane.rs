@@ -3,14 +3,14 @@
 use super::equation::finite_quotient;
 use super::{
     AtCrossing, CheckedShape, Crossable, Described, Endless, Equation, Meshes, Points, Shape, Step, Surface,
-    SurfacePoint,
+    SurfacePoint, flat_footprint,
 };
 use crate::bounds::Bounds;
 use crate::checks::{self, SceneFault};
 use crate::lanes::{Lanes, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// A plane: all points x with (x - a).n = 0. It is unbounded, and visible from both sides.
 ///
@@ -77,7 +77,7 @@ impl Plane {
 
 /// Returns the axis u of patterns: the x axis projected into the plane, or the z axis if the normal
 /// is close to x.
-fn pattern_axis(normal: Vec3) -> Vec3 {
+pub(super) fn pattern_axis(normal: Vec3) -> Vec3 {
     // 0.9 keeps the projection longer than 0.43, far from a division by zero.
     let axis = if normal.x.abs() < 0.9 { Vec3::X } else { Vec3::Z };
     (axis - normal * axis.dot(normal)).normalize()
@@ -112,20 +112,16 @@ impl Surface for Plane {
         AtCrossing::points_at(self, &Probe::new(*ray).rays, t).point()
     }
 
-    /// Computes to first order: a ray with direction d + e crosses the plane at t - t e.n / d.n.
-    ///
-    /// Here d is `direction`, and e is one of `direction_steps` (Igehy, Tracing Ray Differentials, 1999).
     #[inline(always)]
-    fn footprint<N: Number>(&self, direction: Vector<N>, t: N, direction_steps: [Vec3; 2]) -> [N; 2] {
-        let (normal, u, v) = (Vector::splat(self.normal), Vector::splat(self.u), Vector::splat(self.v));
-        let [mut along_u, mut along_v] = [N::splat(0.0); 2];
-        for step in direction_steps {
-            let e = Vector::splat(step);
-            let moved = (e - direction * (e.dot(normal) / direction.dot(normal))) * t;
-            along_u = along_u + moved.dot(u).abs();
-            along_v = along_v + moved.dot(v).abs();
-        }
-        [along_u, along_v]
+    fn footprint<N: Number>(
+        &self,
+        direction: Vector<N>,
+        t: N,
+        _: impl Fn() -> Vector<N>,
+        direction_steps: [Vec3; 2],
+    ) -> [N; 2] {
+        let [normal, u, v] = [self.normal, self.u, self.v].map(Vector::splat);
+        flat_footprint(direction, t, normal, [u, v], direction_steps)
     }
 }
 
@@ -158,20 +154,23 @@ impl Described for Plane {
         format!("an endless {color} plane")
     }
 
-    /// Solves t = (a - o).n / d.n, for a point a of the plane.
     fn equation(&self, ray: &Ray) -> Equation {
-        let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
-        let (a, n) = (self.point.as_dvec3(), self.normal.as_dvec3());
-        let (above, below) = ((a - o).dot(n), d.dot(n));
-        let t = finite_quotient(above, below);
-        let steps = vec![
-            Step::Text("(o + t d - a).n = 0"),
-            Step::Value("(a-o).n", above),
-            Step::Value("d.n", below),
-            Step::Value("t = (a-o).n / d.n", t.unwrap_or_default()),
-        ];
-        Equation { steps, roots: t.into_iter().collect(), without_root: "parallel", is_outside: false }
+        equation(ray, self.point.as_dvec3(), self.normal.as_dvec3())
     }
+}
+
+/// Solves t = (a - o).n / d.n, for a point a of a plane and its normal n.
+pub(super) fn equation(ray: &Ray, a: DVec3, n: DVec3) -> Equation {
+    let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+    let (above, below) = ((a - o).dot(n), d.dot(n));
+    let t = finite_quotient(above, below);
+    let steps = vec![
+        Step::Text("(o + t d - a).n = 0"),
+        Step::Value("(a-o).n", above),
+        Step::Value("d.n", below),
+        Step::Value("t = (a-o).n / d.n", t.unwrap_or_default()),
+    ];
+    Equation { steps, roots: t.into_iter().collect(), without_root: "parallel", is_outside: false }
 }
 
 /// A plane as written: `Plane(point: ..., normal: ...)`.

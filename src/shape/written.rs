@@ -32,7 +32,7 @@ pub trait Meshes {
 
 /// Defines [`WrittenShape`] from the table of surfaces.
 macro_rules! written {
-    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:meta;)*) => {
+    ($($(#[$on:meta])* $surface:ident, $of:meta;)*) => {
         written! { all $($(#[$on])* $surface,)* Mesh, }
     };
     (all $($(#[$on:meta])* $surface:ident,)*) => {
@@ -105,7 +105,7 @@ surfaces! { written }
 
 /// Defines the methods of [`Shape`] that return constants of its kind, from the table of surfaces.
 macro_rules! of_kind {
-    ($($(#[$on:meta])* $group:ident $name:ident: $surface:ident as $kept:ty, $of:meta;)*) => {
+    ($($(#[$on:meta])* $surface:ident, $of:meta;)*) => {
         impl Shape {
             /// Returns the name of the kind of shape with an article, for messages: "a Sphere".
             pub(crate) fn owner(&self) -> &'static str {

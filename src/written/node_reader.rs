@@ -34,6 +34,11 @@ impl<'n> Fields<'n> {
         self.field(name).map(|field| &field.value)
     }
 
+    /// Returns the span of the name before the fields, for faults of the whole group.
+    pub(crate) fn head(&self) -> Span {
+        self.head
+    }
+
     /// Returns whether the field is given, under its name or a misspelt one.
     pub(crate) fn is_given(&self, name: &str) -> bool {
         self.misspelt.contains(&name) || self.field(name).is_some()
@@ -307,12 +312,16 @@ fn is_word(node: &SyntaxNode<'_>, word: &str) -> bool {
 ///
 /// Its name has a similar spelling, or is called `name` in other programs.
 fn meant_field(name: &str, known: &[&'static str]) -> Option<&'static str> {
-    const ALSO_CALLED: [(&str, &str); 8] = [
+    const ALSO_CALLED: [(&str, &str); 12] = [
         ("look_at", "target"),
         ("lookat", "target"),
         ("from", "eye"),
         ("position", "eye"),
         ("position", "center"),
+        ("start", "from"),
+        ("end", "to"),
+        ("thickness", "tube_radius"),
+        ("tube", "tube_radius"),
         ("power", "intensity"),
         ("color", "material"),
         ("color", "reflectance"),

@@ -66,11 +66,38 @@ impl Validator<'_> {
         Some(to_linear(written))
     }
 
+    /// Checks that two points are apart, and returns the axis from the first to the second.
+    pub(crate) fn axis(&mut self, ends: [Option<WrittenVector>; 2]) -> Option<Axis> {
+        let [from, to] = ends.map(|end| self.coordinates(end?));
+        let (from, to, span) = (from?, to?, ends[1]?.span);
+        let length = (to - from).length();
+        let length = self.accept(span, checks::distance("from", "to", length))?;
+        Some(Axis { middle: (from + to) * 0.5, direction: (to - from) / length, half_length: 0.5 * length })
+    }
+
     /// Returns a vector scaled to unit length, in f64, so that the caller rounds only once; `what`
     /// is its name for messages.
     pub(crate) fn unit_vector(&mut self, what: &str, written: WrittenVector) -> Option<DVec3> {
         let vector = self.coordinates(written)?;
         self.accept(written.span, checks::unit_vector(what, vector))
+    }
+}
+
+/// The axis of a shape between two points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axis {
+    /// The point in the middle.
+    pub middle: DVec3,
+    /// The direction from the first point to the second. Unit length.
+    pub direction: DVec3,
+    /// Half the distance between both points.
+    pub half_length: f64,
+}
+
+impl Axis {
+    /// Returns both ends, relative to the middle.
+    pub(crate) fn ends(&self) -> [DVec3; 2] {
+        [self.direction * -self.half_length, self.direction * self.half_length]
     }
 }
 

@@ -14,5 +14,6 @@ mod povray;
 mod properties;
 mod rasterized;
 mod sampling;
+mod shapes;
 mod tilted;
 mod triangles;

@@ -110,7 +110,7 @@ fn distance_to(shape: &Shape, x: DVec3) -> f64 {
             let [a, b, c] = triangle.corners().map(Vec3::as_dvec3);
             (x - a).dot((b - a).cross(c - a).normalize())
         }
-        Primitive::Facet(_) | Primitive::Implicit(_) => unreachable!("there is no mesh or formula here"),
+        _ => unreachable!("there are no other shapes here"),
     }
 }
 
@@ -132,7 +132,7 @@ fn crossings(shape: &Shape, ray: &Ray) -> Vec<f64> {
             let ([second, third], t) = shares_and_t(triangle, ray);
             if second >= 0.0 && third >= 0.0 && second + third <= 1.0 { vec![t] } else { Vec::new() }
         }
-        Primitive::Facet(_) | Primitive::Implicit(_) => unreachable!("there is no mesh or formula here"),
+        _ => unreachable!("there are no other shapes here"),
     };
     found.into_iter().filter(|t| t.is_finite() && *t >= 0.0).collect()
 }
@@ -199,7 +199,7 @@ proptest! {
                 let from_edge = second.min(third).min(1.0 - second - third).abs();
                 !t.is_finite() || t.abs() > 1e3 || from_edge < 1e-3
             }
-            Primitive::Facet(_) | Primitive::Implicit(_) => unreachable!("there is no mesh or formula here"),
+            _ => unreachable!("there are no other shapes here"),
         });
         prop_assume!(!grazes && closest > 1e-4 && !(1e3..f64::INFINITY).contains(&closest));
         match found {
@@ -326,7 +326,7 @@ fn scaled(shape: &Shape, s: f32) -> Shape {
         Primitive::Sphere(sphere) => Sphere::unchecked(sphere.center() * s, sphere.radius() * s).into(),
         Primitive::Plane(plane) => Plane::unchecked(plane.point() * s, plane.normal()).into(),
         Primitive::Triangle(triangle) => Triangle::unchecked(triangle.corners().map(|corner| corner * s)).into(),
-        Primitive::Facet(_) | Primitive::Implicit(_) => unreachable!("there is no mesh or formula here"),
+        _ => unreachable!("there are no other shapes here"),
     }
 }
 

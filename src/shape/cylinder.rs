@@ -1,0 +1,149 @@
+//! Cylinders, with caps or open.
+
+use super::described::length_in_words;
+use super::exact::{self, Crossings, Exact, Inside, extent_of_circle, rounded_outward};
+use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
+use crate::bounds::Bounds;
+use crate::formula::Line;
+use crate::ray::Ray;
+use crate::written::{Axis, Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
+use glam::{DVec3, Vec3};
+
+/// The parts of a cylinder or cone: the side, and the caps at both ends.
+pub(super) const SIDE: u8 = 0;
+pub(super) const CAPS: [u8; 2] = [1, 2];
+
+/// A cylinder: all points x at one distance r from an axis a, between two caps.
+///
+/// |x|^2 - (x.a)^2 = r^2.
+#[doc(hidden)]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cylinder {
+    axis: Axis,
+    radius: f64,
+    /// Whether the cylinder has no caps.
+    open: bool,
+    bounds: Bounds,
+}
+
+impl Cylinder {
+    fn new(axis: Axis, radius: f64, open: bool) -> Self {
+        let bounds = axis.bounds_of_circles([radius; 2]);
+        Self { axis, radius, open, bounds }
+    }
+}
+
+impl Axis {
+    /// Returns the smallest box around the circles of these radii about both ends.
+    pub(super) fn bounds_of_circles(&self, radii: [f64; 2]) -> Bounds {
+        let [from, to] = self.ends().map(|end| self.middle + end);
+        let [wide, narrow] = radii.map(|radius| extent_of_circle(self.direction) * radius);
+        rounded_outward((from - wide).min(to - narrow), (from + wide).max(to + narrow))
+    }
+
+    /// Returns the part of a line between the ends.
+    pub(super) fn slab(&self, line: &Line, parts: [u8; 2]) -> Inside {
+        let [along, change] = [line.origin, line.direction].map(|vector| vector.dot(self.direction));
+        Inside::slab(along, change, [-self.half_length, self.half_length], parts)
+    }
+
+    /// Returns the part of a vector that is perpendicular to the axis.
+    pub(super) fn across(&self, vector: DVec3) -> DVec3 {
+        vector - self.direction * vector.dot(self.direction)
+    }
+
+    /// Returns the outward normal of a cap.
+    pub(super) fn normal_of_cap(&self, part: u8) -> DVec3 {
+        if part == CAPS[0] { -self.direction } else { self.direction }
+    }
+
+    /// Returns the line of a ray, relative to the end `from`.
+    pub(super) fn line_from_start(&self, ray: &Ray) -> Line {
+        let start = self.middle + self.ends()[0];
+        Line { origin: ray.origin.as_dvec3() - start, direction: ray.direction.as_dvec3() }
+    }
+}
+
+impl Exact for Cylinder {
+    fn bounding_box(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    fn center(&self) -> DVec3 {
+        self.axis.middle
+    }
+
+    fn crossings(&self, line: &Line) -> Crossings {
+        let [origin, direction] = [line.origin, line.direction].map(|vector| self.axis.across(vector));
+        let (side, between) = (Inside::ball(origin, direction, self.radius), self.axis.slab(line, CAPS));
+        if self.open { side.crossings_within(&between) } else { side.and(between).crossings() }
+    }
+
+    fn normal(&self, part: u8, at: DVec3) -> DVec3 {
+        if part == SIDE { self.axis.across(at) } else { self.axis.normal_of_cap(part) }
+    }
+}
+
+impl Described for Cylinder {
+    const KIND: &'static str = "cylinder";
+
+    fn described(&self, color: &str) -> String {
+        let [radius, length] = [self.radius, 2.0 * self.axis.half_length].map(length_in_words);
+        format!("a {color} {}cylinder of radius {radius} and length {length}", if self.open { "open " } else { "" })
+    }
+
+    /// Solves A t^2 + 2 B t + C = 0 for the endless cylinder, with x from the end `from`.
+    fn equation(&self, ray: &Ray) -> Equation {
+        let line = self.axis.line_from_start(ray);
+        let [o, d] = [line.origin, line.direction].map(|vector| self.axis.across(vector));
+        let steps = vec![
+            Step::Text("|x|^2 - (x.a)^2 - r^2 = 0"),
+            Step::Text("x = o + t d - from, a its axis"),
+            Step::Text("A t^2 + 2 B t + C = 0"),
+            Step::Value("A = d.d - (d.a)^2", d.dot(d)),
+            Step::Value("B", o.dot(d)),
+            Step::Value("C", o.dot(o) - self.radius * self.radius),
+            Step::Text("and 0 <= x.a <= length"),
+        ];
+        exact::equation(self, ray, steps)
+    }
+
+    fn encloses(&self, point: Vec3) -> bool {
+        let from_middle = point.as_dvec3() - self.axis.middle;
+        let is_between = from_middle.dot(self.axis.direction).abs() < self.axis.half_length;
+        !self.open && is_between && self.axis.across(from_middle).length() < self.radius
+    }
+}
+
+/// A cylinder as written: `Cylinder(from: ..., to: ..., radius: ...)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenCylinder {
+    ends: [Option<WrittenVector>; 2],
+    radius: Option<WrittenNumber>,
+    open: Option<bool>,
+}
+
+impl InSceneFile for Cylinder {
+    type Written = WrittenCylinder;
+
+    const NAME: &'static str = "Cylinder";
+    const OWNER: &'static str = "a Cylinder";
+    const FORM: &'static str = "Cylinder(from: ..., to: ..., radius: ...)";
+    const FIELDS: &'static [&'static str] = &["from", "to", "radius", "open", "material"];
+
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenCylinder {
+        WrittenCylinder {
+            ends: ["from", "to"].map(|end| reader.required(fields, end, NodeReader::point)),
+            radius: reader.required(fields, "radius", NodeReader::number),
+            open: reader.optional(fields, "open", NodeReader::boolean),
+        }
+    }
+}
+
+impl CheckedShape for Cylinder {
+    fn check(written: &WrittenCylinder, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
+        let axis = validator.axis(written.ends);
+        let radius = written.radius.and_then(|radius| validator.length("radius", radius));
+        Some(Self::new(axis?, radius?.into(), written.open == Some(true)).into())
+    }
+}

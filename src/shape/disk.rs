@@ -1,0 +1,120 @@
+//! Disks: the part of a plane within a circle.
+
+use super::described::length_in_words;
+use super::exact::{Crossing, Crossings, Exact, extent_of_circle, rounded_outward};
+use super::plane::{self, pattern_axis};
+use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
+use crate::bounds::Bounds;
+use crate::formula::Line;
+use crate::ray::Ray;
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
+use glam::{DVec3, Vec3};
+
+/// A disk: all points x with (x - c).n = 0 and |x - c| <= r. It is visible from both sides.
+#[doc(hidden)]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Disk {
+    center: DVec3,
+    normal: DVec3,
+    radius: f64,
+    /// The axes of patterns.
+    axes: [Vec3; 2],
+    bounds: Bounds,
+}
+
+impl Disk {
+    fn new(center: DVec3, normal: DVec3, radius: f64) -> Self {
+        let extent = extent_of_circle(normal) * radius;
+        let u = pattern_axis(normal.as_vec3());
+        let axes = [u, u.cross(normal.as_vec3())];
+        Self { center, normal, radius, axes, bounds: rounded_outward(center - extent, center + extent) }
+    }
+}
+
+impl Exact for Disk {
+    fn bounding_box(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// Returns no crossing for a ray in the plane of the disk, which shows its edge.
+    fn crossings(&self, Line { origin, direction }: &Line) -> Crossings {
+        let mut crossings = Crossings::NONE;
+        let t = -origin.dot(self.normal) / direction.dot(self.normal);
+        let at = *origin + *direction * t;
+        if t.is_finite() && at.dot(at) <= self.radius * self.radius {
+            crossings.push(Crossing { t, part: 0 });
+        }
+        crossings
+    }
+
+    fn normal(&self, _: u8, _: DVec3) -> DVec3 {
+        self.normal
+    }
+
+    fn pattern_origin(&self) -> DVec3 {
+        self.center
+    }
+
+    fn pattern_axes(&self, _: Vec3) -> Option<[Vec3; 2]> {
+        Some(self.axes)
+    }
+}
+
+impl Described for Disk {
+    const KIND: &'static str = "disk";
+
+    fn described(&self, color: &str) -> String {
+        format!("a {color} disk of radius {}", length_in_words(self.radius))
+    }
+
+    /// Solves t = (c - o).n / d.n for the plane of the disk.
+    fn equation(&self, ray: &Ray) -> Equation {
+        let mut equation = plane::equation(ray, self.center, self.normal);
+        if let Some(&t) = equation.roots.first() {
+            let from_center = (ray.origin.as_dvec3() + ray.direction.as_dvec3() * t).distance(self.center);
+            equation.steps.push(Step::Value("|o + t d - a|", from_center));
+            equation.is_outside = from_center > self.radius;
+        }
+        equation
+    }
+}
+
+/// A disk as written: `Disk(center: ..., normal: ..., radius: ...)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenDisk {
+    center: Option<WrittenVector>,
+    normal: Option<WrittenVector>,
+    radius: Option<WrittenNumber>,
+}
+
+impl InSceneFile for Disk {
+    type Written = WrittenDisk;
+
+    const NAME: &'static str = "Disk";
+    const OWNER: &'static str = "a Disk";
+    const FORM: &'static str = "Disk(center: ..., normal: ..., radius: ...)";
+    const FIELDS: &'static [&'static str] = &["center", "normal", "radius", "material"];
+
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenDisk {
+        WrittenDisk {
+            center: reader.required(fields, "center", NodeReader::point),
+            normal: reader.required(fields, "normal", NodeReader::direction),
+            radius: reader.required(fields, "radius", NodeReader::number),
+        }
+    }
+}
+
+impl CheckedShape for Disk {
+    const HAS_COORDINATES: bool = true;
+
+    fn check(written: &WrittenDisk, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
+        let center = written.center.and_then(|center| validator.coordinates(center));
+        let normal = written.normal.and_then(|normal| validator.unit_vector("normal", normal));
+        let radius = written.radius.and_then(|radius| validator.length("radius", radius));
+        Some(Self::new(center?, normal?, radius?.into()).into())
+    }
+}

@@ -1,0 +1,99 @@
+//! Ellipsoids along the axes.
+
+use super::described::size_in_words;
+use super::exact::{self, Crossings, Exact, Inside, rounded_outward};
+use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
+use crate::bounds::Bounds;
+use crate::formula::Line;
+use crate::ray::Ray;
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
+use glam::{DVec3, Vec3};
+
+/// An ellipsoid: all points x with |(x - c) / r|^2 = 1, divided by the radius along each axis.
+#[doc(hidden)]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ellipsoid {
+    center: DVec3,
+    radii: DVec3,
+    bounds: Bounds,
+}
+
+impl Exact for Ellipsoid {
+    fn bounding_box(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// Intersects with the ball that the ellipsoid is a scaled copy of.
+    fn crossings(&self, line: &Line) -> Crossings {
+        Inside::ball(line.origin / self.radii, line.direction / self.radii, 1.0).crossings()
+    }
+
+    fn normal(&self, _: u8, at: DVec3) -> DVec3 {
+        at / self.radii / self.radii
+    }
+}
+
+impl Described for Ellipsoid {
+    const KIND: &'static str = "ellipsoid";
+
+    fn described(&self, color: &str) -> String {
+        format!("a {color} ellipsoid, {}", size_in_words(&self.bounds))
+    }
+
+    /// Solves A t^2 + 2 B t + C = 0, as for a sphere, for the line divided by the radii.
+    fn equation(&self, ray: &Ray) -> Equation {
+        let d = ray.direction.as_dvec3() / self.radii;
+        let from_center = (ray.origin.as_dvec3() - self.center) / self.radii;
+        let steps = vec![
+            Step::Text("|(o + t d - c) / r|^2 - 1 = 0"),
+            Step::Text("e = d / r, f = (o - c) / r"),
+            Step::Text("A t^2 + 2 B t + C = 0"),
+            Step::Value("A = e.e", d.dot(d)),
+            Step::Value("B = f.e", from_center.dot(d)),
+            Step::Value("C = f.f - 1", from_center.dot(from_center) - 1.0),
+        ];
+        exact::equation(self, ray, steps)
+    }
+
+    fn encloses(&self, point: Vec3) -> bool {
+        ((point.as_dvec3() - self.center) / self.radii).length() < 1.0
+    }
+}
+
+/// An ellipsoid as written: `Ellipsoid(center: ..., radii: ...)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenEllipsoid {
+    center: Option<WrittenVector>,
+    radii: Option<[WrittenNumber; 3]>,
+}
+
+impl InSceneFile for Ellipsoid {
+    type Written = WrittenEllipsoid;
+
+    const NAME: &'static str = "Ellipsoid";
+    const OWNER: &'static str = "an Ellipsoid";
+    const FORM: &'static str = "Ellipsoid(center: ..., radii: (..., ..., ...))";
+    const FIELDS: &'static [&'static str] = &["center", "radii", "material"];
+
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenEllipsoid {
+        WrittenEllipsoid {
+            center: reader.required(fields, "center", NodeReader::point),
+            radii: reader
+                .required(fields, "radii", |reader, node| reader.numbers(node, "the radii along x, y and z (x, y, z)")),
+        }
+    }
+}
+
+impl CheckedShape for Ellipsoid {
+    fn check(written: &WrittenEllipsoid, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
+        let center = written.center.and_then(|center| validator.coordinates(center));
+        let radii = written.radii?.map(|radius| validator.length("radius", radius));
+        let (center, [Some(x), Some(y), Some(z)]) = (center?, radii) else { return None };
+        let radii = Vec3::new(x, y, z).as_dvec3();
+        Some(Self { center, radii, bounds: rounded_outward(center - radii, center + radii) }.into())
+    }
+}

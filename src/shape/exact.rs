@@ -1,0 +1,259 @@
+//! Bounded surfaces whose crossings are computed in f64, and rounded to f32 once.
+//!
+//! f64 has 29 bits more than the rays, the t and the points of a picture. The lecture's equations need none of the care
+//! there that they need in f32 (see [`sphere`](super::sphere)), and each surface has its formula only once. A ray that
+//! touches a surface, or that passes through an edge between two of its parts, is decided by one computation for all
+//! kernels. The price is speed: surfaces are tested one by one.
+
+use super::equation::{Equation, Step};
+use super::{Points, Surface, SurfacePoint, flat_footprint};
+use crate::bounds::Bounds;
+use crate::formula::Line;
+use crate::lanes::{Number, Vector};
+use crate::ray::{Interval, Probe, Ray, nearest_in};
+use glam::{DVec3, Vec3};
+
+/// The most crossings of a line and a surface: those of a torus.
+const MAX_CROSSINGS: usize = 4;
+
+/// The most crossings that an explanation shows, in front of the eye if there are enough.
+const MAX_SHOWN: usize = 2;
+
+/// The size of the rounding errors of positions, relative to the size of the surface.
+// The error in f64 is below 1e-13 of the size for rays that start up to 1,000 sizes away.
+const RELATIVE_ERROR: f32 = 1e-6;
+
+/// A bounded surface whose crossings with a line follow from a formula in f64.
+///
+/// Lines and points are relative to the [centre](Self::center).
+pub(crate) trait Exact {
+    /// Returns the smallest box around the surface.
+    fn bounding_box(&self) -> &Bounds;
+
+    /// Returns the middle of the surface.
+    fn center(&self) -> DVec3;
+
+    /// Returns the crossings of a line whose origin is its point next to the centre.
+    fn crossings(&self, line: &Line) -> Crossings;
+
+    /// Returns the outward normal of a part of the surface at a point of it, with any length.
+    fn normal(&self, part: u8, at: DVec3) -> DVec3;
+
+    /// Returns the origin of patterns.
+    fn pattern_origin(&self) -> DVec3 {
+        DVec3::ZERO
+    }
+
+    /// Returns the axes u and v of patterns where the surface has a given normal, if it has any.
+    fn pattern_axes(&self, _normal: Vec3) -> Option<[Vec3; 2]> {
+        None
+    }
+}
+
+/// A crossing of a line and a surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossing {
+    /// The t of the crossing.
+    pub(crate) t: f64,
+    /// The part of the surface, such as a face or a cap.
+    pub(crate) part: u8,
+}
+
+/// Up to four crossings, in ascending order.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossings {
+    found: [Crossing; MAX_CROSSINGS],
+    count: usize,
+}
+
+impl Crossings {
+    /// No crossings.
+    pub(crate) const NONE: Self = Self { found: [Crossing { t: 0.0, part: 0 }; MAX_CROSSINGS], count: 0 };
+
+    /// Adds a crossing whose t is not less than that of any other; a fifth one is left out.
+    pub(crate) fn push(&mut self, crossing: Crossing) {
+        if let Some(free) = self.found.get_mut(self.count) {
+            *free = crossing;
+            self.count += 1;
+        }
+    }
+
+    /// Returns the crossings.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Crossing> {
+        self.found.into_iter().take(self.count)
+    }
+}
+
+/// The part of a line inside a convex solid: the crossings at both ends.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Inside {
+    /// The crossing at which the line enters.
+    pub(crate) enters: Crossing,
+    /// The crossing at which the line leaves; before `enters` if no part is inside.
+    pub(crate) leaves: Crossing,
+}
+
+impl Inside {
+    /// The whole line.
+    pub(crate) const ALL: Self = Self::of([f64::NEG_INFINITY, f64::INFINITY], [0; 2]);
+
+    /// No part of the line.
+    pub(crate) const NOTHING: Self = Self::of([f64::INFINITY, f64::NEG_INFINITY], [0; 2]);
+
+    /// Returns the interval between two t, with the parts of the surface at its ends.
+    pub(crate) const fn of([enters, leaves]: [f64; 2], parts: [u8; 2]) -> Self {
+        Self { enters: Crossing { t: enters, part: parts[0] }, leaves: Crossing { t: leaves, part: parts[1] } }
+    }
+
+    /// Returns the interval in which `origin + t * direction` is between two numbers.
+    pub(crate) fn slab(origin: f64, direction: f64, [min, max]: [f64; 2], parts: [u8; 2]) -> Self {
+        if direction == 0.0 {
+            return if (min..=max).contains(&origin) { Self::ALL } else { Self::NOTHING };
+        }
+        let [to_min, to_max] = [(min - origin) / direction, (max - origin) / direction];
+        if direction > 0.0 {
+            Self::of([to_min, to_max], parts)
+        } else {
+            Self::of([to_max, to_min], [parts[1], parts[0]])
+        }
+    }
+
+    /// Returns the interval in which |origin + t * direction| is at most `radius`.
+    pub(crate) fn ball(origin: DVec3, direction: DVec3, radius: f64) -> Self {
+        let squared = direction.dot(direction);
+        if squared == 0.0 {
+            return if origin.dot(origin) <= radius * radius { Self::ALL } else { Self::NOTHING };
+        }
+        let middle = -origin.dot(direction) / squared;
+        let nearest = origin + direction * middle;
+        let under_root = (radius * radius - nearest.dot(nearest)) / squared;
+        if under_root < 0.0 {
+            return Self::NOTHING;
+        }
+        let half = under_root.sqrt();
+        Self::of([middle - half, middle + half], [0; 2])
+    }
+
+    /// Returns whether any part of the line is inside; false for NaN.
+    pub(crate) fn is_any(&self) -> bool {
+        self.enters.t <= self.leaves.t
+    }
+
+    /// Returns the part of the line inside both solids.
+    pub(crate) fn and(self, other: Self) -> Self {
+        let enters = if self.enters.t < other.enters.t { other.enters } else { self.enters };
+        let leaves = if other.leaves.t < self.leaves.t { other.leaves } else { self.leaves };
+        Self { enters, leaves }
+    }
+
+    /// Returns the interval around both intervals.
+    pub(crate) fn around(self, other: Self) -> Self {
+        if !(self.is_any() && other.is_any()) {
+            return if self.is_any() { self } else { other };
+        }
+        let enters = if other.enters.t < self.enters.t { other.enters } else { self.enters };
+        let leaves = if self.leaves.t < other.leaves.t { other.leaves } else { self.leaves };
+        Self { enters, leaves }
+    }
+
+    /// Returns the crossings at both ends.
+    pub(crate) fn crossings(self) -> Crossings {
+        self.crossings_within(&Self::ALL)
+    }
+
+    /// Returns the crossings at both ends that are within another interval.
+    pub(crate) fn crossings_within(self, range: &Self) -> Crossings {
+        let mut crossings = Crossings::NONE;
+        if self.is_any() {
+            let is_within = |crossing: &Crossing| range.enters.t <= crossing.t && crossing.t <= range.leaves.t;
+            [self.enters, self.leaves].into_iter().filter(is_within).for_each(|crossing| crossings.push(crossing));
+        }
+        crossings
+    }
+}
+
+/// Returns the crossings of a surface and the line of a ray.
+fn crossings<S: Exact>(surface: &S, ray: &Ray) -> Crossings {
+    let (direction, from_center) = (ray.direction.as_dvec3(), ray.origin.as_dvec3() - surface.center());
+    // From its point next to the centre on, all numbers of the line are about as large as the surface.
+    let nearest = -from_center.dot(direction) / direction.dot(direction);
+    let mut crossings = surface.crossings(&Line { origin: from_center + direction * nearest, direction });
+    crossings.found.iter_mut().for_each(|crossing| crossing.t += nearest);
+    crossings
+}
+
+/// Returns an equation that ends with the crossings of the line of a ray.
+pub(super) fn equation<S: Exact>(surface: &S, ray: &Ray, mut steps: Vec<Step>) -> Equation {
+    let mut roots: Vec<_> = crossings(surface, ray).iter().map(|crossing| crossing.t).collect();
+    let behind = roots.iter().filter(|&&root| root < 0.0).count();
+    roots.drain(..behind.min(roots.len().saturating_sub(MAX_SHOWN)));
+    roots.truncate(MAX_SHOWN);
+    steps.push(Step::Values("t = ", " or ", roots.clone()));
+    Equation { steps, roots, without_root: "miss", is_outside: false }
+}
+
+/// Returns the smallest box of f32 around a box.
+pub(super) fn rounded_outward(min: DVec3, max: DVec3) -> Bounds {
+    let down = |exact: f64| if f64::from(exact as f32) > exact { (exact as f32).next_down() } else { exact as f32 };
+    let [x, y, z] = min.to_array().map(down);
+    let [far_x, far_y, far_z] = max.to_array().map(|exact| -down(-exact));
+    Bounds { min: Vec3::new(x, y, z), max: Vec3::new(far_x, far_y, far_z) }
+}
+
+/// Returns half the extent along each axis of a circle of radius 1, perpendicular to a unit vector.
+pub(super) fn extent_of_circle(DVec3 { x, y, z }: DVec3) -> DVec3 {
+    DVec3::new((y * y + z * z).sqrt(), (z * z + x * x).sqrt(), (x * x + y * y).sqrt())
+}
+
+impl<S: Exact> Surface for S {
+    fn bounds(&self) -> Option<Bounds> {
+        Some(*self.bounding_box())
+    }
+
+    fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
+        let Interval { min, max } = self.bounding_box().crossed(probe);
+        if !(min <= max && within.min <= max && min <= within.max) {
+            return None;
+        }
+        let found = crossings(self, &probe.ray);
+        let in_box = found.iter().filter(|crossing| crossing.t.is_finite());
+        in_box.map(|crossing| nearest_in(min, max, crossing.t as f32)).find(|&t| within.contains(t))
+    }
+
+    fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
+        let off = |crossing: &Crossing| (crossing.t as f32 - t).abs();
+        let nearest = crossings(self, ray).iter().min_by(|one, other| off(one).total_cmp(&off(other)));
+        let Crossing { t, part } = nearest.unwrap_or(Crossing { t: f64::from(t), part: 0 });
+        let direction = ray.direction.as_dvec3();
+        let position = ray.origin.as_dvec3() + direction * t;
+        let normal = self.normal(part, position - self.center());
+        let length = normal.dot(normal).sqrt();
+        // The tip of a pointed torus has no normal.
+        let normal = if length > 0.0 { normal / length } else { -direction / direction.dot(direction).sqrt() };
+        let normal = normal.as_vec3();
+        let uv = self.pattern_axes(normal).map(|axes| {
+            let from_origin = position - self.pattern_origin();
+            axes.map(|axis| from_origin.dot(axis.as_dvec3()) as f32)
+        });
+        let position = position.as_vec3();
+        let size = position.abs().max_element().max(RELATIVE_ERROR * self.bounding_box().extent().max_element());
+        let rays = Probe::new(*ray).rays;
+        Points::seen_by(&rays, Vector::splat(position), Vector::splat(normal), size, uv.unwrap_or_default()).point()
+    }
+
+    /// Computes lane by lane, which keeps the code short that is compiled for each vector type.
+    fn footprint<N: Number>(
+        &self,
+        direction: Vector<N>,
+        t: N,
+        normal: impl Fn() -> Vector<N>,
+        direction_steps: [Vec3; 2],
+    ) -> [N; 2] {
+        let (Vector { x: dx, y: dy, z: dz }, Vector { x, y, z }) = (direction, normal());
+        N::map_lanes([dx, dy, dz, t, x, y, z], |[dx, dy, dz, t, x, y, z]| {
+            let (direction, normal) = (Vector { x: dx, y: dy, z: dz }, Vector { x, y, z });
+            let axes = self.pattern_axes(normal.into());
+            axes.map_or([0.0; 2], |axes| flat_footprint(direction, t, normal, axes.map(Vector::splat), direction_steps))
+        })
+    }
+}

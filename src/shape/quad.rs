@@ -1,0 +1,147 @@
+//! Quads: rectangles and other parallelograms.
+
+use super::described::length_in_words;
+use super::exact::{Crossing, Crossings, Exact, rounded_outward};
+use super::{CheckedShape, Described, Equation, Meshes, Shape, Step, plane};
+use crate::bounds::Bounds;
+use crate::formula::Line;
+use crate::ray::Ray;
+use crate::scene_text::Span;
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector, values};
+use glam::{DVec3, Vec3};
+
+/// The part of an edge by which a quad is wider at each side.
+// Without it, a ray through a common edge of two quads could miss both, because each computes the point by itself. The
+// part is a million times smaller than that by which f32 rounds a point.
+const OVERLAP: f64 = 1e-13;
+
+/// The least sine of the angle between the edges of a quad.
+const MIN_SINE: f64 = 1e-6;
+
+/// A quad: all points x = corner + s a + t b, with s and t from 0 to 1.
+///
+/// It is visible from both sides.
+#[doc(hidden)]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quad {
+    corner: DVec3,
+    edges: [DVec3; 2],
+    normal: DVec3,
+    /// The vectors whose dot products with a point of the quad are its s and t.
+    shares: [DVec3; 2],
+    bounds: Bounds,
+}
+
+impl Quad {
+    fn new(corner: DVec3, edges: [DVec3; 2]) -> Self {
+        let [a, b] = edges;
+        let normal = a.cross(b);
+        let shares = [b.cross(normal), normal.cross(a)].map(|across| across / normal.dot(normal));
+        let corners = [corner, corner + a, corner + b, corner + a + b];
+        let [min, max] = [DVec3::min, DVec3::max].map(|outer| corners.into_iter().fold(corner, outer));
+        Self { corner, edges, normal, shares, bounds: rounded_outward(min, max) }
+    }
+}
+
+impl Exact for Quad {
+    fn bounding_box(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    fn center(&self) -> DVec3 {
+        self.corner + (self.edges[0] + self.edges[1]) * 0.5
+    }
+
+    fn crossings(&self, Line { origin, direction }: &Line) -> Crossings {
+        let mut crossings = Crossings::NONE;
+        let t = -origin.dot(self.normal) / direction.dot(self.normal);
+        let at = *origin + *direction * t;
+        if t.is_finite() && self.shares.iter().all(|share| share.dot(at).abs() <= 0.5 + OVERLAP) {
+            crossings.push(Crossing { t, part: 0 });
+        }
+        crossings
+    }
+
+    fn normal(&self, _: u8, _: DVec3) -> DVec3 {
+        self.normal
+    }
+
+    fn pattern_origin(&self) -> DVec3 {
+        self.corner
+    }
+
+    /// Returns axes along which the edges have their lengths.
+    fn pattern_axes(&self, _: Vec3) -> Option<[Vec3; 2]> {
+        let axis = |at: usize| (self.shares[at] * self.edges[at].length()).as_vec3();
+        Some([axis(0), axis(1)])
+    }
+}
+
+impl Described for Quad {
+    const KIND: &'static str = "quad";
+
+    fn described(&self, color: &str) -> String {
+        let [a, b] = self.edges.map(|edge| length_in_words(edge.length()));
+        format!("a {color} quad with edges of {a} and {b}")
+    }
+
+    /// Solves t = (a - o).n / d.n for the plane of the quad.
+    fn equation(&self, ray: &Ray) -> Equation {
+        let mut equation = plane::equation(ray, self.corner, self.normal.normalize());
+        if let Some(&t) = equation.roots.first() {
+            let from_corner = ray.origin.as_dvec3() + ray.direction.as_dvec3() * t - self.corner;
+            let shares = self.shares.map(|share| share.dot(from_corner));
+            equation.is_outside = shares.iter().any(|share| !(0.0..=1.0).contains(share));
+            equation.steps.push(Step::Values("edges at ", " ", shares.to_vec()));
+        }
+        equation
+    }
+}
+
+/// A quad as written: `Quad(corner: ..., edges: [..., ...])`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenQuad {
+    corner: Option<WrittenVector>,
+    edges: Option<([WrittenVector; 2], Span)>,
+}
+
+impl InSceneFile for Quad {
+    type Written = WrittenQuad;
+
+    const NAME: &'static str = "Quad";
+    const OWNER: &'static str = "a Quad";
+    const FORM: &'static str = "Quad(corner: ..., edges: [..., ...])";
+    const FIELDS: &'static [&'static str] = &["corner", "edges", "material"];
+
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenQuad {
+        WrittenQuad {
+            corner: reader.required(fields, "corner", NodeReader::point),
+            edges: reader.required(fields, "edges", |reader, node| {
+                let Some(items) = values(node).filter(|items| items.len() == 2) else {
+                    reader.mismatch(node, "two edges [(x, y, z), (x, y, z)]");
+                    return None;
+                };
+                let edges = reader.read_all(items, NodeReader::direction);
+                Some((edges.try_into().ok()?, node.span))
+            }),
+        }
+    }
+}
+
+impl CheckedShape for Quad {
+    const HAS_COORDINATES: bool = true;
+
+    fn check(written: &WrittenQuad, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
+        let corner = written.corner.and_then(|corner| validator.coordinates(corner));
+        let ([a, b], span) = written.edges?;
+        let edges = [a, b].map(|edge| validator.coordinates(edge));
+        let (corner, [Some(a), Some(b)]) = (corner?, edges) else { return None };
+        let area = a.cross(b).length();
+        // Also false for an edge of length 0.
+        if area < MIN_SINE * a.length() * b.length() || area < 1e-18 {
+            let message = "the edges of a quad must have lengths and different directions; no ray would meet it";
+            return validator.fault(span, || message.to_owned());
+        }
+        Some(Self::new(corner, [a, b]).into())
+    }
+}
