@@ -42,6 +42,8 @@ shipped! {
     "off_centre",
     "tilted_rectangle",
     "inside_sphere",
+    "train",
+    "temple",
     "heart",
     "tanglecube",
     "barth",
