@@ -9,8 +9,8 @@
 
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
-use crate::lanes::{F32x8, LANES, Lanes, Number, Vector, set_bits};
-use crate::ray::{CommonOrigin, Interval, Probe, Ray, Rays};
+use crate::lanes::{F32x8, Lanes, Number, Vector, set_bits};
+use crate::ray::{CommonOrigin, EightRays, Interval, Probe, Ray, Rays};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -69,14 +69,18 @@ pub trait Surface {
     /// moved it, so that culling by boxes never drops a hit (`culling.md`, 2).
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32>;
 
-    /// Returns the mask of the rays in `lanes` that cross the surface, and the t of each: as
-    /// [`closest_crossing`](Self::closest_crossing) does.
-    fn closest_crossings(&self, rays: &[Ray; LANES], within: &[Interval; LANES], lanes: u32) -> (u32, F32x8) {
+    /// Returns the mask of the active rays that cross the surface, and the t of each.
+    ///
+    /// The crossings are those of [`closest_crossing`](Self::closest_crossing).
+    ///
+    /// `inside` has the intervals of the surface's box.
+    fn closest_crossings(&self, rays: &EightRays, _inside: &[F32x8; 2], [min, max]: &[F32x8; 2]) -> (u32, F32x8) {
         let (mut crosses, mut t) = (0, F32x8::ZERO);
-        for lane in set_bits(lanes) {
+        for lane in set_bits(rays.active) {
+            let within = Interval { min: min.0[lane], max: max.0[lane] };
             // Recomputes the ray's shared values for each surface, which is simple but slow. Surfaces that must be
             // fast implement `SoaLeaf`.
-            if let Some(crossing) = self.closest_crossing(&Probe::new(rays[lane]), within[lane]) {
+            if let Some(crossing) = self.closest_crossing(&Probe::new(rays.ray(lane)), within) {
                 crosses |= 1 << lane;
                 t.0[lane] = crossing;
             }

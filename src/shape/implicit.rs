@@ -7,7 +7,7 @@ use crate::bounds::Bounds;
 use crate::color::LinearRgb;
 use crate::formula::{Formula, Line, Searches, Solver, is_free_name};
 use crate::lanes::{F32x8, LANES, Vector, set_bits};
-use crate::ray::{Interval, Probe, Ray};
+use crate::ray::{EightRays, Interval, Probe, Ray};
 use crate::scene_text::{Span, SyntaxNode, Value};
 use crate::text::visible;
 use crate::written::{Fields, InSceneFile, NodeReader, Spanned, Validator, WrittenNumber, WrittenVector, values};
@@ -92,9 +92,13 @@ impl Implicit {
 
     /// Returns the part of a ray's line that is within the bounds; it is empty if `min > max`.
     fn within_bounds(&self, probe: &Probe) -> Interval {
-        let of_box = self.0.bounds.crossed(probe);
+        self.within_ball(&probe.ray, self.0.bounds.crossed(probe))
+    }
+
+    /// Returns the part of an interval that is within the ball, if the bounds are one.
+    fn within_ball(&self, ray: &Ray, of_box: Interval) -> Interval {
         let Some(Ball { center, radius }) = self.0.ball else { return of_box };
-        let (d, from_center) = (probe.ray.direction.as_dvec3(), probe.ray.origin.as_dvec3() - center);
+        let (d, from_center) = (ray.direction.as_dvec3(), ray.origin.as_dvec3() - center);
         let (squared, half_b) = (d.dot(d), from_center.dot(d));
         let nearest = from_center - d * (half_b / squared);
         // The root is NaN for a line that misses the ball.
@@ -137,26 +141,29 @@ impl Surface for Implicit {
     }
 
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let (crosses, t) = self.closest_crossings(&[probe.ray; LANES], &[within; LANES], 1);
+        let (inside, splat) = (self.0.bounds.crossed(probe), |number| F32x8([number; LANES]));
+        let (inside, within) = ([inside.min, inside.max].map(splat), [within.min, within.max].map(splat));
+        let (crosses, t) = self.closest_crossings(&EightRays::of(&[probe.ray]), &inside, &within);
         (crosses != 0).then_some(t.0[0])
     }
 
     /// Returns the first roots along up to eight rays, searched together.
-    fn closest_crossings(&self, rays: &[Ray; LANES], within: &[Interval; LANES], lanes: u32) -> (u32, F32x8) {
+    fn closest_crossings(&self, rays: &EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8) {
         let mut searches = Searches::NONE;
-        for lane in set_bits(lanes) {
-            let (ray, within) = (&rays[lane], within[lane]);
-            let inside = self.within_bounds(&Probe::new(*ray));
+        for lane in set_bits(rays.active) {
+            let [of_box, within] = [inside, within].map(|[min, max]| Interval { min: min.0[lane], max: max.0[lane] });
+            let ray = rays.ray(lane);
+            let inside = self.within_ball(&ray, of_box);
             let start = inside.min.max(within.min);
             if start <= within.max {
-                searches.add(lane, &line_of_ray(ray), [start, inside.max], within.max);
+                searches.add(lane, &line_of_ray(&ray), [start, inside.max], within.max);
             }
         }
         if searches.is_empty() {
             return (0, F32x8::ZERO);
         }
         let (found, t) = Solver::new(&self.0.formula).first_roots(&mut searches);
-        let is_within = |lane: &usize| within[*lane].contains(t.0[*lane]);
+        let is_within = |lane: &usize| within[0].0[*lane] <= t.0[*lane] && t.0[*lane] <= within[1].0[*lane];
         (set_bits(found).filter(is_within).fold(0, |lanes, lane| lanes | 1 << lane), t)
     }
 

@@ -1,8 +1,9 @@
 //! A leaf for surfaces whose formula is written for one ray and one surface.
 
 use super::{AtCrossing, Crossable, Points, Side, SoaLeaf, Surface};
+use crate::bounds::crossed;
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Vector, set_bits};
-use crate::ray::{Interval, Ray, Rays};
+use crate::ray::{EightRays, Rays};
 use glam::Vec3;
 use std::array::from_fn;
 use std::sync::Arc;
@@ -28,6 +29,26 @@ impl<S> ScalarLeaf<S> {
     /// Replaces all surfaces by others with the same bounds.
     pub(crate) fn replace(&mut self, by: impl Fn(&S) -> S) {
         self.surfaces = self.surfaces.iter().map(by).collect();
+    }
+
+    /// Returns the mask of the active rays that cross the surfaces of their lanes, and the t of each.
+    fn crossings(&self, mut rays: EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8)
+    where
+        S: Surface,
+    {
+        let (mut crosses, mut t, mut left) = (0, F32x8::ZERO, rays.active);
+        while let Some(first) = set_bits(left).next() {
+            // All lanes of one surface together.
+            let is_same = |lane: &usize| self.lanes[*lane] == self.lanes[first];
+            rays.active = set_bits(left).filter(is_same).fold(0, |lanes, lane| lanes | 1 << lane);
+            left &= !rays.active;
+            // Unused lanes have no surface.
+            let Some(surface) = self.surface(first) else { continue };
+            let (found, crossings) = surface.closest_crossings(&rays, inside, within);
+            set_bits(found).for_each(|lane| t.0[lane] = crossings.0[lane]);
+            crosses |= found;
+        }
+        (crosses, t)
     }
 
     /// Returns the surface that the leaf holds in `lane`, or `None` if the lane is unused.
@@ -77,30 +98,25 @@ impl<S: Surface + Clone + Send + Sync> SoaLeaf for ScalarLeaf<S> {
 }
 
 impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
+    #[inline(always)]
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
         self.first_crossing_until(rays, [min, N::splat(f32::MAX)])
     }
 
-    fn first_crossing_until(&self, rays: &Rays<N>, range: [N; 2]) -> Option<(N::Mask, N)> {
-        let ([min, max], mut crosses, mut t) = (range.map(N::store), 0, F32x8::ZERO);
-        let within = from_fn(|lane| Interval { min: min.0[lane], max: max.0[lane] });
-        let each = from_fn(|lane| ray_of(rays, lane));
-        let is_used = |lane: &usize| within[*lane].min <= within[*lane].max && self.surface(*lane).is_some();
-        let mut left = (0..LANES).filter(is_used).fold(0, |lanes, lane| lanes | 1 << lane);
-        while let Some(first) = set_bits(left).next()
-            && let Some(surface) = self.surface(first)
-        {
-            // All lanes of one surface together.
-            let is_same = |lane: &usize| self.lanes[*lane] == self.lanes[first];
-            let lanes = set_bits(left).filter(is_same).fold(0, |lanes, lane| lanes | 1 << lane);
-            let (found, crossings) = surface.closest_crossings(&each, &within, lanes);
-            set_bits(found).for_each(|lane| t.0[lane] = crossings.0[lane]);
-            crosses |= found;
-            left &= !lanes;
+    // Without inlining, each load and store is a call: for rays that miss the box that took most of the time.
+    #[inline(always)]
+    fn first_crossing_until(&self, rays: &Rays<N>, [min, max]: [N; 2]) -> Option<(N::Mask, N)> {
+        let [enters, leaves] = crossed(Crossable::<N>::boxes(self), rays);
+        let active = enters.max(min).le(leaves.min(max)).bits();
+        if active == 0 {
+            return None;
         }
+        let rays = EightRays { origin: rays.origin.store(), direction: rays.direction.store(), active };
+        let (crosses, t) = self.crossings(rays, &[enters.store(), leaves.store()], &[min.store(), max.store()]);
         (crosses != 0).then(|| (N::mask_from_bits(crosses), N::load(&t)))
     }
 
+    #[inline(always)]
     fn boxes(&self) -> [Vector<N>; 2] {
         let bounds = |lane: usize| self.surface(lane).and_then(Surface::bounds);
         // Unused lanes have an inverted infinite box, which no ray hits.
@@ -111,11 +127,13 @@ impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
 }
 
 impl<S: Surface, N: Lanes> AtCrossing<N> for ScalarLeaf<S> {
+    #[inline(always)]
     fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N> {
-        let t = t.store();
+        let (t, rays) =
+            (t.store(), EightRays { origin: rays.origin.store(), direction: rays.direction.store(), active: 0 });
         let points = from_fn::<_, LANES, _>(|lane| {
             let surface = self.surface(lane)?;
-            Some(surface.at_crossing(&ray_of(rays, lane), t.0[lane]))
+            Some(surface.at_crossing(&rays.ray(lane), t.0[lane]))
         });
         let (mut position, mut geometric_normal) = (Vector::ZERO, Vector::ZERO);
         let (mut is_front, mut clearance, mut uv) = (0, F32x8::ZERO, [F32x8::ZERO; 2]);
@@ -135,9 +153,4 @@ impl<S: Surface, N: Lanes> AtCrossing<N> for ScalarLeaf<S> {
             uv: [N::load(&uv[0]), N::load(&uv[1])],
         }
     }
-}
-
-/// Returns the ray of `lane`.
-fn ray_of<N: Lanes>(rays: &Rays<N>, lane: usize) -> Ray {
-    Ray { origin: rays.origin.store().of_lane(lane), direction: rays.direction.store().of_lane(lane) }
 }
