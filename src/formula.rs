@@ -3,9 +3,12 @@
 //! `parse` reads the text into a `tape`, a list of operations in which equal terms are shared. `point` evaluates the
 //! tape in f64; `model` encloses its values on a piece of a ray by a quadratic polynomial and a bound of its error;
 //! `roots` walks along the ray with these enclosures, so that no sign change is stepped over, on eight rays at once,
-//! for which `packet` computes the models in f32.
+//! for which `packet` computes the models in f32. `bracket` takes the last steps
+//! to the roots.
 
+mod bracket;
 mod check;
+mod elementary;
 mod model;
 mod packet;
 mod parse;

@@ -6,55 +6,18 @@
 //! counts on a busy machine.
 
 mod march;
+mod pictures;
 
 use glam::Vec3;
 use march::MarchedRays;
+use pictures::{CAMERAS, FORMULAS, range, rays};
 use rustix::time::{ClockId, clock_gettime};
 use std::array::from_fn;
 use termtrace::Scene;
-use termtrace::internals::hit::{Kernel, closest_hits};
+use termtrace::internals::hit::{EightHits, Kernel, any_hits, closest_hits};
 use termtrace::internals::lanes::{F32x8, LANES};
-use termtrace::internals::ray::{EightRays, Ray};
-
-/// The formulas, in the order of those written by hand, and half the side of the cube of each.
-const FORMULAS: [(&str, &str, f32); 12] = [
-    ("sphere", "x^2 + y^2 + z^2 - 1", 1.1),
-    ("tanglecube", "x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8", 2.5),
-    ("heart", "(x^2 + 9/4*z^2 + y^2 - 1)^3 - x^2*y^3 - 9/80*z^2*y^3", 1.35),
-    (
-        "barth",
-        "a = phi^2*x^2 - y^2; b = phi^2*y^2 - z^2; c = phi^2*z^2 - x^2;
-         4*a*b*c - (1 + 2*phi)*(x^2 + y^2 + z^2 - 1)^2",
-        1.75,
-    ),
-    ("cayley", "4*(x^2 + y^2 + z^2) + 16*x*y*z - 1", 1.2),
-    ("gyroid", "max(sin(6*x)*cos(6*y) + sin(6*y)*cos(6*z) + sin(6*z)*cos(6*x), x^2 + y^2 + z^2 - 1)", 1.1),
-    (
-        "metaballs",
-        "0.5 - exp(-4*((x - 0.5)^2 + y^2 + z^2)) - exp(-4*((x + 0.5)^2 + y^2 + (z - 0.3)^2))
-         - exp(-4*(x^2 + (y - 0.6)^2 + z^2)) - exp(-4*(x^2 + (y + 0.5)^2 + (z + 0.4)^2))",
-        1.6,
-    ),
-    ("klein", "q = x^2 + y^2 + z^2; (q + 2*y - 1)*((q - 2*y - 1)^2 - 8*z^2) + 16*x*z*(q - 2*y - 1)", 3.0),
-    ("chair", "(x^2 + y^2 + z^2 - 0.95)^2 - 0.8*((z - 1)^2 - 2*x^2)*((z + 1)^2 - 2*y^2)", 1.3),
-    ("terrain", "y - 0.35*sin(1.7*x + 0.4)*cos(1.3*z) - 0.16*sin(3.1*x - 2.3*z) - 0.07*sin(6.3*z + 2*sin(2.7*x))", 2.0),
-    ("thin torus", "(sqrt(x^2 + z^2) - 1)^2 + y^2 - 0.0001", 1.1),
-    ("sheets", "(0.6*x + 0.8*y - 0.1*sin(3*z))^2 - 0.0015^2", 1.2),
-];
-
-/// Eye and target of each camera, relative to half the side of the cube.
-///
-/// They are in front, on an axis, grazing, below, and inside.
-const CAMERAS: [[[f32; 3]; 2]; 5] = [
-    [[0.3, 0.35, 2.9], [0.0; 3]],
-    [[0.0, 0.0, 3.0], [0.0; 3]],
-    [[2.9, 0.25, 0.4], [0.0, 0.2, 0.0]],
-    [[0.5, -2.8, 0.6], [0.0; 3]],
-    [[0.21, 0.17, 0.33], [-0.3, -0.2, -0.5]],
-];
-
-/// The size of the pictures in pixels: two for each of 200 x 60 cells.
-const SIZE: [usize; 2] = [200, 120];
+use termtrace::internals::ray::{EightRays, Interval, Ray};
+use termtrace::internals::shape::Surface;
 
 fn scene(formula: &str, size: f32) -> Scene {
     let text = format!(
@@ -65,31 +28,10 @@ fn scene(formula: &str, size: f32) -> Scene {
     Scene::from_ron("formula", &text).expect("the formulas are valid")
 }
 
-/// Returns the rays of a picture in tiles of 8 x 8 pixels, in groups of 4 x 2.
-fn rays([eye, target]: [[f32; 3]; 2], size: f32) -> Vec<Ray> {
-    let (eye, target) = (Vec3::from(eye) * size, Vec3::from(target) * size);
-    let w = (eye - target).normalize();
-    let u = Vec3::Y.cross(w).normalize();
-    let (v, half) = (w.cross(u), 0.363_970_2);
-    let place = |at: usize| {
-        let (tile, group, lane) = (at / 64, at / LANES % LANES, at % LANES);
-        let [x, y] = [tile % (SIZE[0] / 8), tile / (SIZE[0] / 8)].map(|tile| tile * 8);
-        [x + group % 2 * 4 + lane % 4, y + group / 2 * 2 + lane / 4]
-    };
-    let share = |at: usize, count: usize| 2.0 * (at as f32 + 0.5) / count as f32 - 1.0;
-    let ray = |at: usize| {
-        let [x, y] = place(at);
-        let across = share(x, SIZE[0]) * half * SIZE[0] as f32 / SIZE[1] as f32;
-        Ray { origin: eye, direction: u * across - v * (share(y, SIZE[1]) * half) - w }
-    };
-    (0..SIZE[0] * SIZE[1]).map(ray).collect()
-}
-
 fn marched(rays: &[Ray], size: f32) -> MarchedRays {
     let range = |lane: usize| {
         let Ray { origin, direction } = rays[lane];
-        let (one, other) = ((Vec3::splat(-size) - origin) / direction, (Vec3::splat(size) - origin) / direction);
-        [one.min(other).max_element().max(0.0), one.max(other).min_element()]
+        range([origin, direction], size).unwrap_or([f32::INFINITY, f32::NEG_INFINITY])
     };
     MarchedRays {
         origin: from_fn(|axis| F32x8(from_fn(|lane| rays[lane].origin[axis]))),
@@ -112,6 +54,59 @@ fn time(mut work: impl FnMut()) -> f64 {
     (0..5).map(run).fold(f64::INFINITY, f64::min)
 }
 
+/// Returns the least of 64 balls in the cube, from a fixed sequence.
+fn balls() -> String {
+    let mut state = 12_345_u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
+    };
+    let ball = |_| {
+        let [x, y, z] = from_fn(|_| next());
+        format!("(x - ({x:.3}))^2 + (y - ({y:.3}))^2 + (z - ({z:.3}))^2 - {:.4}", 0.02 + 0.02 * next().abs())
+    };
+    format!("min({})", (0..64).map(ball).collect::<Vec<_>>().join(", "))
+}
+
+fn traced(scene: &Scene, camera: [[f32; 3]; 2], size: f32) -> (Vec<EightRays>, Vec<EightHits>, f64) {
+    let rays: Vec<_> = rays(camera, size).map(|[origin, direction]| Ray { origin, direction }).collect();
+    let (eights, mut hits) = (rays.chunks(LANES).map(EightRays::of).collect::<Vec<_>>(), Vec::new());
+    let time = time(|| closest_hits(Kernel::Auto, scene, &eights, &mut hits));
+    (eights, hits, time)
+}
+
+/// Returns the time of the shadow rays from all hits to a light.
+fn shadows(scene: &Scene, (eights, hits, _): &(Vec<EightRays>, Vec<EightHits>, f64), size: f32) -> f64 {
+    let light = Vec3::new(2.0, 3.0, 2.5) * size;
+    let to_light = |(rays, hits): (&EightRays, &EightHits)| {
+        let shadow = |lane| {
+            let hit = hits.hit(scene, lane)?;
+            let ray = rays.ray(lane);
+            let origin = hit.surface(scene).at_crossing(&ray, hit.t).ray_origin();
+            Some(Ray { origin, direction: light - origin })
+        };
+        (0..LANES).filter_map(shadow).collect::<Vec<_>>()
+    };
+    let rays: Vec<_> = eights.iter().zip(hits).flat_map(to_light).collect();
+    let (eights, mut masks) = (rays.chunks(LANES).map(EightRays::of).collect::<Vec<_>>(), Vec::new());
+    time(|| any_hits(Kernel::Auto, scene, &eights, Interval { min: 0.0, max: 1.0 }, &mut masks))
+}
+
+/// Prints the times of shadow rays, of many balls, and of a formula that moves.
+fn print_others() {
+    print!("shadow rays of one light, in ms:");
+    for (name, text, size) in FORMULAS {
+        let scene = scene(text, size);
+        print!(" {name} {:.2}", shadows(&scene, &traced(&scene, CAMERAS[0], size), size));
+    }
+    let scene_of_balls = scene(&balls(), 1.2);
+    let of_balls = CAMERAS.map(|camera| traced(&scene_of_balls, camera, 1.2).2);
+    println!("\n64 balls, in ms: {of_balls:.2?}");
+    let moving = scene("min(x + sin(time), y*exp(time/9), z^2 - cos(3*time) + x*y)", 1.0);
+    let moved = time(|| (0..100).for_each(|at| drop(moving.clone().at_time(f64::from(at)))));
+    println!("a moving parameter, in ms: {:.4}", moved / 100.0);
+}
+
 fn main() {
     println!(
         "ms of the tracer, and how many times as long the march takes: with 8 lanes / one by one; roots that it loses"
@@ -121,7 +116,7 @@ fn main() {
         let scene = scene(text, size);
         print!("{name:10}");
         for (camera, sum) in CAMERAS.into_iter().zip(&mut logarithms) {
-            let rays = rays(camera, size);
+            let rays: Vec<_> = rays(camera, size).map(|[origin, direction]| Ray { origin, direction }).collect();
             let (eights, by_march): (Vec<_>, Vec<_>) =
                 rays.chunks(LANES).map(|eight| (EightRays::of(eight), marched(eight, size))).unzip();
             let (mut hits, mut roots) = (Vec::new(), Vec::new());
@@ -139,4 +134,5 @@ fn main() {
         println!();
     }
     println!("geometric means with 8 lanes: {:.2?}", logarithms.map(libm::exp));
+    print_others();
 }

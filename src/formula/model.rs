@@ -5,6 +5,7 @@
 //! real function is enclosed. An error that is infinite or NaN encloses everything; comparisons with it must therefore
 //! be written so that NaN decides nothing.
 
+use super::elementary;
 use super::tape::{Binary, Index, Operation, Tape, Unary};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -169,8 +170,8 @@ impl Evaluation<'_> {
                 let third = 1.0 / (2.9 * low * low * low);
                 a.function([value, inverse, -0.5 * inverse * inverse], third, around)
             }
-            Unary::Sin => a.function([value, libm::cos(c0), -0.5 * value], 1.0 / 5.9, [-1.0, 1.0]),
-            Unary::Cos => a.function([value, -libm::sin(c0), -0.5 * value], 1.0 / 5.9, [-1.0, 1.0]),
+            Unary::Sin => a.function([value, elementary::cos(c0), -0.5 * value], 1.0 / 5.9, [-1.0, 1.0]),
+            Unary::Cos => a.function([value, -elementary::sin(c0), -0.5 * value], 1.0 / 5.9, [-1.0, 1.0]),
             Unary::Tan => self.tangent(a, value, around),
             Unary::Asin => self.arc_sine(a),
             Unary::Atan => {

@@ -3,6 +3,7 @@
 //! They are the models of [`model`](super::model) with the rounding of f32. The frequent operations have a vector form
 //! here; all others are computed lane by lane in f64. Each lane has the bits that it has alone.
 
+use super::elementary::{exp_of_each, wave_of_each};
 use super::model::{Continuity, EPSILON as EPSILON_64, Evaluation, Model};
 use super::tape::{Binary, Index, Operation, Tape, Unary};
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Mask, SimdKernel, set_bits};
@@ -10,6 +11,9 @@ use std::f64::consts::FRAC_2_PI;
 
 /// Twice the largest relative rounding error of an f32 operation.
 const EPSILON: f32 = f32::EPSILON;
+
+/// The error of a blurred model, relative to the extent of its polynomial.
+const BLUR: f32 = 1.0 / 16.0;
 
 /// A bound of the absolute error of the polynomials for sine and cosine.
 // Measured up to 8000, for every 37th float: 9.3e-8.
@@ -46,15 +50,39 @@ pub(super) struct PacketModels<'a> {
 /// sign.
 pub(super) struct Outcome {
     models: StoredModels,
-    may_jump: u32,
-    is_undefined: u32,
+    pub(super) may_jump: u32,
+    pub(super) is_undefined: u32,
+    /// `near`, `far` and `blur` of [`View`].
+    pub(super) shares: [F32x8; 3],
+    /// The lanes in which the sign is certain at the start of the piece.
+    pub(super) is_certain: u32,
     /// The lanes in which the sign is certain, and the same on the whole piece.
-    is_clear: u32,
-    /// The lanes in which the sign is negative; meaningful only in the lanes of `is_clear`.
-    is_negative: u32,
+    pub(super) is_clear: u32,
+    /// The lanes in which the sign at the start is negative, if it is certain.
+    pub(super) is_negative: u32,
+    /// The lanes in which the error is small compared with the extent of the polynomial.
+    pub(super) is_sharp: u32,
+}
+
+/// What a model shows of a piece: its sign at the start, and where it may change.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct View {
+    /// The coefficients of u and u^2.
+    pub(super) c: [f64; 2],
+    /// The sign at the start, 1 or -1; 0 if it is uncertain.
+    pub(super) sign: f64,
+    /// Whether the sign is the same on the whole piece.
+    pub(super) is_clear: bool,
+    /// The share of the piece up to which the sign is the same.
+    pub(super) near: f64,
+    /// A share shortly behind the first change of the sign; above 1 if none is known.
+    pub(super) far: f64,
+    /// The error relative to the value at the start, or to the least value of a clear piece.
+    pub(super) blur: f64,
 }
 
 impl Outcome {
+    #[cfg(test)]
     pub(super) fn model(&self, lane: usize) -> Model {
         of_lane(&self.models, lane)
     }
@@ -67,9 +95,21 @@ impl Outcome {
         self.is_clear >> lane & 1 == 1
     }
 
-    /// Returns the sign in a lane that is clear.
+    /// Returns whether the error is not small compared with the extent of the polynomial.
+    pub(super) fn is_blurred(&self, lane: usize) -> bool {
+        (self.is_sharp | self.is_clear) >> lane & 1 == 0
+    }
+
+    /// Returns the sign at the start, if it is certain.
     pub(super) fn sign(&self, lane: usize) -> f64 {
         if self.is_negative >> lane & 1 == 1 { -1.0 } else { 1.0 }
+    }
+
+    pub(super) fn view(&self, lane: usize) -> View {
+        let [near, far, blur] = self.shares.map(|share| f64::from(share.0[lane]));
+        let sign = if self.is_certain >> lane & 1 == 1 { self.sign(lane) } else { 0.0 };
+        let c = [1, 2].map(|power: usize| f64::from(self.models[power].0[lane]));
+        View { c, sign, is_clear: self.is_clear(lane), near, far, blur }
     }
 }
 
@@ -105,27 +145,24 @@ impl SimdKernel for PacketModels<'_> {
         }
         let last = scratch.last().copied().unwrap_or(Models::<N>::anything().store());
         let PacketEvaluation { may_jump, is_undefined, .. } = evaluation;
-        let [is_positive, is_negative] = Models::<N>::load(&last).signs();
-        let is_clear = (is_positive | is_negative) & !is_undefined;
-        Outcome { models: last, may_jump, is_undefined, is_clear, is_negative }
+        Models::<N>::load(&last).outcome(lanes, may_jump, is_undefined)
     }
 }
 
-/// The kernel that computes the values of a tape at one place of each of eight lines.
+/// The values of a tape on eight lines.
 pub(super) struct PacketValues<'a> {
     pub(super) tape: &'a Tape,
     pub(super) lines: &'a Lines,
-    pub(super) t: &'a EightValues,
     pub(super) scratch: &'a mut Vec<EightValues>,
 }
 
-impl SimdKernel for PacketValues<'_> {
-    type Output = EightValues;
-
-    /// Returns the same bits as [`Tape::value`] for each lane, whatever the instruction set.
+impl PacketValues<'_> {
+    /// Returns the values at one place of each line.
+    ///
+    /// They have the same bits as [`Tape::value`] for each lane, whatever the instruction set.
     #[inline(always)]
-    fn run<N: Lanes>(self) -> EightValues {
-        let Self { tape, lines: [origins, directions], t, scratch } = self;
+    pub(super) fn at(&mut self, t: &EightValues) -> EightValues {
+        let Self { tape, lines: [origins, directions], scratch } = self;
         let operations = tape.operations();
         scratch.resize(operations.len(), [0.0; LANES]);
         for (index, &operation) in operations.iter().enumerate() {
@@ -155,6 +192,9 @@ fn of_each(function: Unary, a: &EightValues, to: &mut EightValues) {
         Unary::Abs => (0..LANES).for_each(|lane| to[lane] = a[lane].abs()),
         Unary::Square => (0..LANES).for_each(|lane| to[lane] = a[lane] * a[lane]),
         Unary::Sqrt => (0..LANES).for_each(|lane| to[lane] = a[lane].sqrt()),
+        Unary::Sin => wave_of_each(a, to, false),
+        Unary::Cos => wave_of_each(a, to, true),
+        Unary::Exp => exp_of_each(a, to),
         _ => (0..LANES).for_each(|lane| to[lane] = function.at(a[lane])),
     }
 }
@@ -167,7 +207,9 @@ fn of_both(function: Binary, a: &EightValues, b: &EightValues, to: &mut EightVal
         Binary::Subtract => (0..LANES).for_each(|lane| to[lane] = a[lane] - b[lane]),
         Binary::Multiply => (0..LANES).for_each(|lane| to[lane] = a[lane] * b[lane]),
         Binary::Divide => (0..LANES).for_each(|lane| to[lane] = a[lane] / b[lane]),
-        _ => (0..LANES).for_each(|lane| to[lane] = function.at(a[lane], b[lane])),
+        Binary::Min => (0..LANES).for_each(|lane| to[lane] = Binary::Min.at(a[lane], b[lane])),
+        Binary::Max => (0..LANES).for_each(|lane| to[lane] = Binary::Max.at(a[lane], b[lane])),
+        Binary::Atan2 => (0..LANES).for_each(|lane| to[lane] = function.at(a[lane], b[lane])),
     }
 }
 
@@ -319,15 +361,51 @@ impl<N: Lanes> Models<N> {
         Self::new([c0 + term, c1, c2], self.error + rounding)
     }
 
-    /// Returns the lanes in which all values are positive, and those in which all are negative.
+    /// Returns what the models show.
+    ///
+    /// Shares are first computed as the zeros of polynomials; the slack is more than the rounding errors of that.
     #[inline(always)]
-    fn signs(self) -> [u32; 2] {
-        let ([c0, c1, c2], error) = (self.c, self.error + N::splat(4.0 * EPSILON) * self.magnitude());
+    fn outcome(self, lanes: u32, may_jump: u32, is_undefined: u32) -> Outcome {
+        let (n, zero, one) = (N::splat, N::splat(0.0), N::splat(1.0));
+        // Relative to the size, so that no square overflows or vanishes.
+        let inverse = one / self.magnitude();
+        let error = self.error * inverse * n(1.0 + 4.0 * EPSILON) + n(8.0 * EPSILON);
+        let [c0, c1, c2] = self.c;
+        let is_negative = (c0 - c1 + c2).lt(zero);
+        let flip = N::select(is_negative, -inverse, inverse);
+        let [c0, c1, c2] = [c0 * flip, c1 * flip, c2 * flip];
         // The coefficients in the Bernstein basis, between which the polynomial lies.
         let (first, middle, last) = (c0 - c1 + c2, c0 - c2, c0 + c1 + c2);
-        let (least, most) = (first.min(middle).min(last), first.max(middle).max(last));
-        let (positive, negative) = (error.lt(least), most.lt(-error));
-        [positive.bits(), negative.bits()]
+        let least = first.min(middle).min(last);
+        let is_clear = error.lt(least);
+        let (is_certain, is_sharp) = (error.lt(first), error.lt(n(BLUR) * (c1.abs() + c2.abs())));
+        let mut outcome = Outcome {
+            models: self.store(),
+            may_jump,
+            is_undefined,
+            shares: [F32x8::ZERO, F32x8::ZERO, (error / N::select(is_clear, least, first.abs())).store()],
+            is_certain: is_certain.bits(),
+            is_clear: is_clear.bits() & !is_undefined,
+            is_negative: is_negative.bits(),
+            is_sharp: is_sharp.bits(),
+        };
+        if outcome.is_clear & lanes == lanes {
+            return outcome;
+        }
+        let (slack, two) = (error + n(16.0 * EPSILON), n(2.0));
+        let (slope, curvature) = (two * c1 - n(4.0) * c2, n(4.0) * c2);
+        // Chords fall from the first coefficient at most as steeply as the steeper one.
+        let steepest = (two * (middle - first)).min(last - first);
+        let by_chord = (n(0.999) * (first - error) / -steepest).max(zero).min(one);
+        let near = (first_zero(first - slack, slope, curvature) * n(1.0 - 1e-5) - n(1e-6)).min(one);
+        // Close to the surface the slack may be more than there is, and the zeros others.
+        let is_found = slack.lt(first) & zero.lt(near) & error.lt(at_share([c0, c1, c2], near));
+        let near = N::select(is_found, near.max(by_chord), by_chord);
+        let far = first_zero(first + slack, slope, curvature) * n(1.0 + 1e-5) + n(1e-6);
+        let is_beyond = near.lt(far) & far.le(one) & at_share([c0, c1, c2], far).lt(-error);
+        outcome.is_clear |= (is_certain & one.le(near)).bits() & !is_undefined;
+        (outcome.shares[0], outcome.shares[1]) = (near.store(), N::select(is_beyond, far, two).store());
+        outcome
     }
 
     /// Returns the Taylor polynomial of a function of the quantity, or the hull if it is narrower.
@@ -445,6 +523,24 @@ impl<N: Lanes> Models<N> {
         let wide = self.exponential_taylor([value, most, off]).or_if_narrower(Self::hull(least, most));
         Self::select(is_in_reach, Self::select(is_narrow, narrow, wide), Self::anything())
     }
+}
+
+/// Returns the value of a polynomial at a share of the piece.
+#[inline(always)]
+fn at_share<N: Lanes>([c0, c1, c2]: [N; 3], share: N) -> N {
+    let u = N::splat(2.0) * share - N::splat(1.0);
+    c0 + u * (c1 + u * c2)
+}
+
+/// Returns the first positive zero of a quadratic polynomial that is positive at 0, or infinity.
+#[inline(always)]
+fn first_zero<N: Lanes>(start: N, slope: N, curvature: N) -> N {
+    let (zero, none) = (N::splat(0.0), N::splat(f32::INFINITY));
+    let root = (slope * slope - N::splat(4.0) * curvature * start).sqrt();
+    // Without cancellation, whatever the sign of the slope.
+    let sum = slope - N::select(slope.lt(zero), root, -root);
+    let (one, other) = (N::splat(-0.5) * sum / curvature, N::splat(-2.0) * start / sum);
+    N::select(zero.lt(one), one, none).min(N::select(zero.lt(other), other, none))
 }
 
 /// Returns sine and cosine, off by at most [`OF_SINE`] up to [`LARGEST_ANGLE`].

@@ -1,6 +1,7 @@
 //! Values and gradients of a formula at a point, in f64.
 
 use super::Formula;
+use super::elementary;
 use super::tape::{Binary, Index, Operation, Tape, Unary};
 use glam::DVec3;
 
@@ -13,10 +14,10 @@ impl Unary {
             Self::Square => a * a,
             Self::Sqrt => a.sqrt(),
             Self::Cbrt => libm::cbrt(a),
-            Self::Exp => libm::exp(a),
+            Self::Exp => elementary::exp(a),
             Self::Ln => libm::log(a),
-            Self::Sin => libm::sin(a),
-            Self::Cos => libm::cos(a),
+            Self::Sin => elementary::sin(a),
+            Self::Cos => elementary::cos(a),
             Self::Tan => libm::tan(a),
             Self::Asin => libm::asin(a),
             Self::Atan => libm::atan(a),
@@ -36,8 +37,8 @@ impl Unary {
             Self::Cbrt => 1.0 / (3.0 * value * value),
             Self::Exp => value,
             Self::Ln => 1.0 / a,
-            Self::Sin => libm::cos(a),
-            Self::Cos => -libm::sin(a),
+            Self::Sin => elementary::cos(a),
+            Self::Cos => -elementary::sin(a),
             Self::Tan => 1.0 + value * value,
             Self::Asin => 1.0 / (1.0 - a * a).sqrt(),
             Self::Atan => 1.0 / (1.0 + a * a),
@@ -48,6 +49,7 @@ impl Unary {
 
 impl Binary {
     /// Returns the value of the function; NaN where it or an operand is undefined.
+    #[inline(always)]
     pub(super) fn at(self, a: f64, b: f64) -> f64 {
         match self {
             Self::Add => a + b,

@@ -1,18 +1,21 @@
 //! The first root of a formula along a ray: the first sign change across which it is continuous.
 //!
-//! Eight walks go side by side; their longer pieces are enclosed together, in f32.
+//! Eight walks go side by side: their pieces are enclosed together, in f32, and frequent outcomes are handled together.
 //!
-//! A walk goes forward in pieces, each enclosed by a [`Model`]. A piece without a root is passed, and the next one is
-//! twice as long. Otherwise the walk advances to the first t that may be a root, and the next piece ends where the sign
-//! is certainly the other one, if the model shows such a place, or is half as long. So thin parts are not stepped over.
+//! A walk goes forward in pieces, each enclosed by a [`Model`]. A piece without a root is passed. Otherwise the walk
+//! advances to the first t that may be a root, and the next piece ends where the sign is certainly the other one, if the
+//! model shows such a place, or is shorter. So thin parts are not stepped over. The error of a model grows with the cube
+//! of the length, from which the length of the next piece follows.
 //! A sign change may be lost if it is undone within [`MIN_PIECE`] of the range, or behind [`MAX_PIECES`] pieces.
 //!
 //! A sign change at a jump is no root, and neither is a zero without a sign change.
 
 use super::Formula;
+use super::bracket::{Brackets, Narrowing, Root};
 use super::model::{Continuity, Model};
-use super::packet::{EightValues, Lines, PacketModels, PacketValues, StoredModels};
-use crate::lanes::{F32x8, LANES, set_bits};
+use super::packet::{EightValues, Lines, Outcome, PacketModels, PacketValues, StoredModels, View};
+use super::tape::Tape;
+use crate::lanes::{F32x8, LANES, Lanes, SimdKernel, set_bits};
 use crate::simd;
 use glam::DVec3;
 use std::cell::RefCell;
@@ -28,8 +31,8 @@ const BRACKET: f64 = 1.0 / 16_384.0;
 /// blurred.
 const SHORT: f64 = 1.0 / 1024.0;
 
-/// The error of a blurred model, relative to the extent of its polynomial.
-const BLUR: f64 = 1.0 / 16.0;
+/// The error, relative to the values, that pieces should have.
+const TARGET: f32 = 0.3;
 
 /// The longest stretch of undecided sign that counts as a root, relative to the range, if f changes
 /// its sign across it.
@@ -38,7 +41,7 @@ const MAX_STRETCH: f64 = 1.0 / 256.0;
 
 /// The number of pieces of undecided sign in a row from which on each is twice as long.
 // With the shortest pieces alone, a stretch of the ray on which f is 0 would take up to a billion of them.
-const STRIDES_FROM: u32 = 8;
+const STRIDES_FROM: f64 = 8.0;
 
 /// The relative length of the longest piece that is passed while its sign is undecided.
 const MAX_STRIDE: f64 = 1.0 / 64.0;
@@ -77,32 +80,47 @@ pub(crate) struct Solver<'f> {
 #[derive(Clone, Debug)]
 pub(crate) struct Searches {
     lines: Lines,
-    walks: [Walk; LANES],
-    ends: [[f64; 2]; LANES],
+    walks: Walks,
+    ends: EightValues,
+    until: EightValues,
     /// The lanes that still search.
     lanes: u32,
 }
 
-/// The place that a search has reached.
+/// The places that eight searches have reached.
+#[derive(Clone, Debug)]
+struct Walks {
+    /// The starts of the next pieces.
+    t: EightValues,
+    /// The lengths of the next pieces.
+    length: EightValues,
+    /// The last certain signs, 1 or -1; 0 if there is none since the last jump.
+    sign: EightValues,
+    /// The largest t at which `sign` was certain.
+    since: EightValues,
+    /// The number of pieces in a row whose sign was undecided.
+    undecided: EightValues,
+    /// The lengths of the longest pieces that may be passed if their sign is undecided.
+    stride: EightValues,
+    /// The length of the piece that was passed last, if its sign was undecided, else 0.
+    skipped: EightValues,
+    /// The lengths of the shortest pieces.
+    shortest: EightValues,
+    /// The lengths of the whole ranges.
+    range: EightValues,
+}
+
+/// The place that one search has reached: see [`Walks`].
 #[derive(Clone, Copy, Debug)]
 struct Walk {
-    /// The start of the next piece.
     t: f64,
-    /// The length of the next piece.
     length: f64,
-    /// The last certain sign, 1 or -1; 0 if there is none since the last jump.
     sign: f64,
-    /// The largest t at which `sign` was certain.
     since: f64,
-    /// The number of pieces in a row whose sign was undecided.
-    undecided: u32,
-    /// The length of the longest piece that may be passed if its sign is undecided.
+    undecided: f64,
     stride: f64,
-    /// The length of the piece that was passed last, if its sign was undecided, else 0.
     skipped: f64,
-    /// The length of the shortest piece.
     shortest: f64,
-    /// The length of the whole range.
     range: f64,
 }
 
@@ -112,20 +130,12 @@ enum Found {
     Root(Root),
 }
 
-/// A stretch in which the first root lies.
-struct Root {
-    low: f64,
-    high: f64,
-    /// The root of a model.
-    guess: f64,
-    /// The slope of the model there, times the sign in front of it; 0 if there is no model.
-    slope: f64,
-}
-
 impl Searches {
     /// No search in any lane.
-    pub(crate) const NONE: Self =
-        Self { lines: [[[0.0; LANES]; 3]; 2], walks: [Walk::NOWHERE; LANES], ends: [[0.0; 2]; LANES], lanes: 0 };
+    pub(crate) const NONE: Self = {
+        let none = [0.0; LANES];
+        Self { lines: [[none; 3]; 2], walks: Walks::NONE, ends: none, until: none, lanes: 0 }
+    };
 
     /// Adds a lane, unless its range is empty: see [`Solver::first_root`].
     pub(crate) fn add(&mut self, lane: usize, line: &Line, [start, end]: [f32; 2], until: f32) {
@@ -140,8 +150,8 @@ impl Searches {
                 numbers[lane] = number;
             }
         }
-        self.walks[lane] = Walk::new(from, to);
-        self.ends[lane] = [to, f64::from(until)];
+        self.walks.put(lane, &Walk::new(from, to));
+        (self.ends[lane], self.until[lane]) = (to, f64::from(until));
         self.lanes |= 1 << lane;
     }
 
@@ -150,17 +160,23 @@ impl Searches {
     }
 
     /// Returns the ends of each lane's next piece, without the lanes that have arrived.
-    fn next_pieces(&mut self) -> [[f64; LANES]; 2] {
-        let mut ends = [[0.0; LANES]; 2];
-        for lane in set_bits(self.lanes) {
-            let (Walk { t, length, .. }, [to, until]) = (&self.walks[lane], self.ends[lane]);
-            if *t >= to || *t > until {
-                self.lanes &= !(1 << lane);
-            }
-            (ends[0][lane], ends[1][lane]) = (*t, (t + length).min(to));
+    #[inline(always)]
+    fn next_pieces(&mut self) -> [EightValues; 2] {
+        let (mut ends, mut is_on_the_way) = ([0.0; LANES], [false; LANES]);
+        for lane in 0..LANES {
+            let (t, to) = (self.walks.t[lane], self.ends[lane]);
+            is_on_the_way[lane] = t < to && t <= self.until[lane];
+            ends[lane] = (t + self.walks.length[lane]).min(to);
         }
-        ends
+        self.lanes &= bits(is_on_the_way);
+        [self.walks.t, ends]
     }
+}
+
+/// Returns the mask of the lanes that are true.
+#[inline(always)]
+fn bits(lanes: [bool; LANES]) -> u32 {
+    (0..LANES).fold(0, |bits, lane| bits | u32::from(lanes[lane]) << lane)
 }
 
 impl<'f> Solver<'f> {
@@ -183,136 +199,78 @@ impl<'f> Solver<'f> {
     /// Returns the lanes with a root, and their first roots, none of which depends on the other
     /// lanes.
     pub(crate) fn first_roots(self, searches: &mut Searches) -> (u32, F32x8) {
-        SCRATCH.with_borrow_mut(|scratch| {
-            let (mut found, mut brackets) = (0, [Bracket::NONE; LANES]);
-            for _ in 0..MAX_PIECES {
-                let pieces = searches.next_pieces();
-                if searches.lanes == 0 {
-                    break;
-                }
-                let ended = self.advance(searches, &pieces, &mut brackets, scratch);
-                found |= ended;
-                searches.lanes &= !ended;
-            }
-            // To the least f32, so that the root does not depend on the pieces: without this step up to 61 of 24,000
-            // depths did.
-            self.narrow(&searches.lines, &mut brackets, found, scratch);
-            (found, F32x8(brackets.map(|bracket| bracket.after)))
-        })
-    }
-
-    /// Advances each walk by a piece, and returns the lanes whose first root is now in a bracket.
-    fn advance(
-        self,
-        searches: &mut Searches,
-        pieces: &[[f64; LANES]; 2],
-        brackets: &mut [Bracket; LANES],
-        scratch: &mut Scratch,
-    ) -> u32 {
-        let (tape, packets) = (&self.formula.tape, &mut scratch.packets);
-        let lines = &searches.lines;
-        let outcome = simd::dispatch(PacketModels { tape, lines, pieces, lanes: searches.lanes, scratch: packets });
-        let mut found = 0;
-        for lane in set_bits(searches.lanes) {
-            let (walk, piece) = (&mut searches.walks[lane], [pieces[0][lane], pieces[1][lane]]);
-            if outcome.is_clear(lane) && walk.passes(outcome.sign(lane), piece) {
-                continue;
-            }
-            let (mut model, mut continuity) = (outcome.model(lane), outcome.continuity(lane));
-            // In f32, the model of a short piece may be little more than its rounding errors.
-            let is_short = piece[1] - piece[0] < walk.range * SHORT;
-            if is_short && !(model.error < BLUR * (model.c[1].abs() + model.c[2].abs())) {
-                let line = line_in_lane(&searches.lines, lane);
-                let (o, d) = (line.origin.to_array(), line.direction.to_array());
-                let coordinates = [0, 1, 2].map(|axis| Model::coordinate(o[axis], d[axis], piece));
-                (model, continuity) = tape.model(coordinates, &mut scratch.models);
-            }
-            if let Found::Root(root) = walk.advance(&model, continuity, piece) {
-                brackets[lane] = Bracket::new(root, walk.sign);
-                found |= 1 << lane;
-            }
-        }
-        found
-    }
-
-    /// Narrows the brackets of these lanes until `after` is the first f32 of the other sign.
-    fn narrow(self, lines: &Lines, brackets: &mut [Bracket; LANES], mut lanes: u32, scratch: &mut Scratch) {
-        while lanes != 0 {
-            let t = brackets.map(|bracket| f64::from(bracket.next));
-            let (tape, scratch) = (&self.formula.tape, &mut scratch.values);
-            let values = simd::dispatch(PacketValues { tape, lines, t: &t, scratch });
-            for lane in set_bits(lanes) {
-                if brackets[lane].take(values[lane]) {
-                    lanes &= !(1 << lane);
-                }
-            }
-        }
+        SCRATCH.with_borrow_mut(|scratch| simd::dispatch(Search { tape: &self.formula.tape, searches, scratch }))
     }
 }
 
-/// Two places between which f changes its sign, on the way to neighbouring numbers.
-#[derive(Clone, Copy, Debug)]
-struct Bracket {
-    before: f32,
-    after: f32,
-    /// The sign of f in front of the root.
-    sign: f64,
-    /// The slope of f times the sign, below 0; 0 if it is not known yet.
-    slope: f64,
-    /// The place whose value is needed next.
-    next: f32,
-    /// The t that was evaluated last, and the value of f there times the sign.
-    last: [f64; 2],
-    /// The number of values so far.
-    count: u32,
+/// The search for the first roots along up to eight lines.
+struct Search<'a> {
+    tape: &'a Tape,
+    searches: &'a mut Searches,
+    scratch: &'a mut Scratch,
 }
 
-impl Bracket {
-    const NONE: Self = Self { before: 0.0, after: 0.0, sign: 0.0, slope: 0.0, next: 0.0, last: [0.0; 2], count: 0 };
+impl SimdKernel for Search<'_> {
+    type Output = (u32, F32x8);
 
-    fn new(Root { low, high, guess, slope }: Root, sign: f64) -> Self {
-        let (before, after, slope) = (at_most(low), at_least(high), slope.min(0.0));
-        let next = if slope < 0.0 { (guess as f32).max(before).min(after) } else { before };
-        Self { before, after, sign, slope, next, ..Self::NONE }
+    #[inline(always)]
+    fn run<N: Lanes>(self) -> (u32, F32x8) {
+        let Self { tape, searches, scratch } = self;
+        let (mut found, mut brackets) = (0, Brackets::NONE);
+        for _ in 0..MAX_PIECES {
+            let pieces = searches.next_pieces();
+            let Searches { lines, walks, lanes, .. } = &mut *searches;
+            let lines = &*lines;
+            if *lanes == 0 {
+                break;
+            }
+            let packet = PacketModels { tape, lines, pieces: &pieces, lanes: *lanes, scratch: &mut scratch.packets };
+            let outcome = packet.run::<N>();
+            let [done, arrived] = walks.advance(&outcome, &pieces, *lanes, &mut brackets);
+            let rest = *lanes & !done;
+            let ended = arrived | look_closely(tape, (lines, &pieces), rest, &outcome, walks, &mut brackets, scratch);
+            found |= ended;
+            *lanes &= !ended;
+        }
+        // To the least f32, so that the root does not depend on the pieces: without this step up to 61 of 24,000 depths
+        // did.
+        let values = PacketValues { tape, lines: &searches.lines, scratch: &mut scratch.values };
+        (found, Narrowing { values, brackets: &mut brackets, lanes: found }.run::<N>())
     }
+}
 
-    /// Takes the value at `next`, and returns whether the bracket is as narrow as possible.
-    fn take(&mut self, value: f64) -> bool {
-        let (t, value) = (f64::from(self.next), value * self.sign);
-        self.count += 1;
-        if self.count == 1 && self.slope == 0.0 {
-            (self.last, self.next) = ([t, value], self.after);
-            return false;
+/// Advances the walks of `lanes` one by one.
+///
+/// Returns the lanes whose first root is now in a bracket.
+#[inline(never)]
+fn look_closely(
+    tape: &Tape,
+    (lines, pieces): (&Lines, &[EightValues; 2]),
+    lanes: u32,
+    outcome: &Outcome,
+    walks: &mut Walks,
+    brackets: &mut Brackets,
+    scratch: &mut Scratch,
+) -> u32 {
+    let mut found = 0;
+    for lane in set_bits(lanes) {
+        let (mut walk, piece) = (walks.of(lane), [pieces[0][lane], pieces[1][lane]]);
+        let (mut view, mut continuity) = (outcome.view(lane), outcome.continuity(lane));
+        // In f32, the model of a short piece may be little more than its rounding errors.
+        if outcome.is_blurred(lane) && walk.is_short(piece) {
+            let line = line_in_lane(lines, lane);
+            let (o, d) = (line.origin.to_array(), line.direction.to_array());
+            let coordinates = [0, 1, 2].map(|axis| Model::coordinate(o[axis], d[axis], piece));
+            let (model, of_model) = tape.model(coordinates, &mut scratch.models);
+            (view, continuity) = (View::of(&model), of_model);
         }
-        // The values at the ends are not needed where their signs are known.
-        if value > 0.0 {
-            self.before = self.before.max(self.next);
-        } else {
-            self.after = self.after.min(self.next);
+        if let Found::Root(root) = walk.advance(&view, continuity, piece) {
+            brackets.add(lane, root);
+            found |= 1 << lane;
         }
-        let (least, most) = (self.before.next_up(), self.after.next_down());
-        if least > most {
-            return true;
-        }
-        let secant = (value - self.last[1]) / (t - self.last[0]);
-        // A secant that is NaN is not taken. Between neighbours it is that of rounding errors.
-        if self.count > 1 && secant < 0.0 && (t - self.last[0]).abs() > 16.0 * f64::from(f32::EPSILON) * t.abs() {
-            self.slope = secant;
-        }
-        self.last = [t, value];
-        self.next = self.guess(t, value).max(least).min(most);
-        false
+        walks.put(lane, &walk);
     }
-
-    /// Returns a place a little beyond the root, seen from the last place, so that the root is soon
-    /// enclosed: by Newton's method, or the middle in turn if that takes long.
-    fn guess(&self, t: f64, value: f64) -> f32 {
-        let root = (t - value / self.slope) as f32;
-        if !root.is_finite() || self.count > 3 && self.count % 2 == 1 {
-            return (0.5 * (f64::from(self.before) + f64::from(self.after))) as f32;
-        }
-        if value > 0.0 { root.next_up() } else { root.next_down() }
-    }
+    found
 }
 
 /// Returns the line of one lane, for models that are computed in f64.
@@ -321,60 +279,139 @@ fn line_in_lane(lines: &Lines, lane: usize) -> Line {
     Line { origin: of(&lines[0]), direction: of(&lines[1]) }
 }
 
-impl Walk {
-    const NOWHERE: Self = Self {
-        t: 0.0,
-        length: 0.0,
-        sign: 0.0,
-        since: 0.0,
-        undecided: 0,
-        stride: 0.0,
-        skipped: 0.0,
-        shortest: 0.0,
-        range: 0.0,
+impl Walks {
+    const NONE: Self = {
+        let none = [0.0; LANES];
+        Self {
+            t: none,
+            length: none,
+            sign: none,
+            since: none,
+            undecided: none,
+            stride: none,
+            skipped: none,
+            shortest: none,
+            range: none,
+        }
     };
 
+    fn of(&self, lane: usize) -> Walk {
+        Walk {
+            t: self.t[lane],
+            length: self.length[lane],
+            sign: self.sign[lane],
+            since: self.since[lane],
+            undecided: self.undecided[lane],
+            stride: self.stride[lane],
+            skipped: self.skipped[lane],
+            shortest: self.shortest[lane],
+            range: self.range[lane],
+        }
+    }
+
+    fn put(&mut self, lane: usize, walk: &Walk) {
+        (self.t[lane], self.length[lane], self.sign[lane]) = (walk.t, walk.length, walk.sign);
+        (self.since[lane], self.undecided[lane], self.stride[lane]) = (walk.since, walk.undecided, walk.stride);
+        (self.skipped[lane], self.shortest[lane], self.range[lane]) = (walk.skipped, walk.shortest, walk.range);
+    }
+
+    /// Advances the walks with frequent outcomes together, as [`Walk::advance`] does.
+    ///
+    /// Returns these lanes, and those of them whose first root is now in a bracket.
+    #[inline(always)]
+    fn advance(
+        &mut self,
+        outcome: &Outcome,
+        pieces: &[EightValues; 2],
+        lanes: u32,
+        brackets: &mut Brackets,
+    ) -> [u32; 2] {
+        let gaps = outcome.may_jump | outcome.is_undefined;
+        let blurred = !(outcome.is_sharp | outcome.is_clear);
+        let [nears, fars, blurs] = &outcome.shares;
+        let (mut done, mut arrived, mut starts, mut ends) =
+            ([false; LANES], [false; LANES], [0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            let is_in = |mask: u32| mask >> lane & 1 == 1;
+            let (from, to) = (pieces[0][lane], pieces[1][lane]);
+            let (width, stride, shortest) = (to - from, self.stride[lane], self.shortest[lane]);
+            let sign = if is_in(outcome.is_negative) { -1.0 } else { 1.0 };
+            let is_same = self.skipped[lane] == 0.0 && self.sign[lane] * sign >= 0.0;
+            let (is_certain, is_clear) = (is_in(outcome.is_certain), is_in(outcome.is_clear));
+            let (near, far) = (f64::from(nears.0[lane]), f64::from(fars.0[lane]));
+            let (start, end) = (from + near * width, (from + far * width).min(to));
+            let has_end = !is_clear && far <= 1.0;
+            let is_long = is_clear || has_end || width > 1.5 * shortest;
+            let is_short = width < SHORT * self.range[lane];
+            let is_frequent = if is_certain { is_same && is_long && !is_in(gaps) } else { width > 1.5 * stride };
+            let is_done = is_in(lanes) && is_frequent && !is_in(outcome.is_undefined) && !(is_in(blurred) && is_short);
+            let factor = cube_root(TARGET / blurs.0[lane]);
+            let passed = (factor.clamp(1.0, 4.0) * width).max(shortest);
+            let halved = (factor.clamp(0.25, 0.75) * (to - start)).max(shortest);
+            let closer = if has_end { (end - start).min(0.75 * width) } else { halved };
+            let undecided = (factor.clamp(0.0625, 0.5) * width).max(stride);
+            let (next, reached) = if is_clear { (passed, to) } else { (closer, start) };
+            let length = if is_certain { next } else { undecided };
+            let moves = is_done && is_certain;
+            self.length[lane] = if is_done { length } else { self.length[lane] };
+            self.t[lane] = if moves { reached } else { self.t[lane] };
+            self.since[lane] = if moves { reached } else { self.since[lane] };
+            self.sign[lane] = if moves { sign } else { self.sign[lane] };
+            self.undecided[lane] = if moves { 0.0 } else { self.undecided[lane] };
+            self.stride[lane] = if moves { shortest } else { stride };
+            (starts[lane], ends[lane], done[lane]) = (start, end, is_done);
+            arrived[lane] = moves && has_end && end - start <= BRACKET * self.range[lane];
+        }
+        let arrived = bits(arrived);
+        for lane in set_bits(arrived) {
+            let (view, width) = (outcome.view(lane), pieces[1][lane] - pieces[0][lane]);
+            brackets.add(lane, view.root([starts[lane], ends[lane]], self.sign[lane], width));
+        }
+        [bits(done), arrived]
+    }
+}
+
+/// Returns the cube root of a positive number, off by 6 %.
+///
+/// Infinity and NaN give large numbers.
+#[inline(always)]
+fn cube_root(x: f32) -> f64 {
+    f64::from(f32::from_bits((x.to_bits() & (u32::MAX >> 1)) / 3 + 0x2a51_37a0))
+}
+
+impl Walk {
     fn new(from: f64, to: f64) -> Self {
         let range = to - from;
         // A shorter piece could end at its start, by the rounding of t.
         let shortest = (MIN_PIECE * range).max(16.0 * f64::EPSILON * from.abs().max(to.abs()));
-        Self { t: from, length: range, since: from, stride: shortest, shortest, range, ..Self::NOWHERE }
+        let [sign, undecided, skipped] = [0.0; 3];
+        Self { t: from, length: range, sign, since: from, undecided, stride: shortest, skipped, shortest, range }
     }
 
-    /// Passes a piece in which f has only this sign, unless that needs a closer look.
-    fn passes(&mut self, sign: f64, [from, to]: [f64; 2]) -> bool {
-        let is_simple = self.skipped == 0.0 && (self.sign == sign || self.sign == 0.0);
-        if is_simple {
-            self.since = to;
-            self.pass(to, 2.0 * (to - from), sign);
-        }
-        is_simple
+    fn is_short(&self, [from, to]: [f64; 2]) -> bool {
+        to - from < SHORT * self.range
     }
 
     /// Moves past the piece, or to where it has to be looked at more closely.
-    fn advance(&mut self, model: &Model, continuity: Continuity, piece @ [from, to]: [f64; 2]) -> Found {
-        let width = to - from;
+    fn advance(&mut self, view: &View, continuity: Continuity, piece @ [from, to]: [f64; 2]) -> Found {
+        let (width, sign) = (to - from, view.sign);
         if continuity.is_undefined {
             return self.pass(to, 2.0 * width, 0.0);
         }
-        let [c0, c1, c2] = model.c;
-        // The coefficients in the Bernstein basis: the polynomial lies between the least and the greatest.
-        let b = [c0 - c1 + c2, c0 - c2, c0 + c1 + c2];
-        let sign = if b[0].abs() > model.error { b[0].signum() } else { 0.0 };
         if sign == 0.0 {
-            return self.undecided(continuity, piece);
+            return self.undecided(view, continuity, piece);
         }
         if self.skipped > 1.5 * self.shortest {
             return self.retreat(from);
         }
-        (self.undecided, self.stride) = (0, self.shortest);
+        (self.undecided, self.stride) = (0.0, self.shortest);
         if self.sign != 0.0 && sign != self.sign && from - self.since <= MAX_STRETCH * self.range {
-            return Found::Root(Root { low: self.since, high: from, guess: from, slope: 0.0 });
+            return Found::Root(Root { low: self.since, high: from, sign: self.sign, guess: from, slope: 0.0 });
         }
         (self.sign, self.since) = (sign, from);
-        if b.iter().all(|b| sign * b > model.error) {
+        if view.is_clear {
             self.since = to;
-            return self.pass(to, 2.0 * width, sign);
+            return self.pass(to, view.factor(1.0, 4.0) * width, sign);
         }
         if continuity.may_jump {
             if width <= 1.5 * self.shortest {
@@ -383,13 +420,13 @@ impl Walk {
             self.length = 0.5 * width;
             return Found::Nothing;
         }
-        self.approach(b.map(|b| sign * b), model.error, piece)
+        self.approach(view, piece)
     }
 
     /// Moves to `t`, where `sign` is certain, or unknown if it is 0.
     fn pass(&mut self, t: f64, length: f64, sign: f64) -> Found {
         (self.t, self.length, self.sign) = (t, length.max(self.shortest), sign);
-        (self.undecided, self.stride, self.skipped) = (0, self.shortest, 0.0);
+        (self.undecided, self.stride, self.skipped) = (0.0, self.shortest, 0.0);
         Found::Nothing
     }
 
@@ -403,14 +440,14 @@ impl Walk {
     }
 
     /// Shortens a piece at whose start the sign is uncertain, or passes it if it is short.
-    fn undecided(&mut self, continuity: Continuity, [from, to]: [f64; 2]) -> Found {
+    fn undecided(&mut self, view: &View, continuity: Continuity, [from, to]: [f64; 2]) -> Found {
         let width = to - from;
         // A piece from t on may be longer than asked for, by the rounding of its end.
         if width > 1.5 * self.stride {
-            self.length = (0.25 * width).max(self.stride);
+            self.length = (view.factor(0.0625, 0.5) * width).max(self.stride);
             return Found::Nothing;
         }
-        self.undecided += 1;
+        self.undecided += 1.0;
         if continuity.may_jump {
             self.sign = 0.0;
         }
@@ -424,22 +461,14 @@ impl Walk {
     /// Advances to the first t of the piece that may be a root.
     ///
     /// If the sign is certainly the other one farther on, the next piece ends there, and a short one is a bracket.
-    /// `b` are the Bernstein coefficients, the first of which is positive and above `error`.
-    fn approach(&mut self, b: [f64; 3], error: f64, [from, to]: [f64; 2]) -> Found {
+    fn approach(&mut self, view @ &View { near, far, .. }: &View, [from, to]: [f64; 2]) -> Found {
         let width = to - from;
-        // The polynomial falls from b[0] at most this much, as a share of the piece: the least slope of its chords.
-        let steepest = (2.0 * (b[1] - b[0])).min(b[2] - b[0]);
-        // Not quite to the zero, so that the sign there is certain in spite of rounding.
-        let near = (0.999 * (b[0] - error) / -steepest).clamp(0.0, 1.0);
-        let far = first_below(b, -error);
         let start = from + near * width;
         self.since = start;
-        if let Some(far) = far {
+        if far <= 1.0 {
             let end = (from + far * width).min(to);
             if end - start <= BRACKET * self.range {
-                let at_zero = first_below(b, 0.0).unwrap_or(far);
-                let slope = 2.0 * ((b[1] - b[0]) + at_zero * (b[0] - 2.0 * b[1] + b[2])) / width;
-                return Found::Root(Root { low: start, high: end, guess: from + at_zero * width, slope });
+                return Found::Root(view.root([start, end], self.sign, width));
             }
             // Shorter than this piece in any case, so that the search comes to an end.
             (self.t, self.length) = (start, (end - start).min(0.75 * width));
@@ -450,8 +479,39 @@ impl Walk {
             self.since = from;
             return self.pass(to, 2.0 * width, self.sign);
         }
-        (self.t, self.length) = (start, (0.5 * (to - start)).max(self.shortest));
+        (self.t, self.length) = (start, (view.factor(0.25, 0.75) * (to - start)).max(self.shortest));
         Found::Nothing
+    }
+}
+
+impl View {
+    /// Returns the view of a model in f64.
+    fn of(&Model { c: [c0, c1, c2], error }: &Model) -> Self {
+        // The coefficients in the Bernstein basis: the polynomial lies between the least and the greatest.
+        let b = [c0 - c1 + c2, c0 - c2, c0 + c1 + c2];
+        let sign = if b[0].abs() > error { b[0].signum() } else { 0.0 };
+        let [first, middle, last] = b.map(|b| sign * b);
+        let is_clear = sign != 0.0 && first.min(middle).min(last) > error;
+        // The polynomial falls at most this much, as a share of the piece: the least slope of its chords.
+        let steepest = (2.0 * (middle - first)).min(last - first);
+        // Not quite to the zero, so that the sign there is certain in spite of rounding.
+        let near = (0.999 * (first - error) / -steepest).clamp(0.0, 1.0);
+        let far = first_below([first, middle, last], -error).unwrap_or(2.0);
+        let blur = error / if is_clear { first.min(middle).min(last) } else { b[0].abs() };
+        Self { c: [c1, c2], sign, is_clear, near, far, blur }
+    }
+
+    /// Returns how many times as long the next piece should be.
+    ///
+    /// The error grows with the cube of the length.
+    fn factor(&self, least: f64, most: f64) -> f64 {
+        cube_root(TARGET / self.blur as f32).max(least).min(most)
+    }
+
+    /// Returns the root between two places of a piece of this width.
+    fn root(&self, [low, high]: [f64; 2], sign: f64, width: f64) -> Root {
+        let (u, [c1, c2]) = (self.near + self.far - 1.0, self.c);
+        Root { low, high, sign, guess: 0.5 * (low + high), slope: 2.0 * (c1 + 2.0 * u * c2) / width }
     }
 }
 
@@ -470,16 +530,4 @@ fn first_below(b: [f64; 3], level: f64) -> Option<f64> {
     let behind = (root + 1e-6 * root + 1e-9).min(1.0);
     let there = b[0] + behind * (slope + behind * curvature);
     (there < level).then_some(behind)
-}
-
-/// Returns the largest f32 that is not above `t`.
-fn at_most(t: f64) -> f32 {
-    let rounded = t as f32;
-    if f64::from(rounded) > t { rounded.next_down() } else { rounded }
-}
-
-/// Returns the least f32 that is not below `t`.
-fn at_least(t: f64) -> f32 {
-    let rounded = t as f32;
-    if f64::from(rounded) < t { rounded.next_up() } else { rounded }
 }

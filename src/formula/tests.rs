@@ -1,9 +1,12 @@
 use super::packet::{PacketModels, PacketValues};
 use super::*;
-use crate::lanes::{ALL, LANES};
+use crate::lanes::{ALL, LANES, Lanes, SimdKernel};
 use crate::simd;
 use glam::DVec3;
 use std::array::from_fn;
+
+#[path = "../../benches/formulas/pictures.rs"]
+mod pictures;
 
 /// Random numbers (xorshift) from a seed that a failure prints.
 struct Random(u64);
@@ -269,7 +272,7 @@ fn a_root_is_the_first_number_of_the_other_sign() {
 #[test]
 fn dense_sampling_finds_no_nearer_root() {
     const SEED: u64 = 0x5eed_0002;
-    const STEPS: u32 = 5000;
+    let steps = number("FORMULA_STEPS", 5000);
     let (mut random, mut count) = (Random(SEED), 0);
     for _ in 0..2000 {
         let text = random.formula(3);
@@ -278,7 +281,7 @@ fn dense_sampling_finds_no_nearer_root() {
         let root = Solver::new(&formula).first_root(&line, [0.0, 4.0], 4.0);
         let value = |t: f64| formula.value(line.origin + line.direction * t);
         let end = root.map_or(4.0, f64::from);
-        let samples: Vec<f64> = (0..=STEPS).map(|step| f64::from(step) * 4.0 / f64::from(STEPS)).collect();
+        let samples: Vec<f64> = (0..=steps).map(|step| step as f64 * 4.0 / steps as f64).collect();
         for pair in samples.windows(2).filter(|pair| pair[1] < end - 1e-3) {
             let [a, b] = [value(pair[0]), value(pair[1])];
             if a * b < 0.0 {
@@ -329,11 +332,54 @@ fn has_gap(formula: &Formula, point: DVec3) -> bool {
     result.is_nan() || formula.tape.operations().iter().any(is_gap)
 }
 
+/// Compares the roots of the twelve formulas of `benches/formulas`, seen by five cameras, with samples in f64.
+///
+/// `FORMULA_STEPS=20000 FORMULA_RAYS=20` takes 20,000 steps along each twentieth ray.
+#[test]
+fn dense_sampling_of_pictures_finds_the_same_roots() {
+    let (steps, every) = (number("FORMULA_STEPS", 1000), number("FORMULA_RAYS", 1201) as usize);
+    let (mut values, mut count) = (Vec::new(), 0);
+    for (name, text, size) in pictures::FORMULAS {
+        let formula = formula(text);
+        for camera in pictures::CAMERAS {
+            for [origin, direction] in pictures::rays(camera, size).step_by(every) {
+                let Some([start, end]) = pictures::range([origin, direction], size) else { continue };
+                let line = Line { origin: origin.as_dvec3(), direction: direction.as_dvec3() };
+                let root = Solver::new(&formula).first_root(&line, [start, end], end);
+                let mut value = |t: f64| formula.tape.value(line.origin + line.direction * t, &mut values);
+                let (from, range) = (f64::from(start), f64::from(end) - f64::from(start));
+                let until = root.map_or(f64::from(end), f64::from) - 2e-4 * range;
+                let mut last = [from, value(from)];
+                for step in 1..=steps {
+                    let t = from + range * step as f64 / steps as f64;
+                    if t >= until {
+                        break;
+                    }
+                    let next = [t, value(t)];
+                    assert!(last[1] * next[1] >= 0.0, "{name}, {camera:?}: lost at {t}, {root:?}, {line:?}");
+                    last = next;
+                }
+                if let Some(root) = root {
+                    let [at, before] = [root, root.next_down()].map(|t| value(f64::from(t)));
+                    assert!(at * before <= 0.0, "{name}, {camera:?}: false root {root}, {line:?}");
+                    count += 1;
+                }
+            }
+        }
+    }
+    assert!(count > 300, "{count} roots");
+}
+
+/// Returns the number in an environment variable, or a default.
+fn number(name: &str, default: u64) -> u64 {
+    std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
+}
+
 /// Compares models with f64 values at points of random pieces of random lines.
 #[test]
 fn models_enclose_all_values() {
     const SEED: u64 = 0x5eed_0003;
-    let samples: u64 = std::env::var("FORMULA_SAMPLES").ok().and_then(|text| text.parse().ok()).unwrap_or(1_000_000);
+    let samples = number("FORMULA_SAMPLES", 1_000_000);
     let (mut random, mut checked) = (Random(SEED), 0);
     let (mut models, mut values) = (Vec::new(), Vec::new());
     while checked < samples {
@@ -366,7 +412,7 @@ fn models_enclose_all_values() {
 #[test]
 fn models_of_eight_pieces_enclose_all_values() {
     const SEED: u64 = 0x5eed_0005;
-    let samples: u64 = std::env::var("FORMULA_SAMPLES").ok().and_then(|text| text.parse().ok()).unwrap_or(1_000_000);
+    let samples = number("FORMULA_SAMPLES", 1_000_000);
     let (mut random, mut checked) = (Random(SEED), 0);
     let (mut scratch, mut values) = (Vec::new(), Vec::new());
     while checked < samples {
@@ -390,10 +436,20 @@ fn models_of_eight_pieces_enclose_all_values() {
             let (bits, same) = (model_bits(&model), model_bits(&of_arrays.model(lane)));
             let is_same = (bits, outcome.is_clear(lane)) == (same, of_arrays.is_clear(lane));
             assert!(is_same, "{text}: {model:?}, {:?}, seed {SEED:#x}", of_arrays.model(lane));
-            let continuity = outcome.continuity(lane);
+            let (continuity, view) = (outcome.continuity(lane), outcome.view(lane));
+            let has_shares = view.sign != 0.0 && !view.is_clear && continuity == model::Continuity::default();
+            let signed = |t: f64, values: &mut Vec<f64>| view.sign * formula.tape.value(o + d * t, values);
+            if has_shares && view.far <= 1.0 {
+                let far = signed(from + view.far * (to - from), &mut values);
+                assert!(far < 1e-11, "{text} in {from}..{to}: {far}, {view:?}, {o} + t {d}, seed {SEED:#x}");
+            }
             for _ in 0..20 {
                 let t = random.between(from, to);
                 let value = formula.tape.value(o + d * t, &mut values);
+                if has_shares && t <= from + view.near * (to - from) {
+                    let near = view.sign * value;
+                    assert!(near > -1e-11, "{text} at {t} in {from}..{to}: {near}, {view:?}, {o} + t {d}, {SEED:#x}");
+                }
                 let u = ((t - 0.5 * (from + to)) / (0.5 * (to - from))).clamp(-1.0, 1.0);
                 let distance = (value - (c0 + u * (c1 + u * c2))).abs();
                 // The value itself, and u, are rounded.
@@ -415,6 +471,18 @@ fn model_bits(model: &model::Model) -> [u64; 4] {
     [c0, c1, c2, model.error].map(bits)
 }
 
+/// The values at places of eight lines.
+struct ValuesAt<'a>(PacketValues<'a>, [f64; LANES]);
+
+impl SimdKernel for ValuesAt<'_> {
+    type Output = [f64; LANES];
+
+    #[inline(always)]
+    fn run<N: Lanes>(mut self) -> Self::Output {
+        self.0.at(&self.1)
+    }
+}
+
 /// Eight values have the bits that each has alone, with all instruction sets.
 #[test]
 fn eight_values_are_those_of_single_points() {
@@ -427,8 +495,8 @@ fn eight_values_are_those_of_single_points() {
         let by_axis = [0, 1].map(|end: usize| [0, 1, 2].map(|axis: usize| lines.map(|line| line[end][axis])));
         let t = from_fn(|_| random.between(0.0, 4.0));
         let tape = &formula.tape;
-        let eight = simd::dispatch(PacketValues { tape, lines: &by_axis, t: &t, scratch: &mut scratch });
-        let of_arrays = simd::run_scalar(PacketValues { tape, lines: &by_axis, t: &t, scratch: &mut scratch });
+        let eight = simd::dispatch(ValuesAt(PacketValues { tape, lines: &by_axis, scratch: &mut scratch }, t));
+        let of_arrays = simd::run_scalar(ValuesAt(PacketValues { tape, lines: &by_axis, scratch: &mut scratch }, t));
         for lane in 0..LANES {
             let alone = tape.value(lines[lane][0] + lines[lane][1] * t[lane], &mut values);
             let is_same = |value: f64| value.to_bits() == alone.to_bits() || value.is_nan() && alone.is_nan();

@@ -1,0 +1,119 @@
+//! Sine, cosine and the exponential function in f64: the same bits for one number and for eight.
+//!
+//! They are written without branches, so that loops over eight numbers become vector instructions: with `libm` they
+//! took most of the time of the last steps to a root. For large arguments they are `libm`'s.
+
+use crate::lanes::LANES;
+use std::f64::consts::{FRAC_2_PI, LOG2_E};
+
+/// A number whose sum with a smaller one is rounded to a whole number, in its lowest bits.
+const TO_WHOLE: f64 = 6_755_399_441_055_744.0;
+
+/// The angle up to which the products with the first two parts of a quarter turn are exact.
+const LARGEST_ANGLE: f64 = 1e6;
+
+/// The exponent up to which the power is a normal number.
+const LARGEST_EXPONENT: f64 = 700.0;
+
+/// A quarter turn in parts of 33 bits (fdlibm).
+const QUARTER: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
+
+/// The polynomials of sine and cosine, from the highest power (fdlibm).
+const SINE: [f64; 6] = [
+    1.589_690_995_211_55e-10,
+    -2.505_076_025_340_686_3e-8,
+    2.755_731_370_707_006_8e-6,
+    -1.984_126_982_985_795e-4,
+    8.333_333_333_322_49e-3,
+    -1.666_666_666_666_663_2e-1,
+];
+const COSINE: [f64; 6] = [
+    -1.135_964_755_778_819_5e-11,
+    2.087_572_321_298_175e-9,
+    -2.755_731_435_139_066_3e-7,
+    2.480_158_728_947_673e-5,
+    -1.388_888_888_887_411e-3,
+    4.166_666_666_666_66e-2,
+];
+
+/// ln 2 in two parts, the first of 33 bits (fdlibm).
+const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
+
+/// The inverse factorials of 13 to 2.
+const INVERSE_FACTORIALS: [f64; 12] = [
+    1.605_904_383_682_161_3e-10,
+    2.087_675_698_786_81e-9,
+    2.505_210_838_544_172e-8,
+    2.755_731_922_398_589e-7,
+    2.755_731_922_398_589_3e-6,
+    2.480_158_730_158_73e-5,
+    1.984_126_984_126_984e-4,
+    1.388_888_888_888_889e-3,
+    8.333_333_333_333_333e-3,
+    4.166_666_666_666_666_4e-2,
+    1.666_666_666_666_666_6e-1,
+    0.5,
+];
+
+#[inline(always)]
+fn polynomial(coefficients: &[f64], x: f64) -> f64 {
+    coefficients.iter().fold(0.0, |sum, c| sum * x + c)
+}
+
+/// Returns the sine of an angle that is not too large, or its cosine.
+#[inline(always)]
+fn near_wave(x: f64, is_cosine: bool) -> f64 {
+    let shifted = x * FRAC_2_PI + TO_WHOLE;
+    let quarters = shifted - TO_WHOLE;
+    let r = x - quarters * QUARTER[0] - quarters * QUARTER[1] - quarters * QUARTER[2];
+    let squared = r * r;
+    let sin = r + r * squared * polynomial(&SINE, squared);
+    let cos = 1.0 - (0.5 * squared - squared * squared * polynomial(&COSINE, squared));
+    let turn = shifted.to_bits() + u64::from(is_cosine);
+    let value = if turn & 1 == 0 { sin } else { cos };
+    f64::from_bits(value.to_bits() ^ ((turn & 2) << 62))
+}
+
+/// Returns e to an exponent that is not too large.
+#[inline(always)]
+fn near_exp(x: f64) -> f64 {
+    let shifted = x * LOG2_E + TO_WHOLE;
+    let power = shifted - TO_WHOLE;
+    let r = x - power * LN_2[0] - power * LN_2[1];
+    let value = 1.0 + (r + r * r * polynomial(&INVERSE_FACTORIALS, r));
+    value * f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52)
+}
+
+pub(super) fn sin(x: f64) -> f64 {
+    if x.abs() <= LARGEST_ANGLE { near_wave(x, false) } else { libm::sin(x) }
+}
+
+pub(super) fn cos(x: f64) -> f64 {
+    if x.abs() <= LARGEST_ANGLE { near_wave(x, true) } else { libm::cos(x) }
+}
+
+pub(super) fn exp(x: f64) -> f64 {
+    if x.abs() <= LARGEST_EXPONENT { near_exp(x) } else { libm::exp(x) }
+}
+
+/// Computes the sine or cosine of each number.
+#[inline(always)]
+pub(super) fn wave_of_each(x: &[f64; LANES], to: &mut [f64; LANES], is_cosine: bool) {
+    for (to, &x) in to.iter_mut().zip(x) {
+        *to = near_wave(x, is_cosine);
+    }
+    if !x.iter().all(|x| x.abs() <= LARGEST_ANGLE) {
+        (0..LANES).for_each(|lane| to[lane] = if is_cosine { cos(x[lane]) } else { sin(x[lane]) });
+    }
+}
+
+/// Computes e to the power of each number.
+#[inline(always)]
+pub(super) fn exp_of_each(x: &[f64; LANES], to: &mut [f64; LANES]) {
+    for (to, &x) in to.iter_mut().zip(x) {
+        *to = near_exp(x);
+    }
+    if !x.iter().all(|x| x.abs() <= LARGEST_EXPONENT) {
+        (0..LANES).for_each(|lane| to[lane] = exp(x[lane]));
+    }
+}
