@@ -347,7 +347,7 @@ impl Viewer {
         self.playback.start(shown.moves() && !self.options.reduced_motion, self.now);
         self.screen.set_name(self.names.get(index).map_or("", String::as_str));
         // The eye needs the scene even if the view is kept, because a reloaded file may contain other views.
-        self.eye.set_scene(&shown);
+        self.eye.set_scene(&shown.at_time(self.playback.time().as_secs_f64()));
     }
 
     fn set_outside(&mut self, outside: Outside) {
@@ -430,9 +430,13 @@ impl Viewer {
     /// Returns the driver's next action.
     pub(crate) fn next_step(&mut self, busy: DriverState, now: Duration) -> Step {
         self.set_time(now);
+        self.playback.advance(now);
+        // The surfaces stop the eye where they are now.
+        if let Some(scene) = self.scene().filter(|_| self.playback.moved_until().is_some()) {
+            self.eye.set_scene(&scene);
+        }
         // Moves the eye to its place at `now` first, because `decide` compares the picture with the eye's current view.
         self.eye.advance(now);
-        self.playback.advance(now);
         self.screen.set_moving(self.eye.mode());
         self.screen.set_in_motion(self.is_in_motion());
         self.mark_light();

@@ -44,3 +44,28 @@ fn a_scene_is_drawn_and_moves() {
     assert!(driver.job.is_some());
     driver.come_to_rest();
 }
+
+/// A wall that moves away stops the eye where it is now, not where it was at time 0.
+#[test]
+fn an_eye_stops_at_a_moving_surface_where_it_is_now() {
+    let wall = Scene::from_ron(
+        "wall",
+        "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Implicit(f: \"z - 4.5 + 4*time\", \
+         bounds: Box(min: (-9, -9, -9), max: (9, 9, 6)))])",
+    );
+    let mut driver = Driver::new(0);
+    driver.viewer.show(wall.unwrap(), 0, false);
+    let eye_after_key = |driver: &mut Driver| {
+        driver.receive(b"W");
+        (0..5).for_each(|_| {
+            driver.now += Duration::from_millis(100);
+            driver.carry_out_steps();
+        });
+        driver.viewer.moved().map_or(5.0, |camera| camera.pose().eye.z)
+    };
+    driver.carry_out_steps();
+    driver.now += Duration::from_millis(900);
+    driver.carry_out_steps();
+    let z = eye_after_key(&mut driver);
+    assert!(z < 4.4, "{z}: the wall has moved away");
+}
