@@ -383,3 +383,20 @@ fn keys_move_the_camera() {
         assert!(distance > 0.9e-3 * state.scale() && distance < 1.1e4 * state.scale(), "{distance}");
     }
 }
+
+#[test]
+fn a_moving_scene_is_shown_at_its_time() {
+    let scene = Scene::from_ron(
+        "ball",
+        "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, objects: [Implicit(f: \"x^2 + y^2 + z^2 = 1 + time\", \
+         bounds: Box(min: (-2, -2, -2), max: (2, 2, 2)))])",
+    );
+    let (scene, area) = (scene.unwrap(), AREA);
+    let mut state = SceneState::new(scene.camera());
+    let [first, second, again] = [0.0, 2.0, 0.0].map(|seconds| {
+        let moved = scene.clone().at_time(seconds);
+        drawn(&SceneView::new(&moved), area, &mut state)
+    });
+    assert_ne!(first, second, "the ball has grown");
+    assert_eq!(first, again);
+}

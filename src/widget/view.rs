@@ -30,6 +30,9 @@ use std::num::NonZeroU32;
 /// }
 /// ```
 ///
+/// A scene whose formulas depend on the time is shown at the scene's own time: 0, or `seconds` after
+/// `scene.at_time(seconds)`. A pane is not traced again while it gets copies of one scene.
+///
 /// # Panics
 /// Drawing continues a panic of the [background](SceneState::in_background) thread.
 #[derive(Clone, Debug)]
