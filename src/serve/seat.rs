@@ -77,7 +77,7 @@ pub(super) struct Arrived {
     pub(super) drained_at: Option<Duration>,
 }
 
-/// Traces a frame; `None` if it was interrupted, which it may be if the flag is set.
+/// Traces a frame; `None` if it was interrupted, which only a refinement may be, and only if the flag is set.
 pub(super) type Trace<'a> = dyn FnMut(&Job, bool) -> Option<Frame> + 'a;
 
 /// The place of one viewer on the server: the viewer's view, terminal modes and remaining time.
@@ -231,7 +231,9 @@ impl Seat {
                 }
                 Step::Trace(probe, job) => {
                     out.extend_from_slice(&probe);
-                    match trace(&job, self.viewer.has_shown()) {
+                    // A frame of a new view is not begun again, so a view that moves would stand still if other viewers
+                    // interrupted its frames.
+                    match trace(&job, job.refines && self.viewer.has_shown()) {
                         Some(frame) => self.viewer.take_frame(frame),
                         None => return Next::Turn(Class::Refinement),
                     }

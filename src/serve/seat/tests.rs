@@ -41,7 +41,8 @@ impl Sitting {
 
     fn turn_for(&mut self, class: Class, arrived: Arrived) -> Next {
         let Self { seat, tracer, now, traced, bytes } = self;
-        let mut trace = |job: &Job, _: bool| {
+        let mut trace = |job: &Job, may_interrupt: bool| {
+            assert!(job.refines || !may_interrupt, "the frame of a new view is lost if it is interrupted");
             *traced += 1;
             tracer.trace_for_any(job, &Cancellation::default()).ok()
         };
