@@ -66,8 +66,8 @@ pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Line {
-    /// Appends input in parts, and waits while the seat has more than two parts to take.
-    pub(super) async fn push(&self, bytes: &[u8]) {
+    /// Appends input that arrives at `now` in parts, and waits while the seat has more than two parts to take.
+    pub(super) async fn push(&self, bytes: &[u8], now: Duration) {
         for part in bytes.chunks(MAX_INPUT) {
             loop {
                 // Before the lock: input that is taken between the check and the wait then still ends the wait.
@@ -79,6 +79,7 @@ impl Line {
                     }
                     if inbox.arrived.bytes.len() + part.len() <= 2 * MAX_INPUT {
                         inbox.arrived.bytes.extend_from_slice(part);
+                        inbox.arrived.at = now;
                         break;
                     }
                 }

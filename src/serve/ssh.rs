@@ -130,7 +130,7 @@ impl Handler for Client {
         // Wakes the seat before the input is complete: `push` waits for the seat as soon as two parts of `MAX_INPUT`
         // wait.
         for part in data.chunks(1024) {
-            self.line.push(part).await;
+            self.line.push(part, self.house.stage.now()).await;
             self.wake();
         }
         Ok(())
