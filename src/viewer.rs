@@ -596,6 +596,12 @@ impl Viewer {
         self.last_event
     }
 
+    /// Frees the memory that is only needed while frames are drawn: a server has many viewers at rest.
+    #[cfg(feature = "serve")]
+    pub(crate) fn free_buffers(&mut self) {
+        self.screen.free_buffers();
+    }
+
     /// Returns the size of the terminal's window in cells.
     pub(crate) fn window_size(&self) -> Size {
         self.display.window_size()

@@ -4,6 +4,7 @@ use super::command::{Command, Direction, Side, Toward};
 use super::key::Key;
 use crate::export::Format;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use std::sync::Arc;
 
 /// A mode, in which keys have commands of their own.
 ///
@@ -88,7 +89,8 @@ impl Binding {
 /// The keymap that key presses are looked up in and that the help lists.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Keymap {
-    bindings: Vec<Binding>,
+    // Shared by all viewers of a server: a table takes about 10 KB.
+    bindings: Arc<Vec<Binding>>,
 }
 
 /// Returns the built-in keymap.
@@ -101,7 +103,8 @@ impl Default for Keymap {
             command: Command::Write(format),
         };
         // The formats come first, so that the export dialog lists them before the key that cancels it.
-        Self { bindings: Format::ALL.iter().map(write).chain(BUILT_IN.iter().map(row)).collect() }
+        let bindings = Format::ALL.iter().map(write).chain(BUILT_IN.iter().map(row)).collect();
+        Self { bindings: Arc::new(bindings) }
     }
 }
 
@@ -238,20 +241,21 @@ impl Keymap {
     /// Binds a key to a command in a mode, instead of the key's previous command; `None` unbinds
     /// it.
     pub fn bind(&mut self, mode: KeyMode, key: Key, command: Option<Command>) {
-        for row in self.bindings.iter_mut().filter(|row| row.mode == mode) {
+        let bindings = Arc::make_mut(&mut self.bindings);
+        for row in bindings.iter_mut().filter(|row| row.mode == mode) {
             row.keys.retain(|bound| *bound != key);
         }
         // The key is added to the command's binding, so that the help lists all keys of the command in one line.
         let Some(command) = command else { return };
-        match self.bindings.iter_mut().find(|row| (row.mode, row.command) == (mode, command)) {
+        match bindings.iter_mut().find(|row| (row.mode, row.command) == (mode, command)) {
             Some(row) => row.keys.push(key),
-            None => self.bindings.push(Binding { mode, keys: vec![key], command }),
+            None => bindings.push(Binding { mode, keys: vec![key], command }),
         }
     }
 
     /// Unbinds all keys of these commands, which the help then does not list.
     pub fn remove(&mut self, commands: &[Command]) {
-        self.bindings.retain(|row| !commands.contains(&row.command));
+        Arc::make_mut(&mut self.bindings).retain(|row| !commands.contains(&row.command));
     }
 
     /// Returns the command of a key event in `modes`, the topmost first, and whether Shift makes

@@ -16,6 +16,8 @@ use std::time::Duration;
 const COUNTDOWN: Duration = Duration::from_secs(30);
 /// Greatest time that leaving waits for the terminal's last replies.
 const LAST_REPLIES: Duration = Duration::from_secs(1);
+/// The least time without a frame for which a viewer's buffers are freed.
+const LONG_REST: Duration = Duration::from_secs(1);
 /// The most actions of the viewer in one turn, such as tracing a frame and drawing it.
 // A trace and a draw are usual; the limit also ends the turn of a viewer that never waits.
 const MAX_STEPS: usize = 8;
@@ -224,8 +226,14 @@ impl Seat {
     ) -> Next {
         let mut traced = false;
         for _ in 0..MAX_STEPS {
-            match self.viewer.next_step(DriverState { sending, tracing: None }, clock()) {
-                Step::Wait(until) => return Next::Sleep(until),
+            let now = clock();
+            match self.viewer.next_step(DriverState { sending, tracing: None }, now) {
+                Step::Wait(until) => {
+                    if !sending && until.is_none_or(|at| at > now + LONG_REST) {
+                        self.viewer.free_buffers();
+                    }
+                    return Next::Sleep(until);
+                }
                 Step::GiveUp => {}
                 Step::Draw => {
                     let mut bytes = Vec::new();

@@ -144,6 +144,12 @@ impl Screen {
         self.content.wipe
     }
 
+    /// Frees the memory that is only needed while a frame is drawn.
+    #[cfg(feature = "serve")]
+    pub(super) fn free_buffers(&mut self) {
+        self.grid = Grid::new(Size::new(0, 0));
+    }
+
     /// Opens a layer and replaces the open one of its type.
     pub(super) fn open<L: Layer>(&mut self, layer: L) {
         self.content.layers.open(layer);
