@@ -6,7 +6,7 @@
 //! connection, with at most one frame. `limits` counts connections and places; `ssh` and `visit` say what a client may
 //! ask for.
 //!
-//! Of these `run_queue`, `seat`, `limits`, `visit` and `client_terminal` are pure: they are told the time.
+//! Of these `run_queue`, `seat`, `limits`, `total_rate`, `visit` and `client_terminal` are pure: they are told the time.
 
 use crate::scene::Scene;
 use crate::terminal::{Signals, without_signals};
@@ -36,12 +36,15 @@ mod host_key;
 mod house;
 mod limits;
 mod line;
+mod metrics;
+mod pictures;
 mod reception;
 mod run_queue;
 mod seat;
 mod socket;
 mod ssh;
 mod stage;
+mod total_rate;
 mod visit;
 
 /// Time to wait after an error of accepting a connection, such as too many open files.
@@ -79,6 +82,8 @@ pub struct Settings {
     pub session_max: Duration,
     /// The most bytes per second for one viewer.
     pub max_rate: Option<u32>,
+    /// The most bytes per second for all viewers together.
+    pub max_rate_total: Option<u32>,
     /// The most frames per second for one viewer.
     pub max_frames: f32,
     /// The threads that draw; `None` for one per core.
@@ -89,6 +94,8 @@ pub struct Settings {
     pub banner: Option<String>,
     /// The URL that is shown in the welcome line and printed when a viewer leaves.
     pub link: Option<String>,
+    /// The address at which the server's counts can be read, in the text format of Prometheus.
+    pub metrics: Option<SocketAddr>,
     /// The longest time that a client may take to log in.
     pub login_time: Duration,
     /// The longest time in which a client takes no bytes; after it the connection is closed.
@@ -109,11 +116,13 @@ impl Settings {
             idle: Duration::from_secs(600),
             session_max: Duration::from_secs(3600),
             max_rate: Some(200_000),
+            max_rate_total: None,
             max_frames: 30.0,
             threads: None,
             authorized_keys: None,
             banner: None,
             link: None,
+            metrics: None,
             // `russh` has no such limit: 500 of 500 connections that sent nothing were still open after 20 seconds.
             login_time: Duration::from_secs(10),
             patience: Duration::from_secs(20),
@@ -140,6 +149,7 @@ pub fn authorized_keys(path: &Path) -> io::Result<Vec<PublicKey>> {
 pub struct Server {
     house: Arc<House>,
     address: SocketAddr,
+    metrics: Option<SocketAddr>,
     fingerprint: String,
     sockets: Option<JoinHandle<()>>,
     threads: Vec<JoinHandle<()>>,
@@ -168,10 +178,13 @@ impl Server {
         let named = |what: String| move |error: io::Error| io::Error::new(error.kind(), format!("{what}: {error}"));
         let key = host_key::load_or_make(&settings.host_key).map_err(named(settings.host_key.display().to_string()))?;
         // Bound here and not by the thread of the sockets, so that an address in use is an error of `start`.
-        let listener = TcpListener::bind(settings.listen).map_err(named(settings.listen.to_string()))?;
-        // Needed by `TcpListener::from_std` of tokio.
-        listener.set_nonblocking(true)?;
-        let address = listener.local_addr()?;
+        let bind = |address: SocketAddr| {
+            let listener = TcpListener::bind(address).map_err(named(address.to_string()))?;
+            // Needed by `TcpListener::from_std` of tokio.
+            listener.set_nonblocking(true).and_then(|()| Ok((listener.local_addr()?, listener)))
+        };
+        let (address, listener) = bind(settings.listen)?;
+        let (metrics, counts) = settings.metrics.map(bind).transpose()?.unzip();
         let cores = || thread::available_parallelism().map_or(1, usize::from);
         let (stage, threads) = Stage::start(settings.threads.unwrap_or_else(cores))?;
         let fingerprint = host_key::fingerprint(&key);
@@ -182,16 +195,26 @@ impl Server {
         // One thread suffices for the sockets, and leaves the cores to the threads that draw.
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         let sockets = thread::Builder::new().name("sockets".to_owned()).spawn(move || {
-            runtime.block_on(serve_until_drained(shared, config, listener, log));
+            runtime.block_on(async {
+                if let Some(Ok(listener)) = counts.map(tokio::net::TcpListener::from_std) {
+                    tokio::spawn(metrics::serve(Arc::clone(&shared), listener));
+                }
+                serve_until_drained(shared, config, listener, log).await;
+            });
             flag.store(true, Ordering::SeqCst);
             on_end();
         })?;
-        Ok(Self { house, address, fingerprint, sockets: Some(sockets), threads, ended })
+        Ok(Self { house, address, metrics, fingerprint, sockets: Some(sockets), threads, ended })
     }
 
     /// Returns the address that the server listens at.
     pub fn address(&self) -> SocketAddr {
         self.address
+    }
+
+    /// Returns the address at which the server's counts can be read, if there is one.
+    pub fn metrics_address(&self) -> Option<SocketAddr> {
+        self.metrics
     }
 
     /// Returns the host key's fingerprint: `SHA256:...`.
@@ -324,13 +347,16 @@ async fn accept_all(house: Arc<House>, config: Arc<Config>, listener: tokio::net
         match listener.accept().await {
             Ok((stream, address)) => {
                 let entry = locked(&house.door).enter(address.ip(), house.stage.now());
+                let metrics = &house.stage.metrics;
                 match entry {
                     Ok(entry) => {
+                        metrics.connections.add(1);
                         let connection = connect(Arc::clone(&house), Arc::clone(&config), stream, entry);
                         tokio::spawn(connection);
                     }
                     // A closed connection costs the least; a message would need the whole handshake.
                     Err(refusal) => {
+                        metrics.refuse(refusal);
                         log(&format!("refused {}: {}", limits::anonymized(address.ip()), refusal_text(refusal)));
                     }
                 }

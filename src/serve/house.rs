@@ -4,6 +4,7 @@ use super::client_terminal::ClientTerminal;
 use super::limits::{Door, Places};
 use super::line::locked;
 use super::stage::Stage;
+use super::total_rate::TotalRate;
 use super::{HostedScene, Settings};
 use crate::capabilities::{Colors, terminfo_colors};
 use crate::control::{Command, Keymap};
@@ -31,6 +32,8 @@ pub(super) struct House {
     pub(super) stage: Arc<Stage>,
     pub(super) door: Mutex<Door>,
     places: Mutex<Places>,
+    /// The queue of parts to send, if all bytes together are limited.
+    pub(super) total_rate: Option<Mutex<TotalRate>>,
     /// Changes when a place is freed, or the server begins to drain.
     pub(super) changes: watch::Sender<()>,
     drained_at: OnceLock<Duration>,
@@ -51,6 +54,7 @@ impl House {
         Self {
             door: Mutex::new(Door::new(connections, settings.max_per_address)),
             places: Mutex::new(Places::new(settings.max_viewers)),
+            total_rate: settings.max_rate_total.map(|rate| Mutex::new(TotalRate::new(rate))),
             changes: watch::Sender::new(()),
             drained_at: OnceLock::new(),
             text_frames: scenes.iter().map(|_| OnceLock::new()).collect(),
@@ -96,6 +100,15 @@ impl House {
             let _ = write!(list, "{}\r\n", format!("{name:width$}  {title}").trim_end());
             list
         })
+    }
+
+    /// Returns the server's counts in the text format of Prometheus.
+    pub(super) fn metrics_text(&self) -> String {
+        self.stage.metrics.text(&[
+            ("viewers", "Views that are open", self.stage.seat_count()),
+            ("waiting", "Visitors who wait for a place", locked(&self.places).waiting()),
+            ("draining", "Whether the server ends soon", usize::from(self.drained_at().is_some())),
+        ])
     }
 
     /// Begins to drain: the viewers have to leave by this time.

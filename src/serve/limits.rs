@@ -197,6 +197,11 @@ impl Places {
         Ok(())
     }
 
+    /// Returns the number of visitors in the queue.
+    pub(super) fn waiting(&self) -> usize {
+        self.waiting.len()
+    }
+
     /// Removes a visitor from the queue.
     pub(super) fn give_up(&mut self, visitor: u64) {
         self.waiting.retain(|&waiting| waiting != visitor);

@@ -2,9 +2,10 @@
 
 use super::client_terminal::ClientTerminal;
 use super::house::{House, Place};
-use super::line::{Line, Outgoing};
+use super::line::{Line, Outgoing, locked};
 use super::seat::{Seat, Stay};
 use super::socket::Kick;
+use super::total_rate::TotalRate;
 use crate::grid::Window;
 use crate::text::visible;
 use russh::ChannelId;
@@ -130,12 +131,20 @@ impl Reception {
     /// A client is disconnected if its SSH window has no room for the bytes for too long. (A client that does not read
     /// its socket at all is noticed by `Socket`.)
     async fn send(&self, bytes: &[u8]) -> bool {
-        for message in bytes.chunks(MAX_MESSAGE) {
+        let House { total_rate, stage, .. } = &*self.house;
+        for message in bytes.chunks(if total_rate.is_some() { TotalRate::MAX_PART } else { MAX_MESSAGE }) {
+            if let Some(rate) = total_rate {
+                let wait = locked(rate).enqueue(message.len(), stage.now());
+                if !wait.is_zero() {
+                    sleep(wait).await;
+                }
+            }
             let sent = timeout(self.house.settings.patience, self.handle.data(self.channel, message.to_vec())).await;
             if !matches!(sent, Ok(Ok(()))) {
                 self.kick.kick();
                 return false;
             }
+            stage.metrics.bytes.add(message.len() as u64);
         }
         true
     }

@@ -100,6 +100,8 @@ pub(super) struct Seat {
     leaving: Option<Duration>,
     /// The time of the last action.
     latest: Duration,
+    /// The frames drawn since they were last counted.
+    drawn: u64,
 }
 
 impl Seat {
@@ -124,7 +126,20 @@ impl Seat {
         }
         out.extend(viewer.queries(now));
         let (began, drained_at, counted, leaving) = (now, None, None, None);
-        let mut seat = Self { viewer, modes, scenes, shown, link, stay, began, drained_at, counted, leaving, latest: now };
+        let mut seat = Self {
+            viewer,
+            modes,
+            scenes,
+            shown,
+            link,
+            stay,
+            began,
+            drained_at,
+            counted,
+            leaving,
+            latest: now,
+            drawn: 0,
+        };
         seat.show(shown);
         Ok(seat)
     }
@@ -240,6 +255,7 @@ impl Seat {
                     self.viewer.draw(clock(), &mut bytes);
                     self.viewer.end_frame(&mut bytes, clock());
                     sending |= !bytes.is_empty();
+                    self.drawn += u64::from(!bytes.is_empty());
                     out.append(&mut bytes);
                 }
                 // The first picture is held back until it is refined, if that takes little time.
@@ -294,6 +310,11 @@ impl Seat {
             out.extend_from_slice(format!("\x1b]52;c;{encoded}\x1b\\").as_bytes());
         }
         false
+    }
+
+    /// Returns the number of frames drawn since the last call.
+    pub(super) fn take_drawn(&mut self) -> u64 {
+        std::mem::take(&mut self.drawn)
     }
 
     /// Restores the terminal, and appends what is left on the screen.

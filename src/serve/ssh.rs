@@ -53,6 +53,7 @@ impl Client {
         if let Some(entry) = &mut self.entry {
             locked(&self.house.door).log_in(entry);
         }
+        self.house.stage.metrics.logins.add(1);
         self.line.logged_in.notify_one();
         Auth::Accept
     }

@@ -4,6 +4,8 @@
 //! take as long as tracing it. Each thread is a pool of its own to rayon, so that whatever is called stays on it.
 
 use super::line::{Line, locked};
+use super::metrics::Metrics;
+use super::pictures::{Pictures, is_shared};
 use super::run_queue::{Class, Next, RunQueue, SeatId};
 use super::seat::{Arrived, Seat};
 use crate::app::Tracer;
@@ -41,6 +43,9 @@ pub(super) struct Stage {
     ready: Condvar,
     start: Instant,
     threads: usize,
+    pub(super) metrics: Metrics,
+    /// The pictures that several viewers see.
+    pictures: Mutex<Pictures>,
     /// The byte of input at which a turn panics, for a test.
     #[cfg(feature = "test-hooks")]
     pub(super) panics: std::sync::OnceLock<u8>,
@@ -55,6 +60,8 @@ impl Stage {
             ready: Condvar::new(),
             start: Instant::now(),
             threads,
+            metrics: Metrics::default(),
+            pictures: Mutex::default(),
             #[cfg(feature = "test-hooks")]
             panics: std::sync::OnceLock::new(),
         });
@@ -80,6 +87,7 @@ impl Stage {
         shared.next_id += 1;
         shared.seats.insert(id, Arc::new(Staged { seat: Mutex::new(seat), line }));
         shared.queue.add(id);
+        self.metrics.visits.add(1);
         self.rouse(&mut shared);
         id
     }
@@ -138,13 +146,16 @@ impl Stage {
                 // The panic hook has already printed the message. Only this viewer ends, with a clean terminal.
                 // The old one may be in an invalid state.
                 tracer = Tracer::default();
+                self.metrics.panics.add(1);
                 let mut out = Vec::new();
                 locked(&staged.seat).abandon(&mut out);
                 staged.line.send(out, Some(1));
                 Next::End
             });
+            let cost = cpu_time().saturating_sub(started);
+            self.metrics.turn_micros.add(u64::try_from(cost.as_micros()).unwrap_or(0));
             let mut shared = locked(&self.shared);
-            shared.queue.finish(id, cpu_time().saturating_sub(started), next);
+            shared.queue.finish(id, cost, next);
             if next == Next::End {
                 shared.seats.remove(&id);
             }
@@ -189,7 +200,8 @@ impl Stage {
         // The first picture of a visit is never interrupted: until it is there, the screen is empty.
         let never = Cancellation::default();
         let mut trace = |job: &Job, may_interrupt: bool| -> Option<Frame> {
-            let mut frame = tracer.trace_for_any(job, if may_interrupt { token } else { &never }).ok()?;
+            let token = if may_interrupt { token } else { &never };
+            let mut frame = self.picture(job, token, tracer)?;
             // Counts the time as longer if there are more seats than threads: the viewer chooses the number of samples
             // by it.
             frame.trace = frame.trace.mul_f64(share);
@@ -205,8 +217,24 @@ impl Stage {
         // With a thread for each seat that is ready, a refinement delays no picture of another viewer.
         let class = if load <= self.threads { Class::Refinement } else { Class::Picture };
         let next = seat.take_turn(&arrived, (line.is_sending(), class), &|| self.now(), &mut trace, &mut out);
+        self.metrics.frames.add(seat.take_drawn());
         line.send(out, (next == Next::End).then_some(0));
         next
+    }
+
+    /// Returns the picture of a job, which may have been traced for another viewer; `None` if it is cancelled.
+    fn picture(&self, job: &Job, token: &Cancellation, tracer: &mut Tracer) -> Option<Frame> {
+        let is_shared = is_shared(job);
+        if is_shared && let Some(kept) = locked(&self.pictures).get(job) {
+            self.metrics.shared.add(1);
+            return Some(Frame { shot: job.shot, refines: job.refines, ..Frame::clone(&kept) });
+        }
+        let frame = tracer.trace_for_any(job, token).ok()?;
+        self.metrics.traced.add(1);
+        if is_shared {
+            locked(&self.pictures).keep(Arc::new(frame.clone()));
+        }
+        Some(frame)
     }
 }
 

@@ -63,6 +63,7 @@ pub(crate) struct Job {
 }
 
 /// A traced frame, with the shot that it shows.
+#[derive(Clone)]
 pub(crate) struct Frame {
     pub(crate) scene: Scene,
     pub(crate) shot: Shot,

@@ -1,14 +1,22 @@
 //! A client in this process: it reads, answers queries as a terminal does, and keeps all bytes.
 
-use crate::Hosting;
+use crate::Place;
 use crate::pty::{Modes, Screen};
 use russh::client::{self, AuthResult, Handle, Msg};
 use russh::keys::PublicKeyOrCertificate;
 use russh::{Channel, ChannelMsg};
-use std::sync::Arc;
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+use tokio::io::AsyncWriteExt;
+use tokio::task::JoinHandle;
+use tokio::time::{Instant, timeout_at};
 
-/// A client that trusts every server.
-pub(crate) struct Anybody;
+/// A client that trusts every server, and keeps its banner.
+#[derive(Clone, Default)]
+pub(crate) struct Anybody {
+    pub(crate) banner: Arc<Mutex<String>>,
+}
 
 impl client::Handler for Anybody {
     type Error = russh::Error;
@@ -16,17 +24,26 @@ impl client::Handler for Anybody {
     async fn check_server_key(&mut self, _key: &PublicKeyOrCertificate) -> Result<bool, russh::Error> {
         Ok(true)
     }
+
+    async fn auth_banner(&mut self, banner: &str, _session: &mut client::Session) -> Result<(), russh::Error> {
+        self.banner.lock().expect("nobody panics").push_str(banner);
+        Ok(())
+    }
 }
 
 /// Connects without logging in.
-pub(crate) async fn connect(hosting: &Hosting) -> Handle<Anybody> {
+pub(crate) async fn connect(place: &impl Place) -> Handle<Anybody> {
+    connect_as(place, Anybody::default()).await
+}
+
+pub(crate) async fn connect_as(place: &impl Place, client: Anybody) -> Handle<Anybody> {
     let config = Arc::new(client::Config { nodelay: true, ..client::Config::default() });
-    client::connect(config, hosting.address(), Anybody).await.expect("the server accepts a connection")
+    client::connect(config, place.address(), client).await.expect("the server accepts a connection")
 }
 
 /// Connects and logs in.
-pub(crate) async fn log_in(hosting: &Hosting) -> Handle<Anybody> {
-    let mut session = connect(hosting).await;
+pub(crate) async fn log_in(place: &impl Place) -> Handle<Anybody> {
+    let mut session = connect(place).await;
     let auth = session.authenticate_none("anybody").await.expect("an answer");
     assert!(matches!(auth, AuthResult::Success), "everybody is let in");
     session
@@ -44,19 +61,23 @@ pub(crate) struct Guest {
     pub(crate) status: Option<u32>,
     /// Whether it answers queries.
     pub(crate) answers: bool,
+    /// The time after which it answers.
+    pub(crate) delay: Duration,
+    /// The times at which answers are due.
+    owed: VecDeque<Instant>,
     answered: usize,
     screen: Screen,
 }
 
 impl Guest {
     /// Opens the view of the first scene in a terminal of 80x24 cells.
-    pub(crate) async fn enter(hosting: &Hosting) -> Self {
-        Self::enter_with(hosting, (80, 24), None).await
+    pub(crate) async fn enter(place: &impl Place) -> Self {
+        Self::enter_with(place, (80, 24), None).await
     }
 
     /// Opens a view in a terminal of this size, by a command if there is one.
-    pub(crate) async fn enter_with(hosting: &Hosting, (columns, rows): (u16, u16), command: Option<&str>) -> Self {
-        let mut guest = Self::without_terminal(hosting, (columns, rows)).await;
+    pub(crate) async fn enter_with(place: &impl Place, (columns, rows): (u16, u16), command: Option<&str>) -> Self {
+        let mut guest = Self::without_terminal(place, (columns, rows)).await;
         let (columns, rows) = (columns.into(), rows.into());
         guest.channel.request_pty(true, "xterm-256color", columns, rows, 0, 0, &[]).await.expect("a terminal");
         guest.ask(command).await;
@@ -64,9 +85,10 @@ impl Guest {
     }
 
     /// Opens the view by a client that grants room for few bytes.
-    pub(crate) async fn enter_with_little_room(hosting: &Hosting) -> Self {
+    pub(crate) async fn enter_with_little_room(place: &impl Place) -> Self {
         let config = client::Config { window_size: 32 * 1024, channel_buffer_size: 1, ..client::Config::default() };
-        let mut session = client::connect(Arc::new(config), hosting.address(), Anybody).await.expect("a connection");
+        let mut session =
+            client::connect(Arc::new(config), place.address(), Anybody::default()).await.expect("a connection");
         assert!(session.authenticate_none("anybody").await.expect("an answer").success());
         let mut guest = Self::on(session, (80, 24)).await;
         guest.channel.request_pty(true, "xterm-256color", 80, 24, 0, 0, &[]).await.expect("a terminal");
@@ -75,14 +97,15 @@ impl Guest {
     }
 
     /// Opens a channel without a terminal.
-    pub(crate) async fn without_terminal(hosting: &Hosting, size: (u16, u16)) -> Self {
-        Self::on(log_in(hosting).await, size).await
+    pub(crate) async fn without_terminal(place: &impl Place, size: (u16, u16)) -> Self {
+        Self::on(log_in(place).await, size).await
     }
 
     async fn on(session: Handle<Anybody>, (columns, rows): (u16, u16)) -> Self {
         let channel = session.channel_open_session().await.expect("a channel");
         let (bytes, errors, screen) = (Vec::new(), Vec::new(), Screen::new(columns, rows));
-        Self { session, channel, bytes, errors, status: None, answers: true, answered: 0, screen }
+        let (delay, owed) = (Duration::ZERO, VecDeque::new());
+        Self { session, channel, bytes, errors, status: None, answers: true, delay, owed, answered: 0, screen }
     }
 
     /// Asks for a shell, or for a command.
@@ -98,13 +121,30 @@ impl Guest {
         self.channel.data(bytes).await.expect("the connection is open");
     }
 
-    /// Reads the next message. Returns `false` once the channel is closed.
+    /// Starts sending much input; the caller has to read meanwhile, because a client whose channel is not read sends
+    /// nothing either.
+    pub(crate) fn start_sending(&self, bytes: Vec<u8>) -> JoinHandle<std::io::Result<()>> {
+        let mut writer = self.channel.make_writer();
+        tokio::spawn(async move { writer.write_all(&bytes).await })
+    }
+
+    /// Reads the next message, and answers meanwhile. Returns `false` once the channel is closed.
     async fn read(&mut self) -> bool {
-        match self.channel.wait().await {
+        let message = loop {
+            let Some(&due) = self.owed.front() else { break self.channel.wait().await };
+            if let Ok(message) = timeout_at(due, self.channel.wait()).await {
+                break message;
+            }
+            self.answer().await;
+        };
+        match message {
             Some(ChannelMsg::Data { data }) => {
                 self.bytes.extend_from_slice(&data);
                 self.screen.feed(&data);
-                self.answer().await;
+                self.hear_queries();
+                while self.delay.is_zero() && !self.owed.is_empty() {
+                    self.answer().await;
+                }
             }
             Some(ChannelMsg::ExtendedData { data, .. }) => self.errors.extend_from_slice(&data),
             Some(ChannelMsg::ExitStatus { exit_status }) => self.status = Some(exit_status),
@@ -115,6 +155,12 @@ impl Guest {
     }
 
     async fn answer(&mut self) {
+        self.owed.pop_front();
+        // The server may have ended meanwhile.
+        let _ = self.channel.data(&b"\x1b[?62;22c"[..]).await;
+    }
+
+    fn hear_queries(&mut self) {
         const DA1: &[u8] = b"\x1b[c";
         let unread = &self.bytes[self.answered..];
         let queries = unread.windows(DA1.len()).filter(|window| *window == DA1).count();
@@ -122,10 +168,14 @@ impl Guest {
         if unread.ends_with(DA1) {
             self.answered = self.bytes.len();
         }
-        if self.answers && queries > 0 {
-            // The server may have ended meanwhile.
-            let _ = self.channel.data(&*b"\x1b[?62;22c".repeat(queries)).await;
+        if self.answers {
+            self.owed.extend(std::iter::repeat_n(Instant::now() + self.delay, queries));
         }
+    }
+
+    /// Returns the number of queries whose answer has not been sent.
+    pub(crate) fn unanswered(&self) -> usize {
+        self.owed.len()
     }
 
     /// Reads until the bytes and the screen are as wanted.

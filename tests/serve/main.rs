@@ -3,10 +3,14 @@
 //! The tests wait for events. Times that a server grants are shortened, so that they pass within a test.
 
 mod abuse;
+mod counter;
 mod guest;
 mod openssh;
+mod operator;
+mod program;
 #[path = "../pty/mod.rs"]
 mod pty;
+mod sharing;
 mod viewing;
 
 use std::future::Future;
@@ -17,6 +21,17 @@ use std::time::Duration;
 use tempfile::TempDir;
 use termtrace::Scene;
 use termtrace::internals::serve::{HostedScene, Server, Settings};
+
+/// A server that clients connect to.
+trait Place {
+    fn address(&self) -> SocketAddr;
+}
+
+impl Place for Hosting {
+    fn address(&self) -> SocketAddr {
+        self.server.address()
+    }
+}
 
 /// A server for one test. It lasts until the test program ends.
 struct Hosting {
@@ -42,10 +57,6 @@ impl Hosting {
 
     fn usual() -> Self {
         Self::start(|_| {})
-    }
-
-    fn address(&self) -> SocketAddr {
-        self.server.address()
     }
 
     fn key(&self) -> PathBuf {

@@ -1,8 +1,12 @@
 //! With OpenSSH's client, if it is installed.
 
-use crate::Hosting;
+use crate::program::Program;
 use crate::pty::{SOON, Size, Start};
-use std::process::{Command, Output};
+use crate::{Hosting, Place};
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
 
 /// Returns the options that every call needs, or `None` if there is no `ssh`.
 fn options(hosting: &Hosting) -> Option<Vec<String>> {
@@ -67,6 +71,82 @@ fn row_01_02_03_all_else_is_refused() {
     }
 }
 
+/// Returns a port of this machine that nothing listens at.
+fn free_port() -> u16 {
+    std::net::TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port").port()
+}
+
+/// What goes to a forwarded port reaches nothing: the connection ends.
+#[test]
+fn row_03_forwarded_ports_lead_nowhere() {
+    let hosting = Hosting::usual();
+    let Some(options) = options(&hosting) else { return };
+    let target = hosting.address().port();
+    for (forward, greeting) in [("-L", &b""[..]), ("-D", b"\x05\x01\x00")] {
+        let port = free_port();
+        let place = if forward == "-L" { format!("{port}:127.0.0.1:{target}") } else { port.to_string() };
+        let mut ssh = Command::new("ssh");
+        ssh.args(&options).args(["-N", forward, &place, "127.0.0.1"]).stderr(Stdio::null());
+        let mut ssh = ssh.spawn().expect("ssh runs");
+        let mut stream = loop {
+            match TcpStream::connect(("127.0.0.1", port)) {
+                Ok(stream) => break stream,
+                Err(_) => std::thread::sleep(Duration::from_millis(20)),
+            }
+        };
+        stream.write_all(greeting).expect("ssh takes it");
+        let mut answer = Vec::new();
+        if forward == "-D" {
+            let mut method = [0; 2];
+            stream.read_exact(&mut method).expect("ssh answers by itself");
+            let [high, low] = target.to_be_bytes();
+            stream.write_all(&[5, 1, 0, 1, 127, 0, 0, 1, high, low]).expect("ssh takes it");
+        }
+        let _ = stream.read_to_end(&mut answer);
+        assert!(!answer.windows(4).any(|word| word == b"SSH-"), "{forward} led to the server: {answer:?}");
+        ssh.kill().expect("it runs");
+        let _ = ssh.wait();
+    }
+}
+
+#[test]
+fn row_03_no_agent_no_x11_and_no_second_channel() {
+    let hosting = Hosting::usual();
+    let Some(options) = options(&hosting) else { return };
+    let asked = ssh(&hosting, &["-A", "-X", "-v", "127.0.0.1", "--", "--list"]).expect("ssh is there");
+    assert!(asked.status.success(), "{asked:?}");
+    assert!(String::from_utf8_lossy(&asked.stdout).contains("corridor"), "{asked:?}");
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let control = format!("ControlPath={}", folder.path().join("control").display());
+    let start = options.iter().fold(Start::new("ssh"), Start::arg);
+    let mut session =
+        start.arg("-tt").arg("-M").arg("-o").arg(&control).arg("127.0.0.1").size(Size::cells(80, 24)).spawn();
+    session.wait_for_text("? all keys, q quits");
+    let second = Command::new("ssh").args(["-F", "none", "-o", &control, "127.0.0.1", "corridor"]).output();
+    let second = second.expect("ssh runs");
+    assert!(second.stdout.is_empty() && !second.status.success(), "{second:?}");
+    // The first one goes on.
+    session.send(b"i");
+    session.wait_for_text("three_spheres");
+    session.send(b"q");
+    assert!(session.wait_exit(SOON).success());
+}
+
+/// Row 25 with a shell: after `ssh` it reads nothing that nobody has typed.
+#[test]
+fn row_25_the_shell_after_ssh_reads_nothing() {
+    let hosting = Hosting::usual();
+    let Some(options) = options(&hosting) else { return };
+    let script = format!("ssh {} -tt 127.0.0.1; echo over; read -r line; echo \"read:$line.\"", options.join(" "));
+    let mut session = Start::shell(&script).size(Size::cells(80, 24)).spawn();
+    session.wait_for_text("? all keys, q quits");
+    session.send(b"tq");
+    session.wait_for_text("over");
+    session.send(b"typed\r");
+    session.wait_for_text("read:typed.");
+}
+
 #[test]
 fn row_14_only_strong_algorithms_are_offered() {
     let hosting = Hosting::usual();
@@ -90,29 +170,20 @@ fn row_14_only_strong_algorithms_are_offered() {
 /// Row 6: with few files for the server, and after other errors of accepting.
 #[test]
 fn row_06_too_many_open_files_end_nothing() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let key = folder.path().join("key");
-    let script = format!(
-        "ulimit -n 64; exec {} serve three_spheres --listen 127.0.0.1:0 --max-per-address 1000 --host-key {}",
-        env!("CARGO_BIN_EXE_termtrace"),
-        key.display()
+    let mut program = Program::start_in(
+        "ulimit -n 64; exec",
+        &["three_spheres", "--listen", "127.0.0.1:0", "--max-per-address", "1000"],
     );
-    let mut server = Command::new("sh");
-    let server = server.args(["-c", &script]).stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::null());
-    let mut server = server.spawn().expect("it starts");
-    let mut lines = std::io::BufRead::lines(std::io::BufReader::new(server.stdout.take().expect("a pipe")));
-    let first = lines.next().expect("a line").expect("text");
-    let address = first.trim_start_matches("listening on ").split(": ").next().expect("an address").to_owned();
-    let dial = || std::net::TcpStream::connect(&address);
+    let address = program.address();
+    let dial = || TcpStream::connect(address);
     let streams: Vec<_> = (0..200).filter_map(|_| dial().ok()).collect();
     assert!(streams.len() > 60, "{}", streams.len());
     drop(streams);
     // The next one is served: the server says its name.
     let mut name = [0; 7];
     let mut stream = dial().expect("it still listens");
-    std::io::Read::read_exact(&mut stream, &mut name).expect("it greets");
+    Read::read_exact(&mut stream, &mut name).expect("it greets");
     assert_eq!(&name, b"SSH-2.0");
-    rustix::process::kill_process(rustix::process::Pid::from_child(&server), rustix::process::Signal::TERM)
-        .expect("it runs");
-    assert!(server.wait().expect("it ends").success(), "without viewers it ends at once");
+    program.terminate();
+    assert!(program.child.wait().expect("it ends").success(), "without viewers it ends at once");
 }

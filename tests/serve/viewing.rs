@@ -1,7 +1,7 @@
 //! The view of a visitor.
 
 use crate::guest::{Guest, log_in};
-use crate::{Hosting, run, scenes};
+use crate::{Hosting, Place, run, scenes};
 use std::os::unix::fs::PermissionsExt;
 use std::time::{Duration, Instant};
 use termtrace::internals::serve::{Server, Settings};
@@ -132,7 +132,7 @@ fn a_full_house_tells_how_many_are_ahead() {
 }
 
 #[test]
-fn an_idle_viewer_is_told_and_leaves() {
+fn row_07_an_idle_viewer_is_told_and_leaves() {
     let hosting = Hosting::start(|settings| settings.idle = Duration::from_secs(3));
     run(async {
         let mut guest = Guest::enter(&hosting).await;
@@ -148,7 +148,7 @@ fn an_idle_viewer_is_told_and_leaves() {
 }
 
 #[test]
-fn a_visit_has_a_longest_time() {
+fn row_07_a_visit_has_a_longest_time() {
     let hosting = Hosting::start(|settings| settings.session_max = Duration::from_secs(2));
     run(async {
         let mut guest = Guest::enter(&hosting).await;
@@ -160,7 +160,7 @@ fn a_visit_has_a_longest_time() {
 }
 
 #[test]
-fn draining_tells_all_and_leaves_every_terminal_clean() {
+fn row_18_draining_tells_all_and_leaves_every_terminal_clean() {
     let hosting = Hosting::start(|settings| {
         settings.drain = Duration::from_secs(2);
         settings.max_viewers = 3;
@@ -187,7 +187,7 @@ fn draining_tells_all_and_leaves_every_terminal_clean() {
 }
 
 #[test]
-fn the_host_key_is_made_once_and_is_secret() {
+fn row_15_the_host_key_is_made_once_and_is_secret() {
     let hosting = Hosting::usual();
     let mode = |path| std::fs::metadata(path).expect("a key").permissions().mode() & 0o777;
     assert_eq!(mode(hosting.key()), 0o600);
@@ -213,5 +213,46 @@ fn a_second_visit_on_a_connection_is_refused() {
         let first = session.channel_open_session().await.expect("a channel");
         assert!(session.channel_open_session().await.is_err());
         drop(first);
+    });
+}
+
+/// Returns the screen of a viewer's first picture, in a terminal that a client describes so.
+async fn first_picture(hosting: &Hosting, variables: &[(&str, &str)], pixels: (u32, u32)) -> Guest {
+    let mut guest = Guest::without_terminal(hosting, (80, 24)).await;
+    for (name, value) in variables {
+        guest.channel.set_env(false, *name, *value).await.expect("it is sent");
+    }
+    guest.channel.request_pty(true, "xterm-256color", 80, 24, pixels.0, pixels.1, &[]).await.expect("a terminal");
+    guest.ask(None).await;
+    guest.see("the keys", |guest| guest.has("q quits")).await;
+    guest
+}
+
+#[test]
+fn colours_and_cells_are_those_that_a_client_reports() {
+    let hosting = Hosting::usual();
+    run(async {
+        let mut guest = first_picture(&hosting, &[("COLORTERM", "truecolor")], (0, 0)).await;
+        guest.see("colours of 24 bits", |guest| guest.has("38;2;")).await;
+        let mut guest = first_picture(&hosting, &[], (0, 0)).await;
+        guest.see("colours of 8 bits", |guest| guest.has("38;5;")).await;
+        let plain = [("NO_COLOR", "1")];
+        let tall = first_picture(&hosting, &plain, (800, 480)).await;
+        let square = first_picture(&hosting, &plain, (800, 240)).await;
+        assert!(!tall.has("38;") && !square.has("38;"));
+        assert_ne!(tall.text(), square.text(), "square cells show less of the width");
+    });
+}
+
+#[test]
+fn maps_and_explanations_are_those_at_home() {
+    let hosting = Hosting::usual();
+    run(async {
+        let mut guest = Guest::enter_with(&hosting, (120, 40), None).await;
+        guest.see_picture().await;
+        guest.send(b"v").await;
+        guest.see_text("n.l, no shadows").await;
+        guest.send(b"bx").await;
+        guest.see_text(" explain ").await;
     });
 }

@@ -69,6 +69,9 @@ pub(in crate::cli) struct ServeArgs {
     /// Bytes per second for one viewer [default: 200k]
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
     max_rate: Option<u32>,
+    /// Bytes per second for all viewers together
+    #[arg(long, value_name = "RATE", value_parser = parse_rate)]
+    max_rate_total: Option<u32>,
     /// Frames per second for one viewer [default: 30]
     #[arg(long, value_name = "N", value_parser = parse_fps)]
     fps: Option<f32>,
@@ -84,6 +87,9 @@ pub(in crate::cli) struct ServeArgs {
     /// Link in the first line that a viewer sees, and on leaving
     #[arg(long, value_name = "URL")]
     link: Option<String>,
+    /// Address of this machine at which counts can be read, for Prometheus
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    metrics: Option<SocketAddr>,
     /// File of settings, such as (listen: "0.0.0.0:22", public: true, fps: 20)
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
@@ -131,7 +137,14 @@ fn settings(args: &ServeArgs) -> Result<Settings, Failure> {
     settings.idle = args.idle.unwrap_or(settings.idle);
     settings.session_max = args.session_max.unwrap_or(settings.session_max);
     settings.max_rate = args.max_rate.or(settings.max_rate);
+    settings.max_rate_total = args.max_rate_total;
     settings.max_frames = args.fps.unwrap_or(settings.max_frames);
+    if let Some(address) = args.metrics.filter(|address| !address.ip().is_loopback()) {
+        return Err(Failure::Usage(format!(
+            "--metrics {address}: other machines could read the counts at this address"
+        )));
+    }
+    settings.metrics = args.metrics;
     settings.threads = args.threads.map(usize::from);
     let named = |path: &Path, error: &io::Error| Failure::runtime(path.display(), reason(error));
     if let Some(path) = &args.authorized_keys {

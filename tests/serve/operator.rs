@@ -1,0 +1,281 @@
+//! What whoever runs the server asks for: its flags, its file of settings, its counts, its signals and its unit.
+
+use crate::counter::{Counter, run_all};
+use crate::guest::{Anybody, Guest, connect, connect_as};
+use crate::program::Program;
+use crate::{Hosting, Place, run};
+use russh::keys::ssh_key::private::{Ed25519Keypair, KeypairData};
+use russh::keys::{PrivateKey, PrivateKeyWithHashAlg};
+use std::fs;
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::process::{Command, Output};
+use std::sync::Arc;
+use std::time::Duration;
+use tempfile::TempDir;
+
+fn termtrace(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_termtrace")).arg("serve").args(arguments).output().expect("it runs")
+}
+
+fn folder_with(name: &str, text: &str) -> (TempDir, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join(name);
+    fs::write(&path, text).expect("a file");
+    (folder, path.to_str().expect("UTF-8").to_owned())
+}
+
+#[test]
+fn an_address_for_everyone_needs_public() {
+    for address in ["0.0.0.0:0", "[::]:0", "192.0.2.1:22"] {
+        let output = termtrace(&["three_spheres", "--listen", address, "--host-key", "/nonexistent/key"]);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        let expected = format!("--listen {address}: other machines can reach this address; --public allows that");
+        assert!(message.contains(&expected), "{message}");
+    }
+    let program = Program::start_in("exec", &["three_spheres", "--listen", "0.0.0.0:0", "--public"]);
+    run(async { Guest::enter(&program).await.see_picture().await });
+}
+
+#[test]
+fn a_file_has_settings_and_flags_go_before_it() {
+    let settings = r#"(listen: "127.0.0.1:0", max_viewers: 1, link: "https://example.org/of-the-file", fps: 20)"#;
+    let (_folder, path) = folder_with("serve.ron", settings);
+    let flags = ["three_spheres", "--config", &path, "--link", "https://example.org/of-the-flag"];
+    let program = Program::start_in("exec", &flags);
+    run(async {
+        let mut first = Guest::enter(&program).await;
+        first.see_text("https://example.org/of-the-flag").await;
+        Guest::enter(&program).await.see_text("full, 0 ahead of you").await;
+    });
+    let faults = [
+        (r#"(listen: "0.0.0.0:0")"#, "--public allows that"),
+        ("(max_viewer: 3)", "max_viewer"),
+        ("(idle: \"soon\")", "90s, 10m or 1h"),
+        ("(", "serve.ron:1"),
+    ];
+    for (text, expected) in faults {
+        let (_folder, path) = folder_with("serve.ron", text);
+        let output = termtrace(&["three_spheres", "--config", &path]);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{text}: {message}");
+        assert!(message.contains(expected), "{text}: {message}");
+    }
+}
+
+fn key(seed: u8) -> PrivateKey {
+    let keys = Ed25519Keypair::from_seed(&[seed; 32]);
+    PrivateKey::new(KeypairData::Ed25519(keys), "a visitor").expect("a key")
+}
+
+#[test]
+fn row_01_only_the_keys_of_a_file_are_let_in() {
+    let known = key(1).public_key().to_openssh().expect("a line");
+    let (_folder, path) = folder_with("keys", &format!("# visitors\n\n{known}\n"));
+    let program = Program::start(&["three_spheres", "--authorized-keys", &path]);
+    run(async {
+        let knock = async |seed| {
+            let mut session = connect(&program).await;
+            let key = PrivateKeyWithHashAlg::new(Arc::new(key(seed)), None);
+            session.authenticate_publickey("anybody", key).await.expect("an answer").success()
+        };
+        assert!(knock(1).await, "this key is in the file");
+        assert!(!knock(2).await, "this key is not");
+        assert!(!connect(&program).await.authenticate_none("anybody").await.expect("an answer").success());
+    });
+    let (_folder, path) = folder_with("keys", "ssh-ed25519 AAAA broken\n");
+    let output = termtrace(&["three_spheres", "--authorized-keys", &path]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.code() == Some(1) && message.contains("line 1: no public key"), "{message}");
+}
+
+#[test]
+fn a_banner_goes_before_the_login_and_controls_nothing() {
+    let (_folder, path) = folder_with("banner", "Welcome\n\x1b[31mred\x1b]0;title\x07\n");
+    let program = Program::start(&["three_spheres", "--banner", &path]);
+    run(async {
+        let client = Anybody::default();
+        let banner = Arc::clone(&client.banner);
+        assert!(connect_as(&program, client).await.authenticate_none("x").await.expect("an answer").success());
+        let banner = banner.lock().expect("nobody panics").clone();
+        assert!(banner.starts_with("Welcome\r\n") && banner.contains("red"), "{banner:?}");
+        assert!(!banner.contains(['\x1b', '\x07']), "{banner:?}");
+    });
+    let (_folder, path) = folder_with("banner", &"x".repeat(5000));
+    let output = termtrace(&["three_spheres", "--banner", &path]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.code() == Some(1) && message.contains("at most 4096 bytes"), "{message}");
+}
+
+#[test]
+fn all_viewers_together_have_a_rate_and_share_it() {
+    const RATE: u32 = 200_000;
+    let hosting = Hosting::start(|settings| settings.max_rate_total = Some(RATE));
+    run(async {
+        let mut counters = Vec::new();
+        for _ in 0..4 {
+            counters.push(Counter::enter(&hosting, (80, 24), Duration::ZERO).await);
+        }
+        run_all(&mut counters, Duration::from_secs(2)).await;
+        let before: Vec<_> = counters.iter().map(|counter| counter.bytes).collect();
+        run_all(&mut counters, Duration::from_secs(4)).await;
+        let bytes: Vec<_> = counters.iter().zip(before).map(|(counter, before)| counter.bytes - before).collect();
+        let sum: usize = bytes.iter().sum();
+        // What was on its way before counts, too.
+        assert!(sum < 4 * RATE as usize * 12 / 10, "{bytes:?}");
+        let (least, most) = (bytes.iter().min(), bytes.iter().max());
+        assert!(least.zip(most).is_some_and(|(least, most)| 2 * least >= *most), "{bytes:?}");
+    });
+}
+
+/// Returns the value of a row of the counts.
+fn value(counts: &str, name: &str) -> Option<f64> {
+    counts.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' ')?.parse().ok())
+}
+
+fn counts(hosting: &Hosting) -> String {
+    let mut stream = TcpStream::connect(hosting.server.metrics_address().expect("an address")).expect("it listens");
+    stream.write_all(b"GET /metrics HTTP/1.1\r\nHost: x\r\n\r\n").expect("it is taken");
+    let mut response = String::new();
+    stream.read_to_string(&mut response).expect("text");
+    assert!(response.starts_with("HTTP/1.1 200 OK\r\n"), "{response}");
+    response.split("\r\n\r\n").nth(1).expect("a body").to_owned()
+}
+
+#[test]
+fn row_19_the_counts_can_be_read_and_name_nobody() {
+    let hosting = Hosting::start(|settings| {
+        settings.metrics = Some(([127, 0, 0, 1], 0).into());
+        settings.max_per_address = 2;
+    });
+    let before = counts(&hosting);
+    assert_eq!(value(&before, "termtrace_viewers"), Some(0.0));
+    run(async {
+        let mut guests = Vec::new();
+        for _ in 0..2 {
+            let mut guest = Guest::enter(&hosting).await;
+            guest.see_picture().await;
+            guests.push(guest);
+        }
+        let mut refused = tokio::net::TcpStream::connect(hosting.address()).await.expect("the socket is accepted");
+        let _ = tokio::io::AsyncReadExt::read_to_end(&mut refused, &mut Vec::new()).await;
+    });
+    let after = counts(&hosting);
+    for (name, least) in [
+        ("termtrace_connections_total", 2.0),
+        ("termtrace_refused_total{reason=\"address\"}", 1.0),
+        ("termtrace_logins_total", 2.0),
+        ("termtrace_visits_total", 2.0),
+        ("termtrace_frames_total", 2.0),
+        ("termtrace_sent_bytes_total", 5000.0),
+        ("termtrace_pictures_total{from=\"tracer\"}", 1.0),
+        ("termtrace_turn_cpu_seconds_total", 0.0001),
+    ] {
+        assert!(value(&after, name).is_some_and(|value| value >= least), "{name}: {after}");
+    }
+    assert_eq!(value(&after, "termtrace_panics_total"), Some(0.0));
+    assert!(!after.contains("127.0.0.1") && !after.contains("anybody"), "{after}");
+    let output = termtrace(&["three_spheres", "--metrics", "0.0.0.0:9100"]);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+}
+
+#[test]
+fn row_26_equal_pictures_are_traced_once() {
+    let hosting = Hosting::start(|settings| settings.metrics = Some(([127, 0, 0, 1], 0).into()));
+    let traced = || value(&counts(&hosting), "termtrace_pictures_total{from=\"tracer\"}");
+    run(async {
+        let mut first = Guest::enter(&hosting).await;
+        first.see_picture().await;
+        // Until the picture is refined and at rest.
+        let mut last = (traced(), 0);
+        while last.1 < 5 {
+            tokio::time::sleep(Duration::from_millis(50)).await;
+            last = if traced() == last.0 { (last.0, last.1 + 1) } else { (traced(), 0) };
+        }
+        let mut second = Guest::enter(&hosting).await;
+        second.see_picture().await;
+        second.see("the final picture", |guest| guest.text() == first.text()).await;
+        assert_eq!(traced(), last.0, "{}", counts(&hosting));
+        assert!(value(&counts(&hosting), "termtrace_pictures_total{from=\"memory\"}") > Some(0.0));
+        // Another view is traced.
+        second.send(b"w").await;
+        while traced() == last.0 {
+            tokio::time::sleep(Duration::from_millis(20)).await;
+        }
+    });
+}
+
+#[test]
+fn row_18_a_signal_drains_and_a_second_one_ends_at_once() {
+    let mut program = Program::start(&["three_spheres"]);
+    run(async {
+        let mut guest = Guest::enter(&program).await;
+        guest.see_picture().await;
+        program.terminate();
+        guest.see_text("the server restarts: you leave in 30 s").await;
+        assert!(tokio::net::TcpStream::connect(program.address()).await.is_err(), "nobody is let in");
+        // Who leaves by themselves is not waited for.
+        guest.send(b"q").await;
+        assert_eq!(guest.leave().await, Some(0));
+        guest.assert_clean();
+    });
+    assert!(program.child.wait().expect("it ends").success());
+
+    let mut program = Program::start(&["three_spheres"]);
+    run(async {
+        let mut guest = Guest::enter(&program).await;
+        guest.see_picture().await;
+        program.terminate();
+        guest.see_text("the server restarts: you leave in").await;
+        program.terminate();
+        guest.leave().await;
+    });
+    let status = program.child.wait().expect("it ends");
+    assert_eq!(std::os::unix::process::ExitStatusExt::signal(&status), Some(15), "{status}");
+}
+
+#[test]
+fn row_17_the_unit_gives_the_server_no_rights() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/termtrace.service");
+    let unit = fs::read_to_string(path).expect("the unit is there");
+    for line in [
+        "DynamicUser=yes",
+        "StateDirectory=termtrace",
+        "NoNewPrivileges=yes",
+        "ProtectSystem=strict",
+        "ProtectHome=yes",
+        "PrivateDevices=yes",
+        "NoExecPaths=/",
+        "CapabilityBoundingSet=CAP_NET_BIND_SERVICE",
+        "MemoryDenyWriteExecute=yes",
+        "SystemCallFilter=@system-service",
+        "RestrictAddressFamilies=AF_INET AF_INET6",
+    ] {
+        assert!(unit.lines().any(|given| given == line), "{line} is not in the unit");
+    }
+    assert!(unit.contains("\nMemoryMax=") && unit.contains("\nTasksMax="), "{unit}");
+    let Ok(output) =
+        Command::new("systemd-analyze").args(["security", "--offline=true", "--threshold=20", path]).output()
+    else {
+        return eprintln!("skipped: there is no systemd-analyze");
+    };
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+}
+
+/// The unit's limits, as far as a shell can set them: few files, little memory, no new file.
+#[test]
+fn row_17_the_server_runs_with_few_rights() {
+    let program = Program::start_in(
+        "ulimit -f 16; ulimit -n 256; ulimit -c 0; umask 077; exec",
+        &["three_spheres", "--listen", "127.0.0.1:0"],
+    );
+    run(async {
+        let mut guest = Guest::enter(&program).await;
+        guest.see_picture().await;
+        guest.send(b"q").await;
+        assert_eq!(guest.leave().await, Some(0));
+    });
+    let children = fs::read_to_string(format!("/proc/{0}/task/{0}/children", program.child.id())).unwrap_or_default();
+    assert!(children.is_empty(), "it has started {children}");
+}

@@ -1,0 +1,73 @@
+//! `termtrace serve` as a process of its own, whose memory and CPU time can be told from those of the clients.
+
+use crate::Place;
+use std::io::{BufRead, BufReader};
+use std::net::SocketAddr;
+use std::process::{Child, ChildStdout, Command, Stdio};
+use tempfile::TempDir;
+
+/// A running `termtrace serve`; it is ended when it is dropped.
+pub(crate) struct Program {
+    pub(crate) child: Child,
+    /// Its standard output, which is open for as long as it runs.
+    _output: std::io::Lines<BufReader<ChildStdout>>,
+    address: SocketAddr,
+    folder: TempDir,
+}
+
+impl Program {
+    /// Starts the program on a free port of loopback with these arguments, and waits until it listens.
+    pub(crate) fn start(arguments: &[&str]) -> Self {
+        Self::start_in("exec", &[&["--listen", "127.0.0.1:0"], arguments].concat())
+    }
+
+    /// Starts the program by a shell, with `prefix` before its name.
+    pub(crate) fn start_in(prefix: &str, arguments: &[&str]) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let script = format!("{prefix} \"$@\"");
+        let mut command = Command::new("sh");
+        command.args(["-c", &script, "sh", env!("CARGO_BIN_EXE_termtrace"), "serve"]);
+        command.arg("--host-key").arg(folder.path().join("key")).args(arguments);
+        let errors = std::fs::File::create(folder.path().join("errors")).expect("a file");
+        let mut child = command.stdout(Stdio::piped()).stderr(errors).spawn().expect("it starts");
+        let mut lines = BufReader::new(child.stdout.take().expect("a pipe")).lines();
+        let first = lines.next().expect("a line").expect("text");
+        let address = first.strip_prefix("listening on ").and_then(|rest| rest.split(": ").next());
+        let mut address: SocketAddr = address.expect("an address").parse().expect("an address");
+        if address.ip().is_unspecified() {
+            address.set_ip([127, 0, 0, 1].into());
+        }
+        Self { child, _output: lines, address, folder }
+    }
+
+    /// Returns the memory of the process in kilobytes; `None` on systems without `/proc`.
+    pub(crate) fn memory(&self) -> Option<u64> {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).ok()?;
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+        line.split_whitespace().next()?.parse().ok()
+    }
+
+    /// Returns the lines of standard error.
+    pub(crate) fn errors(&self) -> String {
+        std::fs::read_to_string(self.folder.path().join("errors")).expect("text")
+    }
+
+    /// Asks the process to end.
+    pub(crate) fn terminate(&self) {
+        let pid = rustix::process::Pid::from_child(&self.child);
+        rustix::process::kill_process(pid, rustix::process::Signal::TERM).expect("it runs");
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Place for Program {
+    fn address(&self) -> SocketAddr {
+        self.address
+    }
+}
