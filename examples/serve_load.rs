@@ -7,17 +7,26 @@
 //!
 //! `--moving` visitors turn the scene all the time. Of the others ten press a key twice a second, from which the time
 //! to the end of the next frame is taken; the rest only looks. All answer the queries that a terminal answers.
+//!
+//! `--odd KIND:N` adds visitors of another kind, whose frames are not counted: `big` ones turn in windows of 500x200
+//! cells, `late` ones turn and answer after 400 ms, `slow` ones press keys behind a link of 50 KB/s with a round trip of
+//! 200 ms, `slow-turning` ones turn behind such a link. `--seed N` makes visitors come, go, stall and resize, and prints
+//! the server's memory, threads and files every ten seconds.
 
 use russh::client::{self, Handle, Msg};
 use russh::keys::PublicKeyOrCertificate;
 use russh::{Channel, ChannelMsg};
 use rustix::time::{ClockId, clock_gettime};
 use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream};
+use tokio::net::TcpStream;
+use tokio::sync::mpsc;
 use tokio::task::LocalSet;
-use tokio::time::{sleep, timeout};
+use tokio::time::{sleep, sleep_until, timeout};
 
 const KEYED: usize = 10;
 /// The end of a synchronized frame.
@@ -47,6 +56,16 @@ struct Measured {
     idle_bytes: u64,
     counts: bool,
     failed: usize,
+    visits: usize,
+}
+
+/// A kind of visitors besides those who are counted.
+#[derive(Clone, Copy, PartialEq)]
+enum Odd {
+    Big,
+    Late,
+    Slow,
+    SlowTurning,
 }
 
 struct Arguments {
@@ -56,17 +75,39 @@ struct Arguments {
     seconds: u64,
     size: (u32, u32),
     pid: Option<u32>,
+    odd: Option<(Odd, usize)>,
+    seed: Option<u64>,
 }
 
 fn arguments() -> Option<Arguments> {
     let mut words = std::env::args().skip(1);
-    let mut arguments =
-        Arguments { address: words.next()?, viewers: 50, moving: 50, seconds: 10, size: (80, 24), pid: None };
+    let mut arguments = Arguments {
+        address: words.next()?,
+        viewers: 50,
+        moving: 50,
+        seconds: 10,
+        size: (80, 24),
+        pid: None,
+        odd: None,
+        seed: None,
+    };
     while let (Some(flag), Some(value)) = (words.next(), words.next()) {
         match flag.as_str() {
             "--viewers" => arguments.viewers = value.parse().ok()?,
             "--moving" => arguments.moving = value.parse().ok()?,
             "--seconds" => arguments.seconds = value.parse().ok()?,
+            "--seed" => arguments.seed = Some(value.parse().ok()?),
+            "--odd" => {
+                let (kind, count) = value.split_once(':')?;
+                let kind = match kind {
+                    "big" => Odd::Big,
+                    "late" => Odd::Late,
+                    "slow" => Odd::Slow,
+                    "slow-turning" => Odd::SlowTurning,
+                    _ => return None,
+                };
+                arguments.odd = Some((kind, count.parse().ok()?));
+            }
             "--pid" => arguments.pid = Some(value.parse().ok()?),
             "--size" => {
                 let (columns, rows) = value.split_once('x')?;
@@ -81,12 +122,18 @@ fn arguments() -> Option<Arguments> {
 fn main() {
     let Some(arguments) = arguments() else {
         println!(
-            "serve_load ADDRESS:PORT [--viewers N] [--moving N] [--seconds S] [--size COLUMNSxROWS] [--pid SERVER]"
+            "serve_load ADDRESS:PORT [--viewers N] [--moving N] [--seconds S] [--size COLUMNSxROWS] [--pid SERVER] \
+             [--odd big|late|slow|slow-turning:N] [--seed N]"
         );
         return;
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
-    LocalSet::new().block_on(&runtime, load(arguments));
+    LocalSet::new().block_on(&runtime, async {
+        match arguments.seed {
+            Some(seed) => soak(arguments, seed).await,
+            None => load(arguments).await,
+        }
+    });
 }
 
 async fn load(arguments: Arguments) {
@@ -94,7 +141,8 @@ async fn load(arguments: Arguments) {
     measured.borrow_mut().frames = vec![0; arguments.moving];
     let arguments = Rc::new(arguments);
     let began = Instant::now();
-    for number in 0..arguments.viewers {
+    let all = arguments.viewers + arguments.odd.map_or(0, |(_, count)| count);
+    for number in 0..all {
         let (of_all, all_measured) = (Rc::clone(&arguments), Rc::clone(&measured));
         tokio::task::spawn_local(async move {
             if visit(number, &of_all, &all_measured).await.is_none() {
@@ -106,9 +154,9 @@ async fn load(arguments: Arguments) {
             sleep(Duration::from_millis(1)).await;
         }
     }
-    let all = || measured.borrow().first.len() + measured.borrow().failed >= arguments.viewers;
+    let are_in = || measured.borrow().first.len() + measured.borrow().failed >= all;
     let _ = timeout(Duration::from_secs(60), async {
-        while !all() {
+        while !are_in() {
             sleep(Duration::from_millis(1)).await;
         }
     })
@@ -143,11 +191,17 @@ fn report(arguments: &Arguments, measured: &mut Measured, up: Duration, seconds:
         let rates = Shares::of(&mut rates);
         println!("| frames a second, least, p50, most | {:.1}, {:.1}, {:.1} |", rates.least, rates.median, rates.most);
         println!("| fastest to slowest | {:.2} |", rates.most / rates.least);
+        let still = measured.frames.iter().filter(|&&frames| frames == 0).count();
+        println!("| without a frame | {still} |");
         println!("| bytes a second, one viewer | {:.0} |", measured.bytes as f64 / seconds / moving as f64);
     }
     println!("| bytes for those at rest | {} |", measured.idle_bytes);
     if !measured.keys.is_empty() {
-        println!("| key to frame, p50, p95, max | {} ms |", Shares::of(&mut measured.keys));
+        let keys = Shares::of(&mut measured.keys);
+        println!(
+            "| key to frame, p50, p95, p99, max | {:.1}, {:.1}, {:.1}, {:.1} ms |",
+            keys.median, keys.p95, keys.p99, keys.most
+        );
     }
     println!("| CPU of the server, of this client | {server:.0} %, {client:.0} % |");
     if let Some(kilobytes) = arguments.pid.and_then(memory_of) {
@@ -160,6 +214,7 @@ struct Shares {
     least: f64,
     median: f64,
     p95: f64,
+    p99: f64,
     most: f64,
 }
 
@@ -167,7 +222,7 @@ impl Shares {
     fn of(figures: &mut [f64]) -> Self {
         figures.sort_by(f64::total_cmp);
         let at = |share: f64| figures.get(((figures.len() as f64 - 1.0) * share) as usize).copied().unwrap_or(f64::NAN);
-        Self { least: at(0.0), median: at(0.5), p95: at(0.95), most: at(1.0) }
+        Self { least: at(0.0), median: at(0.5), p95: at(0.95), p99: at(0.99), most: at(1.0) }
     }
 }
 
@@ -179,49 +234,78 @@ impl std::fmt::Display for Shares {
 
 /// Enters, and reads for ever.
 async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured>) -> Option<()> {
-    let (mut channel, _session, asked) = enter(arguments).await?;
+    let odd = arguments.odd.map(|(kind, _)| kind).filter(|_| number >= arguments.viewers);
+    let is_counted = number < arguments.moving;
+    let turns = is_counted || odd.is_some_and(|odd| odd != Odd::Slow);
+    let is_keyed = odd == Some(Odd::Slow)
+        || odd.is_none() && (arguments.moving..arguments.moving + KEYED).contains(&number) && arguments.odd.is_none();
+    let pause = Duration::from_millis(if odd.is_some() { 1500 } else { 500 });
+    let delay = Duration::from_millis(if odd == Some(Odd::Late) { 400 } else { 0 });
+    let size = if odd == Some(Odd::Big) { (500, 200) } else { arguments.size };
+    let slow = matches!(odd, Some(Odd::Slow | Odd::SlowTurning));
+    let (mut channel, _session, asked) = enter(&arguments.address, size, slow).await?;
     let (mut tail, mut frames, mut pressed, mut next_key, mut painted) = (Vec::new(), 0_u32, None, asked, false);
-    let is_keyed = number >= arguments.moving && number < arguments.moving + KEYED;
+    let (mut owed, mut opens) = (VecDeque::<(Instant, Vec<u8>)>::new(), false);
     loop {
         if is_keyed && painted && Instant::now() >= next_key && pressed.is_none() {
-            next_key = Instant::now() + Duration::from_millis(500);
-            channel.data(&(if frames.is_multiple_of(2) { b"[" } else { b"]" })[..]).await.ok()?;
-            pressed = Some(Instant::now());
+            next_key = Instant::now() + pause;
+            // Behind a slow link frames of before are under way: the first one with the status is waited for.
+            opens = slow && !opens;
+            let key = if slow { b"i" } else { [b"[", b"]"][frames as usize % 2] };
+            channel.data(&key[..]).await.ok()?;
+            pressed = (opens || !slow).then(Instant::now);
+        }
+        while owed.front().is_some_and(|(due, _)| *due <= Instant::now())
+            && let Some((_, replies)) = owed.pop_front()
+        {
+            channel.data(&*replies).await.ok()?;
         }
         let wait = if is_keyed { Duration::from_millis(50) } else { Duration::from_secs(3600) };
+        let wait = owed.front().map_or(wait, |(due, _)| due.saturating_duration_since(Instant::now()).min(wait));
         let Ok(message) = timeout(wait, channel.wait()).await else { continue };
         let ChannelMsg::Data { data } = message? else { continue };
         tail.extend_from_slice(&data);
-        let ended = answer(&mut channel, &mut tail).await?;
+        let (ended, replies) = answer(&mut tail);
+        if !replies.is_empty() {
+            owed.push_back((Instant::now() + delay, replies));
+        }
         // The first frame is sent before the reply about synchronized ones, so its end has no mark.
         if !painted && data.windows(2).filter(|pair| pair == b"\xe2\x96").count() > 20 {
             painted = true;
             measured.borrow_mut().first.push(1e3 * asked.elapsed().as_secs_f64());
-            if number < arguments.moving {
+            if turns {
                 channel.data(&b"t"[..]).await.ok()?;
             }
         }
         frames += ended;
         let mut measured = measured.borrow_mut();
-        if let Some(pressed) = pressed.take_if(|_| ended > 0) {
+        let shows = if slow { has(&data, b"three_spheres") } else { ended > 0 };
+        if let Some(pressed) = pressed.take_if(|_| shows) {
             let time: Duration = Instant::elapsed(&pressed);
             measured.keys.push(1e3 * time.as_secs_f64());
         }
-        if number < arguments.moving {
+        if is_counted {
             measured.frames[number] += ended;
             measured.bytes += data.len() as u64;
-        } else if !is_keyed && measured.counts {
+        } else if !is_keyed && odd.is_none() && measured.counts {
             measured.idle_bytes += data.len() as u64;
         }
     }
 }
 
-async fn enter(arguments: &Arguments) -> Option<(Channel<Msg>, Handle<Anybody>, Instant)> {
+async fn enter(
+    address: &str,
+    (columns, rows): (u32, u32),
+    slow: bool,
+) -> Option<(Channel<Msg>, Handle<Anybody>, Instant)> {
     let config = Arc::new(client::Config { nodelay: true, ..client::Config::default() });
-    let mut session = client::connect(config, &*arguments.address, Anybody).await.ok()?;
+    let mut session = if slow {
+        client::connect_stream(config, link_to(address).await?, Anybody).await.ok()?
+    } else {
+        client::connect(config, address, Anybody).await.ok()?
+    };
     session.authenticate_none("load").await.ok()?.success().then_some(())?;
     let channel = session.channel_open_session().await.ok()?;
-    let (columns, rows) = arguments.size;
     channel.set_env(false, "COLORTERM", "truecolor").await.ok()?;
     channel.request_pty(false, "xterm-256color", columns, rows, 0, 0, &[]).await.ok()?;
     let asked = Instant::now();
@@ -229,8 +313,137 @@ async fn enter(arguments: &Arguments) -> Option<(Channel<Msg>, Handle<Anybody>, 
     Some((channel, session, asked))
 }
 
-/// Answers the queries in the bytes that have come, and returns how many frames end in them.
-async fn answer(channel: &mut Channel<Msg>, tail: &mut Vec<u8>) -> Option<u32> {
+fn has(data: &[u8], text: &[u8]) -> bool {
+    data.windows(text.len()).any(|window| window == text)
+}
+
+/// Bytes per second of a slow link, each way.
+const LINK_RATE: f64 = 50_000.0;
+/// The time that a byte takes through it, each way.
+const LINK_DELAY: Duration = Duration::from_millis(100);
+/// The size of a packet, and how many wait for the link.
+const PACKET: (usize, usize) = (1024, 48);
+
+/// Connects through a slow link.
+async fn link_to(address: &str) -> Option<DuplexStream> {
+    let (near, far) = tokio::io::duplex(16 * 1024);
+    let (from_server, to_server) = TcpStream::connect(address).await.ok()?.into_split();
+    let (from_client, to_client) = tokio::io::split(far);
+    tokio::task::spawn_local(pass(from_server, to_client));
+    tokio::task::spawn_local(pass(from_client, to_server));
+    Some(near)
+}
+
+/// Passes bytes on at the rate of the link and after its delay.
+async fn pass(mut from: impl AsyncReadExt + Unpin + 'static, mut to: impl AsyncWriteExt + Unpin + 'static) {
+    let (under_way, mut arriving) = mpsc::unbounded_channel::<(Instant, Vec<u8>)>();
+    let (queue, mut queued) = mpsc::channel::<Vec<u8>>(PACKET.1);
+    tokio::task::spawn_local(async move {
+        let mut free_at = Instant::now();
+        while let Some(packet) = queued.recv().await {
+            free_at = free_at.max(Instant::now()) + Duration::from_secs_f64(packet.len() as f64 / LINK_RATE);
+            sleep_until(free_at.into()).await;
+            let _ = under_way.send((free_at + LINK_DELAY, packet));
+        }
+    });
+    tokio::task::spawn_local(async move {
+        while let Some((due, packet)) = arriving.recv().await {
+            sleep_until(due.into()).await;
+            if to.write_all(&packet).await.is_err() {
+                return;
+            }
+        }
+    });
+    let mut packet = [0; PACKET.0];
+    while let Ok(count @ 1..) = from.read(&mut packet).await {
+        if queue.send(packet[..count].to_vec()).await.is_err() {
+            return;
+        }
+    }
+}
+
+/// Random numbers of a seed (a linear congruential generator).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, limit: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % limit
+    }
+}
+
+/// Lets visitors come, go, stall and resize, and prints what the server takes.
+async fn soak(arguments: Arguments, seed: u64) {
+    let measured = Rc::new(RefCell::new(Measured::default()));
+    let arguments = Rc::new(arguments);
+    for number in 0..arguments.viewers as u64 {
+        let (arguments, measured) = (Rc::clone(&arguments), Rc::clone(&measured));
+        tokio::task::spawn_local(async move {
+            let mut random = Random(seed ^ number.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+            sleep(Duration::from_millis(random.below(5000))).await;
+            loop {
+                if short_visit(&arguments, &mut random).await.is_none() {
+                    measured.borrow_mut().failed += 1;
+                    sleep(Duration::from_secs(1)).await;
+                }
+                measured.borrow_mut().visits += 1;
+            }
+        });
+    }
+    println!(
+        "| s | visits | failed | memory, kB | threads | files | CPU of the server, s |\n|--:|--:|--:|--:|--:|--:|--:|"
+    );
+    let began = Instant::now();
+    while began.elapsed().as_secs() < arguments.seconds {
+        sleep(Duration::from_secs(10)).await;
+        let pid = arguments.pid.unwrap_or(0);
+        let count = |folder: &str| std::fs::read_dir(format!("/proc/{pid}/{folder}")).map_or(0, Iterator::count);
+        let Measured { visits, failed, .. } = *measured.borrow();
+        let (seconds, memory) = (began.elapsed().as_secs(), memory_of(pid).unwrap_or(0));
+        let (threads, files, cpu) = (count("task"), count("fd"), cpu_of(arguments.pid));
+        println!("| {seconds} | {visits} | {failed} | {memory} | {threads} | {files} | {cpu:.1} |");
+    }
+}
+
+/// Visits for some seconds: turns or looks, may resize or stop reading, and leaves by a key or without a word.
+async fn short_visit(arguments: &Arguments, random: &mut Random) -> Option<()> {
+    let (mut channel, _session, asked) = enter(&arguments.address, arguments.size, false).await?;
+    let end = asked + Duration::from_millis(2000 + random.below(18_000));
+    let stalls_at = (random.below(4) == 0).then(|| asked + Duration::from_millis(random.below(10_000)));
+    if random.below(2) == 0 {
+        channel.data(&b"t"[..]).await.ok()?;
+    }
+    let (mut tail, mut resize_at) = (Vec::new(), asked + Duration::from_millis(random.below(20_000)));
+    while Instant::now() < end {
+        if stalls_at.is_some_and(|at| at <= Instant::now()) {
+            sleep_until(end.into()).await;
+            break;
+        }
+        if resize_at <= Instant::now() {
+            resize_at = Instant::now() + Duration::from_millis(200 + random.below(5000));
+            let size = (20 + random.below(100), 6 + random.below(40));
+            channel.window_change(size.0 as u32, size.1 as u32, 0, 0).await.ok()?;
+        }
+        let until = end.min(resize_at);
+        let Ok(message) = timeout(until.saturating_duration_since(Instant::now()), channel.wait()).await else {
+            continue;
+        };
+        let ChannelMsg::Data { data } = message? else { continue };
+        tail.extend_from_slice(&data);
+        let (_, replies) = answer(&mut tail);
+        if !replies.is_empty() {
+            channel.data(&*replies).await.ok()?;
+        }
+    }
+    if stalls_at.is_none() && random.below(2) == 0 {
+        channel.data(&b"q"[..]).await.ok()?;
+        let _ = timeout(Duration::from_secs(2), async { while channel.wait().await.is_some() {} }).await;
+    }
+    Some(())
+}
+
+/// Returns how many frames end in the bytes that have come, and the replies to the queries in them.
+fn answer(tail: &mut Vec<u8>) -> (u32, Vec<u8>) {
     const QUERIES: [(&[u8], &[u8]); 2] = [(b"\x1b[c", b"\x1b[?62;22c"), (b"\x1b[?2026$p", b"\x1b[?2026;2$y")];
     let (mut ended, mut replies, mut at) = (0, Vec::new(), 0);
     while let Some(next) = tail[at..].iter().position(|&byte| byte == 0x1b) {
@@ -247,10 +460,7 @@ async fn answer(channel: &mut Channel<Msg>, tail: &mut Vec<u8>) -> Option<u32> {
         at += 1;
     }
     tail.drain(..at);
-    if !replies.is_empty() {
-        channel.data(&*replies).await.ok()?;
-    }
-    Some(ended)
+    (ended, replies)
 }
 
 /// Returns the seconds of CPU time that a process has taken.
