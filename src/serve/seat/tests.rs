@@ -173,6 +173,57 @@ fn after_a_panic_all_modes_are_off() {
     assert!(!text.contains("\x1b[<1u"), "{text:?}");
 }
 
+/// Any input, in parts of any size: the seat does not panic, soon sleeps, and restores the terminal at the end.
+#[test]
+fn what_a_network_sends_breaks_nothing() {
+    const WORDS: [&[u8]; 12] = [
+        b"\x1b[?62;22c",
+        b"\x1b[?2026;2$y",
+        b"\x1b]4;3;rgb:12/34/56\x1b\\",
+        b"\x1b[<35;7;3M",
+        b"\x1b[<0;7;3M",
+        b"\x1b[200~",
+        b"\x1b[201~",
+        b"\x1b",
+        b"wasdt[]xVI?iBgn\x1a",
+        b"\xe2\x96\x80\xff\x00",
+        b"\x1b[1;1R",
+        b"\x1b[?1u",
+    ];
+    let mut seed = 1_u64;
+    let mut random = |limit: usize| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as usize % limit
+    };
+    for _ in 0..20 {
+        let mut sitting = Sitting::new(STAY);
+        for _ in 0..60 {
+            let words: Vec<u8> = (0..random(8)).flat_map(|_| WORDS[random(WORDS.len())].to_vec()).collect();
+            let part = words.get(..random(words.len() + 1)).unwrap_or_default().to_vec();
+            let window = (random(10) == 0).then(|| {
+                let (columns, rows) = (random(60) as u32, random(20) as u32);
+                crate::serve::client_terminal::window([columns, rows, 0, 0])
+            });
+            let mut next = sitting.turn_for(Class::Refinement, Arrived { bytes: part, window, ..Arrived::default() });
+            sitting.now.set(sitting.now.get() + Duration::from_millis(random(40) as u64));
+            for _ in 0..40 {
+                if !matches!(next, Next::Turn(_)) {
+                    break;
+                }
+                next = sitting.turn(&[]);
+            }
+            assert!(
+                matches!(next, Next::Sleep(_)),
+                "no key that leaves was pressed, and the seat soon sleeps: {next:?}"
+            );
+        }
+        let mut all = std::mem::take(&mut sitting.bytes);
+        sitting.seat.leave(Parting::Quit, sitting.now.get(), &mut all);
+        let text = String::from_utf8_lossy(&all);
+        assert!(text.contains("\x1b[?1049l") && text.contains("\x1b[?25h"));
+    }
+}
+
 /// A busy server is no slow link: the time that a reply waits for its turn does not count.
 #[test]
 fn a_reply_counts_from_its_arrival() {
