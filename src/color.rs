@@ -199,12 +199,20 @@ impl Oklab {
 
     /// Converts linear light to OKLab, with Ottosson's matrices.
     pub(crate) fn from_linear(light: LinearRgb) -> Self {
-        let LinearRgb { r, g, b } = light;
-        // `libm` instead of the platform's `cbrt`, so that the encoder's choices, and so its bytes, are the same on
-        // every machine.
-        let l = libm::cbrtf(0.412_221_46 * r + 0.536_332_55 * g + 0.051_445_995 * b);
-        let m = libm::cbrtf(0.211_903_5 * r + 0.680_699_5 * g + 0.107_396_96 * b);
-        let s = libm::cbrtf(0.088_302_46 * r + 0.281_718_85 * g + 0.629_978_7 * b);
+        // `libm` instead of the platform's `cbrt`, so that the choices that depend on it are the same on every machine.
+        Self::from_linear_with(light, libm::cbrtf)
+    }
+
+    /// Converts an sRGB colour to OKLab, with an error of at most 2e-6, in a fraction of the time.
+    pub(crate) fn near_srgb8(color: Srgb8) -> Self {
+        Self::from_linear_with(LinearRgb::from_srgb8(color), near_cbrt)
+    }
+
+    #[inline]
+    fn from_linear_with(LinearRgb { r, g, b }: LinearRgb, cbrt: impl Fn(f32) -> f32) -> Self {
+        let l = cbrt(0.412_221_46 * r + 0.536_332_55 * g + 0.051_445_995 * b);
+        let m = cbrt(0.211_903_5 * r + 0.680_699_5 * g + 0.107_396_96 * b);
+        let s = cbrt(0.088_302_46 * r + 0.281_718_85 * g + 0.629_978_7 * b);
         Self {
             l: 0.210_454_26 * l + 0.793_617_8 * m - 0.004_072_047 * s,
             a: 1.977_998_5 * l - 2.428_592_2 * m + 0.450_593_7 * s,
@@ -215,9 +223,29 @@ impl Oklab {
     /// Returns the perceived difference of two colours: their distance, which is 1 between black
     /// and white.
     pub fn distance(self, other: Self) -> f32 {
-        let (l, a, b) = (self.l - other.l, self.a - other.a, self.b - other.b);
-        (l * l + a * a + b * b).sqrt()
+        self.squared_distance(other).sqrt()
     }
+
+    /// Returns the square of the [distance](Self::distance).
+    pub(crate) fn squared_distance(self, other: Self) -> f32 {
+        let (l, a, b) = (self.l - other.l, self.a - other.a, self.b - other.b);
+        l * l + a * a + b * b
+    }
+}
+
+/// Returns nearly the cube root of a number from 0 to 1.
+// A first guess from the bits, within 4 %, and two steps of Halley's method, each of which cubes the relative error.
+#[inline]
+fn near_cbrt(x: f32) -> f32 {
+    if x < f32::MIN_POSITIVE {
+        return 0.0;
+    }
+    let mut root = f32::from_bits(x.to_bits() / 3 + 0x2a51_19f2);
+    for _ in 0..2 {
+        let cube = root * root * root;
+        root *= (cube + 2.0 * x) / (2.0 * cube + x);
+    }
+    root
 }
 
 /// Encodes by sRGB's transfer function: linear to encoded (IEC 61966-2-1), both in 0..=1.

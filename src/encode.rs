@@ -31,6 +31,7 @@ mod foreign_output;
 mod halves;
 mod lossy;
 mod moves;
+mod numbering;
 mod numbers;
 mod palette;
 mod pen;
@@ -42,8 +43,11 @@ pub use backend::EncoderBackend;
 use change_times::ChangeTimes;
 use moves::CellPosition;
 pub(crate) use pen::Pen;
+use std::cell::RefCell;
 use std::io::{self, Write};
+use std::mem;
 use std::time::Duration;
+use strokes::Strokes;
 
 /// The order in which cells are sent.
 // Bytes per frame relative to ratatui's crossterm backend (orbit, plain, sphere, gradient): at 80x24 raster .70 .67 .90
@@ -107,6 +111,9 @@ pub struct Encoder {
     /// The time at which the cells that are not exact are to be sent; `None` if all are exact.
     due: Option<Duration>,
     shortage: capped::Shortage,
+    used_part: lossy::UsedPart,
+    /// Whether the last lossy frame had little room left for cells that are made exact.
+    is_full: bool,
 }
 
 /// The state of the terminal, as known from the bytes sent.
@@ -231,7 +238,7 @@ impl Encoder {
     fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let Some(caps) = lossy::QualityCaps::for_quality(allowance.quality) else { return self.draw(wanted, bytes) };
         let in_motion = self.change_times.record(wanted, allowance.now);
-        let known = self.take_state(wanted.size(), bytes);
+        let mut known = self.take_state(wanted.size(), bytes);
         // At rest, the cells get their final colours, the largest error first: coarse ones would be sent in vain.
         let is_capped = |&max_bytes: &usize| in_motion && max_bytes >= capped::LEAST_BYTES;
         let cap = allowance.max_bytes.filter(is_capped).filter(|_| capped::is_possible(&known.shown, wanted));
@@ -240,51 +247,87 @@ impl Encoder {
         {
             return self.draw_capped(wanted, known, max_bytes, allowance.now, bytes);
         }
-        let has_waited = |at| self.change_times.exact_at(at) <= allowance.now;
-        let plan = lossy::Plan::new(lossy::LossyFrame {
-            shown: &known.shown,
-            wanted,
-            caps,
-            half_blocks: self.half_blocks,
-            pen: [known.pen.fg, known.pen.bg],
-            has_waited: &has_waited,
+        let mut used = self.used_part;
+        let drawn = GRIDS.with_borrow_mut(|grids| {
+            let frame = lossy::LossyFrame {
+                shown: &known.shown,
+                wanted,
+                caps,
+                half_blocks: self.half_blocks,
+                pen: [known.pen.fg, known.pen.bg],
+                change_times: &self.change_times,
+            };
+            let drawn = lossy::with_plan(frame, |plan| {
+                self.draw_plan(plan, &known, (allowance, in_motion, cap), &mut used, (&mut *grids, &mut *bytes))
+            });
+            // Not swapped: the thread's grid may have the memory of a larger screen.
+            drawn.inspect(|_| known.shown.clone_from(&grids.next))
         });
+        self.used_part = used;
+        match drawn {
+            Ok(Drawn { pen, cursor, due, is_full }) => {
+                self.is_full = is_full;
+                self.known = Some(TerminalState { pen, ..known });
+                self.due = due;
+                cursor
+            }
+            Err(Exceeds { bytes: taken, max_bytes }) => {
+                self.shortage.begin(taken, max_bytes);
+                self.draw_capped(wanted, known, max_bytes, allowance.now, bytes)
+            }
+        }
+    }
+
+    /// Appends the frame of a plan: all of it or, above the limit, its most urgent cells.
+    ///
+    /// Makes `grids.next` what the terminal shows then.
+    fn draw_plan(
+        &self,
+        plan: &mut lossy::Plan<'_>,
+        known: &TerminalState,
+        (allowance, in_motion, cap): (Allowance, bool, Option<usize>),
+        used: &mut lossy::UsedPart,
+        (grids, bytes): (&mut Grids, &mut Vec<u8>),
+    ) -> Result<Drawn, Exceeds> {
         let max_bytes = allowance.max_bytes.unwrap_or(usize::MAX);
-        let usual = max_bytes.min(TMUX_BYTES_PER_CELL * wanted.size().cell_count());
+        let usual = max_bytes.min(TMUX_BYTES_PER_CELL * known.shown.size().cell_count());
         let refines_from = plan.min_writes(true);
-        let mut writes = plan.write_count();
+        let is_full = |taken: usize| taken > usual / 10 * 9;
+        // Cells are not made exact where the last frame had no room for it.
+        let mut writes = if in_motion && self.is_full { refines_from } else { plan.write_count() };
         let start = bytes.len();
-        let (next, cursor) = loop {
-            let mut next = known.clone();
-            let cursor = self.write(&plan.grid(writes), &mut next, bytes);
+        loop {
+            grids.drawn.clone_from(&known.shown);
+            plan.draw(writes, used, &mut grids.drawn);
+            grids.next.clone_from(&known.shown);
+            let mut pen = known.pen;
+            let cursor = self.write(&grids.drawn, &mut grids.next, &mut pen, bytes);
             let taken = bytes.len() - start + self.synchronized_len();
             let refines = writes > refines_from;
             let (limit, fewest) = if refines { (usual, refines_from) } else { (max_bytes, plan.min_writes(false)) };
             // At least one cell is written, or all might wait for ever.
             let fewest = fewest.max(1);
             if taken <= limit || writes <= fewest {
-                break (next, cursor);
+                let is_cut = writes < plan.write_count();
+                // All inexact cells are made exact at once, at the latest time of any of them. Each at its own time
+                // took a dozen frames of a few scattered cells after each movement: 1.40 full frames of bytes (orbit,
+                // 80x24) instead of 1.14.
+                let refines = self.change_times.exact_at(plan.inexact_cells(&grids.next));
+                let due = if is_cut { Some(allowance.now) } else { refines };
+                return Ok(Drawn { pen, cursor, due, is_full: is_full(taken) });
             }
             bytes.truncate(start);
-            if let Some(max_bytes) = cap
-                && !refines
-            {
-                self.shortage.begin(taken, max_bytes);
-                return self.draw_capped(wanted, known, max_bytes, allowance.now, bytes);
+            if let Some(max_bytes) = cap.filter(|_| !refines) {
+                return Err(Exceeds { bytes: taken, max_bytes });
             }
-            // Tries again with the share of the cells that should fit, less a thirty-second, so that the next try
-            // hardly ever fails. With a sixteenth less, 84.5 to 85.2 % of a link of 50 kB/s were used instead of 86.5
-            // to 87.3 %.
-            writes = (writes * limit / taken * 31 / 32).clamp(fewest, writes - 1);
-        };
-        let is_cut = writes < plan.write_count();
-        // All inexact cells are made exact at once, at the latest time of any of them. Each at its own time took a
-        // dozen frames of a few scattered cells after each movement: 1.40 full frames of bytes (orbit, 80x24) instead
-        // of 1.14.
-        let refines = plan.inexact_cells(&next.shown).map(|at| self.change_times.exact_at(at)).max();
-        self.due = if is_cut { Some(allowance.now) } else { refines };
-        self.known = Some(next);
-        cursor
+            // Tries again with the cells that should fit, less a thirty-second, so that the next try hardly ever fails.
+            // With a sixteenth less, 84.5 to 85.2 % of a link of 50 kB/s were used instead of 86.5 to 87.3 %. A cell
+            // that is made exact takes the bytes of about three others.
+            let (others, weight) = if refines { (refines_from, 3) } else { (0, 1) };
+            let all = others + weight * (writes - others);
+            let fitting = (all * limit / taken * 31 / 32).saturating_sub(others) / weight;
+            writes = (others + fitting).clamp(fewest, writes - 1);
+        }
     }
 
     /// Appends a frame of at most `max_bytes` without the marks of a synchronized update.
@@ -301,8 +344,10 @@ impl Encoder {
         bytes: &mut Vec<u8>,
     ) -> Option<CellPosition> {
         let start = bytes.len();
-        let with_text = capped::with_text(&known.shown, wanted);
-        let mut cursor = with_text.and_then(|with_text| self.write(&with_text, &mut known, bytes));
+        let mut cursor = GRIDS.with_borrow_mut(|Grids { drawn, .. }| {
+            let has_text = capped::put_text(&known.shown, wanted, drawn);
+            has_text.then(|| self.write(drawn, &mut known.shown, &mut known.pen, bytes)).flatten()
+        });
         let (picture, pen) = (bytes.len(), known.pen);
         let frame = capped::CappedFrame {
             shown: &mut known.shown,
@@ -349,7 +394,7 @@ impl Encoder {
     /// Returns the cursor's position after the frame, or `None` if it depends on the terminal.
     fn draw(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let mut known = self.take_state(wanted.size(), bytes);
-        let cursor = self.write(wanted, &mut known, bytes);
+        let cursor = self.write(wanted, &mut known.shown, &mut known.pen, bytes);
         self.known = Some(known);
         self.due = None;
         cursor
@@ -379,11 +424,16 @@ impl Encoder {
         writer.write_all(bytes).and_then(|()| writer.flush()).inspect_err(|_| self.forget())
     }
 
-    /// Appends the bytes that change the `known` grid to `wanted`. Returns the cursor's position
+    /// Appends the bytes that change the `shown` grid to `wanted`. Returns the cursor's position
     /// after them, or `None` if it depends on the terminal.
-    fn write(&self, wanted: &Grid, known: &mut TerminalState, bytes: &mut Vec<u8>) -> Option<CellPosition> {
-        let changed = update_grid(&mut known.shown, wanted);
-        self.write_changed(wanted, &changed, &mut known.pen, bytes)
+    fn write(&self, wanted: &Grid, shown: &mut Grid, pen: &mut Pen, bytes: &mut Vec<u8>) -> Option<CellPosition> {
+        WRITING.with_borrow_mut(|writing| {
+            let mut changed = mem::take(&mut writing.changed);
+            update_grid(shown, wanted, &mut changed);
+            let cursor = writing.write(self, wanted, &changed, pen, bytes);
+            writing.changed = changed;
+            cursor
+        })
     }
 
     /// Appends the bytes that write the `changed` cells of `wanted`. Returns the cursor's position
@@ -395,27 +445,83 @@ impl Encoder {
         pen: &mut Pen,
         bytes: &mut Vec<u8>,
     ) -> Option<CellPosition> {
-        let strokes = match self.order {
-            Order::Raster => strokes::choose_strokes(wanted, changed, self.half_blocks, *pen),
-            Order::Color => {
-                let order = by_color::order(wanted, changed, self.half_blocks, *pen);
-                let mut strokes = strokes::choose_strokes(wanted, &order, self.half_blocks, *pen);
-                // Colours are shared in this order only. In raster order sharing costs more bytes than it saves,
-                // because a compressor then finds fewer repetitions.
-                strokes::share_next_fg(wanted, &mut strokes);
-                strokes
-            }
-        };
-        strokes::write_strokes(wanted, &strokes, self.half_blocks, pen, bytes)
+        WRITING.with_borrow_mut(|writing| writing.write(self, wanted, changed, pen, bytes))
     }
 }
 
-/// Makes `shown` equal to `wanted`, and returns the cells to write, row by row.
+/// A lossy frame that fits: the pen and the cursor after it, when to encode it again, and whether it has little room
+/// left for cells that are made exact.
+struct Drawn {
+    pen: Pen,
+    cursor: Option<CellPosition>,
+    due: Option<Duration>,
+    is_full: bool,
+}
+
+/// A lossy frame that takes more bytes than are allowed.
+struct Exceeds {
+    bytes: usize,
+    max_bytes: usize,
+}
+
+/// The working memory of the grids of a frame.
+struct Grids {
+    /// What a frame is to show.
+    drawn: Grid,
+    /// What the terminal shows after it.
+    next: Grid,
+}
+
+/// The working memory of the bytes of a frame.
+#[derive(Default)]
+struct Writing {
+    changed: Vec<CellPosition>,
+    order: Vec<CellPosition>,
+    by_color: by_color::Scratch,
+    strokes: Strokes,
+}
+
+thread_local! {
+    // The thread's, not the encoder's: a server has many encoders and few threads.
+    static GRIDS: RefCell<Grids> = RefCell::new({
+        let empty = Grid::new(Size::new(0, 0));
+        Grids { drawn: empty.clone(), next: empty }
+    });
+    static WRITING: RefCell<Writing> = RefCell::default();
+}
+
+impl Writing {
+    /// Appends the bytes that write the `changed` cells of `wanted`, and returns the cursor's
+    /// position after them.
+    fn write(
+        &mut self,
+        encoder: &Encoder,
+        wanted: &Grid,
+        changed: &[CellPosition],
+        pen: &mut Pen,
+        bytes: &mut Vec<u8>,
+    ) -> Option<CellPosition> {
+        let half_blocks = encoder.half_blocks;
+        match encoder.order {
+            Order::Raster => self.strokes.choose(wanted, changed, half_blocks, *pen),
+            Order::Color => {
+                by_color::order(wanted, changed, half_blocks, *pen, &mut self.by_color, &mut self.order);
+                self.strokes.choose(wanted, &self.order, half_blocks, *pen);
+                // Colours are shared in this order only. In raster order sharing costs more bytes than it saves,
+                // because a compressor then finds fewer repetitions.
+                self.strokes.share_next_fg(wanted);
+            }
+        }
+        self.strokes.write(wanted, half_blocks, pen, bytes)
+    }
+}
+
+/// Makes `shown` equal to `wanted`, and lists the cells to write, row by row.
 ///
 /// Covered and foreign cells are never written.
 // The grid is updated in place, which saves copying it for each frame.
-fn update_grid(shown: &mut Grid, wanted: &Grid) -> Vec<CellPosition> {
-    let mut changed = Vec::new();
+fn update_grid(shown: &mut Grid, wanted: &Grid, changed: &mut Vec<CellPosition>) {
+    changed.clear();
     let columns = usize::from(wanted.size().columns);
     for row in 0..wanted.size().rows {
         let start = usize::from(row) * columns;
@@ -425,7 +531,6 @@ fn update_grid(shown: &mut Grid, wanted: &Grid) -> Vec<CellPosition> {
             update_row(shown, wanted, start, columns, |column| changed.push(CellPosition { column, row }));
         }
     }
-    changed
 }
 
 /// Makes the row from the index `start` equal in both grids, and calls `write` with the column of

@@ -226,12 +226,25 @@ impl Cell {
 /// A rectangle of cells, stored row by row from the top.
 // A cell takes 16 bytes: its cluster, if it has one, is an index into the grid's own list. Cells are therefore read and
 // set through the grid.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Grid {
     size: Size,
     // One vector for all rows, because frames are compared, cloned and cleared as a whole.
     cells: Vec<PackedCell>,
     clusters: Clusters,
+}
+
+impl Clone for Grid {
+    fn clone(&self) -> Self {
+        Self { size: self.size, cells: self.cells.clone(), clusters: self.clusters.clone() }
+    }
+
+    // Into the memory of the grid's own cells.
+    fn clone_from(&mut self, other: &Self) {
+        self.size = other.size;
+        self.cells.clone_from(&other.cells);
+        self.clusters.clone_from(&other.clusters);
+    }
 }
 
 impl PartialEq for Grid {

@@ -10,24 +10,51 @@
 //! `bc` and `ac` in either order (one colour each), then `dd`.
 
 use super::moves::{CellPosition, cheapest_move};
+use super::numbering::Numbering;
 use super::pen::Pen;
 use super::strokes::cursor_after;
 use crate::grid::{Attributes, Grid, HalfBlocks, PackedCell, PackedInk};
 use std::ops::Range;
 
-/// Returns the changed cells in the order of writing: text row by row, then picture cells by the
+/// The working memory of the order.
+#[derive(Default)]
+pub(super) struct Scratch {
+    /// The cells of the picture, in reading order.
+    picture: Vec<CellPosition>,
+    /// The index of the pair of each cell in `picture`.
+    pair_of_cell: Vec<u32>,
+    /// The pairs' colours, in reading order of their first cells.
+    pair_keys: Numbering,
+    inks: Numbering,
+    positions: Vec<CellPosition>,
+    pairs: Vec<Pair>,
+    colors: Vec<Color>,
+    pairs_by_color: Vec<usize>,
+    tried: Vec<usize>,
+}
+
+/// Lists the changed cells in the order of writing: text row by row, then picture cells by the
 /// tour.
-pub(super) fn order(wanted: &Grid, changed: &[CellPosition], half_blocks: HalfBlocks, pen: Pen) -> Vec<CellPosition> {
-    let is_picture =
-        |position: &&CellPosition| picture_inks(wanted.packed_cell(position.column, position.row)).is_some();
-    let picture: Vec<CellPosition> = changed.iter().filter(is_picture).copied().collect();
-    let mut order: Vec<CellPosition> = changed.iter().filter(|position| !is_picture(position)).copied().collect();
+pub(super) fn order(
+    wanted: &Grid,
+    changed: &[CellPosition],
+    half_blocks: HalfBlocks,
+    pen: Pen,
+    scratch: &mut Scratch,
+    order: &mut Vec<CellPosition>,
+) {
+    order.clear();
+    scratch.picture.clear();
+    for &position in changed {
+        let is_picture = picture_inks(wanted.packed_cell(position.column, position.row)).is_some();
+        let list = if is_picture { &mut scratch.picture } else { &mut *order };
+        list.push(position);
+    }
     let last = order.last().copied();
     let pen = last.map_or(pen, |position| pen.pen_for(wanted.packed_cell(position.column, position.row)));
-    let mut tour = Tour::new(wanted, &picture, half_blocks, pen);
+    let mut tour = Tour::new(wanted, half_blocks, pen, scratch);
     tour.cursor = last.and_then(|position| cursor_after(wanted, position));
-    tour.visit_all(&mut order);
-    order
+    tour.visit_all(order);
 }
 
 /// Returns the glyph and background colours of a picture cell, equal for a space; `None` for text.
@@ -64,19 +91,23 @@ struct Tour<'a> {
     cursor: Option<CellPosition>,
     /// The number of neighbours whose costs may still be computed.
     lookups: usize,
-    positions: Vec<CellPosition>,
+    /// The cells of all pairs, one pair after another.
+    positions: &'a [CellPosition],
     /// The pairs in reading order of their first cells.
-    pairs: Vec<Pair>,
-    /// The colours of the picture, sorted.
-    colors: Vec<Color>,
+    pairs: &'a mut [Pair],
+    /// The colours of the picture.
+    colors: &'a mut [Color],
     /// The indices of the pairs that contain each colour: a range for each (see [`Color::pairs`]).
     // A single list, because one list per colour would take an allocation for each.
-    pairs_by_color: Vec<usize>,
+    pairs_by_color: &'a mut [usize],
+    /// The neighbours whose costs are compared.
+    tried: &'a mut Vec<usize>,
 }
 
 /// A colour of the picture, and the pairs that contain it.
 struct Color {
-    ink: PackedInk,
+    /// The bits of the colour.
+    key: u64,
     /// The range of the colour's pairs in `Tour::pairs_by_color`, used as a stack with the first
     /// pair in reading order on top.
     // A visited pair is dropped once it is on top, which is cheaper than searching for it when it is visited.
@@ -96,30 +127,12 @@ const MAX_NEIGHBOURS_PER_COLOR: usize = 64;
 const MEAN_LOOKUPS_PER_PAIR: usize = 8;
 
 impl<'a> Tour<'a> {
-    fn new(wanted: &'a Grid, picture: &[CellPosition], half_blocks: HalfBlocks, pen: Pen) -> Self {
-        let mut cells: Vec<(PackedInk, PackedInk, CellPosition)> =
-            picture.iter().map(|&position| with_colors(wanted, position, half_blocks)).collect();
-        // The sort is stable, so the cells of a pair stay in reading order.
-        cells.sort_by_key(|&(a, b, _)| (a, b));
-        let mut inks: Vec<PackedInk> = cells.iter().flat_map(|&(a, b, _)| [a, b]).collect();
-        inks.sort_unstable();
-        inks.dedup();
-        let mut pairs: Vec<Pair> = Vec::new();
-        let mut start = 0;
-        for group in cells.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)) {
-            let (a, b, position) = group[0];
-            let (fg, bg) = picture_inks(wanted.packed_cell(position.column, position.row)).unwrap_or_default();
-            let colors = [a, b].map(|key| inks.binary_search(&key).unwrap_or(0));
-            pairs.push(Pair { fg, bg, positions: start..start + group.len(), colors, visited: false });
-            start += group.len();
-        }
-        pairs.sort_by_cached_key(|pair| {
-            let first = cells[pair.positions.start].2;
-            (first.row, first.column)
-        });
-        let (colors, pairs_by_color) = pairs_by_color(&inks, &pairs);
-        let positions = cells.into_iter().map(|(_, _, position)| position).collect();
-        let pen_colors = [pen.fg, pen.bg].map(|ink| inks.binary_search(&ink).ok());
+    fn new(wanted: &'a Grid, half_blocks: HalfBlocks, pen: Pen, scratch: &'a mut Scratch) -> Self {
+        scratch.list_pairs(wanted, half_blocks);
+        scratch.list_positions();
+        scratch.list_pairs_by_color();
+        let Scratch { inks, positions, pairs, colors, pairs_by_color, tried, .. } = scratch;
+        let pen_colors = [pen.fg, pen.bg].map(|ink| inks.get(ink.bits().into()));
         Self {
             wanted,
             half_blocks,
@@ -131,6 +144,7 @@ impl<'a> Tour<'a> {
             pairs,
             colors,
             pairs_by_color,
+            tried,
         }
     }
 
@@ -151,19 +165,19 @@ impl<'a> Tour<'a> {
         let mut best = (self.cost(next), next);
         self.lookups += MEAN_LOOKUPS_PER_PAIR;
         for color in self.pen_colors.into_iter().flatten() {
-            let mut tried = Vec::new();
-            while tried.len() < MAX_NEIGHBOURS_PER_COLOR.min(self.lookups)
+            self.tried.clear();
+            while self.tried.len() < MAX_NEIGHBOURS_PER_COLOR.min(self.lookups)
                 && let Some(at) = self.colors[color].pairs.next_back()
             {
                 let pair = self.pairs_by_color[at];
                 if !self.pairs[pair].visited {
                     best = best.min((self.cost(pair), pair));
-                    tried.push(pair);
+                    self.tried.push(pair);
                 }
             }
-            self.lookups -= tried.len();
+            self.lookups -= self.tried.len();
             // In reverse, so that the first pair in reading order is on top again.
-            for pair in tried.into_iter().rev() {
+            for &pair in self.tried.iter().rev() {
                 let end = &mut self.colors[color].pairs.end;
                 self.pairs_by_color[*end] = pair;
                 *end += 1;
@@ -205,7 +219,7 @@ impl<'a> Tour<'a> {
         let [a, b] = pair.colors;
         self.pen_colors = if a == b {
             [self.pen_colors[0], Some(a)]
-        } else if self.colors[a].ink == self.pen.fg {
+        } else if self.colors[a].key == u64::from(self.pen.fg.bits()) {
             [Some(a), Some(b)]
         } else {
             [Some(b), Some(a)]
@@ -219,37 +233,72 @@ impl<'a> Tour<'a> {
     }
 }
 
-/// Returns the colours, and for all of them the list of pairs that their ranges refer to.
-fn pairs_by_color(inks: &[PackedInk], pairs: &[Pair]) -> (Vec<Color>, Vec<usize>) {
-    let mut colors: Vec<Color> = inks.iter().map(|&ink| Color { ink, pairs: 0..0, unvisited: 0 }).collect();
-    for color in pairs.iter().flat_map(|pair| distinct_colors(&pair.colors)) {
-        colors[*color].unvisited += 1;
+impl Scratch {
+    /// Lists the pairs of the picture's cells and their colours.
+    fn list_pairs(&mut self, wanted: &Grid, half_blocks: HalfBlocks) {
+        let count = self.picture.len();
+        self.pair_keys.clear(count);
+        self.inks.clear(2 * count);
+        self.pair_of_cell.clear();
+        self.pairs.clear();
+        for &CellPosition { column, row } in &self.picture {
+            let (fg, bg) = picture_inks(wanted.packed_cell(column, row)).unwrap_or_default();
+            // Both orders are the same pair if a cell may be flipped.
+            let (a, b) = if half_blocks == HalfBlocks::Either && bg < fg { (bg, fg) } else { (fg, bg) };
+            let pair = self.pair_keys.add(u64::from(a.bits()) << 32 | u64::from(b.bits()));
+            if pair == self.pairs.len() {
+                let colors = [a, b].map(|ink| self.inks.add(ink.bits().into()));
+                self.pairs.push(Pair { fg, bg, positions: 0..0, colors, visited: false });
+            }
+            self.pairs[pair].positions.end += 1;
+            self.pair_of_cell.push(pair as u32);
+        }
     }
-    let mut end = 0;
-    for color in &mut colors {
-        color.pairs = end..end;
-        end += color.unvisited;
-    }
-    let mut neighbours = vec![0; end];
-    // In reverse for the same reason: the first pair in reading order is on top.
-    for (at, pair) in pairs.iter().enumerate().rev() {
-        for &color in distinct_colors(&pair.colors) {
-            let end = &mut colors[color].pairs.end;
-            neighbours[*end] = at;
+
+    /// Lists the cells by pair, each pair's in reading order.
+    fn list_positions(&mut self) {
+        let mut start = 0;
+        for Pair { positions, .. } in &mut self.pairs {
+            let count = positions.end;
+            *positions = start..start;
+            start += count;
+        }
+        self.positions.clear();
+        self.positions.resize(start, CellPosition { column: 0, row: 0 });
+        for (&position, &pair) in self.picture.iter().zip(&self.pair_of_cell) {
+            let end = &mut self.pairs[pair as usize].positions.end;
+            self.positions[*end] = position;
             *end += 1;
         }
     }
-    (colors, neighbours)
+
+    /// Lists the colours, and for all of them the list of pairs that their ranges refer to.
+    fn list_pairs_by_color(&mut self) {
+        let Self { inks, pairs, colors, pairs_by_color, .. } = self;
+        colors.clear();
+        colors.extend(inks.keys().iter().map(|&key| Color { key, pairs: 0..0, unvisited: 0 }));
+        for &color in pairs.iter().flat_map(|pair| distinct_colors(&pair.colors)) {
+            colors[color].unvisited += 1;
+        }
+        let mut end = 0;
+        for color in colors.iter_mut() {
+            color.pairs = end..end;
+            end += color.unvisited;
+        }
+        pairs_by_color.clear();
+        pairs_by_color.resize(end, 0);
+        // In reverse for the same reason: the first pair in reading order is on top.
+        for (at, pair) in pairs.iter().enumerate().rev() {
+            for &color in distinct_colors(&pair.colors) {
+                let end = &mut colors[color].pairs.end;
+                pairs_by_color[*end] = at;
+                *end += 1;
+            }
+        }
+    }
 }
 
 /// Returns the two colours of a pair, or one if they are equal.
 fn distinct_colors(colors: &[usize; 2]) -> &[usize] {
     if colors[0] == colors[1] { &colors[..1] } else { colors }
-}
-
-/// Returns a cell's two colours, the smaller first if the cell may be flipped, and
-/// its position.
-fn with_colors(wanted: &Grid, position: CellPosition, half_blocks: HalfBlocks) -> (PackedInk, PackedInk, CellPosition) {
-    let (a, b) = picture_inks(wanted.packed_cell(position.column, position.row)).unwrap_or_default();
-    if half_blocks == HalfBlocks::Either && b < a { (b, a, position) } else { (a, b, position) }
 }

@@ -4,7 +4,7 @@
 //! byte has to remove. It is kept from frame to frame, so that the bytes of a frame come close to the limit: the larger
 //! the shortage of bytes, the larger the errors that stay.
 //!
-//! 1. Cells whose error is worth a byte are active. The [`colors`] of their halves become a palette, whose
+//! 1. Cells whose error is worth two bytes are active. The [`colors`] of their halves become a palette, whose
 //!    colours are as far apart as the rate allows.
 //! 2. The [`pairs`] of these colours that pay for their pen are opened, and each cell takes the cheapest open pair, or
 //!    keeps what it shows.
@@ -41,6 +41,8 @@ struct ActiveCell {
     cost: f32,
     /// The key of the pair with which the cell is written; `None` to keep what it shows.
     pair: Option<u16>,
+    /// The colours of the pair, in the order of the halves.
+    shown: [u8; 2],
     /// The indices of the nearest and the second nearest colour of each half.
     nearest: [[u8; 2]; 2],
 }
@@ -59,6 +61,8 @@ pub(super) struct Shortage {
     /// The exchange rate of the next frame; `None` while frames of the allowed quality fit the
     /// limit.
     rate: Option<ExchangeRate>,
+    /// The least squared distance of two colours in the last frame's palette.
+    radius: f32,
 }
 
 impl Shortage {
@@ -135,7 +139,7 @@ pub(super) fn draw(
     SCRATCH.with_borrow_mut(|scratch| {
         for left in (0..MAX_TRIES).rev() {
             let rate = shortage.rate.unwrap_or(LEAST_RATE);
-            let bytes = scratch.choose_and_write(&mut frame, rate, &mut write);
+            let bytes = scratch.choose_and_write(&mut frame, rate, &mut shortage.radius, &mut write);
             if frame.max_bytes < LEAST_BYTES
                 || !shortage.learn(rate, bytes as f32 / frame.max_bytes as f32)
                 || left == 0
@@ -155,18 +159,18 @@ impl Scratch {
         &mut self,
         frame: &mut CappedFrame<'_>,
         rate: ExchangeRate,
+        radius: &mut f32,
         write: &mut impl FnMut(&Grid, &[CellPosition]) -> usize,
     ) -> usize {
         let Self { active, palette, pairs, .. } = self;
         find_active(frame.shown, frame.wanted, rate, active);
-        palette.choose(active, rate);
+        palette.choose(active, rate, radius);
         let colors = Colors { palette, rate, half_blocks: frame.half_blocks };
         pairs.choose(active, &colors, frame.wanted.size().columns.into());
         let (mut ranks, mut most_cells) = (pairs.ranks(), usize::MAX);
         let mut all = None;
         loop {
-            let colors = Colors { palette: &self.palette, rate, half_blocks: frame.half_blocks };
-            self.pairs.list_cells(&self.active, &colors, ranks, &mut self.cells);
+            self.pairs.list_cells(&self.active, ranks, &mut self.cells);
             self.cells.truncate(most_cells);
             self.apply(frame);
             let bytes = write(frame.shown, &self.changed);
@@ -224,23 +228,24 @@ pub(super) fn is_possible(shown: &Grid, wanted: &Grid) -> bool {
     appearing.count() <= MAX_APPEARING
 }
 
-/// Returns the shown grid with the wanted text, and with the wanted picture where it shows text.
+/// Makes `grid` the shown one with the wanted text, and with the wanted picture where it shows
+/// text.
 ///
-/// `None` if the terminal shows these already.
-pub(super) fn with_text(shown: &Grid, wanted: &Grid) -> Option<Grid> {
+/// Returns `false` if the terminal shows these already.
+pub(super) fn put_text(shown: &Grid, wanted: &Grid, grid: &mut Grid) -> bool {
     let is_text = |(of_shown, of_wanted): (PackedCell, PackedCell)| {
         (picture_halves(of_wanted).is_none() || picture_halves(of_shown).is_none())
             && !shown.is_same(of_shown, wanted, of_wanted)
     };
     let cells = || shown.packed().iter().copied().zip(wanted.packed().iter().copied());
     if !cells().any(is_text) {
-        return None;
+        return false;
     }
-    let mut grid = shown.clone();
+    grid.clone_from(shown);
     for (at, cells) in cells().enumerate().filter(|&(_, cells)| is_text(cells)) {
         grid.copy_cell(at, wanted, cells.1);
     }
-    Some(grid)
+    true
 }
 
 /// Returns whether a cell of the picture does not show its wanted halves.
@@ -251,14 +256,18 @@ pub(super) fn is_inexact(shown: &Grid, wanted: &Grid) -> bool {
         .any(|(shown, wanted)| picture_halves(shown) != Some(wanted))
 }
 
-/// Collects the cells whose error is worth a byte.
+/// The bytes that the error of a cell must be worth for the cell to be considered.
+// A half block takes three bytes and a space one, without a move. With 1, a frame takes a tenth longer.
+const LEAST_GAIN: f32 = 2.0;
+
+/// Collects the cells whose error is worth the bytes of a glyph.
 fn find_active(shown: &Grid, wanted: &Grid, rate: ExchangeRate, active: &mut Vec<ActiveCell>) {
     active.clear();
     for (at, (&shown, &wanted)) in shown.packed().iter().zip(wanted.packed()).enumerate() {
         let (Some(shown), Some(wanted)) = (picture_halves(shown), picture_halves(wanted)) else { continue };
         let stay = error(shown, wanted);
-        if stay > rate {
-            active.push(ActiveCell { at, wanted, stay, cost: stay, pair: None, nearest: [[0; 2]; 2] });
+        if stay > LEAST_GAIN * rate {
+            active.push(ActiveCell { at, wanted, stay, cost: stay, pair: None, shown: [0; 2], nearest: [[0; 2]; 2] });
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::grid::{PackedCell, PackedInk};
 /// The largest allowed difference between the shown and the wanted colour of a half cell.
 #[derive(Clone, Copy)]
 pub(super) struct Tolerance {
-    /// The largest distance of the two colours in OKLab.
+    /// The largest distance of the two colours in OKLab, less the error of [`Oklab::near_srgb8`].
     pub(super) distance: f32,
     /// The largest squared difference in 8-bit sRGB, summed over the channels.
     // Two measures are needed: `distance` in OKLab bounds the visible difference in a cell, `square` in sRGB the
@@ -20,7 +20,13 @@ impl Tolerance {
         // The cheaper measure is tested first: OKLab takes six cube roots.
         shown == wanted
             || squared_difference(shown, wanted) <= self.square
-                && Oklab::from_srgb8(shown).distance(Oklab::from_srgb8(wanted)) <= self.distance
+                && self.is_near(Oklab::near_srgb8(shown), Oklab::near_srgb8(wanted))
+    }
+
+    /// Returns whether two colours are within the distance.
+    #[inline]
+    pub(super) fn is_near(self, a: Oklab, b: Oklab) -> bool {
+        a.squared_distance(b) <= self.distance * self.distance
     }
 }
 

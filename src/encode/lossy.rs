@@ -8,10 +8,38 @@
 // .10, .31 and .16 with `Fast`.
 
 use super::Quality;
+use super::change_times::ChangeTimes;
 use super::halves::{Halves, Tolerance, half_block_cell, picture_halves, squared_difference};
-use super::palette;
+use super::palette::Reduction;
 use crate::grid::{Grid, HalfBlocks, PackedInk};
+use std::cell::RefCell;
 use std::cmp::Reverse;
+
+/// The working memory of a frame, which all encoders of a thread share.
+#[derive(Default)]
+struct Scratch {
+    differences: Vec<Difference>,
+    /// The indices of the cells that are text in the wanted grid.
+    text: Vec<usize>,
+    /// The indices of the written differences that need not be exact, and their halves.
+    inexact: Vec<usize>,
+    snapped: Vec<Halves>,
+    reduction: Reduction,
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
+/// The part of the tolerance that the last frames could use, so that the next one seldom needs a second try.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct UsedPart(f64);
+
+impl Default for UsedPart {
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
 
 /// The limits of a quality on the difference between the shown and the wanted picture.
 #[derive(Clone, Copy)]
@@ -45,8 +73,7 @@ pub(super) struct LossyFrame<'a> {
     pub(super) half_blocks: HalfBlocks,
     /// The pen's foreground and background colours.
     pub(super) pen: [PackedInk; 2],
-    /// Returns whether the cell at an index has waited long enough and is to be made exact now.
-    pub(super) has_waited: &'a dyn Fn(usize) -> bool,
+    pub(super) change_times: &'a ChangeTimes,
 }
 
 /// A cell of the picture that does not show its wanted halves.
@@ -75,26 +102,29 @@ enum Urgency {
     Appears,
 }
 
-/// The differences between the shown and the wanted grid, the most urgent first.
+/// The differences between the shown and the wanted grid.
 pub(super) struct Plan<'a> {
     frame: LossyFrame<'a>,
     tolerance: Tolerance,
-    differences: Vec<Difference>,
-    /// The number of `differences` to write, from the first.
+    scratch: &'a mut Scratch,
+    /// The number of differences to write, from the first.
     writes: usize,
-    /// The indices of the cells that are text in the wanted grid.
-    text: Vec<usize>,
+    /// Whether the differences to write are in order, the most urgent first.
+    is_sorted: bool,
 }
 
+/// Calls `draw` with the plan of a frame.
+pub(super) fn with_plan<T>(frame: LossyFrame<'_>, draw: impl FnOnce(&mut Plan<'_>) -> T) -> T {
+    SCRATCH.with_borrow_mut(|scratch| draw(&mut Plan::new(frame, scratch)))
+}
+
+/// The error of OKLab distances here, with a reserve.
+const DISTANCE_ERROR: f32 = 4e-6;
+
 impl<'a> Plan<'a> {
-    pub(super) fn new(frame: LossyFrame<'a>) -> Self {
-        let mut plan = Self {
-            tolerance: Tolerance { distance: frame.caps.distance, square: 0 },
-            frame,
-            differences: Vec::new(),
-            writes: 0,
-            text: Vec::new(),
-        };
+    fn new(frame: LossyFrame<'a>, scratch: &'a mut Scratch) -> Self {
+        let tolerance = Tolerance { distance: frame.caps.distance - DISTANCE_ERROR, square: 0 };
+        let mut plan = Self { tolerance, frame, scratch, writes: 0, is_sorted: false };
         plan.find_differences();
         plan.tolerance.square = plan.max_square();
         plan.rank_differences();
@@ -104,14 +134,17 @@ impl<'a> Plan<'a> {
     fn find_differences(&mut self) {
         let wanted = self.frame.wanted.packed();
         let shown = self.frame.shown.packed();
-        for (at, &cell) in wanted.iter().enumerate() {
+        let Scratch { differences, text, .. } = &mut *self.scratch;
+        differences.clear();
+        text.clear();
+        for (at, (&cell, &shown)) in wanted.iter().zip(shown).enumerate() {
             let Some(wanted) = picture_halves(cell) else {
-                self.text.push(at);
+                text.push(at);
                 continue;
             };
-            let shown = picture_halves(shown[at]);
+            let shown = picture_halves(shown);
             if shown != Some(wanted) {
-                self.differences.push(Difference { at, wanted, shown, urgency: Urgency::Appears });
+                differences.push(Difference { at, wanted, shown, urgency: Urgency::Appears });
             }
         }
     }
@@ -123,13 +156,13 @@ impl<'a> Plan<'a> {
     fn max_square(&self) -> u32 {
         const HISTOGRAM_LEN: usize = 1024;
         let mut counts = [0_usize; HISTOGRAM_LEN];
-        for difference in &self.differences {
+        for difference in &self.scratch.differences {
             let squares = difference.shown.map_or([u32::MAX; 2], |shown| squared_differences(shown, difference.wanted));
             for square in squares {
                 counts[(square as usize).min(HISTOGRAM_LEN - 1)] += 1;
             }
         }
-        let (mut beyond, mut sum, mut max_square) = (2 * self.differences.len(), 0.0, 0);
+        let (mut beyond, mut sum, mut max_square) = (2 * self.scratch.differences.len(), 0.0, 0);
         for (square, count) in counts.into_iter().enumerate() {
             beyond -= count;
             sum += (square * count) as f64;
@@ -143,27 +176,45 @@ impl<'a> Plan<'a> {
 
     /// Returns the largest allowed sum of the squared differences of all half cells.
     fn square_budget(&self) -> f64 {
-        let halves = 2 * (self.frame.wanted.packed().len() - self.text.len());
+        let halves = 2 * (self.frame.wanted.packed().len() - self.scratch.text.len());
         self.frame.caps.mean_square * (3 * halves) as f64
     }
 
+    /// Finds the urgency of all differences, and puts those to write first.
     fn rank_differences(&mut self) {
-        for difference in &mut self.differences {
-            let Some(shown) = difference.shown else { continue };
-            let square = squared_differences(shown, difference.wanted).into_iter().fold(0, u32::max);
-            let is_near = (0..2).all(|half| self.tolerance.allows(shown[half], difference.wanted[half]));
-            difference.urgency = match (is_near, (self.frame.has_waited)(difference.at)) {
-                (false, _) => Urgency::Differs(square),
-                (true, true) => Urgency::Refines,
-                (true, false) => Urgency::Waits,
-            };
+        let LossyFrame { change_times, .. } = self.frame;
+        let differences = &mut self.scratch.differences;
+        for at in 0..differences.len() {
+            let difference = &mut differences[at];
+            if let Some(shown) = difference.shown {
+                let square = squared_differences(shown, difference.wanted).into_iter().fold(0, u32::max);
+                let is_near = square <= self.tolerance.square
+                    && (0..2).all(|half| self.tolerance.allows(shown[half], difference.wanted[half]));
+                difference.urgency = match (is_near, is_near && change_times.has_waited(difference.at)) {
+                    (false, _) => Urgency::Differs(square),
+                    (true, true) => Urgency::Refines,
+                    (true, false) => Urgency::Waits,
+                };
+            }
+            if difference.urgency >= Urgency::Refines {
+                differences.swap(at, self.writes);
+                self.writes += 1;
+            }
         }
-        self.differences.sort_by_key(|difference| Reverse(difference.urgency));
-        self.writes = self.count_from(Urgency::Refines);
+    }
+
+    /// Sorts the differences to write, the most urgent first.
+    // Only for frames that do not fit: in others the order does not matter.
+    fn sort(&mut self) {
+        if !self.is_sorted {
+            let written = &mut self.scratch.differences[..self.writes];
+            written.sort_unstable_by_key(|difference| (Reverse(difference.urgency), difference.at));
+            self.is_sorted = true;
+        }
     }
 
     fn count_from(&self, least: Urgency) -> usize {
-        self.differences.partition_point(|difference| difference.urgency >= least)
+        self.scratch.differences[..self.writes].iter().filter(|difference| difference.urgency >= least).count()
     }
 
     /// Returns the number of picture cells to write.
@@ -178,57 +229,74 @@ impl<'a> Plan<'a> {
         self.count_from(if within_caps { Urgency::Differs(0) } else { Urgency::Appears })
     }
 
-    /// Returns the grid to show next: the shown one with the wanted text and the `writes` most
-    /// urgent picture cells.
-    pub(super) fn grid(&self, writes: usize) -> Grid {
-        let (written, left) = self.differences.split_at(writes);
-        let left: u64 = left.iter().filter_map(|left| Some(sum(squared_differences(left.shown?, left.wanted)))).sum();
-        let max_squares =
-            if writes < self.min_writes(true) { f64::INFINITY } else { self.square_budget() - left as f64 };
+    /// Makes `grid`, a copy of the shown one, the one to show next: with the wanted text and the
+    /// `writes` most urgent picture cells.
+    pub(super) fn draw(&mut self, writes: usize, used: &mut UsedPart, grid: &mut Grid) {
+        if writes < self.writes {
+            self.sort();
+        }
+        self.find_inexact(writes);
+        self.snap(writes, used);
+        let Scratch { differences, text, inexact, snapped, .. } = &*self.scratch;
+        let wanted = self.frame.wanted;
+        for &at in text {
+            grid.copy_cell(at, wanted, wanted.packed()[at]);
+        }
+        for &Difference { at, wanted: halves, .. } in &differences[..writes] {
+            grid.set_packed(at, half_block_cell(halves, wanted.packed()[at]));
+        }
+        for (&inexact, &halves) in inexact.iter().zip(snapped) {
+            let at = differences[inexact].at;
+            grid.set_packed(at, half_block_cell(halves, wanted.packed()[at]));
+        }
+    }
+
+    /// Lists the first `writes` differences without the cells that are due to be exact.
+    fn find_inexact(&mut self, writes: usize) {
+        let Scratch { differences, inexact, .. } = &mut *self.scratch;
+        inexact.clear();
+        inexact.extend((0..writes).filter(|&at| !self.frame.change_times.has_waited(differences[at].at)));
+    }
+
+    /// Chooses palette colours for the cells that need not be exact.
+    fn snap(&mut self, writes: usize, used: &mut UsedPart) {
+        let square = |difference: &Difference| Some(sum(squared_differences(difference.shown?, difference.wanted)));
+        let left: u64 = self.scratch.differences[writes..].iter().filter_map(square).sum();
+        let is_whole = writes >= self.min_writes(true);
+        let max_squares = if is_whole { self.square_budget() - left as f64 } else { f64::INFINITY };
+        let LossyFrame { pen, half_blocks, .. } = self.frame;
+        let Scratch { differences, inexact, snapped, reduction, .. } = &mut *self.scratch;
         let mut tolerance = self.tolerance;
-        let snapped = loop {
-            let snapped = self.snapped_halves(written, tolerance);
-            let squares =
-                snapped.iter().zip(written).map(|(&snapped, write)| sum(squared_differences(snapped, write.wanted)));
-            let squares = squares.sum::<u64>() as f64;
+        let full = f64::from(tolerance.square);
+        if is_whole {
+            tolerance.square = (full * used.0) as u32;
+        }
+        loop {
+            snapped.clear();
+            snapped.extend(inexact.iter().map(|&at| differences[at].wanted));
+            reduction.snap(snapped, pen, tolerance, half_blocks);
+            let of_cell = |(&at, &halves): (&usize, &Halves)| sum(squared_differences(halves, differences[at].wanted));
+            let squares = inexact.iter().zip(&*snapped).map(of_cell).sum::<u64>() as f64;
             if squares <= max_squares || tolerance.square == 0 {
-                break snapped;
+                if is_whole && full > 0.0 {
+                    // Near the cap the part stays, so that the next frame does not exceed it.
+                    let growth = if squares < 0.8 * max_squares { 0.85 * max_squares / squares } else { 1.0 };
+                    used.0 = (f64::from(tolerance.square) / full * growth.min(1.3)).clamp(0.05, 1.0);
+                }
+                return;
             }
-            // Rarely, the colours of most halves are at the tolerance, and the sum exceeds its cap. The tolerance then
-            // shrinks in proportion, so that few tries are needed.
-            tolerance.square = (f64::from(tolerance.square) * (max_squares / squares).clamp(0.0, 0.75)) as u32;
-        };
-        let mut grid = self.shown_with_text();
-        for (write, halves) in written.iter().zip(snapped) {
-            grid.set_packed(write.at, half_block_cell(halves, self.frame.wanted.packed()[write.at]));
+            // The colours of most halves are at the tolerance, and the sum exceeds its cap. The tolerance then shrinks
+            // in proportion, so that few tries are needed.
+            let step = (0.85 * max_squares / squares).clamp(0.0, 0.85);
+            tolerance.square = (f64::from(tolerance.square) * step) as u32;
         }
-        grid
-    }
-
-    /// Returns the halves to write for the cells in `written`: exact ones where a cell is due,
-    /// otherwise palette colours.
-    fn snapped_halves(&self, written: &[Difference], tolerance: Tolerance) -> Vec<Halves> {
-        let mut snapped: Vec<Halves> = written.iter().map(|write| write.wanted).collect();
-        let inexact = written.iter().zip(&mut snapped).filter(|(write, _)| !(self.frame.has_waited)(write.at));
-        let mut inexact: Vec<&mut Halves> = inexact.map(|(_, halves)| halves).collect();
-        palette::snap_to_palette(&mut inexact, self.frame.pen, tolerance, self.frame.half_blocks);
-        snapped
-    }
-
-    /// Returns the shown grid with its text cells replaced by the wanted ones.
-    fn shown_with_text(&self) -> Grid {
-        let mut grid = self.frame.shown.clone();
-        for &at in &self.text {
-            grid.copy_cell(at, self.frame.wanted, self.frame.wanted.packed()[at]);
-        }
-        grid
     }
 
     /// Returns the indices of the picture cells that differ between `grid` and the wanted grid.
     pub(super) fn inexact_cells(&self, grid: &Grid) -> impl Iterator<Item = usize> {
         let is_inexact =
             |difference: &&Difference| picture_halves(grid.packed()[difference.at]) != Some(difference.wanted);
-        self.differences.iter().filter(is_inexact).map(|difference| difference.at)
+        self.scratch.differences.iter().filter(is_inexact).map(|difference| difference.at)
     }
 }
 

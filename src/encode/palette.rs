@@ -3,47 +3,15 @@
 //! A palette is chosen by greedy set cover (Johnson 1974): first the colour that most half cells can take, then the one
 //! that most of the remaining half cells can take, and so on. Pairs of palette colours are then chosen in the same way,
 //! because all cells of one pair are written without a change of the pen.
+//!
+//! All lists are in memory that is kept from frame to frame, and nothing large is sorted by comparison: with a vector for
+//! each colour and such sorts, these took more than half of the time of a frame.
 
 use super::halves::{Halves, Tolerance, squared_difference};
+use super::numbering::Numbering;
 use crate::color::{Oklab, Srgb8};
 use crate::grid::{HalfBlocks, PackedInk};
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-use std::mem;
-
-/// Replaces the cells' colours by palette colours within the tolerance.
-///
-/// With [`HalfBlocks::Either`] a pair of colours counts as the same pair in either order. The pen's colours are also
-/// candidates for the palette.
-pub(super) fn snap_to_palette(
-    cells: &mut [&mut Halves],
-    pen: [PackedInk; 2],
-    tolerance: Tolerance,
-    half_blocks: HalfBlocks,
-) {
-    let table = ColorTable::from_cells_and_pen(cells, pen);
-    let choices = table.choices_by_color(tolerance);
-    let wanted: Vec<[usize; 2]> = cells.iter().map(|cell| cell.map(|color| table.index(color))).collect();
-    let pairs = choose_pairs(&wanted, &choices, half_blocks);
-    for ((cell, wanted), pair) in cells.iter_mut().zip(wanted).zip(pairs) {
-        let [a, b] = pair.map(|index| table.colors[index]);
-        let fits = |pair: [usize; 2]| (0..2).all(|half| choices[wanted[half]].contains(&pair[half]));
-        let error = |halves: Halves| squared_difference(halves[0], cell[0]) + squared_difference(halves[1], cell[1]);
-        let flipped = half_blocks == HalfBlocks::Either
-            && fits([pair[1], pair[0]])
-            && (!fits(pair) || error([b, a]) < error([a, b]));
-        **cell = if flipped { [b, a] } else { [a, b] };
-    }
-}
-
-/// The distinct colours of some cells and of the pen.
-struct ColorTable {
-    /// The colours, sorted.
-    colors: Vec<Srgb8>,
-    /// The number of halves that want each colour.
-    halves: Vec<usize>,
-    oklab: Vec<Oklab>,
-}
+use std::ops::Range;
 
 /// Largest number of palette colours that are considered for a half cell.
 // More would hardly save bytes, and the number of possible pairs grows with the square.
@@ -54,123 +22,354 @@ const MAX_CHOICES: usize = 4;
 // before this limit and two others, and takes 21 times with them.
 const LIGHTNESS_NEIGHBOURS: usize = 24;
 
-impl ColorTable {
-    fn from_cells_and_pen(cells: &[&mut Halves], pen: [PackedInk; 2]) -> Self {
-        let of_pen = pen.into_iter().filter_map(|ink| Some((ink.color()?, 0)));
-        let of_cells = cells.iter().flat_map(|cell| cell.map(|color| (color, 1)));
-        let mut all: Vec<(Srgb8, usize)> = of_cells.chain(of_pen).collect();
-        all.sort_unstable();
-        let same = || all.chunk_by(|a, b| a.0 == b.0);
-        let colors: Vec<Srgb8> = same().map(|same| same[0].0).collect();
-        let halves = same().map(|same| same.iter().map(|&(_, halves)| halves).sum()).collect();
-        let oklab = colors.iter().map(|&color| Oklab::from_srgb8(color)).collect();
-        Self { colors, halves, oklab }
-    }
+/// The number of steps of lightness by which colours are sorted.
+const LIGHTNESS_STEPS: usize = 4096;
 
-    fn index(&self, color: Srgb8) -> usize {
-        self.colors.binary_search(&color).expect("the cells' colours are all here")
-    }
+/// The end of a list.
+const NONE: u32 = u32::MAX;
 
-    /// Returns for each colour the palette colours that may replace it, those that replace the most
-    /// half cells first.
-    fn choices_by_color(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
-        let exchangeable = self.exchangeable_by_color(tolerance);
-        let mut choices: Vec<Vec<usize>> = vec![Vec::new(); self.colors.len()];
-        for color in greedy_cover(&exchangeable, &self.halves) {
-            for &half in &exchangeable[color] {
-                if choices[half].len() < MAX_CHOICES {
-                    choices[half].push(color);
-                }
-            }
+/// The working memory of the reduction.
+#[derive(Default)]
+pub(super) struct Reduction {
+    /// The distinct colours of the cells and of the pen, in the order in which they are found.
+    found: Numbering,
+    found_oklab: Vec<Oklab>,
+    /// The place of each found colour among the sorted ones; at first the step of its lightness.
+    places: Vec<u32>,
+    /// The distinct colours, sorted by the steps of their lightness.
+    colors: Vec<Srgb8>,
+    oklab: Vec<Oklab>,
+    /// The number of halves that want each colour.
+    halves: Vec<u32>,
+    /// The index of the colour that each half wants.
+    wanted: Vec<u32>,
+    /// Two colours within the tolerance of each other.
+    near: Vec<[u32; 2]>,
+    /// The palette colours that may replace each colour, those that replace the most halves first.
+    choices: Vec<Choices>,
+    possible: Vec<PossiblePair>,
+    /// The memory of a sort of `possible`.
+    sorted: Vec<PossiblePair>,
+    counts: Vec<u32>,
+    /// The pairs that several cells can show.
+    pairs: Vec<[u32; 2]>,
+    /// The pair of each cell.
+    chosen: Vec<[u32; 2]>,
+    sets: Sets,
+    cover: Cover,
+}
+
+/// The palette colours that may replace a colour.
+#[derive(Clone, Copy, Default)]
+struct Choices {
+    colors: [u32; MAX_CHOICES],
+    len: u8,
+}
+
+impl Choices {
+    fn as_slice(&self) -> &[u32] {
+        &self.colors[..usize::from(self.len)]
+    }
+}
+
+/// A pair of colours that a cell can show.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+struct PossiblePair {
+    colors: [u32; 2],
+    cell: u32,
+}
+
+impl Reduction {
+    /// Replaces the cells' colours by palette colours within the tolerance.
+    ///
+    /// With [`HalfBlocks::Either`] a pair of colours counts as the same pair in either order. The pen's colours are
+    /// also candidates for the palette.
+    pub(super) fn snap(
+        &mut self,
+        cells: &mut [Halves],
+        pen: [PackedInk; 2],
+        tolerance: Tolerance,
+        half_blocks: HalfBlocks,
+    ) {
+        self.list_colors(cells, pen);
+        self.find_near(tolerance);
+        self.choose_colors();
+        self.list_possible_pairs(cells.len(), half_blocks);
+        self.choose_pairs(cells.len());
+        for (at, cell) in cells.iter_mut().enumerate() {
+            *cell = self.snapped(at, *cell, half_blocks);
         }
-        choices
     }
 
-    /// Returns for each colour the colours within the tolerance, including itself.
+    /// Returns the palette colours of the cell at an index, in the better order.
+    fn snapped(&self, at: usize, cell: Halves, half_blocks: HalfBlocks) -> Halves {
+        let pair = self.chosen[at];
+        let [a, b] = pair.map(|index| self.colors[index as usize]);
+        let choices = |half: usize| &self.choices[self.wanted[2 * at + half] as usize];
+        let fits = |pair: [u32; 2]| (0..2).all(|half| choices(half).as_slice().contains(&pair[half]));
+        let error = |halves: Halves| squared_difference(halves[0], cell[0]) + squared_difference(halves[1], cell[1]);
+        let flipped = half_blocks == HalfBlocks::Either
+            && fits([pair[1], pair[0]])
+            && (!fits(pair) || error([b, a]) < error([a, b]));
+        if flipped { [b, a] } else { [a, b] }
+    }
+
+    /// Lists the distinct colours, and the index of the one that each half wants.
+    fn list_colors(&mut self, cells: &[Halves], pen: [PackedInk; 2]) {
+        let Self { found, found_oklab, places, colors, oklab, halves, wanted, counts, .. } = self;
+        let key = |Srgb8 { r, g, b }| u64::from(u32::from_be_bytes([0, r, g, b]));
+        found.clear(2 * cells.len() + pen.len());
+        wanted.clear();
+        wanted.extend(cells.iter().flatten().map(|&color| found.add(key(color)) as u32));
+        pen.into_iter().filter_map(PackedInk::color).for_each(|color| _ = found.add(key(color)));
+        let of_key = |&key: &u64| {
+            let [_, r, g, b] = (key as u32).to_be_bytes();
+            Srgb8 { r, g, b }
+        };
+        found_oklab.clear();
+        found_oklab.extend(found.keys().iter().map(of_key).map(Oklab::near_srgb8));
+        places.clear();
+        counts.clear();
+        counts.resize(LIGHTNESS_STEPS + 1, 0);
+        for &Oklab { l, .. } in found_oklab.iter() {
+            let step = ((l * LIGHTNESS_STEPS as f32) as usize).min(LIGHTNESS_STEPS - 1);
+            places.push(step as u32);
+            counts[step + 1] += 1;
+        }
+        sum_up(counts);
+        colors.clear();
+        colors.resize(places.len(), Srgb8::new(0, 0, 0));
+        oklab.clear();
+        oklab.resize(places.len(), Oklab::default());
+        for ((place, key), &lab) in places.iter_mut().zip(found.keys()).zip(found_oklab.iter()) {
+            let next = &mut counts[*place as usize];
+            (colors[*next as usize], oklab[*next as usize]) = (of_key(key), lab);
+            (*place, *next) = (*next, *next + 1);
+        }
+        halves.clear();
+        halves.resize(places.len(), 0);
+        for color in wanted {
+            *color = places[*color as usize];
+            halves[*color as usize] += 1;
+        }
+    }
+
+    /// Lists the pairs of colours within the tolerance of each other.
     // OKLab distance is at least the difference in lightness, so only neighbours in an order by lightness are compared.
-    fn exchangeable_by_color(&self, tolerance: Tolerance) -> Vec<Vec<usize>> {
-        let mut order: Vec<usize> = (0..self.colors.len()).collect();
-        order.sort_unstable_by(|&a, &b| self.oklab[a].l.total_cmp(&self.oklab[b].l));
-        let mut exchangeable: Vec<Vec<usize>> = (0..order.len()).map(|color| vec![color]).collect();
-        for (at, &a) in order.iter().enumerate() {
-            let lightest = self.oklab[a].l + tolerance.distance;
-            for &b in order[at + 1..].iter().take(LIGHTNESS_NEIGHBOURS).take_while(|&&b| self.oklab[b].l <= lightest) {
-                if squared_difference(self.colors[a], self.colors[b]) <= tolerance.square
-                    && self.oklab[a].distance(self.oklab[b]) <= tolerance.distance
-                {
-                    exchangeable[a].push(b);
-                    exchangeable[b].push(a);
+    fn find_near(&mut self, tolerance: Tolerance) {
+        let Self { near, colors, oklab, .. } = self;
+        near.clear();
+        for (a, (&color, &lab)) in colors.iter().zip(oklab.iter()).enumerate() {
+            // A step more, since the order within a step is any.
+            let lightest = lab.l + tolerance.distance + 1.0 / LIGHTNESS_STEPS as f32;
+            let others = (a + 1..colors.len()).take(LIGHTNESS_NEIGHBOURS);
+            for b in others.take_while(|&b| oklab[b].l <= lightest) {
+                if tolerance.is_near(lab, oklab[b]) && squared_difference(color, colors[b]) <= tolerance.square {
+                    near.push([a as u32, b as u32]);
                 }
             }
         }
-        exchangeable
     }
-}
 
-/// Returns for each cell a pair out of the `choices` for its two `wanted` colours, using few
-/// distinct pairs.
-fn choose_pairs(wanted: &[[usize; 2]], choices: &[Vec<usize>], half_blocks: HalfBlocks) -> Vec<[usize; 2]> {
-    let mut possible: Vec<([usize; 2], usize)> = Vec::new();
-    for (cell, &[upper, lower]) in wanted.iter().enumerate() {
-        for &a in &choices[upper] {
-            for &b in &choices[lower] {
-                possible.push((if half_blocks == HalfBlocks::Either { [a.min(b), a.max(b)] } else { [a, b] }, cell));
+    /// Chooses the palette, and for each colour the palette colours that may replace it.
+    fn choose_colors(&mut self) {
+        let Self { near, colors, halves, choices, sets, cover, .. } = self;
+        sets.fill_symmetric(colors.len(), near);
+        choices.clear();
+        choices.resize(colors.len(), Choices::default());
+        cover.choose(sets, halves, |color, members, _| {
+            for &half in members {
+                let choices = &mut choices[half as usize];
+                if usize::from(choices.len) < MAX_CHOICES {
+                    choices.colors[usize::from(choices.len)] = color as u32;
+                    choices.len += 1;
+                }
+            }
+        });
+    }
+
+    /// Lists the pairs of palette colours for each cell, sorted by pair and then by cell.
+    fn list_possible_pairs(&mut self, cell_count: usize, half_blocks: HalfBlocks) {
+        self.possible.clear();
+        for cell in 0..cell_count {
+            let [upper, lower] = [0, 1].map(|half| self.choices[self.wanted[2 * cell + half] as usize]);
+            for &a in upper.as_slice() {
+                for &b in lower.as_slice() {
+                    let colors = if half_blocks == HalfBlocks::Either { [a.min(b), a.max(b)] } else { [a, b] };
+                    self.possible.push(PossiblePair { colors, cell: cell as u32 });
+                }
             }
         }
+        // The cells are in ascending order already, and sorts by counting are stable.
+        self.sort_possible_by(1);
+        self.sort_possible_by(0);
+        self.possible.dedup();
     }
-    possible.sort_unstable();
-    possible.dedup();
-    let (pairs, cells): (Vec<[usize; 2]>, Vec<usize>) = possible.into_iter().unzip();
-    let mut groups = Vec::new();
-    let mut start = 0;
-    for same in pairs.chunk_by(|a, b| a == b) {
+
+    /// Sorts the possible pairs by one of their colours, and keeps the order of equal ones.
+    fn sort_possible_by(&mut self, place: usize) {
+        let Self { possible, sorted, counts, colors, .. } = self;
+        counts.clear();
+        counts.resize(colors.len() + 1, 0);
+        for pair in possible.iter() {
+            counts[pair.colors[place] as usize + 1] += 1;
+        }
+        sum_up(counts);
+        sorted.clear();
+        sorted.resize(possible.len(), PossiblePair::default());
+        for &pair in possible.iter() {
+            let place = &mut counts[pair.colors[place] as usize];
+            sorted[*place as usize] = pair;
+            *place += 1;
+        }
+        std::mem::swap(possible, sorted);
+    }
+
+    /// Chooses the pair of each cell, using few distinct pairs.
+    fn choose_pairs(&mut self, cell_count: usize) {
+        let Self { possible, pairs, chosen, wanted, choices, halves, sets, cover, .. } = self;
+        pairs.clear();
+        sets.clear();
         // A pair that only one cell can show saves nothing.
-        if same.len() > 1 {
-            groups.push((same[0], &cells[start..start + same.len()]));
+        for same in possible.chunk_by(|a, b| a.colors == b.colors).filter(|same| same.len() > 1) {
+            pairs.push(same[0].colors);
+            sets.push(same.iter().map(|pair| pair.cell));
         }
-        start += same.len();
+        // A cell without a shared pair takes, for each half, the colour that the most halves can take.
+        chosen.clear();
+        chosen.extend(wanted.chunks_exact(2).map(|cell| [0, 1].map(|half| choices[cell[half] as usize].colors[0])));
+        halves.clear();
+        halves.resize(cell_count, 1);
+        cover.choose(sets, halves, |pair, cells, left| {
+            for &cell in cells.iter().filter(|&&cell| left[cell as usize] > 0) {
+                chosen[cell as usize] = pairs[pair];
+            }
+        });
     }
-    let sets: Vec<&[usize]> = groups.iter().map(|group| group.1).collect();
-    // A cell without a shared pair takes, for each half, the colour that the most halves can take.
-    let mut chosen: Vec<[usize; 2]> = wanted.iter().map(|cell| cell.map(|color| choices[color][0])).collect();
-    let mut is_chosen = vec![false; wanted.len()];
-    for group in greedy_cover(&sets, &vec![1; wanted.len()]) {
-        let (pair, cells) = groups[group];
-        for &cell in cells {
-            if !mem::replace(&mut is_chosen[cell], true) {
-                chosen[cell] = pair;
+}
+
+/// Makes each number the sum of all up to it.
+fn sum_up(counts: &mut [u32]) {
+    let mut sum = 0;
+    for count in counts {
+        sum += *count;
+        *count = sum;
+    }
+}
+
+/// Sets of numbers, in one list.
+#[derive(Default)]
+struct Sets {
+    members: Vec<u32>,
+    /// The end of each set in `members`.
+    ends: Vec<u32>,
+}
+
+impl Sets {
+    fn clear(&mut self) {
+        self.members.clear();
+        self.ends.clear();
+    }
+
+    fn push(&mut self, members: impl Iterator<Item = u32>) {
+        self.members.extend(members);
+        self.ends.push(self.members.len() as u32);
+    }
+
+    /// Makes sets of `count` numbers: each with itself and the numbers that it is linked to.
+    fn fill_symmetric(&mut self, count: usize, links: &[[u32; 2]]) {
+        self.clear();
+        // Each end counts the members at first, is the start of its set then, and moves to its end.
+        self.ends.resize(count, 1);
+        for &end in links.iter().flatten() {
+            self.ends[end as usize] += 1;
+        }
+        let mut start = 0;
+        for end in &mut self.ends {
+            start += std::mem::replace(end, start);
+        }
+        self.members.resize(start as usize, 0);
+        let mut add = |set: u32, member: u32| {
+            let end = &mut self.ends[set as usize];
+            self.members[*end as usize] = member;
+            *end += 1;
+        };
+        (0..count as u32).for_each(|at| add(at, at));
+        for &[a, b] in links {
+            add(a, b);
+            add(b, a);
+        }
+    }
+
+    fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    fn range(&self, set: usize) -> Range<usize> {
+        let start = set.checked_sub(1).map_or(0, |before| self.ends[before]);
+        start as usize..self.ends[set] as usize
+    }
+
+    fn members(&self, set: usize) -> &[u32] {
+        &self.members[self.range(set)]
+    }
+}
+
+/// The working memory of a greedy cover.
+// A queue of buckets, one for each gain, in place of a heap: gains only shrink, so that each bucket is complete once
+// those above it are done (Minoux 1978).
+#[derive(Default)]
+struct Cover {
+    /// The first set of each bucket.
+    heads: Vec<u32>,
+    /// The set after each set in its bucket.
+    next: Vec<u32>,
+    bucket: Vec<u32>,
+}
+
+impl Cover {
+    /// Chooses sets that together cover all members, greedily by the weight of members not yet
+    /// covered.
+    ///
+    /// Of equal sets the first one is chosen. Calls `take` with each chosen set, its members and the weights before
+    /// it, and sets the weights of its members to 0.
+    fn choose(&mut self, sets: &Sets, left: &mut [u32], mut take: impl FnMut(usize, &[u32], &[u32])) {
+        let gain = |set: usize, left: &[u32]| sets.members(set).iter().map(|&at| left[at as usize]).sum::<u32>();
+        let most = (0..sets.len()).map(|set| gain(set, left)).max().unwrap_or(0);
+        self.heads.clear();
+        self.heads.resize(most as usize + 1, NONE);
+        self.next.clear();
+        self.next.resize(sets.len(), NONE);
+        for set in 0..sets.len() {
+            self.push(set, gain(set, left));
+        }
+        for promised in (1..=most).rev() {
+            self.empty_bucket(promised);
+            for at in 0..self.bucket.len() {
+                let set = self.bucket[at] as usize;
+                let added = gain(set, left);
+                if added == promised {
+                    take(set, sets.members(set), left);
+                    sets.members(set).iter().for_each(|&member| left[member as usize] = 0);
+                } else {
+                    self.push(set, added);
+                }
             }
         }
     }
-    chosen
-}
 
-/// Returns indices of sets that together cover all members, chosen greedily by the weight of
-/// members not yet covered.
-fn greedy_cover(sets: &[impl AsRef<[usize]>], weights: &[usize]) -> Vec<usize> {
-    let mut left = weights.to_vec();
-    // Lazy evaluation: gains only shrink, so a set whose gain still equals that of its heap entry is the best (Minoux
-    // 1978).
-    let mut heap: BinaryHeap<(usize, Reverse<usize>)> =
-        sets.iter().enumerate().map(|(at, set)| (remaining_weight(set.as_ref(), &left), Reverse(at))).collect();
-    let mut chosen = Vec::new();
-    while let Some((promised, Reverse(at))) = heap.pop() {
-        let added = remaining_weight(sets[at].as_ref(), &left);
-        if added == 0 {
-            continue;
-        }
-        if added < promised {
-            heap.push((added, Reverse(at)));
-            continue;
-        }
-        chosen.push(at);
-        for &member in sets[at].as_ref() {
-            left[member] = 0;
-        }
+    fn push(&mut self, set: usize, gain: u32) {
+        self.next[set] = std::mem::replace(&mut self.heads[gain as usize], set as u32);
     }
-    chosen
-}
 
-fn remaining_weight(set: &[usize], weights: &[usize]) -> usize {
-    set.iter().map(|&member| weights[member]).sum()
+    /// Moves a bucket's sets to `self.bucket`, in ascending order.
+    fn empty_bucket(&mut self, gain: u32) {
+        self.bucket.clear();
+        let mut set = self.heads[gain as usize];
+        while set != NONE {
+            self.bucket.push(set);
+            set = self.next[set as usize];
+        }
+        self.bucket.sort_unstable();
+    }
 }

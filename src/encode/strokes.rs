@@ -17,54 +17,105 @@ pub(super) struct Stroke {
     pen: Pen,
 }
 
-/// Returns the strokes that write the cells in `order` with the fewest bytes for changes of the
-/// pen.
-pub(super) fn choose_strokes(
-    wanted: &Grid,
-    order: &[CellPosition],
-    half_blocks: HalfBlocks,
-    mut pen: Pen,
-) -> Vec<Stroke> {
-    let forms = choose_forms(wanted, order, half_blocks, pen);
-    let stroke = |(&position, form): (&CellPosition, BlockForm)| {
-        pen = form.pen(wanted.packed_cell(position.column, position.row), &pen);
-        Stroke { position, form, pen }
-    };
-    order.iter().zip(forms).map(stroke).collect()
+/// The strokes of a frame, in memory that is kept from frame to frame.
+#[derive(Default)]
+pub(super) struct Strokes {
+    chosen: Vec<Stroke>,
+    forms: Vec<BlockForm>,
+    /// For each cell and each of its two forms, the form of the previous cell on the cheapest path.
+    predecessors: Vec<[u8; 2]>,
 }
 
-/// Gives a plain space the pen of the next stroke if the two pens differ in the glyph colour only.
-// A space's glyph colour is invisible, so the space's sequence can set it for the next stroke. Not in reverse video,
-// where the glyph colour fills the cell.
-pub(super) fn share_next_fg(wanted: &Grid, strokes: &mut [Stroke]) {
-    for at in (1..strokes.len()).rev() {
-        let next = strokes[at].pen;
-        let stroke = &mut strokes[at - 1];
-        let only_fg = stroke.pen.attributes.is_empty() && Pen { fg: next.fg, ..stroke.pen } == next;
-        if only_fg && is_plain_space(wanted.packed_cell(stroke.position.column, stroke.position.row)) {
-            stroke.pen = next;
+impl Strokes {
+    /// Chooses strokes that write the cells in `order` with the fewest bytes for changes of the
+    /// pen.
+    pub(super) fn choose(&mut self, wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, mut pen: Pen) {
+        self.choose_forms(wanted, order, half_blocks, pen);
+        self.chosen.clear();
+        self.chosen.extend(order.iter().zip(&self.forms).map(|(&position, &form)| {
+            pen = form.pen(wanted.packed_cell(position.column, position.row), &pen);
+            Stroke { position, form, pen }
+        }));
+    }
+
+    /// Gives a plain space the pen of the next stroke if the two pens differ in the glyph colour only.
+    // A space's glyph colour is invisible, so the space's sequence can set it for the next stroke. Not in reverse
+    // video, where the glyph colour fills the cell.
+    pub(super) fn share_next_fg(&mut self, wanted: &Grid) {
+        for at in (1..self.chosen.len()).rev() {
+            let next = self.chosen[at].pen;
+            let stroke = &mut self.chosen[at - 1];
+            let only_fg = stroke.pen.attributes.is_empty() && Pen { fg: next.fg, ..stroke.pen } == next;
+            if only_fg && is_plain_space(wanted.packed_cell(stroke.position.column, stroke.position.row)) {
+                stroke.pen = next;
+            }
         }
     }
-}
 
-/// Appends the strokes. Returns the cursor's position after them, or `None` if it depends on the
-/// terminal.
-// The cursor's position is assumed unknown at first, because other output since the last frame may have moved it.
-pub(super) fn write_strokes(
-    wanted: &Grid,
-    strokes: &[Stroke],
-    half_blocks: HalfBlocks,
-    pen: &mut Pen,
-    bytes: &mut Vec<u8>,
-) -> Option<CellPosition> {
-    let mut cursor = None;
-    for stroke in strokes {
-        move_to(wanted, cursor, stroke.position, half_blocks, pen, bytes);
-        pen.switch_to(stroke.pen, bytes);
-        write_cell(wanted, stroke, bytes);
-        cursor = cursor_after(wanted, stroke.position);
+    /// Appends the strokes. Returns the cursor's position after them, or `None` if it depends on the
+    /// terminal.
+    // The cursor's position is assumed unknown at first, because other output since the last frame may have moved it.
+    pub(super) fn write(
+        &self,
+        wanted: &Grid,
+        half_blocks: HalfBlocks,
+        pen: &mut Pen,
+        bytes: &mut Vec<u8>,
+    ) -> Option<CellPosition> {
+        let mut cursor = None;
+        for stroke in &self.chosen {
+            move_to(wanted, cursor, stroke.position, half_blocks, pen, bytes);
+            pen.switch_to(stroke.pen, bytes);
+            write_cell(wanted, stroke, bytes);
+            cursor = cursor_after(wanted, stroke.position);
+        }
+        cursor
     }
-    cursor
+
+    /// Chooses a form for each cell in `order`, such that all changes of the pen take the fewest bytes.
+    fn choose_forms(&mut self, wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, pen: Pen) {
+        let Self { forms, predecessors, .. } = self;
+        forms.clear();
+        forms.resize(order.len(), BlockForm::AsWanted);
+        if half_blocks == HalfBlocks::Lower {
+            return;
+        }
+        let mut paths = [SurvivorPath { pen, cost: 0 }; 2];
+        predecessors.clear();
+        for position in order {
+            let cell = wanted.packed_cell(position.column, position.row);
+            // Written out for each element, because `map` over arrays of pens copies them in pieces, which took a third
+            // of the encoder's time.
+            let pens = [paths[0].pen.pen_for(cell), paths[1].pen.pen_for(cell)];
+            let is_lower = cell.has_char('▄');
+            if is_plain_space(cell) {
+                // A space keeps the pen's glyph colour, so the two paths stay distinct.
+                predecessors.push([0, 1]);
+                paths = [
+                    paths[0].extended(pens[0], pens[0].ink_lens(), false),
+                    paths[1].extended(pens[1], pens[1].ink_lens(), false),
+                ];
+            } else if can_be_flipped(cell) {
+                let lens = pens[0].ink_lens();
+                let (plain, from_plain) = cheaper_extension(&paths, pens, lens, is_lower);
+                let flipped_pens = [swapped_colors(pens[0]), swapped_colors(pens[1])];
+                let (flipped, from_flipped) = cheaper_extension(&paths, flipped_pens, [lens[1], lens[0]], !is_lower);
+                predecessors.push([from_plain, from_flipped]);
+                paths = [plain, flipped];
+            } else {
+                let (plain, from_plain) = cheaper_extension(&paths, pens, pens[0].ink_lens(), is_lower);
+                predecessors.push([from_plain; 2]);
+                paths = [plain; 2];
+            }
+        }
+        let mut last = u8::from(paths[1].cost < paths[0].cost);
+        for (at, position) in order.iter().enumerate().rev() {
+            if last == 1 && can_be_flipped(wanted.packed_cell(position.column, position.row)) {
+                forms[at] = BlockForm::Flipped;
+            }
+            last = predecessors[at][usize::from(last)];
+        }
+    }
 }
 
 /// Appends the glyph of a stroke.
@@ -139,51 +190,6 @@ type PathCost = u64;
 /// The cost of a byte. It exceeds the number of cells in a grid, so that lower half blocks only
 /// break ties.
 const COST_PER_BYTE: PathCost = 1 << 32;
-
-/// Returns a form for each cell in `order`, such that all changes of the pen take the fewest bytes.
-fn choose_forms(wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, pen: Pen) -> Vec<BlockForm> {
-    if half_blocks == HalfBlocks::Lower {
-        return vec![BlockForm::AsWanted; order.len()];
-    }
-    let mut paths = [SurvivorPath { pen, cost: 0 }; 2];
-    // For each cell and each of its two forms, the form of the previous cell on the cheapest path.
-    let mut predecessors = Vec::with_capacity(order.len());
-    for position in order {
-        let cell = wanted.packed_cell(position.column, position.row);
-        // Written out for each element, because `map` over arrays of pens copies them in pieces, which took a third of
-        // the encoder's time.
-        let pens = [paths[0].pen.pen_for(cell), paths[1].pen.pen_for(cell)];
-        let is_lower = cell.has_char('▄');
-        if is_plain_space(cell) {
-            // A space keeps the pen's glyph colour, so the two paths stay distinct.
-            predecessors.push([0, 1]);
-            paths = [
-                paths[0].extended(pens[0], pens[0].ink_lens(), false),
-                paths[1].extended(pens[1], pens[1].ink_lens(), false),
-            ];
-        } else if can_be_flipped(cell) {
-            let lens = pens[0].ink_lens();
-            let (plain, from_plain) = cheaper_extension(&paths, pens, lens, is_lower);
-            let flipped_pens = [swapped_colors(pens[0]), swapped_colors(pens[1])];
-            let (flipped, from_flipped) = cheaper_extension(&paths, flipped_pens, [lens[1], lens[0]], !is_lower);
-            predecessors.push([from_plain, from_flipped]);
-            paths = [plain, flipped];
-        } else {
-            let (plain, from_plain) = cheaper_extension(&paths, pens, pens[0].ink_lens(), is_lower);
-            predecessors.push([from_plain; 2]);
-            paths = [plain; 2];
-        }
-    }
-    let mut last = u8::from(paths[1].cost < paths[0].cost);
-    let mut forms = vec![BlockForm::AsWanted; order.len()];
-    for (at, position) in order.iter().enumerate().rev() {
-        if last == 1 && can_be_flipped(wanted.packed_cell(position.column, position.row)) {
-            forms[at] = BlockForm::Flipped;
-        }
-        last = predecessors[at][usize::from(last)];
-    }
-    forms
-}
 
 /// Extends both paths by a cell, written with `pens`. Returns the cheaper one and its index, 0 or
 /// 1.

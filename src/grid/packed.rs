@@ -32,6 +32,12 @@ impl PackedInk {
         if kind == 2 { Some(Srgb8 { r, g, b }) } else { None }
     }
 
+    /// Returns the colour as a number.
+    #[inline]
+    pub(crate) const fn bits(self) -> u32 {
+        self.0
+    }
+
     #[inline]
     pub(crate) const fn is_rgb(self) -> bool {
         self.0 >= Self::RGB
@@ -149,8 +155,18 @@ impl PackedCell {
 }
 
 /// The grapheme clusters of a grid.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Clusters(Vec<Arc<str>>);
+
+impl Clone for Clusters {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.0.clone_from(&other.0);
+    }
+}
 
 impl Clusters {
     pub(super) fn clear(&mut self) {

@@ -10,6 +10,7 @@ mod corpus;
 mod fuzzed;
 mod grids;
 mod lossy;
+mod memory;
 mod near;
 mod overlay;
 mod pictures;

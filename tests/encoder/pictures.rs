@@ -42,7 +42,7 @@ fn any_color(number: u32) -> Ink {
 fn assert_shown(frames: &[Grid]) {
     for mut stage in Stage::all(&frames[0], Clusters::None) {
         for frame in frames {
-            stage.grid = frame.clone();
+            stage.grid.clone_from(frame);
             // The most bytes of a cell: a row, a column, two colours and a half block.
             stage.send(4 + 48 * frame.size().cell_count());
         }

@@ -8,9 +8,11 @@ use super::{ActiveCell, ExchangeRate};
 use crate::color::Srgb8;
 use std::cmp::Reverse;
 
-/// Largest number of colours.
-// A colour's number takes seven bits in the results of `nearest_two` and in the keys of pairs.
-pub(super) const MAX_COLORS: usize = 127;
+/// Largest number of colours: half of them where bytes are so short that few cells are written.
+// With 127 at every rate, a slow motion never came nearer than 38 dB. With 255 at every rate, a fast one loses 0.5 dB,
+// as more colours mean more pens. A colour's number takes eight bits in the results of `nearest_two` and in the keys of
+// pairs.
+pub(super) const MAX_COLORS: usize = 255;
 
 /// The number of slots of the hash table of bins, a power of two.
 const SLOTS: usize = 1 << 14;
@@ -30,8 +32,6 @@ pub(super) struct Palette {
     bin_of_half: Vec<u16>,
     /// The indices of the bins, the fullest first.
     fullest: Vec<u16>,
-    /// The least squared distance between two colours of the palette.
-    radius: f32,
 }
 
 /// Some colours of the palette, channel by channel.
@@ -48,8 +48,8 @@ impl Block {
     const EMPTY: Self = Self { r: [1e4; LANES], g: [1e4; LANES], b: [1e4; LANES], index: [0.0; LANES] };
 }
 
-/// The greatest distance in the units of [`Palette::nearest_two`]: 128 times a squared distance.
-const FARTHEST: f32 = (1 << 24) as f32 - 128.0;
+/// The greatest distance in the units of [`Palette::nearest_two`]: 256 times a squared distance.
+const FARTHEST: f32 = (1 << 24) as f32 - 256.0;
 
 /// A bin: similar colours of halves, with their number, sum and mean.
 struct Bin {
@@ -71,9 +71,11 @@ struct Share {
 
 impl Palette {
     /// Chooses the palette for some cells, and sets the colours nearest to their halves.
-    pub(super) fn choose(&mut self, active: &mut [ActiveCell], rate: ExchangeRate) {
+    ///
+    /// `radius` is the least squared distance of two colours in the last frame's palette, and in this one's then.
+    pub(super) fn choose(&mut self, active: &mut [ActiveCell], rate: ExchangeRate, radius: &mut f32) {
         self.fill_bins(active, rate);
-        self.lead(rate);
+        self.lead(rate, radius);
         for _ in 0..2 {
             self.find_nearest();
             self.improve(rate);
@@ -91,10 +93,10 @@ impl Palette {
 
     /// Counts the colours of the halves in bins, whose size grows with the exchange rate.
     fn fill_bins(&mut self, active: &[ActiveCell], rate: ExchangeRate) {
-        // With 5 or 6 bits the mean squared error of a bin is 16 or 4, too little at these rates to spend a byte on.
+        // With 5 or 6 bits the mean squared error of a bin is 16 or 4: at most what a cell must gain at these rates.
         let bits = if rate > 40.0 {
             5
-        } else if rate > 6.0 {
+        } else if rate > 2.0 {
             6
         } else {
             7
@@ -142,27 +144,28 @@ impl Palette {
     }
 
     /// Makes colours of the means of bins, the fullest first, none within the radius of another.
-    fn lead(&mut self, rate: ExchangeRate) {
+    fn lead(&mut self, rate: ExchangeRate, radius: &mut f32) {
         self.fullest.clear();
         self.fullest.extend(0..self.bins.len() as u16);
         self.fullest.sort_unstable_by_key(|&bin| (Reverse(self.bins[usize::from(bin)].count), bin));
+        let most = if rate > 3.0 { MAX_COLORS / 2 } else { MAX_COLORS };
         // Starts from the radius of the last frame, which is mostly near, because each try compares all bins.
-        self.radius = rate.max(self.radius / 4.0);
+        *radius = rate.max(*radius / 4.0);
         // With a fixed radius the fullest bins would fill the palette, and whole regions would have no colour.
-        while !self.leads_within() {
-            self.radius *= 2.0;
+        while !self.leads_within(most, *radius) {
+            *radius *= 2.0;
         }
     }
 
     /// Returns whether the palette has room for all bins that have no colour within the radius.
-    fn leads_within(&mut self) -> bool {
+    fn leads_within(&mut self, most: usize, radius: f32) -> bool {
         self.clear();
         for at in 0..self.fullest.len() {
             let mean = self.bins[usize::from(self.fullest[at])].mean;
-            if !self.colors.is_empty() && (self.nearest_two(mean)[0] >> 7) as f32 <= self.radius {
+            if !self.colors.is_empty() && (self.nearest_two(mean)[0] >> 8) as f32 <= radius {
                 continue;
             }
-            if self.colors.len() == MAX_COLORS {
+            if self.colors.len() == most {
                 return false;
             }
             self.push(mean);
@@ -170,7 +173,7 @@ impl Palette {
         true
     }
 
-    /// Returns the two nearest colours: squared distances times 128, plus the indices.
+    /// Returns the two nearest colours: squared distances times 256, plus the indices.
     // The distances are f32, whose 24 bits hold a distance and an index: with integers, SSE2 needs several instructions
     // for a multiplication or a minimum.
     fn nearest_two(&self, color: [i32; 3]) -> [u32; 2] {
@@ -181,7 +184,7 @@ impl Palette {
         for block in &self.blocks {
             for lane in 0..LANES {
                 let (r, g, b) = (block.r[lane] - r, block.g[lane] - g, block.b[lane] - b);
-                let distance = 128.0 * min(r * r + g * g + b * b, FARTHEST / 128.0) + block.index[lane];
+                let distance = 256.0 * min(r * r + g * g + b * b, FARTHEST / 256.0) + block.index[lane];
                 second[lane] = min(second[lane], max(first[lane], distance));
                 first[lane] = min(first[lane], distance);
             }
@@ -221,7 +224,7 @@ impl Palette {
     fn find_nearest(&mut self) {
         for at in 0..self.bins.len() {
             let nearest = self.nearest_two(self.bins[at].mean);
-            self.bins[at].nearest = nearest.map(|distance| (distance & 127) as u8);
+            self.bins[at].nearest = nearest.map(|distance| distance as u8);
         }
     }
 

@@ -3,12 +3,12 @@
 use super::colors::{MAX_COLORS, Palette};
 use super::{ActiveCell, ExchangeRate, WrittenCell, error};
 use crate::color::Srgb8;
-use crate::encode::halves::Halves;
+use crate::encode::halves::{Halves, squared_difference};
 use crate::grid::HalfBlocks;
 
 /// The number of keys of pairs.
-// Two numbers of seven bits each.
-const KEYS: usize = 1 << 14;
+// Two numbers of eight bits each.
+const KEYS: usize = 1 << 16;
 
 /// The index that ends a list of ways.
 const END: u32 = u32::MAX;
@@ -67,17 +67,11 @@ impl Pairs {
     }
 
     /// Lists the cells of the first `ranks` pairs, each colour the mean of the halves sharing it.
-    pub(super) fn list_cells(
-        &self,
-        active: &[ActiveCell],
-        colors: &Colors<'_>,
-        ranks: usize,
-        cells: &mut Vec<WrittenCell>,
-    ) {
+    pub(super) fn list_cells(&self, active: &[ActiveCell], ranks: usize, cells: &mut Vec<WrittenCell>) {
         cells.clear();
         let mut sums = [[0_u32; 4]; MAX_COLORS];
         let is_written = |&key: &u16| usize::from(self.table[usize::from(key)].rank) < ranks;
-        let shown = |cell: &ActiveCell| Some(colors.cheapest(cell.pair.filter(is_written)?, cell.wanted).1);
+        let shown = |cell: &ActiveCell| cell.pair.filter(is_written).map(|_| cell.shown);
         for (cell, shown) in active.iter().filter_map(|cell| Some((cell, shown(cell)?))) {
             for (color, wanted) in shown.into_iter().zip(cell.wanted) {
                 let values = [wanted.r.into(), wanted.g.into(), wanted.b.into(), 1];
@@ -128,31 +122,46 @@ impl Pairs {
         }
         for (at, cell) in active.iter().enumerate() {
             let [upper, lower] = cell.nearest;
-            for &a in distinct(&upper) {
-                for &b in distinct(&lower) {
-                    self.offer(at, cell, colors.key(a, b), colors);
-                    if a != b {
-                        self.offer(at, cell, colors.key(b, b), colors);
-                    }
+            let near = [upper[0], upper[1], lower[0], lower[1]];
+            // Each half's difference from each of the four, from which the errors of all pairs follow.
+            let squares =
+                cell.wanted.map(|half| near.map(|color| squared_difference(colors.palette.color(color), half) as f32));
+            let is_new = |place: usize| !near[..place].contains(&near[place]);
+            for a in 0..4 {
+                if is_new(a) {
+                    self.offer(at, cell.stay, colors.key(near[a], near[a]), squares[0][a] + squares[1][a], colors.rate);
                 }
-                if !lower.contains(&a) {
-                    self.offer(at, cell, colors.key(a, a), colors);
+            }
+            for a in 0..distinct(&upper).len() {
+                for b in 2..2 + distinct(&lower).len() {
+                    // Where one pen shows both orders, each pair is offered once.
+                    let is_mirrored = colors.half_blocks == HalfBlocks::Either
+                        && near[a] > near[b]
+                        && lower.contains(&near[a])
+                        && upper.contains(&near[b]);
+                    if near[a] == near[b] || is_mirrored {
+                        continue;
+                    }
+                    let plain = squares[0][a] + squares[1][b];
+                    let flipped = squares[0][b] + squares[1][a];
+                    let error = if colors.half_blocks == HalfBlocks::Either { plain.min(flipped) } else { plain };
+                    self.offer(at, cell.stay, colors.key(near[a], near[b]), error, colors.rate);
                 }
             }
         }
     }
 
-    /// Adds a way to write a cell, unless it costs more than the cell's error.
-    fn offer(&mut self, at: usize, cell: &ActiveCell, key: u16, colors: &Colors<'_>) {
-        let cost = colors.cheapest(key, cell.wanted).0 + colors.rate * (glyph_len(key) + move_len(key));
-        if cost >= cell.stay {
+    /// Adds a way to write a cell, unless it costs more than the error if the cell stays.
+    fn offer(&mut self, at: usize, stay: f32, key: u16, error: f32, rate: ExchangeRate) {
+        let cost = error + rate * (glyph_len(key) + move_len(key));
+        if cost >= stay {
             return;
         }
         let pair = &mut self.table[usize::from(key)];
         if pair.first == END {
             self.used.push(key);
         }
-        pair.saving += cell.stay - cost;
+        pair.saving += stay - cost;
         self.ways.push(Way { cell: at as u32, cost, next: pair.first });
         pair.first = self.ways.len() as u32 - 1;
     }
@@ -190,16 +199,18 @@ impl Pairs {
     /// byte.
     fn rank_pairs(&mut self, active: &mut [ActiveCell], colors: &Colors<'_>) {
         self.open.clear();
-        for cell in active.iter() {
+        for cell in active.iter_mut() {
             let Some(key) = cell.pair else { continue };
+            let (error, shown) = colors.cheapest(key, cell.wanted);
+            cell.shown = shown;
             let pair = &mut self.table[usize::from(key)];
             if pair.rank == u16::MAX {
                 pair.rank = self.open.len() as u16;
                 self.open.push(OpenPair { key, gain: 0.0, bytes: pen_len(key) });
             }
             let open = &mut self.open[usize::from(pair.rank)];
-            open.gain += cell.stay - colors.cheapest(key, cell.wanted).0;
-            open.bytes += (cell.cost - colors.cheapest(key, cell.wanted).0) / colors.rate;
+            open.gain += cell.stay - error;
+            open.bytes += (cell.cost - error) / colors.rate;
         }
         self.open.sort_unstable_by(|a, b| (b.gain * a.bytes).total_cmp(&(a.gain * b.bytes)).then(a.key.cmp(&b.key)));
         for open in &self.open {
@@ -229,12 +240,12 @@ impl Colors<'_> {
     fn key(&self, upper: u8, lower: u8) -> u16 {
         let (a, b) =
             if self.half_blocks == HalfBlocks::Either && lower < upper { (lower, upper) } else { (upper, lower) };
-        u16::from(a) << 7 | u16::from(b)
+        u16::from(a) << 8 | u16::from(b)
     }
 
     /// Returns the least error of halves shown with a pair, and the numbers of the colours for it.
     fn cheapest(&self, key: u16, wanted: Halves) -> (f32, [u8; 2]) {
-        let [a, b] = [(key >> 7) as u8, (key & 127) as u8];
+        let [a, b] = key.to_be_bytes();
         let plain = error([self.palette.color(a), self.palette.color(b)], wanted);
         if a == b || self.half_blocks == HalfBlocks::Lower {
             return (plain, [a, b]);
@@ -268,7 +279,7 @@ fn distinct(colors: &[u8; 2]) -> &[u8] {
 }
 
 fn is_flat(key: u16) -> bool {
-    key >> 7 == key & 127
+    key >> 8 == key & 255
 }
 
 /// Returns the bytes of a glyph: of a space or a half block.

@@ -1,0 +1,65 @@
+//! Numbers for keys, in the order in which the keys are first seen.
+//!
+//! Own code, because a map of the standard library takes several times as long.
+
+/// Distinct keys, each with a number from 0.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Numbering {
+    keys: Vec<u64>,
+    /// A hash table with open addressing: the number of a key, or `FREE`.
+    slots: Vec<u32>,
+}
+
+/// The mark of a slot without a key.
+const FREE: u32 = u32::MAX;
+
+impl Numbering {
+    /// Removes all keys, and makes room for `count` others.
+    pub(super) fn clear(&mut self, count: usize) {
+        self.keys.clear();
+        self.slots.clear();
+        // At most half of the slots are taken, so that searches are short.
+        self.slots.resize((2 * count).next_power_of_two().max(2), FREE);
+    }
+
+    /// Returns the number of a key, which is given one if it has none.
+    ///
+    /// There must be room for it.
+    pub(super) fn add(&mut self, key: u64) -> usize {
+        let slot = self.slot_of(key);
+        if self.slots[slot] == FREE {
+            self.slots[slot] = self.keys.len() as u32;
+            self.keys.push(key);
+        }
+        self.slots[slot] as usize
+    }
+
+    /// Returns the number of a key, if it has one.
+    pub(super) fn get(&self, key: u64) -> Option<usize> {
+        if self.keys.is_empty() {
+            return None;
+        }
+        let number = self.slots[self.slot_of(key)];
+        (number != FREE).then_some(number as usize)
+    }
+
+    /// Returns the keys in the order of their numbers.
+    pub(super) fn keys(&self) -> &[u64] {
+        &self.keys
+    }
+
+    /// Returns the slot of a key, or the free one where it would be.
+    fn slot_of(&self, key: u64) -> usize {
+        let last = self.slots.len() - 1;
+        // Fibonacci hashing (Knuth 1973). The highest bits are the best mixed ones.
+        let hash = (key ^ key >> 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mut slot = (hash >> (64 - self.slots.len().trailing_zeros())) as usize;
+        while self.slots[slot] != FREE && self.keys[self.slots[slot] as usize] != key {
+            slot = (slot + 1) & last;
+        }
+        slot
+    }
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;
