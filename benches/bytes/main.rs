@@ -7,8 +7,10 @@
 //!   row by row from the top;
 //! - `cargo bench --bench bytes -- --programs` runs two programs of ratatui on both backends, which otherwise come
 //!   last;
-//! - `cargo bench --bench bytes -- --capped` only sends frames with a limit of bytes, at the motions of a camera, which
-//!   otherwise come after the programs; with `--seed N` also at one drawn from the seed;
+//! - `cargo bench --bench bytes -- --capped` only sends frames at the motions of a camera, most with a limit of bytes,
+//!   which otherwise come after the programs: four motions, and those drawn from the seeds, 1 to 3 by default;
+//! - `cargo bench --bench bytes -- --capped --before REVISION` then builds another revision, and runs the same of its
+//!   bench;
 //! - `cargo bench --bench bytes -- --test` only sees whether it runs.
 //!
 //! Bytes are the mean of all frames after the first. Times are CPU time, the best of five, cells filled included.
@@ -26,6 +28,7 @@ use seen::{Outcome, outcome};
 use send::{Sent, Way, sent, times};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use termtrace::{Order, Picture, Quality, Size, Srgb8};
 
 const SIZES: [Size; 2] = [Size::new(80, 24), Size::new(200, 60)];
@@ -38,6 +41,7 @@ struct Options {
     is_test: bool,
     only_programs: bool,
     only_capped: bool,
+    before: Option<String>,
 }
 
 impl Options {
@@ -51,6 +55,7 @@ impl Options {
                 "--test" => options.is_test = true,
                 "--programs" => options.only_programs = true,
                 "--capped" => options.only_capped = true,
+                "--before" => options.before = Some(arguments.next().expect("--before takes a revision")),
                 "--seed" => {
                     let number = arguments.next().and_then(|number| number.parse().ok());
                     options.seeds.push(number.expect("--seed takes a number"));
@@ -198,7 +203,27 @@ fn main() {
 
 fn print_capped(options: &Options) {
     let frames = options.frame_count().min(motions::FRAMES);
+    let seeds: &[u64] = if options.seeds.is_empty() { &[1, 2, 3] } else { &options.seeds };
     for &size in options.sizes() {
-        capped::print(size, frames, options.rounds(), &options.seeds);
+        capped::print(size, frames, options.rounds(), seeds);
     }
+    if let Some(revision) = &options.before {
+        println!("\n{revision}:");
+        run_before(revision, seeds);
+    }
+}
+
+/// Builds the bench of another revision, and runs it with the same seeds.
+fn run_before(revision: &str, seeds: &[u64]) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("before");
+    let root = env!("CARGO_MANIFEST_DIR");
+    fs::create_dir_all(&folder).expect("the folder for temporary files can be written");
+    let script = r#"git -C "$1" archive "$2" | tar -x -C "$3" && cd "$3" && shift 3 &&
+        cargo bench --locked --bench bytes -- --capped "$@""#;
+    let mut shell = Command::new("sh");
+    shell.args(["-c", script, "sh", root, revision]).arg(&folder);
+    for seed in seeds {
+        shell.arg("--seed").arg(seed.to_string());
+    }
+    assert!(shell.status().expect("a shell runs").success(), "the bench of {revision} failed");
 }
