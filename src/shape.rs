@@ -513,9 +513,14 @@ macro_rules! scalar {
                 }
             }
 
-            fn closest_crossings(&self, rays: &[Ray; LANES], within: &[Interval; LANES], lanes: u32) -> (u32, F32x8) {
+            fn closest_crossings(
+                &self,
+                rays: &EightRays,
+                inside: &[F32x8; 2],
+                within: &[F32x8; 2],
+            ) -> (u32, F32x8) {
                 match self {
-                    $($(#[$on])* Self::$surface(surface) => surface.closest_crossings(rays, within, lanes),)*
+                    $($(#[$on])* Self::$surface(surface) => surface.closest_crossings(rays, inside, within),)*
                 }
             }
 
