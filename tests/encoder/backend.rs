@@ -2,8 +2,8 @@
 //!
 //! On two emulators any program has the same screen, cursor and scrollback with either.
 
-use super::panel;
 use super::screens::{Clusters, Screens, glyph_of, seen_by_avt, seen_by_vt100};
+use super::{config, panel};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use ratatui::backend::{Backend, ClearType, WindowSize};
@@ -742,7 +742,7 @@ fn assert_strict(frames: &[Vec<Buffer>], encoder: Encoder, clusters: Clusters) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(500) })]
+    #![proptest_config(config(500))]
 
     #[test]
     fn any_frames_are_shown(frames in panels(Clusters::None), encoder in encoder()) {

@@ -4,7 +4,7 @@
 use super::grids::filled;
 use super::screens::Clusters;
 use super::watched::Watched;
-use super::{CELLS, PICTURE, Stage, Step, WAYS, anything, cell, panel, rgb, size, step};
+use super::{CELLS, PICTURE, Stage, Step, WAYS, anything, cell, config, panel, rgb, size, step};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::time::Duration;
@@ -61,7 +61,7 @@ fn pace() -> impl Strategy<Value = Pace> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(600) })]
+    #![proptest_config(config(600))]
 
     #[test]
     fn every_terminal_shows_nearly_every_frame(

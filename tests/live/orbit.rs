@@ -149,7 +149,8 @@ fn v_shows_the_tracer_from_outside() {
         let text = seen.screen().text().concat();
         ["o", "v", "q", "p"].iter().all(|letter| text.contains(letter)) && text.contains("first camera")
     });
-    session.send(b"[");
+    // A key without a binding ends the note, which would be under way for five seconds.
+    session.send(b"[\x1b[24~");
     session.wait_for_rest();
     session.send(b"V");
     session.wait_for_text("keys move the first camera; V next");
@@ -159,6 +160,7 @@ fn v_shows_the_tracer_from_outside() {
     session.wait_for_text("horizon and vanishing points; V next");
     session.send(b"V");
     session.wait_for_text("ordinary view; V next");
+    session.send(b"\x1b[24~");
     session.wait_for_rest();
     assert!(!session.seen().screen().text().concat().contains("first camera"));
     let camera = camera(&mut session).expect("it was changed");
@@ -223,6 +225,8 @@ fn nothing_turns_by_itself_where_motion_is_reduced() {
     let mut session = looking(TEAPOT, &["--reduced-motion"]);
     session.send(b"t");
     session.wait_for_text("the turntable is off");
+    // A key without a binding ends the note.
+    session.send(b"\x1b[24~");
     session.wait_for_rest();
     assert_eq!(camera(&mut session), None);
 }

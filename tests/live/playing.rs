@@ -27,6 +27,8 @@ fn a_scene_that_moves_plays_until_it_is_paused() {
     }
     session.send(b" ");
     session.wait_for_text("paused at");
+    // A key without a binding ends the note.
+    session.send(b"\x1b[24~");
     session.wait_for_rest();
     session.send(b" ");
     session.wait_for_text("playing");
@@ -43,6 +45,8 @@ fn a_scene_stands_still_where_motion_is_reduced() {
     session.wait_for_rest();
     session.send(b" ");
     session.wait_for_text("nothing moves: --reduced-motion");
+    // A key without a binding ends the note.
+    session.send(b"\x1b[24~");
     session.wait_for_rest();
     leave(session);
 }
