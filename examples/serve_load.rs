@@ -405,7 +405,9 @@ async fn soak(arguments: Arguments, seed: u64) {
     }
 }
 
-/// Visits for some seconds: turns or looks, may resize or stop reading, and leaves by a key or without a word.
+/// Visits for some seconds, and leaves by a key or without a word.
+///
+/// The visitor turns the scene or only looks, may resize the window, and may stop reading.
 async fn short_visit(arguments: &Arguments, random: &mut Random) -> Option<()> {
     let (mut channel, _session, asked) = enter(&arguments.address, arguments.size, false).await?;
     let end = asked + Duration::from_millis(2000 + random.below(18_000));

@@ -6,7 +6,8 @@
 //! connection, with at most one frame. `limits` counts connections and places; `ssh` and `visit` say what a client may
 //! ask for.
 //!
-//! Of these `run_queue`, `seat`, `limits`, `total_rate`, `visit` and `client_terminal` are pure: they are told the time.
+//! Of these `run_queue`, `seat`, `limits`, `total_rate`, `visit` and `client_terminal` are pure: they are told the
+//! time.
 
 use crate::scene::Scene;
 use crate::terminal::{Signals, without_signals};
@@ -40,6 +41,7 @@ mod metrics;
 mod pictures;
 mod reception;
 mod run_queue;
+mod scrape;
 mod seat;
 mod socket;
 mod ssh;
@@ -197,7 +199,7 @@ impl Server {
         let sockets = thread::Builder::new().name("sockets".to_owned()).spawn(move || {
             runtime.block_on(async {
                 if let Some(Ok(listener)) = counts.map(tokio::net::TcpListener::from_std) {
-                    tokio::spawn(metrics::serve(Arc::clone(&shared), listener));
+                    tokio::spawn(scrape::serve(Arc::clone(&shared), listener));
                 }
                 serve_until_drained(shared, config, listener, log).await;
             });

@@ -596,7 +596,9 @@ impl Viewer {
         self.last_event
     }
 
-    /// Frees the memory that is only needed while frames are drawn: a server has many viewers at rest.
+    /// Frees the memory that is only needed while frames are drawn.
+    ///
+    /// Most viewers of a server are at rest.
     #[cfg(feature = "serve")]
     pub(crate) fn free_buffers(&mut self) {
         self.screen.free_buffers();

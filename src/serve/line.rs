@@ -66,7 +66,9 @@ pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Line {
-    /// Appends input that arrives at `now` in parts, and waits while the seat has more than two parts to take.
+    /// Appends input that arrives at `now`.
+    ///
+    /// It is appended in parts: waits while the seat has more than two parts to take.
     pub(super) async fn push(&self, bytes: &[u8], now: Duration) {
         for part in bytes.chunks(MAX_INPUT) {
             loop {

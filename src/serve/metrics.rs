@@ -1,21 +1,10 @@
-//! The counts of what the server does, for an operator: `--metrics`, in the text format of Prometheus.
+//! Counts of connections, refusals, views, frames and bytes, for an operator.
 //!
 //! No label has an address or a name of a user.
 
-use super::house::House;
 use super::limits::Refusal;
 use std::fmt::Write;
-use std::io;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Duration;
-use tokio::net::{TcpListener, TcpStream};
-use tokio::time::{sleep, timeout};
-
-/// The longest time that a request for the counts may take.
-const REQUEST_TIME: Duration = Duration::from_secs(2);
-/// The most bytes of a request.
-const MAX_REQUEST: usize = 8 * 1024;
 
 /// A count that only grows.
 #[derive(Debug, Default)]
@@ -56,7 +45,9 @@ impl Metrics {
         self.refused[refusal as usize].add(1);
     }
 
-    /// Returns the counts as text, after the current values of `gauges`: name, meaning, value.
+    /// Returns the counts in the text format of Prometheus, after `gauges`.
+    ///
+    /// A gauge is a name, a meaning and the current value.
     pub(super) fn text(&self, gauges: &[(&str, &str, usize)]) -> String {
         let mut text = String::new();
         for (name, meaning, value) in gauges {
@@ -88,44 +79,4 @@ impl Metrics {
         sum("turn_cpu_seconds_total", "CPU time of tracing and drawing", &[("", &self.turn_micros)]);
         text
     }
-}
-
-/// Answers requests for the counts, one after the other.
-pub(super) async fn serve(house: Arc<House>, listener: TcpListener) {
-    loop {
-        match listener.accept().await {
-            Ok((stream, _)) => drop(timeout(REQUEST_TIME, answer(&stream, &house)).await),
-            Err(_) => sleep(super::ACCEPT_PAUSE).await,
-        }
-    }
-}
-
-/// Answers one request, whatever it asks for.
-async fn answer(stream: &TcpStream, house: &House) -> io::Result<()> {
-    let (mut request, mut part) = (Vec::new(), [0; 1024]);
-    while !request.windows(4).any(|end| end == b"\r\n\r\n") {
-        stream.readable().await?;
-        match stream.try_read(&mut part) {
-            Ok(0) => return Ok(()),
-            Ok(count) => request.extend_from_slice(&part[..count]),
-            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
-            Err(error) => return Err(error),
-        }
-        if request.len() > MAX_REQUEST {
-            return Ok(());
-        }
-    }
-    let text = house.metrics_text();
-    let head = "HTTP/1.1 200 OK\r\nContent-Type: text/plain; version=0.0.4\r\nConnection: close";
-    let response = format!("{head}\r\nContent-Length: {}\r\n\r\n{text}", text.len());
-    let mut rest = response.as_bytes();
-    while !rest.is_empty() {
-        stream.writable().await?;
-        match stream.try_write(rest) {
-            Ok(count) => rest = &rest[count..],
-            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
-            Err(error) => return Err(error),
-        }
-    }
-    Ok(())
 }

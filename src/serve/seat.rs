@@ -81,7 +81,9 @@ pub(super) struct Arrived {
     pub(super) drained_at: Option<Duration>,
 }
 
-/// Traces a frame; `None` if it was interrupted, which only a refinement may be, and only if the flag is set.
+/// Traces a frame; returns `None` if it was interrupted.
+///
+/// Only a refinement may be interrupted, and only if the flag is set.
 pub(super) type Trace<'a> = dyn FnMut(&Job, bool) -> Option<Frame> + 'a;
 
 /// The place of one viewer on the server: the viewer's view, terminal modes and remaining time.
@@ -193,8 +195,8 @@ impl Seat {
             self.viewer.resize(window)?;
         }
         // Without bytes, too: an escape key that no byte follows is noticed by its time. The time that replies have
-        // waited for this turn is no part of the link's round trip: with it, a busy server took each link for a slow one,
-        // and frames shrank to 540 bytes at 200 viewers.
+        // waited for this turn is no part of the link's round trip: with it, a busy server took each link for a slow
+        // one, and frames shrank to 540 bytes at 200 viewers.
         let at = if arrived.bytes.is_empty() { now } else { arrived.at.max(self.latest).min(now) };
         self.viewer.receive(&arrived.bytes, at)?;
         for mode in self.viewer.modes() {

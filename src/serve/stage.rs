@@ -222,7 +222,9 @@ impl Stage {
         next
     }
 
-    /// Returns the picture of a job, which may have been traced for another viewer; `None` if it is cancelled.
+    /// Returns the picture of a job, or `None` if it is cancelled.
+    ///
+    /// The picture may have been traced for another viewer.
     fn picture(&self, job: &Job, token: &Cancellation, tracer: &mut Tracer) -> Option<Frame> {
         let is_shared = is_shared(job);
         if is_shared && let Some(kept) = locked(&self.pictures).get(job) {

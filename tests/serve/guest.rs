@@ -121,8 +121,9 @@ impl Guest {
         self.channel.data(bytes).await.expect("the connection is open");
     }
 
-    /// Starts sending much input; the caller has to read meanwhile, because a client whose channel is not read sends
-    /// nothing either.
+    /// Starts sending input, while the caller reads.
+    ///
+    /// A client whose channel is not read sends nothing either.
     pub(crate) fn start_sending(&self, bytes: Vec<u8>) -> JoinHandle<std::io::Result<()>> {
         let mut writer = self.channel.make_writer();
         tokio::spawn(async move { writer.write_all(&bytes).await })

@@ -76,7 +76,7 @@ fn free_port() -> u16 {
     std::net::TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port").port()
 }
 
-/// What goes to a forwarded port reaches nothing: the connection ends.
+/// A connection to a forwarded port ends without a byte of the server.
 #[test]
 fn row_03_forwarded_ports_lead_nowhere() {
     let hosting = Hosting::usual();
@@ -133,7 +133,7 @@ fn row_03_no_agent_no_x11_and_no_second_channel() {
     assert!(session.wait_exit(SOON).success());
 }
 
-/// Row 25 with a shell: after `ssh` it reads nothing that nobody has typed.
+/// Row 25 with a shell: after `ssh` it reads only typed text.
 #[test]
 fn row_25_the_shell_after_ssh_reads_nothing() {
     let hosting = Hosting::usual();

@@ -1,4 +1,4 @@
-//! What whoever runs the server asks for: its flags, its file of settings, its counts, its signals and its unit.
+//! The server for its operator: flags, file of settings, counts, signals and unit of systemd.
 
 use crate::counter::{Counter, run_all};
 use crate::guest::{Anybody, Guest, connect, connect_as};
@@ -215,7 +215,7 @@ fn row_18_a_signal_drains_and_a_second_one_ends_at_once() {
         program.terminate();
         guest.see_text("the server restarts: you leave in 30 s").await;
         assert!(tokio::net::TcpStream::connect(program.address()).await.is_err(), "nobody is let in");
-        // Who leaves by themselves is not waited for.
+        // A user who leaves before the time is over is not waited for.
         guest.send(b"q").await;
         assert_eq!(guest.leave().await, Some(0));
         guest.assert_clean();

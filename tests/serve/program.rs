@@ -1,4 +1,4 @@
-//! `termtrace serve` as a process of its own, whose memory and CPU time can be told from those of the clients.
+//! The program `termtrace serve` as a process of its own, whose memory is not that of the clients.
 
 use crate::Place;
 use std::io::{BufRead, BufReader};
@@ -16,7 +16,7 @@ pub(crate) struct Program {
 }
 
 impl Program {
-    /// Starts the program on a free port of loopback with these arguments, and waits until it listens.
+    /// Starts the program on a free port with these arguments, and waits until it listens.
     pub(crate) fn start(arguments: &[&str]) -> Self {
         Self::start_in("exec", &[&["--listen", "127.0.0.1:0"], arguments].concat())
     }

@@ -1,5 +1,6 @@
-//! The shares of viewers in time, bytes and memory: rows 5, 8, 12, 13, 21, 22 and 24 of the table in docs/serve.md.
+//! The shares of viewers in time, bytes and memory.
 //!
+//! These are rows 5, 8, 12, 13, 21, 22 and 24 of the table in docs/serve.md.
 //! Only ratios are tested: how many frames a machine makes, `examples/serve_load.rs` tells.
 
 use crate::abuse::dial_from;

@@ -173,7 +173,7 @@ fn after_a_panic_all_modes_are_off() {
     assert!(!text.contains("\x1b[<1u"), "{text:?}");
 }
 
-/// Any input, in parts of any size: the seat does not panic, soon sleeps, and restores the terminal at the end.
+/// With any input, in parts of any size, a seat soon sleeps and restores the terminal at the end.
 #[test]
 fn what_a_network_sends_breaks_nothing() {
     const WORDS: [&[u8]; 12] = [
