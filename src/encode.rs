@@ -449,12 +449,12 @@ impl Encoder {
     }
 }
 
-/// A lossy frame that fits: the pen and the cursor after it, when to encode it again, and whether it has little room
-/// left for cells that are made exact.
+/// A lossy frame that fits: the pen and the cursor after it, and when to encode it again.
 struct Drawn {
     pen: Pen,
     cursor: Option<CellPosition>,
     due: Option<Duration>,
+    /// Whether the frame has little room left for cells that are made exact.
     is_full: bool,
 }
 
@@ -466,9 +466,9 @@ struct Exceeds {
 
 /// The working memory of the grids of a frame.
 struct Grids {
-    /// What a frame is to show.
+    /// The grid that a frame is to show.
     drawn: Grid,
-    /// What the terminal shows after it.
+    /// The grid that the terminal shows after the frame.
     next: Grid,
 }
 

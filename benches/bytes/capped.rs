@@ -1,5 +1,6 @@
-//! Frames of moving cameras, most with a limit of bytes: how near they are to the wanted pictures, on an emulator's
-//! screen.
+//! Frames of moving cameras: how near they are to the wanted pictures, on an emulator's screen.
+//!
+//! Most have a limit of bytes.
 
 use crate::motions::Motion;
 use crate::seen::{Screen, psnr};

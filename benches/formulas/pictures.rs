@@ -42,7 +42,9 @@ pub(crate) const CAMERAS: [[[f32; 3]; 2]; 5] = [
 /// The size of the pictures in pixels: two for each of 200 x 60 cells.
 pub(crate) const SIZE: [usize; 2] = [200, 120];
 
-/// Returns the origins and directions of the rays of a picture, in tiles of 8 x 8 pixels, in groups of 4 x 2.
+/// Returns the origins and directions of the rays of a picture.
+///
+/// They are in tiles of 8 x 8 pixels, in groups of 4 x 2.
 pub(crate) fn rays([eye, target]: [[f32; 3]; 2], size: f32) -> impl Iterator<Item = [Vec3; 2]> {
     let (eye, target) = (Vec3::from(eye) * size, Vec3::from(target) * size);
     let w = (eye - target).normalize();

@@ -31,7 +31,9 @@ thread_local! {
     static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
-/// The part of the tolerance that the last frames could use, so that the next one seldom needs a second try.
+/// The part of the tolerance that the last frames could use.
+///
+/// The next frame starts with it, and so seldom needs a second try.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct UsedPart(f64);
 

@@ -4,8 +4,8 @@
 //! that most of the remaining half cells can take, and so on. Pairs of palette colours are then chosen in the same way,
 //! because all cells of one pair are written without a change of the pen.
 //!
-//! All lists are in memory that is kept from frame to frame, and nothing large is sorted by comparison: with a vector for
-//! each colour and such sorts, these took more than half of the time of a frame.
+//! All lists are in memory that is kept from frame to frame, and nothing large is sorted by comparison: with a vector
+//! for each colour and such sorts, these took more than half of the time of a frame.
 
 use super::halves::{Halves, Tolerance, squared_difference};
 use super::numbering::Numbering;

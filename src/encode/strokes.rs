@@ -38,7 +38,7 @@ impl Strokes {
         }));
     }
 
-    /// Gives a plain space the pen of the next stroke if the two pens differ in the glyph colour only.
+    /// Gives plain spaces the pen of the next stroke if it differs in the glyph colour only.
     // A space's glyph colour is invisible, so the space's sequence can set it for the next stroke. Not in reverse
     // video, where the glyph colour fills the cell.
     pub(super) fn share_next_fg(&mut self, wanted: &Grid) {
@@ -52,8 +52,9 @@ impl Strokes {
         }
     }
 
-    /// Appends the strokes. Returns the cursor's position after them, or `None` if it depends on the
-    /// terminal.
+    /// Appends the strokes, and returns the cursor's position after them.
+    ///
+    /// The position is `None` if it depends on the terminal.
     // The cursor's position is assumed unknown at first, because other output since the last frame may have moved it.
     pub(super) fn write(
         &self,
@@ -72,7 +73,7 @@ impl Strokes {
         cursor
     }
 
-    /// Chooses a form for each cell in `order`, such that all changes of the pen take the fewest bytes.
+    /// Chooses forms of the cells in `order` with the fewest bytes for changes of the pen.
     fn choose_forms(&mut self, wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, pen: Pen) {
         let Self { forms, predecessors, .. } = self;
         forms.clear();

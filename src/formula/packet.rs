@@ -64,7 +64,7 @@ pub(super) struct Outcome {
     pub(super) is_sharp: u32,
 }
 
-/// What a model shows of a piece: its sign at the start, and where it may change.
+/// The sign of a model at the start of a piece, and where the sign may change.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
     /// The coefficients of u and u^2.

@@ -3,9 +3,9 @@
 //! Eight walks go side by side: their pieces are enclosed together, in f32, and frequent outcomes are handled together.
 //!
 //! A walk goes forward in pieces, each enclosed by a [`Model`]. A piece without a root is passed. Otherwise the walk
-//! advances to the first t that may be a root, and the next piece ends where the sign is certainly the other one, if the
-//! model shows such a place, or is shorter. So thin parts are not stepped over. The error of a model grows with the cube
-//! of the length, from which the length of the next piece follows.
+//! advances to the first t that may be a root. The next piece ends where the sign is certainly the other one, if the
+//! model shows such a place; else it is shorter. So thin parts are not stepped over. The error of a model grows with the
+//! cube of the length, from which the length of the next piece follows.
 //! A sign change may be lost if it is undone within [`MIN_PIECE`] of the range, or behind [`MAX_PIECES`] pieces.
 //!
 //! A sign change at a jump is no root, and neither is a zero without a sign change.

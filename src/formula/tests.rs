@@ -332,7 +332,7 @@ fn has_gap(formula: &Formula, point: DVec3) -> bool {
     result.is_nan() || formula.tape.operations().iter().any(is_gap)
 }
 
-/// Compares the roots of the twelve formulas of `benches/formulas`, seen by five cameras, with samples in f64.
+/// Compares the roots of the formulas of `benches/formulas`, from five cameras, with f64 samples.
 ///
 /// `FORMULA_STEPS=20000 FORMULA_RAYS=20` takes 20,000 steps along each twentieth ray.
 #[test]

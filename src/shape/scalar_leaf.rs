@@ -31,7 +31,7 @@ impl<S> ScalarLeaf<S> {
         self.surfaces = self.surfaces.iter().map(by).collect();
     }
 
-    /// Returns the mask of the active rays that cross the surfaces of their lanes, and the t of each.
+    /// Returns the mask of the active rays that cross their lanes' surfaces, and the t of each.
     fn crossings(&self, mut rays: EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8)
     where
         S: Surface,

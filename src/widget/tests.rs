@@ -388,8 +388,8 @@ fn keys_move_the_camera() {
 fn a_moving_scene_is_shown_at_its_time() {
     let scene = Scene::from_ron(
         "ball",
-        "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, objects: [Implicit(f: \"x^2 + y^2 + z^2 = 1 + time\", \
-         bounds: Box(min: (-2, -2, -2), max: (2, 2, 2)))])",
+        "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, \
+         objects: [Implicit(f: \"x^2 + y^2 + z^2 = 1 + time\", bounds: Box(min: (-2, -2, -2), max: (2, 2, 2)))])",
     );
     let (scene, area) = (scene.unwrap(), AREA);
     let mut state = SceneState::new(scene.camera());

@@ -243,7 +243,7 @@ fn invisible_differences_are_not_sent_while_moving() {
     assert!(equal * 3 < exact * 2, "{equal} bytes a frame against {exact}");
 }
 
-/// Returns the bytes of each frame while the eye takes six steps; `None` unless each ends with one query.
+/// Returns the bytes of a frame while the eye takes six steps; `None` unless six queries are sent.
 fn bytes_per_frame(session: &mut Session) -> Option<usize> {
     session.wait_for_rest();
     let before = session.seen().bytes().len();
