@@ -40,7 +40,7 @@ pub(super) fn is_shared(job: &Job) -> bool {
     let Job { scene, shot, .. } = job;
     // A scene that moves is copied for each of its times.
     shot.camera == *scene.camera()
-        && shot.resolution.pixel_count() as usize <= MAX_PIXELS
+        && shot.resolution.pixel_count() <= MAX_PIXELS
         && !(shot.geometry || shot.orders || scene.moves())
 }
 
