@@ -403,7 +403,9 @@ impl Viewer {
 
     /// Shows the caption of the scene or its next page. After the last page, hides the caption.
     fn turn_caption(&mut self) {
-        let next = if let Some(caption) = self.screen.close::<Caption>() {
+        let shown = self.screen.close::<Caption>();
+        let was_shown = shown.is_some();
+        let next = if let Some(caption) = shown {
             caption.next(theme::area(self.size()))
         } else {
             let shown = self.scene().zip(self.scenes.shown());
@@ -414,8 +416,12 @@ impl Viewer {
             caption
         };
         // After the last page, captions stay hidden in the next scenes too.
+        let is_hidden = was_shown && next.is_none();
         self.captions = next.is_some();
         self.screen.set(next);
+        if is_hidden {
+            self.show_note(format!("captions are hidden{}", self.hint(Command::Caption, "shows them")));
+        }
     }
 
     /// Accepts a finished frame as the next picture to show.

@@ -1,4 +1,4 @@
-//! Handling of the terminal's bytes: keys, mouse and replies.
+//! The viewer's actions on input from the terminal, parsed by `input`: keys, mouse and replies.
 
 use super::camera_commands::ZOOM_FACTOR;
 use super::dialog::Dialog;
@@ -167,7 +167,7 @@ impl Viewer {
             Command::Pause => self.toggle_playback(),
             Command::View(number) => self.go_to_view(number),
             Command::SaveView => self.screen.open(Dialog::Save),
-            Command::Reset => self.eye.reset(self.now),
+            Command::Reset => self.reset_eye(),
             Command::ViewBack => self.retrace_views(false),
             Command::ViewForward => self.retrace_views(true),
             Command::NextScene => self.requests.push_back(Request::SwitchScene(1)),

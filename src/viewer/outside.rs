@@ -60,16 +60,16 @@ The tracer from outside: o is the eye; u points to the right, v up, and the came
 rectangle (blue) with its pixel grid.
 The white ray is that of the pixel under the cross: from o through the pixel at q to its hit p, where n is the normal.
 From p a shadow ray leads to each light (*): yellow if the light arrives, grey if it does not.
-Keys: the arrows choose another pixel, W A S D and E C walk around the tracer, which stays.";
+Keys: the arrows choose another pixel, w a s d and e c walk around the tracer, which stays.";
 
 const FIRST_CAMERA_CAPTION: &str = "\
 Now the keys move the first camera: o, u, v, w and the view rectangle move along, and the left picture is what it sees.
-Keys: W A S D move the eye o; [ ] resize the view rectangle, ( ) shift it, { } tilt it.";
+Keys: w a s d move the eye o; [ ] resize the view rectangle, ( ) shift it, { } tilt it.";
 
 const VANISHING_CAPTION: &str = "\
 Parallel lines meet in their vanishing point: where the ray from the eye along them goes through the view rectangle.
 Crosses mark it for lines along x, y and z. The white line is the horizon, where all level lines vanish.
-Keys: W A S D move the eye, and the points stay; the arrows turn the camera, and the points move.";
+Keys: w a s d move the eye, and the points stay; the arrows turn the camera, and the points move.";
 
 impl Viewer {
     /// Switches to the next of four views.
@@ -100,10 +100,7 @@ impl Viewer {
         };
         let moved = match (self.outside, next) {
             (Outside::MovesSecond { first }, _) => first,
-            (_, Outside::MovesSecond { .. }) => match self.screen.frame() {
-                Some(frame) => camera_beside(&frame.scene, &camera, 0.5 * self.resolution().aspect_ratio()),
-                None => camera,
-            },
+            (_, Outside::MovesSecond { .. }) => self.beside(camera),
             _ => camera,
         };
         self.eye.change(self.now, |_, _| moved);
@@ -116,6 +113,23 @@ impl Viewer {
         let explains = explains.unwrap_or_default();
         let hint = self.hint(Command::Outside, "next");
         self.show_note(format!("{text}{explains}{hint}"));
+    }
+
+    /// Returns the first pose of the second camera: beside the first one, which it sees.
+    fn beside(&self, first: Camera) -> Camera {
+        let Some(frame) = self.screen.frame() else { return first };
+        camera_beside(&frame.scene, &first, 0.5 * self.resolution().aspect_ratio())
+    }
+
+    /// Moves the eye back to the scene's first view, and a second eye beside the first camera.
+    pub(super) fn reset_eye(&mut self) {
+        // In the scene's first view, the second camera would be where the first one is and not see it.
+        if let Outside::MovesSecond { first } = self.outside {
+            let moved = self.beside(first);
+            self.eye.change(self.now, |_, _| moved);
+        } else {
+            self.eye.reset(self.now);
+        }
     }
 
     /// Opens the explanation of the pixel in the middle of the left picture, whose ray is drawn.

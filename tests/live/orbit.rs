@@ -149,9 +149,12 @@ fn v_shows_the_tracer_from_outside() {
         let text = seen.screen().text().concat();
         ["o", "v", "q", "p"].iter().all(|letter| text.contains(letter)) && text.contains("first camera")
     });
-    // A key without a binding ends the note, which would be under way for five seconds.
-    session.send(b"[\x1b[24~");
+    // A key without a binding ends the note, which would be under way for five seconds. The second eye goes back to its
+    // place beside the first camera, which stays in the picture.
+    session.send(b"[r\x1b[24~");
     session.wait_for_rest();
+    let text = session.seen().screen().text().concat();
+    assert!(["o", "v", "q", "p"].iter().all(|letter| text.contains(letter)) && text.contains("first camera"), "{text}");
     session.send(b"V");
     session.wait_for_text("keys move the first camera; V next");
     session.send(b"[");

@@ -73,12 +73,12 @@ fn tests_each(until: &[u64]) -> Option<String> {
 }
 
 /// The unit that both orders count, in words beside the table of times, if there is room.
-const TEST: [&str; 3] = ["a test: one ray or pixel", "against one object or one", "box of the tree"];
+const TEST: [&str; 3] = ["a test: a ray against", "an object or a box, or", "an object at a pixel"];
 
 /// Returns a table of the times of both orders for growing numbers of spheres.
 fn growth(comparison: &Comparison, is_wide: bool) -> [String; 3] {
     let names = if is_wide {
-        ["number of spheres", "image order, ms", "object order, ms"]
+        ["spheres in a cube", "image order, ms", "object order, ms"]
     } else {
         ["spheres", "image ms", "object ms"]
     };
