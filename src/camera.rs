@@ -494,7 +494,7 @@ impl ViewRectangle {
         self.shift
     }
 
-    /// Returns the angles between the direction of view and the normal of the rectangle.
+    /// Returns the tilt of the view rectangle: the angles from the direction of view to its normal.
     ///
     /// The first is to the right, the second upwards, both in radians.
     #[doc(hidden)]

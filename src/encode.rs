@@ -1,4 +1,4 @@
-//! Encoding of grids: the bytes that make a terminal that shows one grid show another.
+//! Encoding of grids: the bytes that change a terminal's screen from one grid to another.
 //!
 //! Only changed cells are sent, and only the colours that differ from the pen, the state with which the terminal would
 //! write now, which is tracked from cell to cell and from frame to frame. What remains to be chosen is the order of the

@@ -25,7 +25,7 @@ use tape::Tape;
 /// A formula in x, y, z and the time, whose sign tells inside from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Formula {
-    /// The tape at one time.
+    /// The tape, in which the time is replaced by a constant.
     tape: Tape,
     /// The tape in which the time is a variable, if the formula depends on it.
     moving: Option<Arc<Tape>>,

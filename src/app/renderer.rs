@@ -285,10 +285,11 @@ impl RefinablePicture {
 }
 
 impl Tracer {
-    /// Traces or refines a frame on the threads of the current rayon pool; `token` may cancel it.
+    /// Traces or refines a frame, on the calling thread or on the current rayon pool.
     ///
-    /// A new frame with one sample per pixel is traced on the calling thread and ignores `token`. A refinement traces
-    /// all samples anew if no picture is kept, or one of another viewer.
+    /// A new frame with one sample per pixel is traced on the calling thread and ignores `token`. All others are traced
+    /// on the pool, and `token` may cancel them. A refinement starts anew if no picture is kept, or one of another
+    /// viewer.
     #[cfg(feature = "serve")]
     pub(crate) fn trace_for_any(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
         if job.refines || !has_one_sample(job.sampling) {

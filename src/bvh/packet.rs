@@ -210,7 +210,7 @@ impl<N: Lanes> Packet<N> {
 
     /// Returns the range of t in which each group of eight rays crosses the box `one`.
     ///
-    /// A lane is a group. The ranges are clipped to `within`.
+    /// Each lane holds the range of one group, clipped to `within`.
     #[inline(always)]
     pub fn crossed_by_groups(&self, one: [Vector<N>; 2], within: [N; 2]) -> [N; 2] {
         crossed(&self.groups, self.signs, one, within)

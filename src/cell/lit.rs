@@ -13,7 +13,7 @@ static LIGHT: LazyLock<[f32; LEVELS]> =
 
 /// Returns whether the pixel at column `x` and row `y` of the screen is lit.
 ///
-/// Of sixteen pixels of one colour, none to all are lit: the darkest colours are black, the lightest ones white.
+/// A share of the pixels of one colour is lit, in sixteenths: none of the darkest colour, all of the lightest one.
 // The steps are those of mixes in which each of sixteen pixels compensates 0.6 of the error of those before it. They
 // are calmer than steps of a sixteenth: shadows and highlights have no single dots.
 pub(super) fn is_lit(color: Srgb8, x: usize, y: usize) -> bool {

@@ -25,7 +25,7 @@ pub(super) struct Palette {
 struct Choices {
     mixes: Mixes,
     /// For each colour of [`LEVELS`], the number of its mix, counted from 1; 0 if none is chosen.
-    // 131 kB for all colours. Mixes of up to sixteen colours took 557 kB.
+    // The list takes 131 kB for the 65,536 colours of `LEVELS`. Mixes of up to sixteen colours took 557 kB.
     chosen: Vec<u16>,
 }
 

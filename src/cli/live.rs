@@ -42,7 +42,7 @@ fn hint(keymap: &Keymap, occasion: Occasion) -> String {
     let does = |command, does: &str| key(command).map(|key| format!("{key} {does}"));
     let moves = Some(moves.map_or_else(|| "drag to look".to_owned(), |keys| format!("drag or {keys} to move")));
     let (help, quit) = (does(Command::Help, "keys"), does(Command::Quit, "quit"));
-    // Each line fits into 80 columns. On narrower screens parts are left out, from the second one on.
+    // Each line fits into 80 columns. On narrower screens the second part is left out first, then the third and so on.
     let parts = match occasion {
         Occasion::Demo => vec![moves, Some("termtrace FILE opens yours".to_owned()), help, quit],
         Occasion::Scenes => {

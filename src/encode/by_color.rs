@@ -77,7 +77,7 @@ struct Pair {
     positions: Range<usize>,
     /// The indices of the pair's colours in `Tour::colors`; both are equal for spaces.
     colors: [usize; 2],
-    /// Whether the tour has visited the pair.
+    /// Whether the tour has written the pair's cells.
     visited: bool,
 }
 

@@ -110,8 +110,8 @@ impl Model {
 
     /// Returns a function g of the quantity.
     ///
-    /// It is the Taylor polynomial at c0, or `hull` if that is closer. `taylor` has g, g' and g'' / 2 at c0, and
-    /// `third` a bound of |g'''| / 6 on the range.
+    /// It is the Taylor polynomial at c0, or `hull` if that is closer. `[g, g1, g2]` are g, g' and g'' / 2 at c0, and
+    /// `third` is a bound of |g'''| / 6 on the range.
     fn function(self, [g, g1, g2]: [f64; 3], third: f64, hull: [f64; 2]) -> Self {
         let Self { c: [_, c1, c2], error } = self;
         let spread = c1.abs() + c2.abs() + error;

@@ -4,8 +4,8 @@
 //!
 //! A walk goes forward in pieces, each enclosed by a [`Model`]. A piece without a root is passed. Otherwise the walk
 //! advances to the first t that may be a root. The next piece ends where the sign is certainly the other one, if the
-//! model shows such a place; else it is shorter. So thin parts are not stepped over. The error of a model grows with the
-//! cube of the length, from which the length of the next piece follows.
+//! model shows such a place; else it is shorter. So thin parts are not stepped over. The error of a model grows with
+//! the cube of the length, from which the length of the next piece follows.
 //! A sign change may be lost if it is undone within [`MIN_PIECE`] of the range, or behind [`MAX_PIECES`] pieces.
 //!
 //! A sign change at a jump is no root, and neither is a zero without a sign change.
@@ -392,7 +392,9 @@ impl Walk {
         to - from < SHORT * self.range
     }
 
-    /// Moves past the piece, or to where it has to be looked at more closely.
+    /// Examines the piece, and returns its root or advances.
+    ///
+    /// Without a root, the walk moves past the piece, shortens it, or goes back to a part that was skipped.
     fn advance(&mut self, view: &View, continuity: Continuity, piece @ [from, to]: [f64; 2]) -> Found {
         let (width, sign) = (to - from, view.sign);
         if continuity.is_undefined {
@@ -494,7 +496,8 @@ impl View {
         let is_clear = sign != 0.0 && first.min(middle).min(last) > error;
         // The polynomial falls at most this much, as a share of the piece: the least slope of its chords.
         let steepest = (2.0 * (middle - first)).min(last - first);
-        // Not quite to the zero, so that the sign there is certain in spite of rounding.
+        // 0.999 of the way to where the polynomial could first be 0, so that its sign there is certain in spite of
+        // rounding.
         let near = (0.999 * (first - error) / -steepest).clamp(0.0, 1.0);
         let far = first_below([first, middle, last], -error).unwrap_or(2.0);
         let blur = error / if is_clear { first.min(middle).min(last) } else { b[0].abs() };

@@ -25,7 +25,7 @@ pub(super) struct Library {
 }
 
 impl Library {
-    /// Returns the materials, and what is not shown of which of them.
+    /// Returns the materials, and pairs of a material's index and the part of it that is not shown.
     pub(super) fn into_materials(self) -> (Vec<MeshMaterial>, Vec<(u32, &'static str)>) {
         (self.materials, self.not_shown)
     }

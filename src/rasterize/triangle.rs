@@ -87,8 +87,8 @@ fn set_up<N: Lanes>(projection: &Projection, [a, b, c]: [Vector<N>; 3]) -> (SetU
     let sign = N::select(area.lt(N::splat(0.0)), -one, one);
     let [of_a, of_b, of_c] = [a, b, c].map(|corner| one / corner.z);
     let (from_a_to_b, from_a_to_c) = (of_b - of_a, of_c - of_a);
-    // Relative to the first corner: from the corner of the picture, most digits of the sum would cancel for a small
-    // triangle.
+    // The inverse depth is a function of the offset from the first corner. As a function of the position in the
+    // picture, most digits of its terms would cancel for a small triangle.
     let inverse = Linear {
         a: ((from_a_to_b * to_c.y - from_a_to_c * to_b.y) / area).store(),
         b: ((from_a_to_c * to_b.x - from_a_to_b * to_c.x) / area).store(),

@@ -35,7 +35,8 @@ pub struct CommonOrigin<N: Lanes> {
 /// (`culling.md`, 14).
 ///
 /// Between them, the underflow is at most 2^-117, and depths below 2^95 do not overflow.
-// If a ray's length is outside these limits, `depth_range` is infinite, and the packet's error bound decides no ray.
+// If a ray's length is outside these limits, `depth_range` and with it the packet's error bound are infinite, and each
+// ray's own error bound decides the signs of its edge functions.
 // Without the limits, a packet with directions of length 2^120 was culled wrongly.
 const SAFE_LENGTHS: [f32; 2] = [1.0 / 4_294_967_296.0, 4_294_967_296.0];
 

@@ -17,7 +17,7 @@ pub struct Disk {
     center: DVec3,
     normal: DVec3,
     radius: f64,
-    /// The axes of patterns.
+    /// Unit vectors in the plane of the disk, along which patterns are measured.
     axes: [Vec3; 2],
     bounds: Bounds,
 }

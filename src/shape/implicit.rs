@@ -147,7 +147,9 @@ impl Surface for Implicit {
         (crosses != 0).then_some(t.0[0])
     }
 
-    /// Returns the first roots along up to eight rays, searched together.
+    /// Returns the first root along each active ray; the rays are searched together.
+    ///
+    /// `inside` has the intervals of the box, `within` those in which a root counts.
     fn closest_crossings(&self, rays: &EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8) {
         let mut searches = Searches::NONE;
         for lane in set_bits(rays.active) {

@@ -27,7 +27,7 @@ pub struct Quad {
     corner: DVec3,
     edges: [DVec3; 2],
     normal: DVec3,
-    /// The vectors whose dot products with a point of the quad are its s and t.
+    /// The vectors whose dot products with the offset of a point from the corner are its s and t.
     shares: [DVec3; 2],
     bounds: Bounds,
 }

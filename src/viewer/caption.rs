@@ -21,7 +21,7 @@ pub(super) struct Caption {
     text: Arc<str>,
     /// The number of the scene on the tour, from 1, and the number of all its scenes.
     place: Option<(usize, usize)>,
-    /// More keys on a tour, with what they do.
+    /// More keys for the caption's last row on a tour, with what they do.
     more_keys: [(Command, &'static str); 2],
     page: usize,
 }

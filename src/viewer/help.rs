@@ -35,7 +35,7 @@ pub(super) struct HelpPanel {
     states: Vec<(Command, String)>,
 }
 
-/// The effect of a key press on the open help.
+/// The effect of a key press on the open help: to close it, turn its pages, or edit its filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum HelpKey {
     /// Closes the help.

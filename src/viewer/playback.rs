@@ -29,7 +29,7 @@ impl Playback {
         self.moved_until
     }
 
-    /// Moves the scene up to `now`.
+    /// Advances the time of the scene to `now`, if the scene plays.
     pub(super) fn advance(&mut self, now: Duration) {
         if let Some(since) = self.moved_until {
             self.time += now.saturating_sub(since).min(MAX_STEP);

@@ -8,7 +8,7 @@ use super::{ActiveCell, ExchangeRate};
 use crate::color::Srgb8;
 use std::cmp::Reverse;
 
-/// Largest number of colours: half of them where bytes are so short that few cells are written.
+/// Largest number of colours; half as many are used if the byte limit leaves few cells to write.
 // With 127 at every rate, a slow motion never came nearer than 38 dB. With 255 at every rate, a fast one loses 0.5 dB,
 // as more colours mean more pens. A colour's number takes eight bits in the results of `nearest_two` and in the keys of
 // pairs.

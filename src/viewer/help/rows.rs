@@ -238,7 +238,7 @@ fn mouse_rows(modes: &[KeyMode]) -> Vec<Row> {
     rows.map(|(keys, does)| Row { group: Group::Mouse, keys: keys.to_owned(), does: does.to_owned() }).to_vec()
 }
 
-/// A line of the help.
+/// A line of the help: a heading, or keys with what they do.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Line {
     Heading(String),
