@@ -30,6 +30,7 @@ pub mod mesh;
 pub mod scalar_leaf;
 pub mod plane;
 pub mod quad;
+mod scalar;
 pub mod sphere;
 pub mod torus;
 pub mod triangle;
@@ -49,6 +50,7 @@ pub use implicit::Implicit;
 pub use mesh::{Facet, Mesh};
 pub use plane::Plane;
 pub use quad::Quad;
+pub use scalar::Scalar;
 pub use scalar_leaf::ScalarLeaf;
 pub use sphere::{Sphere, SphereN};
 pub use torus::Torus;
@@ -484,66 +486,6 @@ macro_rules! shapes {
 }
 
 surfaces! { shapes }
-
-/// Defines [`Scalar`] from the table of surfaces.
-macro_rules! scalar {
-    (own {$($own:tt)*} shared {$($(#[$on:meta])* $surface:ident, $of:meta;)*}) => {
-        /// A surface that is in the tree that several kinds share.
-        #[derive(Clone, Debug, PartialEq)]
-        pub enum Scalar {
-            $(#[$of] $(#[$on])* $surface($surface),)*
-        }
-
-        $($(#[$on])* impl From<$surface> for Scalar {
-            fn from(surface: $surface) -> Self {
-                Self::$surface(surface)
-            }
-        })*
-
-        impl Surface for Scalar {
-            fn bounds(&self) -> Option<Bounds> {
-                match self {
-                    $($(#[$on])* Self::$surface(surface) => surface.bounds(),)*
-                }
-            }
-
-            fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-                match self {
-                    $($(#[$on])* Self::$surface(surface) => surface.closest_crossing(probe, within),)*
-                }
-            }
-
-            fn closest_crossings(
-                &self,
-                rays: &EightRays,
-                inside: &[F32x8; 2],
-                within: &[F32x8; 2],
-            ) -> (u32, F32x8) {
-                match self {
-                    $($(#[$on])* Self::$surface(surface) => surface.closest_crossings(rays, inside, within),)*
-                }
-            }
-
-            fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-                match self {
-                    $($(#[$on])* Self::$surface(surface) => surface.at_crossing(ray, t),)*
-                }
-            }
-        }
-    };
-}
-
-surfaces_in_parts! { scalar }
-
-impl Scalar {
-    /// Returns the surface at a time in seconds.
-    pub(crate) fn at_time(&self, seconds: f64) -> Self {
-        match self {
-            Self::Implicit(implicit) => implicit.at_time(seconds).into(),
-            other => other.clone(),
-        }
-    }
-}
 
 impl From<Mesh> for Shape {
     fn from(mesh: Mesh) -> Self {
