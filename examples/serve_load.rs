@@ -405,7 +405,7 @@ async fn soak(arguments: Arguments, seed: u64) {
     }
 }
 
-/// Visits for some seconds, and leaves by a key or without a word.
+/// Visits for some seconds, and leaves by a key or by closing the connection.
 ///
 /// The visitor turns the scene or only looks, may resize the window, and may stop reading.
 async fn short_visit(arguments: &Arguments, random: &mut Random) -> Option<()> {

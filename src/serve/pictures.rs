@@ -26,7 +26,7 @@ impl Pictures {
         Some(frame)
     }
 
-    /// Keeps a picture in place of the one that has not been asked for for the longest time.
+    /// Keeps a picture. If there are too many, the least recently used one is dropped.
     pub(super) fn keep(&mut self, frame: Arc<Frame>) {
         if self.0.len() >= MAX_PICTURES {
             self.0.pop_front();

@@ -232,7 +232,7 @@ fn exact_colours_are_spread_over_frames() {
     let mut watched = Watched::new(Order::Color, HalfBlocks::Either, size, Clusters::None);
     watched.send(&first);
     let allowed = allowance(0, Quality::Fast, None);
-    assert_eq!(watched.send_within(&near, allowed), 0, "nobody sees the difference");
+    assert_eq!(watched.send_within(&near, allowed), 0, "the difference is invisible");
     let mut now = Duration::from_millis(500);
     let mut frames = 0;
     loop {

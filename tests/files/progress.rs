@@ -23,12 +23,12 @@ fn read(triangles: u32) -> MeshFile {
 fn heard<T>(most: usize, work: impl FnOnce(&Reporter<'_>) -> T) -> (Vec<Progress>, T) {
     let heard = Mutex::new(Vec::new());
     let on_progress = |progress| {
-        let mut heard = heard.lock().expect("nobody panics");
+        let mut heard = heard.lock().expect("no holder of this lock panics");
         heard.push(progress);
         if heard.len() < most { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     let done = work(&Reporter::new(&on_progress));
-    (heard.into_inner().expect("nobody panics"), done)
+    (heard.into_inner().expect("no holder of this lock panics"), done)
 }
 
 /// Returns the result, or `None` if the work was cancelled.
@@ -129,13 +129,13 @@ fn checking_objects_can_be_cancelled() {
     let cancelled = Cancellation::default();
     let needed = Mutex::new(0);
     let on_dependency = |_: &Path| {
-        *needed.lock().expect("nobody panics") += 1;
+        *needed.lock().expect("no holder of this lock panics") += 1;
         cancelled.cancel();
     };
     let reporter = Reporter::new(&on_progress).with_dependencies(&on_dependency).cancelled_by(&cancelled);
     let text = r#"(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Mesh(path: "a.obj"), Mesh(path: "b.obj")])"#;
     assert!(matches!(Draft::from_bytes("x.ron", text.as_bytes(), &reporter), Err(Unfinished::Cancelled)));
-    assert_eq!(needed.into_inner().expect("nobody panics"), 1, "meshes");
+    assert_eq!(needed.into_inner().expect("no holder of this lock panics"), 1, "meshes");
 }
 
 #[test]

@@ -74,7 +74,11 @@ fn every_frame_has_the_same_bits_everywhere() {
             let [(_, first), ..] = hashes;
             let alone =
                 render_by(Executor::CurrentThread, &scene, scene.camera(), Resolution::square(width, height), samples);
-            assert_eq!(alone.expect("nobody cancels it").framebuffer.hash(), hashes[0].1, "{frame}: without a pool");
+            assert_eq!(
+                alone.expect("the render is not cancelled").framebuffer.hash(),
+                hashes[0].1,
+                "{frame}: without a pool"
+            );
             for (threads, hash) in hashes {
                 assert_eq!(hash, first, "{frame}: {threads} threads give other bits than one");
             }

@@ -92,7 +92,7 @@ fn row_03_nothing_is_forwarded() {
 }
 
 #[test]
-fn row_04_the_silent_are_shown_out_and_keep_nobody_away() {
+fn row_04_silent_connections_are_closed_and_block_no_others() {
     let hosting = Hosting::start(|settings| settings.login_time = Duration::from_millis(500));
     run(async {
         let mut silent = Vec::new();
@@ -113,7 +113,7 @@ fn row_04_the_silent_are_shown_out_and_keep_nobody_away() {
 }
 
 #[test]
-fn row_04_the_silent_of_one_address_keep_only_themselves_away() {
+fn row_04_silent_connections_block_only_their_own_address() {
     let hosting = Hosting::usual();
     run(async {
         let mut silent = Vec::new();

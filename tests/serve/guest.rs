@@ -26,7 +26,7 @@ impl client::Handler for Anybody {
     }
 
     async fn auth_banner(&mut self, banner: &str, _session: &mut client::Session) -> Result<(), russh::Error> {
-        self.banner.lock().expect("nobody panics").push_str(banner);
+        self.banner.lock().expect("no holder of this lock panics").push_str(banner);
         Ok(())
     }
 }

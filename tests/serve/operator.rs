@@ -98,7 +98,7 @@ fn a_banner_goes_before_the_login_and_controls_nothing() {
         let client = Anybody::default();
         let banner = Arc::clone(&client.banner);
         assert!(connect_as(&program, client).await.authenticate_none("x").await.expect("an answer").success());
-        let banner = banner.lock().expect("nobody panics").clone();
+        let banner = banner.lock().expect("no holder of this lock panics").clone();
         assert!(banner.starts_with("Welcome\r\n") && banner.contains("red"), "{banner:?}");
         assert!(!banner.contains(['\x1b', '\x07']), "{banner:?}");
     });
@@ -122,7 +122,7 @@ fn all_viewers_together_have_a_rate_and_share_it() {
         run_all(&mut counters, Duration::from_secs(4)).await;
         let bytes: Vec<_> = counters.iter().zip(before).map(|(counter, before)| counter.bytes - before).collect();
         let sum: usize = bytes.iter().sum();
-        // What was on its way before counts, too.
+        // Bytes that were sent before the interval and arrive in it are counted: a fifth more is allowed.
         assert!(sum < 4 * RATE as usize * 12 / 10, "{bytes:?}");
         let (least, most) = (bytes.iter().min(), bytes.iter().max());
         assert!(least.zip(most).is_some_and(|(least, most)| 2 * least >= *most), "{bytes:?}");
@@ -144,7 +144,7 @@ fn counts(hosting: &Hosting) -> String {
 }
 
 #[test]
-fn row_19_the_counts_can_be_read_and_name_nobody() {
+fn row_19_the_counts_can_be_read_and_contain_no_names() {
     let hosting = Hosting::start(|settings| {
         settings.metrics = Some(([127, 0, 0, 1], 0).into());
         settings.max_per_address = 2;
@@ -214,7 +214,7 @@ fn row_18_a_signal_drains_and_a_second_one_ends_at_once() {
         guest.see_picture().await;
         program.terminate();
         guest.see_text("the server restarts: you leave in 30 s").await;
-        assert!(tokio::net::TcpStream::connect(program.address()).await.is_err(), "nobody is let in");
+        assert!(tokio::net::TcpStream::connect(program.address()).await.is_err(), "new connections are refused");
         // A user who leaves before the time is over is not waited for.
         guest.send(b"q").await;
         assert_eq!(guest.leave().await, Some(0));
