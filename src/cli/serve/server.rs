@@ -58,37 +58,37 @@ pub(in crate::cli) struct ServeArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     max_viewers: Option<u32>,
     /// Connections from one address [default: 10]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), hide_short_help = true)]
     max_per_address: Option<u32>,
     /// Longest time without a key, such as 90s or 10m [default: 10m]
     #[arg(long, value_name = "TIME", value_parser = parse_time)]
     idle: Option<Duration>,
     /// Longest visit [default: 1h]
-    #[arg(long, value_name = "TIME", value_parser = parse_time)]
+    #[arg(long, value_name = "TIME", value_parser = parse_time, hide_short_help = true)]
     session_max: Option<Duration>,
     /// Bytes per second for one viewer [default: 200k]
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
     max_rate: Option<u32>,
     /// Bytes per second for all viewers together
-    #[arg(long, value_name = "RATE", value_parser = parse_rate)]
+    #[arg(long, value_name = "RATE", value_parser = parse_rate, hide_short_help = true)]
     max_rate_total: Option<u32>,
     /// Frames per second for one viewer [default: 30]
-    #[arg(long, value_name = "N", value_parser = parse_fps)]
+    #[arg(long, value_name = "N", value_parser = parse_fps, hide_short_help = true)]
     fps: Option<f32>,
     /// Threads that draw [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), hide_short_help = true)]
     threads: Option<u16>,
     /// Only let in those who have one of the public keys in this file
     #[arg(long, value_name = "FILE")]
     authorized_keys: Option<PathBuf>,
     /// Text that is printed before the login
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", hide_short_help = true)]
     banner: Option<PathBuf>,
     /// Link in the first line that a viewer sees, and on leaving
     #[arg(long, value_name = "URL")]
     link: Option<String>,
     /// Address of this machine at which counts can be read, for Prometheus
-    #[arg(long, value_name = "ADDRESS:PORT")]
+    #[arg(long, value_name = "ADDRESS:PORT", hide_short_help = true)]
     metrics: Option<SocketAddr>,
     /// File of settings, such as (listen: "0.0.0.0:22", public: true, fps: 20)
     #[arg(long, value_name = "FILE")]

@@ -18,7 +18,9 @@ struct Sitting {
 }
 
 fn scenes() -> Arc<[HostedScene]> {
-    let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Sphere(center: (0, 0, 0), radius: 1)])";
+    // Beside the target, so that the picture changes when the view turns about it.
+    let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, \
+                objects: [Sphere(center: (1, 0, 0), radius: 1)])";
     let scene = |name: &str| HostedScene {
         name: name.to_owned(),
         file: format!("{name}.ron"),
@@ -222,4 +224,30 @@ fn what_a_network_sends_breaks_nothing() {
         let text = String::from_utf8_lossy(&all);
         assert!(text.contains("\x1b[?1049l") && text.contains("\x1b[?25h"));
     }
+}
+
+/// A busy server is no slow link: the time that a reply waits for its turn does not count.
+#[test]
+fn a_reply_counts_from_its_arrival() {
+    // Each turn is 300 ms late; returns the bytes of a view that turns.
+    let bytes_if_replies_arrive_after = |time: Duration| {
+        let mut sitting = Sitting::new(STAY);
+        let window = Some(crate::serve::client_terminal::window([80, 24, 0, 0]));
+        sitting.turn_for(Class::Refinement, Arrived { window, ..Arrived::default() });
+        sitting.rest();
+        sitting.turn(b"t");
+        let mut sum = 0;
+        for _ in 0..40 {
+            let queries = sitting.bytes.windows(3).filter(|bytes| *bytes == b"\x1b[c").count();
+            sum += sitting.bytes.len();
+            sitting.bytes.clear();
+            let at = sitting.now.get() + time;
+            sitting.now.set(sitting.now.get() + Duration::from_millis(300));
+            let bytes = b"\x1b[?62c".repeat(queries);
+            sitting.turn_for(Class::Refinement, Arrived { bytes, at, ..Arrived::default() });
+        }
+        sum
+    };
+    let [early, late] = [1, 300].map(|time| bytes_if_replies_arrive_after(Duration::from_millis(time)));
+    assert!(early > 2 * late, "{early} bytes with early replies, {late} with late ones");
 }
