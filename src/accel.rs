@@ -29,8 +29,9 @@ pub(crate) struct PrimitiveId {
     pub(crate) index: u32,
 }
 
-/// The ids of eight primitives, as the bits of f32, so that the operations on floats gather and
-/// select them.
+/// The ids of eight primitives, stored as the bits of f32.
+///
+/// So the operations that gather and select lanes of floats work on ids too.
 // No arithmetic is done on these floats, so ids whose bits happen to be a NaN stay unchanged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PrimitiveIds<N> {
@@ -77,7 +78,7 @@ impl<N: Lanes> PrimitiveIds<N> {
         Self { object: N::splat(f32::from_bits(object)), index: N::splat(f32::from_bits(index)) }
     }
 
-    /// Returns `yes` where the mask is set, else `no`.
+    /// Returns `yes` in the lanes that the mask has set, and `no` in the others.
     #[inline(always)]
     pub(crate) fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
         Self { object: N::select(mask, yes.object, no.object), index: N::select(mask, yes.index, no.index) }
@@ -90,10 +91,10 @@ impl<N: Lanes> PrimitiveIds<N> {
     }
 }
 
-/// Chooses code by the group of a surface: `list` for unbounded surfaces, `tree` for bounded ones.
+/// Expands to code for a surface's group: `list` (unbounded surfaces) or `tree` (bounded ones).
 ///
-/// With `of`, it expands to the type that stores the surface's primitives; with `from`, to the type that collects them
-/// for the build; with `in`, to the code that follows, if the groups on both sides of `in` are the same.
+/// `group of T` is the type that stores the surface's primitives, `group from S` the type that collects them for the
+/// build. `group in other_group code` is `code` if both groups are the same, else nothing.
 macro_rules! only {
     (list of $kept:ty) => { List<$kept> };
     (tree of $kept:ty) => { Tree<$kept> };
@@ -112,12 +113,13 @@ macro_rules! accelerator {
     ) => {
         /// The primitives of all shapes of a scene.
         ///
-        /// They are numbered through, first in the lists, then in the leaves of the trees. A leaf takes eight indices
-        /// from a multiple of eight on, so that the lowest three bits of an index are the primitive's lane.
+        /// Every primitive has an index; those in the lists come first, then those in the leaves of the trees. A leaf
+        /// takes eight indices, of which the first is a multiple of eight, so that the lowest three bits of an index
+        /// are the lane.
         #[derive(Clone, Default, PartialEq)]
         pub(crate) struct Accelerator {
             $($(#[$on])* $name: only!($group of $kept),)*
-            /// The surfaces of all kinds that share a tree.
+            /// The tree of all bounded surfaces that have no tree of their own.
             scalars: Tree<ScalarLeaf<Scalar>>,
             /// Whether any mesh has interpolated normals.
             pub(crate) has_smooth: bool,
@@ -260,8 +262,8 @@ pub(crate) struct Tree<S> {
     /// The leaves, with up to eight primitives each.
     pub(crate) leaves: Vec<S>,
     /// The ids of the primitives of each leaf; unused lanes repeat the last one.
-    // Stored apart from the leaves, as only hits need them: a leaf of triangles has 288 bytes instead of 352, and
-    // incoherent rays are 1 to 5 % faster.
+    // Stored apart from the leaves, because only hits need the ids: so a leaf of triangles has 288 bytes instead of
+    // 352, and incoherent rays are 1 to 5 % faster.
     ids: Vec<PrimitiveIds<F32x8>>,
     /// The index of the tree's first primitive.
     pub(crate) first: u32,
@@ -349,7 +351,9 @@ impl Accelerator {
         sum.0
     }
 
-    /// Returns the id of a primitive by its index, or the first id if there is no such primitive.
+    /// Returns the id of the primitive with this index.
+    ///
+    /// If there is none, returns the id of the first primitive of the first object.
     #[inline(always)]
     pub(crate) fn id(&self, primitive: u32) -> PrimitiveId {
         struct Find(u32, PrimitiveId);
@@ -374,7 +378,7 @@ impl Accelerator {
     }
 }
 
-/// Shows the bounds and the size only, as the primitives could be millions of lines.
+/// Shows only the bounds and the size, because the primitives could take millions of lines.
 impl fmt::Debug for Accelerator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Accelerator")
@@ -449,8 +453,8 @@ impl<S> Tree<S> {
     }
 }
 
-/// The least number of leaves that are filled on all threads.
-// For fewer leaves the start of rayon's pool is not worth its time: it would take 0.15 ms of the first picture of four
+/// The number of leaves from which on a tree's leaves are filled in parallel.
+// For fewer leaves the start of rayon's pool is not worth its time: it would add 0.15 ms to the first picture of four
 // spheres, which are one leaf.
 const MIN_PARALLEL_LEAVES: usize = 1024;
 

@@ -135,7 +135,8 @@ fn drive_scenes<E: Into<Notice> + Send + 'static>(
     // renderer or the scenes blocks or panics.
     let waker = signals.waker()?;
     let mut renderer = terminal::without_signals(|| Renderer::start(options.threads, waker))?;
-    // An error that is found before the terminal is taken is printed in the shell, where it stays readable.
+    // A load error that is found before the viewer takes over the terminal is printed in the shell, where it stays
+    // readable.
     scenes.wait().map_err(Error::Scene)?;
     let killed = |signal| Outcome { ending: Ending::Signal(signal), moved: None, heard: true };
     if let Some(signal) = signals.deadly() {

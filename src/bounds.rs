@@ -25,8 +25,8 @@ pub struct Bounds {
 }
 
 /// The relative widening of a ray's interval in a box at both ends: 16 units of 2^-24.
-// Three units cover the rounding of an end, one that of its widening, and twelve the error of a surface's own t
-// (`culling.md`, 3).
+// Of the 16 units, three cover the rounding of an end, one the rounding of the widening, and twelve the error of the t
+// that a surface computes (`culling.md`, 3).
 const CROSSING_SLACK: f32 = 16.0 / 16_777_216.0;
 
 impl Bounds {
@@ -66,7 +66,7 @@ impl Bounds {
     /// It is empty (`min > max`) if the line misses the box.
     ///
     /// The interval is widened by 16 units of 2^-24 (`culling.md`, 3). It contains the interval of each box inside this
-    /// one, bit for bit (`culling.md`, 2), so that the boxes above a shape never hide it.
+    /// one, bit for bit (`culling.md`, 2), so that a box above a shape in the tree never culls a hit of the shape.
     #[doc(hidden)]
     pub fn crossed(&self, probe: &Probe) -> Interval {
         let [min, max] = crossed([Vector::splat(self.min), Vector::splat(self.max)], &probe.rays);
@@ -79,8 +79,8 @@ impl Bounds {
 pub fn crossed<N: Number>([min, max]: [Vector<N>; 2], rays: &Rays<N>) -> [N; 2] {
     let slab = |min: N, max: N, origin: N, inverse: N| {
         let is_backward = inverse.lt(N::splat(0.0));
-        // The sign of the inverse chooses the near plane. `min` and `max` of both products would lose the order of NaN
-        // (`culling.md`, 2).
+        // The sign of the inverse chooses the near plane. Choosing it by `min` and `max` of both products instead would
+        // break the order of nested boxes where a product is NaN (`culling.md`, 2).
         let near = N::select(is_backward, max, min);
         let far = N::select(is_backward, min, max);
         [(near - origin) * inverse, (far - origin) * inverse]
@@ -91,7 +91,7 @@ pub fn crossed<N: Number>([min, max]: [Vector<N>; 2], rays: &Rays<N>) -> [N; 2] 
     intersect_slabs([x, y, z])
 }
 
-/// Returns the t at which rays enter and leave a box, from those of its slabs, widened.
+/// Returns the widened interval of t in which rays are in a box, from the intervals of its slabs.
 #[inline(always)]
 pub fn intersect_slabs<N: Number>([x, y, z]: [[N; 2]; 3]) -> [N; 2] {
     // A ray in the plane of a face has NaN there, 0 times infinity, and that face must not bound its interval: if the

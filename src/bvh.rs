@@ -93,13 +93,13 @@ impl Node {
     #[inline(always)]
     fn intersect<N: Lanes>(&self, slabs: &Slabs<N>, within: Interval) -> (N, u32) {
         let (mut start, mut end) = (N::splat(within.min), N::splat(within.max));
-        // Any order of the axes gives the same mask: `max` and `min` of the same numbers, with NaN skipped.
+        // Any order of the axes gives the same mask, because `max` and `min` take the same numbers and skip NaN.
         for axis in [2, 1, 0] {
             // The near plane is chosen by an index instead of a select, because the direction's sign is the same in all
             // lanes.
             let (bounds, near) = (&self.bounds[axis], usize::from(slabs.is_backward[axis]));
             let origin = slabs.origin[axis];
-            // In this order `max` and `min` skip NaN, as in `bounds::crossed`.
+            // With the operands in this order, `max` and `min` skip NaN, as in `bounds::crossed`.
             start = ((origin - N::load(&bounds[near])) * slabs.near[axis]).max(start);
             end = ((origin - N::load(&bounds[1 - near])) * slabs.far[axis]).min(end);
         }
@@ -112,10 +112,11 @@ impl Node {
 /// For t >= 0 the interval computed with it contains that of [`Bounds::crossed`] (`culling.md`, 4).
 struct Slabs<N> {
     origin: [N; 3],
-    /// The negated inverse direction, widened so that the ray enters a slab earlier; in `far`, so
-    /// that it leaves later.
-    // Negated, because `origin - plane` lets the CPU subtract a memory operand: incoherent rays are 1 to 5 % faster,
-    // together with smaller leaves.
+    /// The negated inverse direction, widened so that the ray enters each slab earlier.
+    ///
+    /// `far` is widened so that the ray leaves each slab later.
+    // Negated, because `origin - plane` lets the CPU subtract a memory operand. Together with smaller leaves, this
+    // makes incoherent rays 1 to 5 % faster.
     near: [N; 3],
     far: [N; 3],
     is_backward: [bool; 3],
@@ -410,9 +411,9 @@ fn push_all_but_nearest(
         let slot = parent.0 * LANES as u32 + lane as u32;
         is_any.then(|| StackEntry { child: node.children[lane], slot, start: starts.0[lane] })
     };
-    // All are sorted: with the nearest in front and the others unsorted, closest hits were not clearly faster.
+    // All hit children are sorted: moving only the nearest to the front did not make closest hits clearly faster.
     let mut nearest = take()?;
-    // By insertion, because at most eight children are hit. The entries below `bottom` belong to other nodes.
+    // Sorted by insertion, because at most eight children are hit. The entries below `bottom` belong to other nodes.
     let bottom = waiting.len();
     while let Some(mut other) = take() {
         if other.start < nearest.start {

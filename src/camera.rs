@@ -144,7 +144,8 @@ impl fmt::Display for CameraError {
             Self::Sides => "a side of the view rectangle must lie between 1e-6 and 1e6 focal lengths",
             Self::AspectRatio => "the aspect ratio must lie between 1e-6 and 1e6",
             Self::Shift => "the view rectangle can be shifted by at most 1000 of its heights",
-            // The first part of each fits into a note of 40 columns, which has no room for the second.
+            // The part of each message before the semicolon fits into a note of 40 columns, which has no room for the
+            // rest.
             Self::Tilt => "the tilt can be at most 89 degrees; at 90 the view rectangle would contain the eye",
             Self::BehindEye => "the rectangle passes behind the eye; tilt it less, shift it less, or make it smaller",
         })
@@ -454,7 +455,7 @@ impl ViewRectangle {
     fn checked_in_front(self) -> Result<Self, CameraError> {
         let Self { width, height, shift, tilt } = self;
         let [(sin_right, cos_right), (sin_up, _)] = tilt.to_array().map(libm::sincosf);
-        // The depth along -w of a step along each side of the rectangle.
+        // The change of depth, along -w, of a unit step along each side of the rectangle.
         let towards = Vec2::new(sin_right, sin_up * cos_right);
         let half = 0.5 * Vec2::new(width.unwrap_or(0.0), height);
         let least_depth = 1.0 - towards.dot(shift * height) - towards.abs().dot(half);
@@ -502,9 +503,9 @@ impl ViewRectangle {
         self.tilt
     }
 
-    /// Returns the shift and the tilt in degrees, such as `shift 0 0.34` and `tilt 0 -21`.
+    /// Returns texts with the shift, and with the tilt in degrees: `shift 0 0.34` and `tilt 0 -21`.
     ///
-    /// A text is missing if both of its numbers are 0.
+    /// The shift is in heights of the rectangle. A text is missing if both of its numbers are 0.
     #[doc(hidden)]
     pub fn offset_texts(&self) -> Vec<String> {
         // Adding 0 turns -0 into 0.

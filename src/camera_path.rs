@@ -53,8 +53,8 @@ impl std::error::Error for PathError {}
 impl CameraPath {
     /// Returns a path from `camera` once around its target in `seconds`.
     ///
-    /// The eye starts to the right and turns about the axis through the target along the up vector, at constant height.
-    /// `seconds` must be greater than 0.
+    /// The eye first moves to the right, and circles the axis through the target along the up vector at constant
+    /// height. `seconds` must be greater than 0.
     ///
     /// ```
     /// use termtrace::{CameraPath, Scene};
@@ -183,7 +183,8 @@ impl KeyframeInterval<'_> {
     ///
     /// At the ends of the path the keyframe itself replaces the missing one. The velocity is zero if a neighbouring
     /// keyframe has the same value.
-    // The zero prevents a value that rests between two keyframes from overshooting.
+    // A value that is equal in two keyframes must not change between them; a velocity other than zero would make it
+    // overshoot.
     fn velocity<T: Interpolated>(&self, keyframe: usize, quantity: impl Fn(&Camera) -> T) -> T {
         let value = |index: usize| quantity(&self.keyframes[index].camera);
         let (before, after) = (keyframe.saturating_sub(1), (keyframe + 1).min(self.keyframes.len() - 1));

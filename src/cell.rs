@@ -74,7 +74,7 @@ crate::table::table! {
         /// The printable ASCII character whose ink is distributed most like the light of a cell's
         /// eight pixels.
         Shape = shape::KIND;
-        /// ASCII characters that draw outlines, and fill each object by its own shading.
+        /// ASCII characters that draw outlines, and fill each object with its full range of tones.
         Ascii = ascii::KIND;
         /// One of ten ASCII characters, by the mean lightness of a cell's two pixels.
         Ramp = ramp::KIND;
@@ -199,7 +199,7 @@ impl CellMode {
         trace(map, executor, scene, camera, resolution, sampling)
     }
 
-    /// Returns the sampling of a frame where nothing else decides it: at most 17 rays per cell.
+    /// Returns the default sampling of a frame: at most 17 rays per cell.
     #[doc(hidden)]
     pub const fn sampling(self) -> Sampling {
         // With one ray for 2 by 2 pixels, and four where these differ, quadrants and eighths have a PSNR of 30.60 dB,
@@ -319,7 +319,7 @@ impl Painter {
 
     /// Fills a grid as [`grid`](Self::grid) does, reusing its memory.
     ///
-    /// Kinds of glyphs that show geometry draw a picture without any as a single surface.
+    /// If the kind of glyphs shows geometry and `geometry` is `None`, the picture is drawn as a single surface.
     ///
     /// # Panics
     /// If the picture needs more than 65,535 columns or rows.
@@ -330,8 +330,8 @@ impl Painter {
 
     /// Fills a grid as [`paint`](Self::paint) does, with less flicker while the view moves.
     ///
-    /// Of glyphs that show geometry, a cell keeps that of the frame painted before if its samples are the same, or if
-    /// another glyph is hardly better. At rest the glyphs depend on the picture alone.
+    /// If the kind of glyphs shows geometry, a cell keeps its glyph from the frame painted before if the cell's samples
+    /// are the same, or if another glyph is hardly better. At rest the glyphs depend on the picture alone.
     #[doc(hidden)]
     pub fn paint_view(&mut self, picture: &Picture, geometry: Option<&Geometry>, is_moving: bool, grid: &mut Grid) {
         self.memory.is_moving = is_moving;

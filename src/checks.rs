@@ -14,7 +14,7 @@ use std::fmt;
 const MAX_COORDINATE: f64 = 1e9;
 
 /// The least length.
-// Squared twice it is 1e-36, above the least normal f32, 1.2e-38.
+// This length, squared twice, is 1e-36, above the least normal f32, 1.2e-38.
 const MIN_LENGTH: f64 = 1e-9;
 
 /// The largest amount of light.

@@ -45,7 +45,7 @@ struct Shared {
     resumed: Condvar,
 }
 
-/// Whether the thread is to wait, because the live view traces a frame.
+/// Whether the tracing thread should wait, because the live view is tracing a frame.
 #[derive(Default)]
 struct Pause {
     is_on: bool,
@@ -80,7 +80,8 @@ impl LargePicture {
         let for_progress = Mutex::new(waker.try_clone()?);
         let thread = thread::Builder::new().name("large picture".to_owned()).spawn(move || {
             terminal::yield_to_other_threads();
-            // A panic goes on in the loop, by `ended`, so that the terminal is restored before its message is printed.
+            // `ended` resumes a panic of this thread in the event loop, so that the terminal is restored before the
+            // message is printed.
             let work = AssertUnwindSafe(|| of_thread.write(&order, &for_progress));
             let _ = done.send(catch_unwind(work));
             waker.wake();
@@ -104,7 +105,7 @@ impl LargePicture {
     /// Cancels the picture, which ends within milliseconds.
     pub(super) fn cancel(&self) {
         self.shared.token.cancel();
-        // A thread that waits in a pause would notice the token only after it.
+        // Without this, a thread that waits in a pause would notice the cancellation only after the pause.
         self.set_paused(false);
     }
 
@@ -156,7 +157,7 @@ impl Shared {
                 TracedMap::new(tone(&render.run()?, scene), Cost::default())
             } else {
                 self.wait_while_paused();
-                // `maps::trace` reports no progress, so that the only place to pause is before it.
+                // `maps::trace` reports no progress, so the thread can pause only before this call.
                 let executor = Executor::Cancellable(&self.token);
                 maps::trace(map, executor, scene, camera, resolution, order.job.sampling)?
             };
@@ -171,7 +172,8 @@ impl Shared {
 
     /// Waits while the live view traces a frame, at most as long as the thread has worked since its
     /// last pause.
-    // In an endless motion the live view traces without end, and a picture that waited for it would never be finished.
+    // During an endless motion the live view traces without a break, and a picture that waited for it to stop would
+    // never be finished.
     fn wait_while_paused(&self) {
         let pause = self.pause.lock().unwrap_or_else(PoisonError::into_inner);
         let worked = pause.ended.map_or(Duration::ZERO, |ended| ended.elapsed());

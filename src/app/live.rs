@@ -25,12 +25,14 @@ use std::time::{Duration, Instant};
 
 /// The loop's clock.
 ///
-/// It starts at [`FIRST_FRAME_MOTION`] and not at 0, because a key counts as held for that time before its press.
+/// It starts at [`FIRST_FRAME_MOTION`] and not at 0, because the viewer subtracts that time from the time of a key
+/// press: the motion counts as begun one frame earlier.
 struct Clock {
     start: Instant,
 }
 
 impl Clock {
+    /// Returns the time since the start of the loop, plus [`FIRST_FRAME_MOTION`].
     fn now(&self) -> Duration {
         FIRST_FRAME_MOTION + self.start.elapsed()
     }
@@ -42,8 +44,8 @@ pub(super) struct Live {
     terminal: Terminal,
     clock: Clock,
     /// The buffer for the encoded bytes of a frame.
-    // Reused for all frames, because a new buffer would have to grow: with the buffer and the grid kept, the time from
-    // a key to its frame at 200x60 fell from 1.08 to 0.98 of what it was before the viewer became a module of its own.
+    // Reused for all frames, because a new buffer would have to grow. With the buffer and the grid reused, the time
+    // from a key to its frame at 200x60 fell by 9 %.
     bytes: Vec<u8>,
     /// The names of the scenes.
     names: Vec<SceneName>,
@@ -53,7 +55,7 @@ pub(super) struct Live {
     threads: Option<usize>,
     large_picture: Option<LargePicture>,
     recording: Option<SessionRecording>,
-    /// The view or scene that the user was last asked to confirm writing to a file.
+    /// The view or scene that is written to a file if the user confirms the last question.
     proposed: Option<Proposal>,
 }
 
@@ -110,7 +112,7 @@ impl Live {
                 self.handle_event(event).map_err(Error::Scene)?;
             }
             let until = self.carry_out_steps(renderer)?;
-            // Watching starts after the first picture, because that takes a quarter of a millisecond or more. An
+            // Watching starts after the first picture, because its start takes a quarter of a millisecond or more. An
             // earlier change is noticed nevertheless, because each file is compared with its state when it was read.
             if self.viewer.has_shown()
                 && !self.terminal.is_sending()
@@ -121,7 +123,8 @@ impl Live {
             }
             renderer.panic_if_asked();
             if let Some(large_picture) = &self.large_picture {
-                // Refinements do not pause it: at rest one follows another, and the picture would wait for the last.
+                // Only frames of a new view pause the large picture. At rest, one refinement follows another, and a
+                // large picture that paused for them would wait until the last one.
                 large_picture.set_paused(renderer.tracing() == Some(Tracing::NewView));
             }
             self.wait(until, renderer, signals)?;
@@ -291,7 +294,7 @@ impl Live {
         Ok(())
     }
 
-    /// Shows the progress of the large picture, if there is one, and its end.
+    /// Shows the progress of the large picture, if there is one, and its outcome at the end.
     fn follow_large_picture(&mut self) {
         let Some(large_picture) = &self.large_picture else { return };
         if let Some(ended) = large_picture.ended() {
@@ -385,8 +388,8 @@ impl Live {
     /// Restores the terminal, stops the process or its group, takes the terminal again and redraws
     /// everything.
     ///
-    /// `None` does not stop, because the process has been stopped and continued already; input read meanwhile is kept.
-    /// After a signal that ends the program the terminal stays restored.
+    /// With `None` the process is not stopped, because it has been stopped and continued already; input that was read
+    /// meanwhile is kept. After a signal that ends the program the terminal stays restored.
     fn suspend(&mut self, stop: Option<StopTarget>, signals: &mut Signals) -> io::Result<()> {
         let now = self.clock.now();
         self.viewer.lose_terminal(now);
@@ -403,7 +406,7 @@ impl Live {
         // `take_again` waits for the foreground, that is, until the shell has handed over the terminal.
         self.terminal.take_again(signals)?;
         if let Some(recording) = &mut self.recording {
-            // The film does not pause for the time of the stop.
+            // The recording leaves out the time during which the process was stopped.
             recording.skip(now, self.clock.now());
         }
         // The queries are sent again, because replies to the earlier ones may be lost.

@@ -83,7 +83,7 @@ impl<E> Loading<E> {
         while let Ok(event) = self.events.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
             match event {
                 LoadEvent::Error(fault) => return Err(fault),
-                // Once a scene is complete, its progress and sketch are not shown.
+                // Once the complete scene has arrived, its progress and its sketch need not be shown.
                 LoadEvent::Scene(_) => {
                     self.received.retain(|event| matches!(event, LoadEvent::Dependencies(_) | LoadEvent::Warnings(_)));
                     self.received.push_back(event);
@@ -139,7 +139,7 @@ struct LoadRequest<E> {
 
 /// The state of the loading thread.
 struct Worker<E> {
-    /// The requests. Shared with threads that wait on pipes, which take no more requests.
+    /// The requests, shared with earlier loading threads, which wait on pipes and take no more.
     queue: Arc<Mutex<Receiver<LoadRequest<E>>>>,
     threads: Option<usize>,
     // Locked, because any thread that builds trees may report progress.
@@ -158,8 +158,8 @@ impl<E: Send + 'static> Worker<E> {
         loop {
             let request = self.queue.lock().unwrap_or_else(PoisonError::into_inner).recv();
             let Ok(request) = request else { return };
-            // Requests that were cancelled in the queue are skipped, so that of many saves in a row the last one is
-            // read.
+            // Requests that were cancelled while they waited are skipped, so that after many saves in a row only the
+            // last version is read.
             if request.cancellation.is_cancelled() {
                 continue;
             }
@@ -205,7 +205,7 @@ impl<E: Send> LoadRequest<E> {
         let Self { source, events: sender, cancellation } = self;
         let events = EventSender { events: sender, waker, last_progress: Mutex::new(None) };
         let work = || load(&source, &cancellation, &events, hand_over_queue, pool);
-        // The panic goes on in the loop, which restores the terminal.
+        // The event loop resumes the panic and restores the terminal.
         if let Err(panic) = catch_unwind(AssertUnwindSafe(work)) {
             events.send(LoadEvent::Panic(panic));
         }
@@ -278,9 +278,10 @@ fn load<'p, E: Send>(
     events.send(LoadEvent::Dependencies(needed));
     events.send(LoadEvent::Warnings(warnings.lock().map(|mut all| std::mem::take(&mut *all)).unwrap_or_default()));
     match read {
-        // The result of a cancelled load is not wanted, whatever it is.
+        // The result of a cancelled load is dropped, whether it is a scene or an error.
         _ if cancellation.is_cancelled() => {}
-        // Small scenes are built in microseconds, without threads: two would cost 130 MB of address space.
+        // Small scenes are built in microseconds on this thread; two threads of a pool would take 130 MB of address
+        // space.
         Ok(draft) => match draft.builds_in_parallel().then(pool).flatten() {
             Some(pool) => pool.install(|| build(draft, &reporter, events)),
             None => build(draft, &reporter, events),

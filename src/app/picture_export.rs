@@ -22,7 +22,7 @@ const MAX_NUMBERED_NAMES: u32 = 9999;
 /// `name`.
 ///
 /// The cells have the glyphs that the terminal shows; they are in truecolor if the format has colours. Default colours
-/// are those of the terminal, but light on black where the format draws them so.
+/// are those of the terminal, dark on light or light on dark, except in formats that always draw them light on black.
 pub(super) fn contents(
     format: Format,
     name: &str,
@@ -58,7 +58,7 @@ pub(super) fn write_new(folder: &Path, stem: &str, format: Format, contents: &[u
 
 /// Gives a complete file a name after `stem`, with the first unused number if that name exists.
 /// Returns the name.
-// Each name is created exclusively. If it were only looked up first, two programs could write the same file.
+// Each name is created exclusively. If a free name were only looked up first, two programs could write the same file.
 pub(super) fn finish_new(file: OutputFile, folder: &Path, stem: &str, extension: &str) -> io::Result<String> {
     let name = |number: u32| {
         let number = if number == 1 { String::new() } else { format!("-{number}") };

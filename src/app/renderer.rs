@@ -165,7 +165,7 @@ impl Renderer {
     ///
     /// The prediction is the time per pixel of the last frame of the same scene and maps.
     fn is_small(&self, job: &Job) -> bool {
-        // Measuring both orders takes longer.
+        // A comparison of image order and object order takes longer than the prediction.
         if job.shot.orders {
             return false;
         }
@@ -179,7 +179,7 @@ impl Renderer {
     }
 
     fn record_time(&mut self, frame: Frame) -> Frame {
-        // Only of the frames that `is_small` decides on.
+        // Only frames with one sample per pixel that refine nothing are timed, because `is_small` predicts only those.
         if has_one_sample(frame.sampling) && !frame.refines {
             let seconds = frame.cost.work.as_secs_f64() / frame.picture.pixels.len() as f64;
             self.seconds_per_pixel = Some((frame.shot, seconds));
@@ -218,8 +218,8 @@ pub(super) fn frame_of(
         let seen = trace_map(map, resolution, &camera)?;
         cost += seen.cost;
         parts.push(seen.picture);
-        // Geometry is kept only of a view that fills the picture: two views side by side may meet within a cell, which
-        // has only one geometry.
+        // Geometry is kept only if one view fills the picture: two views side by side may meet within a cell, which has
+        // only one geometry.
         geometry = seen.geometry.filter(|_| resolution == shot.resolution);
     }
     let trace = start.elapsed();
@@ -235,7 +235,7 @@ pub(super) fn frame_of(
         _ => None,
     };
     let legends = match shot.outside {
-        // The panel of both orders has their names.
+        // If two orders are compared, their panel already names the two pictures.
         None if shot.orders => Vec::new(),
         Some(_) => ["first camera", "from outside: o eye, q on rectangle, p hit, n normal, * light"]
             .map(str::to_owned)
@@ -247,8 +247,8 @@ pub(super) fn frame_of(
 
 /// Traces a frame with one sample per pixel on the calling thread.
 ///
-/// Gives the same light as `UpTo(1)`, without the accumulators for a refinement, which traces this sample again in
-/// little time.
+/// Gives the same light as `UpTo(1)`, but keeps no accumulators. A later refinement traces this sample again, which
+/// takes little time.
 fn trace_once(job: &Job) -> Result<Frame, Cancelled> {
     let one = Sampling::Each(NonZeroU32::MIN);
     let trace_map = |map, part, camera: &Camera| {
@@ -288,8 +288,8 @@ impl Tracer {
     /// Traces or refines a frame, on the calling thread or on the current rayon pool.
     ///
     /// A new frame with one sample per pixel is traced on the calling thread and ignores `token`. All others are traced
-    /// on the pool, and `token` may cancel them. A refinement starts anew if no picture is kept, or one of another
-    /// viewer.
+    /// on the pool, and `token` may cancel them. A refinement starts anew if no picture is kept, or if the kept one is
+    /// another viewer's.
     #[cfg(feature = "serve")]
     pub(crate) fn trace_for_any(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
         if job.refines || !has_one_sample(job.sampling) {
@@ -299,7 +299,7 @@ impl Tracer {
     }
 
     fn trace(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
-        // The kept picture need not be of the last frame: the loop traces small frames itself.
+        // The kept picture may be older than the last frame, because the loop traces small frames itself.
         let mut kept = self.kept.take();
         frame_of(job, |map, resolution, camera| {
             let last = if map.refines() { kept.take() } else { None };
@@ -335,7 +335,7 @@ impl Tracer {
             });
             traced = traced.with_geometry(geometry.clone());
         }
-        // Geometry that was cancelled is incomplete, and must not be kept.
+        // The geometry of a cancelled job is incomplete and must not be kept.
         if token.is_cancelled() {
             return Err(Cancelled);
         }

@@ -9,7 +9,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Something to write that the user is asked to confirm.
+/// A file to be written once the user confirms it.
 pub(super) enum Proposal {
     /// A view to add to a scene file that exists.
     View(ProposedView),
@@ -30,9 +30,9 @@ impl Proposal {
             1 => mesh.with_file_name(format!("{stem}.ron")),
             number => mesh.with_file_name(format!("{stem}-{number}.ron")),
         };
-        // `write_new` checks the name again, because another program may create the file until then.
-        // The limit bounds the time in a folder with many scenes; with all names taken, `write_new` reports the last
-        // one.
+        // `write_new` checks the name again, because another program may create the file meanwhile. At most 1000 names
+        // are tried, which bounds the time in a folder with many scenes. If all are taken, `write_new` reports that the
+        // last one exists.
         let path = (1..1000).map(name).find(|path| path.symlink_metadata().is_err()).unwrap_or_else(|| name(1000));
         Self::Scene(path, text)
     }
@@ -51,7 +51,7 @@ impl Proposal {
         path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
     }
 
-    /// Writes the file and returns a note that says so, or why not.
+    /// Writes the file and returns a note for the user: that it was written, or why not.
     pub(super) fn carry_out(&self) -> String {
         match self {
             Self::View(view) => match view.add_to_file() {

@@ -24,7 +24,7 @@ pub(super) struct Scenes<E> {
     watching: Option<Watching>,
     /// The files of the current scene that are not watched yet.
     unwatched: Option<Vec<Dependency>>,
-    /// The reason that the user was last told why changes of the files are not noticed.
+    /// The reason why file changes are not noticed, as the user was last told.
     reported_problem: Option<String>,
 }
 
@@ -103,8 +103,9 @@ impl<E: Send + 'static> Scenes<E> {
         Ok(self.wanted)
     }
 
-    /// Reads the current scene again; if it is a mesh, with the next axis of its file pointing up,
-    /// after `shown`.
+    /// Reads the current scene again; a mesh is turned so that the next axis of its file points up.
+    ///
+    /// This is the axis after the one that the user chose last, or after `shown` if the user has chosen none.
     pub(super) fn turn_next_axis_up(&mut self, shown: UpAxis) -> io::Result<()> {
         if let Some(source) = self.sources.get_mut(self.wanted) {
             source.turn_next_axis_up(shown);

@@ -15,7 +15,7 @@ const BEGIN: &str = "\x1b[?25l\x1b[m\x1b[2J";
 /// Resets the colours and shows the cursor at the end of a recording.
 const END: &str = "\x1b[m\x1b[?25h";
 
-/// A recording in progress. Dropping it finishes the file, which is therefore valid after a signal.
+/// A recording in progress. Dropping it finishes the file, so that it is valid after a signal too.
 pub(super) struct SessionRecording {
     /// The temporary file; `None` once the recording has ended or an error has occurred.
     file: Option<BufWriter<OutputFile>>,

@@ -87,8 +87,9 @@ impl<E> Source<E> {
         Self { named, up: None, read: Arc::new(read) }
     }
 
-    /// Makes later readings of a mesh file turn it so that the next axis points up: the one after
-    /// the chosen axis, or after `shown` if none is chosen.
+    /// Makes later readings of a mesh file turn it so that the next axis points up.
+    ///
+    /// This is the axis after the one that the user chose last, or after `shown` if the user has chosen none.
     pub(super) fn turn_next_axis_up(&mut self, shown: UpAxis) {
         // The axis after the shown one would be wrong if the user presses the key again before the turned mesh is
         // shown.

@@ -25,7 +25,7 @@ pub(super) struct Watching {
     watcher: RecommendedWatcher,
     /// The files that the scene was read from.
     dependencies: Vec<Dependency>,
-    /// The watched folders: their paths, and which folder had each path when its watch began.
+    /// The watched folders: each path, and the folder that it led to when its watch began.
     folders: HashMap<PathBuf, Identity>,
     /// The reason why a folder could not be watched, if there is one.
     problem: Option<String>,
@@ -60,9 +60,9 @@ enum FileChange {
     Written,
 }
 
-/// Greatest number of times that the paths are resolved in a row because a link has changed
-/// meanwhile.
-// Without a limit, a program that keeps replacing a link would keep the event loop busy. The next event tries again.
+/// Greatest number of attempts to resolve the paths while links on them keep changing.
+// Without a limit, a program that keeps replacing a link would keep the event loop busy. The next event starts new
+// attempts.
 const MAX_RESOLUTIONS: usize = 8;
 
 impl Watching {
@@ -124,16 +124,17 @@ impl Watching {
 
     /// Resolves the paths to the files and watches their folders.
     ///
-    /// Returns whether a file has changed: any file if `compares_all`, otherwise one whose folder was not watched
-    /// before. (In a folder that was, an event follows when the file's writer closes it; until then it might be
-    /// incomplete.)
+    /// Returns whether a file has changed. Unless `compares_all` is set, only files in newly watched folders are
+    /// compared: in a folder that was watched before, an event follows when a file's writer closes it, and until then
+    /// the file may be incomplete.
     fn watch_and_find_change(&mut self, compares_all: bool) -> bool {
         let mut fresh = HashSet::new();
         for _ in 0..MAX_RESOLUTIONS {
             let paths = self.resolve_paths();
             self.share_paths(&paths);
             fresh.extend(self.watch_folders(&paths));
-            // A link that was replaced before its folder was watched has changed the paths: they are watched anew then.
+            // If a link was replaced before its folder was watched, the paths have changed, and their folders are
+            // watched in another round.
             if self.resolve_paths() == paths {
                 break;
             }
@@ -181,7 +182,7 @@ impl Watching {
             match self.watch_folder(&folder) {
                 Ok(true) => fresh.push(folder),
                 Err(error) if searched_folders.contains(&folder) => self.problem = Some(reason(&error)),
-                // An outer folder without read permission is no problem worth a message: it hardly ever changes.
+                // An outer folder without read permission is not reported, because it hardly ever changes.
                 _ => {}
             }
         }

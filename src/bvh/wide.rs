@@ -36,7 +36,7 @@ impl<'p> Wide<'p> {
             return Child::leaf(self.leaves.len() as u32 - 1);
         }
         let number = self.nodes.len();
-        // Takes its number now, before those of its children.
+        // The empty node is pushed first, so that its number comes before those of its children.
         self.nodes.push(Node::EMPTY);
         let mut children = Children::default();
         self.gather_children(index, LANES, &mut children);

@@ -109,7 +109,8 @@ impl Camera {
 
     /// Returns the camera with its view rectangle shifted by steps to the right and upwards.
     ///
-    /// A step is 0.05 heights, and ends at a multiple of it.
+    /// A step is 0.05 heights of the rectangle. Along each axis with steps, the new shift is rounded to a whole number
+    /// of steps.
     ///
     /// # Errors
     /// If the rectangle cannot be shifted farther.
@@ -121,8 +122,8 @@ impl Camera {
 
     /// Returns the camera with its view rectangle tilted to the right and upwards by some steps.
     ///
-    /// A step is 2 degrees. A vertical one ends early where the rectangle becomes parallel to the up vector, so that
-    /// one finds this angle by hand.
+    /// A step is 2 degrees. A vertical step ends early where the rectangle becomes parallel to the up vector, so that
+    /// the user can reach this angle exactly.
     ///
     /// # Errors
     /// If the rectangle cannot be tilted farther.
@@ -204,7 +205,7 @@ impl Camera {
         let [a, b] = [from, to].map(|pose| pose.target - pose.eye);
         // Clamped, because rounding may take the cosine beyond 1.
         let angle = libm::acosf(a.normalize_or_zero().dot(b.normalize_or_zero()).clamp(-1.0, 1.0));
-        // Opposite directions have no common normal: the camera turns about its v, that is, horizontally.
+        // Opposite directions have no common normal: the camera then turns horizontally, about its own v axis.
         let axis = a.cross(b).try_normalize().unwrap_or(self.basis.v);
         let even = |from: f32, to: f32| libm::powf(to / from, share);
         let view = rotated(a, axis, share * angle) * even(a.length(), b.length());
@@ -268,7 +269,7 @@ fn is_no_turn(right: f32, up: f32) -> bool {
 
 /// Returns the distance from a box's centre, along w, at which an eye sees all corners of the box.
 ///
-/// It sees corners whose projections to the plane at distance 1 are within `half` of `middle`, along u and v.
+/// A corner is seen if its projection to the plane at distance 1 is within `half` of `middle`, along u and v.
 pub(crate) fn framing_distance(bounds: &Bounds, [u, v, w]: [Vec3; 3], half: Vec2, middle: Vec2) -> f32 {
     let centre = centre_of(bounds);
     let distance = (0..8).map(|corner| {
@@ -295,7 +296,7 @@ fn rotated(v: Vec3, axis: Vec3, angle: f32) -> Vec3 {
     turned * (v.length() / turned.length())
 }
 
-/// Returns numbers of steps after more steps: along an axis with any, a whole number.
+/// Returns `number` plus `steps`, rounded to whole steps along axes where `steps` is not 0.
 #[cfg(feature = "live")]
 fn stepped(number: Vec2, steps: Vec2) -> Vec2 {
     Vec2::select(steps.cmpeq(Vec2::ZERO), number, (number + steps).round())

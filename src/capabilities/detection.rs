@@ -127,7 +127,7 @@ pub(super) fn colorterm(clues: &Clues<'_>) -> Option<Detected<Colors>> {
 }
 
 /// Returns truecolor if the terminal replied that it kept the test colour.
-// A terminal that did not keep it may have any smaller number of colours, so other sources decide.
+// A terminal that did not keep the test colour may have any smaller number of colours, so other sources decide.
 fn replied_truecolor(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let kept = clues.truecolor_reply?;
     kept.then_some(Detected { value: Colors::Truecolor, source: Source::Reply })
@@ -171,7 +171,7 @@ fn colors_by_name(clues: &Clues<'_>) -> Detected<Colors> {
 }
 
 /// Returns the environment variable that sets the locale's character set, and its value.
-// The first one that is set and not empty counts, in the order of POSIX.
+// The first of these variables that is set and not empty counts; their order is that of POSIX.
 pub(super) fn locale(clues: &Clues<'_>) -> Option<(&'static str, String)> {
     ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(|name| Some((name, non_empty_variable(clues, name)?)))
 }

@@ -131,7 +131,7 @@ impl Hints {
         self.colors(Some(true)).value != self.colors(None).value
     }
 
-    /// Returns whether `colors` are 256 by detection alone, so that the terminal may have more.
+    /// Returns whether `colors` are 256 by detection alone: the terminal may have truecolor.
     pub fn suspects_truecolor(&self, colors: Colors) -> bool {
         let is_chosen = self.color != ColorChoice::Auto || self.color_variable().is_some();
         colors == Colors::Indexed256 && !is_chosen
@@ -194,7 +194,8 @@ impl Findings {
             cell_aspect: cell_aspect
                 .or(by_pixels)
                 .unwrap_or_else(|| detected_or(replied_aspect(replies), Source::Reply, USUAL_CELL_ASPECT)),
-            // The window's size, if reported, is preferred because it is current, whereas the reply is from the start.
+            // The window's size, if reported, is preferred because it is current, whereas the reply was received at the
+            // start.
             half_blocks: if window.aspect.is_some() {
                 Detected { value: window.half_blocks, source: Source::Window }
             } else {

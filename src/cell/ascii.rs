@@ -26,25 +26,27 @@ pub(super) const KIND: GlyphKind = GlyphKind {
     fill: Fill::Geometry(fill),
 };
 
-// More rays show hardly more: of the outlines of three spheres, two by four rays show 99 %, eight by sixteen 100 %.
-// Where surfaces meet, four times as many are traced.
+// The rays per cell. More rays find hardly more of the outlines: of those of three spheres, two by four rays find 99 %,
+// eight by sixteen 100 %. Where surfaces meet, four times as many are traced.
 const ACROSS: usize = 2;
 const DOWN: usize = 4;
 
-/// A character for filling, and its ink: the share of that of `@`.
+/// A character that fills cells, and its ink as a fraction of the ink of `@`.
 type Tone = (u8, f32);
 
-/// The characters of objects. Never blank: the dark side of an object is still an object.
+/// The fill characters of objects, from dark to light.
+///
+/// None is blank, so that the dark side of an object is visible.
 // With a dark side that starts at `.`, objects stand out less: the inks beside an outline of three spheres differ by
 // 0.34 instead of 0.38.
 const OBJECT: [Tone; 8] =
     [(b':', 0.19), (b';', 0.255), (b'+', 0.41), (b'x', 0.53), (b'o', 0.645), (b'X', 0.725), (b'#', 0.885), (b'@', 1.0)];
-/// The characters of floors and ceilings, and of walls, lighter than those of objects.
-// With steps of .25 in ink, a plane's pattern would look like an edge.
+/// The fill characters of floors and ceilings, and those of walls: lighter than those of objects.
+// If neighbouring characters differed by 0.25 in ink, a plane's pattern would look like an edge.
 const LEVEL: [Tone; 4] = [(b' ', 0.0), (b'.', 0.095), (b'-', 0.105), (b'~', 0.22)];
 const UPRIGHT: [Tone; 4] = [(b' ', 0.0), (b'.', 0.095), (b':', 0.19), (b'!', 0.305)];
 
-/// The shares of the range of an object's light from which its later characters are used.
+/// The limits between the characters of `OBJECT`, as fractions of the range of an object's light.
 // Each limit is half-way between the inks of two characters.
 const OBJECT_LIMITS: [f32; OBJECT.len() - 1] = {
     let mut limits = [0.0; OBJECT.len() - 1];
@@ -56,7 +58,7 @@ const OBJECT_LIMITS: [f32; OBJECT.len() - 1] = {
     limits
 };
 
-/// The object that most rays of a cell meet, and the share of the cell that it takes.
+/// The object that most rays of a cell meet, and how the cell shows it.
 struct Part {
     /// The object's index, plus 1; 0 for the background.
     object: u32,
@@ -147,7 +149,7 @@ fn luma(pixel: Srgb8) -> f32 {
     (0.2126 * f32::from(pixel.r) + 0.7152 * f32::from(pixel.g) + 0.0722 * f32::from(pixel.b)) / 255.0
 }
 
-/// Sets the tone of each part by its object's range of light; returns the heights and the ranges.
+/// Sets each part's tone by its object's range of light; returns the objects' heights and ranges.
 fn set_tones(parts: &mut [Part], background: Background, before: Option<&Remembered>) -> (Heights, Ranges) {
     let mut order: Vec<u32> = (0..parts.len() as u32).collect();
     order.sort_unstable_by(|&a, &b| {
@@ -186,10 +188,9 @@ fn set_tones(parts: &mut [Part], background: Background, before: Option<&Remembe
 ///
 /// The character `kept` stays if the share is less than a tenth of a step away from its tone. On a light background the
 /// darkest parts get the densest characters.
-///
-/// On a light background the darkest parts get the densest characters.
-// On planes the order of the tones is reversed and the limits stay, so that the lightest quarter is blank. With the
-// share reversed, as on objects, patterns of a lit floor were single dots and rows that look like edges.
+// On a light background the tones of a plane are reversed while the limits stay, so that the lightest quarter is blank.
+// When the share was reversed instead, as for objects, patterns of a lit floor were single dots and rows that look like
+// edges.
 fn tone(extent: Extent, share: f32, background: Background, kept: Option<u8>) -> Tone {
     let is_light = background == Background::Light;
     let plane = |tones: [Tone; 4]| if is_light { [tones[3], tones[2], tones[1], tones[0]] } else { tones };
@@ -217,12 +218,12 @@ impl Heights {
     /// Returns whether an object is less than four and a half cells high.
     fn is_low(&self, object: u32) -> bool {
         let found = self.0.binary_search_by_key(&object, |&(object, _)| object);
-        // At 80x24 the spheres of many_spheres have three by two cells, which outlines would take altogether.
+        // In many_spheres at 80x24 a sphere has three by two cells, which its outline alone would fill.
         !found.is_ok_and(|at| 2 * self.0[at].1 >= 9 * DOWN)
     }
 }
 
-/// For each cell, the number of cells above and to the left of it that have a border.
+/// A summed-area table that counts the cells with a border (Crow 1984).
 struct Crowds {
     sums: Vec<u32>,
     columns: usize,
@@ -280,7 +281,7 @@ fn ink(
         (Background::Light, _) => 102,
     };
     let mean = Srgb8::from_linear(light * (1.0 / pixels.len() as f32));
-    // Not a mix of two colours: a character has a single one.
+    // The nearest colour, and not a mix of two palette colours: a character has a single colour.
     inks.nearest(tint::scaled_to_brightness(mean, brightness))
 }
 
@@ -294,8 +295,8 @@ fn glyph(parts: &[Part], columns: usize, cell: usize, heights: &Heights, crowds:
     let right = (column + 1 < columns).then_some(cell + 1);
     let (above, below) = (cell.checked_sub(columns), Some(cell + columns).filter(|&below| below < parts.len()));
     let Some(edge) = part.edge else {
-        // Planes stay blank beside a border, so that its line stands out: in corridor .98 of the outlines are seen
-        // instead of .83.
+        // Planes stay blank beside a border, so that its line stands out: in the scene corridor, 98 % of the outlines
+        // are seen instead of 83 %.
         let is_beside_line = || {
             let has_border = |at: usize| parts[at].edge.is_some_and(|edge| edge.is_border);
             [left, right, above, below].into_iter().flatten().any(has_border)
@@ -305,7 +306,7 @@ fn glyph(parts: &[Part], columns: usize, cell: usize, heights: &Heights, crowds:
     if !(edge.is_border && heights.is_low(edge.owner) && crowds.is_crowded(column, row)) {
         return edge.glyph;
     }
-    // Outlines around small objects in a crowd would be a tangle.
+    // Small objects in a crowd are drawn by their fill, because outlines around them would be a tangle.
     let ink = |at: Option<usize>| at.map_or(0.0, |at| parts[at].tone.1);
     let [before, after] = if edge.is_steep { [left, right] } else { [above, below] };
     if !edge.is_inside || (ink(before) - ink(after)).abs() > 0.35 {

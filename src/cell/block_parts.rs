@@ -17,7 +17,7 @@ pub(crate) struct BlockParts {
 pub(crate) fn block_parts(glyph: char) -> Option<BlockParts> {
     let of = |parts, mask| Some(BlockParts { parts, mask });
     let found = |glyph_of: fn(u8) -> char| (0..=u8::MAX).find(|&mask| glyph_of(mask) == glyph);
-    // U+2581 to U+2587 have one to seven eighths from below, and U+2589 to U+258F seven to one from the left.
+    // U+2581 to U+2587 fill one to seven eighths from below, and U+2589 to U+258F seven eighths to one from the left.
     match glyph {
         '▁'..='▇' => of([1, 8], !(0xff >> (glyph as u32 - '▀' as u32))),
         '▉'..='▏' => of([8, 1], 0xff >> (glyph as u32 - '█' as u32)),

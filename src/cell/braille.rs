@@ -23,7 +23,7 @@ fn fill(grid: &mut Grid, picture: &Picture, inks: &mut InkConverter) {
 }
 
 /// Returns the pattern with a dot for each bit of a mask.
-// The lowest row was added last, so its bits are the highest.
+// Unicode added the lowest row of dots last, so it has the highest bits.
 fn dots(mask: u8) -> char {
     const BITS: [u32; 8] = [0x01, 0x08, 0x02, 0x10, 0x04, 0x20, 0x40, 0x80];
     let bits: u32 = (0..8).filter(|part| mask >> part & 1 == 1).map(|part| BITS[part]).sum();

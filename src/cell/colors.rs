@@ -34,7 +34,7 @@ impl Colors {
 /// The inks of characters: the nearest one for each colour, as characters cannot be dithered.
 pub(super) struct TextInks {
     colors: Colors,
-    /// The sixteen colours, if there are only those.
+    /// The sixteen colours of a terminal that has only those; else empty.
     // Converted once per frame, because the conversion of 16 colours takes about a microsecond.
     sixteen: Vec<Oklab>,
 }
@@ -58,7 +58,8 @@ impl TextInks {
             Colors::None => Ink::Default,
             Colors::Truecolor => Ink::Rgb(color),
             Colors::Indexed256 => {
-                // A level is the nearest one from half-way between it and the level before.
+                // The index of the nearest level: the number of midpoints between neighbouring levels below the
+                // channel.
                 let level = |channel: u8| LEVELS.windows(2).filter(|pair| channel > pair[0].midpoint(pair[1])).count();
                 let [r, g, b] = [color.r, color.g, color.b].map(level);
                 Ink::Indexed((16 + 36 * r + 6 * g + b) as u8)

@@ -8,16 +8,16 @@ use crate::render::Geometry;
 use crate::tone::Picture;
 
 /// A row of the table of glyph kinds: all properties of one kind.
-// Without the table, a new kind took edits in nine files.
+// Without this table, adding a kind took edits in nine files.
 pub(super) struct GlyphKind {
     pub(super) name: &'static str,
     pub(super) help: &'static str,
     pub(super) title: &'static str,
     pub(super) pixels_per_cell: (u32, u32),
     pub(super) has_blocks: bool,
-    /// The kind to use instead without colours; `None` if this kind can do without.
+    /// The kind to use instead on terminals without colours; `None` if this kind needs no colours.
     ///
-    /// It must have the same number of pixels per cell.
+    /// Both kinds must have the same number of pixels per cell.
     pub(super) plain: Option<Glyphs>,
     pub(super) fill: Fill,
 }
@@ -30,7 +30,7 @@ pub(super) enum Fill {
     Lightness(fn(&mut Grid, &Picture)),
     /// Sets glyphs and colours from the picture, its surfaces and the terminal's background.
     ///
-    /// With a memory, cells keep the glyphs of the frame before where it says so.
+    /// With a memory, cells of a moving view keep the glyphs of the frame before if these still fit well enough.
     Geometry(fn(&mut Grid, &Picture, &Geometry, (Background, Colors), Option<&mut Memory>)),
 }
 

@@ -20,9 +20,9 @@ pub(super) const KIND: GlyphKind = GlyphKind {
 };
 
 /// Sets each cell to a lower half block, in the lower pixel's colour on the upper pixel's colour.
-// Always the same half block: at odd cell heights some terminals split the two a row of pixels apart, and a mix of them
-// is visible. At even heights the encoder mixes them to save bytes. If both halves are equal the glyph is a space,
-// because full blocks show hairlines in some fonts.
+// Always the same half block: at odd cell heights some terminals end the upper half block and begin the lower one at
+// different rows of pixels, so that a mix of both kinds is visible. At even heights the encoder mixes them to save
+// bytes. If both halves are equal the glyph is a space, because full blocks show hairlines in some fonts.
 fn fill(grid: &mut Grid, picture: &Picture, inks: &mut InkConverter) {
     if matches!(inks, InkConverter::Monochrome) {
         return fill_without_colors(grid, picture);

@@ -35,7 +35,7 @@ impl InkConverter {
         }
     }
 
-    /// Returns the ink for a character of a colour, which is the same at all places.
+    /// Returns the ink for a character of this colour: not dithered, so the same at all pixels.
     pub(super) fn flat_ink(&mut self, color: Srgb8) -> Ink {
         match self {
             Self::Monochrome => Ink::Default,

@@ -13,9 +13,11 @@ static LIGHT: LazyLock<[f32; LEVELS]> =
 
 /// Returns whether the pixel at column `x` and row `y` of the screen is lit.
 ///
-/// A share of the pixels of one colour is lit, in sixteenths: none of the darkest colour, all of the lightest one.
-// The steps are those of mixes in which each of sixteen pixels compensates 0.6 of the error of those before it. They
-// are calmer than steps of a sixteenth: shadows and highlights have no single dots.
+/// A share of the pixels of one colour is lit, in sixteenths and spread by blue noise: none of the darkest colour, all
+/// of the lightest one.
+// A sixteenth of the pixels is lit from a mean light of 0.05 on, and another one for each 0.06 more. These are the
+// steps of mixes in which each of sixteen pixels compensates 0.6 of the error of those before it. They are calmer than
+// steps of a sixteenth (0.0625): shadows and highlights have no single dots.
 pub(super) fn is_lit(color: Srgb8, x: usize, y: usize) -> bool {
     // A channel between two levels is dithered to one of them, by a threshold that is read at a distant place of the
     // tile, because equal thresholds would correlate.

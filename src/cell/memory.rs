@@ -1,12 +1,12 @@
-//! The frame before, by which the cells of a moving view keep their glyphs.
+//! The last frame, from which the cells of a moving view keep their glyphs.
 //!
-//! Without it, a character at the limit between two steps changes to and fro while the view moves.
+//! Without it, a cell near the limit between two characters would change to and fro between them while the view moves.
 
 use crate::grid::Cell;
 use crate::render::Geometry;
 use crate::tone::Picture;
 
-/// The least range of light that is spread over all characters, so that a flat object has one tone.
+/// The least range of light that is spread over all characters; evenly lit objects use fewer.
 pub(super) const LEAST_RANGE: f32 = 0.12;
 
 /// The greatest change of an end of an object's range of light per frame, as a share of the range.
@@ -15,7 +15,7 @@ pub(super) const LEAST_RANGE: f32 = 0.12;
 const MAX_RANGE_CHANGE: f32 = 0.05;
 
 /// The frame before, and whether the view moves.
-// A frame at rest is remembered too, so that a motion begins with its glyphs.
+// A frame at rest is remembered too, so that a motion begins with the glyphs that were shown at rest.
 #[derive(Default)]
 pub(super) struct Memory {
     pub(super) is_moving: bool,
@@ -33,7 +33,7 @@ pub(super) struct Remembered {
 /// A cell of the frame before.
 pub(super) struct KeptCell {
     pub(super) object: u32,
-    /// The character of the fill, also where the cell shows an edge.
+    /// The fill character, even if the cell shows the character of an edge.
     pub(super) fill: u8,
     pub(super) edge: Option<char>,
     pub(super) shown: Cell,
@@ -74,7 +74,7 @@ pub(super) struct Ranges(Vec<(u32, [f32; 2])>);
 impl Ranges {
     /// Adds the range of an object's light, and returns it.
     ///
-    /// It differs little from that of the frame before.
+    /// Each end is limited to a change of `MAX_RANGE_CHANGE` since the frame before.
     pub(super) fn add(&mut self, object: u32, mut range: [f32; 2], before: Option<&Remembered>) -> [f32; 2] {
         if let Some(before) = before.and_then(|before| before.ranges.of(object)) {
             let most = MAX_RANGE_CHANGE * (before[1] - before[0]).max(LEAST_RANGE);

@@ -10,7 +10,7 @@ use crate::color::{LinearRgb, Oklab, Srgb8};
 #[derive(Clone, Copy)]
 pub(super) struct Mix {
     mean: Oklab,
-    /// The part of the cost that the two colours cause by their difference.
+    /// The part of the cost that comes from the difference between the two colours.
     contrast: f32,
     /// The positions of the darker and the lighter colour in the palette.
     pub(super) colors: [u8; 2],
@@ -28,8 +28,8 @@ pub(super) struct Mixes {
 
 /// The rules of mixing, which depend on the number of palette colours.
 ///
-/// Differences and costs are in OKLab, costs as squares. The weights are those that left the least noise in the
-/// pictures of the shipped scenes, among those whose mean colours after a blur are near the pictures'.
+/// Differences are in OKLab, and costs are their squares. The weights were chosen on the shipped scenes: of all weights
+/// that keep the mean colours of the pictures (compared after a blur), these leave the least noise.
 struct Rules {
     /// The shares of the lighter colour that are tried, in quarters.
     quarters: &'static [u8],
@@ -52,7 +52,7 @@ struct Rules {
 }
 
 const MANY: Rules = Rules {
-    // Of near colours, a lattice of dots is more visible than the step in tone that it avoids.
+    // Only half and half: with quarters, dots of a near colour are more visible than the step in tone that they avoid.
     quarters: &[2],
     max_lightness: 0.19,
     max_chroma: 0.12,
@@ -73,12 +73,13 @@ const FEW: Rules = Rules {
     chroma_contrast: 0.4,
     hue_cosine: std::f32::consts::FRAC_1_SQRT_2, // of 45 degrees
     grey: 0.03,
-    // The blacks and whites of themes are tinted. Without them a black would be shown by the theme's middle grey.
+    // Themes tint their blacks and whites. If these did not count as greys, a black would be shown by the theme's
+    // middle grey.
     neutral: 0.07,
 };
 
 /// The cost of a wrong hue, which exceeds all other costs.
-// It is finite, because a theme may have no grey.
+// Finite, so that a theme without any grey still has a best mix for a grey.
 const WRONG_HUE: f32 = 9.0;
 /// The cost of a mix that shows a clear colour as grey.
 const LOST_COLOR: f32 = 0.03;
@@ -117,7 +118,7 @@ impl Mixes {
         Self { colors, sorted: mixes, rules }
     }
 
-    /// Returns the mix with this number.
+    /// Returns the mix with this number: its place in the order of lightness.
     pub(super) fn get(&self, number: usize) -> Mix {
         self.sorted[number]
     }
@@ -154,7 +155,7 @@ impl Mixes {
         best.1
     }
 
-    /// Returns the cost of a colour that is not in the picture, or that is lost.
+    /// Returns the extra cost of a mix with a wrong hue, or that shows a clear colour as grey.
     fn penalty(&self, mix: &Mix, wanted: Oklab) -> f32 {
         let is_wrong = mix.colors.iter().any(|&at| self.is_wrong_hue(self.colors[usize::from(at)], wanted));
         let is_clear = wanted.l > 0.3 && chroma(wanted) > 0.045;
@@ -162,8 +163,7 @@ impl Mixes {
         (if is_wrong { WRONG_HUE } else { 0.0 }) + (if is_lost { LOST_COLOR } else { 0.0 })
     }
 
-    /// Returns whether a palette colour has another hue than the wanted colour, or has a hue where
-    /// that is grey.
+    /// Returns whether a palette colour has another hue than the wanted one, or any hue for a grey.
     fn is_wrong_hue(&self, color: Oklab, wanted: Oklab) -> bool {
         let along = color.a * wanted.a + color.b * wanted.b;
         chroma(color) > self.rules.neutral

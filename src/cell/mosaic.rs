@@ -1,7 +1,7 @@
-//! Mosaics: cells whose parts have one of two colours, the least-squares best of the cell's pixels.
+//! Mosaics: cells of two colours, whose glyph and colours have the least squared error.
 //!
 //! For each glyph, the best two colours are the means of the pixels inside and outside its ink. The cell gets the glyph
-//! with the least squared error, taken in 8-bit sRGB as the terminal shows it.
+//! with the least squared error from the cell's pixels, taken in 8-bit sRGB as the terminal shows it.
 
 use super::ink_converter::InkConverter;
 use super::lit::is_lit;
@@ -26,7 +26,8 @@ pub(super) struct Mosaic {
 }
 
 /// Greatest difference of two colours, in each 8-bit channel, that is not drawn.
-// Two levels are invisible. Drawn, they took up to 25 % more bytes than half blocks for 0.02 dB.
+// A difference of two levels is invisible. When it was drawn, mosaics took up to 25 % more bytes than half blocks and
+// gained only 0.02 dB.
 const FLAT: u8 = 2;
 
 /// The sum of some pixels, per channel.
@@ -95,7 +96,7 @@ impl Mosaic {
     }
 
     /// Returns the cell in the two best colours: a space if they hardly differ.
-    // Never a full block, because fonts leave hairlines between these.
+    // A full block is never used, because fonts leave hairlines between full blocks.
     fn colored(&self, sums: &Sums, column: u16, row: u16, inks: &mut InkConverter) -> Cell {
         let (x, y) = (usize::from(column), 2 * usize::from(row));
         let (across, down) = self.pixels_per_cell();
@@ -105,8 +106,8 @@ impl Mosaic {
         if count == 0 || [fg.r.abs_diff(bg.r), fg.g.abs_diff(bg.g), fg.b.abs_diff(bg.b)].iter().all(|&by| by <= FLAT) {
             return Cell::new(' ', Ink::Default, inks.ink_at(mean(total, pixels), x, y));
         }
-        // A mix of palette colours has a pattern of two rows per cell, as for half blocks: each colour takes one of
-        // them.
+        // Palette colours are dithered in a pattern of two rows per cell, as for half blocks: the background colour
+        // takes the upper row of the pattern, the glyph's colour the lower one.
         let (fg, bg) = (inks.ink_at(fg, x, y + 1), inks.ink_at(bg, x, y));
         let glyph = match shape {
             _ if fg == bg => return Cell::new(' ', Ink::Default, bg),
@@ -117,8 +118,8 @@ impl Mosaic {
     }
 
     /// Returns the ink with the least squared error; the first of several equal ones.
-    // The upper left part is never ink: a mask and its complement show the same, and of the halves that leaves the
-    // lower one, as in `half`.
+    // Only masks without the upper left part are tried, because a mask and its complement show the same picture. Of the
+    // two half blocks this leaves the lower one, as in `half`.
     fn best(&self, sums: &Sums, total: Sum, pixels: u32) -> Choice {
         let mut best = Choice { shape: Shape::Parts(0), sum: [0; 3], count: 0, gain: 0.0 };
         let mut consider = |shape, sum: Sum, count: u32| {
@@ -131,7 +132,7 @@ impl Mosaic {
         let part_pixels = self.part_pixels[0] * self.part_pixels[1];
         let mut inside = [[0; 3]; 128];
         for half in 1..1_usize << (self.parts[0] * self.parts[1] - 1) {
-            // Each sum is that of a mask with one part less, plus that part.
+            // The sum for a mask is that of the mask without its lowest part, plus that part.
             let rest = half & (half - 1);
             inside[half] = plus(inside[rest], sums.parts[half.trailing_zeros() as usize + 1]);
             consider(Shape::Parts(half << 1), inside[half], half.count_ones() * part_pixels);
@@ -142,7 +143,8 @@ impl Mosaic {
                 lower = plus(lower, row);
                 consider(Shape::Eighths(glyph), lower, 4 * rows);
             }
-            // Four columns of pixels show quarters only: `▎` and `▊`. The half is a mask of parts.
+            // Four columns of pixels can show only quarters from the left: `▎` and `▊`. The left half is already one of
+            // the masks.
             let [left, .., right] = sums.columns;
             consider(Shape::Eighths('▎'), left, 8);
             consider(Shape::Eighths('▊'), minus(total, right), 24);

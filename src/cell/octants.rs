@@ -22,7 +22,7 @@ fn fill(grid: &mut Grid, picture: &Picture, inks: &mut InkConverter) {
     MOSAIC.fill(grid, picture, inks);
 }
 
-/// The masks of octants that are not in the block of Unicode 16, and their glyphs.
+/// The masks of octants whose glyphs are outside the block of Unicode 16, with these glyphs.
 const ELSEWHERE: [(u8, char); 26] = [
     (0x00, ' '),
     (0x01, '\u{1CEA8}'),
@@ -53,7 +53,7 @@ const ELSEWHERE: [(u8, char); 26] = [
 ];
 
 /// Returns the glyph of a mask of octants.
-// The block of Unicode 16 has all masks in order, but those that had a glyph before or are parts of other sets.
+// The block of Unicode 16 has all masks in order, except for those whose glyphs are older or belong to other sets.
 pub(super) fn octant(mask: u8) -> char {
     let before = ELSEWHERE.partition_point(|&(other, _)| other < mask);
     match ELSEWHERE.get(before) {

@@ -1,8 +1,8 @@
-//! Few colours: each pixel shows one of the two near palette colours of its colour's mix.
+//! Few colours: each pixel shows one of the two palette colours that its own colour is mixed from.
 //!
-//! A regular pattern of 2x2 pixels selects which: areas of one colour are flat, a checkerboard, or a lattice in which
-//! every fourth pixel differs. Unlike with error diffusion, a pixel depends on its own colour and place only, so
-//! unchanged parts of a picture do not flicker and send no bytes.
+//! A regular pattern of 2x2 pixels selects which of the two: areas of one colour are flat, a checkerboard, or a lattice
+//! in which every fourth pixel differs. Unlike with error diffusion, a pixel depends on its own colour and place only,
+//! so unchanged parts of a picture do not flicker and send no bytes.
 // Rejected: Knoll's pattern dithering, whose mixes of up to sixteen colours have an exact mean but look like confetti;
 // the nearest colour alone, which turns weak colours grey; thresholds of blue noise, which look restless beside a
 // checkerboard and have to be computed before the first picture.
@@ -25,7 +25,7 @@ pub(super) struct Palette {
 struct Choices {
     mixes: Mixes,
     /// For each colour of [`LEVELS`], the number of its mix, counted from 1; 0 if none is chosen.
-    // The list takes 131 kB for the 65,536 colours of `LEVELS`. Mixes of up to sixteen colours took 557 kB.
+    // Memory: 131 kB for the 65,536 colours of `LEVELS`. The rejected mixes of up to sixteen colours took 557 kB.
     chosen: Vec<u16>,
 }
 
@@ -42,7 +42,7 @@ impl Palette {
 
     /// Returns the palette index of a colour at a pixel of the screen.
     pub(super) fn index(&mut self, color: Srgb8, x: usize, y: usize) -> u8 {
-        // Bayer's matrix of order 2: half of the pixels are a checkerboard.
+        // Bayer's matrix of order 2: if half of the pixels are lighter, these form a checkerboard.
         const PATTERN: [[u8; 2]; 2] = [[0, 2], [3, 1]];
         let mix = self.mix(color);
         let is_lighter = PATTERN[y % 2][x % 2] < mix.lighter_quarters;
@@ -68,8 +68,9 @@ impl Palette {
 }
 
 impl Choices {
-    /// Returns the mixes of a palette. Its own colours are chosen already, so that they are flat.
-    // By cost alone, the mix of a darker and a lighter grey may be nearer to a grey's level than that grey.
+    /// Returns the mixes of a palette, in which each palette colour is already chosen for itself.
+    // Chosen by cost alone, a mix of a darker and a lighter grey could replace a grey of the palette, because it may be
+    // nearer to the rounded level of that grey than the grey itself.
     fn new(colors: &[Srgb8]) -> Self {
         let mixes = Mixes::new(colors);
         let mut chosen = vec![0; LEVELS.iter().product()];
@@ -81,7 +82,8 @@ impl Choices {
 }
 
 /// The numbers of levels per channel to which colours are rounded.
-// Each grey of the 240 colours has a level of green of its own. With 32 levels, 128 and 135 have the same.
+// With 64 levels of green, each grey of the 240 colours has a level of its own. With 32, the greys 128 and 135 would
+// share one.
 const LEVELS: [usize; 3] = [32, 64, 32];
 
 /// Returns the levels nearest to a colour.

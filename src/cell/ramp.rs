@@ -1,6 +1,6 @@
 //! The ASCII ramp: one of ten characters by lightness.
 //!
-//! The ramp shows half blocks without colours, and is the most even kind for text that programs read.
+//! The ramp replaces half blocks on terminals without colours, and is the most even kind for text that programs read.
 
 use super::glyph_kind::{Fill, GlyphKind};
 use super::pair;
@@ -20,7 +20,8 @@ pub(super) const KIND: GlyphKind = GlyphKind {
 };
 
 /// The characters of the ramp, from dark to light.
-// They ascend by their ink in `DejaVu` Sans Mono. They must not change, because users' snapshots contain them.
+// The characters are in the order of their ink in `DejaVu` Sans Mono. They must not change, because users' snapshots
+// contain them.
 pub const RAMP: &[u8; 10] = b" .-:*+=%#@";
 
 /// Fills each cell with the character of its pixels' mean luminance.

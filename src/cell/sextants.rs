@@ -23,7 +23,7 @@ fn fill(grid: &mut Grid, picture: &Picture, inks: &mut InkConverter) {
 }
 
 /// Returns the glyph of a mask of sextants.
-// The block of Unicode 13 has all masks in order, but those of the space and the left, right and full block.
+// The block of Unicode 13 has all masks in order, except for the space and the left, right and full block.
 pub(super) fn sextant(mask: u8) -> char {
     match mask & 63 {
         0 => ' ',

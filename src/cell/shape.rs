@@ -64,7 +64,8 @@ const GLYPHS: usize = INK.len();
 /// its weights and `x`, plus a term that is the same for all glyphs.
 struct Matcher {
     /// For each sample, the weights of all glyphs.
-    // In this order the inner loop over the glyphs is vectorised, and a cell takes 0.3 to 0.4 us instead of 0.6.
+    // With the glyphs as the inner dimension, the loop over them is vectorised, and a cell takes 0.3 to 0.4 us instead
+    // of 0.6.
     weights: [[f32; GLYPHS]; SAMPLES],
     /// For each glyph, the sum of its ink times its blurred ink.
     squares: [f32; GLYPHS],

@@ -108,8 +108,9 @@ impl CellArgs {
         hints
     }
 
-    /// Returns the cell mode for a file or pipe, which does not depend on the environment. `auto`
-    /// are the colours if `--color` is `auto`.
+    /// Returns the cell mode for a file or pipe, which does not depend on the environment.
+    ///
+    /// `auto` is the set of colours if `--color` is `auto`.
     pub(super) fn mode_for_file(&self, auto: Colors) -> CellMode {
         let colors = match self.color_choice() {
             ColorChoice::Auto => auto,

@@ -84,7 +84,7 @@ fn format_parser() -> impl TypedValueParser<Value = Format> {
 }
 
 impl FrameArgs {
-    /// Returns the terminal to print on, if no flag decides the format or its file.
+    /// Returns the terminal to print on, unless `--format`, `--output` or `--check` is given.
     fn screen(&self) -> Option<Screen> {
         let is_plain = self.format.is_none() && self.output.is_none() && self.check.is_none();
         Screen::of_stdout(&self.cells).filter(|_| is_plain)
@@ -152,7 +152,8 @@ impl FrameArgs {
         let kind = if self.check.is_some() { FrameKind::Cells } else { FrameKind::for_format(format) };
         let cells = screen.map(|screen| (screen.cells, screen.cell_aspect));
         let resolution = self.picture.resolution(mode, kind, cells)?;
-        // Only pictures have a scale: a grid of cells may have more pixels on the screen than a picture in memory.
+        // Only picture files have a scale. A grid of cells may have more pixels on the screen than a picture may have
+        // in memory.
         if format.has_pixels() {
             self.picture.check_scaled_pixel_count(resolution)?;
         }

@@ -22,7 +22,7 @@ use termtrace::internals::{app, cell};
 use termtrace::live::{Ending, Options, Outcome, Signals, Source};
 use termtrace::{Camera, Colors, Sampling, Size, export};
 
-/// The command that opens the live view, which determines what the view shows first.
+/// The occasion on which the live view opens, which decides its first hint and its captions.
 #[derive(Clone, Copy)]
 pub(super) enum Occasion {
     /// The default scene, because none was named.
@@ -42,7 +42,8 @@ fn hint(keymap: &Keymap, occasion: Occasion) -> String {
     let does = |command, does: &str| key(command).map(|key| format!("{key} {does}"));
     let moves = Some(moves.map_or_else(|| "drag to look".to_owned(), |keys| format!("drag or {keys} to move")));
     let (help, quit) = (does(Command::Help, "keys"), does(Command::Quit, "quit"));
-    // Each line fits into 80 columns. On narrower screens the second part is left out first, then the third and so on.
+    // Each line fits into 80 columns. On narrower screens the second part is left out first, then the third and so on;
+    // the first part stays.
     let parts = match occasion {
         Occasion::Demo => vec![moves, Some("termtrace FILE opens yours".to_owned()), help, quit],
         Occasion::Scenes => {

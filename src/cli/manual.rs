@@ -60,7 +60,7 @@ pub(super) fn page(command: Command, exit_status: &str) -> io::Result<Vec<u8>> {
     Ok(page)
 }
 
-/// Adds a section whose lines roff keeps as they are, instead of filling them up.
+/// Adds a section whose lines roff keeps as they are, instead of joining them to paragraphs.
 fn section(page: &mut String, heading: &str, body: &str) {
     let _ = writeln!(page, ".SH {}\n.nf", heading.to_uppercase());
     for line in body.lines() {

@@ -15,7 +15,7 @@ use termtrace::internals::text::visible;
 /// The contents of the new scene file.
 const STARTER: &str = include_str!("starter.ron");
 
-/// The contents of a scene file around a formula, which replaces the word in it.
+/// The contents of a scene file for a formula, which replaces the word FORMULA in it.
 const AROUND_FORMULA: &str = include_str!("formula.ron");
 
 const EXAMPLES: &str = "\

@@ -96,7 +96,7 @@ impl Write for Output {
     fn flush(&mut self) -> io::Result<()> {
         match self {
             Self::Stdout(stdout) => stdout.flush(),
-            // Neither has a buffer, so there is nothing to flush.
+            // Streams and files are written without a buffer, so there is nothing to flush.
             Self::Stream(_) | Self::File(_) => Ok(()),
         }
     }

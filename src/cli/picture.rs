@@ -84,8 +84,9 @@ impl SizeArgs {
         self.resolution_in((80, 24), self.cell_aspect, mode)
     }
 
-    /// Returns the resolution that the flags give, by default that of `screen`, in columns and
-    /// rows.
+    /// Returns the resolution that the flags give, which by default fills the `screen`.
+    ///
+    /// The `screen` is given in columns and rows.
     fn resolution_in(&self, screen: (u32, u32), cell_aspect: f32, mode: CellMode) -> Result<Resolution, Failure> {
         let (across, down) = mode.pixels_per_cell();
         let (columns, rows) = self.size.unwrap_or(screen);

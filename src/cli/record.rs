@@ -144,7 +144,7 @@ impl RecordArgs {
         Ok(Film { scene, cameras, start, fps, resolution, mode, samples, format })
     }
 
-    /// Returns the mode of an asciicast's cells. Pixels of a GIF or PNG are those of half blocks.
+    /// Returns the cell mode of an asciicast; a GIF or PNG has the pixels of half blocks.
     fn cell_mode(&self) -> CellMode {
         let half = CellMode::HALF_BLOCK;
         CellMode { glyphs: self.glyphs.flatten().unwrap_or(half.glyphs), ..half }
@@ -380,7 +380,7 @@ fn write(args: &RecordArgs, film: &Film) -> Result<(), Stop> {
 
 /// Formats the size of a file in bytes with two or three digits, such as `6.6 MB`.
 fn file_size(bytes: u64) -> String {
-    // Each unit begins where the number before it would be rounded to four digits.
+    // A unit begins where the number in the unit before it would be rounded to four digits.
     let (value, unit) = match bytes as f64 {
         v if v >= 999.5e6 => (v / 1e9, "GB"),
         v if v >= 999.5e3 => (v / 1e6, "MB"),

@@ -16,7 +16,7 @@ use termtrace::{LoadError, Map, Scene, SceneError};
 /// The name of standard input in messages.
 const STDIN: &str = "standard input";
 
-/// The name of a scene around a formula in messages.
+/// The name, in messages, of a scene that is made from a formula.
 const FORMULA: &str = "formula";
 
 /// The source of a scene, which can be loaded repeatedly.
@@ -27,7 +27,7 @@ pub(super) enum SceneSource {
     Stdin(Vec<u8>, Option<&'static str>),
     /// A scene embedded in the program.
     Shipped(&'static ShippedScene),
-    /// The text of a scene around a formula from the command line.
+    /// The text of a scene that is made from a formula on the command line.
     Formula(String),
 }
 
@@ -115,7 +115,7 @@ fn shipped_like(name: &Path) -> Option<PathBuf> {
     closest(name.to_str()?, ShippedScene::names()).map(PathBuf::from)
 }
 
-/// Warns of formulas without a surface, and of a shaded picture that is black for want of light.
+/// Warns of formulas without a surface, and of a shaded picture that is black for lack of light.
 ///
 /// Other maps need no light.
 pub(super) fn warn_of_invisibility(map: Map, scene: &Scene) {

@@ -1,6 +1,6 @@
 use super::*;
 
-/// A large picture is traced even if the live view moves, and so requests a pause, without end.
+/// A large picture makes progress even if the live view moves, and requests a pause, all the time.
 #[test]
 fn a_picture_goes_on_beside_an_endless_motion() {
     let shared = Shared::default();

@@ -44,7 +44,7 @@ fn frame(refines: bool) -> Frame {
     }
 }
 
-/// A cancelled refinement is not shown, even if it was finished before it noticed.
+/// A cancelled refinement is not shown, even if it finished before it noticed the cancellation.
 #[test]
 fn a_refinement_given_up_too_late_is_thrown_away() {
     let (done, frames) = channel();
@@ -66,7 +66,7 @@ fn a_refinement_given_up_too_late_is_thrown_away() {
     assert_eq!(renderer.tracing(), None);
 }
 
-/// After a fast frame the loop traces small frames of the scene itself, to the thread's picture.
+/// After a fast frame the loop traces small frames itself, with the same picture as the thread's.
 #[test]
 fn small_frames_are_done_at_once() {
     let scene = three_spheres();

@@ -25,8 +25,9 @@ enum State {
         modified: (i64, i64),
         length: u64,
     },
-    /// A folder, pipe or device. Its times do not count, because reading changes those of pipes and
-    /// devices.
+    /// A folder, pipe or device.
+    ///
+    /// Its times are not compared, because reading a pipe or device changes them.
     Other(Identity),
 }
 

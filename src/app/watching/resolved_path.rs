@@ -81,9 +81,9 @@ impl ResolvedPath {
     /// Returns the other folders on the path, which are watched to notice that one of them is
     /// replaced.
     ///
-    /// While the file is missing, their parents are among them, because the removal of a folder is not reported while a
-    /// process has it as its current folder. Folders directly below the root, which are permanent and busy, are watched
-    /// only in that case.
+    /// While the file is missing, the parents of the folders are watched too, because the removal of a folder is not
+    /// reported while it is the current folder of a process. Folders directly below the root, which are permanent and
+    /// busy, are watched only while the file is missing.
     pub(super) fn outer_folders(&self) -> impl Iterator<Item = &Path> {
         let folders = self.steps.iter().filter(|step| !step.is_link).map(|step| &*step.path);
         // A path with two components, such as `/home`, belongs to the system.

@@ -30,8 +30,9 @@ fn length_and_distance(seed: u64) -> (f32, f32) {
     (length, two_to([0, 0, -30, 30, -100, 100][seed as usize / 9 % 6]))
 }
 
-/// Returns the rays of a packet, narrow or wide, and twice eight boxes: ahead of rays, behind,
-/// flat, or at an origin.
+/// Returns the rays of a packet, narrow or wide, and two groups of eight boxes.
+///
+/// The boxes are ahead of rays, behind them, or at an origin, and some are flat.
 fn random_case(seed: u64) -> ([EightRays; GROUPS], [[Vector<F32x8>; 2]; 2]) {
     let (mut numbers, (length, scale)) = (Numbers(seed), length_and_distance(seed));
     let width = two_to(-((seed / 54 % 14) as i32));

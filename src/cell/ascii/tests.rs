@@ -32,7 +32,7 @@ fn straight_borders_have_the_characters_that_run_along_them() {
         // The diagonals of the middle cell, which is 1.0..2.0 in x and y: positions are in cells.
         (|x, y| x + y < 3.0, '/'),
         (|x, y| x - y < 0.0, '\\'),
-        // Through the upper and the lower part of the cell.
+        // Borders through the upper and the lower part of the cell.
         (|_, y| y < 1.2, '"'),
         (|x, y| 0.5 * x + y < 2.45, ','),
     ];

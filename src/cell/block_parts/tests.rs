@@ -23,7 +23,7 @@ fn is_inside(glyph: char, [width, height]: [usize; 2], [x, y]: [usize; 2]) -> bo
     mask >> (y * down / height * across + x * across / width) & 1 == 1
 }
 
-/// Returns the squared error of a cell that shows its pixels by the two means of a glyph's areas.
+/// Returns the squared error of a cell whose pixels on each side of a glyph's ink get their mean.
 fn squared_error(glyph: char, size: [usize; 2], pixels: &[Srgb8]) -> f64 {
     let sides = [true, false].map(|inside| {
         let side = pixels.iter().enumerate().filter(|(at, _)| {
@@ -110,7 +110,7 @@ fn each_mask_has_a_glyph_of_its_own_that_covers_its_parts() {
             }
         }
     }
-    // The first and the last of each block in Unicode's tables.
+    // The first glyph, another one and the last glyph of each block in Unicode's tables.
     assert_eq!([0x04, 0x06, 0xfe].map(octant), ['\u{1CD00}', '\u{1CD01}', '\u{1CDE5}']);
     assert_eq!([1, 22, 62].map(sextant), ['\u{1FB00}', '\u{1FB14}', '\u{1FB3B}']);
 }

@@ -36,7 +36,7 @@ fn greys_are_mixed_from_greys() {
     }
 }
 
-/// Compares the search, which looks at few mixes, with all of them.
+/// Checks that the search, which looks at few mixes, finds the one with the least cost of all.
 #[test]
 fn the_best_mix_has_the_least_cost_of_all() {
     for (mixes, ..) in palettes() {

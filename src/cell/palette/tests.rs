@@ -18,7 +18,7 @@ fn the_colours_of_a_palette_are_flat() {
     }
 }
 
-/// Checks the patterns of the greys between two greys: all shares of four pixels.
+/// Checks that greys between two palette greys show each number of lighter pixels out of four.
 #[test]
 fn a_share_of_four_pixels_is_lighter() {
     let mut palette = Palette::from_colors(&[Srgb8::new(90, 90, 90), Srgb8::new(200, 200, 200)]);

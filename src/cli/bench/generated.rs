@@ -41,7 +41,7 @@ impl Generated {
                     .map(|(center, radius)| Sphere::new(Vec3::from_array(center), radius).expect("a sphere").into());
                 [&spheres[..], &[Plane::new(Vec3::ZERO, Vec3::Y).expect("a plane").into()]].concat()
             }
-            // Radii of 0.6 / cbrt(count), with which all scenes have about the same volume.
+            // Radii of 0.6 / cbrt(count), so that the spheres of all scenes have about the same total volume.
             Self::S10 => spheres(10, 0.28),
             Self::S100 => spheres(100, 0.13),
             Self::S1k => spheres(1_000, 0.06),

@@ -1,6 +1,6 @@
 //! The completions of zsh.
 //!
-//! Not by `clap_complete`: where a scene stands in the place of a command, its script completes nothing.
+//! The script is not made by `clap_complete`, whose scripts complete nothing after a scene in the place of a command.
 
 use super::values::{Files, SCENE_ENDINGS, Values, Word, commands, options, spellings, takes_value, text};
 use clap::{Arg, Command};

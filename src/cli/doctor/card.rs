@@ -1,6 +1,6 @@
-//! The test card: a circle, a gradient, stripes of half cells, a disc by each kind of glyphs.
+//! The test card: a circle, a gradient, stripes of half cells, and a disc for each kind of glyphs.
 //!
-//! Below is advice which flag to set if one of them looks wrong.
+//! Below it is advice on which flag to set if a part of the card looks wrong.
 
 use std::fmt::Write;
 use termtrace::internals::capabilities::{Capabilities, HalfBlocks, Hints};
@@ -24,7 +24,7 @@ const GAP: u16 = 2;
 pub(super) fn bytes(capabilities: &Capabilities, hints: &Hints) -> Vec<u8> {
     let colors = capabilities.cell_mode.colors;
     let mut bytes = export::ansi_or_text(&grid(capabilities), colors);
-    // Without the kinds that the locale cannot encode, which would be shown as other characters.
+    // Kinds that the locale cannot encode are left out, because they would be shown as other characters.
     let kinds: Vec<Glyphs> = Glyphs::ALL.iter().copied().filter(|&glyphs| hints.can_encode(glyphs)).collect();
     bytes.extend(export::ansi_or_text(&samples(&kinds, capabilities), colors));
     let mut names = String::new();
@@ -59,7 +59,7 @@ fn sample_width(glyphs: Glyphs) -> u16 {
     glyphs.name().len().max(6) as u16
 }
 
-/// Returns a row of discs, one by each kind of glyphs, with a column after each.
+/// Returns a row of discs, one drawn with each kind of glyphs, and an empty column after each.
 fn samples(kinds: &[Glyphs], capabilities: &Capabilities) -> Grid {
     let &Capabilities { cell_aspect, cell_mode: CellMode { colors, .. }, light_background, .. } = capabilities;
     let mut samples = Grid::new(Size::new(kinds.iter().map(|&kind| sample_width(kind) + 1).sum(), SAMPLE_ROWS));

@@ -12,9 +12,10 @@ use termtrace::internals::named_file::{self, Accepted};
 use termtrace::internals::progress::Reporter;
 use termtrace::internals::text::visible;
 
-/// Limit on the bytes of a golden frame, as for a scene file; or four times the size of the frame
-/// to
-/// compare, if that is larger. A larger file shows another picture, and the diff would be as long as the file.
+/// Limit on the bytes of a golden frame, as for a scene file.
+///
+/// For a large frame the limit is four times the size of the frame to compare. A larger file shows another picture, and
+/// the diff would be as long as the file.
 const MAX_GOLDEN_BYTES: usize = 16 << 20;
 
 /// Returns `Ok` if the file contains exactly the bytes `frame`; otherwise prints a diff to standard
@@ -49,7 +50,7 @@ pub(super) fn check(path: &Path, format: Format, frame: &[u8]) -> CommandResult 
     Err(Failure::Reported(1))
 }
 
-/// The characters of [`RAMP`] in the order of earlier versions, where text frames had this ramp.
+/// The characters of [`RAMP`] in the order that text frames of earlier versions had.
 const RAMP_BEFORE: &[u8; RAMP.len()] = b" .:-=+*#%@";
 
 /// Returns advice if the golden text frame seems to differ only by its glyphs: their kind, or the
@@ -70,7 +71,7 @@ fn probable_glyphs(text: &[u8]) -> Option<Glyphs> {
     } else if !text.is_ascii() {
         std::str::from_utf8(text).is_ok_and(|text| text.chars().all(|c| " ▀▄█\n".contains(c))).then_some(Glyphs::Half)
     } else {
-        // The glyphs of `ascii` have no other letters: fills have these three, outlines none.
+        // The fills of `ascii` have the letters o, x and X, its outlines have none, and neither has digits.
         let is_of_shape = |byte: &u8| byte.is_ascii_alphanumeric() && !b"oxX".contains(byte);
         Some(if text.iter().any(is_of_shape) { Glyphs::Shape } else { Glyphs::Ascii })
     }

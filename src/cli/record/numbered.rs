@@ -16,8 +16,8 @@ impl NumberedFiles {
     /// Parses a `printf` pattern with one `%d` or, padded with zeros, `%04d`; `%%` is a percent
     /// sign.
     ///
-    /// All other directives, such as `%s`, are refused. So is a width without a 0, whose names would not sort by
-    /// number.
+    /// All other directives, such as `%s`, are refused, and so is a width without a leading 0: the names would not sort
+    /// by number.
     pub(super) fn parse(path: &Path) -> Result<Self, Failure> {
         let name = path.to_str().ok_or_else(|| wrong(path, "the name is not UTF-8"))?;
         let (mut before, mut after, mut digits) = (String::new(), String::new(), None);
