@@ -262,7 +262,8 @@ pub fn linear_from_srgb(encoded: f64) -> f64 {
 ///
 /// The floats of a bucket share the upper half of their bits: the sign, the exponent and the first 7 bits of the
 /// mantissa.
-// Some longer buckets would contain more than one of the 255 steps between codes, which need more than one comparison.
+// If buckets were longer, some would contain several of the 255 steps between codes, and would need several
+// comparisons.
 const BUCKET_LEN: u32 = 1 << 16;
 /// The number of buckets: one for each upper half of a float's bits.
 const BUCKET_COUNT: usize = 1 << 16;
@@ -272,9 +273,10 @@ struct Transfer {
     /// The linear light of each 8-bit sRGB code.
     linear_from_srgb8: [f32; 256],
     /// The bits of the least light that rounds to code `k + 1`, at index `k`; `u32::MAX` at 255.
-    // The bits of positive floats are ordered as the floats are, and the bucket is computed from the bits anyway.
+    // Bits instead of floats: those of positive floats have the same order, and the bucket is computed from bits
+    // anyway.
     bits_at_step: [u32; 256],
-    /// The code of the least light in each bucket.
+    /// The 8-bit code of the least light in each bucket.
     // There are also buckets above 1 and below 0, so that light need not be clamped first. Without the clamp a frame of
     // three spheres takes 16.9 instead of 18.5 ms (1,024 x 1,024 pixels, one thread).
     first_code: [u8; BUCKET_COUNT],

@@ -202,8 +202,8 @@ impl Description<'_> {
         if along <= 0.0 {
             return "behind the eye".to_owned();
         }
-        // The position (qu, qv) of the object's middle in the picture, inside if both are in 0..=1: its components
-        // along the sides of the view rectangle, which may be shifted.
+        // (qu, qv) is the position of the object's middle in the picture, as shares of the sides of the view rectangle,
+        // which may be shifted. It is inside the picture if both are in 0..=1.
         let corner = eye_rays.through(0.0, 0.0).direction;
         let part = |qu, qv| {
             let side = eye_rays.through(qu, qv).direction - corner;

@@ -50,9 +50,9 @@ use std::time::Duration;
 use strokes::Strokes;
 
 /// The order in which cells are sent.
-// Bytes per frame relative to ratatui's crossterm backend (orbit, plain, sphere, gradient): at 80x24 raster .70 .67 .90
-// .81, color .56 .52 .82 .62; at 200x60 raster .63 .61 .88 .68, color .46 .42 .66 .47. Color takes half a millisecond
-// longer, which is not worth it on a fast link.
+// Bytes per frame relative to ratatui's crossterm backend, for the bench's scenes orbit, plain, sphere and gradient: at
+// 80x24 raster .70 .67 .90 .81, color .56 .52 .82 .62; at 200x60 raster .63 .61 .88 .68, color .46 .42 .66 .47. Color
+// order takes half a millisecond longer, which is not worth it on a fast link.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Order {
@@ -82,19 +82,20 @@ pub enum Quality {
     Fast,
 }
 
-/// The limits on a lossy frame: its quality and number of bytes, and its time.
+/// The limits on a lossy frame: quality, number of bytes, and the time at which it is sent.
 #[derive(Clone, Copy, Debug)]
 pub struct Allowance {
     /// How far the picture's colours may differ from the wanted ones.
     pub quality: Quality,
-    /// The time at which the frame is sent, since any start that is the same for all frames.
+    /// The time at which the frame is sent, counted from any start that all frames share.
     pub now: Duration,
     /// The largest number of bytes that the frame should take; `None` for no limit.
     ///
-    /// In motion, cells get coarser colours, or keep those of earlier frames, so that the error that is left is small.
-    /// At rest, the cells with the smallest errors wait for a later frame, and cells that are only made exact also wait
-    /// above 8 bytes per cell of the screen. Text and picture cells that replace text or unknown contents never wait;
-    /// with [`Quality::Exact`] no cell does.
+    /// While the picture changes, cells get coarser colours, or keep those of earlier frames, so that the frame fits
+    /// with a small error. At rest, the cells with the smallest errors wait for a later frame. Cells that are within
+    /// the quality's caps, and only made exact, also wait if the frame would take more than 8 bytes per cell of the
+    /// screen. Text and picture cells that replace text or unknown contents never wait; with [`Quality::Exact`] no cell
+    /// does.
     pub max_bytes: Option<usize>,
 }
 
@@ -112,7 +113,7 @@ pub struct Encoder {
     due: Option<Duration>,
     shortage: capped::Shortage,
     used_part: lossy::UsedPart,
-    /// Whether the last lossy frame had little room left for cells that are made exact.
+    /// Whether the last lossy frame used over 90 % of the bytes for a frame that makes cells exact.
     is_full: bool,
 }
 
@@ -167,9 +168,9 @@ impl Encoder {
 
     /// Sets the half blocks that cells may use: [`HalfBlocks::Lower`] unless set otherwise.
     ///
-    /// With [`HalfBlocks::Either`] a moving picture takes about a tenth fewer bytes. It is right where a cell has an
-    /// even number of pixel rows. At odd heights some terminals split the two glyphs a pixel row apart, and a mix of
-    /// them shows.
+    /// With [`HalfBlocks::Either`] a moving picture takes about a tenth fewer bytes. It is right if a cell has an even
+    /// number of pixel rows. At odd heights some terminals split the two glyphs a pixel row apart, and a mix of them is
+    /// visible.
     pub fn with_half_blocks(self, half_blocks: HalfBlocks) -> Self {
         Self { half_blocks, ..self }
     }
@@ -233,13 +234,14 @@ impl Encoder {
 
     /// Appends a lossy frame without the marks of a synchronized update.
     ///
-    /// Returns the cursor's position after the frame, or `None` if it depends on the terminal: in the last column, and
-    /// after a cluster.
+    /// Returns the cursor's position after the frame, or `None` if it depends on the terminal: in the last column, or
+    /// after a grapheme cluster.
     fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let Some(caps) = lossy::QualityCaps::for_quality(allowance.quality) else { return self.draw(wanted, bytes) };
         let in_motion = self.change_times.record(wanted, allowance.now);
         let mut known = self.take_state(wanted.size(), bytes);
-        // At rest, the cells get their final colours, the largest error first: coarse ones would be sent in vain.
+        // At rest, the cells get their final colours, those with the largest errors first: coarser colours
+        // (`draw_capped`) would soon have to be sent again.
         let is_capped = |&max_bytes: &usize| in_motion && max_bytes >= capped::LEAST_BYTES;
         let cap = allowance.max_bytes.filter(is_capped).filter(|_| capped::is_possible(&known.shown, wanted));
         if let Some(max_bytes) = cap
@@ -260,7 +262,8 @@ impl Encoder {
             let drawn = lossy::with_plan(frame, |plan| {
                 self.draw_plan(plan, &known, (allowance, in_motion, cap), &mut used, (&mut *grids, &mut *bytes))
             });
-            // Not swapped: the thread's grid may have the memory of a larger screen.
+            // Copied instead of swapped: the thread's grid may have the memory of a larger screen, which the encoder
+            // would keep.
             drawn.inspect(|_| known.shown.clone_from(&grids.next))
         });
         self.used_part = used;
@@ -280,7 +283,7 @@ impl Encoder {
 
     /// Appends the frame of a plan: all of it or, above the limit, its most urgent cells.
     ///
-    /// Makes `grids.next` what the terminal shows then.
+    /// Sets `grids.next` to the grid that the terminal shows after the frame.
     fn draw_plan(
         &self,
         plan: &mut lossy::Plan<'_>,
@@ -293,7 +296,7 @@ impl Encoder {
         let usual = max_bytes.min(TMUX_BYTES_PER_CELL * known.shown.size().cell_count());
         let refines_from = plan.min_writes(true);
         let is_full = |taken: usize| taken > usual / 10 * 9;
-        // Cells are not made exact where the last frame had no room for it.
+        // In motion, no cells are made exact if the last frame had hardly any room for them.
         let mut writes = if in_motion && self.is_full { refines_from } else { plan.write_count() };
         let start = bytes.len();
         loop {
@@ -305,13 +308,13 @@ impl Encoder {
             let taken = bytes.len() - start + self.synchronized_len();
             let refines = writes > refines_from;
             let (limit, fewest) = if refines { (usual, refines_from) } else { (max_bytes, plan.min_writes(false)) };
-            // At least one cell is written, or all might wait for ever.
+            // At least one cell is written; otherwise all might wait for ever.
             let fewest = fewest.max(1);
             if taken <= limit || writes <= fewest {
                 let is_cut = writes < plan.write_count();
-                // All inexact cells are made exact at once, at the latest time of any of them. Each at its own time
-                // took a dozen frames of a few scattered cells after each movement: 1.40 full frames of bytes (orbit,
-                // 80x24) instead of 1.14.
+                // All inexact cells are made exact together, when the last of them is due. When each was sent at its
+                // own time, a dozen frames of a few scattered cells followed each movement: 1.40 full frames of bytes
+                // (orbit, 80x24) instead of 1.14.
                 let refines = self.change_times.exact_at(plan.inexact_cells(&grids.next));
                 let due = if is_cut { Some(allowance.now) } else { refines };
                 return Ok(Drawn { pen, cursor, due, is_full: is_full(taken) });
@@ -320,9 +323,9 @@ impl Encoder {
             if let Some(max_bytes) = cap.filter(|_| !refines) {
                 return Err(Exceeds { bytes: taken, max_bytes });
             }
-            // Tries again with the cells that should fit, less a thirty-second, so that the next try hardly ever fails.
-            // With a sixteenth less, 84.5 to 85.2 % of a link of 50 kB/s were used instead of 86.5 to 87.3 %. A cell
-            // that is made exact takes the bytes of about three others.
+            // Tries again with 31/32 of the cells that should fit, so that the next try hardly ever fails. With 15/16,
+            // 84.5 to 85.2 % of a link of 50 kB/s were used instead of 86.5 to 87.3 %. A cell that is made exact takes
+            // as many bytes as about three other cells.
             let (others, weight) = if refines { (refines_from, 3) } else { (0, 1) };
             let all = others + weight * (writes - others);
             let fitting = (all * limit / taken * 31 / 32).saturating_sub(others) / weight;
@@ -404,7 +407,7 @@ impl Encoder {
     fn enclose_in_synchronized(&self, start: usize, bytes: &mut Vec<u8>) {
         if self.synchronized && bytes.len() > start {
             bytes.extend_from_slice(BEGIN_SYNCHRONIZED);
-            // Only now is it known that the frame is not empty, so the beginning sequence is appended and rotated to
+            // Whether the frame is empty is known only now, so the beginning sequence is appended and then rotated to
             // the front.
             bytes[start..].rotate_right(BEGIN_SYNCHRONIZED.len());
             bytes.extend_from_slice(END_SYNCHRONIZED);
@@ -454,11 +457,11 @@ struct Drawn {
     pen: Pen,
     cursor: Option<CellPosition>,
     due: Option<Duration>,
-    /// Whether the frame has little room left for cells that are made exact.
+    /// Whether the frame used over 90 % of the bytes for a frame that makes cells exact.
     is_full: bool,
 }
 
-/// A lossy frame that takes more bytes than are allowed.
+/// The failure of a lossy frame: the bytes that it takes, and the fewer bytes that are allowed.
 struct Exceeds {
     bytes: usize,
     max_bytes: usize,
@@ -482,7 +485,7 @@ struct Writing {
 }
 
 thread_local! {
-    // The thread's, not the encoder's: a server has many encoders and few threads.
+    // Working memory per thread instead of per encoder, because a server has many encoders and few threads.
     static GRIDS: RefCell<Grids> = RefCell::new({
         let empty = Grid::new(Size::new(0, 0));
         Grids { drawn: empty.clone(), next: empty }
@@ -518,7 +521,7 @@ impl Writing {
 
 /// Makes `shown` equal to `wanted`, and lists the cells to write, row by row.
 ///
-/// Covered and foreign cells are never written.
+/// Cells that a wide glyph covers, and foreign cells, are never written.
 // The grid is updated in place, which saves copying it for each frame.
 fn update_grid(shown: &mut Grid, wanted: &Grid, changed: &mut Vec<CellPosition>) {
     changed.clear();
@@ -526,7 +529,8 @@ fn update_grid(shown: &mut Grid, wanted: &Grid, changed: &mut Vec<CellPosition>)
     for row in 0..wanted.size().rows {
         let start = usize::from(row) * columns;
         let of_wanted = &wanted.packed()[start..start + columns];
-        // Equal numbers of clusters may be those of different texts.
+        // Packed cells refer to clusters by number, and each grid has its own numbers: equal cells may have different
+        // texts.
         if shown.packed()[start..start + columns] != *of_wanted || of_wanted.iter().any(|cell| cell.is_cluster()) {
             update_row(shown, wanted, start, columns, |column| changed.push(CellPosition { column, row }));
         }

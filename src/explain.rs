@@ -99,7 +99,7 @@ pub struct LightContribution {
     /// if nothing blocks it.
     pub incidence: Incidence,
     /// A surface that blocks the light, with the t of the crossing: 0 at the hit, 1 at the light.
-    // Any surface in the way, as for shadow rays of the picture, not the one closest to the hit.
+    // Any surface in the way, as for the shadow rays of pictures; not necessarily the one closest to the hit.
     pub blocker: Option<(SurfaceName, f32)>,
 }
 
@@ -134,7 +134,8 @@ impl LightContribution {
 pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u32; 2]) -> Explanation {
     let trace = trace_pixel(scene, camera, resolution, pixel);
     let mut recorder = TestRecorder::default();
-    // Traced once more for its tests, which the kernels of pictures do not report. The hit is the same.
+    // The ray is traced again, with the same hit, to record the surfaces that are tested, which the kernels of pictures
+    // do not report.
     hit::closest_hit_observed(scene, &trace.ray, &mut recorder);
     // A picture of one pixel, because `tone` is the function that gives pictures their bytes.
     let mut one = Framebuffer::new(Resolution::square(1, 1));

@@ -124,7 +124,7 @@ impl Format {
         matches!(self.contents(), Contents::Pixels(_))
     }
 
-    /// Returns the difference of a file from the golden file, for a person.
+    /// Returns a readable report of how a file differs from the golden file.
     #[doc(hidden)]
     pub fn difference(self, golden: &[u8], file: &[u8]) -> GoldenDifference {
         (self.row().difference)(golden, file)

@@ -1,10 +1,9 @@
 //! Formulas f(x, y, z): text -> tape -> values, gradients, and the first root along a ray.
 //!
 //! `parse` reads the text into a `tape`, a list of operations in which equal terms are shared. `point` evaluates the
-//! tape in f64; `model` encloses its values on a piece of a ray by a quadratic polynomial and a bound of its error;
-//! `roots` walks along the ray with these enclosures, so that no sign change is stepped over, on eight rays at once,
-//! for which `packet` computes the models in f32. `bracket` takes the last steps
-//! to the roots.
+//! tape in f64; `model` encloses its values on a piece of a ray by a quadratic polynomial and a bound of its error.
+//! `roots` walks along eight rays at once with these enclosures, so that no sign change is stepped over; `packet`
+//! computes the enclosures of eight rays in f32. `bracket` narrows sign changes down to the roots.
 
 mod bracket;
 mod check;

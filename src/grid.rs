@@ -239,7 +239,7 @@ impl Clone for Grid {
         Self { size: self.size, cells: self.cells.clone(), clusters: self.clusters.clone() }
     }
 
-    // Into the memory of the grid's own cells.
+    // Copies into the memory of the grid's own cells instead of allocating.
     fn clone_from(&mut self, other: &Self) {
         self.size = other.size;
         self.cells.clone_from(&other.cells);
@@ -301,7 +301,7 @@ impl DoubleEndedIterator for Cells<'_> {
 
 impl ExactSizeIterator for Cells<'_> {}
 
-/// A cell of a grid that is set when this value is dropped.
+/// A copy of a cell that is written back to its grid when it is dropped.
 struct CellMut<'a> {
     grid: &'a mut Grid,
     at: usize,
@@ -443,7 +443,7 @@ impl Grid {
         }
     }
 
-    /// Sets the cell at an index to one that is no cluster.
+    /// Sets the cell at an index to one whose glyph is no cluster.
     #[inline]
     pub(crate) fn set_packed(&mut self, at: usize, cell: PackedCell) {
         debug_assert!(!cell.is_cluster(), "a cluster belongs to its grid");

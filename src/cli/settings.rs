@@ -33,7 +33,7 @@ Settings:
   keys. termtrace config shows the effective settings, where each comes from,
   and where the files are.";
 
-/// The flag of the commands that read the user's own files.
+/// The flag `--no-config`, for commands that read the user's configuration files.
 #[derive(Args)]
 pub(super) struct NoConfig {
     /// Ignore config.ron and keys.ron
@@ -124,7 +124,7 @@ pub(super) fn read_as_flags(path: PathBuf, command: &Command) -> Result<ArgMatch
     })?;
     let setting = |entry: &Entry| command.get_arguments().find(|setting| setting.get_id() == entry.name.as_str());
     let entries = entries::read(&file, command).map_err(Scene)?;
-    // As words of a command line, so that clap checks them as it checks flags.
+    // The settings become command line arguments, so that clap checks them as it checks flags.
     let words = entries.iter().filter_map(|entry| Some(values::word(setting(entry)?, &entry.text)));
     command.clone().try_get_matches_from(words).map_err(usage)
 }
@@ -200,8 +200,8 @@ impl Settings {
                 EffectiveSetting { name: setting.get_id().to_string(), value: said.0, source: said.1 }
             })
             .collect();
-        // The effective values are written as a command line and parsed by clap, so that all sources have the flags'
-        // parser.
+        // The effective values are written as command line arguments and parsed by clap, so that values from all
+        // sources pass the parsers of the flags.
         let mut words = Vec::new();
         for (setting, held) in command.get_arguments().zip(&effective) {
             if let SettingSource::Variable(name) = &held.source {

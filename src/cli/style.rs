@@ -17,7 +17,7 @@ pub(super) fn is_colored(stream: &impl IsTerminal) -> bool {
 
 /// Returns an error message or warning with coloured `error:` or `warning:`, tips and carets.
 ///
-/// `text` must contain no control characters of quoted arguments: the caller replaces them before.
+/// `text` must contain no control characters: callers replace those of quoted arguments first.
 pub(super) fn colored_error(text: &str) -> String {
     text.split_inclusive('\n').fold(String::new(), |colored, line| colored + &error_line(line))
 }

@@ -3,7 +3,7 @@
 use super::Srgb8;
 
 /// The named colours of CSS Color Module Level 4, sorted by name for the binary search.
-// Crates with these names also parse CSS colour functions, which scene files do not allow.
+// No crate is used, because crates with these names also parse CSS colour functions, which scene files do not allow.
 const CSS: [(&str, [u8; 3]); 148] = [
     ("aliceblue", [240, 248, 255]),
     ("antiquewhite", [250, 235, 215]),

@@ -5,8 +5,8 @@ use crate::camera::{Camera, Grip};
 use glam::{Vec2, Vec3};
 
 /// Returns the speed of flight in world units per second: half the distance to the target.
-// Proportional to the distance to the target, because scenes differ in scale by orders of magnitude (a bunny is 0.15
-// high).
+// The speed is proportional to the distance to the target, because scenes differ in scale by orders of magnitude: the
+// Stanford bunny is 0.15 units high.
 pub fn speed(camera: &Camera) -> f32 {
     0.5 * camera.target_distance()
 }

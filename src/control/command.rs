@@ -94,35 +94,35 @@ pub enum Command {
     Help,
     /// Closes the topmost panel or deselects the selected light.
     Close,
-    /// Looks at everything finite from the front, along -z.
+    /// Looks at all bounded objects from the front, along -z.
     Front,
-    /// Looks at everything finite from the right, along -x.
+    /// Looks at all bounded objects from the right, along -x.
     FromRight,
-    /// Looks at everything finite from above.
+    /// Looks at all bounded objects from above.
     FromAbove,
     /// Switches between the edges of triangles and the shaded picture.
     Wireframe,
-    /// Shows or hides the directions of the axes.
+    /// Shows or hides the drawing of the x, y and z axes in the corner.
     Axes,
-    /// Shows the tracer from outside, then other drawings of its geometry, then the ordinary view.
+    /// Shows the camera and its rays from outside, then vanishing points, then the ordinary view.
     Outside,
-    /// Starts or ends the comparison of image order with object order.
+    /// Starts or ends the comparison of ray tracing (image order) and rasterization (object order).
     Orders,
-    /// Pauses the pictures of both orders, or lets them be built further.
+    /// Pauses or continues the build-up of both pictures of [`Orders`](Self::Orders).
     BuildPause,
-    /// Doubles the speed at which both orders build their pictures.
+    /// Doubles the speed at which both pictures of [`Orders`](Self::Orders) are built up.
     BuildFaster,
-    /// Halves the speed at which both orders build their pictures.
+    /// Halves the speed at which both pictures of [`Orders`](Self::Orders) are built up.
     BuildSlower,
-    /// Lets both orders build their pictures again.
+    /// Restarts the build-up of both pictures of [`Orders`](Self::Orders).
     BuildAgain,
     /// Shows or hides the name, the format and the size of the scene.
     Metadata,
-    /// Shows the picture by the next kind of cells.
+    /// Shows the picture with the next kind of cells, such as half blocks or characters.
     NextGlyphs,
     /// Turns a mesh so that the next axis of its file points up.
     TurnMesh,
-    /// Shows the caption of the scene, its next page, or after the last page none.
+    /// Shows the scene's caption, then its next page; hides it after the last page.
     Caption,
     /// Redraws the whole screen, in case another program has written on it.
     Redraw,

@@ -96,7 +96,7 @@ impl Key {
         }
     }
 
-    /// Returns the event that a plain terminal sends for a press of the key.
+    /// Returns the event of a press of the key on a terminal without the kitty keyboard protocol.
     pub fn pressed(self) -> KeyEvent {
         KeyEvent::new(self.code, if self.ctrl { KeyModifiers::CONTROL } else { KeyModifiers::NONE })
     }

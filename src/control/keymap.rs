@@ -19,7 +19,7 @@ pub enum KeyMode {
     Explain,
     /// A light is selected for moving. This mode is above `Fly`, `Orbit` and `Explain`.
     Light,
-    /// Both orders build their pictures. This mode is above `Fly` and `Orbit`.
+    /// Image order and object order are compared. This mode is above `Fly` and `Orbit`.
     Orders,
     /// A dialog asks for the format of an export. Any key without an answer dismisses it.
     Export,
@@ -125,7 +125,8 @@ const LOWER: &[Key] = &[letter('c'), Key::named(KeyCode::PageDown)];
 /// each format's row.
 // The left hand moves by WASD while the right hand turns by the arrows; hjkl replace the arrows on keyboards without
 // them. Explanation and light bind the arrows only, so that hjkl and WASD still move the eye. No binding needs Alt,
-// which window managers and multiplexers use themselves; function keys have slower alternatives.
+// which window managers and multiplexers use themselves. What function keys do can also be done with other keys, more
+// slowly.
 const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Fly, &[letter('w')], Command::Move(Direction::Forward)),
     (KeyMode::Fly, &[letter('s')], Command::Move(Direction::Back)),

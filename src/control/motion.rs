@@ -9,9 +9,9 @@ use std::time::Duration;
 
 /// The keys that are held, and the motion of the camera that they cause.
 ///
-/// A tap moves the camera by a step, as far as [`TAP_TIME`] at full speed. While a key is held, the camera moves at
-/// full speed. If the key is released before the step is complete, the speed falls evenly to 0 over the rest of the
-/// step.
+/// A tap moves the camera by a step: the distance covered in [`TAP_TIME`] at full speed. While a key is held, the
+/// camera moves at full speed. If the key is released before the step is complete, the speed falls evenly to 0 over the
+/// rest of the step.
 ///
 /// With the kitty keyboard protocol the terminal reports releases, and each of any number of keys is held from its
 /// press to its release.
@@ -60,7 +60,7 @@ struct Held {
 }
 
 impl Held {
-    /// Returns the seconds that a key at full speed takes for the motion from time `from` to `to`.
+    /// Returns the motion from time `from` to `to`, in seconds of motion at full speed.
     fn full_speed_seconds(&self, from: Duration, to: Duration) -> f32 {
         let full = to.min(self.full_until).saturating_sub(from);
         // The distance left while the speed falls evenly: half of the time left, times the speed at that time.
@@ -150,11 +150,11 @@ impl Motion {
     }
 
     fn hold(&mut self, key: PhysicalKey, command: Command, fast: bool, kind: KeyEventKind, now: Duration) {
-        // Plain terminals send repeats as presses.
+        // Terminals without the kitty keyboard protocol send repeats as presses.
         let is_again = |held: &Held| (held.key, held.command) == (key, command) && now <= held.pressed + AGAIN_TIME;
         let again = kind == KeyEventKind::Repeat || self.held.iter().any(is_again);
-        // A repeat keeps the time of the press. With its own time it would count as a new tap, whose rest follows the
-        // release.
+        // A repeat keeps the time of the first press. With a time of its own it would count as a new tap, and the
+        // motion would go on for the rest of that tap's step after the release.
         let is_held =
             |held: &&Held| kind == KeyEventKind::Repeat && held.key == key && held.full_until == Duration::MAX;
         let pressed = self.held.iter().find(is_held).map_or(now, |held| held.pressed);
@@ -172,8 +172,9 @@ impl Motion {
         self.held.push(held);
     }
 
-    /// Halves the motion that taps have left at time `now` until `is_free` returns true for it.
-    /// After six halvings, ends the motion.
+    /// Halves the rest of a tap's motion at time `now` until `is_free(self)`, at most six times.
+    ///
+    /// After six halvings, the motion ends.
     ///
     /// Does nothing while a key is held.
     pub fn shorten_taps(&mut self, now: Duration, is_free: impl Fn(&Self) -> bool) {

@@ -88,7 +88,8 @@ impl Pointer {
     }
 
     fn press(&mut self, button: MouseButton, modifiers: KeyModifiers, at: Vec2, now: Duration) -> Gesture {
-        // All buttons but the left one pan. Shift with the left button pans too, because many touchpads have only one.
+        // All buttons but the left one pan. Shift with the left button pans too, because many touchpads have a single
+        // button.
         let pans = button != MouseButton::Left || modifiers.contains(KeyModifiers::SHIFT);
         let grip = if pans { Grip::Pan } else { Grip::Turn };
         self.held = Some(grip);

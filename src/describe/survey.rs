@@ -47,7 +47,8 @@ pub(super) struct Coverage {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PictureRect {
     /// The mean position of the covered pixels, in shares of the picture's width and height.
-    // The mean position, not the rectangle's centre: a thin part that sticks out would move that away from most pixels.
+    // The mean position is not the rectangle's centre, which a thin part that sticks out would move away from most
+    // pixels.
     pub(super) middle: [f32; 2],
     /// The rectangle's width and height, in shares of the picture's width and height.
     pub(super) extent: [f32; 2],
@@ -140,7 +141,7 @@ impl Survey {
     }
 
     /// Returns whether an object has enough hidden pixels to be mentioned.
-    // A twentieth of its visible pixels suffices; fewer are usually single pixels at edges.
+    // A twentieth of the object's visible pixels suffices; fewer hidden pixels are usually single ones at edges.
     fn is_significant(&self, object: u32, hidden_pixels: usize) -> bool {
         20 * hidden_pixels >= self.covered.get(&object).map_or(0, |covered| covered.pixels)
     }
@@ -151,7 +152,7 @@ fn pixel_content(scene: &Scene, sample: &GBufferSample) -> Option<PixelContent> 
     let own = hit.surface(scene).own_reflectance(surface.position, surface.uv);
     Some(PixelContent {
         object: hit.object,
-        // t counts lengths of the direction, which is not normalised.
+        // The unit of t is the length of the direction, which is not normalised.
         distance: hit.t * sample.ray.direction.length(),
         reflectance: own.unwrap_or(Material::DEFAULT_REFLECTANCE),
         behind: objects_behind(scene, *sample),
@@ -162,7 +163,8 @@ fn pixel_content(scene: &Scene, sample: &GBufferSample) -> Option<PixelContent> 
 const MAX_OCCLUDED: usize = 3;
 /// The largest number of surfaces that are passed in search of objects behind the visible one, per
 /// pixel.
-// Each surface takes another traced ray, and a sphere has two. The limit bounds the time for meshes with many layers.
+// For each surface another ray is traced, and a sphere has two surfaces. The limit bounds the time for meshes with many
+// layers.
 const MAX_LAYERS: usize = 12;
 
 /// Returns the objects behind the visible one along a sample's ray, the nearest first.

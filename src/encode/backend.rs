@@ -98,7 +98,7 @@ pub struct EncoderBackend<W> {
     /// Whether a frame is open: between `draw` and `flush`.
     // While a frame is open, changes of the cursor are not sent at once, but in the same write as the frame.
     is_frame_open: bool,
-    /// Whether the last bytes sent were the program's own.
+    /// Whether the last bytes sent were written by the program itself.
     wrote_foreign_bytes: bool,
 }
 
@@ -355,9 +355,8 @@ impl<W: Write> EncoderBackend<W> {
         bytes
     }
 
-    /// Returns the bytes of the frame that is open, if one is. Afterwards the pen has the default
-    /// colours.
-    // To be sent before sequences such as scrolling, which fill blank rows with the pen's background.
+    /// Returns the unsent bytes of an open frame, after which the pen has the default colours.
+    // They have to be sent before sequences such as scrolling, which fill blank rows with the pen's background.
     fn unsent_bytes(&mut self) -> Vec<u8> {
         if self.is_frame_open || !self.encoder.knows_screen() { self.encode_frame(None) } else { Vec::new() }
     }
@@ -403,7 +402,7 @@ impl<W: Write> EncoderBackend<W> {
 
     fn set_position(&mut self, position: Position) -> io::Result<()> {
         if !self.is_frame_open {
-            // Other output may have moved the cursor.
+            // The shown position is forgotten, because other output may have moved the cursor.
             self.shown_cursor.position = None;
         }
         self.put_cursor(position);

@@ -33,8 +33,7 @@ pub(super) struct Scratch {
     tried: Vec<usize>,
 }
 
-/// Lists the changed cells in the order of writing: text row by row, then picture cells by the
-/// tour.
+/// Lists the changed cells in the order of writing: text row by row, then the picture's tour.
 pub(super) fn order(
     wanted: &Grid,
     changed: &[CellPosition],
@@ -176,7 +175,8 @@ impl<'a> Tour<'a> {
                 }
             }
             self.lookups -= self.tried.len();
-            // In reverse, so that the first pair in reading order is on top again.
+            // The pairs are pushed back in reverse, so that the first one in reading order is on top of the stack
+            // again.
             for &pair in self.tried.iter().rev() {
                 let end = &mut self.colors[color].pairs.end;
                 self.pairs_by_color[*end] = pair;
@@ -211,7 +211,7 @@ impl<'a> Tour<'a> {
         if flip { flipped } else { plain }
     }
 
-    /// Appends the cells of pair `index` to `order`, and sets pen and cursor to those after them.
+    /// Appends the cells of pair `index` to `order`, and updates pen and cursor.
     fn visit_pair(&mut self, index: usize, order: &mut Vec<CellPosition>) {
         self.pen = self.pair_pen(&self.pairs[index]);
         let pair = &mut self.pairs[index];
@@ -243,7 +243,7 @@ impl Scratch {
         self.pairs.clear();
         for &CellPosition { column, row } in &self.picture {
             let (fg, bg) = picture_inks(wanted.packed_cell(column, row)).unwrap_or_default();
-            // Both orders are the same pair if a cell may be flipped.
+            // If a cell may use either half block, (fg, bg) and (bg, fg) are the same pair.
             let (a, b) = if half_blocks == HalfBlocks::Either && bg < fg { (bg, fg) } else { (fg, bg) };
             let pair = self.pair_keys.add(u64::from(a.bits()) << 32 | u64::from(b.bits()));
             if pair == self.pairs.len() {
@@ -272,7 +272,7 @@ impl Scratch {
         }
     }
 
-    /// Lists the colours, and for all of them the list of pairs that their ranges refer to.
+    /// Lists the colours, and in `pairs_by_color` the pairs that contain each of them.
     fn list_pairs_by_color(&mut self) {
         let Self { inks, pairs, colors, pairs_by_color, .. } = self;
         colors.clear();
@@ -287,7 +287,7 @@ impl Scratch {
         }
         pairs_by_color.clear();
         pairs_by_color.resize(end, 0);
-        // In reverse for the same reason: the first pair in reading order is on top.
+        // In reverse, so that the first pair in reading order is on top of each colour's stack.
         for (at, pair) in pairs.iter().enumerate().rev() {
             for &color in distinct_colors(&pair.colors) {
                 let end = &mut colors[color].pairs.end;

@@ -1,8 +1,8 @@
 //! Frames under a limit of bytes: the picture with the smallest error that fits.
 //!
-//! An exchange rate decides: the squared error, in 8-bit sRGB summed over the channels of both halves of a cell, that a
-//! byte has to remove. It is kept from frame to frame, so that the bytes of a frame come close to the limit: the larger
-//! the shortage of bytes, the larger the errors that stay.
+//! An exchange rate decides which cells are written: the squared error, in 8-bit sRGB summed over the channels of both
+//! halves of a cell, that each byte has to remove. The rate is adapted from frame to frame so that frames come close to
+//! the limit: the larger the shortage of bytes, the higher the rate, and the larger the errors that stay.
 //!
 //! 1. Cells whose error is worth two bytes are active. The [`colors`] of their halves become a palette, whose
 //!    colours are as far apart as the rate allows.
@@ -47,15 +47,15 @@ struct ActiveCell {
     nearest: [[u8; 2]; 2],
 }
 
-/// The smallest limit of a frame for which the exchange rate decides.
+/// The smallest limit on a frame's bytes at which the exchange rate is used.
 ///
-/// A frame below it may have no room for a single pen.
+/// A smaller frame may have no room for a single change of the pen.
 pub(super) const LEAST_BYTES: usize = 200;
 
-/// The exchange rate below which the differences are invisible, and the equal frame is tried.
+/// The rate below which errors are invisible: a frame of the allowed quality is tried again.
 const LEAST_RATE: ExchangeRate = 0.3;
 
-/// The shortage of bytes, from frame to frame.
+/// The shortage of bytes, as carried over from one frame to the next.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shortage {
     /// The exchange rate of the next frame; `None` while frames of the allowed quality fit the
@@ -66,29 +66,30 @@ pub(super) struct Shortage {
 }
 
 impl Shortage {
-    /// Returns whether there is a shortage.
+    /// Returns whether frames of the allowed quality exceed the limit at present.
     pub(super) fn is_known(self) -> bool {
         self.rate.is_some()
     }
 
-    /// Records that a frame of the allowed quality takes `bytes`, of which `max_bytes` are allowed.
+    /// Sets the first rate, after a frame of the allowed quality took `bytes` instead of
+    /// `max_bytes`.
     pub(super) fn begin(&mut self, bytes: usize, max_bytes: usize) {
         let share = bytes as f32 / max_bytes as f32;
         self.rate = Some(2.0 * share * share);
     }
 
-    /// Records that a frame at a rate would have taken `share` times the limit.
+    /// Adapts the rate after a frame whose chosen cells would take `share` times the limit.
     ///
     /// Returns whether the rate was far off, so that the frame should be chosen again.
     fn learn(&mut self, rate: ExchangeRate, share: f32) -> bool {
-        // With the power 1 instead of 1/2 the rate swings from frame to frame.
+        // The square root damps the change: with `share` itself the rate swings from frame to frame.
         let next = rate * share.sqrt().clamp(0.1, 3.0);
         self.rate = (next >= LEAST_RATE).then_some(next);
         !(0.6..=1.6).contains(&share) && self.rate.is_some()
     }
 }
 
-/// A frame under a limit, in which all text is shown already.
+/// The inputs of a frame under a byte limit, before which all text has been written.
 pub(super) struct CappedFrame<'a> {
     /// The grid that the terminal shows; updated to the grid that it shows after the frame.
     pub(super) shown: &'a mut Grid,
@@ -129,8 +130,7 @@ const MAX_TRIES: usize = 3;
 /// Chooses the cells of a frame and their colours, and calls `write` with the grid to show and the
 /// positions of these cells.
 ///
-/// `write` replaces what it has written for the frame before, and returns the number of bytes. It is called again if
-/// they exceed the limit.
+/// `write` returns the number of bytes. It may be called again, and then replaces what its last call has written.
 pub(super) fn draw(
     mut frame: CappedFrame<'_>,
     shortage: &mut Shortage,
@@ -154,7 +154,7 @@ pub(super) fn draw(
 impl Scratch {
     /// Chooses the cells at an exchange rate, and writes those that fit.
     ///
-    /// Returns the bytes of all chosen cells.
+    /// Returns the number of bytes that all chosen cells would take.
     fn choose_and_write(
         &mut self,
         frame: &mut CappedFrame<'_>,
@@ -182,13 +182,13 @@ impl Scratch {
             if ranks > 1 {
                 ranks = self.pairs.ranks_within(ranks, frame.max_bytes as f32 / bytes as f32).max(1);
             } else {
-                // Less than one pair fits: its first cells in reading order are written.
+                // Not even the cells of one pair fit: the first of them in reading order are written.
                 most_cells = (self.cells.len() * frame.max_bytes / bytes).min(self.cells.len() - 1);
             }
         }
     }
 
-    /// Makes the frame's grid show the cells to write.
+    /// Sets the cells to write in the frame's grid, and lists those that change.
     fn apply(&mut self, frame: &mut CappedFrame<'_>) {
         let columns = usize::from(frame.shown.size().columns);
         self.replaced.clear();
@@ -216,11 +216,11 @@ impl Scratch {
 /// Largest number of cells of a frame whose picture replaces text or unknown contents.
 ///
 /// Such cells never wait, and are written exactly, before the exchange rate decides on the others.
-// A status line that gets shorter uncovers a few cells. When a panel closes, the exact colours of all uncovered cells
-// would take more bytes than those of the frame's quality.
+// A status line that gets shorter uncovers a few cells, which are below this limit. A closing panel uncovers more:
+// their exact colours would take more bytes than a frame of the allowed quality, so the exchange rate is not used.
 const MAX_APPEARING: usize = 64;
 
-/// Returns whether few enough cells of the picture replace text for a frame under a limit.
+/// Returns whether at most [`MAX_APPEARING`] picture cells replace text or unknown contents.
 pub(super) fn is_possible(shown: &Grid, wanted: &Grid) -> bool {
     let cells = shown.packed().iter().zip(wanted.packed());
     let appearing =
@@ -228,10 +228,9 @@ pub(super) fn is_possible(shown: &Grid, wanted: &Grid) -> bool {
     appearing.count() <= MAX_APPEARING
 }
 
-/// Makes `grid` the shown one with the wanted text, and with the wanted picture where it shows
-/// text.
+/// Sets `grid` to `shown` with the wanted text, and the wanted picture where `shown` has text.
 ///
-/// Returns `false` if the terminal shows these already.
+/// Returns `false`, and leaves `grid` as it is, if `shown` is that grid already.
 pub(super) fn put_text(shown: &Grid, wanted: &Grid, grid: &mut Grid) -> bool {
     let is_text = |(of_shown, of_wanted): (PackedCell, PackedCell)| {
         (picture_halves(of_wanted).is_none() || picture_halves(of_shown).is_none())
@@ -256,8 +255,9 @@ pub(super) fn is_inexact(shown: &Grid, wanted: &Grid) -> bool {
         .any(|(shown, wanted)| picture_halves(shown) != Some(wanted))
 }
 
-/// The bytes that the error of a cell must be worth for the cell to be considered.
-// A half block takes three bytes and a space one, without a move. With 1, a frame takes a tenth longer.
+/// The number of bytes that the error of a cell must be worth for the cell to be considered.
+// Without a move of the cursor, a half block takes three bytes and a space one. With a limit of 1, choosing the cells
+// of a frame takes a tenth longer.
 const LEAST_GAIN: f32 = 2.0;
 
 /// Collects the cells whose error is worth the bytes of a glyph.

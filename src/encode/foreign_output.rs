@@ -33,7 +33,7 @@ impl Encoder {
     }
 
     /// Records that the contents of `region` have moved up by `line_count` rows.
-    // The pen must be reset before, because many terminals fill the new rows with its background colour.
+    // The pen must be reset before the scrolling, because many terminals fill the new rows with its background colour.
     pub(super) fn scroll_up(&mut self, region: Range<u16>, line_count: u16) {
         if let Some(known) = &mut self.known {
             known.shown.scroll_up(region, line_count);

@@ -51,7 +51,7 @@ pub(super) fn picture_halves(cell: PackedCell) -> Option<Halves> {
     }
 }
 
-/// Codes of cells without attributes.
+/// [Codes](PackedCell::code) of cells without attributes: the numbers of the characters.
 const SPACE: u32 = ' ' as u32;
 const LOWER_HALF: u32 = '▄' as u32;
 const UPPER_HALF: u32 = '▀' as u32;

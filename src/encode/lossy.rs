@@ -21,7 +21,7 @@ struct Scratch {
     differences: Vec<Difference>,
     /// The indices of the cells that are text in the wanted grid.
     text: Vec<usize>,
-    /// The indices of the written differences that need not be exact, and their halves.
+    /// The indices in `differences` of the cells to write inexactly; `snapped` has their halves.
     inexact: Vec<usize>,
     snapped: Vec<Halves>,
     reduction: Reduction,
@@ -31,9 +31,9 @@ thread_local! {
     static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
-/// The part of the tolerance that the last frames could use.
+/// The share of the full tolerance that the last frames could use, from 0.05 to 1.
 ///
-/// The next frame starts with it, and so seldom needs a second try.
+/// The next frame starts with this share, and so seldom needs a second try.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct UsedPart(f64);
 
@@ -120,7 +120,7 @@ pub(super) fn with_plan<T>(frame: LossyFrame<'_>, draw: impl FnOnce(&mut Plan<'_
     SCRATCH.with_borrow_mut(|scratch| draw(&mut Plan::new(frame, scratch)))
 }
 
-/// The error of OKLab distances here, with a reserve.
+/// A bound on the error of OKLab distances that are computed with approximate cube roots.
 const DISTANCE_ERROR: f32 = 4e-6;
 
 impl<'a> Plan<'a> {
@@ -226,13 +226,15 @@ impl<'a> Plan<'a> {
 
     /// Returns the number of picture cells that must be written in this frame.
     ///
-    /// They include the cells that exceed the quality's caps if `within_caps` is set.
+    /// They are those that replace text or unknown contents and, with `within_caps`, those that exceed the quality's
+    /// caps.
     pub(super) fn min_writes(&self, within_caps: bool) -> usize {
         self.count_from(if within_caps { Urgency::Differs(0) } else { Urgency::Appears })
     }
 
-    /// Makes `grid`, a copy of the shown one, the one to show next: with the wanted text and the
-    /// `writes` most urgent picture cells.
+    /// Draws the wanted text and the `writes` most urgent picture cells into `grid`.
+    ///
+    /// `grid` must be a copy of the shown grid.
     pub(super) fn draw(&mut self, writes: usize, used: &mut UsedPart, grid: &mut Grid) {
         if writes < self.writes {
             self.sort();
@@ -281,14 +283,15 @@ impl<'a> Plan<'a> {
             let squares = inexact.iter().zip(&*snapped).map(of_cell).sum::<u64>() as f64;
             if squares <= max_squares || tolerance.square == 0 {
                 if is_whole && full > 0.0 {
-                    // Near the cap the part stays, so that the next frame does not exceed it.
+                    // The used share grows only while the error is well below its cap, so that the next frame does not
+                    // exceed the cap.
                     let growth = if squares < 0.8 * max_squares { 0.85 * max_squares / squares } else { 1.0 };
                     used.0 = (f64::from(tolerance.square) / full * growth.min(1.3)).clamp(0.05, 1.0);
                 }
                 return;
             }
-            // The colours of most halves are at the tolerance, and the sum exceeds its cap. The tolerance then shrinks
-            // in proportion, so that few tries are needed.
+            // The sum of the errors exceeds its cap, because most halves use the whole tolerance. The tolerance shrinks
+            // by the ratio of cap and sum, and a little more, so that few tries are needed.
             let step = (0.85 * max_squares / squares).clamp(0.0, 0.85);
             tolerance.square = (f64::from(tolerance.square) * step) as u32;
         }

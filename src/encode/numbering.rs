@@ -24,7 +24,7 @@ impl Numbering {
 
     /// Returns the number of a key, which is given one if it has none.
     ///
-    /// There must be room for it.
+    /// [`clear`](Self::clear) must have made room for the key.
     pub(super) fn add(&mut self, key: u64) -> usize {
         let slot = self.slot_of(key);
         if self.slots[slot] == FREE {

@@ -18,14 +18,14 @@ use std::ops::Range;
 const MAX_CHOICES: usize = 4;
 
 /// Number of colours, nearest in lightness on either side, with which each colour is compared.
-// In pictures the colours within the tolerance are among them. In noise they are not: it took 192 times ratatui's time
-// before this limit and two others, and takes 21 times with them.
+// In pictures, nearly all colours within the tolerance are among these. In noise many more are within it: without this
+// limit and two others, a frame of noise took 192 times ratatui's time; with them it takes 21 times.
 const LIGHTNESS_NEIGHBOURS: usize = 24;
 
 /// The number of steps of lightness by which colours are sorted.
 const LIGHTNESS_STEPS: usize = 4096;
 
-/// The end of a list.
+/// The number that marks the end of a linked list.
 const NONE: u32 = u32::MAX;
 
 /// The working memory of the reduction.
@@ -34,7 +34,7 @@ pub(super) struct Reduction {
     /// The distinct colours of the cells and of the pen, in the order in which they are found.
     found: Numbering,
     found_oklab: Vec<Oklab>,
-    /// The place of each found colour among the sorted ones; at first the step of its lightness.
+    /// The index in `colors` of each found colour; at first the step of its lightness.
     places: Vec<u32>,
     /// The distinct colours, sorted by the steps of their lightness.
     colors: Vec<Srgb8>,
@@ -48,7 +48,7 @@ pub(super) struct Reduction {
     /// The palette colours that may replace each colour, those that replace the most halves first.
     choices: Vec<Choices>,
     possible: Vec<PossiblePair>,
-    /// The memory of a sort of `possible`.
+    /// Working memory for sorting `possible`.
     sorted: Vec<PossiblePair>,
     counts: Vec<u32>,
     /// The pairs that several cells can show.
@@ -101,7 +101,7 @@ impl Reduction {
         }
     }
 
-    /// Returns the palette colours of the cell at an index, in the better order.
+    /// Returns the palette colours of the cell at index `at`, exchanged if that is more exact.
     fn snapped(&self, at: usize, cell: Halves, half_blocks: HalfBlocks) -> Halves {
         let pair = self.chosen[at];
         let [a, b] = pair.map(|index| self.colors[index as usize]);
@@ -160,7 +160,7 @@ impl Reduction {
         let Self { near, colors, oklab, .. } = self;
         near.clear();
         for (a, (&color, &lab)) in colors.iter().zip(oklab.iter()).enumerate() {
-            // A step more, since the order within a step is any.
+            // One step of lightness more, because the colours of a step are not sorted.
             let lightest = lab.l + tolerance.distance + 1.0 / LIGHTNESS_STEPS as f32;
             let others = (a + 1..colors.len()).take(LIGHTNESS_NEIGHBOURS);
             for b in others.take_while(|&b| oklab[b].l <= lightest) {
@@ -200,13 +200,13 @@ impl Reduction {
                 }
             }
         }
-        // The cells are in ascending order already, and sorts by counting are stable.
+        // The list is in ascending order of cells already, and counting sorts are stable.
         self.sort_possible_by(1);
         self.sort_possible_by(0);
         self.possible.dedup();
     }
 
-    /// Sorts the possible pairs by one of their colours, and keeps the order of equal ones.
+    /// Sorts the possible pairs by the colour at index `place`; the sort is stable.
     fn sort_possible_by(&mut self, place: usize) {
         let Self { possible, sorted, counts, colors, .. } = self;
         counts.clear();
@@ -248,7 +248,7 @@ impl Reduction {
     }
 }
 
-/// Makes each number the sum of all up to it.
+/// Replaces each number by the sum of all numbers up to and including it.
 fn sum_up(counts: &mut [u32]) {
     let mut sum = 0;
     for count in counts {
@@ -276,10 +276,11 @@ impl Sets {
         self.ends.push(self.members.len() as u32);
     }
 
-    /// Makes sets of `count` numbers: each with itself and the numbers that it is linked to.
+    /// Fills `count` sets: set i has the number i and all numbers that are linked to i.
     fn fill_symmetric(&mut self, count: usize, links: &[[u32; 2]]) {
         self.clear();
-        // Each end counts the members at first, is the start of its set then, and moves to its end.
+        // `ends` first has the number of members of each set, then the set's start, which moves to the end with each
+        // added member.
         self.ends.resize(count, 1);
         for &end in links.iter().flatten() {
             self.ends[end as usize] += 1;
@@ -331,8 +332,8 @@ impl Cover {
     /// Chooses sets that together cover all members, greedily by the weight of members not yet
     /// covered.
     ///
-    /// Of equal sets the first one is chosen. Calls `take` with each chosen set, its members and the weights before
-    /// it, and sets the weights of its members to 0.
+    /// Among sets of equal weight, the first one is chosen. Calls `take` with each chosen set, its members and all
+    /// weights at that moment, and then sets the weights of its members to 0.
     fn choose(&mut self, sets: &Sets, left: &mut [u32], mut take: impl FnMut(usize, &[u32], &[u32])) {
         let gain = |set: usize, left: &[u32]| sets.members(set).iter().map(|&at| left[at as usize]).sum::<u32>();
         let most = (0..sets.len()).map(|set| gain(set, left)).max().unwrap_or(0);

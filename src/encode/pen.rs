@@ -120,8 +120,8 @@ impl Pen {
         self.switch_cost_with_lens(wanted, wanted.ink_lens())
     }
 
-    /// Returns the bytes of a switch to `wanted`, given the wanted pen's
-    /// [`ink_lens`](Self::ink_lens).
+    /// Returns the number of bytes of a switch to `wanted`, whose [`ink_lens`](Self::ink_lens) are
+    /// `lens`.
     // Computing the lengths once per cell instead of up to eight times takes a quarter of a frame's instructions away:
     // 1.52 million instead of 2.00 for 80x24 cells that all change.
     #[inline]
@@ -145,15 +145,15 @@ impl Pen {
         [1 + ink_len(self.fg, fg), 1 + ink_len(self.bg, bg)]
     }
 
-    /// Returns the bytes of a switch to `wanted` if the attributes change.
+    /// Returns the number of bytes of a switch to `wanted` if the attributes change.
     fn cost_with_attributes(&self, wanted: &Self, lens: [usize; 2]) -> usize {
         let codes = self.attribute_codes(wanted.attributes).map(|code| 1 + code.len()).sum();
         let split = if self.is_split(wanted, InkForm::Short) { 2 } else { 0 };
         self.after_attributes(wanted.attributes).cost_of_colors(codes, wanted, lens) + split
     }
 
-    /// Returns the bytes that set the colours of `wanted`, and attributes whose codes take `code`
-    /// bytes.
+    /// Returns the number of bytes that set attributes with `code` bytes and the colours of
+    /// `wanted`.
     // Always inlined, as the innermost step of the choice of half blocks: two to four calls per cell.
     #[inline(always)]
     fn cost_of_colors(&self, code: usize, wanted: &Self, [fg, bg]: [usize; 2]) -> usize {

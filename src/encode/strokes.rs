@@ -90,7 +90,7 @@ impl Strokes {
             let pens = [paths[0].pen.pen_for(cell), paths[1].pen.pen_for(cell)];
             let is_lower = cell.has_char('▄');
             if is_plain_space(cell) {
-                // A space keeps the pen's glyph colour, so the two paths stay distinct.
+                // A space has one form only, but keeps the pen's glyph colour: both paths go on, as their pens differ.
                 predecessors.push([0, 1]);
                 paths = [
                     paths[0].extended(pens[0], pens[0].ink_lens(), false),
@@ -120,7 +120,7 @@ impl Strokes {
 }
 
 /// Appends the glyph of a stroke.
-// Before a wide cluster, blanks clear its cells: some terminals draw it in the first one only.
+// Before a wide cluster, blanks clear its cells, because some terminals draw the cluster in its first cell only.
 fn write_cell(wanted: &Grid, stroke: &Stroke, bytes: &mut Vec<u8>) {
     let CellPosition { column, row } = stroke.position;
     let cell = wanted.packed_cell(column, row);
@@ -168,7 +168,8 @@ fn other_half_block(cell: PackedCell) -> Option<char> {
 }
 
 /// Returns whether a cell looks the same with the other half block and exchanged colours.
-// Default colours cannot be exchanged: the default background cannot be set as a glyph colour, nor the reverse.
+// Default colours cannot be exchanged: no sequence sets the default background as a glyph colour, or the default glyph
+// colour as a background.
 fn can_be_flipped(cell: PackedCell) -> bool {
     other_half_block(cell).is_some()
         && cell.attributes().is_empty()
@@ -219,8 +220,8 @@ impl SurvivorPath {
 }
 
 /// Moves the cursor to a cell: by the cheapest sequence, or by writing the cells between again.
-// The latter is possible if the pen fits all these cells, and chosen if it takes no more bytes than the sequence. At
-// equal length it compresses better, as a longer run of one glyph.
+// Writing the cells again is possible if the pen fits all of them, and chosen if it takes no more bytes than the
+// sequence. At equal length it compresses better, as a longer run of one glyph.
 fn move_to(
     wanted: &Grid,
     cursor: Option<CellPosition>,

@@ -255,8 +255,8 @@ fn light_line(name: &str, LinearRgb { r, g, b }: LinearRgb) -> String {
 
 /// Formats a number, right-aligned in nine columns.
 fn padded_number(x: f32) -> String {
-    // Below 1e-3 four decimals would show one digit; from 1e3 on they would take ten columns with a sign, and from 1e5
-    // on so would two decimals.
+    // Four decimals would show a single digit below 1e-3, and take ten columns from 1e3 on, with a sign. Two decimals
+    // would take ten columns from 1e5 on.
     let size = x.abs();
     match size {
         _ if size == 0.0 => format!("{:9.4}", 0.0),

@@ -56,10 +56,10 @@ pub fn compare(expected: &str, found: &str) -> Option<Difference> {
 
 /// The difference of two frames.
 ///
-/// Its [`Display`](fmt::Display) form is a few lines for a person: the number of differing rows and the first
-/// difference, the rows that were expected (`-`) and found (`+`) between bars that show their ends, a mark below each
-/// differing cell, and a row of context on either side. Lines and columns are counted from 1, as in editors. The text
-/// contains no escape sequences; the alternate form (`{:#}`) colours the rows red and green for a terminal.
+/// Its [`Display`](fmt::Display) form is a short report: the number of differing rows and the first difference, the
+/// rows that were expected (`-`) and found (`+`) between bars that show their ends, a mark below each differing cell,
+/// and a row of context on either side. Lines and columns are counted from 1, as in editors. The text contains no
+/// escape sequences; the alternate form (`{:#}`) colours the rows red and green for a terminal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     expected: Vec<Row>,
@@ -106,7 +106,7 @@ fn marks(a: &Row, b: &Row) -> String {
 impl Difference {
     /// Returns the index of the first differing row, from 0.
     ///
-    /// If one text has more rows, that row may exist in this text only.
+    /// If one text has more rows, the row may exist in the longer text only.
     #[doc(hidden)]
     pub fn row(&self) -> usize {
         self.same
@@ -241,7 +241,7 @@ impl fmt::Display for Difference {
     }
 }
 
-/// Returns the difference of a text file from the golden file, row by row, for a person.
+/// Returns a readable report, row by row, of how a text file differs from the golden file.
 pub(super) fn by_rows(golden: &[u8], file: &[u8]) -> GoldenDifference {
     let [expected, found] = [golden, file].map(String::from_utf8_lossy);
     // The texts may be equal although the bytes differ, because a golden file may contain invalid UTF-8.

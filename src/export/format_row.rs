@@ -18,11 +18,11 @@ pub(super) struct FormatRow {
     pub(super) command: &'static str,
     pub(super) title: &'static str,
     pub(super) contents: Contents,
-    /// Returns the difference of the second file from the first, the golden file.
+    /// Returns a report of how the second file differs from the first, which is the golden file.
     pub(super) difference: fn(&[u8], &[u8]) -> GoldenDifference,
 }
 
-/// The difference of a file from a golden file, for a person.
+/// A readable report of how a file differs from a golden file.
 pub struct GoldenDifference {
     /// The difference as lines of text.
     pub text: String,
@@ -48,7 +48,7 @@ pub enum Contents {
     Cells {
         /// Whether the format has colours.
         has_colors: bool,
-        /// Whether default colours are light on black in the file, and not those of its reader.
+        /// Whether the file shows default colours as light on black; else its viewer chooses them.
         is_on_black: bool,
         /// Makes the file from a grid, the colours of its cells, their aspect (height / width), and
         /// the name of the scene.

@@ -65,7 +65,7 @@ pub(super) fn svg_paths(grid: &Grid) -> String {
     for ColorArea { x, y, width, height, color } in areas(grid) {
         let _ = write!(halves.outline(color), "M{x} {y}h{width}v{height}h-{width}");
     }
-    // Parts of cells lie over the backgrounds of their cells, so their paths come later.
+    // Block characters that fill parts of a cell lie over its background, so their paths come later.
     let mut parts = Paths::default();
     for (row, cells) in grid.rows().enumerate() {
         for (column, cell) in cells.enumerate() {
@@ -123,7 +123,7 @@ fn write_block(
 ) {
     let unit = |at: usize, parts: usize, scale: f64| {
         let length = scale * at as f64 / parts as f64;
-        // Thirds have no end in decimal. Three decimals of a column are finer than a pixel of the screen.
+        // A third has infinitely many decimals. Three decimals of a column are finer than a pixel of the screen.
         (1000.0 * length).round() / 1000.0
     };
     for y in 0..down {

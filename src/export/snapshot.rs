@@ -7,8 +7,8 @@ use std::fmt::Write;
 
 /// Returns the grid's characters in a frame, for snapshot tools that trim their input.
 ///
-/// [insta](https://docs.rs/insta) does: a snapshot of [`text`](super::text()) loses the blank rows at its end, and with
-/// them the height.
+/// [insta](https://docs.rs/insta) is such a tool: a snapshot of [`text`](super::text()) loses the blank rows at its
+/// end, and so its height.
 ///
 /// ```
 /// use termtrace::{CellMode, Scene, Size, export::framed, frame_grid};

@@ -1,26 +1,26 @@
-//! The last steps to the roots of eight rays: brackets, which end as neighbouring numbers.
+//! The last steps to the roots of eight rays: brackets, narrowed down to two neighbouring f32.
 
 use super::packet::{EightValues, PacketValues};
 use crate::lanes::{F32x8, LANES, Lanes, SimdKernel};
 use std::array::from_fn;
 
-/// The relative distance of two places up to which their secant may be that of rounding errors.
+/// The relative distance of two t up to which the secant between them may be mere rounding error.
 const CLOSE: f64 = 16.0 * f32::EPSILON as f64;
 
-/// A stretch in which the first root lies, and the sign in front of it.
+/// A range of t from `low` to `high` with the first root, and the sign of f in front of it.
 pub(super) struct Root {
     pub(super) low: f64,
     pub(super) high: f64,
     pub(super) sign: f64,
-    /// The root of a model.
+    /// An estimate of the root.
     pub(super) guess: f64,
-    /// The slope of the model there; 0 if there is no model.
+    /// The slope of f's model at the root; 0 if there is no model.
     pub(super) slope: f64,
 }
 
-/// Pairs of places between which f changes its sign, on the way to neighbouring numbers.
+/// Brackets of eight rays: pairs of t between which f changes its sign, narrowed step by step.
 ///
-/// All places are numbers of f32.
+/// All values of t are f32 numbers, held as f64.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Brackets {
     before: EightValues,
@@ -29,7 +29,7 @@ pub(super) struct Brackets {
     sign: EightValues,
     /// The slope of f times the sign, below 0; 0 if it is not known yet.
     slope: EightValues,
-    /// The places whose values are needed next.
+    /// The t at which f is to be evaluated next.
     next: EightValues,
     /// The t that were evaluated last, and the values of f there times the signs.
     last: [EightValues; 2],
@@ -49,9 +49,9 @@ impl Brackets {
         self.next[lane] = f64::from(next as f32).max(before).min(after);
     }
 
-    /// Takes the values at `next`, and returns the lanes whose brackets are as narrow as possible.
+    /// Takes the values of f at `next`; returns the lanes whose brackets are two neighbouring f32.
     ///
-    /// `count` is the number of values in front of these.
+    /// `count` is the number of earlier calls.
     #[inline(always)]
     fn take(&mut self, values: &EightValues, count: u32) -> u32 {
         let mut is_narrow = [false; LANES];
@@ -65,10 +65,12 @@ impl Brackets {
             let (least, most) = (above(before), below(after));
             let distance = t - self.last[0][lane];
             let secant = (value - self.last[1][lane]) / distance;
-            // A secant that is NaN is not taken. Between neighbours it is that of rounding errors.
+            // A secant that is NaN is not used, and neither is one between two t so close that rounding errors would
+            // decide it.
             let is_steeper = count > 0 && secant < 0.0 && distance.abs() > CLOSE * t.abs();
             let slope = if is_steeper { secant } else { self.slope[lane] };
-            // A little beyond the root by Newton's method, so that it is soon enclosed, or the middle in turn.
+            // The next t is one f32 beyond the root by Newton's method, so that the root is soon enclosed from both
+            // sides; later, every second t is the middle of the bracket.
             let root = f64::from((t - value / slope) as f32);
             let beyond = if is_before { above(root) } else { below(root) };
             let is_far = in_turn || !(root.abs() < f64::INFINITY);
@@ -120,7 +122,7 @@ fn at_least(t: f64) -> f32 {
 // Without the branches of `next_up`, which keep a loop from becoming vector instructions.
 #[inline(always)]
 fn above(t: f64) -> f64 {
-    // Not -0, whose bits are not beside those of the least positive number.
+    // Adding 0 turns -0 into 0: the bits of -0 are not beside those of the least positive number.
     let bits = (t as f32 + 0.0).to_bits();
     f64::from(f32::from_bits(if t < 0.0 { bits.wrapping_sub(1) } else { bits.wrapping_add(1) }))
 }

@@ -5,16 +5,16 @@ use super::model::Model;
 use glam::DVec3;
 
 /// The largest number of boxes that are examined.
-// It bounds the time that loading takes.
+// The limit bounds the time that loading a scene takes.
 const MAX_BOXES: usize = 1024;
 
-/// The smallest box, as a number of halvings of each side.
+/// The largest number of times that the sides of a box are halved.
 const MAX_DEPTH: u32 = 6;
 
 impl Formula {
     /// Returns why the formula certainly has no surface inside a box; `None` if it may have one.
     pub(crate) fn lack_of_surface(&self, min: DVec3, max: DVec3) -> Option<&'static str> {
-        // At another time a formula that moves may have a zero.
+        // A formula that depends on the time may have a zero at another time.
         if !self.moves() && self.has_no_zero(min, max) {
             return Some("f has no zero inside the bounds: nothing is seen");
         }
@@ -35,7 +35,7 @@ impl Formula {
             examined += 1;
             let value = self.tape.value(0.5 * (min + max), &mut values);
             signs = [signs[0] || value < 0.0, signs[1] || value > 0.0];
-            // Between two signs f may jump and have no zero, but that is not certain.
+            // With both signs in the box f mostly has a zero between them; that it only jumps there is not certain.
             if signs == [true; 2] || value == 0.0 {
                 return false;
             }

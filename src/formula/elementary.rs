@@ -1,18 +1,18 @@
 //! Sine, cosine and the exponential function in f64: the same bits for one number and for eight.
 //!
 //! They are written without branches, so that loops over eight numbers become vector instructions: with `libm` they
-//! took most of the time of the last steps to a root. For large arguments they are `libm`'s.
+//! took most of the time of the last steps to a root. For large arguments `libm` is called.
 
 use crate::lanes::LANES;
 use std::f64::consts::{FRAC_2_PI, LOG2_E};
 
-/// A number whose sum with a smaller one is rounded to a whole number, in its lowest bits.
+/// 1.5 * 2^52: the low bits of its sum with a small number are that number, rounded to a whole one.
 const TO_WHOLE: f64 = 6_755_399_441_055_744.0;
 
-/// The angle up to which the products with the first two parts of a quarter turn are exact.
+/// The angle in radians up to which products with the first two parts of [`QUARTER`] are exact.
 const LARGEST_ANGLE: f64 = 1e6;
 
-/// The exponent up to which the power is a normal number.
+/// The magnitude of the exponent up to which the power of e is a normal number.
 const LARGEST_EXPONENT: f64 = 700.0;
 
 /// A quarter turn in parts of 33 bits (fdlibm).
@@ -60,7 +60,7 @@ fn polynomial(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().fold(0.0, |sum, c| sum * x + c)
 }
 
-/// Returns the sine of an angle that is not too large, or its cosine.
+/// Returns the sine or cosine of an angle up to [`LARGEST_ANGLE`].
 #[inline(always)]
 fn near_wave(x: f64, is_cosine: bool) -> f64 {
     let shifted = x * FRAC_2_PI + TO_WHOLE;
@@ -74,7 +74,7 @@ fn near_wave(x: f64, is_cosine: bool) -> f64 {
     f64::from_bits(value.to_bits() ^ ((turn & 2) << 62))
 }
 
-/// Returns e to an exponent that is not too large.
+/// Returns e^x, for x up to [`LARGEST_EXPONENT`] in magnitude.
 #[inline(always)]
 fn near_exp(x: f64) -> f64 {
     let shifted = x * LOG2_E + TO_WHOLE;

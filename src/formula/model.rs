@@ -13,8 +13,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 pub(super) const EPSILON: f64 = f64::EPSILON;
 
 /// A quantity along a piece of a ray.
-// Of order 2: in a prototype order 1 took up to 1.6 times as long, order 3 up to 1.3 times, and order 6, which is exact
-// for most polynomials, up to 2.2 times.
+// The polynomial has order 2: in a prototype, order 1 took up to 1.6 times as long, order 3 up to 1.3 times, and order
+// 6, which is exact for most polynomials, up to 2.2 times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Model {
     /// The coefficients of the polynomial.
@@ -23,7 +23,7 @@ pub(super) struct Model {
     pub(super) error: f64,
 }
 
-/// Properties of all values on a piece of a ray.
+/// The continuity of a formula on a piece of a ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Continuity {
     /// Whether some operation may jump, or be undefined in a part of the piece.
@@ -37,8 +37,8 @@ impl Model {
 
     /// Returns the model with room for the rounding errors of `error` itself.
     fn new(c: [f64; 3], error: f64) -> Self {
-        // No term of `error` is rounded more than 32 times, each by half of EPSILON at most. Products that vanish add
-        // less than MIN_POSITIVE.
+        // No term of `error` is rounded more than 32 times, each time by half of EPSILON at most. Products that
+        // underflow to 0 add less than MIN_POSITIVE.
         Self { c, error: error * (1.0 + 16.0 * EPSILON) + f64::MIN_POSITIVE }
     }
 
@@ -47,7 +47,7 @@ impl Model {
         Self { c: [value, 0.0, 0.0], error: 0.0 }
     }
 
-    /// Returns the model of everything between two numbers.
+    /// Returns the model that encloses all values between two numbers.
     fn hull(low: f64, high: f64) -> Self {
         // Halved first, because the sum may overflow.
         let middle = 0.5 * low + 0.5 * high;
@@ -73,7 +73,7 @@ impl Model {
         self.c[0].abs() + self.c[1].abs() + self.c[2].abs()
     }
 
-    /// Returns numbers that the quantity is not below and not above.
+    /// Returns a lower and an upper bound of the quantity.
     pub(super) fn range(&self) -> [f64; 2] {
         let Self { c: [c0, c1, c2], error } = *self;
         let slack = error + 4.0 * EPSILON * self.magnitude();
@@ -94,7 +94,7 @@ impl Model {
         self.plus(other.negate())
     }
 
-    /// Returns the product: what is beyond order 2 goes into the error.
+    /// Returns the product, whose terms of orders 3 and 4 go into the error.
     fn times(self, other: Self) -> Self {
         let ([a0, a1, a2], [b0, b1, b2]) = (self.c, other.c);
         let (of_a, of_b) = (self.magnitude(), other.magnitude());
@@ -108,18 +108,18 @@ impl Model {
         Self::new(self.c.map(|c| c * factor), error)
     }
 
-    /// Returns a function g of the quantity.
+    /// Returns the model of a function g of the quantity.
     ///
-    /// It is the Taylor polynomial at c0, or `hull` if that is closer. `[g, g1, g2]` are g, g' and g'' / 2 at c0, and
-    /// `third` is a bound of |g'''| / 6 on the range.
+    /// It is the Taylor polynomial at c0, or the range `hull` if that has the smaller error. `[g, g1, g2]` are g, g'
+    /// and g'' / 2 at c0, and `third` is a bound of |g'''| / 6 on the range.
     fn function(self, [g, g1, g2]: [f64; 3], third: f64, hull: [f64; 2]) -> Self {
         let Self { c: [_, c1, c2], error } = self;
         let spread = c1.abs() + c2.abs() + error;
-        // The square of c1 u + c2 u^2 ± error is c1^2 u^2, off by this.
+        // The square of c1 u + c2 u^2 ± error differs from c1^2 u^2 by at most this.
         let beyond = 2.0 * (c1 * c2).abs() + c2 * c2 + error * (2.0 * (c1.abs() + c2.abs()) + error);
         let (linear, square) = (g1 * c2, g2 * c1 * c1);
         let rounding = 8.0 * EPSILON * (g.abs() + (g1 * c1).abs() + linear.abs() + square.abs());
-        // A bound that has underflowed is no bound.
+        // A bound that has underflowed to 0 no longer bounds anything.
         let third = if third < f64::MIN_POSITIVE { f64::INFINITY } else { third };
         let remainder = third * spread * spread * spread;
         let taylor =
@@ -129,7 +129,7 @@ impl Model {
     }
 }
 
-/// The evaluation of one operation, which notes where it may jump.
+/// The evaluation of operations, which records whether they may jump or are undefined.
 pub(super) struct Evaluation<'c>(pub(super) &'c mut Continuity);
 
 impl Evaluation<'_> {
@@ -202,7 +202,7 @@ impl Evaluation<'_> {
 
     fn tangent(&mut self, a: Model, value: f64, around: [f64; 2]) -> Model {
         let [low, high] = a.range();
-        // The number of the branch between two poles, with room for the rounding of the division.
+        // The number of the tangent's branch at x, from pole to pole, with room for the rounding of the division.
         let branch = |x: f64, slack: f64| libm::floor(x / PI + 0.5 + slack * (1.0 + x.abs()) * 4.0 * EPSILON);
         if branch(low, -1.0) != branch(high, 1.0) {
             return self.anything(false);
@@ -275,7 +275,7 @@ impl Evaluation<'_> {
     }
 }
 
-/// Returns |a|: `a` itself or its negative, or on a range around 0 the chord.
+/// Returns |a|: `a`, its negative or, if its range contains 0, the chord of |a| over the range.
 fn absolute(a: Model) -> Model {
     let [low, high] = a.range();
     if low >= 0.0 {

@@ -1,7 +1,7 @@
 //! Models of a formula on pieces of eight rays at once, in f32.
 //!
 //! They are the models of [`model`](super::model) with the rounding of f32. The frequent operations have a vector form
-//! here; all others are computed lane by lane in f64. Each lane has the bits that it has alone.
+//! here; all others are computed lane by lane in f64. The bits of a lane do not depend on the other lanes.
 
 use super::elementary::{exp_of_each, wave_of_each};
 use super::model::{Continuity, EPSILON as EPSILON_64, Evaluation, Model};
@@ -12,18 +12,18 @@ use std::f64::consts::FRAC_2_PI;
 /// Twice the largest relative rounding error of an f32 operation.
 const EPSILON: f32 = f32::EPSILON;
 
-/// The error of a blurred model, relative to the extent of its polynomial.
+/// The least error of a model that counts as blurred, relative to its polynomial's extent.
 const BLUR: f32 = 1.0 / 16.0;
 
 /// A bound of the absolute error of the polynomials for sine and cosine.
-// Measured up to 8000, for every 37th float: 9.3e-8.
+// The largest measured error, at every 37th float up to 8000, is 9.3e-8.
 const OF_SINE: f32 = 2.0 * EPSILON;
 
 /// A bound of the relative error of the polynomial for the exponential function.
-// Measured for every 37th float: 8.1e-8.
+// The largest measured error, at every 37th float, is 8.1e-8.
 const OF_EXP: f32 = 4.0 * EPSILON;
 
-/// The largest angle at which the reduction to a quarter turn is exact enough.
+/// The largest angle, in radians, at which the reduction to a quarter turn is exact enough.
 // Cephes gives 8192 as the limit of this reduction.
 const LARGEST_ANGLE: f32 = 8000.0;
 
@@ -52,7 +52,7 @@ pub(super) struct Outcome {
     models: StoredModels,
     pub(super) may_jump: u32,
     pub(super) is_undefined: u32,
-    /// `near`, `far` and `blur` of [`View`].
+    /// `near`, `far` and `blur` of each lane's [`View`].
     pub(super) shares: [F32x8; 3],
     /// The lanes in which the sign is certain at the start of the piece.
     pub(super) is_certain: u32,
@@ -100,7 +100,7 @@ impl Outcome {
         (self.is_sharp | self.is_clear) >> lane & 1 == 0
     }
 
-    /// Returns the sign at the start, if it is certain.
+    /// Returns the sign at the start, 1 or -1; it is only valid in the lanes of `is_certain`.
     pub(super) fn sign(&self, lane: usize) -> f64 {
         if self.is_negative >> lane & 1 == 1 { -1.0 } else { 1.0 }
     }
@@ -157,7 +157,7 @@ pub(super) struct PacketValues<'a> {
 }
 
 impl PacketValues<'_> {
-    /// Returns the values at one place of each line.
+    /// Returns the values at `t` on each line.
     ///
     /// They have the same bits as [`Tape::value`] for each lane, whatever the instruction set.
     #[inline(always)]
@@ -184,7 +184,7 @@ impl PacketValues<'_> {
 
 /// Computes a function of each value.
 ///
-/// Frequent ones have a loop of their own, which becomes vector instructions.
+/// Frequent functions have a loop of their own, which becomes vector instructions.
 #[inline(always)]
 fn of_each(function: Unary, a: &EightValues, to: &mut EightValues) {
     match function {
@@ -237,7 +237,7 @@ fn of_lane(models: &StoredModels, lane: usize) -> Model {
     Model { c: [c0, c1, c2], error }
 }
 
-/// Returns the error with room for its own rounding, and for numbers that vanish.
+/// Returns the error with room for its own rounding, and for products that underflow to 0.
 fn enlarged(error: f32) -> f32 {
     error * (1.0 + 16.0 * EPSILON) + 16.0 * f32::MIN_POSITIVE
 }
@@ -259,7 +259,7 @@ struct Taylor<N> {
     off: N,
 }
 
-// All of it is inlined: a function by itself would be compiled without the kernel's target features.
+// All functions are inlined: others would be compiled without the kernel's target features.
 impl<N: Lanes> Models<N> {
     #[inline(always)]
     fn load(&[c0, c1, c2, error]: &StoredModels) -> Self {
@@ -345,7 +345,7 @@ impl<N: Lanes> Models<N> {
         Self::new([a0 * b0, a0 * b1 + a1 * b0, a0 * b2 + a1 * b1 + a2 * b0], beyond + error)
     }
 
-    /// Returns the product with a number, which may itself be rounded.
+    /// Returns the product with a number; the error includes the rounding of the number.
     #[inline(always)]
     fn scaled(self, factor: N) -> Self {
         let ([c0, c1, c2], size) = (self.c, factor.abs());
@@ -353,7 +353,7 @@ impl<N: Lanes> Models<N> {
         Self::new([c0 * factor, c1 * factor, c2 * factor], error)
     }
 
-    /// Returns the sum with a number, which may itself be rounded.
+    /// Returns the sum with a number; the error includes the rounding of the number.
     #[inline(always)]
     fn shifted(self, term: N) -> Self {
         let [c0, c1, c2] = self.c;
@@ -361,13 +361,14 @@ impl<N: Lanes> Models<N> {
         Self::new([c0 + term, c1, c2], self.error + rounding)
     }
 
-    /// Returns what the models show.
+    /// Returns what the models tell about the sign of the formula on their pieces.
     ///
-    /// Shares are first computed as the zeros of polynomials; the slack is more than the rounding errors of that.
+    /// Shares of the pieces are computed as zeros of polynomials, with a slack larger than the rounding errors of this
+    /// computation.
     #[inline(always)]
     fn outcome(self, lanes: u32, may_jump: u32, is_undefined: u32) -> Outcome {
         let (n, zero, one) = (N::splat, N::splat(0.0), N::splat(1.0));
-        // Relative to the size, so that no square overflows or vanishes.
+        // All numbers are divided by the size of the polynomial, so that no square overflows or underflows.
         let inverse = one / self.magnitude();
         let error = self.error * inverse * n(1.0 + 4.0 * EPSILON) + n(8.0 * EPSILON);
         let [c0, c1, c2] = self.c;
@@ -394,11 +395,12 @@ impl<N: Lanes> Models<N> {
         }
         let (slack, two) = (error + n(16.0 * EPSILON), n(2.0));
         let (slope, curvature) = (two * c1 - n(4.0) * c2, n(4.0) * c2);
-        // Chords fall from the first coefficient at most as steeply as the steeper one.
+        // The polynomial falls at most as steeply as the steeper chord from the first coefficient to one of the others.
         let steepest = (two * (middle - first)).min(last - first);
         let by_chord = (n(0.999) * (first - error) / -steepest).max(zero).min(one);
         let near = (first_zero(first - slack, slope, curvature) * n(1.0 - 1e-5) - n(1e-6)).min(one);
-        // Close to the surface the slack may be more than there is, and the zeros others.
+        // Close to the surface the slack may exceed the value at the start; the zero that is found is then another one,
+        // and is not used.
         let is_found = slack.lt(first) & zero.lt(near) & error.lt(at_share([c0, c1, c2], near));
         let near = N::select(is_found, near.max(by_chord), by_chord);
         let far = first_zero(first + slack, slope, curvature) * n(1.0 + 1e-5) + n(1e-6);
@@ -423,7 +425,7 @@ impl<N: Lanes> Models<N> {
         let (linear, square) = (g1 * c2, g2 * c1 * c1);
         let rounding = N::splat(8.0 * EPSILON) * (g.abs() + (g1 * c1).abs() + linear.abs() + square.abs());
         let of_values = off * (N::splat(1.0) + sizes + c1 * c1);
-        // A bound that has underflowed is no bound.
+        // A bound that has underflowed to 0 no longer bounds anything.
         let third = N::select(third.lt(N::splat(f32::MIN_POSITIVE)), N::splat(f32::INFINITY), third);
         let remainder = third * spread * spread * spread;
         let error = g1.abs() * error + g2.abs() * beyond + remainder + rounding + of_values;
@@ -445,8 +447,8 @@ impl<N: Lanes> Models<N> {
         let doubled = two * c0;
         let squares = [c0 * c0, doubled * c1, doubled * c2 + c1 * c1];
         let taylor = Self::new(squares, beyond + error * (two * size + error) + four * size * size);
-        // With an error this small the hull is not narrower. Each lane chooses for itself, so that its bits do not
-        // depend on the others; only the shortcut depends on all.
+        // With an error this small, the Taylor model is narrower than the hull. Each lane chooses for itself, so that
+        // its bits do not depend on the others; only this shortcut depends on all lanes.
         let is_close = taylor.error.le(size * size * N::splat(0.25));
         if is_close.all() {
             return taylor;
@@ -457,7 +459,7 @@ impl<N: Lanes> Models<N> {
         Self::select(is_close, taylor, taylor.or_if_narrower(Self::hull(least, one.max(other))))
     }
 
-    /// Returns |a|: `a` itself or its negative, or on a range around 0 the chord.
+    /// Returns |a|: `a`, its negative or, if its range contains 0, the chord of |a| over the range.
     #[inline(always)]
     fn absolute(self) -> Self {
         let ([low, high], zero) = (self.range(), N::splat(0.0));
@@ -494,7 +496,7 @@ impl<N: Lanes> Models<N> {
 
     /// Returns e to the quantity by its Taylor polynomial.
     ///
-    /// The numbers are the value at c0, the largest value, and the error of the first.
+    /// `value` is the function at c0, `most` its largest value on the piece, and `off` the error of `value`.
     // Not a closure, which would be compiled without the kernel's target features: that took four times as long.
     #[inline(always)]
     fn exponential_taylor(self, [value, most, off]: [N; 3]) -> Self {
@@ -508,8 +510,8 @@ impl<N: Lanes> Models<N> {
         let value = exp(self.c[0]);
         // Below -87 `exp` returns 1.6e-38, and the true value is between 0 and that.
         let off = N::splat(OF_EXP) * value + N::splat(1e-37);
-        // e^s is at most 1 + s + s^2 up to s = 1, and the hull is not narrower then. Here, too, each lane chooses for
-        // itself.
+        // Up to s = 1, e^s is at most 1 + s + s^2, and the hull is not narrower than the Taylor model. Each lane
+        // chooses for itself, as in `squared`.
         let spread = high - self.c[0];
         let (is_narrow, is_in_reach) = (spread.lt(one) & N::splat(-80.0).lt(self.c[0]), high.lt(N::splat(87.0)));
         let most = value * (one + spread + spread * spread) * N::splat(1.0 + 2.0 * OF_EXP);
@@ -518,7 +520,7 @@ impl<N: Lanes> Models<N> {
             return narrow;
         }
         let most = exp(high) * N::splat(1.0 + OF_EXP);
-        // `exp` is exact to `OF_EXP` from -86 on.
+        // From -86 on, the relative error of `exp` is at most `OF_EXP`.
         let least = N::select(low.lt(N::splat(-86.0)), zero, exp(low) * N::splat(1.0 - OF_EXP));
         let wide = self.exponential_taylor([value, most, off]).or_if_narrower(Self::hull(least, most));
         Self::select(is_in_reach, Self::select(is_narrow, narrow, wide), Self::anything())
@@ -537,7 +539,7 @@ fn at_share<N: Lanes>([c0, c1, c2]: [N; 3], share: N) -> N {
 fn first_zero<N: Lanes>(start: N, slope: N, curvature: N) -> N {
     let (zero, none) = (N::splat(0.0), N::splat(f32::INFINITY));
     let root = (slope * slope - N::splat(4.0) * curvature * start).sqrt();
-    // Without cancellation, whatever the sign of the slope.
+    // `root` gets the sign with which it does not cancel against the slope.
     let sum = slope - N::select(slope.lt(zero), root, -root);
     let (one, other) = (N::splat(-0.5) * sum / curvature, N::splat(-2.0) * start / sum);
     N::select(zero.lt(one), one, none).min(N::select(zero.lt(other), other, none))
@@ -565,11 +567,13 @@ fn sin_cos<N: Lanes>(x: N) -> [N; 2] {
     [N::select(is_odd, cos, sin) * (one - two * turned), N::select(is_odd, sin, cos) * (one - two * sign_of_cos)]
 }
 
-/// Returns e^x, off by at most [`OF_EXP`] of its value from -86 to 87; beyond, the nearer end's.
+/// Returns e^x with a relative error of at most [`OF_EXP`] for x from -86 to 87.
+///
+/// Below -87 and above 88, it returns the value at that limit.
 #[inline(always)]
 fn exp<N: Lanes>(x: N) -> N {
     let number = |value: f64| N::splat(value as f32);
-    // Beyond, `scale` would be subnormal or infinite.
+    // Beyond these limits, `scale` would be subnormal or infinite.
     let x = x.max(number(-87.0)).min(number(88.0));
     // ln 2 in two parts, of which the product with the first is exact, and the polynomial of Cephes.
     let power = (x * number(std::f64::consts::LOG2_E) + number(0.5)).floor();
@@ -580,7 +584,7 @@ fn exp<N: Lanes>(x: N) -> N {
     (sum * r * r + r + number(1.0)) * scale
 }
 
-/// The evaluation of operations, which notes the lanes where they may jump.
+/// The evaluation of operations, which records the lanes in which they may jump or are undefined.
 struct PacketEvaluation {
     lanes: u32,
     may_jump: u32,
@@ -615,7 +619,7 @@ impl PacketEvaluation {
         }
     }
 
-    /// Notes that the lanes of `mask` may jump, and returns [`Models::anything`] in them.
+    /// Records that the lanes of `mask` may jump; their models become [`Models::anything`].
     #[inline(always)]
     fn anything_where<N: Lanes>(&mut self, mask: N::Mask, is_undefined: N::Mask, else_: Models<N>) -> Models<N> {
         self.may_jump |= mask.bits();
@@ -657,7 +661,7 @@ impl PacketEvaluation {
         self.anything_where(!is_defined, is_undefined, a.times(inverse))
     }
 
-    /// Computes an operation that is rare in f64, one lane after the other.
+    /// Computes a rare operation in f64, one lane after the other.
     #[inline(always)]
     fn lane_by_lane<N: Lanes>(
         &mut self,

@@ -23,7 +23,7 @@ use tokens::{Token, Tokens};
 // The parser is recursive, and a deeper formula could overflow the stack.
 const MAX_NESTING: usize = 64;
 
-/// The largest whole exponent.
+/// The largest magnitude of a whole exponent.
 const MAX_EXPONENT: f64 = 32.0;
 
 /// A fault of a formula.
@@ -252,7 +252,7 @@ impl Parser<'_> {
         self.apply(function.kind, &operands, range)
     }
 
-    /// Reads with one more level of nesting.
+    /// Calls `read` one level of nesting deeper, or returns the fault of too deep a nesting.
     fn nested<T>(&mut self, range: Range<usize>, read: impl FnOnce(&mut Self) -> Result<T, Fault>) -> Result<T, Fault> {
         if self.depth == MAX_NESTING {
             return Fault::new(range, format!("brackets, signs and exponents may be {MAX_NESTING} deep, not deeper"));
@@ -336,7 +336,8 @@ impl Parser<'_> {
                 fits(index, range)
             }
             _ => {
-                // Undefined for a negative base, even where a root exists, as of x^(1/3): `cbrt` is for that.
+                // base^exponent is exp(exponent * ln(base)), which is undefined for a negative base even if a root
+                // exists, as for x^(1/3): formulas have `cbrt` for that.
                 let logarithm = self.unary_of(Unary::Ln, base, range.clone())?;
                 let product = self.binary(Binary::Multiply, exponent, logarithm, range.clone())?;
                 self.unary_of(Unary::Exp, product, range)
@@ -345,7 +346,7 @@ impl Parser<'_> {
     }
 
     fn length(&mut self, operands: &[Index], range: Range<usize>) -> Result<Index, Fault> {
-        // The tape folds this term away.
+        // The tape drops this 0 from the sum.
         let mut sum = self.constant(0.0, range.clone())?;
         for &operand in operands {
             let square = self.unary_of(Unary::Square, operand, range.clone())?;

@@ -143,7 +143,8 @@ impl Formula {
 }
 
 /// Returns the product, in which a zero vector stays zero, also times infinity.
-// The root of a constant or of the other axes must not make the whole gradient NaN.
+// The slope of a root at 0 is infinite: times a zero vector, it would make the whole gradient NaN, as of x + sqrt(y^2)
+// at y = 0.
 fn scaled(vector: DVec3, factor: f64) -> DVec3 {
     if vector == DVec3::ZERO { vector } else { vector * factor }
 }

@@ -1,12 +1,13 @@
 //! The first root of a formula along a ray: the first sign change across which it is continuous.
 //!
-//! Eight walks go side by side: their pieces are enclosed together, in f32, and frequent outcomes are handled together.
+//! Eight walks go side by side, one per ray: their pieces are enclosed together, in f32, and frequent outcomes are
+//! handled together.
 //!
-//! A walk goes forward in pieces, each enclosed by a [`Model`]. A piece without a root is passed. Otherwise the walk
-//! advances to the first t that may be a root. The next piece ends where the sign is certainly the other one, if the
-//! model shows such a place; else it is shorter. So thin parts are not stepped over. The error of a model grows with
-//! the cube of the length, from which the length of the next piece follows.
-//! A sign change may be lost if it is undone within [`MIN_PIECE`] of the range, or behind [`MAX_PIECES`] pieces.
+//! A walk goes forward in pieces of the ray, on each of which a [`Model`] encloses f. A piece without a root is passed.
+//! Otherwise the walk advances to the first t that may be a root. The next piece then ends where the model shows that
+//! the sign is certainly the other one, or is shorter if the model shows no such t. So thin parts are not stepped over.
+//! The error of a model grows with the cube of the length, from which the length of the next piece follows. A sign
+//! change may be lost if it is undone within [`MIN_PIECE`] of the range, or behind [`MAX_PIECES`] pieces.
 //!
 //! A sign change at a jump is no root, and neither is a zero without a sign change.
 
@@ -21,33 +22,33 @@ use glam::DVec3;
 use std::cell::RefCell;
 
 /// The length of the shortest piece, relative to the range.
-// With it, the nearer of two sheets 3e-7 apart was always found. It needs t and lengths in f64.
+// With this length, the nearer of two sheets 3e-7 apart was always found. Pieces this short need t and lengths in f64.
 const MIN_PIECE: f64 = 1e-9;
 
-/// The relative length of a piece with a sign change at which the search among points begins.
+/// The length, relative to the range, up to which a piece with a sign change becomes a bracket.
 const BRACKET: f64 = 1.0 / 16_384.0;
 
-/// The relative length of a piece below which a model is computed in f64, if that in f32 is
-/// blurred.
+/// The length, relative to the range, below which models are computed in f64 if blurred in f32.
 const SHORT: f64 = 1.0 / 1024.0;
 
-/// The error, relative to the values, that pieces should have.
+/// The error of a model, relative to the value of f, for which the lengths of pieces are chosen.
 const TARGET: f32 = 0.3;
 
 /// The longest stretch of undecided sign that counts as a root, relative to the range, if f changes
 /// its sign across it.
-// f may be zero on a whole stretch of the ray, which is no surface. Near a triple root it may be zero in f64.
+// Longer stretches are left out because f may be zero on a whole stretch of the ray, which is no surface. Short ones
+// occur near a triple root, where f may be zero in f64.
 const MAX_STRETCH: f64 = 1.0 / 256.0;
 
-/// The number of pieces of undecided sign in a row from which on each is twice as long.
+/// The number of pieces of undecided sign in a row after which the length doubles with each piece.
 // With the shortest pieces alone, a stretch of the ray on which f is 0 would take up to a billion of them.
 const STRIDES_FROM: f64 = 8.0;
 
-/// The relative length of the longest piece that is passed while its sign is undecided.
+/// The length, relative to the range, of the longest piece of undecided sign that is passed.
 const MAX_STRIDE: f64 = 1.0 / 64.0;
 
-/// The largest number of pieces of one ray, which misses after that.
-// It bounds the time of formulas that oscillate faster than any picture can show.
+/// The largest number of pieces that are examined on a ray; without a root by then, it misses.
+// The limit bounds the time of formulas that oscillate faster than any picture can show.
 const MAX_PIECES: usize = 4096;
 
 /// The line origin + t * direction.
@@ -76,7 +77,7 @@ pub(crate) struct Solver<'f> {
     formula: &'f Formula,
 }
 
-/// Up to eight searches: each lane's line, range, and the t after which its root is not needed.
+/// Up to eight searches: each lane's line, its range of t, and the t after which no root is needed.
 #[derive(Clone, Debug)]
 pub(crate) struct Searches {
     lines: Lines,
@@ -159,7 +160,7 @@ impl Searches {
         self.lanes == 0
     }
 
-    /// Returns the ends of each lane's next piece, without the lanes that have arrived.
+    /// Returns the start and end of each lane's next piece, and drops lanes whose search is over.
     #[inline(always)]
     fn next_pieces(&mut self) -> [EightValues; 2] {
         let (mut ends, mut is_on_the_way) = ([0.0; LANES], [false; LANES]);
@@ -232,8 +233,8 @@ impl SimdKernel for Search<'_> {
             found |= ended;
             *lanes &= !ended;
         }
-        // To the least f32, so that the root does not depend on the pieces: without this step up to 61 of 24,000 depths
-        // did.
+        // The root is narrowed down to the first f32 of the other sign, so that it does not depend on the pieces of the
+        // walk: without this step up to 61 of 24,000 depths did.
         let values = PacketValues { tape, lines: &searches.lines, scratch: &mut scratch.values };
         (found, Narrowing { values, brackets: &mut brackets, lanes: found }.run::<N>())
     }
@@ -382,7 +383,7 @@ fn cube_root(x: f32) -> f64 {
 impl Walk {
     fn new(from: f64, to: f64) -> Self {
         let range = to - from;
-        // A shorter piece could end at its start, by the rounding of t.
+        // In a shorter piece, the end could be rounded to the start.
         let shortest = (MIN_PIECE * range).max(16.0 * f64::EPSILON * from.abs().max(to.abs()));
         let [sign, undecided, skipped] = [0.0; 3];
         Self { t: from, length: range, sign, since: from, undecided, stride: shortest, skipped, shortest, range }
@@ -432,9 +433,9 @@ impl Walk {
         Found::Nothing
     }
 
-    /// Returns to the start of the long piece that was passed last, and continues in shorter ones.
+    /// Goes back to the start of the long piece passed last, and continues in shorter pieces.
     ///
-    /// Its sign was undecided, and is certain at its end: roots may lie between.
+    /// The sign was undecided in that piece and is certain at its end, so that roots may lie in it.
     fn retreat(&mut self, from: f64) -> Found {
         self.stride = (0.125 * self.skipped).max(self.shortest);
         (self.t, self.length, self.skipped) = (from - self.skipped, self.stride, 0.0);
@@ -444,7 +445,7 @@ impl Walk {
     /// Shortens a piece at whose start the sign is uncertain, or passes it if it is short.
     fn undecided(&mut self, view: &View, continuity: Continuity, [from, to]: [f64; 2]) -> Found {
         let width = to - from;
-        // A piece from t on may be longer than asked for, by the rounding of its end.
+        // 1.5 instead of 1, because the rounding of its end may make a piece longer than `stride`.
         if width > 1.5 * self.stride {
             self.length = (view.factor(0.0625, 0.5) * width).max(self.stride);
             return Found::Nothing;
@@ -462,7 +463,8 @@ impl Walk {
 
     /// Advances to the first t of the piece that may be a root.
     ///
-    /// If the sign is certainly the other one farther on, the next piece ends there, and a short one is a bracket.
+    /// If the sign is certainly the other one farther on, the next piece ends there; if it is short, it is returned as
+    /// the bracket of a root.
     fn approach(&mut self, view @ &View { near, far, .. }: &View, [from, to]: [f64; 2]) -> Found {
         let width = to - from;
         let start = from + near * width;
@@ -472,12 +474,12 @@ impl Walk {
             if end - start <= BRACKET * self.range {
                 return Found::Root(view.root([start, end], self.sign, width));
             }
-            // Shorter than this piece in any case, so that the search comes to an end.
+            // The next piece is at least a quarter shorter than this one, so that the search comes to an end.
             (self.t, self.length) = (start, (end - start).min(0.75 * width));
             return Found::Nothing;
         }
         if width <= 1.5 * self.shortest {
-            // As far as can be told, f touches zero here and keeps its sign.
+            // The shortest piece shows no change of the sign: f is taken to touch zero here and to keep its sign.
             self.since = from;
             return self.pass(to, 2.0 * width, self.sign);
         }
@@ -494,7 +496,7 @@ impl View {
         let sign = if b[0].abs() > error { b[0].signum() } else { 0.0 };
         let [first, middle, last] = b.map(|b| sign * b);
         let is_clear = sign != 0.0 && first.min(middle).min(last) > error;
-        // The polynomial falls at most this much, as a share of the piece: the least slope of its chords.
+        // The polynomial falls at most as steeply as the steeper chord from the first coefficient to one of the others.
         let steepest = (2.0 * (middle - first)).min(last - first);
         // 0.999 of the way to where the polynomial could first be 0, so that its sign there is certain in spite of
         // rounding.
@@ -504,27 +506,27 @@ impl View {
         Self { c: [c1, c2], sign, is_clear, near, far, blur }
     }
 
-    /// Returns how many times as long the next piece should be.
+    /// Returns the next piece's length relative to this piece's, limited to `least..=most`.
     ///
-    /// The error grows with the cube of the length.
+    /// It is a cube root, because the error grows with the cube of the length.
     fn factor(&self, least: f64, most: f64) -> f64 {
         cube_root(TARGET / self.blur as f32).max(least).min(most)
     }
 
-    /// Returns the root between two places of a piece of this width.
+    /// Returns the root between `low` and `high`, in a piece of length `width`.
     fn root(&self, [low, high]: [f64; 2], sign: f64, width: f64) -> Root {
         let (u, [c1, c2]) = (self.near + self.far - 1.0, self.c);
         Root { low, high, sign, guess: 0.5 * (low + high), slope: 2.0 * (c1 + 2.0 * u * c2) / width }
     }
 }
 
-/// Returns a share of the piece shortly behind the first one at which the polynomial is at `level`.
+/// Returns the share of the piece shortly behind the first fall of the polynomial below `level`.
 ///
-/// The polynomial is certainly below `level` there; `None` if no such share is found.
+/// At this share the polynomial is certainly below `level`; `None` if no such share is found.
 fn first_below(b: [f64; 3], level: f64) -> Option<f64> {
     let (start, slope, curvature) = (b[0] - level, 2.0 * (b[1] - b[0]), b[0] - 2.0 * b[1] + b[2]);
     let under_root = slope * slope - 4.0 * curvature * start;
-    // True also for NaN.
+    // The condition is also true for NaN.
     if !(under_root >= 0.0) {
         return None;
     }

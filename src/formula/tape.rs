@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-/// The largest number of operations.
+/// The largest number of operations of a formula.
 // The models of a packet take 128 bytes for each operation: at most half a megabyte in each thread.
 pub(super) const MAX_OPERATIONS: usize = 4096;
 
-/// The number of the time among the coordinates, in tapes that cannot be evaluated yet.
+/// The index of the time as a coordinate; tapes with it are evaluated only after [`Tape::at_time`].
 pub(super) const TIME: u8 = 3;
 
 /// The index of an operation in its tape.
@@ -59,7 +59,7 @@ pub(super) enum Binary {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tape {
     operations: Vec<Operation>,
-    /// Whether the value of each operation is at least 0, and at most 0, wherever it is defined.
+    /// For each operation, whether its values are known to be at least 0, and to be at most 0.
     signs: Vec<[bool; 2]>,
 }
 
@@ -68,7 +68,7 @@ impl Tape {
         &self.operations
     }
 
-    /// Returns the rounded value of an operation that is a constant, if it is an ordinary number.
+    /// Returns the value of a constant operation, rounded to f32, if that is a normal number.
     pub(super) fn factor(&self, index: Index) -> Option<f32> {
         let Operation::Constant(bits) = self.operations[usize::from(index)] else { return None };
         Some(f64::from_bits(bits) as f32).filter(|rounded| rounded.is_normal())
@@ -79,7 +79,7 @@ impl Tape {
         self.operations.contains(&Operation::Coordinate(TIME))
     }
 
-    /// Returns the tape in which the time is a constant.
+    /// Returns the tape with the time replaced by the constant `seconds`.
     pub(super) fn at_time(&self, seconds: f64) -> Self {
         let (mut builder, mut places) = (TapeBuilder::default(), Vec::with_capacity(self.operations.len()));
         for &operation in &self.operations {
@@ -166,7 +166,7 @@ impl TapeBuilder {
         if let (Some(a), Some(b)) = (self.value(a), self.value(b)) {
             return self.constant(function.at(a, b));
         }
-        // Only identities that keep the value wherever the operand is defined: `0 * x` stays.
+        // Only identities that also hold where the operand is undefined: `0 * x` stays, as it is undefined where x is.
         match (function, self.value(a), self.value(b)) {
             (Binary::Add, Some(0.0), _) | (Binary::Multiply, Some(1.0), _) => return Ok(b),
             (Binary::Add | Binary::Subtract, _, Some(0.0)) | (Binary::Multiply | Binary::Divide, _, Some(1.0)) => {
@@ -234,7 +234,7 @@ fn mark_operands(operation: Operation, is_used: &mut [bool]) {
     }
 }
 
-/// Returns which operations can be shown to have no negative value, and no positive one.
+/// Returns for each operation whether its values are known to be at least 0, and to be at most 0.
 fn signs(operations: &[Operation]) -> Vec<[bool; 2]> {
     let mut known: Vec<[bool; 2]> = Vec::with_capacity(operations.len());
     for &operation in operations {

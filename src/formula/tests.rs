@@ -168,7 +168,7 @@ fn a_formula_is_moved_by_the_time() {
     assert_eq!(formula.at_time(7.0).at_time(0.0), formula);
     let fixed = self::formula("x + r");
     assert!(!fixed.moves() && fixed.at_time(3.0) == fixed);
-    // What is undefined at a time has no surface then.
+    // A formula that is undefined at some time has no surface at that time.
     let undefined = self::formula("x + 1/time + sqrt(time - 1)");
     assert!(roots_of(&undefined.at_time(0.0), [-4.0, 4.0]).is_empty());
     assert_eq!(roots_of(&undefined.at_time(1.0), [-4.0, 4.0]), [-1.0]);
@@ -232,7 +232,7 @@ fn roots_are_changes_of_sign_across_which_f_is_continuous() {
     assert_eq!(roots("sin(20*x)").len(), 51);
 }
 
-/// The sheets are 2 d apart, down to 3e-7, and the one in front is found.
+/// Two parallel sheets are 2 d apart, down to 3e-7; the one in front is found.
 #[test]
 fn thin_sheets_are_not_lost() {
     for exponent in 3..7 {
@@ -251,7 +251,7 @@ fn thin_sheets_are_not_lost() {
     }
 }
 
-/// The first f32 of the other sign is found, whatever the end of the search.
+/// The root is the first f32 at which f has the other sign, wherever the range of the search ends.
 #[test]
 fn a_root_is_the_first_number_of_the_other_sign() {
     let formula = formula("x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8");
@@ -397,7 +397,7 @@ fn models_enclose_all_values() {
                 let value = formula.tape.value(o + d * t, &mut values);
                 let u = ((t - 0.5 * (from + to)) / (0.5 * (to - from))).clamp(-1.0, 1.0);
                 let distance = (value - (c0 + u * (c1 + u * c2))).abs();
-                // The value itself, and u, are rounded.
+                // The slack allows for the rounding of the value itself and of u.
                 let slack = 1e-11 * (1.0 + value.abs() + c1.abs() + c2.abs());
                 let is_outside = distance > model.error + slack
                     || (value.is_nan() && model.error.is_finite() && !continuity.may_jump);
@@ -452,7 +452,7 @@ fn models_of_eight_pieces_enclose_all_values() {
                 }
                 let u = ((t - 0.5 * (from + to)) / (0.5 * (to - from))).clamp(-1.0, 1.0);
                 let distance = (value - (c0 + u * (c1 + u * c2))).abs();
-                // The value itself, and u, are rounded.
+                // The slack allows for the rounding of the value itself and of u.
                 let slack = 1e-11 * (1.0 + value.abs() + c1.abs() + c2.abs());
                 let is_outside = distance > model.error + slack
                     || (value.is_nan() && model.error.is_finite() && !continuity.may_jump)
@@ -464,14 +464,14 @@ fn models_of_eight_pieces_enclose_all_values() {
     }
 }
 
-/// Returns the bits of a model, in which all NaN are the same, and 0 and -0.
+/// Returns the bits of a model, which are the same for all NaN, and for 0 and -0.
 fn model_bits(model: &model::Model) -> [u64; 4] {
     let bits = |number: f64| if number.is_nan() { u64::MAX } else { (number + 0.0).to_bits() };
     let [c0, c1, c2] = model.c;
     [c0, c1, c2, model.error].map(bits)
 }
 
-/// The values at places of eight lines.
+/// The kernel that evaluates a tape at a t on each of eight lines.
 struct ValuesAt<'a>(PacketValues<'a>, [f64; LANES]);
 
 impl SimdKernel for ValuesAt<'_> {
@@ -483,7 +483,7 @@ impl SimdKernel for ValuesAt<'_> {
     }
 }
 
-/// Eight values have the bits that each has alone, with all instruction sets.
+/// Eight values have the same bits as values computed one by one, with all instruction sets.
 #[test]
 fn eight_values_are_those_of_single_points() {
     const SEED: u64 = 0x5eed_0007;
@@ -505,7 +505,7 @@ fn eight_values_are_those_of_single_points() {
     }
 }
 
-/// A search has the bits that it has alone, whatever is searched for in the other lanes.
+/// A search returns the same bits as if it ran alone, whatever the other lanes search for.
 #[test]
 fn eight_searches_find_what_each_finds_alone() {
     const SEED: u64 = 0x5eed_0006;
@@ -543,7 +543,7 @@ fn gradients_agree_with_differences() {
         };
         let [fine, coarse] = [difference(1e-5), difference(2e-5)];
         let size = 1.0 + value.abs() + gradient.abs().max_element();
-        // Where the differences disagree, f is not smooth.
+        // Points at which the two differences disagree are left out: f is not smooth there.
         if !(gradient.is_finite() && size < 1e4 && (fine - coarse).abs().max_element() < 1e-6 * size) {
             continue;
         }

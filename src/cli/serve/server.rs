@@ -33,8 +33,9 @@ Examples:
 SIGTERM tells all viewers that they have 30 seconds, and ends; a second one
 ends at once.";
 
-/// The longest link and the largest banner that are shown.
-// The short welcome has 19 columns. With two blanks before the link and one at each side of the note, it fills 80.
+/// Limits on the link, in characters, and on the banner, in bytes.
+// The short welcome has 19 columns. With two blanks before the link and one at each side of the note, the line fills 80
+// columns.
 const MAX_LINK: usize = 57;
 const MAX_BANNER: u64 = 4096;
 
@@ -157,7 +158,7 @@ fn settings(args: &ServeArgs) -> Result<Settings, Failure> {
     Ok(settings)
 }
 
-/// Returns the text of a banner, without what would control a terminal.
+/// Returns the text of the banner file at `path`, with control characters replaced.
 fn banner(path: &Path) -> io::Result<String> {
     if path.metadata()?.len() > MAX_BANNER {
         return Err(io::Error::other(format!("a banner has at most {MAX_BANNER} bytes")));
@@ -168,7 +169,7 @@ fn banner(path: &Path) -> io::Result<String> {
 
 /// Returns the default file of the host key, in the state folder of systemd or of the user.
 fn default_host_key() -> Option<PathBuf> {
-    // The specification of these variables has programs ignore relative paths.
+    // By the XDG specification, programs ignore variables with relative paths.
     let folder = |variable| std::env::var_os(variable).map(PathBuf::from).filter(|path| path.is_absolute());
     let users = || folder("XDG_STATE_HOME").or_else(|| Some(folder("HOME")?.join(".local/state")));
     let state = folder("STATE_DIRECTORY").or_else(|| Some(users()?.join("termtrace")));
@@ -208,6 +209,6 @@ fn parse_time(text: &str) -> Result<Duration, String> {
     let (number, seconds) = unit.ok_or_else(wrong)?;
     let number: u32 = number.parse().map_err(|_| wrong())?;
     let time = Duration::from_secs(u64::from(number) * seconds);
-    // A year is as good as for ever, and no sum of times overflows.
+    // The limit of a year keeps sums of times from overflowing.
     if number > 0 && time <= Duration::from_secs(366 * 24 * 3600) { Ok(time) } else { Err(wrong()) }
 }

@@ -1,4 +1,4 @@
-//! The command in a program without the server.
+//! `termtrace serve` in a program that is built without the feature `serve`.
 
 use crate::cli::outcome::{CommandResult, Failure};
 use clap::{ArgMatches, Args};
@@ -11,7 +11,7 @@ pub(in crate::cli) struct ServeArgs {
     _any: Vec<OsString>,
 }
 
-/// Fails with the way to get a program with the server.
+/// Fails with a message that tells how to install a program with the server.
 pub(in crate::cli) fn run(_args: ServeArgs, _given: &ArgMatches) -> CommandResult {
     let how = "cargo install termtrace --features serve";
     Err(Failure::Runtime(format!("this program was built without its server; {how} installs it with one")))

@@ -29,8 +29,8 @@ pub(super) fn read(file: &UserFile, command: &Command) -> Result<Vec<Entry>, Sce
         };
         for (i, field) in fields.iter().enumerate() {
             let Name { text: name, span } = field.name;
-            // Quadratic in the number of fields, which is small: there are a dozen settings, and a file has at most 64
-            // KiB.
+            // The search for duplicates is quadratic in the number of fields, which is small: there are a dozen
+            // settings, and a file has at most 64 KiB.
             if fields[..i].iter().any(|before| before.name.text == name) {
                 faults.add(span, || format!("duplicate setting \"{name}\""));
             } else if let Some(text) = value_text(field, command, faults) {

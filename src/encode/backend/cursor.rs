@@ -3,8 +3,7 @@
 use crate::encode::moves::{CellPosition, Move};
 use ratatui_core::layout::Position;
 
-/// The position and visibility of the cursor. `None` means unknown, or in a wanted state, no
-/// preference.
+/// The cursor's position and visibility; `None` means unknown, or in a wanted state, unchanged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Cursor {
     pub(super) position: Option<Position>,

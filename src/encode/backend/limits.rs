@@ -4,7 +4,7 @@ use crate::encode::{Allowance, Quality};
 use std::time::Duration;
 
 /// Time by which the bytes sent may be ahead of the rate.
-// This time bounds the delay of a frame. A program that draws 30 times a second may use a third of it per frame.
+// This time bounds the delay of a frame. At 30 frames per second, each frame may use about a third of it.
 const MAX_AHEAD: Duration = Duration::from_millis(100);
 
 /// The quality of frames, the program's clock, and the bandwidth cap with its use so far.

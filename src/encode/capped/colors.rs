@@ -9,9 +9,9 @@ use crate::color::Srgb8;
 use std::cmp::Reverse;
 
 /// Largest number of colours; half as many are used if the byte limit leaves few cells to write.
-// With 127 at every rate, a slow motion never came nearer than 38 dB. With 255 at every rate, a fast one loses 0.5 dB,
-// as more colours mean more pens. A colour's number takes eight bits in the results of `nearest_two` and in the keys of
-// pairs.
+// With 127 colours at every rate, a slowly moving picture never came nearer than 38 dB. With 255 at every rate, a fast
+// one loses 0.5 dB, as more colours mean more changes of the pen. A colour's number takes eight bits in the results of
+// `nearest_two` and in the keys of pairs.
 pub(super) const MAX_COLORS: usize = 255;
 
 /// The number of slots of the hash table of bins, a power of two.
@@ -44,7 +44,7 @@ struct Block {
 }
 
 impl Block {
-    /// A block without colours: all are further away than any colour.
+    /// A block without colours: its entries are farther away than any colour.
     const EMPTY: Self = Self { r: [1e4; LANES], g: [1e4; LANES], b: [1e4; LANES], index: [0.0; LANES] };
 }
 
@@ -72,7 +72,8 @@ struct Share {
 impl Palette {
     /// Chooses the palette for some cells, and sets the colours nearest to their halves.
     ///
-    /// `radius` is the least squared distance of two colours in the last frame's palette, and in this one's then.
+    /// `radius` is the least squared distance of two colours of the palette: the last frame's on entry, this frame's on
+    /// return.
     pub(super) fn choose(&mut self, active: &mut [ActiveCell], rate: ExchangeRate, radius: &mut f32) {
         self.fill_bins(active, rate);
         self.lead(rate, radius);
@@ -93,7 +94,8 @@ impl Palette {
 
     /// Counts the colours of the halves in bins, whose size grows with the exchange rate.
     fn fill_bins(&mut self, active: &[ActiveCell], rate: ExchangeRate) {
-        // With 5 or 6 bits the mean squared error of a bin is 16 or 4: at most what a cell must gain at these rates.
+        // With 5 or 6 bits per channel, the mean squared error within a bin is 16 or 4: at most the error that a cell
+        // must lose at these rates to be written.
         let bits = if rate > 40.0 {
             5
         } else if rate > 2.0 {
@@ -131,7 +133,8 @@ impl Palette {
             if bin == u16::MAX {
                 break;
             }
-            // A table that is three quarters full takes no more bins, since probing takes long in a full one.
+            // A table that is three quarters full takes no more bins, because probing a full one takes long: the colour
+            // goes to the bin of this slot.
             if self.bins[usize::from(bin)].key == key || self.bins.len() > SLOTS / 4 * 3 {
                 return bin;
             }
@@ -143,13 +146,14 @@ impl Palette {
         bin
     }
 
-    /// Makes colours of the means of bins, the fullest first, none within the radius of another.
+    /// Fills the palette with means of bins, the fullest first, none within the radius of another.
     fn lead(&mut self, rate: ExchangeRate, radius: &mut f32) {
         self.fullest.clear();
         self.fullest.extend(0..self.bins.len() as u16);
         self.fullest.sort_unstable_by_key(|&bin| (Reverse(self.bins[usize::from(bin)].count), bin));
         let most = if rate > 3.0 { MAX_COLORS / 2 } else { MAX_COLORS };
-        // Starts from the radius of the last frame, which is mostly near, because each try compares all bins.
+        // Each try compares all bins. Starting at a quarter of the last frame's radius, which is mostly near this
+        // frame's, keeps the tries few.
         *radius = rate.max(*radius / 4.0);
         // With a fixed radius the fullest bins would fill the palette, and whole regions would have no colour.
         while !self.leads_within(most, *radius) {
@@ -189,7 +193,8 @@ impl Palette {
                 first[lane] = min(first[lane], distance);
             }
         }
-        // The lanes are combined in halves: one after another, they would take a third of the time.
+        // The upper half of the lanes is merged into the lower half until one is left: merging lane by lane would take
+        // a third of the time.
         let mut lanes = LANES / 2;
         while lanes > 0 {
             for lane in 0..lanes {
@@ -241,9 +246,9 @@ impl Palette {
             }
             share.loss += (bin.count.cast_signed() * (second - first)) as f32;
         }
-        // A pen with one new colour takes 15 bytes (`pen_len`).
+        // A change of the pen to one new colour takes 15 bytes (`pen_len`).
         let is_kept = |share: &Share| share.count > 0 && share.loss >= 15.0 * rate;
-        // At least the colour of the most halves stays.
+        // The colour that most halves have always stays.
         let most = shares.iter().map(|share| share.count).max().unwrap_or(0);
         self.clear();
         for share in shares.iter().filter(|share| share.count > 0 && (is_kept(share) || share.count == most)) {

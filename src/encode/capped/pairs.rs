@@ -6,14 +6,14 @@ use crate::color::Srgb8;
 use crate::encode::halves::{Halves, squared_difference};
 use crate::grid::HalfBlocks;
 
-/// The number of keys of pairs.
-// Two numbers of eight bits each.
+/// The number of possible keys of pairs.
+// A key consists of the numbers of two colours, eight bits each.
 const KEYS: usize = 1 << 16;
 
-/// The index that ends a list of ways.
+/// The index that marks the end of a linked list of [`Way`]s.
 const END: u32 = u32::MAX;
 
-/// A way to write a cell: with a pair, which keeps a list of its ways.
+/// A way to write a cell, with a certain pair; the ways of a pair form a linked list.
 struct Way {
     /// The cell's index among the active ones.
     cell: u32,
@@ -25,7 +25,7 @@ struct Way {
 /// The ways to write cells with a pair, and whether the pair is open.
 #[derive(Clone, Copy)]
 struct Pair {
-    /// The sum of what each cell would save.
+    /// The cost that all the pair's ways would save if no other pair were open.
     saving: f32,
     /// The index of the first way.
     first: u32,
@@ -60,7 +60,7 @@ impl Pairs {
         self.collect_ways(active, colors);
         self.open_pairs(active, colors.rate);
         for _ in 0..2 {
-            // Together with the price of moves in the costs, worth 0.4 dB.
+            // Together with the price of cursor moves in the costs, this gains 0.4 dB of PSNR.
             take_neighbours(active, colors, columns);
         }
         self.rank_pairs(active, colors);
@@ -94,17 +94,17 @@ impl Pairs {
         }
     }
 
-    /// Returns the number of ranks.
+    /// Returns the number of ranks: one for each open pair.
     pub(super) fn ranks(&self) -> usize {
         self.open.len()
     }
 
-    /// Returns the number of ranks whose cells take a `share` of the bytes of the first `ranks`.
+    /// Returns how many of the best pairs take `share` of the bytes of the best `ranks` pairs.
     ///
     /// The number is less than `ranks`.
     pub(super) fn ranks_within(&self, ranks: usize, share: f32) -> usize {
         let bytes = |open: &[OpenPair]| open.iter().map(|open| open.bytes).sum::<f32>();
-        // The sum is an estimate. With a hundredth less, the next try hardly ever fails.
+        // The sum of bytes is an estimate. With one per cent less, the next try hardly ever fails.
         let mut left = 0.99 * share * bytes(&self.open[..ranks]);
         let fits = |open: &&OpenPair| {
             left -= open.bytes;
@@ -123,7 +123,8 @@ impl Pairs {
         for (at, cell) in active.iter().enumerate() {
             let [upper, lower] = cell.nearest;
             let near = [upper[0], upper[1], lower[0], lower[1]];
-            // Each half's difference from each of the four, from which the errors of all pairs follow.
+            // Each half's squared difference from each of the four near colours, from which the errors of all pairs
+            // follow.
             let squares =
                 cell.wanted.map(|half| near.map(|color| squared_difference(colors.palette.color(color), half) as f32));
             let is_new = |place: usize| !near[..place].contains(&near[place]);
@@ -134,7 +135,7 @@ impl Pairs {
             }
             for a in 0..distinct(&upper).len() {
                 for b in 2..2 + distinct(&lower).len() {
-                    // Where one pen shows both orders, each pair is offered once.
+                    // If cells may use either half block, (a, b) and (b, a) have the same key, and are offered once.
                     let is_mirrored = colors.half_blocks == HalfBlocks::Either
                         && near[a] > near[b]
                         && lower.contains(&near[a])
@@ -176,8 +177,8 @@ impl Pairs {
         for &key in used.iter() {
             let pair = table[usize::from(key)];
             let price = rate * pen_len(key);
-            // The sum of what the cells would save at first only shrinks as other pairs are opened: all later pairs are
-            // out too.
+            // A pair saves at most `saving`, and less once other pairs are open. Later pairs have no larger `saving`,
+            // so none of them pays either.
             if pair.saving <= price {
                 break;
             }
@@ -236,7 +237,7 @@ pub(super) struct Colors<'a> {
 impl Colors<'_> {
     /// Returns the key of a pair: the numbers of its upper and lower colour.
     ///
-    /// They are in ascending order if one pen shows both orders.
+    /// They are in ascending order if cells may use either half block, because one pen then shows both orders.
     fn key(&self, upper: u8, lower: u8) -> u16 {
         let (a, b) =
             if self.half_blocks == HalfBlocks::Either && lower < upper { (lower, upper) } else { (upper, lower) };
@@ -282,7 +283,7 @@ fn is_flat(key: u16) -> bool {
     key >> 8 == key & 255
 }
 
-/// Returns the bytes of a glyph: of a space or a half block.
+/// Returns the number of bytes of a glyph: a space or a half block.
 fn glyph_len(key: u16) -> f32 {
     // In UTF-8.
     if is_flat(key) { 1.0 } else { 3.0 }

@@ -30,7 +30,7 @@ pub(super) enum Kind {
     Composed(fn(&mut Composer<'_, '_>, &[Index]) -> Result<Index, Fault>),
 }
 
-/// More operands than a formula can have.
+/// The end of `operands` of a function that takes any number: more than a formula can have.
 const MANY: usize = usize::MAX;
 
 const fn unary(name: &'static str, function: Unary) -> Function {
@@ -150,7 +150,7 @@ pub(super) fn name_of(function: Unary) -> &'static str {
     named.map_or("the value", |known| known.name)
 }
 
-/// The operations of a call, whose faults are reported at the name of the function.
+/// The operations of a call under construction; faults are reported at the function's name.
 pub(super) struct Composer<'p, 't> {
     parser: &'p mut Parser<'t>,
     range: Range<usize>,

@@ -4,7 +4,7 @@ use super::Fault;
 use crate::text::visible_char;
 use std::ops::Range;
 
-/// A token; its text is in the formula.
+/// A token, without its text, whose range in the formula is in [`Tokens`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Token {
     Number(f64),
@@ -66,7 +66,7 @@ impl<'t> Tokens<'t> {
         &self.text[self.range()]
     }
 
-    /// Returns the text of the token before this one.
+    /// Returns the text of the token before the current one; `None` at the first.
     pub(super) fn before(&self) -> Option<&'t str> {
         let (_, range) = self.all.get(self.at.checked_sub(1)?)?;
         Some(&self.text[range.clone()])
@@ -76,12 +76,12 @@ impl<'t> Tokens<'t> {
         self.token() == Token::Sign(sign)
     }
 
-    /// Goes to the next token, if this one is not the end.
+    /// Goes to the next token, unless the current one is the end.
     pub(super) fn advance(&mut self) {
         self.at = (self.at + 1).min(self.all.len() - 1);
     }
 
-    /// Returns whether a definition `name = ...;` starts here.
+    /// Returns whether a definition `name = ...;` starts at the current token.
     pub(super) fn starts_definition(&self) -> bool {
         let mut rest = self.all[self.at..].iter().map(|&(token, _)| token);
         rest.next() == Some(Token::Name)
