@@ -101,7 +101,7 @@ pub struct Parser {
     state: State,
     /// Whether an additional ESC precedes the current sequence.
     ///
-    /// It means Alt if the sequence is a key, and otherwise is the Escape key.
+    /// The additional ESC means Alt if the sequence is a key; otherwise it is reported as the Escape key.
     escaped: bool,
     /// Whether an ESC precedes the current character, which means that Alt was held.
     alt: bool,
@@ -110,7 +110,9 @@ pub struct Parser {
     /// Whether the current string exceeds its limit.
     overflow: bool,
     paste: Paste,
-    /// After a timeout within a sequence, the number of late bytes of it that may still be dropped.
+    /// The number of bytes that may still be dropped as the rest of a timed-out sequence.
+    ///
+    /// `None` if no sequence has timed out.
     late: Option<usize>,
     key_encoding: KeyEncoding,
 }
@@ -267,8 +269,8 @@ impl Parser {
             return;
         }
         let tokens = self.tokeniser.tokens_after(byte, &[]);
-        // A leading byte of UTF-8 leaves the character unfinished; a continuation byte does unless the tokeniser
-        // returns a token.
+        // After a leading byte of UTF-8 the character is unfinished. After a continuation byte it is unfinished if the
+        // tokeniser has returned no token.
         let unfinished = match byte {
             0xc2..=0xf4 => true,
             0x80..=0xbf => tokens.is_empty(),

@@ -49,8 +49,8 @@ where
     /// Compares with `==`; false for NaN.
     #[inline(always)]
     fn eq(self, other: Self) -> Self::Mask {
-        // `eq` takes two comparisons, and not an instruction of each register type, as only ties of hits and patterns
-        // use it.
+        // `eq` takes two comparisons instead of an instruction of its own in each register type, as only ties of hits
+        // and patterns use it.
         self.le(other) & other.le(self)
     }
 
@@ -90,8 +90,8 @@ pub trait SimdKernel {
 /// A vector of eight numbers, in an array or in registers.
 pub trait Lanes: Number<Mask: LaneMask> {
     /// Runs the kernel in a function that is not inlined, but has the caller's target features.
-    // When single-ray traversal was inlined into packet traversal, its numbers were in memory instead of in registers.
-    // As a separate function, and with a new slab test and new stack entries, it took 14 % fewer instructions.
+    // When single-ray traversal was inlined into packet traversal, its vectors were in memory instead of in registers.
+    // Not inlined, and with a new slab test and new stack entries, it took 14 % fewer instructions.
     fn call_no_inline<K: SimdKernel>(kernel: K) -> K::Output;
 
     /// Loads the vector from memory.
@@ -115,7 +115,9 @@ pub trait Lanes: Number<Mask: LaneMask> {
         Self::splat(self.lane(lane))
     }
 
-    /// Returns in each lane the number of the lane selected by the lowest three bits of `lanes`.
+    /// Returns a vector whose lanes are those lanes of `self` that `lanes` selects.
+    ///
+    /// The lowest three bits of each number in `lanes` are the index of the lane of `self`.
     #[inline(always)]
     fn gather(self, lanes: Self) -> Self {
         let (mut picked, numbers, lanes) = (F32x8::ZERO, self.store(), lanes.store());

@@ -17,8 +17,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The same scene in code. A value that no scene may have is an error of its constructor, with the message of a scene
-//! file's error:
+//! The same scene in code. If a value is not allowed in a scene, its constructor returns an error with the message that
+//! a scene file would get:
 //!
 //! ```
 //! use termtrace::glam::Vec3;
@@ -38,7 +38,7 @@
 //! ```
 //!
 //! Start with [`Scene`]: the checked values of a scene and the trees that rays are traced in. Loading a scene, or
-//! building one in code, builds the trees once; clones share them, and no function that takes a scene builds any.
+//! building one in code, builds the trees once; clones share them, and functions that take a scene build none.
 //!
 //! # The surface
 //!
@@ -438,12 +438,12 @@ pub use record::Gif;
 // The error of all `FromStr` implementations.
 pub use text::ParseError;
 
-// The crates whose types are in signatures.
+// The crates whose types occur in signatures of this crate.
 pub use glam;
 #[cfg(feature = "ratatui")]
 pub use ratatui_core;
 
-/// The examples of the documentation's pages, which are compiled and run with the others.
+/// The examples in the pages of the documentation, compiled and run as doctests.
 // The published package lacks these pages and the larger unit tests, so `unit_tests` is not set there.
 #[cfg(all(doctest, unit_tests))]
 #[doc = include_str!("../docs/library.md")]

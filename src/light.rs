@@ -29,7 +29,7 @@ pub trait LightSource: InSceneFile + Copy {
     /// towards it.
     fn to_light<N: Number>(&self, point: Vector<N>) -> Vector<N>;
 
-    /// Returns the irradiance at surface points times 1/pi, per channel.
+    /// Returns 1/pi times the irradiance at surface points, per channel.
     ///
     /// `l` is the unit vector to the light, `distance_squared` the squared length of [`to_light`](Self::to_light),
     /// `cosine` is n.l.
@@ -152,7 +152,7 @@ macro_rules! lights {
             /// The names of all lights in scene files.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $light::NAME,)*];
 
-            /// Reads the light called `name`; `None` if there is none or a field is missing.
+            /// Reads the light called `name`; `None` if the name is unknown or a field is missing.
             pub(crate) fn read(name: &str, reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
                 $($(#[$on])* if name == $light::NAME {
                     return $light::read_node(reader, node).map(Self::$name);

@@ -27,7 +27,7 @@ mod cost;
 mod shaded;
 mod wire;
 
-/// The quantity that a picture shows: the scene's light, or another one.
+/// The quantity that a picture shows: the scene's light, or its depths, normals, objects and so on.
 ///
 /// ```
 /// use std::num::NonZeroU32;
@@ -259,7 +259,7 @@ pub fn trace(
     executor.unless_cancelled(trace_partial(map, executor, scene, camera, resolution, sampling))
 }
 
-/// Traces the picture of a map with two by four pixels per cell, and the geometry that it shows.
+/// Traces the picture of a map with two by four pixels per cell, and the surfaces that it shows.
 ///
 /// # Errors
 /// [`Cancelled`], if the executor's token is cancelled.
@@ -310,7 +310,7 @@ fn trace_partial(
         }),
         Map::Object => of_surfaces(&|sample| sample.hit.map_or(NO_HIT, |hit| colors::object(hit.object))),
         Map::Shadow => traced_to(TraceDepth::Lights, &|sample| match sample.hit {
-            // The mask of lights has 32 bits.
+            // The mask `lit_by` has 32 bits, which further lights share with the first 32.
             Some(_) => colors::share_grey(sample.lit_by.count_ones(), scene.lights().len().min(32) as u32),
             None => NO_HIT,
         }),
@@ -328,7 +328,7 @@ fn lambert_color(scene: &Scene, sample: &GBufferSample) -> Srgb8 {
     Srgb8::from_linear(LinearRgb::grey(scene.lights().iter().map(cosine).sum()))
 }
 
-/// Returns the colour of the visible side, times the cosine between the normal and the ray.
+/// Returns the colour of the visible side, times the cosine of the angle between normal and ray.
 ///
 /// A plane, which has no end, is left out: it would fill the picture with one colour.
 fn facing_color(scene: &Scene, sample: &GBufferSample) -> Srgb8 {

@@ -29,7 +29,7 @@ pub trait Reflecting: InSceneFile + Copy {
     /// The name of the material's pattern for messages, such as "its squares"; `None` for a plain
     /// material.
     ///
-    /// A pattern can only be on a surface with coordinates.
+    /// Only a surface that has surface coordinates can have a pattern.
     const PATTERN: Option<&'static str> = None;
 
     /// Returns the reflectances of red, green and blue at the surface coordinates `uv`.
@@ -113,7 +113,7 @@ macro_rules! materials {
             /// The names of all materials in scene files.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $material::NAME,)*];
 
-            /// Reads the material called `name`; `None` if there is none or a field is missing.
+            /// Reads the material called `name`; `None` if the name is unknown or a field is missing.
             pub(crate) fn read(name: &str, reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
                 $($(#[$on])* if name == $material::NAME {
                     return $material::read_node(reader, node).map(Self::$material);
@@ -172,7 +172,7 @@ impl Material {
 
     /// Returns a material of squares with alternating linear reflectances and side `size`.
     ///
-    /// Only a plane can have it.
+    /// Only a plane can have this material.
     ///
     /// # Errors
     /// If a channel is not within 0 and 1, or the size not between 1e-9 and 1e9.

@@ -37,9 +37,9 @@ const CHUNK_LEN: u64 = 1 << 20;
 
 /// Returns all bytes of the file at `path`, at most `max_len(bytes so far)`.
 ///
-/// The limit may depend on the file's first bytes, which show its format. Progress is reported; if that cancels,
-/// reading ends with [`ErrorKind::Interrupted`]. A pipe that delivers at least a byte a second is read to its end: only
-/// its size is limited, not its time, because the user sees the progress and can press Ctrl-C.
+/// The limit may depend on the file's first bytes, which show its format. Progress is reported; if the reporter
+/// cancels, reading ends with [`ErrorKind::Interrupted`]. A pipe that delivers at least a byte a second is read to its
+/// end: only its size is limited, not its time, because the user sees the progress and can press Ctrl-C.
 ///
 /// # Errors
 /// If the system reports an error, the kind of file is not accepted, a pipe delivers nothing for a second

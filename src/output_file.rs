@@ -42,7 +42,7 @@ pub struct OutputFile {
     destination: Destination,
 }
 
-/// Where the contents are stored until the file is finished, and how they then become the target.
+/// The storage of the contents until the file is finished, and the way they then reach the target.
 #[derive(Debug)]
 enum Destination {
     /// A temporary file that is renamed to the target, even if another file has got that name
@@ -120,7 +120,7 @@ impl OutputFile {
     /// used.
     pub fn finish_unused(mut self, names: impl IntoIterator<Item = PathBuf>) -> io::Result<PathBuf> {
         if let Destination::NewOnly(temporary) = &mut self.destination {
-            // Once for all names, because a new name does not change the contents.
+            // Synced once for all names, because a new name does not change the contents.
             temporary.sync()?;
             for name in names {
                 match rename_to_unused(temporary, &name) {

@@ -176,7 +176,7 @@ fn ratatui_from_cell(cell: &Cell) -> ratatui_core::buffer::Cell {
         Glyph::Cluster(text) => {
             to.set_symbol(text);
         }
-        // ratatui leaves the cell after a wide character empty, so `to` is returned without the colours.
+        // This cell is covered by the wide character before it. ratatui keeps such cells empty and without colours.
         Glyph::Covered => return to,
         Glyph::Foreign => {
             to.set_diff_option(CellDiffOption::Skip);

@@ -2,9 +2,9 @@
 //!
 //! A query ends each frame. Its reply shows that the frame has arrived, and so gives the round-trip time, the rate of
 //! the link, and the bytes in flight. At most the bandwidth-delay product (the rate times the shortest round trip) and
-//! one frame are in flight; more would only queue somewhere in between, ahead of the frame that shows the next key.
-//! (Estimates of the rate and the round trip age, as in BBR. A status report, DSR 5, would be a shorter reply than the
-//! one to DA1, but st 0.9 does not send it.)
+//! one frame are in flight; more bytes would only queue on the way, ahead of the frame that shows the effect of the
+//! next key. (Old samples of the rate and the round trip are dropped, as in BBR. A status report, DSR 5, would be a
+//! shorter reply than the one to DA1, but st 0.9 does not send it.)
 //!
 //! A frame is written at once, so each frame gives the link's rate: its bytes divided by the time by which its round
 //! trip exceeds the shortest. Frames are sent at 6/7 of that rate, so that queues drain and the shortest round trip can
@@ -24,7 +24,7 @@
 //! | Silent     | at the rate, 30 a second            | one at a time     | a reply                               |
 //!
 //! After a resync on a slow link, `Steady` has at most one query in flight until enough replies have arrived in order.
-//! The frames in between end without one, and the next reply shows that they have arrived.
+//! The frames sent meanwhile end without a query; the reply to the next query shows that they have arrived.
 //!
 //! Pure: it reads no clock and does no I/O; the time is passed in.
 //!
@@ -74,7 +74,7 @@ const MIN_FRAME_BYTES: usize = 200;
 const PACING_GAIN: f64 = 0.86;
 /// Transmission time to assume if the computed one is not a valid duration, as for a rate of zero.
 const MAX_TRANSMISSION_TIME: Duration = Duration::from_secs(1);
-/// Greatest time without sending that is made up for by sending sooner afterwards.
+/// Limit on the time without sending that is made up for by sending sooner afterwards.
 // The loop may send a frame up to a frame time (16.7 ms) after it is due; without credit for that, each delay would
 // lose link time for good. A longer credit would allow bursts that queue.
 const BURST_CREDIT: Duration = Duration::from_millis(20);
@@ -97,7 +97,7 @@ pub struct Link {
     max_rate: Option<f64>,
     frame: Duration,
     replies: ReplyTracker,
-    /// Share that the last frame used of the bytes that it was allowed.
+    /// Share of its allowed bytes that the last frame used.
     utilisation: f64,
     /// Time at which everything sent has been transmitted, less the credit for an earlier pause.
     ///
@@ -138,8 +138,8 @@ impl Link {
 
     /// Records a reply to DECRQM with the number of a mode.
     ///
-    /// Returns whether it answers a query in flight, unlike a duplicate, a late reply or one to another program's
-    /// query.
+    /// Returns whether the reply answers a query in flight; a duplicate, a late reply or a reply to another program's
+    /// query does not.
     pub fn receive_mode(&mut self, mode: u16, now: Duration) -> bool {
         self.replies.receive_mode(mode, now)
     }
@@ -159,7 +159,7 @@ impl Link {
         SLOW_LINK_FRAME_RATE.min(1.0 / self.min_frame_interval().as_secs_f64())
     }
 
-    /// Returns the bytes that a frame on a slow link of this rate may have.
+    /// Returns the greatest number of bytes of a frame on a slow link of this rate.
     fn max_frame_bytes(&self, rate: Rate) -> f64 {
         rate.bytes_per_second / self.frames_per_second()
     }
@@ -218,7 +218,8 @@ impl Link {
     /// Returns whether the bytes in flight and the next frame, without the largest frame in flight,
     /// are at most the bandwidth-delay product.
     ///
-    /// A frame that was sent before the rate fell may be too large. The next frame need not wait for its reply.
+    /// A frame that was sent before the rate fell may be too large. The next frame need not wait for the reply to that
+    /// one.
     fn has_room_beside_largest(&self) -> bool {
         let Some(rate) = self.replies.rates.best().filter(|_| self.is_slow()) else { return false };
         let largest = self.replies.ledger.in_flight().map(|query| query.bytes as f64).fold(0.0, f64::max);

@@ -90,7 +90,7 @@ impl<'w> Reporter<'w> {
         Self { on_warning: Some(on_warning), ..self }
     }
 
-    /// Returns the reporter for which warnings are errors. Notices stay notices.
+    /// Returns the reporter with warnings turned into errors. Notices stay notices.
     pub fn strict(&self) -> Self {
         Self { is_strict: true, cancellation: self.cancellation.clone(), ..*self }
     }

@@ -53,7 +53,7 @@ impl Attributes {
         Self((1 << Self::NAMES.len()) - 1)
     }
 
-    /// Returns the set with these bits, of which the lowest is [`BOLD`](Self::BOLD).
+    /// Returns the set with these bits; the lowest bit is [`BOLD`](Self::BOLD).
     ///
     /// The highest seven bits are ignored.
     #[doc(hidden)]
@@ -61,7 +61,7 @@ impl Attributes {
         Self(bits & Self::all().0)
     }
 
-    /// Returns the bits of the set, of which the lowest is [`BOLD`](Self::BOLD).
+    /// Returns the bits of the set; the lowest bit is [`BOLD`](Self::BOLD).
     #[doc(hidden)]
     pub const fn bits(self) -> u16 {
         self.0

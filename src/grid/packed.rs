@@ -61,7 +61,7 @@ impl From<Ink> for PackedInk {
 
 /// A cell in 16 bytes.
 ///
-/// A cluster is an index into the list of the cell's grid, so that such a cell means nothing outside it.
+/// A cluster is stored as its index in the list of the cell's grid, so the cell is valid in that grid only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct PackedCell {
     /// The glyph and the attributes.
@@ -74,11 +74,11 @@ pub(crate) struct PackedCell {
 }
 
 /// The number of bits of a glyph.
-// The nine attributes and the mark of a cluster take the other ten bits. A character needs 21.
+// The nine attributes and the flag for clusters take the other ten bits. A character needs 21.
 const GLYPH_BITS: u32 = 22;
 const GLYPH_MASK: u32 = (1 << GLYPH_BITS) - 1;
 const CLUSTER: u32 = 1 << 31;
-/// Beyond the last character, U+10FFFF.
+/// The glyph of a cell covered by the wide character before it; above the last character, U+10FFFF.
 const COVERED: u32 = 0x11_0000;
 const FOREIGN: u32 = COVERED + 1;
 
@@ -93,7 +93,7 @@ impl PackedCell {
 
     /// Returns the glyph and the attributes in one number.
     ///
-    /// Without attributes it is the number of the character.
+    /// Without attributes it is the code point of the character.
     #[inline]
     pub(crate) const fn code(self) -> u32 {
         self.code
@@ -131,18 +131,19 @@ impl PackedCell {
         Attributes::from_bits_truncate((self.code >> GLYPH_BITS) as u16)
     }
 
-    /// Returns a digest of the cell, without the text of a cluster.
+    /// Returns a 32-bit hash of the cell, which does not depend on the text of a cluster.
     #[inline]
     pub(crate) const fn digest(self) -> u32 {
         let code = if self.is_cluster() { self.code & !GLYPH_MASK } else { self.code };
-        // Multiplicative hashing (Knuth 1973), in steps that differ for any two values of one field.
+        // Multiplicative hashing (Knuth 1973). Each step is a bijection, so two cells that differ in one field have
+        // different hashes.
         let mixed = code.wrapping_mul(0x9e37_79b1);
         let mixed = (mixed ^ mixed >> 15 ^ self.fg.0).wrapping_mul(0x85eb_ca77);
         let mixed = (mixed ^ mixed >> 13 ^ self.bg.0).wrapping_mul(0xc2b2_ae3d);
         (mixed ^ mixed >> 16 ^ self.underline.0).wrapping_mul(0x9e37_79b1)
     }
 
-    /// Returns the cell with the glyph of another one.
+    /// Returns the cell with the glyph of `other`.
     pub(crate) const fn with_glyph_of(self, other: Self) -> Self {
         let glyph = GLYPH_MASK | CLUSTER;
         Self { code: self.code & !glyph | other.code & glyph, ..self }
@@ -179,8 +180,8 @@ impl Clusters {
 
     /// Returns whether the list is long enough that unused clusters have to be dropped.
     pub(super) fn is_crowded(&self, cell_count: usize) -> bool {
-        // At least half of the clusters are then unused, and dropping them takes a pass over all cells. A grid of few
-        // cells would do so too often.
+        // At least half of the clusters are then unused, because a cell has at most one. Dropping them takes a pass
+        // over all cells; the minimum of 64 clusters keeps small grids from doing that too often.
         self.0.len() > 2 * cell_count.max(32)
     }
 
@@ -223,7 +224,7 @@ impl Clusters {
         CLUSTER | index
     }
 
-    /// Returns a cell with its glyph.
+    /// Unpacks a cell, including the text of its cluster.
     #[inline]
     pub(super) fn unpack(&self, cell: PackedCell) -> Cell {
         let glyph = match (cell.character(), self.text(cell)) {

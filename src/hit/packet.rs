@@ -87,7 +87,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     #[inline(always)]
     pub(super) fn trace(&mut self, rays: &'p [EightRays], stacks: &mut Stacks) {
         (self.rays, self.rays_left, self.leaves) = (rays, 0, 0);
-        // An inactive group is replaced by an active one, so that it does not widen the packet's bounds.
+        // An inactive group is replaced by a copy of an active one, so that its rays do not widen the packet's bounds.
         let Some(one) = rays.iter().find(|rays| rays.active != 0) else { return self.terminate_groups(0..GROUPS) };
         let accel = self.accel;
         let (has_tree_nodes, needs_shear) = (accel.has_tree_nodes(), accel.needs_shear());
@@ -289,8 +289,9 @@ impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Unculled<'_, N, ANY> 
     }
 }
 
-/// Returns the mask of lanes of `others` without a primitive, or with one after `primitive` in the
-/// scene.
+/// Returns the mask of lanes whose primitive in `others` comes after `primitive` in the scene.
+///
+/// A lane without a primitive is in the mask too.
 // Cold: two surfaces rarely have exactly the same t.
 #[cold]
 fn mask_of_later_primitives(accel: &Accelerator, primitive: u32, others: &F32x8) -> u32 {
@@ -443,7 +444,7 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool> InTree<'_, '_, N, S, ANY> {
         }
     }
 
-    /// Traces the rays of a group that are in the mask `rays` singly, from a node or leaf.
+    /// Traces the group's rays in the mask `rays` as single rays, starting at a node or leaf.
     // The single rays take inverse directions and shears from the packet instead of computing them again.
     #[inline(always)]
     fn trace_singles_of(&mut self, from: Child, group: usize, rays: u32) {

@@ -1,7 +1,7 @@
 //! The criteria by which rays leave their packet and go on as single rays.
 //!
-//! A packet is efficient as long as many of its rays hit the same nodes. At a node of which the packet hits several
-//! boxes, the rays that hit the node are counted; if they are few, they go on as single rays from there.
+//! A packet is efficient as long as many of its rays hit the same nodes. When a packet hits several boxes of a node,
+//! the rays that hit the node are counted; if they are few, they go on as single rays from there.
 //!
 //! The constants were measured on spheres and meshes of 3 to 871,000 primitives, at 1024x1024 and 200x120, against
 //! packets alone and single rays alone. Rejected: to split where only one group of eight hits the node (bunny 13
@@ -20,13 +20,13 @@ const MAX_SINGLE_RAYS: u32 = 6;
 /// The larger of this limit and [`MAX_SINGLE_RAYS`] applies.
 const MAX_SINGLE_RAYS_PER_GROUP: u32 = 2;
 
-/// The largest number of groups of eight at a node for which their rays are always counted.
+/// The largest number of groups at a node for which all their rays are counted, without a sample.
 ///
 /// The count decides whether the rays leave the packet.
 // Counting the rays of more groups takes longer than the test of the node. If more groups may hit the node, shadow rays
-// of one group are counted first, as a sample, and eye rays are not counted at all: at such nodes they were never found
-// to be few, as the rays of a group are as close together as pixels. Not counting eye rays makes the bunny 1.10 times
-// as fast (51.7 to 56.8 Mrays/s).
+// are first counted in one group, as a sample. Eye rays are not counted at all: with more than five groups they were
+// never few enough to leave the packet, as the rays of a group are as close together as pixels. Not counting eye rays
+// makes the bunny 1.10 times as fast (51.7 to 56.8 Mrays/s).
 const MAX_COUNTED_GROUPS: u32 = 5;
 
 /// The largest number of rays of the sampled group that may hit a node for all rays to be counted.
@@ -43,7 +43,9 @@ pub(super) const fn min_boxes_to_split(any: bool) -> u32 {
     if any { 2 } else { 4 }
 }
 
-/// The most leaves that an inefficient packet visits; one that visits more counts as efficient.
+/// The largest number of leaves that an inefficient packet visits.
+///
+/// A packet that visits more leaves counts as efficient, however many of its rays have left it.
 // An inefficient packet does the work of a packet and then that of single rays. If the rest of its tile is traced by
 // single rays, dragon 871k at 100x60 takes 0.91 instead of 1.10 ms.
 const MAX_INEFFICIENT_LEAVES: u32 = 6;
@@ -67,8 +69,8 @@ pub(super) fn split_at_node<const ANY: bool>(groups: u32, node: &impl NodeRays) 
         if !ANY {
             return None;
         }
-        // Six or more of eight groups include one of the last five; the first of these is the sample, as it lies near
-        // the middle of the packet.
+        // Of six or more groups at least one is among the last five (3 to 7). The first of these is the sample, as it
+        // lies near the middle of the packet.
         let middle = 3 + (groups >> 3).trailing_zeros() as usize;
         if node.hit_mask(middle).count_ones() > MAX_SAMPLED_RAYS {
             return None;
@@ -82,10 +84,10 @@ pub(super) fn split_at_node<const ANY: bool>(groups: u32, node: &impl NodeRays) 
     (sum <= max_rays).then_some(rays)
 }
 
-/// Returns whether rays left a packet more often than it has rays, and it visited hardly any
-/// leaves.
+/// Returns whether a packet visited few leaves, and `rays_left` exceeds `active`.
 ///
-/// `rays_left` counts a ray each time that it leaves the packet: in several trees, and at several nodes of a tree.
+/// `active` is the number of the packet's rays. `rays_left` counts a ray each time that it leaves the packet: in
+/// several trees, and at several nodes of a tree.
 #[inline(always)]
 pub(super) fn is_inefficient(leaves: u32, rays_left: u32, active: u32) -> bool {
     leaves <= MAX_INEFFICIENT_LEAVES && rays_left > active

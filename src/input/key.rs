@@ -57,7 +57,7 @@ pub(super) fn from_ss3(numbers: &[u8], letter: u8) -> Option<KeyEvent> {
             let letter = char::from(letter.to_ascii_uppercase());
             from_letter(letter, modifiers | KeyModifiers::CONTROL)
         }
-        // F3. Only after `ESC O` is `R` with parameters a key: after CSI it is a cursor report.
+        // F3. After `ESC O`, `R` is a key even with parameters; after CSI, `R` with parameters is a cursor report.
         b'R' => Some(KeyEvent::new(KeyCode::F(3), modifiers)),
         _ => from_letter(letter.into(), modifiers).or_else(|| from_keypad(letter, modifiers)),
     }
@@ -116,7 +116,7 @@ pub(super) fn from_letter_with_modifiers(letter: char, params: &[&[u16]]) -> Opt
 
 /// Decodes `CSI number ; modifiers : kind ~`.
 ///
-/// `more_modifiers` are those that rxvt encodes by another final byte than `~`.
+/// `more_modifiers` are those that rxvt encodes by a final byte other than `~`.
 pub(super) fn from_number(params: &[&[u16]], more_modifiers: KeyModifiers) -> Option<KeyEvent> {
     let press = Press::from_params(params.get(1))?;
     let [number] = *params[0] else {

@@ -16,7 +16,7 @@ pub(super) fn from_sgr(code: u16, column: u16, row: u16, released: bool) -> Opti
     let kind = match (kind_from_code(code)?, released) {
         (MouseEventKind::Down(button) | MouseEventKind::Drag(button), true) => MouseEventKind::Up(button),
         // Releases are valid for buttons only, not for the wheel. Code 3, which means a release in the older encodings,
-        // is not valid in this one.
+        // is not valid in the SGR encoding.
         (_, true) | (MouseEventKind::Up(_), false) => return None,
         (kind, false) => kind,
     };

@@ -5,7 +5,8 @@
 pub enum Reply {
     /// `CSI ? n ; ... c`: the device attributes (DA1).
     ///
-    /// Every terminal sends this reply, so its query is sent after all others and serves as the fence.
+    /// Every terminal sends this reply. Its query is the last one of a batch (the fence): the reply shows that no reply
+    /// to an earlier query is still to come.
     DeviceAttributes(Vec<u16>),
     /// `CSI > n ; ... c`: the terminal's type and version (DA2).
     SecondaryAttributes(Vec<u16>),

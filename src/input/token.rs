@@ -1,8 +1,8 @@
 //! The tokeniser: the crate `vte`, which is passed one byte at a time.
 //!
 //! It splits UTF-8 into characters and CSI sequences into parameters. The parser handles everything else itself:
-//! - a lone ESC, because `vte` continues a sequence after ESC and a control character, DEL or a non-ASCII character,
-//!   which are Alt and a key;
+//! - a lone ESC: a control character, DEL or a non-ASCII character after it is Alt with a key, but `vte` does not end
+//!   the sequence there;
 //! - `ESC O`, which `vte` dispatches at once, so that the letter after it would be printed;
 //! - strings, which `vte` keeps without a limit.
 

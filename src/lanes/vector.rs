@@ -15,7 +15,7 @@ pub struct Vector<N> {
     pub z: N,
 }
 
-// All methods are `inline(always)`, as those of the numbers: kernels are made of them (see `simd`).
+// All methods are `inline(always)`, like those of `Number`, because kernels are made of them (see `simd`).
 impl<N: Number> Vector<N> {
     /// Returns `v` in all lanes.
     #[inline(always)]

@@ -15,7 +15,8 @@ fn grey(share: f32) -> Srgb8 {
 }
 
 /// Returns the grey for a depth `t`: white at 0, middle grey at `middle`, black at infinity.
-// The grey changes fastest near `middle`, the depth of the target, which matters most, and no depth needs a limit.
+// The grey changes fastest near `middle`, the depth of the target, which matters most. It has a value for every depth,
+// so that no largest depth has to be chosen.
 pub(super) fn depth(t: f32, middle: f32) -> Srgb8 {
     let part = t / middle;
     grey(1.0 / (1.0 + part * part))

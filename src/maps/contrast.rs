@@ -1,7 +1,7 @@
 //! The high-contrast map: black and white, with lines between objects.
 //!
-//! After the threshold, an object may have the same colour as one behind it, so a line of the other colour separates
-//! them.
+//! An object and one behind it may both be lighter or both be darker than the threshold, so a line of the other colour
+//! separates them.
 
 use super::{TracedMap, shaded};
 use crate::camera::Camera;

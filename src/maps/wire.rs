@@ -40,8 +40,8 @@ pub(super) fn color(scene: &Scene, camera: &Camera, resolution: Resolution, samp
 /// is the height of a pixel at the hit, in world units.
 fn edge_opacity(triangle: &Triangle, ray: &Ray, pixel_height: f32) -> f32 {
     let [a, b, c] = triangle.corners();
-    // The distance in space between a line along the ray and the line of an edge, which unlike a distance within the
-    // triangle's plane corresponds to pixels even if the triangle is tilted.
+    // The distance in space between the line of the ray and the line of an edge. Unlike a distance within the
+    // triangle's plane, it corresponds to pixels even if the triangle is tilted.
     let distance = |point: Vec3, from: Vec3, to: Vec3| {
         let normal = ray.direction.cross(to - from);
         (from - point).dot(normal).abs() / normal.length().max(f32::MIN_POSITIVE)
@@ -50,8 +50,9 @@ fn edge_opacity(triangle: &Triangle, ray: &Ray, pixel_height: f32) -> f32 {
         [(a, b), (b, c), (c, a)].map(|(from, to)| distance(ray.origin, from, to)).into_iter().fold(f32::MAX, f32::min);
     // The share of the pixel that a line with a width of one pixel covers.
     let coverage = (1.0 - nearest / pixel_height).max(0.0);
-    // The mean height of the triangle as it is seen, harmonic because the share of lines in its area is the sum over
-    // the edges of the line's width divided by the height over the edge.
+    // The mean of the triangle's three heights as they are seen. It is the harmonic mean, because the share of the
+    // triangle that the lines of its edges cover is the sum, over the edges, of the line's width divided by the height
+    // over the edge.
     let heights = [(a, b, c), (b, c, a), (c, a, b)].map(|(from, to, corner)| distance(corner, from, to));
     let height = 3.0 / heights.into_iter().map(|height| height.max(f32::MIN_POSITIVE).recip()).sum::<f32>();
     coverage * (height / (FULL_HEIGHT * pixel_height)).clamp(LEAST_OPACITY, 1.0)

@@ -93,7 +93,7 @@ impl InSceneFile for Checker {
     }
 }
 
-/// Returns the mean over an interval of a square wave.
+/// Returns the mean of a square wave over an interval.
 ///
 /// The wave is 1 from each even integer to the next integer, and -1 otherwise.
 // The mean is a box filter. The checker's mean over a footprint is the product of both axes' means, so squares too

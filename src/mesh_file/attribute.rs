@@ -3,8 +3,8 @@
 /// The normals, texture coordinates or colours of a mesh: a list of values, and for each corner of
 /// each triangle the index of its value.
 ///
-/// In PLY and glTF these indices equal the position's; in OBJ each corner may have another. They are stored only if
-/// they differ from those of the positions, which otherwise saves 12 bytes per triangle and attribute.
+/// In PLY and glTF these indices equal those of the positions; in OBJ they may differ. They are stored only if they
+/// differ, because they take 12 bytes per triangle and attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attribute<T> {
     values: Vec<T>,
@@ -22,7 +22,7 @@ enum CornerIndices {
     Own(Vec<[u32; 3]>),
 }
 
-/// Stored for a triangle without the attribute, in the place of its indices.
+/// The value that is stored instead of indices for a triangle without the attribute.
 const NONE: [u32; 3] = [u32::MAX; 3];
 
 /// Exchanges the last two corners of each triangle, which turns it inside out.
@@ -83,7 +83,7 @@ impl<T: Copy> Attribute<T> {
 
     /// Adds the values of a triangle's corners and returns their indices.
     pub(super) fn add(&mut self, values: [T; 3]) -> [u32; 3] {
-        // At most three per triangle of `MAX_TRIANGLES`, so the index fits into 32 bits.
+        // There are at most three values per triangle and `MAX_TRIANGLES` triangles, so the index fits into 32 bits.
         let first = self.values.len() as u32;
         self.values.extend(values);
         [first, first + 1, first + 2]

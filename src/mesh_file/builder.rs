@@ -19,7 +19,7 @@ pub(super) struct MeshBuilder {
     pub(super) colors: Attribute<LinearRgb>,
     pub(super) materials: Vec<MeshMaterial>,
     pub(super) material_runs: Vec<(u32, Option<u32>)>,
-    /// The features of materials that are not shown: index of the material, name in the singular.
+    /// Features of materials that are not shown: the material's index, the name in the singular.
     pub(super) not_shown: Vec<(u32, &'static str)>,
 }
 
@@ -41,6 +41,9 @@ impl TriangleIndices {
 
 impl MeshBuilder {
     /// Adds a triangle, whose indices must be in range.
+    ///
+    /// # Errors
+    /// If the mesh has [`MAX_TRIANGLES`] already.
     pub(super) fn push(&mut self, triangle: TriangleIndices) -> Result<(), MeshFault> {
         if self.triangles.len() >= MAX_TRIANGLES {
             return Err(MeshFault::of_file(too_many_triangles()));
@@ -97,10 +100,10 @@ impl MeshBuilder {
         mesh.is_valid().then_some(mesh)
     }
 
-    /// Replaces the positions that were left out, which are not finite.
+    /// Replaces the positions that could not be read, which are not finite, by a point of the mesh.
     ///
-    /// Triangles that need one are flattened to a point. Returns false if there is no other triangle.
-    // The attributes and material runs refer to triangles by their number, so that none is removed.
+    /// Triangles with such a corner are flattened to a point. Returns false if there is no other triangle.
+    // No triangle is removed, because the attributes and material runs refer to triangles by their number.
     fn fill_gaps(&mut self, left_out: &mut LeftOut<'_>) -> bool {
         let is_whole = |triangle: &[u32; 3]| triangle.iter().all(|&i| self.positions[i as usize].is_finite());
         let Some(&[whole, ..]) = self.triangles.iter().find(|triangle| is_whole(triangle)) else { return false };
@@ -110,7 +113,7 @@ impl MeshBuilder {
                 left_out.triangle();
             }
         }
-        // A point of the mesh leaves its extent as it is.
+        // A point of the mesh is taken, so that the extent of the mesh does not change.
         let point = self.positions[whole as usize];
         for position in self.positions.iter_mut().filter(|position| !position.is_finite()) {
             *position = point;
@@ -139,6 +142,6 @@ pub(super) fn unit(direction: DVec3) -> Vec3 {
     // Divided by its largest component first, so that no square overflows or underflows.
     let direction = direction / direction.abs().max_element();
     let length = direction.length();
-    // False also for NaN, which the division above makes of a zero vector.
+    // The comparison is false for NaN too, which the division above gives for a zero vector.
     if length > 0.0 { (direction / length).as_vec3() } else { Vec3::ZERO }
 }

@@ -14,11 +14,11 @@ const MAX_DECIMATED_TRIANGLES: usize = 128 << 10;
 const NO_CLUSTER: u32 = u32::MAX;
 
 impl MeshFile {
-    /// Returns the mesh decimated by vertex clustering: space is divided into cubes, `cubes` (at
-    /// most
-    /// 256) along the mesh's longest side, and all vertices in a cube are replaced by their mean (Rossignac and Borrel,
-    /// Multi-resolution 3D approximations for rendering complex scenes, 1993). No vertex moves farther than a cube's
-    /// diagonal. `None` if no triangle is left.
+    /// Returns the mesh decimated by vertex clustering; `None` if no triangle is left.
+    ///
+    /// Space is divided into cubes, `cubes` (at most 256) along the mesh's longest side, and all vertices in a cube are
+    /// replaced by their mean (Rossignac and Borrel, Multi-resolution 3D approximations for rendering complex scenes,
+    /// 1993). No vertex moves farther than a cube's diagonal.
     ///
     /// Keeping some of the triangles, enlarged, would be simpler, but would leave holes and distort large triangles.
     pub fn decimated(&self, cubes: u32) -> Option<Self> {
@@ -48,7 +48,8 @@ impl MeshFile {
         let side = (bounds.max.as_dvec3() - start).max_element();
         // Scaled to a little less than `cubes`, so that the largest coordinate falls into the last cube, not beyond it.
         let scale = if side > 0.0 { f64::from(cubes) * 0.999_999 / side } else { 0.0 };
-        // The cluster of each cube, in a dense table of at most 2^24: a hash map would cost more for each vertex.
+        // The cluster of each cube, in a dense table of at most 2^24 entries: a hash map would cost more for each
+        // vertex.
         let mut cluster_of = vec![NO_CLUSTER; cubes.pow(3) as usize];
         let mut sums: Vec<(DVec3, u32)> = Vec::new();
         let corner_of = self.positions.iter().map(|position| {

@@ -120,15 +120,16 @@ pub(super) fn shown(bytes: &[u8]) -> String {
     format!("\"{}\"", clipped(&String::from_utf8_lossy(&bytes[..bytes.len().min(200)])))
 }
 
-/// Returns a path as messages show it: in quotes, printable. Of a long one the end is shown, which
-/// tells more than the folders.
+/// Returns a path as messages show it: in quotes, printable.
+///
+/// Of a long path only the end is shown, which tells more than the folders.
 pub(super) fn shown_path(path: &str) -> String {
     const MAX_CHARS: usize = 60;
     let skipped = path.chars().count().saturating_sub(MAX_CHARS);
     if skipped == 0 {
         return format!("\"{}\"", visible(path));
     }
-    // Cut where a name begins, unless the last name alone is too long.
+    // Cut before the name of a folder or file, unless the last name alone is too long.
     let tail: String = path.chars().skip(skipped).collect();
     let name = path.rsplit(['/', '\\']).next().unwrap_or_default();
     let end = match tail.find(['/', '\\']) {

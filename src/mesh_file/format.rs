@@ -65,7 +65,7 @@ pub(super) fn recognised(name: &str, stated: Option<&str>, bytes: &[u8]) -> Resu
     if text.is_empty() {
         return Err(MeshFault::of_file(format!("the file is empty; {READ}")));
     }
-    // The content tells the two kinds of STL apart, whether STL is stated or not.
+    // Even if the user states that the file is STL, the content tells whether it is text or binary.
     let is_possible = |format: &MeshFormat| stated.is_none_or(|stated| format.name().eq_ignore_ascii_case(stated));
     if let Some(format) = by_content(bytes, text).filter(is_possible) {
         return Ok(format);
@@ -75,7 +75,8 @@ pub(super) fn recognised(name: &str, stated: Option<&str>, bytes: &[u8]) -> Resu
         return Err(MeshFault::of_file(format!("this {what}")));
     }
     match stated.map_or_else(|| by_ending(name), of_ending) {
-        // Binary files are recognised by their size, or named: a text may begin with a comment.
+        // An STL file whose content did not show its form: text, for example with a comment before `solid`, or else
+        // binary with a wrong size.
         Some(MeshFormat::StlBinary) if is_text(bytes) => Ok(MeshFormat::StlText),
         format => format.ok_or_else(|| MeshFault::of_file(not_known(name, bytes))),
     }

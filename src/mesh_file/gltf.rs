@@ -133,7 +133,7 @@ fn check_version(root: Json<'_>) -> Result<(), MeshFault> {
         return Err(MeshFault::of_file("this JSON is not glTF: it lacks asset: {version: \"2.0\"}"));
     };
     let version = asset.required("version")?;
-    // Some programs write a number.
+    // Some programs write the version as a number, not as a string.
     let text =
         version.number().map_or_else(|_| version.string().map(str::to_owned), |number| Ok(number.to_string()))?;
     if text == "2" || text.starts_with("2.") {
@@ -142,7 +142,9 @@ fn check_version(root: Json<'_>) -> Result<(), MeshFault> {
     Err(version.fault(format!("this is glTF {text}; only 2.0 is read")))
 }
 
-/// Extensions without an effect on the picture, or whose effect is shown or counted otherwise.
+/// The extensions that a file may require, and that are not counted as not shown.
+///
+/// They have no effect on the picture, or their effect is shown, or it is counted elsewhere.
 const SHOWN_EXTENSIONS: [&str; 12] = [
     "KHR_mesh_quantization",
     "KHR_texture_transform",
@@ -158,8 +160,9 @@ const SHOWN_EXTENSIONS: [&str; 12] = [
     "KHR_xmp_json_ld",
 ];
 
-/// Refuses a file that requires an unsupported extension: it would be drawn wrong. Those that are
-/// used only are counted.
+/// Refuses a file that requires an unsupported extension, because it would be drawn wrong.
+///
+/// An unsupported extension that is used but not required is counted as not shown.
 fn check_extensions(root: Json<'_>, left_out: &mut LeftOut<'_>) -> Result<(), MeshFault> {
     for extension in root.list("extensionsRequired")? {
         let name = extension.string()?;

@@ -13,10 +13,10 @@ pub(super) struct LeftOut<'a> {
     /// The name and the bytes of the mesh file.
     name: &'a str,
     bytes: &'a [u8],
-    /// The first fault that was left out, and the number of all of them.
+    /// The first of the faults that were left out, and the number of them.
     first: Option<MeshFault>,
     faults: usize,
-    /// Limit on the faults; counted when the first few have been found.
+    /// Limit on the faults, one in a hundred parts; `None` while the number of parts is unknown.
     limit: Option<usize>,
     /// Number of triangles that lack a corner because of the faults.
     triangles: usize,
@@ -38,7 +38,8 @@ impl<'a> LeftOut<'a> {
     /// The parts of a file are its lines, unless [`of_parts`](Self::of_parts) counts others.
     ///
     /// # Errors
-    /// If the reporter takes no notices, the fault is not of a part, or too many parts are faulty: the first fault.
+    /// The fault, if the reporter takes no notices or the fault is not of a part; the first fault of the file, if too
+    /// many parts are faulty.
     #[cold]
     pub(super) fn fault(&mut self, fault: MeshFault) -> Result<(), MeshFault> {
         if !self.reporter.takes_notices() || !fault.is_of_part() {
@@ -49,19 +50,19 @@ impl<'a> LeftOut<'a> {
         if self.faults > FEW_FAULTS {
             let lines = || self.bytes.split(|&byte| byte == b'\n').count();
             if self.faults > *self.limit.get_or_insert_with(|| lines() / 100) {
-                // The fault in its place is never shown.
+                // The empty fault that replaces the first one is never shown.
                 return Err(std::mem::replace(first, MeshFault::of_file("")));
             }
         }
         Ok(())
     }
 
-    /// Returns the error of a fault of the mesh file.
+    /// Converts a fault of the mesh file to an error with the file's name.
     pub(super) fn error_of(&self, fault: MeshFault) -> Unfinished<MeshError> {
         fault.into_error(self.name, self.bytes)
     }
 
-    /// Returns a fault of a part of the mesh file as one that is never left out.
+    /// Converts a fault of a part of the mesh file to one that is never left out.
     pub(super) fn fatal(&self, fault: MeshFault) -> MeshFault {
         self.error_of(fault).into()
     }
@@ -76,8 +77,7 @@ impl<'a> LeftOut<'a> {
         self.first.is_some()
     }
 
-    /// Returns the first fault of a mesh of which nothing is left; without one, the fault with the
-    /// message `nothing`.
+    /// Returns the fault of a mesh without triangles: the first one left out, or else `nothing`.
     pub(super) fn fault_of_nothing(&mut self, nothing: String) -> MeshFault {
         self.first.take().unwrap_or_else(|| MeshFault::of_file(nothing))
     }
@@ -110,11 +110,11 @@ impl<'a> LeftOut<'a> {
     }
 }
 
-/// Returns a list such as "2 skins, 1 line", without those of which there are none.
+/// Returns a list such as "2 skins, 1 line", without the parts whose number is 0.
 fn counted(parts: impl IntoIterator<Item = (Cow<'static, str>, usize)>) -> String {
     let counted = parts.into_iter().filter(|&(_, count)| count > 0).map(|(what, count)| match what.split_once(" (") {
         _ if count == 1 => format!("1 {what}"),
-        // The plural goes before a remark in brackets.
+        // The `s` of the plural goes before a remark in brackets.
         Some((what, remark)) => format!("{count} {what}s ({remark}"),
         None => format!("{count} {what}s"),
     });

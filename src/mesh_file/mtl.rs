@@ -122,14 +122,16 @@ impl MtlReader<'_, '_> {
         Ok(())
     }
 
-    /// Records what is not shown where the last material is used.
+    /// Records a feature of the last material that is not shown.
     fn not_shown(&mut self, what: &'static str) {
         if let Some(last) = self.library.materials.len().checked_sub(1) {
             self.library.not_shown.push((last as u32, what)); // fewer than the file's bytes
         }
     }
 
-    /// Reads `newmtl` and starts a material. If two have the same name, the later one counts.
+    /// Reads `newmtl` and starts a material.
+    ///
+    /// If two materials have the same name, the later one counts.
     fn new_material(&mut self) {
         let name = self.text.rest_of_line();
         let index = self.library.materials.len() as u32; // fewer than the file's bytes
@@ -159,7 +161,8 @@ impl MtlReader<'_, '_> {
         let at = self.text.at() - name.len();
         let name = String::from_utf8_lossy(name);
         let path = local_path(self.folder, &name).map_err(|message| MeshFault::in_text(at, message))?;
-        // Materials often share a texture: decoding it takes longer than everything else in the file.
+        // Decoded textures are kept, because materials often share one, and decoding one takes longer than everything
+        // else in the file.
         let texture = match self.library.textures.get(&path) {
             Some(texture) => Some(Arc::clone(texture)),
             None => self.load(path, at)?,

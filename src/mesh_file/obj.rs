@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 /// Reads an OBJ file.
 pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
-    // Without this check the message about a binary file would be that its first "word" is not a keyword.
+    // Without this check the message about a binary file would say that its first "word" is not a keyword.
     if let Some(offset) = bytes.iter().position(|&byte| byte == 0) {
         return Err(MeshFault::at_byte(offset, "an OBJ file is text, and this byte is a NUL"));
     }
@@ -53,7 +53,7 @@ struct ObjReader<'a, 'b> {
     side_files: &'a mut SideFiles<'b>,
 }
 
-/// The indices of a face's corners, where [`NONE`] is a corner without one.
+/// The indices of a face's corners; [`NONE`] for a texture coordinate or normal that is missing.
 #[derive(Default)]
 struct FaceCorners {
     positions: Vec<u32>,
@@ -62,7 +62,7 @@ struct FaceCorners {
 }
 
 /// The index of a texture coordinate or normal that a corner lacks.
-// No index is as large, because a file has at most 2^31 bytes.
+// No valid index is this large, because a file has at most 2^31 bytes.
 const NONE: u32 = u32::MAX;
 
 impl ObjReader<'_, '_> {
@@ -99,7 +99,8 @@ impl ObjReader<'_, '_> {
 
     /// Skips the faulty line that begins at `start`.
     ///
-    /// A vertex, normal or texture coordinate keeps its number.
+    /// A faulty vertex, normal or texture coordinate still takes up its number, so that the indices of later ones are
+    /// right.
     fn leave_out(&mut self, start: usize) {
         self.text = self.text.cursor_at(start);
         match self.text.word() {
@@ -180,7 +181,7 @@ impl ObjReader<'_, '_> {
 
     /// Reads a face whose keyword is at `at`.
     ///
-    /// A face that comes before its vertices is read at the end of the file.
+    /// If some of its vertices come later in the file, the face is read at the end of the file.
     fn face(&mut self, at: usize) -> Result<(), MeshFault> {
         let start = self.text.at();
         match self.face_corners() {
@@ -317,7 +318,7 @@ impl ObjReader<'_, '_> {
         let at = self.text.at() - name.len();
         // A model without its MTL files is shown without its colours.
         let material = self.library.as_ref().and_then(|library| library.index_of(name));
-        // With all MTL files at hand, an unknown material is a fault. Otherwise it may be in the missing file.
+        // If no MTL file is missing, an unknown material is a fault. Otherwise it may be in the missing file.
         if material.is_none()
             && self.library.as_ref().is_some_and(|library| !library.is_incomplete())
             && !is_no_material(name)
@@ -372,7 +373,7 @@ impl ObjReader<'_, '_> {
 
 /// The reason why a corner cannot be read now.
 enum Corner {
-    /// Its vertex, texture coordinate or normal may still come.
+    /// It refers to a vertex, texture coordinate or normal that may come later in the file.
     Early(MeshFault),
     Faulty(MeshFault),
 }
@@ -391,9 +392,9 @@ fn no_such_index(at: usize, what: &str, written: i64, count: usize) -> Corner {
     if written > 0 { Corner::Early(fault) } else { Corner::Faulty(fault) }
 }
 
-/// Returns whether a name that no MTL file defines is one that exporters write for a face without a
-/// material.
-// Such a name may be defined all the same: of 24 files from elsewhere with one, 13 have a colour or texture under it.
+/// Returns whether exporters write this material name for a face without a material.
+// An MTL file may define such a name nevertheless: in 13 of 24 third-party files that use one, it has a colour or
+// texture.
 fn is_no_material(name: &[u8]) -> bool {
     [&b""[..], b"None", b"(null)", b"null"].contains(&name)
 }

@@ -113,7 +113,7 @@ impl MeshFile {
 
 /// Returns whether a file is meant to be a mesh, by its name's extension or its first bytes.
 pub fn is_mesh(name: &str, bytes: &[u8]) -> bool {
-    // No text is a binary STL file. OBJ and text STL files are only read by their names.
+    // No text has the size of a binary STL file. OBJ and text STL files are recognised by their names only.
     format::by_ending(name).is_some()
         || bytes.starts_with(b"ply")
         || bytes.starts_with(b"glTF")
@@ -161,12 +161,14 @@ fn without_end_marks(text: &[u8]) -> &[u8] {
     &text[..text.iter().rposition(is_text).map_or(0, |last| last + 1)]
 }
 
-/// The most bytes of memory per byte of a file that reading takes, besides the file itself. PLY
-/// takes the most, because it has the fewest bytes per triangle.
+/// Greatest memory that reading takes, in bytes per byte of the file, besides the file itself.
+///
+/// PLY takes the most, because it has the fewest bytes per triangle.
 const PEAK_PER_BYTE: usize = 8;
 
-/// The most bytes of memory per triangle while trees are built. Measured: 230 (PLY) to 290 (STL),
-/// including the file.
+/// Greatest memory that is in use while trees are built, in bytes per triangle.
+///
+/// Measured: 230 (PLY) to 290 (STL), including the file.
 const PEAK_PER_TRIANGLE: usize = 320;
 
 fn has_memory(bytes: usize, what_for: &str) -> Result<(), MeshFault> {

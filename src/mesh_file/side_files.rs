@@ -14,12 +14,13 @@ use std::path::{Component, Path, PathBuf};
 /// Limit on the warnings about the colours of one mesh; more are only counted.
 const MAX_WARNINGS: usize = 8;
 
-/// Reads the side files of one mesh, with a limit on their total number of bytes, and keeps what is
-/// left out of the mesh.
+/// A reader of the side files of one mesh, with a limit on their total number of bytes.
+///
+/// It also records the parts that are left out of the mesh.
 pub(super) struct SideFiles<'a> {
     open: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     bytes_left: usize,
-    /// The path of the mesh file, whose folder messages put before a side file's name.
+    /// The path of the mesh file, whose folder precedes the names of side files in messages.
     mesh: PathBuf,
     /// The warnings about colours that were reported.
     warnings: HashSet<String>,
@@ -28,7 +29,7 @@ pub(super) struct SideFiles<'a> {
 }
 
 impl<'a> SideFiles<'a> {
-    /// Returns a reader of the side files of the mesh file `name`, whose bytes `open` returns.
+    /// Returns a reader of the side files of the mesh file `name`; `open` returns their bytes.
     pub(super) fn new(
         name: &'a str,
         bytes: &'a [u8],
@@ -54,9 +55,9 @@ impl<'a> SideFiles<'a> {
 
     /// Returns the bytes of a side file that only adds colours, or the message of a fault.
     ///
-    /// A file that is not there is looked for beside the mesh, too. `None` if it is missing and the reporter takes
-    /// warnings. `what` names the kind of file in the warning.
-    // A warning instead of an error, because of 2,418 files from elsewhere 105 lack an MTL file and 26 a texture.
+    /// If the file is not there, its name is also looked for in the folder of the mesh. `None` if it is missing and the
+    /// reporter takes warnings. `what` names the kind of file in the warning.
+    // A warning instead of an error: among 2,418 third-party files 105 lack an MTL file, and 26 a texture.
     pub(super) fn read_colors(&mut self, path: &Path, what: &str) -> Result<Option<Vec<u8>>, String> {
         let is_missing =
             |opened: &io::Result<Vec<u8>>| opened.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::NotFound);
@@ -64,7 +65,7 @@ impl<'a> SideFiles<'a> {
         if is_missing(&opened)
             && let Some(name) = path.file_name().map(Path::new).filter(|name| *name != path)
         {
-            // Downloads often lose their folders.
+            // A downloaded file often lies beside the mesh instead of in its original folder.
             let beside = (self.open)(name);
             opened = if beside.is_ok() { beside } else { opened };
         }
@@ -78,7 +79,7 @@ impl<'a> SideFiles<'a> {
     ///
     /// Returns false if the caller should return an error.
     pub(super) fn warn(&mut self, message: &str) -> bool {
-        // Many materials of a library may name the same texture.
+        // Many materials of a library may name the same texture, which gives the same message.
         if self.warnings.contains(message) {
             return true;
         }
@@ -96,7 +97,7 @@ impl<'a> SideFiles<'a> {
     /// Warns of a fault that costs colours only.
     ///
     /// # Errors
-    /// The fault, if warnings are errors, and a cancellation.
+    /// The fault, if warnings are errors or it is a cancellation.
     pub(super) fn warn_of(&mut self, fault: Unfinished<MeshError>) -> Result<(), MeshFault> {
         if let Unfinished::Failed(error) = &fault {
             let is_in_mesh = Path::new(error.name()) == self.mesh;
@@ -119,9 +120,10 @@ impl<'a> SideFiles<'a> {
     }
 }
 
-/// Returns the path of a side file relative to the mesh, given the path `written` in a file that
-/// lies in `folder`. `\` is a separator too, as on Windows. Of an absolute path the last part is taken. URLs and names
-/// that are none are refused with a message.
+/// Returns the path of a side file relative to the mesh, or the message of an error.
+///
+/// `written` is the path as written in a file that lies in `folder`. `\` is a separator too, as on Windows. Of an
+/// absolute path the last part is taken. URLs, and texts that are no file names, are refused.
 pub(super) fn local_path(folder: &Path, written: &str) -> Result<PathBuf, String> {
     let written = written.strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or(written);
     let say = |what: &str| Err(format!("{} {what}", shown_path(written)));
@@ -133,8 +135,8 @@ pub(super) fn local_path(folder: &Path, written: &str) -> Result<PathBuf, String
         return say("is a URL; only files beside this one are read");
     }
     let mut path = PathBuf::from(written.replace('\\', "/"));
-    // Absolute paths would let a downloaded mesh read any file, and `C:` is one on Windows, where it was written. They
-    // name a file of the author's computer, which mostly lies beside the mesh here.
+    // Absolute paths would let a downloaded mesh read any file. `C:` begins one if the file was written on Windows. An
+    // absolute path names a file of the author's computer, which mostly lies beside the mesh here.
     let has_drive = written.as_bytes().get(1) == Some(&b':');
     if has_drive || path.components().any(|part| matches!(part, Component::RootDir | Component::Prefix(_))) {
         let last = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -163,7 +165,7 @@ pub(super) fn in_any_case(folder: &Path, relative: &Path) -> Option<PathBuf> {
         let wanted = part.as_os_str().to_string_lossy().to_lowercase();
         let listed = if found.as_os_str().is_empty() { Path::new(".") } else { &found };
         let names = std::fs::read_dir(listed).ok()?.take(MAX_LISTED).filter_map(|entry| Some(entry.ok()?.file_name()));
-        // The first one in order, whatever the order of the folder.
+        // The first match in alphabetical order, whatever the order in which the folder lists its names.
         let name = names.filter(|name| name.to_string_lossy().to_lowercase() == wanted).min()?;
         found.push(name);
     }

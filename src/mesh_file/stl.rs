@@ -1,5 +1,5 @@
 //! STL, text and binary: triangles without shared vertices. The facets' normals are not read,
-//! because the corners give them with more digits. Colours are read where the attribute bytes are known to be some.
+//! because the corners give them with more digits. Colours are read if the attribute bytes are known to hold colours.
 
 use super::MeshFile;
 use super::attribute::Attribute;
@@ -25,16 +25,17 @@ fn claimed_size(bytes: &[u8]) -> Option<u64> {
     Some(HEADER as u64 + u64::from(count) * FACET as u64)
 }
 
-/// Returns whether the bytes are a binary file of exactly the size that its number of triangles
-/// implies. A text never is: four characters, read as that number, are above 150 million, and such a file would exceed
-/// [`MAX_MESH_BYTES`](super::MAX_MESH_BYTES).
+/// Returns whether the bytes have the size of a binary STL file with the number of triangles given.
+///
+/// The header gives this number. A text never has that size: four characters in the place of the number are more than
+/// 150 million triangles, and such a file would exceed [`MAX_MESH_BYTES`](super::MAX_MESH_BYTES).
 pub(super) fn size_fits(bytes: &[u8]) -> bool {
     claimed_size(bytes) == Some(bytes.len() as u64)
 }
 
 /// Reads a binary STL file.
 ///
-/// With another count in its header than its size implies, the facets that the file holds are read.
+/// If the count in the header does not fit the size of the file, the facets that the file holds are read.
 pub(super) fn read_binary(
     bytes: &[u8],
     left_out: &mut LeftOut<'_>,
@@ -65,7 +66,7 @@ pub(super) fn read_binary(
             mesh.colors.values_mut().extend([coloring.color(facet); 3]);
         }
         for corner in 0..3 {
-            // The normal of the facet is in front of the corners.
+            // The facet begins with its normal, which has 12 bytes.
             let at = 12 + 12 * corner;
             match vertex_from(&facet[at..at + 12], HEADER + i * FACET + at) {
                 Ok(vertex) => mesh.positions.push(vertex),
@@ -83,11 +84,11 @@ pub(super) fn read_binary(
     mesh.finish("its count is 0", left_out)
 }
 
-/// How the two attribute bytes of a facet give its colour: five bits to a channel.
+/// The encoding of a facet's colour in its two attribute bytes, with five bits for each channel.
 struct Coloring {
     /// The colour of facets without one of their own.
     default: LinearRgb,
-    /// The value of the highest bit of facets with a colour.
+    /// The value of the highest attribute bit of facets that have a colour of their own.
     own: bool,
     /// Whether red has the lowest bits; otherwise blue has them.
     is_red_low: bool,
@@ -96,7 +97,8 @@ struct Coloring {
 impl Coloring {
     /// Returns the colouring of a file; `None` if the facets have no colours.
     ///
-    /// It is that of Materialise Magics, whose header has `COLOR=`, or of `VisCAM`, which sets the highest bit.
+    /// The colouring is that of Materialise Magics, whose header has `COLOR=`, or of `VisCAM`, which sets the highest
+    /// bit.
     fn of(bytes: &[u8]) -> Option<Self> {
         const MARK: &[u8] = b"COLOR=";
         if let Some(at) = bytes[..HEADER - 4].windows(MARK.len()).position(|window| window == MARK)
@@ -105,7 +107,7 @@ impl Coloring {
             let default = LinearRgb::from_srgb8(Srgb8::new(r, g, b));
             return Some(Self { default, own: false, is_red_low: true });
         }
-        // Other programs write other numbers there, such as checksums.
+        // Programs other than `VisCAM` may write other numbers into the attribute bytes, such as checksums.
         let mut attributes = bytes[HEADER..].chunks_exact(FACET).map(attribute);
         let is_viscam =
             attributes.clone().any(|bits| bits != 0) && attributes.all(|bits| bits == 0 || bits & 0x8000 != 0);

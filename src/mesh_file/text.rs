@@ -113,7 +113,7 @@ impl<'a> TextCursor<'a> {
     fn is_word_end(&self, offset: usize) -> bool {
         match self.bytes.get(offset) {
             None | Some(b' ' | b'\t' | b'\n' | b'\r') => true,
-            // Before anything else a backslash is part of the word, as in a path of Windows.
+            // A backslash that is not before a line end is part of the word, as in a Windows path.
             Some(b'\\') => line_end(&self.bytes[offset + 1..]) > 0,
             _ => false,
         }

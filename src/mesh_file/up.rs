@@ -131,8 +131,9 @@ fn score(mesh: &MeshFile, bounds: &Bounds, axis: usize) -> f64 {
     (flat[0] - flat[1]) / f64::from(base) - SYMMETRY_WEIGHT * symmetry(mesh, bounds, axis)
 }
 
-/// Returns how similar the mesh's lower and upper halves along an axis are: 1 if mirrored slices
-/// have equally many vertices, -1 if one of each two has none.
+/// Returns the similarity of the mesh's lower and upper halves along an axis, from -1 to 1.
+///
+/// It is 1 if mirrored slices have equally many vertices, and -1 if one slice of each mirrored pair has no vertices.
 fn symmetry(mesh: &MeshFile, bounds: &Bounds, axis: usize) -> f64 {
     let mut counts = [0_i64; SLICES];
     for position in mesh.positions() {

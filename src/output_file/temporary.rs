@@ -36,7 +36,8 @@ impl Temporary {
     }
 
     /// Creates a temporary file that will replace an existing one, readable by the owner only.
-    // The file to be replaced may be secret. The temporary file gets its mode only when the contents are complete.
+    // The file to be replaced may be secret. The temporary file gets the mode of that file only when the contents are
+    // complete.
     pub(super) fn new_private_file(target: &Path) -> io::Result<Self> {
         Self::create_beside(target, 0o600)
     }
@@ -129,7 +130,7 @@ impl Write for Temporary {
 impl Drop for Temporary {
     fn drop(&mut self) {
         if let Some(path) = &self.path {
-            // After an error the next run removes the file.
+            // If this fails, the next run removes the file.
             let _ = fs::remove_file(path);
         }
     }
@@ -158,7 +159,7 @@ fn try_lock(file: &File) -> rustix::io::Result<()> {
 
 /// Returns whether `path` refers to `file`.
 fn has_path(file: &File, path: &Path) -> io::Result<bool> {
-    // Compared by device and number, because the name may belong to another file by now.
+    // Compared by device and inode number, because the name may belong to another file by now.
     let own = file.metadata()?;
     match fs::symlink_metadata(path) {
         Ok(there) => Ok((there.dev(), there.ino()) == (own.dev(), own.ino())),

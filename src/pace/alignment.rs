@@ -10,16 +10,17 @@ use super::ledger::InFlight;
 use super::{MAX_TRANSMISSION_TIME, MIN_FRAME_BYTES};
 use std::time::Duration;
 
-/// Number of consecutive replies that must arrive when the reply to the next query is due until one
-/// counts as lost.
+/// Number of consecutive misaligned replies after which a reply counts as lost.
 ///
-/// This is one more than occur while a queue drains (see [`SECOND_QUERY_TOLERANCE`]).
+/// A reply is misaligned if it arrives when the reply to the second oldest query is due. The number is one more than
+/// occur while a queue drains (see [`SECOND_QUERY_TOLERANCE`]).
 // With three replies, a link that becomes ten times slower is taken for one that has lost a reply, and a key waits for
 // 3.8 s. The same happens if a reply is also compared with the due times of queries newer than the second oldest.
 const MIN_MISALIGNED_REPLIES: u32 = 4;
 /// Greatest difference from the due time at which a reply may belong to the second oldest query.
 ///
-/// While a queue drains by a seventh of the frame interval per frame, three consecutive replies differ by less.
+/// While a queue drains by a seventh of the frame interval per frame, at most three consecutive replies are within this
+/// tolerance.
 const SECOND_QUERY_TOLERANCE: Duration = Duration::from_millis(5);
 /// Greatest difference from the due time at which a reply may belong to the oldest query.
 // Twice the tolerance for the second oldest query, so that a reply in doubt counts as the reply to the oldest: a false

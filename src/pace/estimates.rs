@@ -21,7 +21,7 @@ const RATE_AGE: Duration = Duration::from_millis(500);
 const MIN_SERVICE_TIME: Duration = Duration::from_millis(20);
 /// Greatest error of a measured time, because of the clock and the scheduler.
 const JITTER: Duration = Duration::from_millis(5);
-/// Weight of the previous bytes and times in the mean rate; each frame multiplies it once more.
+/// Factor by which the bytes and times of earlier frames decay with each frame in the mean rate.
 // A slow link transmits a frame in about 28 ms, so a jitter of 5 ms changes the rate of a single frame by a quarter.
 // With the mean over several frames, recovery from a tenfold drop of the rate became faster by 0.2 s.
 const SMOOTHING: f64 = 0.75;
@@ -30,9 +30,9 @@ const SMOOTHING: f64 = 0.75;
 // The round trips of smaller frames consist of jitter and the terminal's own delay.
 const MIN_SAMPLE_BYTES: f64 = 512.0;
 
-/// Least service time of a frame after which [`FrameFloor`] grows.
-// A slow link transmits a frame that is larger than the floor in 28 ms (36 frames a second); a longer time means that
-// the terminal draws.
+/// Least service time of a frame (transmission and drawing) after which [`FrameFloor`] grows.
+// On a slow link, a frame that is larger than the floor takes 28 ms (36 frames a second). A longer time means that the
+// terminal is drawing.
 const MIN_DRAWING_TIME: Duration = Duration::from_millis(50);
 /// Time for which [`FrameFloor`] does not grow after larger frames have taken longer.
 // Each attempt to grow costs time: on a near link of 3 KB/s, one frame in two seconds takes 133 ms instead of 67.
@@ -45,7 +45,7 @@ const MAX_DOUBLINGS: u32 = 8;
 pub(super) struct RoundTrip {
     /// The shortest round trip of the previous interval and of the current one.
     shortest: [Option<Duration>; 2],
-    /// Time at which the current interval, one of [`ROUND_TRIP_INTERVAL`], began.
+    /// Time at which the current interval of [`ROUND_TRIP_INTERVAL`] began.
     since: Duration,
     /// The last estimate before [`invalidate`](Self::invalidate).
     before: Duration,
@@ -97,7 +97,7 @@ impl RoundTrip {
 
 /// A busy period: a time in which the link transmitted bytes without a pause.
 ///
-/// The time at which bytes had been transmitted is that of their reply less the shortest round trip.
+/// Bytes count as transmitted one shortest round trip before their reply arrives.
 #[derive(Default)]
 pub(super) struct BusyPeriod {
     since: Duration,
@@ -109,7 +109,8 @@ impl BusyPeriod {
     /// Records that bytes sent at `sent` had been transmitted at `passed`, and returns the bytes
     /// and duration of the busy period so far, which give the rate.
     ///
-    /// Bytes that waited for others count together with them: alone they would seem slower than they were.
+    /// Bytes that queued behind others are counted together with those: alone they would seem to be transmitted more
+    /// slowly.
     pub(super) fn extend(&mut self, sent: Duration, bytes: usize, passed: Duration) -> (usize, Duration) {
         if sent + MIN_SERVICE_TIME >= self.until {
             (self.since, self.bytes) = (sent, 0);
@@ -137,8 +138,8 @@ pub(super) struct Rate {
 ///
 /// It is doubled for as long as frames of this size take hardly longer than those of half the size.
 // A terminal that draws for 0.2 s after each frame delays the reply to the next one by that time, whatever its size.
-// The time was taken for transmission: frames became smaller, and the estimated rate with them. From 70 ms on, a near
-// terminal got 1 % of what it could draw; now it gets a quarter or more.
+// Without the floor, the delay was taken for transmission: frames became smaller, and the estimated rate with them. If
+// it drew for 70 ms or longer, a near terminal got 1 % of what it could draw; now it gets a quarter or more.
 #[derive(Default)]
 pub(super) struct FrameFloor {
     /// Number of times that the floor was doubled.

@@ -6,7 +6,7 @@ use super::*;
 use crate::protocol::FENCE;
 use std::collections::VecDeque;
 
-/// A fault of one reply, or from one reply on.
+/// A fault of one reply, or of that reply and later ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     Lost,
@@ -55,7 +55,7 @@ struct World {
     rate: f64,
     round_trip: Duration,
     fault: Fault,
-    /// Number of the reply that is the first faulty one, from 1.
+    /// Number of the first faulty reply, counted from 1.
     at: usize,
     /// Number of replies that the terminal has sent so far.
     replies: usize,
@@ -280,8 +280,8 @@ fn hides_rate(fault: Fault) -> bool {
     matches!(fault, Fault::Held(late) if late > ms(1_000)) || fault == Fault::Stopped
 }
 
-/// Without faults a key is visible after 310 ms, or 400 ms at worst; a fault may cost two round
-/// trips more.
+/// Without faults the effect of a key is visible after 310 ms, or 400 ms at worst; a fault may cost
+/// two round trips more.
 ///
 /// Silence from the first or second reply on is left out: nothing then shows that the link is slow.
 #[test]

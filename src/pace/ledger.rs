@@ -2,9 +2,9 @@
 //!
 //! Terminals reply in order. So a reply with a number (that of a [`Tag`]) shows that the replies to all older queries
 //! are lost. A reply whose number is not in the ledger is late, a duplicate or foreign, and is ignored. Replies without
-//! a number (those to DA1) are counted: each belongs to the oldest query, unless a query has timed out. In that case it
-//! is either the late reply to that query or the reply to a newer one (retransmission ambiguity in TCP): the shortest
-//! round trip decides, and no estimate is derived from the reply (Karn's algorithm).
+//! a number (those to DA1) are counted: each belongs to the oldest query, unless a query has timed out. In that case
+//! the reply is either the late one to that query or one to a newer query (retransmission ambiguity in TCP): the
+//! shortest round trip decides which, and no estimate is derived from the reply (Karn's algorithm).
 
 use crate::protocol::Tag;
 use std::collections::VecDeque;
@@ -71,8 +71,9 @@ pub(super) struct Matched {
     pub(super) validity: Validity,
 }
 
-/// How certain the match of a reply is, and thus which estimates it is a valid sample for (Karn's
-/// algorithm).
+/// The certainty that a reply was matched to its query.
+///
+/// It decides which estimates the reply is a valid sample for (Karn's algorithm).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Validity {
     /// The reply belongs to this query, and no query before it has timed out.

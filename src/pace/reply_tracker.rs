@@ -15,8 +15,8 @@ use std::time::Duration;
 // could only be counted, and one lost reply stopped the picture for 8 to 12 s.
 const RTO_MARGIN: Duration = Duration::from_millis(150);
 /// Time after a reply was due on a slow link until it counts as missing.
-// A frame that is sent too early queues behind others, and the replies of a link that has become ten times slower are
-// 280 ms apart.
+// Longer than on a fast link: a frame that is sent too early would queue behind others, and the replies of a link that
+// has become ten times slower are 280 ms apart.
 const SLOW_RTO_MARGIN: Duration = Duration::from_millis(300);
 /// Time after the first frame until its reply counts as missing.
 // With this timeout the effect of a key that is pressed at once is visible within 500 ms. With a shorter one, more
@@ -26,11 +26,12 @@ const FIRST_RTO: Duration = Duration::from_millis(400);
 /// timeouts.
 const SILENCE_TIMEOUT: Duration = Duration::from_millis(300);
 /// Time after a timeout on a slow link until a terminal that has not replied is considered silent.
-// Longer than on a fast link: a slow one needs seconds for the frames that are sent to a terminal that merely pauses.
+// Longer than on a fast link: if the terminal merely pauses, the frames that are sent to it would occupy a slow link
+// for seconds.
 const SLOW_SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
 /// Time after the first timeout until a terminal that has never replied is considered silent.
 ///
-/// Together with [`FIRST_RTO`] it ends a second after the first frame.
+/// The terminal is then considered silent a second after the first frame: [`FIRST_RTO`] plus this time.
 const FIRST_SILENCE_TIMEOUT: Duration = Duration::from_millis(600);
 /// Time after a timeout until a terminal that has not replied is considered silent, at unknown
 /// rate.
@@ -55,7 +56,7 @@ const IMMEDIATE_REPLY_TOLERANCE: Duration = Duration::from_millis(10);
 /// suspended.
 const MAX_ROUND_TRIP: Duration = Duration::from_secs(1);
 
-/// Time after a reply was due on a slow link from which on the link is known to have become slower.
+/// Delay of a reply beyond its due time that shows that a slow link has become slower.
 // Until a reply is that late, frames are sent at the old rate. With a margin of 50 ms, recovery from a tenfold drop of
 // the rate takes 1.65 to 1.87 s of simulated time; with 100 ms it took 1.73 to 1.94 s.
 const LATE_REPLY_MARGIN: Duration = Duration::from_millis(50);
@@ -84,7 +85,7 @@ pub(super) struct ReplyTracker {
     pub(super) ledger: Ledger,
     alignment: Alignment,
     pub(super) tag_support: TagSupport,
-    /// Whether the DA1 half of a [`Query::Both`] has not been answered, unlike its other half.
+    /// Whether the reply to the DA1 half of a [`Query::Both`] is due; the DECRQM half was answered.
     awaits_second_reply: bool,
     /// Time of the last reply, if any.
     pub(super) last_reply: Option<Duration>,
@@ -262,8 +263,9 @@ impl ReplyTracker {
         asks && self.may_query() && self.last_probe.is_none_or(|last| now >= last + PROBE_INTERVAL)
     }
 
-    /// Appends a query to bytes that are sent now, and records it with their number if they are a
-    /// frame.
+    /// Appends a query to `bytes`, which are sent now, and records it.
+    ///
+    /// The number of bytes is recorded as well if they are a frame.
     pub(super) fn append_query(&mut self, bytes: &mut Vec<u8>, is_frame: bool, now: Duration) {
         let query = self.next_query();
         // The DECRQM goes first: if the reply to the DA1 comes alone, the terminal does not answer a DECRQM.
@@ -324,8 +326,9 @@ impl ReplyTracker {
             self.ledger.match_oldest()
         } else {
             // For a local terminal any round trip is plausible, because the shortest one so far may stem from its busy
-            // start: an immediate reply then seemed too early for the newest query and was matched to one long timed
-            // out, and 786 bytes in 156 ms made a local terminal look like a link of 5 KB/s.
+            // start. Without this exception, an immediate reply seemed too early for the newest query and was matched
+            // to one that had timed out long before: 786 bytes in 156 ms then made a local terminal look like a link of
+            // 5 KB/s.
             let least =
                 if self.is_local() { Duration::ZERO } else { self.round_trip.shortest().mul_f64(0.9).min(FRAME_TIME) };
             let latest = now.saturating_sub(least);
@@ -347,8 +350,8 @@ impl ReplyTracker {
 
     /// Records a reply to DECRQM with the number of a mode.
     ///
-    /// Returns whether it answers a query in flight, unlike a duplicate, a late reply or one to another program's
-    /// query.
+    /// Returns whether the reply answers a query in flight; a duplicate, a late reply or a reply to another program's
+    /// query does not.
     pub(super) fn receive_mode(&mut self, mode: u16, now: Duration) -> bool {
         if self.tag_support == TagSupport::Unknown {
             self.tag_support = TagSupport::Possible;
@@ -377,7 +380,7 @@ impl ReplyTracker {
 
     /// Returns whether a reply that arrives now is too early for a query sent at `query_sent`.
     ///
-    /// It then belongs to another query, or the route has become shorter.
+    /// Such a reply belongs to another query, or the route has become shorter.
     fn is_reply_too_early(&self, query_sent: Duration, now: Duration) -> bool {
         self.round_trip.is_implausible(now.saturating_sub(query_sent))
     }
@@ -472,8 +475,9 @@ impl ReplyTracker {
             if self.serial_replies == 0 && self.delivered < MIN_DELIVERED_BYTES {
                 // If the first reply is lost, the reply to the first picture is matched to the first query. The round
                 // trip then seems longer by the picture's transmission: 50 KB/s were estimated as 137, each resync kept
-                // that, and from then on a key took up to 1.4 s. Waiting for replies, the link has been idle for at
-                // most half of the time since the first query, so its rate is at most twice that of what arrived.
+                // that, and from then on a key took up to 1.4 s. While the program waited for replies, the link was
+                // idle for at most half of the time since the first query, so its rate is at most twice that of the
+                // bytes that arrived.
                 let arrived = self.delivered / now.saturating_sub(self.begun.unwrap_or_default()).as_secs_f64();
                 self.rates.cap((2.0 * arrived).max(MIN_RESYNC_RATE));
             }

@@ -33,7 +33,7 @@ pub(super) struct World {
     pub(super) round_trip: Duration,
     /// Whether the terminal replies to queries.
     pub(super) replies: bool,
-    /// Bytes of each frame that the program sends; with `fits`, at most the link's limit.
+    /// Bytes of each frame that the program sends, cut to the link's limit if `fits`.
     pub(super) frame: usize,
     /// Whether frames obey the link's limit.
     pub(super) fits: bool,
@@ -226,8 +226,7 @@ fn any_link_is_used_and_never_overfilled() {
     }
 }
 
-/// A tenfold drop of the rate is recovered from within 2 s, at whatever moment between two frames
-/// it occurs.
+/// The link recovers from a tenfold drop of its rate within 2 s, at any moment between two frames.
 #[test]
 fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
     let late = |phase: u64| {
@@ -240,8 +239,8 @@ fn a_link_that_becomes_ten_times_slower_is_kept_up_with() {
     };
     let mut late: Vec<_> = (0..70).step_by(5).map(late).collect();
     late.sort_unstable();
-    // Until the drop is noticed, after a round trip and a frame, bytes are sent at 86 % of the old rate. At the new
-    // rate the link takes 2 s to transmit them.
+    // The drop is noticed a round trip and a frame later. The bytes that are sent until then, at 86 % of the old rate,
+    // take 2 s at the new one.
     assert!(late[late.len() / 2] <= 1_850 && late[late.len() - 1] <= 2_000, "{late:?} ms");
 }
 
@@ -340,7 +339,7 @@ fn a_very_long_round_trip_is_taken_for_silence_only_at_first() {
     assert!(fps >= 10.0 && share >= 0.8, "{fps} fps, {share} of the link");
 }
 
-/// After 40 unsolicited replies and a pause, keys and throughput are as before.
+/// After 40 unsolicited replies and a pause, key delays and throughput are as before.
 #[test]
 fn unsolicited_replies_do_no_lasting_harm() {
     let mut world = World::new(50_000.0, ms(200));

@@ -23,7 +23,7 @@ fn cells_are_read_as_they_were_set() {
     }
 }
 
-/// Clusters are equal by their text, and those that are overwritten take no memory.
+/// Clusters are compared by their text, and overwritten clusters take no memory.
 #[test]
 fn clusters_belong_to_their_grid() {
     let [mut one, mut two] = [(); 2].map(|()| Grid::new(Size::new(2, 1)));

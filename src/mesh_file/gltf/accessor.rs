@@ -219,7 +219,7 @@ impl<'a> Sparse<'a> {
             index_component,
             count,
         };
-        // Checked once here, so that indexing in `read_elements` cannot panic.
+        // The sparse indices are checked once here, so that indexing in `read_elements` cannot panic.
         let out = (0..count)
             .map(|i| index_component.index(sparse.indices.element_bytes(i)))
             .find(|&i| i as usize >= elements);

@@ -81,7 +81,7 @@ impl<'a, 'b> Buffers<'a, 'b> {
         &mut self.side_files.left_out
     }
 
-    /// Warns of a fault that costs colours only; returns the fault if that is an error.
+    /// Warns of a fault that costs colours only; returns the fault if warnings are errors.
     pub(super) fn warn_of(&mut self, fault: MeshFault) -> Result<(), MeshFault> {
         let error = self.side_files.left_out.error_of(fault);
         self.side_files.warn_of(error)

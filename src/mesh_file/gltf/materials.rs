@@ -14,11 +14,11 @@ use std::sync::Arc;
 pub(super) struct Material {
     pub(super) colors: MeshMaterial,
     pub(super) texture_coordinates: usize,
-    /// The names of what is not shown of it, in the singular.
+    /// The names of the material's features that are not shown, in the singular.
     pub(super) not_shown: Vec<&'static str>,
 }
 
-/// Returns the names of what is not shown of a material.
+/// Returns the names of the features of a material that are not shown.
 fn not_shown(json: Json<'_>) -> Result<Vec<&'static str>, MeshFault> {
     let mut names = Vec::new();
     match json.field("alphaMode")?.map(Json::string).transpose()? {
@@ -72,7 +72,7 @@ impl<'a> MaterialReader<'_, 'a, '_> {
                 Err(fault) => self.buffers.warn_of(fault).map(|()| None)?,
             };
             let Some((placement, set)) = placement else {
-                // White is the factor of a texture that is missing, not the colour of the surface.
+                // A white factor was meant for the missing texture, and is not the colour of the surface.
                 if material.colors.reflectance == white {
                     material.colors.reflectance = CLAY;
                 }

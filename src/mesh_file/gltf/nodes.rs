@@ -24,7 +24,8 @@ pub(super) fn read<'a>(
     let mut open: Vec<_> = roots(root)?.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
     while let Some(((number, node), parent)) = open.pop() {
         meter.step()?;
-        // Without this check a ring would never end, and nodes reached twice could double at each level.
+        // Without this check a cycle of nodes would never end, and a child that is listed twice at every level would
+        // double the work each time.
         if std::mem::replace(&mut is_visited[number], true) {
             return Err(node.fault("this node is reached twice: nodes must form a tree"));
         }

@@ -74,7 +74,7 @@ const JOINTS: [[&str; 2]; 2] = [["JOINTS_0", "WEIGHTS_0"], ["JOINTS_1", "WEIGHTS
 const MAX_TARGETS: usize = 64;
 
 impl<'a> Pose<'a> {
-    /// Returns whether each primitive is moved differently, and not only by the node.
+    /// Returns whether a skin or morph targets move the mesh: they may differ between primitives.
     pub(super) fn is_by_primitive(&self) -> bool {
         !self.joints.is_empty() || !self.weights.is_empty()
     }
@@ -163,7 +163,8 @@ impl<'a> Pose<'a> {
                 }
             }
         }
-        // The weights should have the sum 1. A vertex without weights stays where its node is.
+        // The sum of a vertex's weights should be 1; dividing by it makes up for other sums. A vertex without weights
+        // is placed by its node.
         let mean = |(sum, total)| if total == 0.0 { self.transform } else { sum * (1.0 / total) };
         Ok(Some(sums.into_iter().map(mean).collect()))
     }

@@ -27,8 +27,9 @@ pub(super) struct Primitives<'r, 'a, 'b> {
     colors: Ranges,
 }
 
-/// Where the elements of each accessor that was read are, by the accessor's index. Primitives often
-/// share accessors: a mesh that is split by material may keep one list of vertices.
+/// The range of each accessor that was read, by the accessor's index.
+///
+/// Primitives often share accessors: a mesh that is split by material may keep one list of vertices.
 type Ranges = HashMap<usize, Range>;
 
 /// The range of an accessor's elements in the mesh's list of positions, normals, texture
@@ -76,12 +77,12 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         transform: DMat4,
         globals: &Globals,
     ) -> Result<(), MeshFault> {
-        // The buffers hold positions and normals of the previous node, to which that node's transform was applied.
+        // These ranges are of positions and normals to which the transform of the previous node was applied.
         self.positions.clear();
         self.normals.clear();
         let mut weights = node.any_numbers("weights")?;
         if weights.is_empty() {
-            // glTF: the weights of a node go before those of its mesh.
+            // In glTF the weights of a node take precedence over those of its mesh.
             weights = mesh.any_numbers("weights")?;
         }
         let mut pose = Pose { node, transform, joints: Vec::new(), weights };
@@ -179,7 +180,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         if !self.mesh.positions[range.start as usize..].iter().all(|position| position.is_finite()) {
             return Err(pose.node.fault("this node and those above it put vertices beyond 3.4e38"));
         }
-        // Checked here as well as after the triangles: vertices without triangles could exhaust memory too.
+        // The size is checked here as well as after the triangles: vertices alone could exhaust memory too.
         self.check_size(pose.node)?;
         self.positions.insert(number, range);
         Ok(range)
@@ -228,7 +229,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
     }
 
     fn colors(&mut self, attributes: Json<'a>) -> Result<Option<Range>, MeshFault> {
-        // Of its three or four components the fourth is an opacity, which is not shown.
+        // The attribute has three or four components; the fourth is an opacity, which is not shown.
         let Some(index) = attributes.field("COLOR_0")? else { return Ok(None) };
         let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
         if let Some(&range) = self.colors.get(&number) {

@@ -196,7 +196,7 @@ impl<'a, const BIG_ENDIAN: bool> BinaryRows<'a, BIG_ENDIAN> {
         Ok(match kind {
             ScalarType::F32 => f64::from(f32::from_le_bytes(self.next_bytes()?)),
             ScalarType::F64 => f64::from_le_bytes(self.next_bytes()?),
-            // Exact, because the integers have at most 32 bits.
+            // The conversion is exact, because the integers have at most 32 bits.
             kind => self.integer(kind)? as f64,
         })
     }

@@ -9,7 +9,7 @@ use crate::mesh_file::fault::MeshFault;
 use crate::mesh_file::left_out::LeftOut;
 use crate::mesh_file::polygon;
 
-/// A face of which the properties are read one after the other.
+/// A face, which is filled property by property as its row is read.
 #[derive(Default)]
 struct Face {
     /// The vertex indices of its corners.
@@ -121,7 +121,7 @@ impl Face {
     }
 }
 
-/// Returns the index of a colour that is added, unless it is the last one already.
+/// Adds a colour to the list, unless it equals the last one, and returns its index.
 fn index_of_last(colors: &mut Vec<LinearRgb>, color: LinearRgb) -> u32 {
     if colors.last() != Some(&color) {
         colors.push(color);

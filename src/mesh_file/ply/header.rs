@@ -194,7 +194,7 @@ impl<'a> HeaderReader<'a, '_, '_> {
                 format!("{count} rows are not possible: there are 0 to {}", u32::MAX),
             ));
         };
-        // The readers use only the first element of a name, so a second one would be ignored silently.
+        // The readers use only the first element with a name, so a second one would be ignored silently.
         if matches!(name, "vertex" | "face" | "tristrips") && self.elements.iter().any(|element| element.name == name) {
             return Err(MeshFault::in_text(at, format!("duplicate element {name}")));
         }

@@ -33,7 +33,7 @@ fn slot_of(property: &Property<'_>) -> usize {
     }
 }
 
-/// Returns the index of the colour channel that a property of a vertex or face is.
+/// Returns the colour channel that a property holds: 0 for red, 1 for green, 2 for blue.
 pub(super) fn color_channel(property: &Property<'_>) -> Option<usize> {
     match property.name {
         _ if matches!(property.shape, PropertyType::List { .. }) => None,
@@ -57,10 +57,10 @@ pub(super) fn read<R: RowReader>(
     }
     let color_type = slots.iter().position(|&slot| slot == COLOR).map(|i| element.properties[i].shape);
     let (has_normals, color_type) = (has(NORMAL, 3), color_type.filter(|_| has(COLOR, 3)));
-    // Without a texture its coordinates would only take memory.
+    // Without a texture, texture coordinates would only take memory.
     let has_texture = has(TEXTURE, 2) && !mesh.materials.is_empty();
     let capacity = row_capacity(element, rows);
-    // Exact, because a vector that grows by doubling needs up to three times the memory while it is copied.
+    // Reserved exactly, because a vector that doubles needs up to three times the memory while it is copied.
     mesh.positions.reserve_exact(capacity);
     mesh.normals.values_mut().reserve_exact(if has_normals { capacity } else { 0 });
     mesh.colors.values_mut().reserve_exact(if color_type.is_some() { capacity } else { 0 });
@@ -91,7 +91,7 @@ pub(super) fn read<R: RowReader>(
         }
         Ok(())
     };
-    // A vertex that is left out keeps its number.
+    // A faulty vertex still takes up its number, so that the indices of later ones are right.
     let leave_out = |mesh: &mut MeshBuilder, row: usize| {
         mesh.positions.resize(row + 1, Vec3::NAN);
         mesh.normals.values_mut().resize(if has_normals { row + 1 } else { 0 }, Vec3::ZERO);

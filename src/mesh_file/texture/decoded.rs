@@ -13,7 +13,7 @@ use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
 impl TexturePlacement {
-    /// Returns the placement by the mesh's texture coordinates as they are, without a transform.
+    /// Returns a placement that takes the mesh's texture coordinates unchanged.
     pub(in crate::mesh_file) fn plain(texture: Arc<Texture>) -> Self {
         Self { texture, transform: [Vec3::X, Vec3::Y] }
     }
