@@ -1,10 +1,11 @@
-//! Object order, for comparison with ray tracing: for each object, the pixels at which it is
-//! visible (lecture, "Looking ahead").
+//! Rasterization, to compare it with ray tracing: a loop over objects that finds the pixels of each
+//! (lecture, "Looking ahead").
 //!
-//! Each primitive is projected to a rectangle of pixels; those that contain the middle of no pixel end there. Triangles
-//! are filled by their edge functions. Spheres, planes and other formulas are intersected with the eye rays in their
-//! rectangle. A depth buffer keeps the nearest object of each pixel. Spheres and triangles are projected eight at a
-//! time, and drawn eight pixels at a time. Nothing is shaded: the time is that of visibility, as for eye rays.
+//! Each primitive is projected to a rectangle of pixels, and skipped if the rectangle contains no pixel's centre.
+//! Triangles are filled by their edge functions. All other primitives are intersected with the eye rays of the pixels
+//! in their rectangle. A depth buffer keeps the nearest object of each pixel. Spheres and triangles are projected eight
+//! at a time, and drawn eight pixels at a time. Nothing is shaded: as with eye rays, only the visible objects are
+//! found.
 
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
@@ -39,7 +40,7 @@ pub fn rasterize(scene: &Scene, camera: &Camera, resolution: Resolution) -> Dept
 pub struct Rasterizer {
     projection: Projection,
     buffer: DepthBuffer,
-    /// Spheres and triangles that are not drawn yet, with their objects.
+    /// Spheres that are not drawn yet, with the indices of their objects; `triangles` likewise.
     spheres: Vec<(Sphere, u32)>,
     triangles: Vec<([Vec3; 3], u32)>,
     tests: u64,
@@ -54,7 +55,7 @@ impl Rasterizer {
         Self { projection, buffer, spheres, triangles, tests: 0 }
     }
 
-    /// Returns the picture of a scene.
+    /// Returns a rasterizer that has drawn all objects of a scene.
     fn drawn(scene: &Scene, camera: &Camera, resolution: Resolution) -> Self {
         let mut rasterizer = Self::new(camera, resolution);
         for (object, index) in scene.objects().iter().zip(0..) {
@@ -66,7 +67,8 @@ impl Rasterizer {
         rasterizer
     }
 
-    /// Draws a primitive of an object, at the latest with [`finish`](Self::finish).
+    /// Draws a primitive of an object, now or in a later call, at the latest in
+    /// [`finish`](Self::finish).
     #[inline]
     pub fn draw(&mut self, primitive: &Primitive<'_>, object: u32) {
         match primitive {
@@ -90,13 +92,13 @@ impl Rasterizer {
         self.draw_triangles();
     }
 
-    /// Returns the nearest object of each pixel so far.
+    /// Returns the nearest object drawn so far at each pixel.
     pub fn buffer(&self) -> &DepthBuffer {
         &self.buffer
     }
 
-    /// Returns the number of pixels that were tested so far, summed over the primitives, and of the
-    /// primitives themselves.
+    /// Returns the number of tests so far: one for each primitive, and one for each pixel in its
+    /// rectangle.
     pub fn tests(&self) -> u64 {
         self.tests
     }
@@ -131,14 +133,15 @@ impl Rasterizer {
         self.tests += simd::dispatch(DrawPlane { projection, plane, object, buffer });
     }
 
-    /// Draws the pixels at which a formula is visible.
+    /// Draws any surface but a sphere, triangle or plane, by the eye rays of the pixels in its
+    /// rectangle.
     fn draw_formula(&mut self, surface: &Primitive<'_>, object: u32) {
         let Some(rectangle) = self.projection.of_bounds(surface.bounds()) else { return };
         self.tests += rectangle.tests();
         for y in rectangle.rows() {
             for x in rectangle.columns() {
                 let probe = Probe::new(self.projection.ray(x, y));
-                // Surfaces behind the nearest one so far are not sought.
+                // Crossings behind the nearest surface drawn so far at this pixel are not searched for.
                 let within = Interval { max: self.buffer.t(x, y).min(f32::MAX), ..Interval::IN_FRONT };
                 if let Some(t) = surface.closest_crossing(&probe, within) {
                     self.buffer.draw([x, y], t, object);

@@ -62,7 +62,7 @@ impl<N: Number> Rays<N> {
             inverse: Vector { x: one / x, y: one / y, z: one / z },
             squared_length,
             inverse_squared_length: one / squared_length,
-            // The callers set the shear, whose division is not needed in scenes without triangles.
+            // The callers set the shear afterwards; scenes without triangles save its division.
             shear: Shear::placeholder(),
         }
     }
@@ -79,7 +79,8 @@ impl<N: Lanes> Rays<N> {
     }
 
     /// Returns the ray of `lane` in all lanes.
-    // Numbers are spread by shuffles within registers: through memory, single rays in three spheres were 22 % slower.
+    // A number is copied to all lanes by a shuffle within a register. With a copy through memory, single rays in
+    // three_spheres were 22 % slower.
     #[inline(always)]
     pub(crate) fn splat_lane(&self, lane: usize) -> Self {
         Self {
@@ -104,7 +105,7 @@ pub struct EightRays {
     pub origin: Vector<F32x8>,
     /// The directions of the rays; none is zero.
     pub direction: Vector<F32x8>,
-    /// The active mask, lane 0 lowest.
+    /// The active mask: bit 0 is lane 0.
     ///
     /// Inactive lanes repeat an active ray, so that they widen no bounds of a packet; if no lane is active, they hold
     /// any numbers.

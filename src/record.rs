@@ -1,6 +1,6 @@
 //! Films of frames over time: asciicast and GIF.
 //!
-//! Each frame is written at once, so that a film is never in memory as a whole. A film is a pure function of its
+//! Frames are written as they come, so that a film is never in memory as a whole. A film is a pure function of its
 //! frames: its bytes do not depend on the clock or the environment.
 
 #[cfg(feature = "cast")]

@@ -127,8 +127,8 @@ pub(crate) fn render_partial(
         Sampling::UpTo(samples) => {
             let mut picture = ProgressiveRender::new(camera, resolution);
             let cost = picture.refine(executor, scene, samples);
-            // The caller drops the picture of a cancelled render, so none is made: filling one of 3840x2160 delayed the
-            // end of a cancelled render to between 238 and 449 ms; without it, a cancel takes 4 to 18 ms.
+            // The caller drops the picture of a cancelled render, so the framebuffer is not filled: with a filled one
+            // of 3840x2160 pixels, a cancelled render ended after 238 to 449 ms instead of 4 to 18 ms.
             let is_lost = executor.is_cancelled();
             let framebuffer = if is_lost { Framebuffer::new(Resolution::square(0, 0)) } else { picture.framebuffer() };
             Rendered { framebuffer, cost }

@@ -77,7 +77,7 @@ impl fmt::Debug for Scene {
         } = &*self.checked;
         let mut scene = f.debug_struct("Scene");
         scene.field("caption", caption).field("mesh", mesh).field("camera", camera).field("views", views);
-        // A colour takes one line also with `{:#?}`, as three lines per colour would make a scene hard to read.
+        // A colour takes one line even with `{:#?}`, because a line per channel would make the output hard to read.
         scene.field("background", &format_args!("{background:?}")).field("ambient", &format_args!("{ambient:?}"));
         scene.field("lights", lights).field("shadows", shadows);
         scene.field("exposure", exposure).field("tone_curve", tone_curve).field("objects", objects);
@@ -93,7 +93,7 @@ impl fmt::Debug for Scene {
 /// and camera.
 #[derive(Clone, Debug, PartialEq)]
 struct Checked {
-    /// The caption, in an `Arc` because the panel that shows it shares it.
+    /// The caption, in an `Arc` to share it with the panel that shows it.
     caption: Option<Arc<str>>,
     /// The mesh file around which the scene was made; `None` for a scene read from a scene file.
     mesh: Option<MeshOrigin>,
@@ -105,13 +105,13 @@ struct Checked {
     shadows: bool,
     exposure: f32,
     tone_curve: ToneCurve,
-    /// The objects, shared so that a scene with other lights does not copy a million of them.
+    /// The objects, in an `Arc` so that a scene with other lights does not copy a million of them.
     objects: Arc<[Object]>,
 }
 
 impl Checked {
-    /// Returns the values of a scene with these objects, and the defaults of [`Scene::builder`] for
-    /// the rest.
+    /// Returns the checked values with this camera and these objects; all others are the defaults
+    /// of [`Scene::builder`].
     fn new(camera: Camera, objects: Vec<Object>) -> Self {
         Self {
             caption: None,
@@ -157,10 +157,10 @@ impl Scene {
         SceneBuilder::new(camera)
     }
 
-    /// Returns a scene with the given objects, and the defaults of [`builder`](Self::builder) for
-    /// the rest.
+    /// Returns a scene with the given camera and objects; all else is as in
+    /// [`builder`](Self::builder).
     ///
-    /// It is not checked that the shapes can have their materials.
+    /// Does not check that each material is allowed for its shape.
     #[doc(hidden)]
     pub fn new(camera: Camera, objects: Vec<Object>) -> Self {
         Draft::new(Checked::new(camera, objects)).finish()
@@ -215,7 +215,7 @@ impl Scene {
         (1..).zip(self.objects()).filter_map(warning).collect()
     }
 
-    /// Returns whether any surface depends on the time.
+    /// Returns whether any surface or its colours depend on the time.
     #[doc(hidden)]
     pub fn moves(&self) -> bool {
         self.accelerator.moves()

@@ -38,7 +38,7 @@ pub struct SceneFile {
     pub lights: Vec<WrittenLight>,
     /// The named materials, in the order of the file.
     pub materials: Vec<NamedMaterial>,
-    /// Whether the names of all entries of `materials` are known.
+    /// Whether the names of all entries of `materials` could be read.
     ///
     /// If not, unknown names are not reported as faults.
     pub materials_complete: bool,
@@ -100,7 +100,7 @@ pub enum MaterialUse {
 pub struct WrittenObject {
     /// The surface.
     pub shape: WrittenShape,
-    /// The material and its span; if not given, light grey or the colours of a mesh's file.
+    /// The material and its span. By default light grey, or for a mesh the colours of its file.
     pub material: Option<Spanned<MaterialUse>>,
 }
 
@@ -158,7 +158,7 @@ impl NodeReader<'_> {
     }
 
     fn background(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenBackground> {
-        // Only a gradient is a group with a name; everything else is read as a colour.
+        // A gradient is the only background that is a group with a name; everything else is read as a colour.
         if !matches!(node.value, Value::Group(ref group) if group.name.is_some()) {
             return self.color(node).map(WrittenBackground::Color);
         }

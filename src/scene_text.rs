@@ -60,7 +60,7 @@ impl Span {
 /// The largest size of a text: 16 MiB, enough for a scene of 200,000 spheres.
 pub const MAX_TEXT_BYTES: usize = 16 << 20;
 
-/// The deepest nesting of brackets. A scene needs 5.
+/// The largest depth of nested brackets. A scene needs 5.
 // The parser is recursive, and a deeper text could overflow the stack.
 pub const MAX_NESTING: usize = 128;
 
@@ -149,9 +149,9 @@ impl<'a> SyntaxNode<'a> {
         }
     }
 
-    /// Returns the span at which something missing in the value is reported: its name, or its first
+    /// Returns the span at which a missing part of the value is reported: the value's name or first
     /// bracket.
-    // The span is not that of the whole value, which may be a thousand lines long.
+    // Not the span of the whole value, which may be a thousand lines long.
     pub fn head(&self) -> Span {
         match &self.value {
             Value::Group(group) => match group.name {

@@ -11,8 +11,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::convert::Infallible;
 use std::num::NonZeroU32;
 
-/// Implements `Serialize` and `Deserialize` for `$Type` through `$Form`, a type with the structure
-/// of the format: a conversion into `$Form`, and a checked conversion back.
+/// Implements `Serialize` and `Deserialize` for `$Type` by conversion to `$Form`, a type with the
+/// structure of the format, and a checked conversion back.
 // The impls are not derived, because derived ones would bypass the constructors' checks and make private fields a part
 // of the format.
 macro_rules! serialize_as {
@@ -49,7 +49,7 @@ serialize_as! {
     Camera as CameraForm: |camera| CameraForm { pose: camera.pose(), rectangle: camera.rectangle() },
         |CameraForm { pose, rectangle }| Self::new(pose, rectangle);
     Resolution as ResolutionForm: ResolutionForm::of, ResolutionForm::checked;
-    // The bits of the constants never change. Unknown bits are an error instead of being dropped.
+    // Stored as a number, because the bits of the constants never change. Unknown bits are an error.
     Attributes as u16: |attributes| attributes.bits(), attributes_of;
 }
 

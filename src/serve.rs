@@ -3,11 +3,11 @@
 //! A client gets a terminal with the view of a scene, and nothing else. One thread owns the sockets ([`tokio`],
 //! `russh`); it never traces. The other threads are the `stage`: each turn of a `seat` (one viewer) runs on one of
 //! them, from its input to its bytes, and the `run_queue` shares their time fairly. Between them is a `line` for each
-//! connection, with at most one frame. `limits` counts connections and places; `ssh` and `visit` say what a client may
-//! ask for.
+//! connection, with at most one frame. `limits` counts connections and places for viewers; `ssh` and `visit` define
+//! what a client may ask for.
 //!
-//! Of these `run_queue`, `seat`, `limits`, `total_rate`, `visit` and `client_terminal` are pure: they are told the
-//! time.
+//! The modules `run_queue`, `seat`, `limits`, `total_rate`, `visit` and `client_terminal` are pure: they do no I/O, and
+//! the time is a parameter.
 
 use crate::scene::Scene;
 use crate::terminal::{Signals, without_signals};
@@ -49,7 +49,7 @@ mod stage;
 mod total_rate;
 mod visit;
 
-/// Time to wait after an error of accepting a connection, such as too many open files.
+/// Pause after a failed `accept`, such as with too many open files.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 
 /// A scene that the server shows to its viewers.
@@ -57,9 +57,9 @@ const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 pub struct HostedScene {
     /// The name by which clients ask for the scene, as in `ssh HOST NAME`.
     pub name: String,
-    /// The scene's file in the command that is printed on leaving: `termtrace FILE ...`.
+    /// The scene's file in the command that is printed when a viewer leaves: `termtrace FILE ...`.
     pub file: String,
-    /// One line on what the scene shows, for the list of scenes.
+    /// One line that says what the scene shows, for the list of scenes.
     pub title: String,
     /// The scene.
     pub scene: Scene,
@@ -74,11 +74,11 @@ pub struct Settings {
     pub listen: SocketAddr,
     /// The file of the host key, which is made if there is none.
     pub host_key: PathBuf,
-    /// The most viewers at a time. Others wait.
+    /// The largest number of viewers at a time. More clients wait in a queue.
     pub max_viewers: usize,
     /// The most connections from one address.
     pub max_per_address: usize,
-    /// The longest time without a key, after which a viewer has to leave.
+    /// The longest time without a key press. After it, the viewer is disconnected.
     pub idle: Duration,
     /// The longest time that a visit may last.
     pub session_max: Duration,
@@ -90,7 +90,7 @@ pub struct Settings {
     pub max_frames: f32,
     /// The threads that draw; `None` for one per core.
     pub threads: Option<usize>,
-    /// The public keys of the users who may log in; `None`: everybody may.
+    /// The public keys of the users who may log in; `None` if every user may.
     pub authorized_keys: Option<Vec<PublicKey>>,
     /// The text that clients print before the login.
     pub banner: Option<String>,
@@ -100,9 +100,9 @@ pub struct Settings {
     pub metrics: Option<SocketAddr>,
     /// The longest time that a client may take to log in.
     pub login_time: Duration,
-    /// The longest time in which a client takes no bytes; after it the connection is closed.
+    /// The longest time in which a client takes no bytes. After it, the connection is closed.
     pub patience: Duration,
-    /// The time that viewers have to leave when the server ends.
+    /// The time that viewers have for leaving when the server ends.
     pub drain: Duration,
 }
 
@@ -167,7 +167,8 @@ impl Server {
     /// `on_end` is called when the server has ended after [`drain`](Self::drain).
     ///
     /// # Errors
-    /// If there is no scene, the host key cannot be read or made, or the address cannot be used; the error names it.
+    /// If there is no scene, the host key cannot be read or made, or the address cannot be used. The error names the
+    /// file or the address.
     pub fn start(
         scenes: Vec<HostedScene>,
         settings: Settings,
@@ -179,10 +180,10 @@ impl Server {
         }
         let named = |what: String| move |error: io::Error| io::Error::new(error.kind(), format!("{what}: {error}"));
         let key = host_key::load_or_make(&settings.host_key).map_err(named(settings.host_key.display().to_string()))?;
-        // Bound here and not by the thread of the sockets, so that an address in use is an error of `start`.
+        // The address is bound here and not by the thread of the sockets, so that `start` reports an address in use.
         let bind = |address: SocketAddr| {
             let listener = TcpListener::bind(address).map_err(named(address.to_string()))?;
-            // Needed by `TcpListener::from_std` of tokio.
+            // tokio's `TcpListener::from_std` needs a non-blocking socket.
             listener.set_nonblocking(true).and_then(|()| Ok((listener.local_addr()?, listener)))
         };
         let (address, listener) = bind(settings.listen)?;
@@ -252,7 +253,7 @@ impl Server {
         }
         self.house.stage.close();
         for thread in self.threads.drain(..) {
-            // The panic hook has already reported an error.
+            // An error means a panic of the thread, which the panic hook has already reported.
             let _ = thread.join();
         }
     }
@@ -276,7 +277,7 @@ pub fn run(
     started(server.address(), server.fingerprint());
     let mut draining = false;
     loop {
-        // An error, such as an interruption, only leads to another round: what follows asks for the state itself.
+        // An error of `poll`, such as an interruption by a signal, is ignored: the code below checks the state itself.
         let _ = poll(&mut [PollFd::from_borrowed_fd(signals.wake_pipe(), PollFlags::IN)], None);
         signals.drain();
         // These signals do not ask the server to end: its own terminal was resized, or it was stopped and continued.
@@ -305,18 +306,20 @@ fn ssh_config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
     Config {
         server_id: SshId::Standard(Cow::Borrowed("SSH-2.0-termtrace")),
         methods: if with_keys { MethodSet::from(&[MethodKind::PublicKey][..]) } else { MethodSet::empty() },
-        // Slows down guessing. The first request of OpenSSH's clients only asks for the methods, so it is not delayed.
+        // A delay after each rejected login slows down guessing. The first request of an OpenSSH client only asks for
+        // the methods, so its rejection is not delayed.
         auth_rejection_time: Duration::from_millis(500),
         auth_rejection_time_initial: Some(Duration::ZERO),
         keys: vec![key],
-        // Small windows suffice, because input is only keys; output is large.
+        // Small receive windows suffice, because clients only send keys; only the output is large.
         window_size: 16 * 1024,
         maximum_packet_size: 4 * 1024,
         channel_buffer_size: 4,
         event_buffer_size: 2,
         // As in OpenSSH.
         max_auth_attempts: 6,
-        // A viewer's own time without a key is limited, and a socket that takes nothing is closed.
+        // Not needed here: `Seat` limits the time without a key, and `Socket` the time in which a client takes no
+        // bytes.
         inactivity_timeout: None,
         preferred: Preferred { mac: Cow::Owned(macs.to_vec()), ..Preferred::default() },
         ..Config::default()
@@ -343,7 +346,7 @@ async fn serve_until_drained(house: Arc<House>, config: Arc<Config>, listener: T
 }
 
 /// Accepts connections for ever.
-// Not the loop of `russh`, which ends at the first error of `accept`.
+// Used instead of the loop of `russh`, which ends at the first error of `accept`.
 async fn accept_all(house: Arc<House>, config: Arc<Config>, listener: tokio::net::TcpListener, log: Log) {
     loop {
         match listener.accept().await {
@@ -356,7 +359,7 @@ async fn accept_all(house: Arc<House>, config: Arc<Config>, listener: tokio::net
                         let connection = connect(Arc::clone(&house), Arc::clone(&config), stream, entry);
                         tokio::spawn(connection);
                     }
-                    // A closed connection costs the least; a message would need the whole handshake.
+                    // Closing the connection costs the least; a message to the client would need the whole handshake.
                     Err(refusal) => {
                         metrics.refuse(refusal);
                         log(&format!("refused {}: {}", limits::anonymized(address.ip()), refusal_text(refusal)));
@@ -380,7 +383,7 @@ fn refusal_text(refusal: Refusal) -> &'static str {
     }
 }
 
-/// Serves one connection; ends it if the client does not log in, or asks for nothing.
+/// Serves one connection, and closes it if the client does not log in or request anything in time.
 async fn connect(house: Arc<House>, config: Arc<Config>, stream: TcpStream, entry: limits::Entry) {
     let (login_time, idle) = (house.settings.login_time, house.settings.idle);
     let socket = Socket::new(stream, house.settings.patience);

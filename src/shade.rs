@@ -8,10 +8,10 @@
 //!
 //! The visibility V is 0 if an object is between the point and the light, else 1; n is the shading normal on the
 //! visible side, l the unit vector to the light, d the distance to the light. The intensity I includes the 1/pi of
-//! diffuse reflection. The position of the eye matters only for the visible side.
+//! diffuse reflection. The position of the eye only decides which side of the surface is visible.
 //!
-//! All steps work on groups of eight rays. Lanes without a hit are computed as well, and no later step reads them:
-//! branches would cost more than they save.
+//! All steps work on groups of eight rays. Lanes without a hit are computed as well, because branches would cost more
+//! than they save; no later step reads these lanes.
 
 use crate::color::LinearRgb;
 use crate::hit::{self, EightHits, Kernel};
@@ -54,7 +54,7 @@ pub struct ShadowRays {
     pub(crate) rays: Vec<EightRays>,
     /// The light that arrives along each ray if it is not blocked.
     lights: Vec<EightLights>,
-    /// The masks of blocked rays, for which V = 0.
+    /// The mask of blocked rays of each group, for which V = 0.
     pub(crate) blocked: Vec<u32>,
 }
 
@@ -117,7 +117,7 @@ impl ShadowRays {
     }
 }
 
-/// Returns the number of active rays.
+/// Returns the number of active rays in groups of eight.
 pub fn count(rays: &[EightRays]) -> u64 {
     rays.iter().map(|rays| u64::from(rays.active.count_ones())).sum()
 }
@@ -148,7 +148,7 @@ impl SimdKernel for AddUnblocked<'_> {
     }
 }
 
-/// Makes a shadow ray from each point to a light, also from points that face away.
+/// Makes a shadow ray from each point to a light, even from points that face away from it.
 pub fn shadow_rays(light: &Light, points: &[EightPoints], rays: &mut Vec<EightRays>) {
     rays.clear();
     simd::dispatch(Shadows { light, points, rays });
@@ -193,8 +193,8 @@ fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32)
 /// Computes the light that each ray carries to the eye: reflected light, or the background's
 /// without a hit.
 ///
-/// `direction_steps` are the changes of direction to the neighbouring rays in the picture, from which footprints are
-/// computed.
+/// `direction_steps` are the differences in direction to the neighbouring eye rays, to the right and upwards.
+/// Footprints are computed from them.
 pub fn reflect(
     scene: &Scene,
     rays: &[EightRays],
@@ -229,8 +229,8 @@ impl SimdKernel for Reflect<'_> {
             if points.hit_mask != ALL {
                 light = backgrounds(self.scene, self.rays[at].direction.load());
             }
-            // Loops over the hit objects: most groups of eight hit one object, whose material is evaluated for all
-            // lanes.
+            // The loop is over the objects that were hit: most groups of eight rays hit a single object, whose material
+            // is then evaluated for all lanes at once.
             let mut remaining = points.hit_mask;
             while remaining != 0 {
                 let object = points.ids.id(remaining.trailing_zeros() as usize % LANES).object;
@@ -319,13 +319,13 @@ fn incident_light<N: Number>(light: &Light, position: Vector<N>, normal: Vector<
     let l = Vector { x: to_light.x / distance, y: to_light.y / distance, z: to_light.z / distance };
     let cosine = normal.dot(l);
     let light = light.irradiance(l, distance_squared, cosine).map(|channel| channel.min(N::splat(MAX_IRRADIANCE)));
-    // The comparison is false also for NaN, which is the cosine if the light is at the point itself.
+    // The comparison is also false for NaN, the cosine if the light is at the point itself.
     (N::splat(0.0).lt(cosine), IncidentLight { l, distance, cosine, light })
 }
 
 /// The largest arriving light per channel and light source.
-// Light from a source very near the surface would overflow f32, and infinity times 0 is NaN, whose bits differ between
-// CPUs. Below this limit all later sums and products are finite. `min` of NaN and the limit is the limit.
+// The light of a source very near the surface would overflow f32 to infinity. Infinity times 0 is NaN, whose bits
+// differ between CPUs. With this limit all later sums and products are finite; `min` of NaN and the limit is the limit.
 const MAX_IRRADIANCE: f32 = 1e30;
 
 /// Returns the shadow ray from a point to a light. The light is at t = 1, or infinitely far away.

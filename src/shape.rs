@@ -2,8 +2,8 @@
 //!
 //! As in the lecture, a surface is given implicitly by f(x) = 0, and inserting the ray x = p + t d leaves one equation
 //! in t. Each surface solves its equation in a file of its own under `shape/`. To add a surface, write that file, with
-//! an implementation of [`Surface`], and add a line to the table `table` here. Rays are then tested against it in a
-//! [`ScalarLeaf`]; if that is too slow, implement [`SoaLeaf`] for a leaf type of its own.
+//! an implementation of [`Surface`], and add a line to the table `table` here. Rays are then tested against the surface
+//! in a [`ScalarLeaf`]. If that is too slow, implement [`SoaLeaf`] for a leaf type of the surface's own.
 //!
 //! This module does not depend on materials and light.
 
@@ -67,8 +67,8 @@ pub trait Surface {
     ///
     /// That t is a root of f(origin + t direction) = 0.
     ///
-    /// For a bounded surface it is clamped to the [interval of its box](Bounds::crossed), from which rounding may have
-    /// moved it, so that culling by boxes never drops a hit (`culling.md`, 2).
+    /// For a bounded surface, t is clamped to the [interval of the surface's box](Bounds::crossed). Rounding may have
+    /// moved t out of that interval, and culling by boxes must not drop the hit (`culling.md`, 2).
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32>;
 
     /// Returns the mask of the active rays that cross the surface, and the t of each.
@@ -80,8 +80,8 @@ pub trait Surface {
         let (mut crosses, mut t) = (0, F32x8::ZERO);
         for lane in set_bits(rays.active) {
             let within = Interval { min: min.0[lane], max: max.0[lane] };
-            // Recomputes the ray's shared values for each surface, which is simple but slow. Surfaces that must be
-            // fast implement `SoaLeaf`.
+            // `Probe::new` recomputes the ray's shared values for each surface, which is simple but slow. Surfaces that
+            // must be fast implement `SoaLeaf`.
             if let Some(crossing) = self.closest_crossing(&Probe::new(rays.ray(lane)), within) {
                 crosses |= 1 << lane;
                 t.0[lane] = crossing;
@@ -98,7 +98,8 @@ pub trait Surface {
     ///
     /// It is measured from the crossing at `t`, where `normal` returns the normal of the surface, to the crossings of
     /// the neighbouring rays, whose directions differ by `direction_steps`. Zero if the surface has no coordinates.
-    // Most surfaces need no normal, whose load from memory would take 2 % of the instructions of three spheres.
+    // `normal` is a function, because most surfaces do not need the normal, and loading it would take 2 % of the
+    // instructions of three_spheres.
     #[inline(always)]
     fn footprint<N: Number>(
         &self,
@@ -143,9 +144,9 @@ pub trait Crossable<N: Number> {
     /// The crossings are those of [`closest_crossing`](Surface::closest_crossing); `None` only if no lane hits.
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)>;
 
-    /// Computes [`first_crossing`](Self::first_crossing), but may leave out crossings beyond `max`.
+    /// Computes [`first_crossing`](Self::first_crossing), with or without crossings beyond `max`.
     ///
-    /// Most surfaces find them anyway.
+    /// By default, crossings beyond `max` are returned.
     #[inline(always)]
     fn first_crossing_until(&self, rays: &Rays<N>, [min, _]: [N; 2]) -> Option<(N::Mask, N)> {
         self.first_crossing(rays, min)
@@ -155,7 +156,7 @@ pub trait Crossable<N: Number> {
     ///
     /// Its rays share an error bound.
     ///
-    /// That is [`EdgeFunctions::packet_error_bound`], or infinity if the packet has none.
+    /// The error bound is [`EdgeFunctions::packet_error_bound`], or infinity if the packet has none.
     #[inline(always)]
     fn first_crossing_with_bound(&self, rays: &Rays<N>, range: [N; 2], _error_bound: N) -> Option<(N::Mask, N)> {
         self.first_crossing_until(rays, range)
@@ -187,9 +188,10 @@ pub struct Points<N: Number> {
 }
 
 impl<N: Number> Points<N> {
-    /// Returns the points at `position`, with the normal on the side that the rays come from.
+    /// Returns the points at `position`, with the geometric normals on the side that the rays come
+    /// from.
     ///
-    /// `front` is the normal of the front, and `size` the largest coordinate that the computation of `position` used.
+    /// `front` is the normal on the front side, and `size` the largest coordinate from which `position` was computed.
     #[inline(always)]
     fn seen_by(rays: &Rays<N>, position: Vector<N>, front: Vector<N>, size: N, uv: [N; 2]) -> Self {
         let is_front = rays.direction.dot(front).lt(N::splat(0.0));
@@ -272,7 +274,8 @@ pub trait SoaLeaf: Clone {
     /// Whether [`edge_functions`](Self::edge_functions) may return `Some`.
     const HAVE_EDGE_FUNCTIONS: bool = false;
 
-    /// Returns edge functions that cull groups of rays, if they cost less than the exact test.
+    /// Returns edge functions for culling groups of rays; `None` if they cost more than the exact
+    /// test.
     #[inline(always)]
     fn edge_functions<N: Lanes>(&self, _: &CommonOrigin<N>) -> Option<EdgeFunctions> {
         None
@@ -284,7 +287,7 @@ pub trait SoaLeaf: Clone {
 pub struct SurfacePoint {
     /// The hit point, **p** in the lecture, moved onto the surface up to the precision of f32.
     pub position: Vec3,
-    /// The shading normal **n**, on the side that the ray came from: on smooth meshes interpolated.
+    /// The shading normal **n** on the side that the ray came from; interpolated on smooth meshes.
     ///
     /// Unit length.
     pub shading_normal: Vec3,
@@ -295,7 +298,7 @@ pub struct SurfacePoint {
     /// The distance from the surface, along `geometric_normal`, at which a new ray may start
     /// without hitting it again.
     ///
-    /// It is proportional to the coordinates from which the point was computed, not to the size of the scene.
+    /// The distance is proportional to the coordinates from which the point was computed, not to the size of the scene.
     pub clearance: f32,
     /// Coordinates on the surface for patterns.
     ///
@@ -325,19 +328,20 @@ pub enum Side {
 
 /// The [clearance](SurfacePoint::clearance) relative to the coordinates: 32 units of 2^-24.
 ///
-/// A computed point is off by a few units, and so is the crossing of a second ray.
+/// A computed point is off by a few of these units, and so is the crossing of a second ray.
 // The value is measured, not proved: it gives at most 10 false shadows in 100,000 at each scale (`culling.md`, 15).
 const CLEARANCE: f32 = 32.0 / 16_777_216.0;
 
-/// Passes the table of all surfaces to a macro, in two parts, through another macro.
+/// Passes the table of all surfaces, in two parts, to the macro `$through`, with the name `$with`.
 ///
-/// A line of `own` is for a surface with a list or tree of its own. It has the group, which is `list` for unbounded
-/// surfaces and `tree` for all others; the name of the accelerator's field; the type; the type of a leaf, or of an
-/// unbounded surface in its list; the attribute of its variants: a description.
+/// A line of `own` is for a surface with a list or tree of its own. Its parts are: `list` for unbounded surfaces or
+/// `tree` for all others; the name of the accelerator's field; the surface's type; the type of a leaf, or of an entry
+/// of the list; the attribute of the enum variants, which is their documentation.
 ///
 /// A line of `shared` is for a bounded surface that is in the tree of all such surfaces, whose leaves are
 /// [`ScalarLeaf`]s: the type, and the attribute of its variants.
-// With a tree for each kind, every ray would pass as many empty trees as there are kinds that a scene does not use.
+// These surfaces share one tree. With a tree for each kind, every ray would have to pass an empty tree for each kind
+// that the scene does not use.
 macro_rules! table {
     ($through:ident $with:ident) => {
         $through! {
@@ -350,7 +354,7 @@ macro_rules! table {
                 tree triangles: Triangle as $crate::shape::TriangleN<$crate::lanes::F32x8>,
                     doc = "The part of a plane between three points.";
             }
-            // All of these are hidden, because the way to write them in Rust code may still change.
+            // All of these are hidden from the documentation, because their Rust interface may still change.
             shared {
                 Cuboid, doc(hidden);
                 Disk, doc(hidden);
@@ -368,7 +372,7 @@ macro_rules! table {
     };
 }
 
-/// Passes the table of all surfaces to a macro: the type, and the attribute of its variants.
+/// Passes all surfaces of the table to a macro: each one's type and the attribute of its variants.
 macro_rules! surfaces {
     ($with:ident) => {
         $crate::shape::table! { surfaces $with }
@@ -509,10 +513,10 @@ impl Shape {
 }
 
 impl Primitive<'_> {
-    /// Returns the diffuse reflectance from the file of a mesh, at the coordinates
-    /// [`uv`](SurfacePoint::uv), or from the formulas of a surface, at a position.
+    /// Returns the shape's own diffuse reflectance: a mesh file's colours at
+    /// [`uv`](SurfacePoint::uv), or an implicit surface's colour formulas at `position`.
     ///
-    /// `None` if there are no such colours, and for other shapes.
+    /// `None` if the shape has no colours of its own.
     pub fn own_reflectance(&self, position: Vec3, uv: Vec2) -> Option<LinearRgb> {
         match self {
             Self::Facet(facet) => facet.file_reflectance(uv),

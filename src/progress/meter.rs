@@ -8,7 +8,7 @@ pub(crate) struct Meter<'a> {
     name: &'a str,
     /// The size of the file in bytes.
     total: usize,
-    /// The position in the file from which on the next report is due.
+    /// The position in bytes at which the next report is due.
     next: usize,
 }
 

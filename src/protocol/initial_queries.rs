@@ -1,7 +1,7 @@
 //! The queries sent to a terminal at the start, as one batch, and their replies.
 //!
 //! The batch ends with the query that every terminal replies to (DA1). Terminals reply in order: once that reply is
-//! here, no other reply to the batch follows. The first picture does not wait for it.
+//! here, no other reply to the batch follows. The first picture is drawn without waiting for the replies.
 
 use crate::capabilities::{Hints, Replies, SafeQueries, TEST_COLOR};
 use crate::input::Reply;
@@ -18,8 +18,7 @@ pub struct InitialQueries {
 }
 
 impl InitialQueries {
-    /// Returns the queries for facts that affect the picture and do not follow from the
-    /// environment.
+    /// Returns the queries for facts that affect the picture and that `hints` leave unknown.
     pub fn needed(hints: &Hints) -> Self {
         let needed = [hints.needs_truecolor_reply(), hints.needs_palette_reply(), hints.needs_block_width_reply()];
         Self::batch(hints.safe_queries(), needed)
@@ -35,9 +34,9 @@ impl InitialQueries {
         if safe_queries == SafeQueries::None {
             return Self::default();
         }
-        // The half block is printed first, while nothing else is on the screen; the fence is last. GNU screen is only
-        // queried for the cursor position, because it passes device control strings on to the outer terminal, which may
-        // print them.
+        // The half block is printed first, while nothing else is on the screen; the fence (DA1) is last. GNU screen is
+        // only queried for the cursor position, because it passes device control strings on to the outer terminal,
+        // which may print them.
         if blocks {
             bytes.extend_from_slice(BLOCK_WIDTH.as_bytes());
         }
@@ -76,7 +75,7 @@ impl InitialQueries {
         self.open
     }
 
-    /// Closes the batch and returns whether it was open.
+    /// Ends the wait for replies to the batch, and returns whether any were still expected.
     ///
     /// To be called when a later query has been answered, which shows that the reply to the fence is lost.
     pub fn close(&mut self) -> bool {

@@ -40,8 +40,8 @@ const KEYBOARD: KeyboardEnhancementFlags = KeyboardEnhancementFlags::DISAMBIGUAT
 const KEYBOARD_QUERY: &str = "\x1b[?u";
 
 impl TerminalMode {
-    /// The modes of the live view that every terminal supports or ignores, in the order of
-    /// switching on.
+    /// The modes of the live view that every terminal supports or ignores, in the order in which
+    /// they are switched on.
     // The alternate screen is first, so that the cursor, for example, is hidden there and not on the shell's screen.
     pub const ALL_TERMINALS: [Self; 7] = [
         Self::AlternateScreen,

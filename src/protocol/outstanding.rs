@@ -15,7 +15,7 @@ const REPLY_TIMEOUT: Duration = Duration::from_secs(3);
 /// It is twice the number sent within [`REPLY_TIMEOUT`] at 60 frames a second, one per frame.
 const MAX_QUERIES: usize = 360;
 
-/// A query at the end of the bytes sent.
+/// A recorded query: the fence (DA1), or a numbered query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Query {
     Fence,

@@ -2,7 +2,7 @@
 //!
 //! Every terminal replies to [`FENCE`] (DA1), but these replies are all equal and can only be counted. A terminal that
 //! replies to queries of unknown modes (DECRQM) repeats the mode's number. So the number of a mode that does not exist
-//! serves as a sequence number, by which a lost, late, duplicated or foreign reply is recognised.
+//! serves as a sequence number, which shows whether a reply is lost, late, duplicated or meant for another program.
 //!
 //! The numbers have three digits: each digit costs one byte a frame, and no terminal is known to use a private mode
 //! from 200 to 999. (More terminals report the cursor position, CPR. But a distinct position for each query takes a

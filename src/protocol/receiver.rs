@@ -1,4 +1,4 @@
-//! Parsing of a terminal's bytes, and bookkeeping of the outstanding replies among them.
+//! Parsing of a terminal's bytes, and tracking of the replies that are still outstanding.
 
 use super::outstanding::Outstanding;
 use crate::input::{Input, Parser};
@@ -9,7 +9,8 @@ use std::time::Duration;
 const ESCAPE_TIMEOUT: Duration = Duration::from_millis(50);
 /// Timeout if a lone `ESC` is probably the first byte of a reply, or cannot be the Escape key
 /// because all keys are sequences.
-// A slow link may deliver a reply in two parts, less than a second apart: the longest plausible round trip.
+// A slow link may deliver a reply in two parts. They are less than a second apart, which is the longest plausible round
+// trip.
 const SEQUENCE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A parser of a terminal's bytes that also tracks outstanding replies and timeouts.

@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3, Vec3};
 pub(super) fn draw(projection: &Projection, corners: [Vec3; 3], object: u32, buffer: &mut DepthBuffer) -> u64 {
     let corners = corners.map(|corner| projection.in_exact_camera_space(corner));
     let farthest = corners.iter().fold(0.0_f64, |z, corner| z.max(corner.z));
-    // Not 0, because a corner at the depth of the eye would be projected to infinity.
+    // The near plane is not at depth 0, because a corner at the depth of the eye would be projected to infinity.
     let near = 1e-6 * farthest;
     if farthest <= 0.0 {
         return 0;
@@ -30,7 +30,7 @@ pub(super) fn draw(projection: &Projection, corners: [Vec3; 3], object: u32, buf
     triangles.map(|corners| fill(projection, corners, object, buffer)).sum()
 }
 
-/// Fills a triangle in front of the eye: pixels whose middle is on the same side of all edges.
+/// Fills a triangle in front of the eye: the pixels whose centre is on the inner side of all edges.
 fn fill(projection: &Projection, corners: [DVec3; 3], object: u32, buffer: &mut DepthBuffer) -> u64 {
     let [a, b, c] = corners.map(|corner| projection.pixel(corner));
     let area = (b - a).perp_dot(c - a);
@@ -38,7 +38,8 @@ fn fill(projection: &Projection, corners: [DVec3; 3], object: u32, buffer: &mut 
         return 0;
     }
     let rectangle = projection.rectangle(a.min(b).min(c), a.max(b).max(c));
-    // 1 / t is linear on the screen. So are the weights of the corners: the edge functions over their sum.
+    // 1 / t is linear in the picture, and so are the barycentric weights: each edge function divided by `area`, their
+    // sum.
     let inverse = corners.map(|corner| 1.0 / corner.z);
     for y in rectangle.rows() {
         for x in rectangle.columns() {
@@ -51,6 +52,6 @@ fn fill(projection: &Projection, corners: [DVec3; 3], object: u32, buffer: &mut 
             }
         }
     }
-    // The triangle itself is counted where it was found to reach behind the eye.
+    // Minus 1, because `DrawTriangles` has already counted the test of the triangle itself.
     rectangle.tests() - 1
 }

@@ -1,4 +1,4 @@
-//! Image order beside object order: the tests and the time of each.
+//! Comparison of image order (ray tracing) and object order (rasterization): tests and times.
 
 use super::{DepthBuffer, Rasterizer};
 use crate::camera::Camera;
@@ -13,24 +13,24 @@ use glam::Vec3;
 use std::num::NonZeroU32;
 use std::time::{Duration, Instant};
 
-/// The times in which the calling thread finds the visible object of each pixel.
+/// The times that both orders take to find the visible object of each pixel on one thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrderTimes {
-    /// The time of tracing a ray through each pixel, in trees that are built before.
+    /// The time of image order: tracing a ray through each pixel, without building the trees.
     pub image: Duration,
-    /// The time of drawing each object.
+    /// The time of object order: drawing all objects.
     pub object: Duration,
 }
 
 /// The number of measurements, of which the fastest counts.
-// Other work of the machine only makes a run slower, so the fastest one is the nearest to the time of the work itself.
+// Other processes of the machine only make a run slower, so the fastest run is the least disturbed one.
 const ROUNDS: u32 = 3;
 
 impl OrderTimes {
     /// Measures both orders.
     pub fn measure(scene: &Scene, camera: &Camera, resolution: Resolution) -> Self {
         let traced = || {
-            // On one thread, with one ray for each pixel and without shading, as the rasterizer draws.
+            // Traces on one thread, with one ray for each pixel and without shading, because the rasterizer draws so.
             let (one, depth) = (Sampling::Each(NonZeroU32::MIN), TraceDepth::Surfaces);
             let seen = |sample: &GBufferSample| sample.hit.map(|hit| (hit.object, hit.t));
             trace_g_buffer_partial(Executor::CurrentThread, scene, camera, resolution, one, depth, seen)
@@ -50,14 +50,16 @@ fn fastest<T>(mut run: impl FnMut() -> T) -> Duration {
     (0..ROUNDS).map(time).min().unwrap_or_default()
 }
 
-/// Both orders of a picture, which builds them slowly.
+/// The tests and times of both orders, for an animation that builds a picture in both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// The times of both orders.
     pub times: OrderTimes,
-    /// The number of tests up to each pixel, row by row from the top, of a ray through each.
+    /// The tests of image order, summed up to and including each pixel, row by row from the top.
     pub image_tests: Vec<u64>,
-    /// The number of tests up to each object, where each triangle of a mesh is one.
+    /// The tests of object order, summed up to and including each object.
+    ///
+    /// Each triangle of a mesh counts as an object.
     pub object_tests: Vec<u64>,
     /// The nearest object of each pixel, as an index into `object_tests`.
     pub nearest: DepthBuffer,
@@ -72,7 +74,7 @@ impl Comparison {
     /// Compares both orders: image order in a picture of size `image`, and object order in one of
     /// size `object`.
     ///
-    /// The times are those of the first size.
+    /// The times of both orders are measured at the size `image`.
     pub fn new(scene: &Scene, camera: &Camera, [image, object]: [Resolution; 2]) -> Self {
         let (width, height) = (image.width(), image.height());
         let rays = camera.eye_rays(image.aspect_ratio());
@@ -96,7 +98,7 @@ impl Comparison {
         Self { times, image_tests, object_tests, nearest: steps.rasterizer.buffer, growth: growth.to_vec() }
     }
 
-    /// Returns the number of tests of the order that needs more.
+    /// Returns the total number of tests of the order that needs more of them.
     pub fn total_tests(&self) -> u64 {
         let last = |tests: &[u64]| tests.last().copied().unwrap_or(0);
         last(&self.image_tests).max(last(&self.object_tests))
@@ -108,10 +110,10 @@ impl Comparison {
     }
 }
 
-/// A picture that is drawn object by object, where each triangle of a mesh is one.
+/// A picture that is drawn one object at a time. Each triangle of a mesh counts as an object.
 pub struct ObjectSteps {
     rasterizer: Rasterizer,
-    /// The next object of the scene, and the next primitive of its shape.
+    /// The indices of the next object in the scene, and of the next primitive of its shape.
     next: (usize, u32),
     drawn: u32,
 }
@@ -130,7 +132,7 @@ impl ObjectSteps {
             return self.draw_next(scene);
         }
         self.rasterizer.draw(&shape.primitive(self.next.1), self.drawn);
-        // Otherwise a sphere or triangle would wait for seven others.
+        // Without this call, a sphere or triangle would not be drawn before seven others have been added.
         self.rasterizer.finish();
         self.next.1 += 1;
         self.drawn += 1;
@@ -142,7 +144,7 @@ impl ObjectSteps {
         self.drawn
     }
 
-    /// Returns the nearest of these objects at a pixel, by its number from 0, and its depth.
+    /// Returns the nearest object drawn so far at a pixel, as its number from 0, and its depth.
     pub fn nearest(&self, x: u32, y: u32) -> Option<(u32, f32)> {
         self.rasterizer.buffer.at(x, y)
     }
@@ -161,8 +163,7 @@ impl Observer for Count {
     }
 }
 
-/// Returns a scene of spheres at random positions, whose radii shrink with their number so that
-/// their volumes add up to the same sum.
+/// Returns a scene of spheres at random positions, with about the same total volume for any number.
 pub fn spheres_in_a_cube(number: u32, otherwise: &Camera) -> Scene {
     let radius = 0.6 / libm::cbrtf(number as f32);
     let grey = Material::diffuse(LinearRgb::grey(0.5)).unwrap_or_default();

@@ -3,15 +3,15 @@
 use crate::framebuffer::Resolution;
 use crate::lanes::{F32x8, LANES, Lanes};
 
-/// The nearest object of each pixel, from the upper left, row by row.
+/// The nearest object of each pixel and its depth, row by row from the upper left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthBuffer {
     width: u32,
     height: u32,
-    /// The t of the eye rays of eight pixels at the nearest surface, infinite where there is none.
-    // Rows are padded to whole groups of eight, whose last pixels may hold anything.
+    /// The depths (the t of the eye rays) of eight pixels in a row; infinite where no object is.
+    // Rows are padded to whole groups of eight; the values of the padding are unspecified.
     t: Vec<F32x8>,
-    /// The index of the object with this surface in the scene, as the bits of a float.
+    /// The scene index of the nearest object of each pixel, stored as the bits of a float.
     objects: Vec<F32x8>,
 }
 
@@ -52,7 +52,7 @@ impl DepthBuffer {
         }
     }
 
-    /// Returns the index of the group of eight pixels from column `8 * group` on.
+    /// Returns the index in `t` and `objects` of the eight pixels that start at column `8 * group`.
     #[inline(always)]
     pub(super) fn group(&self, group: u32, y: u32) -> usize {
         y as usize * (self.width as usize).div_ceil(LANES) + group as usize

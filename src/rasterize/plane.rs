@@ -26,7 +26,7 @@ impl SimdKernel for DrawPlane<'_> {
         for y in rectangle.rows() {
             for group in rectangle.groups() {
                 let t = above / projection.directions::<N>(group, y).dot(normal);
-                // NaN or infinite for a parallel ray, for which one of the comparisons is false.
+                // For a ray parallel to the plane, t is NaN or infinite, so one of the comparisons is false.
                 let mask = N::splat(0.0).le(t) & t.le(N::splat(f32::MAX));
                 buffer.draw_group(buffer.group(group, y), mask, t, object);
             }

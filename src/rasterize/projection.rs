@@ -14,16 +14,17 @@ pub(super) struct Projection {
     pub(super) eye: Vec3,
     /// u, v and -w of the view rectangle.
     basis: [Vec3; 3],
-    /// Pixels per unit on the plane at distance 1, to the right and down.
+    /// The pixels per unit, to the right and down, on the picture's plane at distance 1 from the
+    /// eye.
     pub(super) scale: DVec2,
-    /// The position in pixels of the point of that plane that is nearest to the eye.
+    /// The principal point in pixels: the foot of the perpendicular from the eye to the picture's
+    /// plane.
     pub(super) foot: DVec2,
     pub(super) size: [u32; 2],
     rays: EyeRays,
 }
 
-/// The columns and rows of a rectangle of pixels, each from the first one to the one after the
-/// last.
+/// A rectangle of pixels: half-open ranges of columns and rows.
 #[derive(Clone, Copy)]
 pub(super) struct Rectangle {
     pub(super) x: [u32; 2],
@@ -45,7 +46,8 @@ impl Rectangle {
         self.x[0] / LANES as u32..self.x[1].div_ceil(LANES as u32)
     }
 
-    /// Returns the number of tests of a primitive with this rectangle: one, and one for each pixel.
+    /// Returns the number of tests of a primitive with this rectangle: one plus the number of
+    /// pixels.
     #[inline(always)]
     pub(super) fn tests(self) -> u64 {
         let [columns, rows] = [self.x, self.y].map(|[first, end]| u64::from(end.saturating_sub(first)));
@@ -80,7 +82,7 @@ impl Projection {
         self.rays.direction(middles::<N>(group) / N::splat(width), N::splat(qv))
     }
 
-    /// Returns points in the coordinates of the camera: along u and v, and their depths.
+    /// Returns points in camera space: their coordinates along u and v, and their depths.
     #[inline(always)]
     pub(super) fn in_camera_space<N: Number>(&self, points: Vector<N>) -> Vector<N> {
         let away = points - Vector::splat(self.eye);
@@ -88,7 +90,7 @@ impl Projection {
         Vector { x, y, z }
     }
 
-    /// Returns a point in the coordinates of the camera, in f64.
+    /// Returns a point in camera space, computed in f64.
     pub(super) fn in_exact_camera_space(&self, point: Vec3) -> DVec3 {
         let away = point.as_dvec3() - self.eye.as_dvec3();
         DVec3::from(self.basis.map(|axis| axis.as_dvec3().dot(away)))
@@ -105,7 +107,7 @@ impl Projection {
         Rectangle { x: [0, width], y: [0, height] }
     }
 
-    /// Returns the pixels whose middles may be within bounds of pixels.
+    /// Returns the rectangle of the pixels whose centres lie between `min` and `max`, in pixels.
     pub(super) fn rectangle(&self, min: DVec2, max: DVec2) -> Rectangle {
         let range = |min: f64, max: f64, size: u32| {
             let last = f64::from(size);
@@ -114,12 +116,12 @@ impl Projection {
         Rectangle { x: range(min.x, max.x, self.size[0]), y: range(min.y, max.y, self.size[1]) }
     }
 
-    /// Returns the first column or row whose middle may be at `min` or later, and the one after the
-    /// last whose middle may be at `max` or earlier, for each lane.
+    /// Returns, for each lane, the half-open range of columns or rows whose centres lie from `min`
+    /// to `max`.
     #[inline(always)]
     pub(super) fn range<N: Lanes>(min: N, max: N, size: u32) -> [N; 2] {
         let (zero, half, last) = (N::splat(0.0), N::splat(0.5), N::splat(size as f32));
-        // Numbers have no `ceil`: it is the negative of `floor` of the negative.
+        // `Lanes` has no `ceil`, so it is computed as `-floor(-x)`.
         let first = -(half - min).floor();
         let end = (max + half).floor();
         [first, end].map(|edge| edge.max(zero).min(last))
@@ -137,18 +139,18 @@ impl Projection {
         if corners.iter().all(|corner| corner.z <= 0.0) {
             return None;
         }
-        // A box that reaches behind the eye has no bounds in the picture.
+        // The projection of a box that reaches behind the eye is unbounded.
         if corners.iter().any(|corner| corner.z <= 0.0) {
             return Some(self.whole());
         }
         let places = corners.map(|corner| self.pixel(corner));
         let (min, max) = places.iter().fold((places[0], places[0]), |(min, max), at| (min.min(*at), max.max(*at)));
-        // A pixel more on each side, for the rounding of rays.
+        // Widened by a pixel on each side, because the directions of rays are rounded.
         Some(self.rectangle(min - 1.0, max + 1.0))
     }
 }
 
-/// Returns the middles of a group of pixels, in columns.
+/// Returns the x coordinates, in pixels, of the centres of a group of eight pixels.
 #[inline(always)]
 pub(super) fn middles<N: Lanes>(group: u32) -> N {
     const FIRST: F32x8 = F32x8([0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5]);

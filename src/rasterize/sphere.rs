@@ -15,8 +15,8 @@ pub(super) struct DrawSpheres<'b> {
     pub(super) buffer: &'b mut DepthBuffer,
 }
 
-/// The depth of a sphere's middle, in radii, from which on it has bounds in the picture.
-// A sphere that reaches behind the eye has none.
+/// The least depth of a sphere's centre, in radii, at which its projection is bounded.
+// The projection of a sphere that reaches behind the eye is unbounded.
 const LEAST_DEPTH: f32 = 1.001;
 
 /// The widening of bounds, in pixels, for the rounding of rays and bounds.
@@ -25,7 +25,7 @@ const MARGIN: f32 = 1.0 / 64.0;
 /// The widening of bounds relative to the coordinates of pixels: eight units of 2^-24.
 const RELATIVE_MARGIN: f32 = 8.0 / 16_777_216.0;
 
-/// The factor by which rounding may move the nearest point of a sphere in front of the eye.
+/// The factor on the least depth of a sphere, which rounding may have made too large.
 const NEARER: f32 = 1.0 - RELATIVE_MARGIN;
 
 impl SimdKernel for DrawSpheres<'_> {
@@ -56,13 +56,13 @@ impl SimdKernel for DrawSpheres<'_> {
 /// Returns the first and last columns and rows of the spheres' bounds, and the mask of spheres that
 /// may cover the middle of a pixel.
 ///
-/// Seen along v, the lines of sight that touch a sphere about (x, z) have the slopes s with
+/// In the plane of x and z, the lines through the eye that touch a sphere with the centre (x, z) have the slopes s with
 /// (x - s z)^2 = r^2 (1 + s^2).
 #[inline(always)]
 fn rectangles<N: Lanes>(projection: &Projection, centers: Vector<N>, r: N) -> ([F32x8; 4], u32) {
     let Vector { x, y, z } = projection.in_camera_space(centers);
     let (is_ahead, is_behind) = ((r * N::splat(LEAST_DEPTH)).lt(z), z.le(-r));
-    // The difference of squares as a product, which does not cancel.
+    // z^2 - r^2, written as a product to avoid cancellation.
     let squared = (z - r) * (z + r);
     let [width, height] = projection.size;
     let Projection { scale, foot, .. } = projection;
@@ -85,14 +85,14 @@ fn extent<N: Lanes>(along: N, z: N, r: N, squared: N, [scale, foot]: [f32; 2]) -
     [min - margin, max + margin]
 }
 
-/// Returns the range where the mask is set, else that of the whole picture.
+/// Returns the given range in the lanes of the mask, and the whole range 0 to `size` in the others.
 #[inline(always)]
 fn whole_unless<N: Lanes>(is_bounded: N::Mask, [first, end]: [N; 2], size: u32) -> [N; 2] {
     [N::select(is_bounded, first, N::splat(0.0)), N::select(is_bounded, end, N::splat(size as f32))]
 }
 
 /// Draws a sphere at the pixels of a rectangle whose rays cross it, as `shape::sphere` does.
-// All rays start at the eye, so that a part of the formula of `shape::sphere` is computed once for all.
+// All rays start at the eye, so the parts of the formula of `shape::sphere` without the direction are computed once.
 #[inline(always)]
 fn draw<N: Lanes>(
     projection: &Projection,

@@ -36,7 +36,7 @@ fn rectangles_of_spheres_are_tight() {
                 min.zip(max).map_or(0, |(min, max)| u64::from(max - min + 1))
             };
             let most = 1 + (extent(|at| at.0) + 2) * (extent(|at| at.1) + 2);
-            // The outline of a sphere that is cut off may be widest beyond the picture.
+            // A sphere that the picture cuts off is not checked: it may be widest outside the picture.
             let is_whole = hit.iter().all(|&(x, y)| (1..90).contains(&x) && (1..66).contains(&y));
             assert!(
                 !is_whole || rasterizer.tests() <= most,

@@ -17,23 +17,22 @@ pub(super) struct DrawTriangles<'b> {
     pub(super) buffer: &'b mut DepthBuffer,
 }
 
-/// The largest coordinate of a corner in pixels, from the upper left, with which f32 resolves a
-/// thousandth of a pixel.
+/// The largest coordinate of a corner, in pixels, up to which f32 resolves a thousandth of a pixel.
 const MAX_COORDINATE: f32 = 16_384.0;
 
-/// The edge functions and depths of eight triangles, linear in the position: a x + b y + c.
+/// A linear function a x + b y + c of the position for each of eight triangles.
 struct Linear {
     a: F32x8,
     b: F32x8,
     c: F32x8,
 }
 
-/// The values of eight triangles from which they are filled.
+/// The values that are computed once for eight triangles, and from which they are filled.
 struct SetUp {
     /// The first columns, the columns after the last, the first rows, and the rows after the last.
     rectangles: [F32x8; 4],
     edges: [Linear; 3],
-    /// 1 / t, relative to the first corner.
+    /// 1 / t as a function of the offset from the first corner.
     inverse: Linear,
     first: [F32x8; 2],
     /// The least and greatest depth of the corners.
@@ -110,7 +109,7 @@ fn set_up<N: Lanes>(projection: &Projection, [a, b, c]: [Vector<N>; 3]) -> (SetU
 /// Triangles that share an edge get the same numbers for it, one of them negated, so that they leave no gap.
 #[inline(always)]
 fn edge<N: Lanes>(from: Vector<N>, to: Vector<N>, sign: N) -> Linear {
-    // Both triangles compute the function from the same end.
+    // The function is computed from the same end of the edge for both triangles that share it.
     let is_swapped = to.x.lt(from.x) | (to.x.eq(from.x) & to.y.lt(from.y));
     let (first, last) = (Vector::select(is_swapped, to, from), Vector::select(is_swapped, from, to));
     let sign = N::select(is_swapped, -sign, sign);
@@ -120,7 +119,7 @@ fn edge<N: Lanes>(from: Vector<N>, to: Vector<N>, sign: N) -> Linear {
 }
 
 impl Linear {
-    /// Returns the coefficient of x in all lanes, and the rest at y, for the triangle of a lane.
+    /// Returns a and b y + c of the triangle in lane `lane`, each in all lanes.
     #[inline(always)]
     fn row<N: Lanes>(&self, lane: usize, y: f32) -> [N; 2] {
         [N::splat(self.a.0[lane]), N::splat(self.b.0[lane] * y + self.c.0[lane])]

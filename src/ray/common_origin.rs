@@ -43,8 +43,8 @@ const SAFE_LENGTHS: [f32; 2] = [1.0 / 4_294_967_296.0, 4_294_967_296.0];
 impl<N: Lanes> CommonOrigin<N> {
     /// Finds the common origin of eye rays or shadow rays.
     ///
-    /// Eye rays start at a common point; shadow rays reach one, the light, at t = 1 up to rounding. Returns `None` for
-    /// other rays, and if an offset exceeds 1.
+    /// Eye rays start at the common origin (the eye); shadow rays reach it (the light) at t = 1, up to rounding.
+    /// Returns `None` for other rays, and if an offset exceeds 1.
     #[inline(always)]
     pub fn of(groups: &[Rays<N>; LANES]) -> Option<Self> {
         let zero = N::splat(0.0);
@@ -58,13 +58,13 @@ impl<N: Lanes> CommonOrigin<N> {
         let direction = middle.direction.splat_lane(0);
         let end = middle.origin.splat_lane(0) + direction;
         let off = max_distance(groups, N::splat(1.0), end);
-        // If the ends are farther apart than this, the bounds on errors would be too wide to cull anything. No
-        // statement of `culling.md` depends on the exact number 4096.
+        // If the ends of the rays are farther apart than 1/4096 of the direction's largest coordinate, the error bounds
+        // would be too wide to cull anything. No statement of `culling.md` depends on the exact number 4096.
         if !(off * N::splat(4096.0)).le(direction.largest()).all() {
             return None;
         }
-        // `origin_error` is twice the distance found, in units of 2^-24, and twice the rounding of `end` (statement 9
-        // of `culling.md`).
+        // In units of 2^-24, `origin_error` is twice the distance `off` plus twice the rounding error of `end`
+        // (statement 9 of `culling.md`).
         Self::with_origin(end, off * N::splat(33_554_432.0) + end.largest() * N::splat(2.0), groups)
     }
 
@@ -82,7 +82,7 @@ impl<N: Lanes> CommonOrigin<N> {
             // (statement 11 of `culling.md`).
             xs[at] = direction.x * inverse.z - slope[0];
             ys[at] = direction.y * inverse.z - slope[1];
-            // Comparisons with NaN are false, so a ray whose offset is NaN does not count as near.
+            // Comparisons with NaN are false, so an offset of NaN leads to `None`, as an offset above 1 does.
             are_near = are_near & xs[at].abs().le(one) & ys[at].abs().le(one);
             let depth = axis.rotate_to_z(rays.origin - origin).z;
             // With `depth` as the first operand, `min` and `max` ignore a `depth` of NaN.
@@ -135,8 +135,8 @@ impl<N: Lanes> CommonOrigin<N> {
 fn max_distance<N: Lanes>(groups: &[Rays<N>; LANES], t: N, point: Vector<N>) -> N {
     let mut distance = N::splat(0.0);
     for rays in groups {
-        // In this order `max` skips NaN: a ray that is not finite hits nothing, and must not hide the distance of
-        // another.
+        // In this order `max` skips NaN: a ray with a coordinate that is not finite hits nothing, and must not hide the
+        // distance of another ray.
         distance = (rays.origin + rays.direction * t - point).largest().max(distance);
     }
     N::splat(distance.reduce_max())

@@ -32,11 +32,12 @@ pub struct Cast<W: Write> {
     max_rate: Option<u32>,
     frames_per_second: u32,
     frame: u64,
-    /// The time at which a link of `max_rate` has delivered everything sent.
+    /// The time in the film at which a link with the rate `max_rate` has delivered all frames so
+    /// far.
     free_at: Duration,
-    /// The last frame, and its encoded bytes, which may show the frame inexactly.
-    // Each frame is written when the next one arrives, because the film's last frame is encoded exactly, and only `end`
-    // knows which frame that is.
+    /// The latest frame, and its encoded bytes, which may show the frame inexactly.
+    // A frame is written when the next one arrives, because the film's last frame has to be encoded exactly, and only
+    // `end` knows which frame is the last.
     last: Option<(Grid, Vec<u8>)>,
 }
 
@@ -46,7 +47,7 @@ const HIDE_CURSOR: &[u8] = b"\x1b[?25l";
 /// Shows the cursor.
 const SHOW_CURSOR: &[u8] = b"\x1b[?25h";
 
-/// Writes the frame rate and the number of frames; the output need not be `Debug`.
+/// Shows the frame rate and the number of frames, so that `W` need not implement `Debug`.
 impl<W: Write> fmt::Debug for Cast<W> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { frames_per_second, frame, .. } = self;
@@ -80,8 +81,8 @@ impl<W: Write> Cast<W> {
         Self { quality, ..self }
     }
 
-    /// Sets the rate, in bytes per second, of the link over which the film is played; `None` for
-    /// any.
+    /// Sets the rate of the link over which the film is played, in bytes per second; `None` for no
+    /// limit.
     ///
     /// Frames are dropped (their events are empty) until a link of this rate has delivered the bytes before them. The
     /// last frame is always sent.
@@ -98,8 +99,8 @@ impl<W: Write> Cast<W> {
         self.write_last()?;
         let mut bytes = if self.frame == 0 { HIDE_CURSOR.to_vec() } else { Vec::new() };
         let now = Duration::from_secs_f64(self.time());
-        // A frame for which the link is not free is dropped, as in the live view. If frames were queued, they would
-        // be later and later.
+        // If the link is still busy, the frame is dropped, as in the live view. Queued frames would be delayed more and
+        // more.
         if self.free_at <= now {
             let max_bytes = self.max_rate.map(|rate| (rate / self.frames_per_second) as usize);
             let allowance = Allowance { quality: self.quality, now, max_bytes };

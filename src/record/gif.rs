@@ -11,11 +11,11 @@ use std::io::{self, Write};
 
 /// An animated GIF that repeats for ever.
 ///
-/// Viewers show the pixels of a GIF as squares. Pixels of another aspect are repeated along their longer axis, so that
-/// the picture has the right shape. Each frame has its own 127 colours; pixels that hardly change from one frame to the
-/// next keep theirs for seven frames, which saves half of the bytes. Delays are whole hundredths of a second; the
-/// rounding error is carried over to the next frame, so that the total time is right. (Viewers show delays of less than
-/// two hundredths much longer.)
+/// Viewers show the pixels of a GIF as squares. Pixels of a picture that are not square are repeated along their longer
+/// axis, so that the GIF has the right shape. Each frame has its own 127 colours; pixels that hardly change from one
+/// frame to the next keep theirs for seven frames, which saves half of the bytes. Delays are whole hundredths of a
+/// second; the rounding error is carried over to the next frame, so that the total time is right. (Viewers show delays
+/// of less than two hundredths much longer.)
 ///
 /// ```
 /// use termtrace::{Gif, Picture, Resolution, Srgb8};
@@ -73,8 +73,8 @@ impl<W: Write> Gif<W> {
             return Err(invalid_input("all frames of a film have one size"));
         }
         let mut frame = self.quantised(picture);
-        // Enlarged to square pixels here, because viewers ignore a GIF's pixel aspect. The colours are chosen before,
-        // because there are fewer pixels.
+        // The pixels are repeated to squares here, because viewers ignore a GIF's pixel aspect. Colours are chosen
+        // before that step, because it adds pixels.
         let size = [self.size.0, self.size.1].map(usize::from);
         frame.buffer = self.resolution.repeated(&frame.buffer, size).collect();
         (frame.width, frame.height) = self.size;
@@ -83,7 +83,8 @@ impl<W: Write> Gif<W> {
         self.encoder.write_frame(&frame).map_err(io_error)
     }
 
-    /// Returns the frame of a picture, not enlarged: pixels that keep their colour are transparent.
+    /// Returns a picture as a GIF frame, not yet enlarged: pixels that keep their colour are
+    /// transparent.
     fn quantised(&mut self, picture: &Picture) -> gif::Frame<'static> {
         let stays = self.kept_pixels(picture);
         let pixels = || picture.pixels.iter().copied().zip(&stays);
@@ -148,8 +149,8 @@ impl<W: Write> Gif<W> {
 }
 
 // With these constants the orbit of three_spheres, 8 seconds at 480x300, takes 3.95 MB and has a PSNR of 40 dB. With
-// 255 colours it takes 0.8 MB more. With differences of 7 and 12 for any time it takes 3.9 MB, but what has moved on
-// stays as a ghost.
+// 255 colours it takes 0.8 MB more. With differences of 7 and 12 and without `MAX_OUTDATED_FRAMES` it takes 3.9 MB, but
+// objects that have moved leave ghosts.
 /// Largest number of colours of a frame. The index after the last is transparent.
 const MAX_COLORS: usize = 127;
 /// Largest difference of a channel at which a pixel keeps its colour.
@@ -165,14 +166,16 @@ const MAX_OUTDATED_FRAMES: u8 = 7;
 
 /// The colours of a frame.
 struct Palette {
-    /// The colours of pixels, padded to [`MAX_COLORS`], and an unused one at the transparent index.
+    /// The palette's entries: colours, padded to [`MAX_COLORS`], and an unused one at the
+    /// transparent index.
     colors: Vec<Srgb8>,
     /// The quantiser, which finds the index of the nearest colour; `None` if `colors` has them all.
     quantiser: Option<NeuQuant>,
 }
 
 impl Palette {
-    /// Returns the palette of these pixels: all their colours, if they are few enough.
+    /// Returns a palette for these pixels: all their colours if there are few enough, else the
+    /// quantiser's.
     fn from_pixels(pixels: impl Iterator<Item = Srgb8> + Clone) -> Self {
         let mut few = BTreeSet::new();
         let is_few = pixels.clone().all(|pixel| {

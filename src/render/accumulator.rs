@@ -29,7 +29,8 @@ impl FirstSample {
     ///
     /// `white` is the light that is displayed as white.
     pub(super) fn is_edge_to(&self, other: &Self, white: f32) -> bool {
-        // The cosine of 23 degrees. Normals reveal creases and strong curves whose light is equal in both pixels.
+        // The cosine of 23 degrees. Comparing normals finds creases and strong curves even if both pixels have the same
+        // light.
         const MIN_NORMAL_COSINE: f32 = 0.92;
         self.object != other.object
             || self.lit_by != other.lit_by
@@ -61,7 +62,7 @@ impl Accumulator {
     pub(super) fn add_samples(&mut self, [r, g, b]: [&[f32]; 3]) {
         let lights = || r.iter().zip(g).zip(b).map(|((&r, &g), &b)| LinearRgb::new(r, g, b));
         lights().for_each(|light| self.light += light);
-        // The samples of the last pass do not widen the range, which is read only before they are added.
+        // The samples of the last pass are not included, because the range is only read before that pass.
         if self.count < RANGE_SAMPLES {
             lights().for_each(|light| widen(&mut self.range, light));
         }
@@ -95,23 +96,25 @@ fn widen([least, most]: &mut [LinearRgb; 2], light: LinearRgb) {
     *most = join(light, *most, |a, b| a > b);
 }
 
-/// The relative difference of two neighbours that is visible as an edge.
+/// The relative difference of light from which on two neighbouring pixels show a visible edge.
 // 5 % of linear light are three steps of 8-bit sRGB at middle grey, and six near white.
 const EDGE_CONTRAST: f32 = 0.05;
 
 /// The number of samples whose range decides whether the last pass adds more.
 const RANGE_SAMPLES: u32 = 16;
 
-/// The relative difference among [`RANGE_SAMPLES`] samples from which on their mean may be visibly
+/// The relative difference among [`RANGE_SAMPLES`] samples above which their mean may be visibly
 /// wrong.
-// This is a difference between single samples. The error of the mean of 16 samples is a quarter of theirs, so with four
-// times `EDGE_CONTRAST` the error of the mean is about the contrast of a visible edge.
+// This is a difference between single samples. The error of the mean of 16 samples is a quarter of the error of a
+// single sample. So at four times `EDGE_CONTRAST`, the error of the mean is about as large as the contrast of a visible
+// edge.
 const NOISE_CONTRAST: f32 = 0.2;
 
 /// Returns whether two lights differ in a channel by more than the fraction `share` of the greater
 /// one.
 fn differ(a: LinearRgb, b: LinearRgb, share: f32, white: f32) -> bool {
-    // Half a percent of white is added to the relative limit, as relative differences of dark lights are invisible.
+    // Half a percent of white is added to the relative limit, because relative differences are invisible where the
+    // light is dark.
     const MIN_CONTRAST: f32 = 0.005;
     [(a.r, b.r), (a.g, b.g), (a.b, b.b)]
         .into_iter()

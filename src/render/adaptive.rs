@@ -24,9 +24,9 @@ use std::ops::Range;
 pub struct ProgressiveRender {
     tiles: Tiles,
     /// The first sample of each pixel, tile by tile.
-    // Kept apart from the accumulators, so that a tile can read the first samples of its neighbours while these are
-    // refined, without a barrier between the passes: three_spheres at 80x48 takes 1.27 instead of 1.34 ms on two
-    // threads.
+    // Kept apart from the accumulators, so that a tile can read the first samples of its neighbours while the
+    // neighbours are refined. This avoids a barrier between the passes: three_spheres at 80x48 takes 1.27 instead of
+    // 1.34 ms on two threads.
     first: Vec<Vec<FirstSample>>,
     /// The accumulator of each pixel, tile by tile; empty for tiles with one sample per pixel.
     accumulators: Vec<Vec<Accumulator>>,
@@ -78,7 +78,8 @@ impl ProgressiveRender {
         let batches = SampleBatches::of(PASSES[0].clone());
         let job = RenderJob::new(scene, &self.tiles, Stage::Reflected);
         executor.trace(&job, self.first.iter_mut().collect(), |tile, first| {
-            // By the thread that fills it: one thread took 0.13 to 0.2 ms to zero all of them before the first ray.
+            // Each tile's samples are zeroed by the thread that traces the tile: one thread took 0.13 to 0.2 ms to zero
+            // those of all tiles before the first ray.
             first.resize(PIXELS, FirstSample::default());
             tile.trace(&batches, |buffers, _, _| record_first_samples(first, buffers));
         })
@@ -156,15 +157,15 @@ fn is_at_edge(tiles: &Tiles, first: &[Vec<FirstSample>], tile: usize, pixel: usi
 fn record_first_samples(first: &mut [FirstSample], buffers: &Buffers) {
     for (ray, &pixel) in buffers.pixels.iter().enumerate() {
         let (group, lane) = (ray / LANES, ray % LANES);
-        // Adding to zero turns -0 into 0, as the sums in `uniform` do, so that a pixel with one sample has the same
-        // bits.
+        // Adding to zero turns -0 into 0. The sums in `uniform` do so too, so a pixel with one sample has the same bits
+        // in both.
         let light = LinearRgb::BLACK + shade::lane_light(&buffers.lights[group], lane);
         let lit_by = buffers.arriving[group].lit_by[lane];
         first[usize::from(pixel)] = FirstSample::new(light, buffers.points[group].object_and_normal(lane), lit_by);
     }
 }
 
-/// Adds the samples of a batch, which has `per_pixel` for each pixel, to the accumulators of its
+/// Adds the samples of a batch, `per_pixel` of them for each pixel, to the accumulators of its
 /// tile.
 fn add_samples(accumulators: &mut [Accumulator], buffers: &Buffers, per_pixel: usize) {
     let channels = buffers.light_channels();

@@ -110,7 +110,8 @@ impl<'a> Render<'a> {
     /// Sets a callback for progress reports, which cancels the render by returning `Break`.
     ///
     /// The callback gets the share of the work done: positive, increasing, and 1 at the end. Calls come one at a time,
-    /// from any of the threads, about every 10 ms; the threads wait for them.
+    /// from any of the threads, about every 10 ms. A thread that has progress to report meanwhile waits for the call to
+    /// return.
     pub fn on_progress(self, callback: impl Fn(f32) -> ControlFlow<()> + Send + Sync + 'a) -> Self {
         Self { callback: Some(Box::new(callback)), ..self }
     }
@@ -137,7 +138,7 @@ impl<'a> Render<'a> {
         };
         let report = Report::new(&callback, token, progress_units(resolution, sampling));
         let framebuffer = render(Executor::Reporting(&report))?;
-        // The picture is complete, so that `Break` no longer cancels it.
+        // The picture is complete, so a `Break` is ignored here.
         let _ = callback(1.0);
         Ok(framebuffer)
     }

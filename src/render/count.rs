@@ -23,8 +23,8 @@ pub struct Counts {
     /// The number of pairs of a hit and a light without an object between them.
     ///
     /// Lights behind the surface count as well.
-    // No normals are used to exclude such lights, because only tracing is measured, and compared with ray tracers that
-    // do not use them either.
+    // Lights behind the surface are not excluded by its normal, because only tracing is measured, and is compared with
+    // ray tracers that do not exclude them either.
     pub lit: u64,
     /// The sum of the depths (the t) of all hits, in world units along the view direction.
     pub depths: f64,
@@ -55,7 +55,8 @@ pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolut
     Executor::Pool.trace(&job, counts.iter_mut().collect(), |tile, counts| {
         tile.trace(&batches, |buffers, _, _| *counts = *counts + count_batch(kernel, scene, buffers));
     });
-    // Sums in the order of the tiles, not as they finish, because a sum of floats depends on the order.
+    // The sum is taken in the order of the tiles and not in the order in which they finish, because a sum of floats
+    // depends on the order.
     counts.into_iter().fold(Counts::default(), Add::add)
 }
 

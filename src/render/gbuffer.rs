@@ -13,7 +13,7 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shape::{Surface, SurfacePoint};
 
-/// Which rays are traced for a G-buffer: eye rays only, or shadow rays too.
+/// The rays that are traced for a G-buffer: eye rays only, or shadow rays too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceDepth {
     /// Closest hits only.
@@ -51,7 +51,7 @@ pub struct PixelValues<T> {
     pub cost: Cost,
 }
 
-/// Returns the values of `see` for the G-buffer sample of each pixel.
+/// Traces a G-buffer and returns, for each pixel, the value that `see` makes of its sample.
 ///
 /// The eye rays are the first ones of [`render`](super::render): one per pixel, or one for two by two pixels if the
 /// sampling is [`Coarse`](Sampling::Coarse).

@@ -1,7 +1,7 @@
 //! The geometry of a picture: the surface that each eye ray meets, for glyphs with outlines.
 //!
-//! A cell has two by four rays, those of its light, and four more around each of them where surfaces meet: outlines
-//! then have the precision of an eighth of a cell, for a third more rays.
+//! A cell has two by four pixels, whose first rays give light and geometry. Pixels at an edge get four more rays each,
+//! so that outlines are placed to an eighth of a cell's height; this takes a third more rays.
 
 use super::sampling::SampleBatches;
 use super::steps::{Buffers, RenderJob, Stage};
@@ -16,12 +16,12 @@ use crate::shade;
 use glam::Vec3;
 use std::num::NonZeroU32;
 
-/// The pixels of a cell, across and down.
+/// The numbers of pixels in a cell, across and down.
 const CELL: [usize; 2] = [2, 4];
-/// The fine samples of a cell, across and down.
+/// The numbers of fine facets in a cell with an edge, across and down.
 const FINE: [usize; 2] = [2 * CELL[0], 2 * CELL[1]];
 
-/// The surface that an eye ray hits.
+/// The surface at the hit of an eye ray: depth, object and normal.
 // A facet has twelve bytes. With a normal of three floats, a frame of 200x60 cells would move twice the memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Facet {
@@ -31,20 +31,20 @@ pub(crate) struct Facet {
     pub object: u32,
     /// The shading normal, in units of 1/127.
     normal: [i8; 3],
-    /// Whether the ray meets nothing, a bounded object, or a level or upright plane.
+    /// The kind of the object: none, bounded, or a level or upright plane.
     pub extent: Extent,
 }
 
-/// The kind of object that an eye ray meets: none, a bounded one, or a plane by its inclination.
+/// The kind of object that an eye ray hits: none, a bounded object, or a plane by its inclination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Extent {
     /// No object: the background.
     Nothing,
     /// A bounded object.
     Bounded,
-    /// A plane that is rather level: a floor or a ceiling.
+    /// An unbounded plane within 53 degrees of level: a floor or a ceiling.
     Level,
-    /// A plane that is rather upright: a wall.
+    /// An unbounded plane that is steeper: a wall.
     Upright,
 }
 
@@ -69,7 +69,7 @@ impl Facet {
         self.object != other.object || self.extent == Extent::Bounded && self.cosine(other) < CREASE_COSINE
     }
 
-    /// Returns the cosine of the angle between the normals of two facets, to two digits.
+    /// Returns the cosine of the angle between the normals of two facets, exact to two digits.
     pub(crate) fn cosine(&self, other: &Self) -> f32 {
         let products = self.normal.iter().zip(other.normal).map(|(&a, b)| i32::from(a) * i32::from(b));
         products.sum::<i32>() as f32 / (127.0 * 127.0)
@@ -83,11 +83,11 @@ pub struct Geometry {
     width: usize,
     /// The facet of each pixel's first ray.
     facets: Vec<Facet>,
-    /// The constant term, in world units, of the least bend of the depth that
-    /// [`jumps`](Self::jumps) reports.
+    /// The constant term of the threshold of [`jumps`](Self::jumps), in world units.
     least_jump: f32,
     /// For each cell, the index in `fine`, or [`NOT_FINE`].
-    // An index for each cell, because few cells have fine facets, and those of one take 384 bytes.
+    // Fine facets are indexed instead of stored for every cell, because few cells have them, and those of one cell take
+    // 384 bytes.
     fine_indices: Vec<u32>,
     /// The fine facets of each cell in or beside which an edge may be: four by eight, row by row.
     fine: Vec<[Facet; FINE[0] * FINE[1]]>,
@@ -111,7 +111,8 @@ impl Geometry {
         geometry
     }
 
-    /// Returns the geometry of `columns` by `rows` cells whose objects are a function of position.
+    /// Returns the geometry of `columns` by `rows` cells; `object` gives the object at a position
+    /// in cells.
     #[cfg(all(test, unit_tests))]
     pub(crate) fn of_objects(columns: usize, rows: usize, object: impl Fn(f32, f32) -> u32) -> Self {
         let facet = |x: f32, y: f32| match object(x, y) {
@@ -157,12 +158,13 @@ impl Geometry {
         &self.facets[index]
     }
 
-    /// Returns the facet at a position in pixels; beyond the picture's edge, of the last pixel.
+    /// Returns the facet at a position in pixels; positions beyond the picture are clamped to its
+    /// edge.
     fn at_pixel(&self, x: usize, y: usize) -> &Facet {
         self.pixel(y.min(self.height() - 1) * self.width + x.min(self.width - 1))
     }
 
-    /// Returns whether surfaces may meet in or beside a cell, so that it has fine facets.
+    /// Returns whether a cell has fine facets: an edge may be in or beside it.
     pub(crate) fn has_edge(&self, column: usize, row: usize) -> bool {
         self.fine_indices[row * self.columns() + column] != NOT_FINE
     }
@@ -184,7 +186,8 @@ impl Geometry {
         }
     }
 
-    /// Returns whether the depth jumps at the middle one of three facets in a row.
+    /// Returns whether the depths of three facets in a line are far from linear: a jump or a sharp
+    /// bend.
     pub(crate) fn jumps(&self, [before, middle, after]: [&Facet; 3]) -> bool {
         let bend = before.depth - 2.0 * middle.depth + after.depth;
         bend.abs() > 0.03 * middle.depth + self.least_jump
@@ -290,7 +293,8 @@ fn trace_facets(
     let cost = executor.trace(&job, tiles.split(&mut pixels), |tile, mut part| {
         tile.trace(&batches, |buffers, _, _| {
             for (ray, &pixel) in buffers.pixels.iter().enumerate() {
-                // Adding to zero turns -0 into 0, as the sums in `uniform` do, so that the light has the same bits.
+                // Adding to zero turns -0 into 0. The sums in `uniform` do so too, so the light has the same bits in
+                // both.
                 let light = buffers
                     .lights
                     .get(ray / LANES)
@@ -341,7 +345,8 @@ fn with_fine_facets(
             let [x, y] = tiles.position(number, pixel).map(|at| at as usize);
             crossed[y / 2 * width + x / 2]
         });
-        // Most tiles have no edge and need no memory: in the measured scenes 9 to 15 % of the cells have one.
+        // Tiles without an edge need no memory. Most tiles have none: in the measured scenes 9 to 15 % of the cells
+        // have an edge.
         if tile.buffers.active.is_empty() {
             return;
         }

@@ -6,12 +6,11 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The time after a progress report from which on the next finished batch makes another one.
+/// The time after a progress report at which the next report is due.
 // A render of 1920x1080 with best samples made 198 reports, at most 27 ms apart.
 const MAX_REPORT_PERIOD: Duration = Duration::from_millis(10);
 
-/// The progress after a report from which on the next finished batch makes another one, as a
-/// fraction of the work.
+/// The progress since a report, as a fraction of the work, at which the next report is due.
 // Half a percent gives even a render of a few milliseconds enough reports to draw a bar.
 const MIN_REPORT_STEP: f32 = 0.005;
 
@@ -55,7 +54,8 @@ impl<'a> Report<'a> {
     ///
     /// The end is not reported here, as only the caller that collects the results knows when all work is done.
     pub(super) fn add_finished(&self, units: u64) {
-        // If the callback panics, the render ends. Until then other threads may still lock, and must not panic as well.
+        // If the callback panics, the render ends. Until then, other threads may still lock the mutex, and must not
+        // panic because it is poisoned.
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
         done.units += units;
         let part = done.units as f32 / self.total as f32;

@@ -11,7 +11,8 @@ use std::ops::Range;
 pub enum Sampling {
     /// One ray for each block of two by two pixels.
     Coarse,
-    /// One ray for each block of two by two pixels, and more where blocks differ most.
+    /// One ray for each block of two by two pixels, and one for each pixel in blocks that differ
+    /// most.
     ///
     /// Blocks that differ most from a neighbour get one ray for each pixel, but at most nine of 32 blocks: a picture
     /// has at most 2.125 rays per block.
@@ -51,11 +52,11 @@ impl From<NonZeroU32> for Sampling {
 
 /// The samples of each pass of adaptive sampling.
 ///
-/// Each pass ends at four times the samples of those before.
-// Four times the samples about halve the error of a mean; fewer would hardly be worth another pass.
+/// After each pass, a refined pixel has four times as many samples as before.
+// Four times as many samples about halve the error of the mean; a smaller gain would not be worth a pass.
 pub(super) const PASSES: [Range<u32>; 4] = [0..1, 1..4, 4..16, 16..64];
 
-/// A batch of samples that are traced together, with equal [`footprint_share`].
+/// A range of sample numbers that are traced together and have the same [`footprint_share`].
 // Rays are ordered pixel by pixel, because rays through one pixel hit the same primitives more often than rays through
 // neighbouring pixels. Ordered sample by sample, the bunny at 200x120 took 53.1 instead of 27.0 ms with best samples,
 // and 42.0 instead of 28.5 ms with 16; only scenes of a few spheres were faster (10.9 instead of 11.3 ms).
@@ -76,8 +77,8 @@ const MAX_BATCH_SAMPLES: u32 = 64;
 /// A range of samples, divided into batches.
 pub(super) struct SampleBatches {
     samples: Range<u32>,
-    /// The first batches of the range, at most as many as there are [`PASSES`].
-    // All further batches are computed anew for each tile. That is cheap compared with tracing them, and storing all
+    /// The first batches of the range, computed once; at most as many as there are [`PASSES`].
+    // All further batches are computed again for each tile, which is cheap compared with tracing them. Storing all
     // batches of MAX_SAMPLES would take 2 MB.
     kept: Vec<SampleBatch>,
 }
@@ -97,7 +98,7 @@ impl SampleBatches {
     }
 }
 
-/// Divides a range of samples at the ends of passes, and into at most [`MAX_BATCH_SAMPLES`].
+/// Divides a range of samples at the ends of passes, into ranges of at most [`MAX_BATCH_SAMPLES`].
 fn batch_ranges(mut samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
     std::iter::from_fn(move || {
         let Range { start, end } = samples;
@@ -123,7 +124,7 @@ impl SampleBatch {
         self.samples.len()
     }
 
-    /// Divides `pixels` into ranges whose samples are at most [`MAX_BATCH_RAYS`] rays.
+    /// Divides `0..pixels` into ranges of pixels with at most [`MAX_BATCH_RAYS`] rays each.
     pub(super) fn pixel_ranges(&self, pixels: usize) -> impl Iterator<Item = Range<usize>> {
         let pixels_at_once = MAX_BATCH_RAYS / self.per_pixel();
         (0..pixels).step_by(pixels_at_once).map(move |first| first..pixels.min(first + pixels_at_once))
@@ -156,7 +157,7 @@ pub(super) fn sample_position(sample: u32) -> (f32, f32) {
 
 /// Returns the side of a sample's footprint as a fraction of the pixel's side.
 ///
-/// It is 1 for the first sample, 1/2 for those added up to four, 1/4 up to 16, and 1/8 for all others.
+/// It is 1 for the first sample, 1/2 for the second to the fourth, 1/4 up to the 16th, and 1/8 for all others.
 // The footprint of a sample does not depend on the final number of samples, because adding samples must not change
 // earlier ones.
 pub(super) fn footprint_share(sample: u32) -> f32 {

@@ -115,8 +115,8 @@ impl Tile<'_> {
         let start = Instant::now();
         'batches: for batch in batches.iter() {
             for range in batch.pixel_ranges(buffers.active.len()) {
-                // The flag is loaded once per 256 rays, which take 50 us at 5 Mrays/s: that is soon enough for a
-                // cancel, and the cost is not measurable.
+                // The flag is checked once per 256 rays, which take 50 us at 5 Mrays/s. This is often enough for a
+                // cancel, and its cost is not measurable.
                 if executor.is_cancelled() {
                     break 'batches;
                 }

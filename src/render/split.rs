@@ -15,11 +15,12 @@ use crate::shade;
 // A glyph kind with 4 by 8 pixels then has at most 8 + 32 * 9 / 32 = 17 rays per cell.
 const MAX_SHARE: (usize, usize) = (9, 32);
 
-/// The least difference between the roots of two blocks' light at which a block is split.
-// The root is near the shown lightness. With .12 instead, quadrants lose up to .15 dB and save two of 14 rays.
+/// The least difference of the square roots of light between two blocks at which both may be split.
+// The square root of the light is about the lightness on the screen. With 0.12 instead, pictures of quadrant glyphs
+// lose up to 0.15 dB and save two of 14 rays per cell.
 const MIN_CONTRAST: f32 = 0.06;
 
-/// The progress [units](ProgressUnit) of a tile of pixels, for the rays of its split blocks.
+/// The progress [units](ProgressUnit) of a tile of 16x16 pixels for the rays of its split blocks.
 const SPLIT_UNITS: u64 = 72;
 
 /// Returns the progress units of a picture.
@@ -29,8 +30,8 @@ pub(super) fn units(resolution: Resolution) -> u64 {
 }
 
 /// Renders a picture with [`Sampling::Split`](super::Sampling::Split).
-// The rays of split blocks are those of one sample per pixel; the block's own ray goes through their common corner, and
-// its light is dropped.
+// The pixels of a split block get one ray each, as with one sample per pixel. The block's first ray goes through the
+// corner that its pixels share, and its light is dropped.
 pub(super) fn render(executor: Executor<'_>, scene: &Scene, camera: &Camera, resolution: Resolution) -> Rendered {
     let blocks = Tiles::new(camera, resolution, 2);
     let mut rendered = uniform::render(executor, scene, &blocks, 1);
@@ -66,7 +67,8 @@ fn blocks_to_split(framebuffer: &Framebuffer, blocks: &Tiles, white: f32) -> Vec
         .map(|block| framebuffer.pixels()[2 * (block / columns) * width + 2 * (block % columns)])
         .map(|LinearRgb { r, g, b }| [root(r), root(g), root(b)])
         .collect();
-    // The lower bits scatter blocks of equal contrast over the picture.
+    // The key's lower bits are a hash of the index, so that of blocks with equal contrast those that are split are
+    // scattered over the picture.
     let key = |(block, contrast): (u32, f32)| {
         let scattered = block.wrapping_mul(0x9e37_79b1);
         if contrast < MIN_CONTRAST { 0 } else { u64::from(contrast.to_bits()) << 32 | u64::from(scattered) }
@@ -75,7 +77,7 @@ fn blocks_to_split(framebuffer: &Framebuffer, blocks: &Tiles, white: f32) -> Vec
     let most = keys.len() * MAX_SHARE.0 / MAX_SHARE.1;
     let mut wanted: Vec<u64> = keys.iter().copied().filter(|&key| key > 0).collect();
     let least = if wanted.len() > most {
-        // Keys above this one are split; they are at most `most`.
+        // Blocks with keys above this one are split; there are at most `most` of them.
         let at = wanted.len() - most - 1;
         *wanted.select_nth_unstable(at).1
     } else {
@@ -84,9 +86,9 @@ fn blocks_to_split(framebuffer: &Framebuffer, blocks: &Tiles, white: f32) -> Vec
     keys.into_iter().map(|key| key > least).collect()
 }
 
-/// Returns for each block the greatest difference in a channel from a block beside, above or below.
-// Each pair is compared once. With the neighbours across corners too, a frame took a third longer, and quadrants of
-// many_spheres lost .1 dB.
+/// Returns for each block the greatest difference of a channel from its four direct neighbours.
+// Each pair is compared once. With the diagonal neighbours too, a frame took a third longer, and quadrants of
+// many_spheres lost 0.1 dB.
 fn contrasts(roots: &[[f32; 3]], columns: usize) -> Vec<f32> {
     let difference = |a: &[f32; 3], b: &[f32; 3]| {
         let [r, g, b] = [(a[0] - b[0]).abs(), (a[1] - b[1]).abs(), (a[2] - b[2]).abs()];

@@ -1,8 +1,8 @@
 //! The tiles of a picture: the order of pixels, and the eye rays through them.
 //!
 //! Pixels are ordered tile by tile, within a tile in squares of 8 by 8, and within a square in groups of 4 by 2. The
-//! eye rays of a group are the eight lanes of a vector, and those of a square a packet: of all shapes with 64 pixels,
-//! the rays of a square hit the fewest nodes. The samples of a pixel are consecutive.
+//! eye rays of a group are the eight lanes of a vector, and the eye rays of a square are a packet: of all shapes with
+//! 64 pixels, a square's rays hit the fewest nodes. The samples of a pixel are consecutive.
 
 use super::sampling::{SampleBatch, footprint_share};
 use crate::camera::{Camera, EyeRays};
@@ -62,7 +62,7 @@ impl Tiles {
         [tile % self.tiles_per_row() * SIDE, tile / self.tiles_per_row() * SIDE]
     }
 
-    /// Returns the column and row of a pixel of a tile in the picture.
+    /// Returns the column and row in the picture of a pixel of a tile.
     pub(super) fn position(&self, tile: usize, pixel: u8) -> [u32; 2] {
         let ([left, top], [x, y]) = (self.corner(tile), coordinates_in_tile(pixel.into()));
         [left + x, top + y]
@@ -93,7 +93,7 @@ impl Tiles {
                 let (fours, rest) = row.as_chunks_mut::<4>();
                 let left = &pixels[4 * fours.len()..];
                 for (four, &[first, ..]) in fours.iter_mut().zip(pixels.as_chunks::<4>().0) {
-                    // `first` is a multiple of 4; the mask lets the compiler know.
+                    // `first` is a multiple of 4; `& !3` tells the compiler.
                     *four = std::array::from_fn(|at| value(usize::from(first) & !3 | at));
                 }
                 rest.iter_mut().zip(left).for_each(|(pixel, &index)| *pixel = value(index.into()));
@@ -114,8 +114,7 @@ impl Tiles {
         }
     }
 
-    /// Returns the ranges of columns and rows of a pixel and its neighbours, clipped to the
-    /// picture.
+    /// Returns the columns and rows of a pixel and its eight neighbours, clipped to the picture.
     pub(super) fn neighbourhood(&self, tile: usize, pixel: usize) -> [Range<u32>; 2] {
         let ([left, top], [x, y]) = (self.corner(tile), coordinates_in_tile(pixel));
         let beside = |at: u32, end: u32| at.saturating_sub(1)..(at + 2).min(end);
@@ -170,7 +169,8 @@ impl Tiles {
 }
 
 /// The indices of all pixels in a tile.
-// A table, like `PIXEL_COORDINATES` and `PIXELS_BY_ROW`, so that no loop over pixels computes positions bit by bit.
+// A table, like `PIXEL_COORDINATES` and `PIXELS_BY_ROW`, so that no loop over pixels computes positions from the bits
+// of an index.
 pub(super) static ALL_PIXELS: [u8; PIXELS] = {
     let mut all = [0; PIXELS];
     let mut pixel = 0;

@@ -26,7 +26,8 @@ pub(super) fn render(executor: Executor<'_>, scene: &Scene, tiles: &Tiles, sampl
 }
 
 /// Adds the light of a batch to the sums of its pixels.
-// Each pixel's samples are added in order, so that the bits of the sum do not depend on the size of batches.
+// Each pixel's samples are added in order, so that the bits of the sum do not depend on how the samples are divided
+// into batches.
 fn add_lights(sums: &mut [EightLights], buffers: &Buffers, batch: &SampleBatch, pixels: Range<usize>) {
     let per_pixel = batch.per_pixel();
     if per_pixel == 1 {

@@ -27,7 +27,7 @@ use crate::shape::{Shape, without_coordinates};
 #[must_use = "there is no scene before `build`"]
 pub struct SceneBuilder {
     objects: Vec<Object>,
-    /// All values except the objects.
+    /// The values of the scene except its objects.
     ///
     /// [`build`](Self::build) checks background, ambient light and exposure, so that the other methods return no
     /// `Result`.

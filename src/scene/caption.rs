@@ -13,14 +13,14 @@ pub(super) fn leading_comment(file: &str) -> Option<String> {
     (!comment.is_empty()).then_some(comment)
 }
 
-/// Returns the caption `written` in a form to be shown: each paragraph on one line, without control
+/// Returns the caption `written` as it is shown: each paragraph on one line, without control
 /// characters.
 ///
 /// Blank lines separate paragraphs. Returns `None` if the result is empty.
 pub(super) fn shown(written: &str) -> Option<Arc<str>> {
     let mut paragraphs = vec![String::new()];
     let mut bytes = 0;
-    // Cut between lines, so that no character is cut.
+    // A caption that is too long is cut between lines, so that no character is cut in two.
     let lines = written.lines().map(str::trim).take_while(|line| {
         bytes += line.len();
         bytes <= MAX_BYTES

@@ -101,7 +101,8 @@ impl Validator<'_> {
             MaterialUse::Inline(written) => CheckedMaterial { written, material: written.check(self) },
             MaterialUse::Named(name) => match materials.get(&**name) {
                 Some(&checked) => checked?,
-                // The name may belong to an entry with a fault, so reporting it as unknown might mislead.
+                // An entry of `materials` whose name could not be read may have this name, so it is not reported as
+                // unknown.
                 None if !file.materials_complete => return None,
                 None => return self.fault(*span, || unknown_material_message(name, file)),
             },
@@ -115,7 +116,7 @@ impl Validator<'_> {
     }
 }
 
-/// A material and its written form.
+/// A checked material and its form in the file.
 #[derive(Clone, Copy)]
 struct CheckedMaterial<'f> {
     written: &'f WrittenMaterial,

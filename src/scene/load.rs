@@ -139,8 +139,8 @@ impl Draft {
 
     /// Reads the bytes of a mesh as [`Draft::load_turned`] does. `name` is used in messages.
     ///
-    /// The content decides the format, unless `stated` is the extension of another one. Side files are read from the
-    /// working directory.
+    /// The content decides the format, unless `stated`, a file extension, names another format. Side files are read
+    /// from the working directory.
     ///
     /// # Errors
     /// As [`Draft::load`].
@@ -165,7 +165,7 @@ impl Draft {
         up: Option<UpAxis>,
         reporter: &Reporter<'_>,
     ) -> Result<Self, Unfinished<LoadError>> {
-        // A cancelled read may end with another error, as waiting for a pipe fails when the reporter is cancelled.
+        // If the reporter is cancelled, a read may end with another error: waiting for a pipe, for example, fails.
         load(path, up, reporter)
             .map_err(|unfinished| if reporter.is_cancelled() { Unfinished::Cancelled } else { unfinished })
     }
@@ -291,7 +291,7 @@ pub enum LoadError {
     Scene(SceneError),
     /// The file is not a mesh that can be read.
     Mesh(MeshError),
-    /// The mesh is too small or too far away to be shown.
+    /// The mesh is too small, or too far from the origin, to be shown.
     Unseen {
         /// The path of the file.
         path: PathBuf,
@@ -366,8 +366,8 @@ fn draft_around_mesh(
     let mesh =
         MeshFile::of_file(path, stated, bytes, reporter).map_err(|unfinished| unfinished.map(LoadError::Mesh))?;
     let format = mesh_file::format_name(&path.to_string_lossy(), stated, bytes);
-    // STL and PLY files do not state the axis. Most STL files come from programs for mechanical parts, in which +z
-    // points up.
+    // STL and PLY files do not say which axis points up. Most STL files come from programs for mechanical parts, in
+    // which +z points up.
     let usual = match format {
         "STL" => Some(UpAxis::Z),
         "PLY" => Some(UpAxis::Y),
@@ -380,7 +380,7 @@ fn draft_around_mesh(
 
 /// The meshes that a scene names.
 ///
-/// Each file is read once, as objects may share it with different transforms.
+/// Each file is read once, because several objects may use it, with different transforms.
 struct Meshes<'w> {
     folder: PathBuf,
     /// The names and bytes of mesh files in memory, which are used instead of files in the folder.
@@ -398,7 +398,7 @@ impl<'w> Meshes<'w> {
 impl shape::Meshes for Meshes<'_> {
     fn mesh(&mut self, name: &str) -> Result<MeshFile, Unfinished<String>> {
         let path = self.folder.join(name);
-        // Returns a copy, as each object transforms its own mesh.
+        // Returns a copy, because each object applies its own transform to the mesh.
         if let Some(mesh) = self.read.get(&path) {
             return Ok(mesh.clone());
         }
@@ -415,7 +415,7 @@ impl shape::Meshes for Meshes<'_> {
     }
 }
 
-/// The largest memory per byte of a scene file, including the trees of its objects.
+/// The largest memory in bytes per byte of a scene file, including the trees of its objects.
 // A scene of 300,000 spheres takes 26 bytes of memory for each byte of its file.
 const PEAK_PER_TEXT_BYTE: usize = 32;
 

@@ -23,11 +23,12 @@ const TOWARDS_EYE: Vec3 = Vec3::new(0.45, 0.4, 1.0);
 /// The vertical field of view in radians: 40 degrees.
 const FIELD_OF_VIEW: f32 = 0.698_131_7;
 
-/// Half the height that the mesh may fill, at distance 1 from the eye: the tangent of half the
-/// field of view, reduced by a margin.
+/// Half the height that the mesh may fill at distance 1 from the eye: the share `FRAMED_SHARE` of
+/// the tangent of half the field of view.
 const WITHIN: f32 = FRAMED_SHARE * 0.363_970_23;
 
-/// The least aspect ratio of a picture that shows the whole mesh. Most terminals are wider.
+/// The aspect ratio for which the camera is placed. All wider pictures, as of most terminals, show
+/// the whole mesh.
 const ASPECT_RATIO: f32 = 4.0 / 3.0;
 
 /// The lights: their directions from the middle of the mesh, in multiples of its radius, and their
@@ -49,10 +50,10 @@ const BACKGROUND: [LinearRgb; 2] = [LinearRgb::new(0.0232, 0.0262, 0.0343), Line
 /// The side of a square of the floor, as a multiple of the mesh's radius.
 const SQUARE: f32 = 0.2;
 
-/// Returns the ambient light by which a floor that no other light reaches is as bright as the
-/// background at the horizon.
-// Far from the mesh the lights reach the floor at grazing angles, so that only ambient light remains there. With
-// another amount of it the horizon would be a visible edge, mostly a black band.
+/// Returns the ambient light that makes an otherwise unlit floor as bright as the background at the
+/// horizon.
+// Far from the mesh the lights reach the floor at grazing angles, so that only ambient light remains there. With any
+// other ambient light, the horizon would be a visible edge, mostly a black band.
 fn ambient() -> LinearRgb {
     let channel = |of: fn(LinearRgb) -> f32| {
         let [horizon, floor] = [BACKGROUND, FLOOR].map(|[a, b]| of(a) + of(b));
@@ -76,8 +77,8 @@ impl Scene {
     /// Returns a scene with the mesh on a floor, all of it visible from the front and above.
     ///
     /// A warm light comes from the left, a weak blue one from the right, and one from behind. A mesh without colours is
-    /// clay. Up is +y. Returns `None` if the mesh has no extent, is too small for its distance from the origin, or
-    /// exceeds ±1e9. A scene file can move or scale such a mesh.
+    /// drawn in the colour of clay. Up is +y. Returns `None` if the mesh has no extent, is too small for its distance
+    /// from the origin, or exceeds ±1e9. A scene file can move or scale such a mesh.
     #[doc(hidden)]
     pub fn of_mesh(mesh: MeshFile) -> Option<Self> {
         Draft::of_mesh(mesh).map(Draft::finish)

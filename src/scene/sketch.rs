@@ -4,16 +4,16 @@ use super::{Checked, Draft, Object, Scene};
 use crate::shape::{Mesh, Shape};
 
 /// The least number of triangles for which a sketch is made.
-// The trees of fewer triangles are built in about the time of a sketch, a few hundredths of a second.
+// The trees of fewer triangles are built in about the same time as a sketch, a few hundredths of a second.
 const MIN_SKETCHED_TRIANGLES: u32 = 1 << 17;
 
 /// The approximate number of cubes into which decimation divides the longest side of a mesh.
 // A small screen resolves about 64 details across. In a scene with several meshes each is divided into fewer cubes, so
-// that the sketch takes no longer.
+// that the sketch takes the same time.
 const DETAILS: f32 = 64.0;
 
 impl Draft {
-    /// Returns the scene with decimated meshes, which takes a few hundredths of a second.
+    /// Returns the scene with decimated meshes; this takes a few hundredths of a second.
     ///
     /// Returns `None` if the trees of the scene itself are built as fast.
     pub fn sketch(&self) -> Option<Scene> {

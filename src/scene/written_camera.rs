@@ -88,7 +88,8 @@ impl Camera {
 
 /// Returns `x` rounded to this number of decimals.
 fn rounded(x: f64, digits: f64) -> f64 {
-    // Adding 0 turns -0 into 0. A power of ten with a negative exponent would not be exact.
+    // The scale is a power of ten with an exponent of 0 or more, because 0.1 is not exact in binary. Adding 0 turns -0
+    // into 0.
     let scale = libm::pow(10.0, digits.clamp(0.0, 20.0));
     (x * scale).round() / scale + 0.0
 }
@@ -102,7 +103,8 @@ pub(super) fn number_text(x: f32) -> String {
     let plain = x.to_string();
     // `to_string` never writes an exponent: 1e-30 would have 31 digits.
     let short = if plain.len() > 16 { format!("{x:e}") } else { plain };
-    // The reader rounds first to f64 and then to f32. The few numbers that this changes are written with all digits.
+    // The reader rounds twice: to f64, then to f32. The few numbers for which this gives another f32 are written with
+    // all their digits.
     if parses_as(&short, |value| value as f32 == x) { short } else { f64::from(x).to_string() }
 }
 
@@ -110,15 +112,15 @@ fn parses_as(text: &str, is_right: impl Fn(f64) -> bool) -> bool {
     text.parse().is_ok_and(is_right)
 }
 
-/// Returns the fields of the lens: an angle in degrees if it gives the same bits, otherwise the
-/// lecture's f, w and h with f = 1. `None` for the default angle.
+/// Returns the fields of the lens: an angle in degrees if it is read back with the same bits,
+/// otherwise f, w and h with f = 1. `None` for the default angle.
 fn lens_fields(rectangle: &ViewRectangle) -> Option<String> {
     let Some(width) = rectangle.width() else {
         let degrees = fov_degrees_text(rectangle).unwrap_or_else(|| approximate_degrees(rectangle).to_string());
         return (degrees != DEFAULT_FOV_DEGREES.to_string()).then(|| format!("vertical_fov: {degrees}"));
     };
     Some(match (fov_degrees_text(rectangle), aspect_ratio_text(rectangle, width)) {
-        // If the angle or the ratio needs more digits, the author probably gave f, w and h.
+        // If the angle or the ratio needs more digits than this, the author probably gave f, w and h.
         (Some(degrees), Some(ratio)) if degrees.len() <= 6 && ratio.len() <= 9 => {
             format!("vertical_fov: {degrees}, aspect_ratio: {ratio}")
         }

@@ -44,8 +44,8 @@ pub fn with_view(text: &str, camera: &Camera) -> Option<String> {
 /// A text to insert, and the index of the byte before which it is inserted.
 type Addition = (usize, String);
 
-/// Returns the insertion into an existing list of views, on a separate line if the closing bracket
-/// is on one.
+/// Returns the insertion of a view into an existing list, on a new line if the closing bracket is
+/// on its own line.
 fn insertion_into_list(text: &str, list: &SyntaxNode<'_>, view: &str) -> Option<Vec<Addition>> {
     let items = items(list)?;
     let close = list.span.end as usize - 1;
@@ -84,9 +84,9 @@ fn insertion_after(text: &str, field: &Field<'_>, view: &str) -> Vec<Addition> {
     missing.into_iter().chain([(next + line.trim_end().len(), list)]).collect()
 }
 
-/// Returns the text with all insertions, which are sorted by their positions.
+/// Returns the text with all insertions, which must be sorted by position.
 fn with_insertions(text: &str, additions: Vec<Addition>) -> String {
-    // Room for the text and a view, so that it is allocated once.
+    // The capacity is enough for the text and a view, so that the memory is allocated once.
     let mut written = String::with_capacity(text.len() + 200);
     let mut from = 0;
     for (at, addition) in additions {

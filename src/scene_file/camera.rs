@@ -13,9 +13,9 @@ pub struct WrittenCamera {
     pub eye: Option<WrittenVector>,
     /// The target point.
     pub target: Option<WrittenVector>,
-    /// The up vector. If not given, it is +y, or for a view the camera's.
+    /// The up vector. By default +y, or for a view the up vector of the scene's camera.
     pub up: Option<WrittenVector>,
-    /// The intrinsic parameters. If a view has none, they are the camera's.
+    /// The intrinsic parameters. A view without any has those of the scene's camera.
     pub lens: WrittenLens,
     /// The shift of the view rectangle from the centre, to the right and up, in heights of the
     /// rectangle.
@@ -67,7 +67,8 @@ impl NodeReader<'_> {
         )
     }
 
-    /// Reads a camera or a view. `owner` is its name and `form` its full form, for messages.
+    /// Reads a camera or a view. For messages, `owner` is what it is called, and `form` an example
+    /// of it.
     fn camera_called(&mut self, node: &SyntaxNode<'_>, owner: &'static str, form: &str) -> Option<WrittenCamera> {
         const FIELDS: &[&str] = &[
             "eye",
@@ -114,7 +115,7 @@ impl NodeReader<'_> {
         WrittenLens::FocalLength { focal_length, width, height }
     }
 
-    /// Reports which fields of the focal form are missing, as all three are required.
+    /// Reports which of the three required fields of the focal form are missing.
     fn missing_of_focal_form(&mut self, fields: &Fields<'_>, names: &[&str]) {
         let missing = names.iter().filter(|name| !fields.is_given(name));
         let missing: Vec<_> = missing.map(|name| quoted(name)).collect();

@@ -9,7 +9,7 @@ use crate::progress::{Meter, Reporter, Unfinished};
 
 /// Parses a text and returns the value that `check` makes of its syntax tree.
 ///
-/// `smallest` is the example that the message for an empty text shows, and `name` the file's name for messages.
+/// `smallest` is the example that is shown for an empty text, and `name` the file's name for messages.
 ///
 /// # Errors
 /// The first fault of the syntax; if there is none, all faults that `check` reports when it returns `None`.
@@ -60,7 +60,7 @@ pub fn text_from<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, SceneError>
         return Err(SceneError::new(name, "", fault_at(0, message)));
     }
     decode(bytes).map_err(|fault| {
-        // A file that is not text from its first byte on has no line that would help in a message.
+        // If the file is not text from its first byte on, no line of it would help in the message.
         let shown = if fault.span.start == 0 { &[] } else { bytes };
         SceneError::new(name, &String::from_utf8_lossy(shown), fault)
     })
@@ -68,7 +68,7 @@ pub fn text_from<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, SceneError>
 
 fn decode(bytes: &[u8]) -> Result<&str, Fault> {
     check_size(bytes.len())?;
-    // Before the check for NUL, of which UTF-16 text is full.
+    // UTF-16 is recognised before the check for NUL, because UTF-16 text is full of NULs.
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err(fault_at(0, "the file is UTF-16; save it as UTF-8".to_owned()));
     }
@@ -100,7 +100,8 @@ fn check_no_nul(bytes: &[u8]) -> Result<(), Fault> {
     let Some(offset) = bytes.iter().position(|&byte| byte == 0) else {
         return Ok(());
     };
-    // Up to the first byte that is not UTF-8, offsets in the shown text are those in the file.
+    // The shown text is a lossy conversion: its offsets equal those in the file only up to the first byte that is not
+    // UTF-8.
     let is_text = std::str::from_utf8(&bytes[..offset]).is_ok();
     let message = format!("this is not a text file: byte {offset} is a NUL");
     Err(fault_at(if is_text { offset } else { 0 }, message))

@@ -10,7 +10,7 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 /// A fault of a text and its span.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// The message, which says what would be right where possible: one line without a full stop.
+    /// The message: one line without a full stop. Where possible it says what would be right.
     pub message: String,
     /// The span that the message refers to.
     pub span: Span,
@@ -197,8 +197,8 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
-/// A position in the text that moves from fault to fault and counts lines and columns.
-// A thousand faults in a file of 16 MiB take one pass; counting from the start for each would take a thousand.
+/// A position in the text that is moved from fault to fault, with its line and column.
+// A thousand faults take one pass over the file; counting from the start for each fault would take a thousand passes.
 struct LineCounter<'a> {
     text: &'a str,
     at: usize,
@@ -267,15 +267,15 @@ impl Excerpt {
     /// The largest number of columns shown: with the line number they fit on a screen of 120
     /// columns.
     const MAX_EXCERPT_WIDTH: usize = 100;
-    /// The column up to which a fault is shown with the whole start of its line.
-    // Beyond it less than a quarter of the excerpt would be left for the text after the fault.
+    /// The last column at which a fault is shown together with the whole start of its line.
+    // For a fault farther right, less than a quarter of the excerpt would be left for the text after the fault.
     const WHOLE_START: usize = 75;
     /// The number of columns shown before a fault beyond [`WHOLE_START`](Self::WHOLE_START): half
     /// of the excerpt.
     const CONTEXT_BEFORE: usize = 50;
 
-    /// Returns the part to show of the first line of `text`, whose bytes `start` to `end` have the
-    /// fault.
+    /// Returns the part to show of the first line of `text`, with a fault at bytes `start` to
+    /// `end`.
     fn new(text: &str, start: usize, end: usize) -> Self {
         // Counts only as many characters as needed, because a generated file may be one line of megabytes.
         let is_long =
@@ -307,7 +307,7 @@ impl Excerpt {
             if c == '\n' || rest.starts_with("\r\n") || rest == "\r" {
                 break;
             }
-            // The width is that of the shown character, as a control character itself would have none.
+            // The width is that of the shown replacement, because a control character itself has no width.
             let shown = visible_char(c);
             budget = budget.saturating_sub(shown.width().unwrap_or(1).max(1));
             if budget == 0 {
@@ -320,7 +320,7 @@ impl Excerpt {
         self.source.truncate(self.source.trim_end().len());
         let width = self.source.width();
         self.caret = caret.unwrap_or(width);
-        // An empty span, as at the end of the file, gets a mark as well.
+        // At least one caret, also for an empty span, as at the end of the file.
         self.caret_width = caret_end.unwrap_or(width).saturating_sub(self.caret).max(1);
     }
 }

@@ -30,8 +30,8 @@ const STARTS: [(&str, &[u8]); 7] = [
     ("a ZIP archive", b"PK\x03\x04"),
 ];
 
-/// Formats that termtrace reads, but recognises by the extension only, with the first words of
-/// their files.
+/// Formats that termtrace reads only if the extension is right, with the first words of their
+/// files.
 const NAMELESS: [(&str, &[u8]); 6] =
     [("OBJ", b"v "), ("OBJ", b"mtllib "), ("OBJ", b"o "), ("OBJ", b"g "), ("STL", b"solid "), ("OBJ", b"# Blender")];
 
@@ -46,7 +46,7 @@ pub(super) fn message(name: &str, bytes: &[u8]) -> Option<String> {
         let ending = format.to_lowercase();
         return Some(format!("this looks like {format}, which is read from files whose names end in .{ending}"));
     }
-    // The extension goes before the first bytes: those of USDZ and 3MF are the same as of any ZIP archive.
+    // The extension is checked before the first bytes, because USDZ and 3MF files begin like any ZIP archive.
     let ending = Path::new(name).extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
     let named = ENDINGS.iter().find(|(_, endings)| endings.contains(&&*ending));
     let format = named.map(|(format, _)| format).or_else(|| {

@@ -46,7 +46,8 @@ struct Parser<'a, 'm> {
     /// opening bracket's line.
     ///
     /// If a closing bracket is missing at the end of the text, it is most likely that of this bracket. The bracket that
-    /// is still open gives no hint: each closing bracket closes the innermost open one, so the outermost is left.
+    /// is still open gives no hint: each closing bracket closes the innermost open one, so an outermost bracket is left
+    /// open.
     misaligned: Option<(char, Span)>,
 }
 
@@ -125,7 +126,8 @@ impl<'a> Parser<'a, '_> {
         if let ("Some", Body::Values(values)) = (name.text, &body)
             && let [inner] = &values[..]
         {
-            // Copies the value, because the body is borrowed. `Some(...)` is rare in scenes.
+            // The value is copied, because `body` is only borrowed here. The cost does not matter: `Some(...)` is rare
+            // in scenes.
             return Ok(inner.clone());
         }
         let group = Group { name: Some(name), body };
@@ -148,7 +150,7 @@ impl<'a> Parser<'a, '_> {
         let mut items = Vec::new();
         while !self.at_end() {
             items.push(self.parse_value()?);
-            // The first item had no name. Without this check, the message would be that a comma is missing.
+            // A name after items without names. Without this check, the message would be that a comma is missing.
             if matches!(self.next, Token::Colon) {
                 return Err(
                     self.fault_here("unexpected `:`; all values in these brackets have names, or none has".to_owned())
@@ -245,8 +247,8 @@ impl<'a> Parser<'a, '_> {
     /// bracket `opened`.
     fn is_misaligned(&self, opened: Span) -> bool {
         let line_before = |at: u32| self.text[..at as usize].rsplit('\n').next().unwrap_or_default();
-        // More than 1000 bytes of white space are not taken as indentation, because scanning them for every token would
-        // take quadratic time.
+        // More than 1000 bytes of white space do not count as indentation: scanning them for every token would take
+        // quadratic time.
         if self.span.start - opened.end < 2 || self.span.start - self.previous_end > 1000 {
             return false;
         }
@@ -288,8 +290,7 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    /// Returns the fault that no colon follows a field's name, or that a closing bracket before the
-    /// name is missing.
+    /// Returns a fault: a colon is missing after a field's name, or a closing bracket before it.
     fn no_colon_fault(&self, name: Name<'_>) -> Unfinished<Fault> {
         let word = quoted_word(name.text);
         match (&self.next, self.open.last()) {
@@ -306,8 +307,7 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    /// Returns the fault that the next token is neither a comma nor the closing bracket of
-    /// `bracket`.
+    /// Returns a fault: the next token is neither a comma nor the bracket that closes `bracket`.
     fn not_closed_fault(&self, bracket: char, opened: Span) -> Unfinished<Fault> {
         let right = closing_bracket(bracket);
         match self.next {

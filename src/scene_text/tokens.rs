@@ -91,7 +91,7 @@ impl<'a> Tokens<'a> {
     fn read_word(&mut self) -> Token<'a> {
         let word = self.take_while(|c| c == '_' || c.is_alphanumeric());
         match word {
-            // RON has these two as numbers. They are refused later, with a message about the value.
+            // RON has these two words as numbers. The later checks refuse them, with a message about the value.
             "inf" => Token::Number(f64::INFINITY),
             "NaN" => Token::Number(f64::NAN),
             _ => Token::Word(word),
@@ -105,8 +105,8 @@ impl<'a> Tokens<'a> {
         &rest[..end]
     }
 
-    /// Reads a number with all characters that may belong to it, so that a malformed number is
-    /// reported as a whole.
+    /// Reads a number with all characters that may belong to it; a malformed one is reported as a
+    /// whole.
     fn read_number(&mut self) -> Result<Token<'a>, Fault> {
         let start = self.at;
         self.at += 1;

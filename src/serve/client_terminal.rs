@@ -7,9 +7,10 @@ use crate::grid::{Size, Window};
 // The first frame of such a window takes an estimated 15 ms of one core, for which other viewers wait.
 pub(super) const MAX_WINDOW: Size = Size::new(500, 200);
 
-/// The variables that a client may set, of those that detection reads.
+/// The environment variables that a client may set, for the detection of its terminal's
+/// capabilities.
 ///
-/// No variable is set in the process, and none of them names a file.
+/// They are not set in the server's process, and none of them names a file.
 const ACCEPTED: [&str; 6] = ["TERM", "COLORTERM", "NO_COLOR", "LC_ALL", "LC_CTYPE", "LANG"];
 
 /// The most characters of a variable's value.
@@ -28,7 +29,8 @@ impl ClientTerminal {
     pub(super) fn set_variable(&mut self, name: &str, value: &str) {
         let Some(name) = ACCEPTED.into_iter().find(|&known| known == name) else { return };
         let is_usual = |c: char| c.is_ascii_alphanumeric() || "+-._:@".contains(c);
-        // A name of terminfo becomes part of a path: neither a separator nor a leading dot is accepted.
+        // The value of `TERM` becomes part of the path of a terminfo file, so neither `/` nor a leading dot is
+        // accepted.
         if value.len() > MAX_VALUE || !value.chars().all(is_usual) || value.starts_with('.') {
             return;
         }
@@ -49,7 +51,7 @@ impl ClientTerminal {
 
 /// Returns the window of a size in cells and in pixels, as a client reports it.
 ///
-/// A size of 0 is unknown, as that of a serial line, and becomes 80x24.
+/// A size of 0 means an unknown size, as on a serial line, and becomes 80x24.
 pub(super) fn window([columns, rows, width, height]: [u32; 4]) -> Window {
     let short = |number: u32| u16::try_from(number).unwrap_or(0);
     let [given_columns, given_rows, width, height] = [columns, rows, width, height].map(short);

@@ -9,7 +9,7 @@ use std::io::{self, Read, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
-/// Reads the key of a file, or makes one there if there is no file.
+/// Reads the private key in a file, or writes a new one if there is no file.
 ///
 /// # Errors
 /// If the file can be read by others, or is no private key without a passphrase.
@@ -35,7 +35,7 @@ pub(super) fn load_or_make(path: &Path) -> io::Result<PrivateKey> {
 
 fn make(path: &Path) -> io::Result<PrivateKey> {
     let mut seed = [0; 32];
-    // Read directly, which spares a dependency on a crate for random numbers.
+    // Reading the device directly avoids a dependency on a crate for random numbers.
     File::open("/dev/urandom")?.read_exact(&mut seed)?;
     let key = PrivateKey::new(KeypairData::Ed25519(Ed25519Keypair::from_seed(&seed)), "termtrace serve");
     let key = key.map_err(io::Error::other)?;
@@ -45,7 +45,7 @@ fn make(path: &Path) -> io::Result<PrivateKey> {
     let mut file = OutputFile::create_secret(path)?;
     file.write_all(key.to_openssh(LineEnding::LF).map_err(io::Error::other)?.as_bytes())?;
     match file.finish() {
-        // Another process has made a key in the same place meanwhile: reads that key.
+        // Another process has meanwhile written a key to this file; that key is read.
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => load_or_make(path),
         done => done.map(|()| key),
     }

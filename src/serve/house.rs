@@ -17,12 +17,12 @@ use std::sync::{Arc, Mutex, OnceLock};
 use std::time::Duration;
 use tokio::sync::watch;
 
-/// The commands that would touch the server's disk or stop it. No key is bound to them.
+/// The commands that would write to the server's disk or stop the server. No key is bound to them.
 const LEFT_OUT: [Command; 6] =
     [Command::Export, Command::ExportLarge, Command::Record, Command::KeepView, Command::TurnMesh, Command::Suspend];
 
-/// The most names of terminals whose colours are remembered.
-// Clients choose the name, so the map would grow without a limit.
+/// The largest number of terminal names whose colours are cached.
+// Clients choose the names, so without a limit the map would grow for ever.
 const MAX_TERMINALS: usize = 256;
 
 /// The state that all connections share.
@@ -32,16 +32,17 @@ pub(super) struct House {
     pub(super) stage: Arc<Stage>,
     pub(super) door: Mutex<Door>,
     places: Mutex<Places>,
-    /// The queue of parts to send, if all bytes together are limited.
+    /// The queue that limits the bytes per second of all viewers together; `None` for no limit.
     pub(super) total_rate: Option<Mutex<TotalRate>>,
-    /// Changes when a place is freed, or the server begins to drain.
+    /// A signal without a value: notifies receivers when a place is freed or the server begins to
+    /// drain.
     pub(super) changes: watch::Sender<()>,
     drained_at: OnceLock<Duration>,
     keymap: Keymap,
     /// The colours of terminals according to terminfo, which is read once for each name.
     terminals: Mutex<HashMap<String, Option<Colors>>>,
     /// One frame of each scene as text, made when it is first asked for.
-    // Made once, because a client that asks again and again would otherwise have it traced each time.
+    // Kept, because otherwise a client could make the server trace a frame with each request.
     text_frames: Vec<OnceLock<String>>,
 }
 
@@ -119,25 +120,24 @@ impl House {
         }
     }
 
-    /// Returns the time by which the viewers have to leave, if the server drains.
+    /// Returns the time by which the viewers have to leave; `None` unless the server drains.
     pub(super) fn drained_at(&self) -> Option<Duration> {
         self.drained_at.get().copied()
     }
 
-    /// Returns a visitor at the end of the queue for a place; `None` if too many wait.
+    /// Adds a visitor at the end of the queue for a place; `None` if too many visitors wait.
     pub(super) fn queue_up(self: &Arc<Self>) -> Option<Visitor> {
         let number = locked(&self.places).join()?;
         Some(Visitor { house: Arc::clone(self), number })
     }
 }
 
-/// Returns the line that is shown until the first key: the main keys, or fewer if there is no room
-/// beside the link.
+/// Returns the line shown until the first key press: the main keys, or fewer if they do not fit.
 fn welcome_line(scene_count: usize, link: Option<&str>, columns: u16) -> String {
     let next = if scene_count > 1 { ", n next scene" } else { "" };
     let link = link.map(|link| format!("  {link}")).unwrap_or_default();
     let line = format!("drag or WASD moves, t turns{next}, ? all keys, q quits{link}");
-    // A note has a blank at each side.
+    // The line is drawn with a blank at each side.
     if line.chars().count() + 2 <= usize::from(columns) { line } else { format!("? all keys, q quits{link}") }
 }
 

@@ -6,28 +6,27 @@ use std::collections::{HashMap, VecDeque};
 use std::net::IpAddr;
 use std::time::Duration;
 
-/// The most connections that have not logged in.
+/// The largest number of connections that have not logged in yet.
 // A handshake costs 0.3 to 0.36 ms of CPU time, and a silent connection keeps its place for the whole login time.
 const MAX_LOGGING_IN: usize = 64;
-/// The most connections from one address that have not logged in.
-// A single address must not take all places of those that log in.
+/// The largest number of connections from one address that have not logged in yet.
+// One address must not take all of `MAX_LOGGING_IN`.
 const MAX_LOGGING_IN_PER_ADDRESS: usize = 8;
-/// Greatest number of new connections from one address at once; each [`REFILL_TIME`] allows one
-/// more.
+/// Burst size of a token bucket of new connections per address; each [`REFILL_TIME`] adds a token.
 const BURST: f64 = 20.0;
 const REFILL_TIME: Duration = Duration::from_millis(200);
-/// The most addresses that a [`Door`] remembers.
+/// The largest number of addresses that a [`Door`] remembers.
 ///
 /// All others share one allowance, so that an attacker with many addresses does not make the table grow.
 const MAX_REMEMBERED: usize = 10_000;
 
-/// The addresses that count as one: a whole network of IPv6, of which every user has one.
+/// The addresses that are counted as one client: an IPv4 address, or a /64 network of IPv6.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Origin {
     V4([u8; 4]),
-    // A user of IPv6 can take any of the 2^64 addresses of the network.
+    // A client in an IPv6 network can use any of its 2^64 addresses.
     V6([u8; 8]),
-    /// All addresses that are not remembered, counted together.
+    /// All addresses beyond [`MAX_REMEMBERED`], counted together.
     Others,
 }
 
@@ -43,7 +42,7 @@ impl Origin {
     }
 }
 
-/// Returns an address without the part that identifies a user, for logs: `192.0.2.0/24`.
+/// Returns the network of an address, which does not identify a user, for logs: `192.0.2.0/24`.
 pub(super) fn anonymized(address: IpAddr) -> String {
     match Origin::of(address) {
         Origin::V4([a, b, c, _]) => format!("{a}.{b}.{c}.0/24"),
@@ -55,7 +54,7 @@ pub(super) fn anonymized(address: IpAddr) -> String {
     }
 }
 
-/// The connections from one origin, and the number of new ones that it may still open at once.
+/// The connections from one origin, and its allowance: the connections that it may open at once.
 #[derive(Clone, Copy, Debug)]
 struct Visitor {
     connected: usize,
@@ -100,7 +99,7 @@ impl Door {
 
     /// Admits and counts a new connection, or returns the reason to refuse it.
     pub(super) fn enter(&mut self, address: IpAddr, now: Duration) -> Result<Entry, Refusal> {
-        // The limits of one address are lifted together, for a load test from one machine.
+        // A high `per_address` raises the limits on logins too, so that one machine can run a load test.
         let most_logging_in = MAX_LOGGING_IN_PER_ADDRESS.max(self.per_address / 2);
         if self.connected >= self.total || self.logging_in >= MAX_LOGGING_IN.max(self.per_address / 2) {
             return Err(Refusal::Busy);
@@ -148,7 +147,8 @@ impl Door {
     /// Returns `origin`, or [`Origin::Others`] if it is new and there is no room for another one.
     fn remembered_or_others(&mut self, origin: Origin, now: Duration) -> Origin {
         if self.visitors.len() >= MAX_REMEMBERED && !self.visitors.contains_key(&origin) {
-            // By then the allowance is full again, so forgetting the origin changes nothing.
+            // After the time `refilled` the allowance of an origin is full again, so forgetting the origin changes
+            // nothing.
             let refilled = REFILL_TIME * BURST as u32;
             self.visitors.retain(|_, visitor| visitor.connected > 0 || visitor.seen + refilled > now);
             if self.visitors.len() >= MAX_REMEMBERED {
@@ -159,7 +159,7 @@ impl Door {
     }
 }
 
-/// The places for viewers, and those who wait for one in the order of their arrival.
+/// The places for viewers, and the visitors who wait for a place, in the order of their arrival.
 #[derive(Debug)]
 pub(super) struct Places {
     most: usize,
@@ -174,9 +174,9 @@ impl Places {
         Self { most, taken: 0, waiting: VecDeque::new(), next: 0 }
     }
 
-    /// Joins the end of the queue. Returns the number of the visitor; `None` if too many wait.
+    /// Adds a visitor to the end of the queue, and returns its number; `None` if too many wait.
     pub(super) fn join(&mut self) -> Option<u64> {
-        // Each waiting client costs a connection, and each change wakes them all.
+        // Each waiting client costs a connection, and each freed place wakes all of them.
         if self.waiting.len() >= self.most.max(16) {
             return None;
         }
@@ -185,9 +185,10 @@ impl Places {
         Some(self.next)
     }
 
-    /// Takes a place if one is free for this visitor; otherwise returns how many are ahead.
+    /// Takes a place if one is free for this visitor; otherwise returns how many visitors are
+    /// ahead.
     pub(super) fn take(&mut self, visitor: u64) -> Result<(), usize> {
-        // A linear search, because at most as many wait as there are places.
+        // A linear search is enough, because the queue is limited to the number of places.
         let ahead = self.waiting.iter().position(|&waiting| waiting == visitor).unwrap_or(0);
         if self.taken + ahead >= self.most {
             return Err(ahead);

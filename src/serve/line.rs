@@ -9,13 +9,13 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Duration;
 use tokio::sync::Notify;
 
-/// The size of the parts in which input is taken; at most two of them wait for a seat's turn.
+/// The size of a part of the input in bytes; at most two parts wait for a seat's turn.
 ///
-/// The connection is not read while they wait.
+/// While two parts wait, the connection is not read.
 // Keys and replies take a few bytes; only a paste is longer.
 const MAX_INPUT: usize = 4096;
 
-/// The most bytes that may wait to be sent; while there are more, no input is taken.
+/// The size of the outbox in bytes above which the seat takes no input.
 // More than one frame: an exact redraw of 80x24 cells takes 44 kB.
 const MAX_OUTPUT: usize = 64 * 1024;
 
@@ -59,8 +59,9 @@ pub(super) struct Outgoing {
     pub(super) ended: Option<u32>,
 }
 
-/// Returns the value of a mutex, also if a thread has panicked while it had the lock.
-// A panic leaves no invalid value behind, because each field that is locked so is valid by itself.
+/// Locks a mutex, even if it is poisoned by a panic of another thread.
+// Poisoning is ignored because a panic leaves no invalid value behind: each field of the locked values is valid by
+// itself.
 pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -68,11 +69,13 @@ pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Line {
     /// Appends input that arrives at `now`.
     ///
-    /// It is appended in parts: waits while the seat has more than two parts to take.
+    /// The input is appended in parts. Each part waits until there is room for it beside those that the seat has not
+    /// taken yet.
     pub(super) async fn push(&self, bytes: &[u8], now: Duration) {
         for part in bytes.chunks(MAX_INPUT) {
             loop {
-                // Before the lock: input that is taken between the check and the wait then still ends the wait.
+                // Created before the lock is taken, so that the wait also ends if the seat takes the input between the
+                // check and the wait.
                 let taken = self.taken.notified();
                 {
                     let mut inbox = locked(&self.inbox);
@@ -114,10 +117,10 @@ impl Line {
         locked(&self.inbox).hung_up
     }
 
-    /// Takes the input that has arrived; nothing while more than [`MAX_OUTPUT`] bytes are to be
+    /// Takes the input that has arrived, but none while more than [`MAX_OUTPUT`] bytes wait to be
     /// sent.
     ///
-    /// Input would lead to more bytes.
+    /// Handling input would add more bytes.
     pub(super) fn take_arrived(&self) -> Arrived {
         if locked(&self.outbox).bytes.len() > MAX_OUTPUT {
             return Arrived::default();
@@ -146,7 +149,7 @@ impl Line {
             outbox.bytes.append(&mut bytes);
         }
         outbox.ended = ended;
-        // Before the notification, so that the task which it wakes need not wait for the lock.
+        // The lock is released before the notification, so that the woken task need not wait for it.
         drop(outbox);
         self.filled.notify_one();
     }
@@ -175,7 +178,7 @@ impl Line {
 
     /// Records the number of the connection's seat.
     pub(super) fn set_seat(&self, id: SeatId) {
-        // A connection has one seat in its life.
+        // This never fails: a connection has only one seat in its life.
         let _ = self.seat.set(id);
     }
 

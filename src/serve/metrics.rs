@@ -1,6 +1,6 @@
 //! Counts of connections, refusals, views, frames and bytes, for an operator.
 //!
-//! No label has an address or a name of a user.
+//! No label contains an address or the name of a user.
 
 use super::limits::Refusal;
 use std::fmt::Write;
@@ -32,7 +32,7 @@ pub(super) struct Metrics {
     pub(super) bytes: Count,
     /// The pictures that were traced.
     pub(super) traced: Count,
-    /// The pictures that had been traced for another viewer.
+    /// The pictures that were reused because they had been traced for another viewer.
     pub(super) shared: Count,
     /// The turns that ended with a panic.
     pub(super) panics: Count,

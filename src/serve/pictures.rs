@@ -7,7 +7,7 @@ use crate::viewer::{Frame, Job};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// The most pictures that are kept: of some scenes, in some sizes of windows.
+/// The largest number of pictures that are kept: one for each scene and window size.
 const MAX_PICTURES: usize = 32;
 
 /// The most pixels of a picture that is kept, about those of 200x60 cells.
@@ -38,7 +38,7 @@ impl Pictures {
 /// Returns whether other viewers will probably ask for the picture of this job.
 pub(super) fn is_shared(job: &Job) -> bool {
     let Job { scene, shot, .. } = job;
-    // A scene that moves is copied for each of its times.
+    // The pictures of a moving scene are not shared, because each of its times is a separate copy of the scene.
     shot.camera == *scene.camera()
         && shot.resolution.pixel_count() <= MAX_PIXELS
         && !(shot.geometry || shot.orders || scene.moves())
@@ -46,7 +46,7 @@ pub(super) fn is_shared(job: &Job) -> bool {
 
 fn is_of(frame: &Frame, job: &Job) -> bool {
     let Job { scene, shot, sampling, .. } = job;
-    // The numbers of a scene and of its lights differ between viewers.
+    // The numbers of the scene and its lights are not compared, because each viewer counts its own.
     let (scene_number, lights) = (frame.shot.scene, frame.shot.lights);
     frame.sampling == *sampling
         && frame.shot == crate::viewer::Shot { scene: scene_number, lights, ..*shot }

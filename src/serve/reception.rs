@@ -1,4 +1,4 @@
-//! One visit, from the wait for a place to the last byte.
+//! One visit of a client, from the wait for a viewer's place to the last byte.
 
 use super::client_terminal::ClientTerminal;
 use super::house::{House, Place};
@@ -14,10 +14,10 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::{sleep, timeout};
 
-/// The most bytes in one SSH message to a client.
-// The connection's buffer keeps the size of its largest message for ever.
+/// The largest number of bytes in one SSH message to a client.
+// The buffer of a connection never shrinks: it keeps the size of the largest message.
 const MAX_MESSAGE: usize = 8 * 1024;
-/// Time that a client which was told to leave has to close the connection.
+/// The time within which a client that was told to leave has to close the connection.
 // After a disconnect `russh` itself waits for the client to close, without a limit.
 const CLOSING_TIME: Duration = Duration::from_secs(2);
 /// The keys that leave the waiting room: q, Ctrl-C, Ctrl-D.
@@ -55,7 +55,7 @@ impl Reception {
         if let Some(at) = house.drained_at() {
             self.line.drain(at);
         }
-        // Input that arrived before the seat had its number has not woken it.
+        // Input that arrived before `set_seat` has not woken the seat.
         house.stage.wake(id);
         while let Some(Outgoing { bytes, ended }) = self.line.outgoing().await {
             if !self.send(&bytes).await {
@@ -71,9 +71,9 @@ impl Reception {
         house.stage.wake(id);
     }
 
-    /// Waits until there is a place, and tells the user meanwhile how many are ahead.
+    /// Waits for a free place, and meanwhile tells the user how many visitors are ahead.
     ///
-    /// `None` if the user leaves, the server drains, or too many wait.
+    /// Returns `None` if the user leaves, the server drains, or too many visitors wait.
     async fn wait_for_place(&self, window: &mut Window) -> Option<Place> {
         let mut changes = self.house.changes.subscribe();
         let Some(visitor) = self.house.queue_up() else {
@@ -82,7 +82,8 @@ impl Reception {
         };
         let mut told = None;
         loop {
-            // Before the checks, so that a change during them ends the wait below.
+            // The changes so far are marked as seen before the checks, so that a change during the checks ends the wait
+            // below.
             changes.mark_unchanged();
             if self.house.drained_at().is_some() {
                 self.send(b"\r\x1b[Kthe server restarts; come back soon\r\n").await;
@@ -97,7 +98,8 @@ impl Reception {
                 }
                 Err(ahead) => ahead,
             };
-            // Any change wakes all who wait, and most changes leave the number as it is.
+            // The number is only printed if it is new: each change wakes all who wait, and most changes do not affect
+            // the number.
             if told.replace(ahead) != Some(ahead) {
                 let text = format!("\r\x1b[Kfull, {ahead} ahead of you; q leaves");
                 self.send(text.as_bytes()).await;
@@ -156,7 +158,8 @@ impl Reception {
             let _ = self.handle.eof(self.channel).await;
             let _ = self.handle.close(self.channel).await;
         };
-        // These messages wait for room in the queue of the connection, which a client that stalls never makes.
+        // With a timeout, because these messages wait for room in the connection's queue, and a stalled client never
+        // makes any.
         let _ = timeout(CLOSING_TIME, ending).await;
         sleep(CLOSING_TIME).await;
         self.kick.kick();

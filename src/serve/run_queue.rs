@@ -1,9 +1,9 @@
 //! The order in which seats get CPU time: fair shares of time, not of frames.
 //!
-//! Start-time fair queueing: a seat whose turn took long waits for its next one until all others have had as much time.
-//! So a viewer with a large window, or one whose link makes frames expensive, pays with its own frame rate. A seat
-//! that has rested starts level with the others and gets a head start, so that a key press waits for about one round at
-//! most. Refinements run only when nothing else is ready. Pure: it reads no clock.
+//! Start-time fair queueing: a seat whose turn took long waits for its next turn until all other seats have had as much
+//! time. So a viewer with a large window, or with a link that makes frames expensive, only lowers its own frame rate. A
+//! seat that has rested starts level with the others and gets a head start, so that a key press waits for about one
+//! round at most. Refinements run only when nothing else is ready. Pure: it reads no clock.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
@@ -11,10 +11,10 @@ use std::time::Duration;
 /// The number of a seat; numbers are never used again.
 pub(super) type SeatId = u64;
 
-/// The head start of a seat that has rested.
+/// The time by which a seat that has rested starts before the queue's virtual time.
 ///
-/// It is about the time of one frame of 80x24 cells. Such a seat is served before those that take turns all the time,
-/// but its share does not grow, because the head start is granted only once its earlier time is paid back.
+/// It is about the time of one frame of 80x24 cells. A seat with a head start is served before those that take turns
+/// all the time. Its share does not grow, because it never starts before the virtual time at which its last turn ended.
 const HEAD_START: Duration = Duration::from_millis(1);
 
 /// The kind of work that a seat waits for.
@@ -61,7 +61,8 @@ struct Seat {
 #[derive(Debug, Default)]
 pub(super) struct RunQueue {
     seats: BTreeMap<SeatId, Seat>,
-    // In the order of the turns: pictures before refinements, then by virtual start. The number makes entries unique.
+    // The ready seats in the order of their turns: pictures before refinements, then by virtual start. The seat's
+    // number makes entries unique.
     ready: BTreeSet<(Class, Duration, SeatId)>,
     timers: BTreeSet<(Duration, SeatId)>,
     /// The virtual time of the queue: the latest virtual start of a turn for a picture.
@@ -76,7 +77,7 @@ impl RunQueue {
         self.wake(id);
     }
 
-    /// Makes a seat ready that has got input, or whose bytes have been sent.
+    /// Makes a seat ready, because it has input or its bytes have been sent.
     pub(super) fn wake(&mut self, id: SeatId) {
         let Some(seat) = self.seats.get_mut(&id) else { return };
         match seat.state {
@@ -96,7 +97,8 @@ impl RunQueue {
             self.wake(id);
         }
         let &(class, start, id) = self.ready.first()?;
-        // A refinement may start far ahead of the others, which would give rested seats too late a start.
+        // Refinements do not advance the virtual time: their virtual start may be far ahead of the pictures', and seats
+        // that have rested would start too late.
         if class == Class::Picture {
             self.virtual_time = self.virtual_time.max(start);
         }
@@ -105,7 +107,7 @@ impl RunQueue {
         Some(id)
     }
 
-    /// Records that the turn of a seat took this much CPU time.
+    /// Ends the turn of a seat, which took the CPU time `cost`.
     pub(super) fn finish(&mut self, id: SeatId, cost: Duration, next: Next) {
         self.running = self.running.saturating_sub(1);
         let Some(seat) = self.seats.get_mut(&id) else { return };

@@ -1,6 +1,6 @@
 //! One viewer of the server: its view, the modes of its terminal, and the end of its visit.
 //!
-//! Pure: it is told the time, gets a function that traces, and returns bytes.
+//! Pure: the time and the function that traces are parameters, and the bytes to send are returned.
 
 use super::HostedScene;
 use super::run_queue::{Class, Next};
@@ -12,14 +12,14 @@ use base64::Engine;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Time before the end of a visit in which the remaining seconds are shown.
+/// The time before the end of a visit during which the remaining seconds are shown.
 const COUNTDOWN: Duration = Duration::from_secs(30);
-/// Greatest time that leaving waits for the terminal's last replies.
+/// The longest time that a leaving viewer waits for the terminal's last replies.
 const LAST_REPLIES: Duration = Duration::from_secs(1);
-/// The least time without a frame for which a viewer's buffers are freed.
+/// The shortest time without a frame for which a viewer's buffers are freed.
 const LONG_REST: Duration = Duration::from_secs(1);
-/// The most actions of the viewer in one turn, such as tracing a frame and drawing it.
-// A trace and a draw are usual; the limit also ends the turn of a viewer that never waits.
+/// The largest number of steps of the viewer in one turn, such as tracing a frame and drawing it.
+// Most turns have two steps, a trace and a draw. The limit ends the turn of a viewer that never waits.
 const MAX_STEPS: usize = 8;
 
 /// The reason why a viewer leaves.
@@ -49,7 +49,7 @@ impl Parting {
         format!("{what} in {seconds} s")
     }
 
-    /// Returns the sentence that is printed on leaving; empty if the user knows why.
+    /// Returns the sentence that is printed on leaving; empty if the user chose to leave.
     fn farewell(self) -> &'static str {
         match self {
             Self::Quit => "",
@@ -81,9 +81,9 @@ pub(super) struct Arrived {
     pub(super) drained_at: Option<Duration>,
 }
 
-/// Traces a frame; returns `None` if it was interrupted.
+/// A function that traces the frame of a job, or returns `None` if it was interrupted.
 ///
-/// Only a refinement may be interrupted, and only if the flag is set.
+/// The flag allows an interruption; it is only set for refinements.
 pub(super) type Trace<'a> = dyn FnMut(&Job, bool) -> Option<Frame> + 'a;
 
 /// The place of one viewer on the server: the viewer's view, terminal modes and remaining time.
@@ -96,18 +96,19 @@ pub(super) struct Seat {
     stay: Stay,
     began: Duration,
     drained_at: Option<Duration>,
-    /// The seconds that the last note of the countdown showed; `None` before the countdown.
+    /// The seconds in the last note of the countdown; `None` before the countdown.
     counted: Option<u64>,
     /// The time at which the viewer began to leave and its terminal was restored; `None` before.
     leaving: Option<Duration>,
-    /// The time of the last action.
+    /// The time at which the last turn ended.
     latest: Duration,
-    /// The frames drawn since they were last counted.
+    /// The number of frames drawn since the last call of `take_drawn`.
     drawn: u64,
 }
 
 impl Seat {
-    /// Returns a seat that shows scene number `shown`, and appends the first bytes to `out`.
+    /// Returns a seat that shows the scene with index `shown`, and appends its first bytes to
+    /// `out`.
     ///
     /// # Errors
     /// If there is not enough memory for the window.
@@ -156,8 +157,8 @@ impl Seat {
     /// Handles the input that has arrived, carries out the viewer's actions, and appends the bytes
     /// to send.
     ///
-    /// `sending` tells whether earlier bytes are still to be sent, and `class` what the turn may be used for. At most
-    /// one frame of a new view is traced.
+    /// `sending` tells whether earlier bytes still wait to be sent. `class` is the kind of work that the turn may do.
+    /// At most one frame of a new view is traced.
     pub(super) fn take_turn(
         &mut self,
         arrived: &Arrived,
@@ -194,9 +195,9 @@ impl Seat {
         if let Some(window) = arrived.window {
             self.viewer.resize(window)?;
         }
-        // Without bytes, too: an escape key that no byte follows is noticed by its time. The time that replies have
-        // waited for this turn is no part of the link's round trip: with it, a busy server took each link for a slow
-        // one, and frames shrank to 540 bytes at 200 viewers.
+        // `receive` is called without bytes, too, so that a lone ESC becomes the Escape key after its timeout. It gets
+        // the time at which the bytes arrived: their wait for this turn is not part of the link's round trip. With that
+        // wait included, a busy server took each link for a slow one, and frames shrank to 540 bytes at 200 viewers.
         let at = if arrived.bytes.is_empty() { now } else { arrived.at.max(self.latest).min(now) };
         self.viewer.receive(&arrived.bytes, at)?;
         for mode in self.viewer.modes() {
@@ -205,19 +206,19 @@ impl Seat {
         Ok(())
     }
 
-    /// Returns when, and why, the visit ends if no key is pressed.
+    /// Returns the time at which the visit ends if no key is pressed, and the reason.
     fn next_end(&self) -> (Duration, Parting) {
-        // Without a key so far the time counts from the beginning of the visit.
+        // Before the first key press, the idle time counts from the beginning of the visit.
         let idle = (self.viewer.last_event().max(self.began) + self.stay.idle, Parting::Idle);
         let ends = [(self.stay.ends, Parting::TimeOver), idle];
         let drained = self.drained_at.map(|at| (at, Parting::Drained));
         drained.into_iter().chain(ends).min_by_key(|&(at, _)| at).expect("there are two")
     }
 
-    /// Shows the number of seconds left, if it is small, and returns the time at which this note
-    /// changes.
+    /// Shows the seconds left during the countdown, and returns the time of the next change of that
+    /// note.
     fn count_down(&mut self, end: Duration, parting: Parting, now: Duration) -> Duration {
-        // With a short limit on the idle time the note would be on the screen nearly always.
+        // At most half the idle limit: otherwise, with a short limit, the note would be on the screen nearly always.
         let countdown = if parting == Parting::Idle { COUNTDOWN.min(self.stay.idle / 2) } else { COUNTDOWN };
         let left = end.saturating_sub(now);
         if left > countdown {
@@ -226,7 +227,7 @@ impl Seat {
         }
         // Rounded up, so that 0 is never shown.
         let seconds = left.as_secs() + u64::from(left.subsec_nanos() > 0);
-        // The note is set only once a second, because each new note counts as a change, which is drawn.
+        // The note is set only once a second, because each new note causes a redraw.
         if self.counted.replace(seconds) != Some(seconds) {
             self.viewer.show_note(parting.countdown_text(seconds));
         }
@@ -260,19 +261,20 @@ impl Seat {
                     self.drawn += u64::from(!bytes.is_empty());
                     out.append(&mut bytes);
                 }
-                // The first picture is held back until it is refined, if that takes little time.
+                // Refinements wait for a turn of their class, except that of the first picture: it is refined before it
+                // is shown, if that takes little time.
                 Step::Trace(_, job) if job.refines && class == Class::Picture && self.viewer.has_shown() => {
                     return Next::Turn(Class::Refinement);
                 }
                 Step::Trace(probe, job) => {
                     out.extend_from_slice(&probe);
-                    // A frame of a new view is not begun again, so a view that moves would stand still if other viewers
-                    // interrupted its frames.
+                    // Only refinements may be interrupted: an interrupted frame of a new view is not traced again, so a
+                    // moving view would stand still while other viewers interrupt it.
                     match trace(&job, job.refines && self.viewer.has_shown()) {
                         Some(frame) => self.viewer.take_frame(frame),
                         None => return Next::Turn(Class::Refinement),
                     }
-                    // The first frame of a turn is drawn at once; after a second one, the next turn goes on.
+                    // The first frame of a turn is drawn in this turn; after a second one, the turn ends.
                     if std::mem::replace(&mut traced, true) {
                         return Next::Turn(class);
                     }
@@ -284,7 +286,7 @@ impl Seat {
 
     /// Carries out the viewer's requests. Returns whether the user leaves.
     ///
-    /// No key is bound to what would touch the server's disk, and such a request does nothing.
+    /// Requests that would write to the server's disk do nothing; no key is bound to them.
     fn carry_out_requests(&mut self, out: &mut Vec<u8>) -> bool {
         let mut copied = None;
         while let Some(request) = self.viewer.next_request() {
@@ -302,7 +304,8 @@ impl Seat {
                     self.viewer.show_note(note);
                 }
                 Request::ShowMetadata => self.viewer.show_metadata(self.scenes[self.shown].name.clone()),
-                // Only the last text stays on the clipboard. Sending each of them would take many bytes for a few keys.
+                // Only the last text is sent, because only that stays on the clipboard; sending all of them would take
+                // many bytes for a few keys.
                 Request::Copy(text) => copied = Some(text),
                 _ => {}
             }
@@ -319,7 +322,7 @@ impl Seat {
         std::mem::take(&mut self.drawn)
     }
 
-    /// Restores the terminal, and appends what is left on the screen.
+    /// Restores the terminal, and prints the farewell and the command that shows this view.
     pub(super) fn leave(&mut self, parting: Parting, now: Duration, out: &mut Vec<u8>) -> Next {
         self.modes_off(now, out);
         out.extend_from_slice(parting.farewell().as_bytes());
@@ -336,7 +339,7 @@ impl Seat {
 
     /// Switches all modes off. If replies are outstanding, sends a last query.
     ///
-    /// Terminals reply in order, so no other reply follows that to this query.
+    /// Terminals reply in order, so the reply to the last query is the last reply.
     fn modes_off(&mut self, now: Duration, out: &mut Vec<u8>) {
         let awaits = self.modes.is_on(TerminalMode::Keyboard) || self.viewer.receiver().reply_time_left(now).is_some();
         self.modes.switch_all_off(out);
@@ -346,9 +349,9 @@ impl Seat {
         }
     }
 
-    /// Reads the terminal's replies until the last one.
+    /// Reads and drops the terminal's replies until the last one has arrived.
     ///
-    /// The user's shell would take them for typed text.
+    /// Otherwise the user's shell would take them for typed text.
     fn await_last_replies(&mut self, bytes: &[u8], now: Duration) -> Next {
         let receiver = self.viewer.receiver();
         receiver.receive(bytes, now);

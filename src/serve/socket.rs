@@ -1,4 +1,5 @@
-//! A client's socket, which can be closed at any time, and ends by itself when it stalls.
+//! A client's socket, which can be closed from outside at any time, and closes when the client
+//! stalls.
 
 use rustix::net::{Shutdown, shutdown, sockopt};
 use std::io;
@@ -10,21 +11,22 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 use tokio::time::{Sleep, sleep};
 
-/// The bytes that the system keeps for a client that does not read.
-// Without a limit the system keeps up to several megabytes, all of them older than the newest frame.
+/// The size of the operating system's send buffer for a client, in bytes.
+// Without a limit the system buffers up to several megabytes for a client that does not read, all of them older than
+// the newest frame.
 const SEND_BUFFER: usize = 64 * 1024;
 
 /// A client's socket.
 pub(super) struct Socket {
     // Shared with `Kick`, whose reference is weak, so that it does not keep the socket open.
     stream: Arc<TcpStream>,
-    /// Greatest time in which a client that is to get bytes takes none.
+    /// The longest time that a client may take no bytes while some wait to be sent.
     patience: Duration,
-    /// A timer of `patience`, which runs while the client takes no bytes.
+    /// The timer of `patience`, which runs while bytes wait and the client takes none.
     stalled: Option<Pin<Box<Sleep>>>,
 }
 
-/// Closes a socket that is in use elsewhere.
+/// A handle that closes a [`Socket`] which another task uses.
 #[derive(Clone)]
 pub(super) struct Kick(Weak<TcpStream>);
 
@@ -75,8 +77,8 @@ impl AsyncWrite for Socket {
     fn poll_write(mut self: Pin<&mut Self>, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         loop {
             if self.stream.poll_write_ready(cx)?.is_pending() {
-                // The timer starts when a write blocks, and ends with any byte that is taken: a slow client is not a
-                // stalled one.
+                // The timer starts when a write blocks, and stops when the client takes any byte: a slow client does
+                // not count as stalled.
                 let patience = self.patience;
                 let stalled = self.stalled.get_or_insert_with(|| Box::pin(sleep(patience)));
                 ready!(stalled.as_mut().poll(cx));

@@ -1,4 +1,5 @@
-//! The SSH requests that are granted: one terminal with the view of a scene, and no other.
+//! The handler of a client's SSH requests: grants one terminal with the view of a scene, nothing
+//! else.
 //!
 //! Everything that is not named here is refused by default in `russh`: forwarding of ports, sockets and agents, X11,
 //! subsystems, and passwords. The channel's own queue of messages is dropped, because a channel that is not read blocks
@@ -26,7 +27,7 @@ pub(super) struct Client {
     pub(super) terminal: ClientTerminal,
     /// The one channel of the connection.
     pub(super) channel: Option<ChannelId>,
-    /// Whether the client has asked for something.
+    /// Whether the client has already requested a visit (`shell` or `exec`).
     pub(super) asked: bool,
 }
 
@@ -41,7 +42,7 @@ impl Drop for Client {
 }
 
 impl Client {
-    /// Wakes the seat, or the task that waits for one.
+    /// Wakes the seat, or the connection's task if it still waits for a seat.
     fn wake(&self) {
         match self.line.seat() {
             Some(id) => self.house.stage.wake(id),
@@ -128,8 +129,8 @@ impl Handler for Client {
     }
 
     async fn data(&mut self, _channel: ChannelId, data: &[u8], _session: &mut Session) -> Result<(), Error> {
-        // Wakes the seat before the input is complete: `push` waits for the seat as soon as two parts of `MAX_INPUT`
-        // wait.
+        // The seat is woken after each part and not only at the end, because `push` waits for the seat once two parts
+        // of `MAX_INPUT` are queued.
         for part in data.chunks(1024) {
             self.line.push(part, self.house.stage.now()).await;
             self.wake();

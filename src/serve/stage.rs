@@ -1,7 +1,7 @@
 //! The threads that draw for all viewers, and share their time fairly among them.
 //!
 //! A turn is carried out by one thread from the input to the bytes: passing a frame of 0.1 ms to another thread would
-//! take as long as tracing it. Each thread is a pool of its own to rayon, so that whatever is called stays on it.
+//! take as long as tracing it. Each thread is a rayon pool of its own, so that parallel functions stay on that thread.
 
 use super::line::{Line, locked};
 use super::metrics::Metrics;
@@ -31,9 +31,9 @@ struct Shared {
     next_id: SeatId,
     /// The number of threads that wait for work.
     resting: usize,
-    /// Cancels the refinements in progress; replaced when it is used.
+    /// The token that cancels the refinements in progress; it is replaced when it is used.
     refinements: Cancellation,
-    /// Whether the threads are to end.
+    /// Whether the threads should end.
     closed: bool,
 }
 
@@ -44,7 +44,7 @@ pub(super) struct Stage {
     start: Instant,
     threads: usize,
     pub(super) metrics: Metrics,
-    /// The pictures that several viewers see.
+    /// The cache of pictures that several viewers see.
     pictures: Mutex<Pictures>,
     /// The byte of input at which a turn panics, for a test.
     #[cfg(feature = "test-hooks")]
@@ -75,7 +75,7 @@ impl Stage {
 
     /// Returns the time of all viewers' clock.
     ///
-    /// It does not start at 0, because a key counts as held for this time before its press.
+    /// It starts at `FIRST_FRAME_MOTION` instead of 0, because a key counts as held for that time before its press.
     pub(super) fn now(&self) -> Duration {
         FIRST_FRAME_MOTION + self.start.elapsed()
     }
@@ -92,7 +92,7 @@ impl Stage {
         id
     }
 
-    /// Makes a seat ready that has got input, or whose bytes have been sent.
+    /// Makes a seat ready, because it has input or its bytes have been sent.
     pub(super) fn wake(&self, id: SeatId) {
         let mut shared = locked(&self.shared);
         shared.queue.wake(id);
@@ -131,7 +131,7 @@ impl Stage {
 
     /// Carries out the turns of seats, one after the other, until the stage is closed.
     fn serve(&self) {
-        // The thread is a pool by itself. Without a pool each `rayon::join` would go to the global one.
+        // Makes this thread a rayon pool. Without it, each `rayon::join` would run on the global pool.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
         let mut tracer = Tracer::default();
         while let Some((id, staged, load, token)) = self.next_turn() {
@@ -143,8 +143,8 @@ impl Stage {
                 Err(_) => turn(),
             }));
             let next = turned.unwrap_or_else(|_| {
-                // The panic hook has already printed the message. Only this viewer ends, with a clean terminal.
-                // The old one may be in an invalid state.
+                // The panic hook has already printed the message. Only this viewer ends, with a clean terminal. The
+                // tracer is replaced, because the panic may have left it in an invalid state.
                 tracer = Tracer::default();
                 self.metrics.panics.add(1);
                 let mut out = Vec::new();
@@ -162,7 +162,8 @@ impl Stage {
         }
     }
 
-    /// Waits for the next turn. Returns its seat, the load, and the token that cancels refinements.
+    /// Waits for the next turn, and returns its seat, the load, and the token that cancels
+    /// refinements.
     ///
     /// The load is the number of seats that run or are ready for a picture. `None` if the stage is closed.
     fn next_turn(&self) -> Option<(SeatId, Arc<Staged>, usize, Cancellation)> {
@@ -197,13 +198,13 @@ impl Stage {
         }
         let mut seat = locked(&staged.seat);
         let share = (load as f64 / self.threads as f64).max(1.0);
-        // The first picture of a visit is never interrupted: until it is there, the screen is empty.
+        // The first picture of a visit is never interrupted, because the screen is empty until it is drawn.
         let never = Cancellation::default();
         let mut trace = |job: &Job, may_interrupt: bool| -> Option<Frame> {
             let token = if may_interrupt { token } else { &never };
             let mut frame = self.picture(job, token, tracer)?;
-            // Counts the time as longer if there are more seats than threads: the viewer chooses the number of samples
-            // by it.
+            // The trace time is scaled up if there are more seats than threads, because the viewer chooses the number
+            // of samples by that time.
             frame.trace = frame.trace.mul_f64(share);
             Some(frame)
         };
@@ -214,7 +215,7 @@ impl Stage {
             !self.panics.get().is_some_and(|key| arrived.bytes.contains(key)),
             "a test asked for a panic in a seat"
         );
-        // With a thread for each seat that is ready, a refinement delays no picture of another viewer.
+        // If every ready seat has a thread, the turn may refine: that delays no picture of another viewer.
         let class = if load <= self.threads { Class::Refinement } else { Class::Picture };
         let next = seat.take_turn(&arrived, (line.is_sending(), class), &|| self.now(), &mut trace, &mut out);
         self.metrics.frames.add(seat.take_drawn());

@@ -1,15 +1,17 @@
 //! The limit on the bytes per second of all viewers together.
 //!
-//! Pure: it is told the time.
+//! Pure: the time is a parameter.
 
 use std::time::Duration;
 
-/// The greatest time by which bytes may be sent early, so that short waits are not rounded up.
+/// The time by which a part may be sent before its turn, so that timers do not round short waits
+/// up.
 const EARLY: Duration = Duration::from_millis(2);
 
-/// A queue of parts to send, each of which takes its time at the total rate.
+/// A queue of parts of output that are sent one after the other at the total rate.
 ///
-/// Each viewer has at most one part in it, and parts are small, so all viewers that send have about the same rate.
+/// Each viewer has at most one part in the queue, and parts are small, so all viewers that send get about the same
+/// rate.
 #[derive(Debug)]
 pub(super) struct TotalRate {
     bytes_per_second: f64,
@@ -42,10 +44,10 @@ mod tests {
         let mut rate = TotalRate::new(100_000);
         let now = Duration::from_secs(5);
         assert_eq!(rate.enqueue(1000, now), Duration::ZERO);
-        // Of the second's part the time of the first one is 10 ms.
+        // The first part takes 10 ms, so the second one waits 10 ms less `EARLY`.
         assert_eq!(rate.enqueue(500, now), Duration::from_millis(8));
         assert_eq!(rate.enqueue(1000, now), Duration::from_millis(13));
-        // A pause is not made up for.
+        // The time of a pause is not credited: the second part waits again.
         assert_eq!(rate.enqueue(1000, 2 * now), Duration::ZERO);
         assert_eq!(rate.enqueue(1000, 2 * now), Duration::from_millis(8));
     }

@@ -1,6 +1,6 @@
 //! The commands of clients: the name of a scene, or the list of scenes.
 
-/// The most bytes of a command; no scene has a longer name.
+/// The largest length of a command in bytes; no scene has a longer name.
 const MAX_COMMAND: usize = 256;
 
 /// The request of a client: a scene, or the list of scenes.

@@ -41,7 +41,9 @@ impl Exact for Capsule {
         self.axis.middle
     }
 
-    /// Joins the parts of the line in the cylinder and in both balls, which together are convex.
+    /// Joins the parts of the line in the cylinder and in the balls at both ends.
+    ///
+    /// They form one interval, because a capsule is convex.
     fn crossings(&self, line: &Line) -> Crossings {
         let [origin, direction] = [line.origin, line.direction].map(|vector| self.axis.across(vector));
         let middle = Inside::ball(origin, direction, self.radius).and(self.axis.slab(line, [0; 2]));

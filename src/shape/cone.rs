@@ -24,7 +24,7 @@ pub struct Cone {
     bounds: Bounds,
 }
 
-/// The numbers of A t^2 + 2 B t + C, which is negative inside the endless double cone.
+/// The coefficients of A t^2 + 2 B t + C, which is negative inside the infinite double cone.
 struct Quadratic {
     a: f64,
     half_b: f64,
@@ -37,12 +37,13 @@ impl Cone {
         Self { axis, radii, open, bounds }
     }
 
-    /// Returns by how much the radius grows per unit of length.
+    /// Returns the growth of the radius per unit of length along the axis.
     fn slope(&self) -> f64 {
         (self.radii[1] - self.radii[0]) / (2.0 * self.axis.half_length)
     }
 
-    /// Returns the equation of a line; `radius` is that at the origin of the line's coordinates.
+    /// Returns the quadratic of a line; `radius` is the cone's radius at the origin of the
+    /// coordinates.
     fn quadratic(&self, line: &Line, radius: f64) -> Quadratic {
         let [o, d] = [line.origin, line.direction].map(|vector| self.axis.across(vector));
         let [along, change] = [line.origin, line.direction].map(|vector| vector.dot(self.axis.direction));
@@ -50,17 +51,17 @@ impl Cone {
         Quadratic { a: d.dot(d) - growth * growth, half_b: o.dot(d) - radius * growth, c: o.dot(o) - radius * radius }
     }
 
-    /// Returns the part of a line inside the endless double cone and between both ends.
+    /// Returns the part of `between` in which a line is inside the infinite double cone.
     fn side(&self, line: &Line, between: Inside) -> Inside {
         let Quadratic { a, half_b, c } = self.quadratic(line, 0.5 * (self.radii[0] + self.radii[1]));
         let under_root = half_b * half_b - a * c;
-        // A line that is steeper than the side crosses both halves of the double cone. Rounding must not lose it at
-        // the tip.
+        // A line that is steeper than the side always crosses the double cone. Near the tip, rounding must not turn the
+        // two crossings into none.
         let root = if a < 0.0 { under_root.max(0.0) } else { under_root }.sqrt();
         if root.is_nan() {
             return Inside::NOTHING;
         }
-        // The terms have the same sign, so that they do not cancel. Roots that do not exist are infinite or NaN.
+        // The two terms have the same sign, so they do not cancel. Roots that do not exist become infinite or NaN.
         let q = -(half_b + root.copysign(half_b));
         let (one, other) = (q / a, if q == 0.0 { q / a } else { c / q });
         let (first, second) = if one < other { (one, other) } else { (other, one) };
@@ -71,7 +72,8 @@ impl Cone {
             return ends([first, second]);
         }
         if a < 0.0 {
-            // One of both parts is in the other half of the double cone, beyond the tip.
+            // The line is inside both halves of the double cone. The part in the half beyond the tip is the shorter
+            // one.
             let (before, after) = (ends(before), ends(after));
             return if length(&before) < length(&after) { after } else { before };
         }
@@ -95,7 +97,7 @@ impl Exact for Cone {
     }
 
     fn crossings(&self, line: &Line) -> Crossings {
-        // The tip belongs to the side.
+        // The tip of an open cone belongs to the side, so that crossings there are not dropped with the caps.
         let caps = if self.open && self.radii[1] == 0.0 { [CAPS[0], SIDE] } else { CAPS };
         let inside = self.side(line, self.axis.slab(line, caps));
         let mut crossings = Crossings::NONE;
@@ -109,7 +111,7 @@ impl Exact for Cone {
         }
         let across = self.axis.across(at);
         let normal = across - self.axis.direction * (self.slope() * across.length());
-        // The tip has the direction of the axis.
+        // At the tip the normal is along the axis.
         if normal == DVec3::ZERO { -self.axis.direction * self.slope() } else { normal }
     }
 }
@@ -125,7 +127,8 @@ impl Described for Cone {
         format!("a {color} {open}cone {radius} and length {length}")
     }
 
-    /// Solves A t^2 + 2 B t + C = 0 for the endless double cone, with x from the end `from`.
+    /// Solves A t^2 + 2 B t + C = 0 for the infinite double cone, with x relative to the end
+    /// `from`.
     fn equation(&self, ray: &Ray) -> Equation {
         let Quadratic { a, half_b, c } = self.quadratic(&self.axis.line_from_start(ray), self.radii[0]);
         let steps = vec![

@@ -43,7 +43,7 @@ impl Surface for Cube {
         let mut normal = Vec3::ZERO;
         normal[axis] = outward[axis].signum();
         let mut position = ray.at(t);
-        // Exactly on the face, however t was rounded.
+        // Moves the point exactly onto the face, because t is rounded.
         position[axis] = self.center[axis] + normal[axis] * self.half_side;
         let size = self.center.abs().max_element() + self.half_side;
         let (position, normal) = (Vector::splat(position), Vector::splat(normal));

@@ -10,7 +10,7 @@ use crate::scene_text::Span;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
 use glam::{DVec3, Vec3};
 
-/// A box: the surface of all points from `min` to `max`. In a scene file it is a `Box`.
+/// The surface of an axis-aligned box from `min` to `max`. Scene files call it `Box`.
 #[doc(hidden)]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cuboid {
@@ -24,7 +24,8 @@ impl Cuboid {
         Self { min, max, bounds: rounded_outward(min, max) }
     }
 
-    /// Returns the part of a line between the two faces that are perpendicular to an axis.
+    /// Returns the part of a line between the planes of the two faces that are perpendicular to an
+    /// axis.
     fn slab(&self, axis: usize, line: &Line, center: DVec3) -> Inside {
         let range = [self.min[axis] - center[axis], self.max[axis] - center[axis]];
         let parts = [2 * axis as u8, 2 * axis as u8 + 1];
@@ -73,7 +74,7 @@ impl Described for Cuboid {
 
     /// Solves o + t d = min and o + t d = max for each axis.
     ///
-    /// The line is inside the box from the last entry to the first exit.
+    /// The line is inside the box from the last of the three entries to the first of the three exits.
     fn equation(&self, ray: &Ray) -> Equation {
         let line = Line { origin: ray.origin.as_dvec3(), direction: ray.direction.as_dvec3() };
         let mut steps = vec![Step::Text("o + t d = min and max, each axis")];

@@ -34,14 +34,14 @@ impl Cylinder {
 }
 
 impl Axis {
-    /// Returns the smallest box around the circles of these radii about both ends.
+    /// Returns the smallest box around two circles about the ends of the axis, with these radii.
     pub(super) fn bounds_of_circles(&self, radii: [f64; 2]) -> Bounds {
         let [from, to] = self.ends().map(|end| self.middle + end);
         let [wide, narrow] = radii.map(|radius| extent_of_circle(self.direction) * radius);
         rounded_outward((from - wide).min(to - narrow), (from + wide).max(to + narrow))
     }
 
-    /// Returns the part of a line between the ends.
+    /// Returns the part of a line between the planes of both ends.
     pub(super) fn slab(&self, line: &Line, parts: [u8; 2]) -> Inside {
         let [along, change] = [line.origin, line.direction].map(|vector| vector.dot(self.direction));
         Inside::slab(along, change, [-self.half_length, self.half_length], parts)
@@ -57,7 +57,7 @@ impl Axis {
         if part == CAPS[0] { -self.direction } else { self.direction }
     }
 
-    /// Returns the line of a ray, relative to the end `from`.
+    /// Returns the line of a ray, in coordinates relative to the end `from`.
     pub(super) fn line_from_start(&self, ray: &Ray) -> Line {
         let start = self.middle + self.ends()[0];
         Line { origin: ray.origin.as_dvec3() - start, direction: ray.direction.as_dvec3() }
@@ -92,7 +92,7 @@ impl Described for Cylinder {
         format!("a {color} {}cylinder of radius {radius} and length {length}", if self.open { "open " } else { "" })
     }
 
-    /// Solves A t^2 + 2 B t + C = 0 for the endless cylinder, with x from the end `from`.
+    /// Solves A t^2 + 2 B t + C = 0 for the infinite cylinder, with x relative to the end `from`.
     fn equation(&self, ray: &Ray) -> Equation {
         let line = self.axis.line_from_start(ray);
         let [o, d] = [line.origin, line.direction].map(|vector| self.axis.across(vector));

@@ -6,7 +6,7 @@ use crate::ray::Ray;
 use crate::text::number;
 use glam::Vec3;
 
-/// A surface that can be described in words, with the equation for its crossings.
+/// A surface that can be described in words, and whose equation for crossings can be shown.
 pub trait Described {
     /// The name of the surface's kind: "sphere".
     const KIND: &'static str;
@@ -24,8 +24,8 @@ pub trait Described {
         false
     }
 
-    /// Returns centre and radius of the surface if its outline is a circle from everywhere, as a
-    /// sphere's is.
+    /// Returns the centre and radius if the outline is a circle from every direction, as a sphere's
+    /// is.
     fn circle(&self) -> Option<(Vec3, f32)> {
         None
     }
@@ -86,8 +86,8 @@ macro_rules! described {
                 }
             }
 
-            /// Returns centre and radius of the primitive if its outline is a circle from
-            /// everywhere, as a sphere's is.
+            /// Returns the centre and radius if the outline is a circle from every direction, as a
+            /// sphere's is.
             pub fn circle(&self) -> Option<(Vec3, f32)> {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.circle(),)*
@@ -110,7 +110,7 @@ pub(super) fn size_in_words(bounds: &Bounds) -> String {
     format!("{wide} wide, {high} high, {deep} deep")
 }
 
-/// Returns a length, rounded and without an exponent, which does not belong in prose.
+/// Returns a length as text for prose: rounded, and without an exponent.
 pub(super) fn length_in_words(length: f64) -> String {
     // Formatted again as f64 by the standard library, which writes no exponents.
     number(length as f32).parse().unwrap_or(length).to_string()

@@ -40,7 +40,8 @@ impl Exact for Disk {
         self.center
     }
 
-    /// Returns no crossing for a ray in the plane of the disk, which shows its edge.
+    /// Returns the crossing, if any. A ray in the plane of the disk has none: it would see only the
+    /// edge.
     fn crossings(&self, Line { origin, direction }: &Line) -> Crossings {
         let mut crossings = Crossings::NONE;
         let t = -origin.dot(self.normal) / direction.dot(self.normal);

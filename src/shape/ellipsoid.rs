@@ -1,4 +1,4 @@
-//! Ellipsoids along the axes.
+//! Ellipsoids whose axes are parallel to the coordinate axes.
 
 use super::described::size_in_words;
 use super::exact::{self, Crossings, Exact, Inside, rounded_outward};
@@ -9,7 +9,7 @@ use crate::ray::Ray;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
 use glam::{DVec3, Vec3};
 
-/// An ellipsoid: all points x with |(x - c) / r|^2 = 1, divided by the radius along each axis.
+/// An ellipsoid: all points x with |(x - c) / r|^2 = 1, where r is the radius along each axis.
 #[doc(hidden)]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ellipsoid {
@@ -27,7 +27,7 @@ impl Exact for Ellipsoid {
         self.center
     }
 
-    /// Intersects with the ball that the ellipsoid is a scaled copy of.
+    /// Divides the line by the radii, and intersects it with the unit ball.
     fn crossings(&self, line: &Line) -> Crossings {
         Inside::ball(line.origin / self.radii, line.direction / self.radii, 1.0).crossings()
     }
@@ -44,7 +44,8 @@ impl Described for Ellipsoid {
         format!("a {color} ellipsoid, {}", size_in_words(&self.bounds))
     }
 
-    /// Solves A t^2 + 2 B t + C = 0, as for a sphere, for the line divided by the radii.
+    /// Solves A t^2 + 2 B t + C = 0, as for a sphere of radius 1, for the line divided by the
+    /// radii.
     fn equation(&self, ray: &Ray) -> Equation {
         let d = ray.direction.as_dvec3() / self.radii;
         let from_center = (ray.origin.as_dvec3() - self.center) / self.radii;

@@ -1,10 +1,10 @@
 //! The lecture's equations for the crossing of a ray and a surface, with inputs and results.
 //!
-//! For explanations they are solved in the lecture's form, in f64. Pictures use forms that are stable in f32, so the
+//! Explanations solve them in the lecture's form, in f64. Pictures use other forms, which are stable in f32, so the
 //! last digits may differ.
 
-/// A solved equation: the crossings of a ray's line and a surface, in front of the ray's origin or
-/// behind it.
+/// A solved equation: the crossings of a ray's line and a surface, including those behind the
+/// origin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equation {
     /// The solution of the equation, line by line.
@@ -26,7 +26,7 @@ pub enum Step {
     Text(&'static str),
     /// The text of a formula f, as the author wrote it.
     Formula(String),
-    /// Several values: a prefix, a separator, and the values.
+    /// A list of values: a prefix, the separator between values, and the values.
     Values(&'static str, &'static str, Vec<f64>),
 }
 

@@ -1,9 +1,9 @@
 //! Bounded surfaces whose crossings are computed in f64, and rounded to f32 once.
 //!
-//! f64 has 29 bits more than the rays, the t and the points of a picture. The lecture's equations need none of the care
-//! there that they need in f32 (see [`sphere`](super::sphere)), and each surface has its formula only once. A ray that
-//! touches a surface, or that passes through an edge between two of its parts, is decided by one computation for all
-//! kernels. The price is speed: surfaces are tested one by one.
+//! f64 has 29 bits more than the rays, the t and the points of a picture. In f64, the lecture's equations need none of
+//! the care against rounding that they need in f32 (see [`sphere`](super::sphere)), and each surface has its formula in
+//! the code only once. For a ray that grazes the surface, or passes through an edge between two of its parts, all
+//! kernels decide by the same computation whether it hits. The price is speed: surfaces are tested one by one.
 
 use super::equation::{Equation, Step};
 use super::{Points, Surface, SurfacePoint, flat_footprint};
@@ -13,10 +13,10 @@ use crate::lanes::{Number, Vector};
 use crate::ray::{Interval, Probe, Ray, nearest_in};
 use glam::{DVec3, Vec3};
 
-/// The most crossings of a line and a surface: those of a torus.
+/// The largest number of crossings of a line and a surface: a torus has up to four.
 const MAX_CROSSINGS: usize = 4;
 
-/// The most crossings that an explanation shows, in front of the eye if there are enough.
+/// The largest number of crossings that an explanation shows, preferably in front of the eye.
 const MAX_SHOWN: usize = 2;
 
 /// The size of the rounding errors of positions, relative to the size of the surface.
@@ -33,10 +33,10 @@ pub(crate) trait Exact {
     /// Returns the middle of the surface.
     fn center(&self) -> DVec3;
 
-    /// Returns the crossings of a line whose origin is its point next to the centre.
+    /// Returns the crossings of a line whose origin is its point nearest to the centre.
     fn crossings(&self, line: &Line) -> Crossings;
 
-    /// Returns the outward normal of a part of the surface at a point of it, with any length.
+    /// Returns the outward normal, of any length, at a point on a part of the surface.
     fn normal(&self, part: u8, at: DVec3) -> DVec3;
 
     /// Returns the origin of patterns.
@@ -44,7 +44,7 @@ pub(crate) trait Exact {
         DVec3::ZERO
     }
 
-    /// Returns the axes u and v of patterns where the surface has a given normal, if it has any.
+    /// Returns the axes u and v of patterns at points with a given normal; `None` without patterns.
     fn pattern_axes(&self, _normal: Vec3) -> Option<[Vec3; 2]> {
         None
     }
@@ -84,7 +84,7 @@ impl Crossings {
     }
 }
 
-/// The part of a line inside a convex solid: the crossings at both ends.
+/// The part of a line inside a convex solid, as the crossings at both ends of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inside {
     /// The crossing at which the line enters.
@@ -100,7 +100,7 @@ impl Inside {
     /// No part of the line.
     pub(crate) const NOTHING: Self = Self::of([f64::INFINITY, f64::NEG_INFINITY], [0; 2]);
 
-    /// Returns the interval between two t, with the parts of the surface at its ends.
+    /// Returns the interval between two values of t, with the parts of the surface at its ends.
     pub(crate) const fn of([enters, leaves]: [f64; 2], parts: [u8; 2]) -> Self {
         Self { enters: Crossing { t: enters, part: parts[0] }, leaves: Crossing { t: leaves, part: parts[1] } }
     }
@@ -146,7 +146,7 @@ impl Inside {
         Self { enters, leaves }
     }
 
-    /// Returns the interval around both intervals.
+    /// Returns the smallest interval that contains both intervals.
     pub(crate) fn around(self, other: Self) -> Self {
         if !(self.is_any() && other.is_any()) {
             return if self.is_any() { self } else { other };
@@ -175,14 +175,14 @@ impl Inside {
 /// Returns the crossings of a surface and the line of a ray.
 fn crossings<S: Exact>(surface: &S, ray: &Ray) -> Crossings {
     let (direction, from_center) = (ray.direction.as_dvec3(), ray.origin.as_dvec3() - surface.center());
-    // From its point next to the centre on, all numbers of the line are about as large as the surface.
+    // With the line's origin at its point nearest to the centre, all its numbers are about as large as the surface.
     let nearest = -from_center.dot(direction) / direction.dot(direction);
     let mut crossings = surface.crossings(&Line { origin: from_center + direction * nearest, direction });
     crossings.found.iter_mut().for_each(|crossing| crossing.t += nearest);
     crossings
 }
 
-/// Returns an equation that ends with the crossings of the line of a ray.
+/// Returns the equation with the steps `steps` and the crossings of a ray's line as its roots.
 pub(super) fn equation<S: Exact>(surface: &S, ray: &Ray, mut steps: Vec<Step>) -> Equation {
     let mut roots: Vec<_> = crossings(surface, ray).iter().map(|crossing| crossing.t).collect();
     let behind = roots.iter().filter(|&&root| root < 0.0).count();
@@ -192,7 +192,7 @@ pub(super) fn equation<S: Exact>(surface: &S, ray: &Ray, mut steps: Vec<Step>) -
     Equation { steps, roots, without_root: "miss", is_outside: false }
 }
 
-/// Returns the smallest box of f32 around a box.
+/// Returns the smallest box with f32 coordinates around a box in f64.
 pub(super) fn rounded_outward(min: DVec3, max: DVec3) -> Bounds {
     let down = |exact: f64| if f64::from(exact as f32) > exact { (exact as f32).next_down() } else { exact as f32 };
     let [x, y, z] = min.to_array().map(down);
@@ -200,7 +200,8 @@ pub(super) fn rounded_outward(min: DVec3, max: DVec3) -> Bounds {
     Bounds { min: Vec3::new(x, y, z), max: Vec3::new(far_x, far_y, far_z) }
 }
 
-/// Returns half the extent along each axis of a circle of radius 1, perpendicular to a unit vector.
+/// Returns half the extent, along each axis, of a circle of radius 1 perpendicular to a unit
+/// vector.
 pub(super) fn extent_of_circle(DVec3 { x, y, z }: DVec3) -> DVec3 {
     DVec3::new((y * y + z * z).sqrt(), (z * z + x * x).sqrt(), (x * x + y * y).sqrt())
 }
@@ -241,7 +242,8 @@ impl<S: Exact> Surface for S {
         Points::seen_by(&rays, Vector::splat(position), Vector::splat(normal), size, uv.unwrap_or_default()).point()
     }
 
-    /// Computes lane by lane, which keeps the code short that is compiled for each vector type.
+    /// Computes lane by lane, because this code is compiled once for each vector type, and stays
+    /// short.
     fn footprint<N: Number>(
         &self,
         direction: Vector<N>,

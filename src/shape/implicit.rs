@@ -14,13 +14,13 @@ use crate::written::{Fields, InSceneFile, NodeReader, Spanned, Validator, Writte
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
-/// The most roots that an explanation shows, in front of the eye.
+/// The largest number of roots that an explanation shows, all in front of the eye.
 const MAX_ROOTS: usize = 2;
 
 /// The longest formula in a description, in characters.
 const MAX_SHOWN: usize = 48;
 
-/// A surface f(x, y, z) = 0, drawn within bounds, at which it is cut open.
+/// A surface f(x, y, z) = 0, cut off at its bounds, where it may be open.
 // The definition is shared, because each leaf of the tree has copies of its surfaces.
 #[doc(hidden)]
 #[derive(Clone, Debug, PartialEq)]
@@ -76,7 +76,7 @@ impl Implicit {
 
     /// Returns the reflectance at a point of the surface, if it has its own colours.
     ///
-    /// Values outside 0 to 1 count as the nearer end, and undefined ones as 0.
+    /// Values are clamped to 0 to 1; undefined values (NaN) count as 0.
     pub(super) fn own_reflectance(&self, position: Vec3) -> Option<LinearRgb> {
         let [r, g, b] = self.0.colors.as_ref()?.each_ref().map(|color| {
             let value = color.value(position.as_dvec3());
@@ -95,7 +95,7 @@ impl Implicit {
         self.within_ball(&probe.ray, self.0.bounds.crossed(probe))
     }
 
-    /// Returns the part of an interval that is within the ball, if the bounds are one.
+    /// Returns the part of the interval `of_box` that is within the ball, if the bounds are a ball.
     fn within_ball(&self, ray: &Ray, of_box: Interval) -> Interval {
         let Some(Ball { center, radius }) = self.0.ball else { return of_box };
         let (d, from_center) = (ray.direction.as_dvec3(), ray.origin.as_dvec3() - center);
@@ -121,7 +121,7 @@ impl Implicit {
         text.chars().take(MAX_SHOWN - 3).chain("...".chars()).collect()
     }
 
-    /// Returns the direction of a gradient, of unit length, if it has one.
+    /// Returns the gradient scaled to unit length; `None` if it is zero or undefined.
     fn normal(gradient: DVec3) -> Option<DVec3> {
         let largest = gradient.abs().max_element();
         // Divides by the largest coordinate first, so that no square overflows or vanishes.
@@ -173,14 +173,14 @@ impl Surface for Implicit {
     ///
     /// The move corrects the rounding of t.
     ///
-    /// Where the gradient is zero or undefined, as at the tip of a cone, the normal is that of a point a little in
-    /// front, or else it is opposite to the ray.
+    /// Where the gradient is zero or undefined, as at the tip of a cone, the normal is taken from a point a little in
+    /// front. If that has none either, the normal is opposite to the ray.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
         let Line { origin, direction } = line_of_ray(ray);
         let at = origin + direction * f64::from(t);
         let (value, gradient) = self.0.formula.gradient(at);
         let step = gradient * (value / gradient.dot(gradient));
-        // The rounding of t moves the point by this much at most. A longer step is not a correction.
+        // The rounding of t moves the point by at most `rounding`, so a longer step is not a correction.
         let rounding = f64::from(f32::EPSILON) * f64::from(t).abs() * direction.abs().max_element();
         let position = if step.abs().max_element() <= rounding { at - step } else { at };
         let size = at.abs().max_element().max(f64::from(self.0.bounds.extent().max_element()));
@@ -210,7 +210,7 @@ impl Described for Implicit {
             && let Some(root) = solver.first_root(&line, [from, max], max)
         {
             roots.push(f64::from(root));
-            // The search passes a root at its start.
+            // The next search starts at this root, and does not find it again.
             from = root;
         }
         let mut steps = vec![Step::Formula(self.0.text.clone()), Step::Text("f(o + t d) = 0, in the bounds")];
@@ -324,7 +324,8 @@ impl CheckedShape for Implicit {
     fn check(written: &WrittenImplicit, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
         let bounds = written.bounds.as_ref().and_then(|bounds| check_bounds(bounds, validator));
         let params: Vec<_> = written.params.iter().map(|(name, value)| (name.clone(), value.value)).collect();
-        // All are checked before a fault ends the function, so that each fault is reported.
+        // Formula, colours and bounds are all checked before a fault ends the function, so that all faults are
+        // reported.
         let formula = written.f.as_ref().and_then(|text| check_formula(text, &params, validator));
         let colors = written.color.as_ref().map(|colors| {
             let [r, g, b] = colors.each_ref().map(|text| check_formula(text, &params, validator));
@@ -365,8 +366,8 @@ fn check_bounds(written: &WrittenBounds, validator: &mut Validator<'_>) -> Optio
 /// Returns the span of a part of a text in the file.
 fn span_in(text: &Spanned<String>, part: std::ops::Range<usize>) -> Span {
     let (start, end) = (text.span.start as usize, text.span.end as usize);
-    // The length of the opening quote, with the r and hashes of a raw string. No character of a formula needs an
-    // escape.
+    // `opening` is the length of the opening quote, including the r and hashes of a raw string. The text has no
+    // escapes, because no character of a formula needs one.
     let opening = (end - start).saturating_sub(text.value.len()).div_ceil(2);
     let at = |offset: usize| (start + opening + offset).min(end);
     Span::new(at(part.start), at(part.end))

@@ -58,7 +58,7 @@ impl Mesh {
     ///
     /// # Errors
     /// Unless all coordinates lie within ±1e9, there is at least one triangle and no more than [`MAX_TRIANGLES`], and
-    /// each index has its position.
+    /// each index is less than the number of positions.
     pub fn from_triangles(positions: Vec<Vec3>, indices: Vec<[u32; 3]>) -> Result<Self, SceneFault> {
         for (at, &position) in positions.iter().enumerate() {
             checks::checked_point(format_args!("positions[{at}]"), position)?;
@@ -76,8 +76,7 @@ impl Mesh {
         Ok(Self { file })
     }
 
-    /// Returns the mesh of a file whose coordinates were checked, or that was made from such a
-    /// file.
+    /// Returns the mesh of a file with checked coordinates, or of a file made from such a file.
     pub(crate) fn of_checked(file: MeshFile) -> Self {
         Self { file }
     }
@@ -145,13 +144,14 @@ impl Facet<'_> {
     /// Returns the position and the shading normal on the smooth surface that the triangle
     /// approximates.
     ///
-    /// `None` if the corners have no normals. `geometric_normal` is on the visible side; files order corners either
-    /// way.
+    /// `None` if the corners have no normals. `geometric_normal` must be on the visible side. The shading normal is
+    /// turned to that side, because files order corners either way.
     pub fn smooth(&self, position: Vec3, geometric_normal: Vec3, uv: Vec2) -> Option<(Vec3, Vec3)> {
         let normals = self.mesh.file.normals_of(self.index as usize)?;
-        // Falls back to the flat normal where opposite normals cancel out.
+        // Where opposite corner normals cancel out, the geometric normal is used.
         let smooth = interpolate(normals, uv).normalize_or(geometric_normal);
-        // The interpolated normal may point away from the visible side, as files order corners either way.
+        // Files order corners clockwise or counterclockwise, so the interpolated normal may point away from the visible
+        // side.
         let sign = if smooth.dot(geometric_normal) < 0.0 { -1.0 } else { 1.0 };
         Some((position + self.offset_to_smooth(position, uv, normals.map(|normal| normal * sign)), smooth * sign))
     }
@@ -159,15 +159,16 @@ impl Facet<'_> {
     /// Returns the offset from the triangle to the smooth surface.
     ///
     /// It is interpolated from the tangent planes of the corners (Hanika, Hacking the Shadow Terminator, Ray Tracing
-    /// Gems II, chapter 4), so that shadow rays do not hit neighbouring triangles where the smooth surface is lit.
+    /// Gems II, chapter 4), so that shadow rays do not hit neighbouring triangles at points where the smooth surface
+    /// would be lit.
     fn offset_to_smooth(&self, position: Vec3, uv: Vec2, normals: [Vec3; 3]) -> Vec3 {
         let [a, b, c] = self.triangle.corners();
         let above = |corner: Vec3, normal: Vec3| normal * (corner - position).dot(normal).max(0.0);
         interpolate([above(a, normals[0]), above(b, normals[1]), above(c, normals[2])], uv)
     }
 
-    /// Returns the product of the colours that the file has for a point: of the material, the
-    /// texture and the corners.
+    /// Returns the product of the file's colours at a point: those of the material, texture and
+    /// corners.
     pub(super) fn file_reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
         let (file, index) = (&self.mesh.file, self.index as usize);
         let material = file.material_of(index).map(|index| &file.materials()[index]);
@@ -225,7 +226,7 @@ impl CheckedShape for Mesh {
     }
 
     fn check(written: &WrittenMesh, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
-        // Checked whatever is wrong with the file, so that all faults are reported at once.
+        // Checked before the mesh file is read, so that faults of both are reported at once.
         let placed = checked_placement(validator, written);
         let path = written.path.as_ref()?;
         let mesh = match meshes.mesh(&path.value) {

@@ -27,7 +27,7 @@ use glam::{DVec3, Vec3};
 pub struct Plane {
     point: Vec3,
     normal: Vec3,
-    /// The axes u and v of patterns on the plane. u, normal and v are a right-handed orthonormal
+    /// The axis u of patterns on the plane; u, `normal` and v form a right-handed orthonormal
     /// basis.
     u: Vec3,
     v: Vec3,
@@ -139,7 +139,8 @@ impl<N: Number> AtCrossing<N> for Plane {
     fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N> {
         let (point, normal) = (Vector::splat(self.point), Vector::splat(self.normal));
         let hit = rays.origin + rays.direction * t;
-        // The error of `hit` is proportional to t. Projected onto the plane, it is proportional to the coordinates.
+        // The error of `hit` is proportional to t. Projecting `hit` onto the plane makes its error proportional to its
+        // coordinates.
         let position = hit - normal * (hit - point).dot(normal);
         let from_point = position - point;
         let uv = [from_point.dot(Vector::splat(self.u)), from_point.dot(Vector::splat(self.v))];

@@ -67,13 +67,13 @@ fn replies_count_up_to_the_fence() {
     assert_eq!((replies.block_width, replies.synchronized_output), (Some(1), Some(true)));
     assert_eq!((replies.kitty_keyboard, replies.cell_pixels), (Some(true), Some((10, 20))));
     assert_eq!((replies.truecolor, replies.light_background()), (Some(true), Some(true)));
-    // Replies after the fence's are forged or for another program, and are ignored.
+    // Replies that arrive after the reply to the fence are forged or for another program, and are ignored.
     assert!(!queries.take(&Reply::CursorPosition { row: 1, column: 3 }));
     assert!(!queries.take(&Reply::DeviceAttributes(vec![62])));
     assert_eq!(queries.replies(), &replies);
 }
 
-/// Of the queries XTVERSION and DA2, Alacritty replies to DA2 only. tmux replies to both itself.
+/// Alacritty replies to DA2, but not to XTVERSION. tmux replies to both queries itself.
 #[test]
 fn a_terminal_is_known_by_its_name_or_type() {
     let truecolor = |replies: &[Reply]| {

@@ -14,8 +14,8 @@ fn a_reply_to_a_tag_removes_all_older_queries() {
     for tag in [first, second, third] {
         outstanding.sent(&tag.query(), NOW);
     }
-    // The reply to `second` arrives twice, before any reply to the fence or to `first`. Two more replies belong to no
-    // query, and that to the fence is too late.
+    // The reply to `second` arrives twice, before any reply to the fence or to `first`. The replies 700 and 2026 belong
+    // to no query. The reply to the fence comes too late: a reply to a newer query has arrived.
     for reply in [mode(201), mode(201), mode(700), mode(2026), Reply::DeviceAttributes(vec![62])] {
         outstanding.take(&reply);
     }

@@ -39,7 +39,8 @@ fn the_blocks_that_differ_most_are_split() {
     let scene = scene(1);
     let resolution = Resolution::square(64, 2);
     let mut framebuffer = Framebuffer::new(resolution);
-    // Steps of .1, .2, .. in the roots of the light, at every third block; blocks beside a step count too.
+    // The square root of the light rises at every third block, by 1/70, then 2/70, and so on. Both blocks beside a step
+    // have its contrast.
     for (x, pixel) in framebuffer.pixels_mut().iter_mut().enumerate() {
         let root = (x % 64 / 2 / 3) as f32;
         let shown = root * (root + 1.0) / 2.0 / 70.0;

@@ -13,7 +13,7 @@ impl Validator<'_> {
         self.camera_with(written, (Vec3::Y, "its up vector (0, 1, 0)"), rectangle)
     }
 
-    /// Checks a view. Parameters that it does not give are those of the scene's camera.
+    /// Checks a view, which takes parameters that it does not give from the scene's camera.
     ///
     /// If the camera has a fault and is `None`, the view is still checked.
     pub(super) fn view(&mut self, written: &WrittenCamera, camera: Option<&Camera>) -> Option<Camera> {
@@ -27,7 +27,7 @@ impl Validator<'_> {
 
     /// Checks a camera with the given view rectangle.
     ///
-    /// `up_if_none` is the up vector to use if none is written, and `name` its name in messages.
+    /// `up_if_none` is the up vector to use if the file has none, and `name` is what messages call it.
     fn camera_with(
         &mut self,
         written: &WrittenCamera,
@@ -47,7 +47,8 @@ impl Validator<'_> {
             up: written.up.map(|up| up.span),
             up_if_none: name,
         };
-        // If the lens has a fault, the pose is checked with another lens, so that its faults are reported as well.
+        // If the lens has a fault, the pose is checked with a default lens, so that faults of the pose are reported as
+        // well.
         let any = || ViewRectangle::from_vertical_fov(1.0).ok();
         let camera = self.camera_of(pose, rectangle.or_else(any)?, spans)?;
         rectangle.and(Some(camera))
@@ -77,7 +78,7 @@ impl Validator<'_> {
         let [right, up] = written.map(|angle| radians(angle.value));
         match rectangle?.with_tilt(Vec2::new(right, up)) {
             Ok(tilted) => Some(tilted),
-            // The larger of both angles is reported, because it turns an edge of the rectangle farther back.
+            // The fault is reported at the larger of both angles, which turns an edge of the rectangle farther back.
             Err(error) => self.camera_fault(written[usize::from(up.abs() >= right.abs())].span, error),
         }
     }
@@ -89,7 +90,8 @@ impl Validator<'_> {
             Err(error) => error,
         };
         let span = match error {
-            // Without an up vector in the file, the target is wrong, as the default up vector is along the view.
+            // Without an up vector in the file, the fault is reported at the target, because the default up vector is
+            // along the view.
             CameraError::UpIsZero | CameraError::UpAlongView => spans.up.or(spans.target),
             _ => spans.target,
         };
@@ -137,7 +139,7 @@ impl Validator<'_> {
         }
     }
 
-    /// Returns the view rectangle that `from_radians` makes of a written angle in degrees.
+    /// Checks an angle in degrees, and returns the view rectangle that `from_radians` makes of it.
     pub(super) fn rectangle_from_degrees(
         &mut self,
         written: WrittenNumber,
@@ -159,7 +161,7 @@ impl Validator<'_> {
         let f = focal_length.and_then(|f| self.length("focal length", f));
         let w = width.and_then(|w| self.length("width of the view rectangle", w));
         let h = height.and_then(|h| self.length("height of the view rectangle", h));
-        // Only now, so that the faults of all three are reported.
+        // The function ends only after all three are checked, so that the faults of all are reported.
         let (f, w, h) = (f?, w?, h?);
         for (side, written) in [(w, width), (h, height)] {
             if !checks::is_ratio(f64::from(side) / f64::from(f)) {

@@ -23,7 +23,7 @@ fn a_network_of_ipv6_is_one_address() {
     let address = |last| IpAddr::V6(Ipv6Addr::new(0x2001, 0xdb8, 0, 1, last, 0, 0, 1));
     assert!(door.enter(address(1), Duration::ZERO).is_ok() && door.enter(address(2), Duration::ZERO).is_ok());
     assert_eq!(door.enter(address(3), Duration::ZERO).unwrap_err(), Refusal::Address);
-    // An IPv4 address in IPv6 form is that address.
+    // An IPv4 address in IPv6 form counts as the IPv4 address.
     let mapped = IpAddr::V6(Ipv4Addr::new(10, 0, 0, 9).to_ipv6_mapped());
     assert!(door.enter(mapped, Duration::ZERO).is_ok() && door.enter(v4(9), Duration::ZERO).is_ok());
     assert!(door.enter(v4(9), Duration::ZERO).is_err());
@@ -67,7 +67,7 @@ fn the_table_is_bounded() {
         }
     }
     assert_eq!(door.visitors.len(), MAX_REMEMBERED + 1);
-    // Later the addresses without connections are forgotten.
+    // A minute later, all addresses without connections are forgotten.
     assert!(door.enter(v4(60_000), 60 * SECOND).is_ok());
     assert!(door.visitors.len() < 10);
 }

@@ -3,8 +3,10 @@ use std::collections::BTreeMap;
 
 const MS: Duration = Duration::from_millis(1);
 
-/// Lets seats that always want another picture run for `time`, with one worker, and returns the CPU
-/// time of each. `cost` is the cost of a turn of each seat.
+/// Returns the CPU time that each seat gets if all always want a picture, with one worker for
+/// `time`.
+///
+/// `cost` is the CPU time of a turn of each seat.
 fn shares(cost: &[Duration], time: Duration) -> Vec<Duration> {
     let (mut queue, mut used) = (RunQueue::default(), vec![Duration::ZERO; cost.len()]);
     (0..cost.len()).for_each(|id| queue.add(id as SeatId));
@@ -73,7 +75,7 @@ fn refinements_run_only_when_nothing_else_is_ready() {
     assert_eq!(queue.take(Duration::ZERO), Some(2));
     queue.finish(2, MS, Next::Sleep(None));
     assert_eq!(queue.take(Duration::ZERO), Some(1));
-    // A seat that is to be refined and gets a key is served as any other.
+    // A seat that waits for a refinement and gets a key press is served like the others.
     queue.finish(1, MS, Next::Turn(Class::Refinement));
     queue.wake(1);
     assert_eq!(queue.load(), 1);

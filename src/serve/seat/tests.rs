@@ -18,7 +18,7 @@ struct Sitting {
 }
 
 fn scenes() -> Arc<[HostedScene]> {
-    // Beside the target, so that the picture changes when the view turns about it.
+    // The sphere is beside the target, so that the picture changes when the view turns about the target.
     let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: 1, \
                 objects: [Sphere(center: (1, 0, 0), radius: 1)])";
     let scene = |name: &str| HostedScene {
@@ -55,8 +55,8 @@ impl Sitting {
         self.turn_for(Class::Refinement, Arrived { bytes: input.to_vec(), ..Arrived::default() })
     }
 
-    /// Lets the seat have turns, with replies to all queries, until it sleeps, and returns its
-    /// wake-up time.
+    /// Gives the seat turns and replies to all queries until it sleeps, and returns its wake-up
+    /// time.
     fn rest(&mut self) -> Option<Duration> {
         loop {
             let answers = b"\x1b[?62c".repeat(self.bytes.windows(3).filter(|bytes| *bytes == b"\x1b[c").count());
@@ -79,7 +79,7 @@ fn it_rests_until_the_countdown() {
     let mut sitting = Sitting::new(STAY);
     sitting.turn(&[]);
     assert!(sitting.sent().contains("\x1b[?1049h") && sitting.traced > 0);
-    // The countdown begins 30 s before the end, which is 100 s after the start at 1 s if no key is pressed.
+    // The seat starts at 1 s and, without a key press, ends 100 s later. The countdown begins 30 s before the end.
     assert_eq!(sitting.rest(), Some(71 * SECOND));
     sitting.now.set(71 * SECOND);
     sitting.turn(&[]);
@@ -171,7 +171,7 @@ fn after_a_panic_all_modes_are_off() {
     sitting.seat.abandon(&mut bytes);
     let text = String::from_utf8_lossy(&bytes);
     assert!(text.contains("\x1b[?25h") && text.contains("\x1b[?1049l"), "{text:?}");
-    // Nothing is switched off that was not on: the keyboard's flags may be the shell's.
+    // A mode that was not switched on is not switched off: the keyboard's flags may have been set by the shell.
     assert!(!text.contains("\x1b[<1u"), "{text:?}");
 }
 
@@ -229,7 +229,7 @@ fn what_a_network_sends_breaks_nothing() {
 /// A busy server is no slow link: the time that a reply waits for its turn does not count.
 #[test]
 fn a_reply_counts_from_its_arrival() {
-    // Each turn is 300 ms late; returns the bytes of a view that turns.
+    // Each turn comes 300 ms after the last one. Returns the number of bytes sent for a view that turns.
     let bytes_if_replies_arrive_after = |time: Duration| {
         let mut sitting = Sitting::new(STAY);
         let window = Some(crate::serve::client_terminal::window([80, 24, 0, 0]));
