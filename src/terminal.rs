@@ -194,7 +194,8 @@ impl Terminal {
             // readable.
             Err(rustix::io::Errno::INTR) => Readable::default(),
             Err(error) => return Err(error.into()),
-            // Keys may come from another terminal than that of the output, whose hang-up is noticed only here.
+            // Keys may come from another terminal than the output's, so only this check notices that the output's
+            // terminal has hung up.
             Ok(_) if fds[2].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL) => {
                 return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the terminal is gone"));
             }

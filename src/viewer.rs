@@ -115,7 +115,7 @@ const FIRST_REFINEMENT: Duration = Duration::from_millis(4);
 pub(crate) enum Request {
     /// Leave the live view: the user quits.
     Leave,
-    /// Stop the job, as Ctrl-Z does.
+    /// Stop the process group, as Ctrl-Z does.
     Suspend,
     /// Switch to the scene this many places further on in the list of scenes; negative numbers go
     /// back.
@@ -160,7 +160,7 @@ pub(crate) struct Viewer {
     receiver: Receiver,
     scenes: SceneHistory,
     eye: Eye,
-    /// The time of the scene.
+    /// The playback of the scene: its own time, which the user can pause.
     playback: Playback,
     /// Which maps the picture shows, and how they are arranged.
     layout: ViewLayout,
@@ -223,7 +223,7 @@ impl Viewer {
     /// While the welcome is shown, the note is in the row above it.
     fn note_few_colors(&mut self) {
         let colors = self.display.capabilities().cell_mode.colors;
-        // A reply to come may still report truecolor.
+        // An outstanding reply may still report truecolor.
         if self.display.queries().is_open() {
             return;
         }
@@ -308,15 +308,15 @@ impl Viewer {
     /// The camera is where the user left it when the scene was shown last, unless the scene's own camera has changed
     /// since then; otherwise it is the scene's own camera.
     pub(crate) fn show(&mut self, scene: Scene, index: usize, orbits: bool) {
-        // The progress panel goes with the first frame of the scene: drawing the screen once more without it would
-        // delay that frame.
+        // The progress panel disappears with the first frame of the scene: to draw the screen without the panel before
+        // would delay that frame.
         self.screen.close_quietly::<ProgressPanel>();
         self.screen.close::<ErrorPanel>();
         self.open_scene(scene, index, orbits);
     }
 
     fn open_scene(&mut self, scene: Scene, index: usize, orbits: bool) {
-        // The cameras of the view from outside belong to the scene before.
+        // The cameras of the view from outside belong to the previous scene.
         self.end_outside();
         let (before, shown) = (self.scenes.shown(), scene.clone());
         for warning in scene.darkness().map(str::to_owned).into_iter().chain(scene.invisible_formulas()) {
@@ -331,19 +331,19 @@ impl Viewer {
             let name = self.names.get(index).cloned().unwrap_or_default();
             self.screen.open(Metadata::for_scene(&scene, name));
         }
-        // The panel of both orders takes the place of the caption.
+        // The panel that compares image order and object order takes the place of the caption.
         let has_caption = self.captions && self.screen.get::<OrdersPanel>().is_none();
         let caption = has_caption.then(|| self.caption(&scene, index)).flatten();
         self.screen.set(caption);
         if let Some(view) = self.scenes.show(scene, index, orbits) {
             self.playback = Playback::default();
             let left = self.eye.open(view);
-            // A scene that is loaded again was not left.
+            // A scene that is only reloaded (`before` equals `index`) has not been left.
             if let Some((before, left)) = before.zip(left).filter(|(before, _)| *before != index) {
                 self.scenes.record_left(before, left);
             }
         }
-        // A scene that is loaded again goes on at its time.
+        // A reloaded scene goes on from its current time.
         self.playback.start(shown.moves() && !self.options.reduced_motion, self.now);
         self.screen.set_name(self.names.get(index).map_or("", String::as_str));
         // The eye needs the scene even if the view is kept, because a reloaded file may contain other views.
@@ -351,7 +351,7 @@ impl Viewer {
     }
 
     fn set_outside(&mut self, outside: Outside) {
-        // From behind a wall, the second eye sees the tracer as well.
+        // The second eye may pass through walls: from behind one it still sees the lines of the first camera.
         self.eye.set_passes_surfaces(matches!(outside, Outside::MovesSecond { .. }));
         let has_changed = self.outside != outside;
         self.outside = outside;
@@ -437,7 +437,7 @@ impl Viewer {
     pub(crate) fn next_step(&mut self, busy: DriverState, now: Duration) -> Step {
         self.set_time(now);
         self.playback.advance(now);
-        // The surfaces stop the eye where they are now.
+        // Gives the eye the scene at its current time, because a moving surface stops the eye where the surface is now.
         if let Some(scene) = self.scene().filter(|_| self.playback.moved_until().is_some()) {
             self.eye.set_scene(&scene);
         }
@@ -454,7 +454,7 @@ impl Viewer {
             Action::Draw => Step::Draw,
             Action::Trace => self.begin_new_view(),
             Action::Refine => self.begin_refinement(),
-            // An incomplete escape sequence needs a wake-up of its own: no bytes may follow.
+            // An incomplete escape sequence needs a wake-up of its own, because its other bytes may never arrive.
             Action::Wait(until) => Step::Wait(
                 until.into_iter().chain(self.receiver.escape_due(now)).chain(fades_at).chain(builds_at).min(),
             ),
@@ -504,7 +504,7 @@ impl Viewer {
         Step::Trace(Vec::new(), Job { scene, shot, sampling, refines: true })
     }
 
-    /// Returns the shown scene at its time, with its lights as moved by the user.
+    /// Returns the shown scene at its current time, with its lights as moved by the user.
     fn scene(&self) -> Option<Scene> {
         let seconds = self.playback.time().as_secs_f64();
         self.scenes.lights().map(|lights| lights.scene().clone().at_time(seconds))
@@ -555,9 +555,10 @@ impl Viewer {
         if bytes.is_empty() {
             return;
         }
-        // A query goes before refinements at rest too: a frame's round trip includes the transmission of its bytes, but
-        // the rate is derived from the link's own. On a link of 50 KB/s and 200 ms, a refinement without such a query
-        // had a round trip of 267 ms, which was taken for the link's own, and the rate then seemed 562 KB/s.
+        // A query is sent before refinements at rest too. It measures the link's own round trip, from which the rate is
+        // derived; a frame's round trip includes the transmission of its bytes. On a link of 50 KB/s and 200 ms, a
+        // refinement without such a query had a round trip of 267 ms, which was taken for the link's own, and the rate
+        // then seemed to be 562 KB/s.
         let probe = self.pacing.probe(now);
         self.receiver.sent(&probe, now);
         self.pacing.send(bytes, now);

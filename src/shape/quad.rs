@@ -10,9 +10,9 @@ use crate::scene_text::Span;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector, values};
 use glam::{DVec3, Vec3};
 
-/// The part of an edge by which a quad is wider at each side.
-// Without it, a ray through a common edge of two quads could miss both, because each computes the point by itself. The
-// part is a million times smaller than that by which f32 rounds a point.
+/// The fraction of an edge's length by which a quad is extended beyond each of its sides.
+// Without the extension, a ray through a common edge of two quads could miss both, because each quad computes the
+// crossing by itself. The fraction is a million times smaller than the rounding of a point to f32.
 const OVERLAP: f64 = 1e-13;
 
 /// The least sine of the angle between the edges of a quad.
@@ -70,7 +70,7 @@ impl Exact for Quad {
         self.corner
     }
 
-    /// Returns axes along which the edges have their lengths.
+    /// Returns axes whose coordinates u and v grow from 0 to an edge's length along that edge.
     fn pattern_axes(&self, _: Vec3) -> Option<[Vec3; 2]> {
         let axis = |at: usize| (self.shares[at] * self.edges[at].length()).as_vec3();
         Some([axis(0), axis(1)])
@@ -137,7 +137,7 @@ impl CheckedShape for Quad {
         let edges = [a, b].map(|edge| validator.coordinates(edge));
         let (corner, [Some(a), Some(b)]) = (corner?, edges) else { return None };
         let area = a.cross(b).length();
-        // Also false for an edge of length 0.
+        // For an edge of length 0 the first comparison is false, so the area must also be at least 1e-18.
         if area < MIN_SINE * a.length() * b.length() || area < 1e-18 {
             let message = "the edges of a quad must have lengths and different directions; no ray would meet it";
             return validator.fault(span, || message.to_owned());

@@ -1,4 +1,4 @@
-//! A surface of any kind that is in the tree shared by several kinds.
+//! [`Scalar`]: a surface of any of the kinds that share one tree.
 
 #[cfg(all(test, unit_tests))]
 use super::Cube;
@@ -11,7 +11,7 @@ use crate::ray::{EightRays, Interval, Probe, Ray};
 /// Defines [`Scalar`] from the table of surfaces.
 macro_rules! scalar {
     (own {$($own:tt)*} shared {$($(#[$on:meta])* $surface:ident, $of:meta;)*}) => {
-        /// A surface that is in the tree that several kinds share.
+        /// A surface of any of the kinds that share one tree.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Scalar {
             $(#[$of] $(#[$on])* $surface($surface),)*

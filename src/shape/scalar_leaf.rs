@@ -8,14 +8,14 @@ use glam::Vec3;
 use std::array::from_fn;
 use std::sync::Arc;
 
-/// A leaf with up to eight surfaces of any type, each of which is tested against all its rays.
+/// A leaf with up to eight surfaces of any type, each tested against all rays of its lanes at once.
 ///
-/// A lane holds the index of a surface, so that a surface may be of any size.
+/// A lane holds only the index of its surface, so surfaces of any size in memory fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScalarLeaf<S> {
-    // Shared, because `splat` and `gather` make a leaf for each test.
+    // Reference-counted, because `splat` and `gather` return a new leaf with the same surfaces for each test.
     surfaces: Arc<[S]>,
-    /// The index of each lane's surface; an unused lane has an index without a surface.
+    /// The index of each lane's surface; an unused lane has an index beyond `surfaces`.
     lanes: [u8; LANES],
 }
 
@@ -38,7 +38,7 @@ impl<S> ScalarLeaf<S> {
     {
         let (mut crosses, mut t, mut left) = (0, F32x8::ZERO, rays.active);
         while let Some(first) = set_bits(left).next() {
-            // All lanes of one surface together.
+            // Tests all active lanes with the same surface together.
             let is_same = |lane: &usize| self.lanes[*lane] == self.lanes[first];
             rays.active = set_bits(left).filter(is_same).fold(0, |lanes, lane| lanes | 1 << lane);
             left &= !rays.active;
@@ -81,7 +81,7 @@ impl<S: Surface + Clone + Send + Sync> SoaLeaf for ScalarLeaf<S> {
         self.with_lanes(|lane| self.lanes[lanes.0[lane].to_bits() as usize % LANES])
     }
 
-    /// Combines lanes of two leaves, which takes a new leaf with the surfaces of both.
+    /// Returns a new leaf with the surface of `yes` where the mask is set, else that of `no`.
     #[inline(always)]
     fn select<N: Lanes>(mask: N::Mask, yes: Self, no: Self) -> Self {
         let bits = mask.bits();
@@ -103,7 +103,8 @@ impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
         self.first_crossing_until(rays, [min, N::splat(f32::MAX)])
     }
 
-    // Without inlining, each load and store is a call: for rays that miss the box that took most of the time.
+    // Without inlining, each load and store would be a call; these calls took most of the time of rays that miss the
+    // box.
     #[inline(always)]
     fn first_crossing_until(&self, rays: &Rays<N>, [min, max]: [N; 2]) -> Option<(N::Mask, N)> {
         let [enters, leaves] = crossed(Crossable::<N>::boxes(self), rays);

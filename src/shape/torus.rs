@@ -12,7 +12,7 @@ use quartic::Quartic;
 
 mod quartic;
 
-/// The rounding errors of the equation, relative to the powers of the size.
+/// Rounding error of a term of degree n in lengths, as a fraction of (outer radius)^n.
 const ROUNDING: f64 = 1e-14;
 
 /// A torus: all points x at the distance r from a circle of radius R around an axis a.
@@ -42,16 +42,16 @@ impl Torus {
         (height, (at - self.axis * height).length())
     }
 
-    /// Returns the quartic in the distance s along a line from its point next to the centre.
+    /// Returns the quartic in s, the distance along a line from its point o closest to the centre.
     ///
-    /// There |x|^2 = s^2 + |o|^2, so that s^3 has the factor 0.
+    /// A point x of the line has |x|^2 = s^2 + |o|^2, so the coefficient of s^3 is 0.
     fn quartic(&self, line: &Line) -> Quartic {
         let (squared, rim, tube) = (line.origin.dot(line.origin), self.radius, self.tube_radius);
         let (height, distance) = self.height_and_distance(line.origin);
         let rise = line.direction.dot(self.axis) / line.direction.length();
         let (four, outer) = (4.0 * rim * rim, (rim + tube) * (rim + tube));
-        // Both factors of f(o) are computed by themselves, because the thinner the tube is, the more digits their
-        // expanded product loses.
+        // The two factors of f(o) are computed separately: expanded, their product would lose digits, the more the
+        // thinner the tube.
         let factor = |rim: f64| (distance - rim) * (distance - rim) + height * height - tube * tube;
         Quartic {
             squares: 2.0 * (squared + rim * rim - tube * tube) - four * (1.0 - rise * rise),
@@ -82,7 +82,8 @@ impl Exact for Torus {
         let per_length = 1.0 / line.direction.length();
         let beyond_ring = squared + (self.radius - self.tube_radius) * (self.radius + self.tube_radius);
         for root in self.quartic(line).roots(reach) {
-            // The equation also holds where the tube of the opposite side meets this one, with the sign below.
+            // The squared equation also has roots inside the torus, where the tube of the opposite side reaches across
+            // the axis (if r > R). There |x|^2 + R^2 - r^2 is negative.
             if root * root + beyond_ring >= -ROUNDING * outer * outer {
                 crossings.push(Crossing { t: root * per_length, part: 0 });
             }
@@ -108,7 +109,7 @@ impl Described for Torus {
 
     /// Solves s^4 + P s^2 + Q s + C = 0.
     ///
-    /// s is the distance from the line's point next to the centre.
+    /// s is the distance along the line from its point closest to the centre.
     fn equation(&self, ray: &Ray) -> Equation {
         let (o, d) = (ray.origin.as_dvec3() - self.center, ray.direction.as_dvec3());
         let nearest = -o.dot(d) / d.dot(d);

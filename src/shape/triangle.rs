@@ -45,7 +45,7 @@ pub struct TriangleN<N>([Vector<N>; 3]);
 
 /// The crossing of a ray's line and a triangle's plane, not yet divided by the sum of the weights.
 ///
-/// So rays that miss need no division.
+/// Rays that miss thus need no division.
 #[derive(Clone, Copy)]
 struct Crossing<N> {
     /// The unnormalized barycentric weights of the corners; all have one sign.
@@ -81,8 +81,8 @@ impl<N: Number> TriangleN<N> {
 
     /// Computes [`crossing`](Self::crossing) for rays whose [`weight_error_bound`] is at most
     /// `error_bound`.
-    // If `error_bound` decides all lanes, the bounds of the rays, a third of the work of a test, are not computed: the
-    // bunny takes 0.95 of the time.
+    // If `error_bound` is enough to decide all lanes, the rays' own bounds, a third of the work of a test, are not
+    // computed: the bunny takes 0.95 times as long.
     #[inline(always)]
     fn crossing_with_bound(&self, rays: &Rays<N>, error_bound: N) -> Option<(N::Mask, Crossing<N>)> {
         let corners = self.sheared_corners(rays);
@@ -227,8 +227,8 @@ fn weight_error_bound<N: Number>([a, b, c]: [Vector<N>; 3], length: N) -> N {
     across * (across + along * length) * N::splat(24.0 / 16_777_216.0) + N::splat(f32::MIN_POSITIVE)
 }
 
-/// Returns the mask of lanes whose weights certainly have one sign, and that of lanes where two
-/// certainly differ.
+/// Returns the mask of lanes whose weights certainly have one sign, and the mask of lanes in which
+/// two weights certainly differ in sign.
 ///
 /// Only weights beyond the error bound have a certain sign.
 #[inline(always)]

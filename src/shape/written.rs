@@ -50,7 +50,7 @@ macro_rules! written {
 
             /// Reads the fields of the shape called `name`.
             ///
-            /// Also returns all fields of the node, among which are those of the object, such as its material.
+            /// Also returns all fields of the node, which include those of the object, such as its material.
             pub(crate) fn read<'n>(
                 name: &str,
                 reader: &mut NodeReader<'_>,
@@ -130,7 +130,8 @@ surfaces! { of_kind }
 
 /// Returns the message for a material with a pattern on a shape without coordinates.
 ///
-/// All names have an article. For the pattern's see [`PATTERN`](crate::material::Reflecting::PATTERN).
+/// `material` and `shape` are names with an article; `pattern` is the material's
+/// [`PATTERN`](crate::material::Reflecting::PATTERN).
 pub(crate) fn without_coordinates((material, pattern): (&str, &str), shape: &str) -> String {
     let wanted = text::any_of(&WrittenShape::with_coordinates());
     format!("{material} needs {wanted}, on which {pattern} are laid out; this is {shape}")

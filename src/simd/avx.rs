@@ -46,7 +46,7 @@ pub(super) trait MaskOps: LaneMask {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Register<M>(__m256, PhantomData<M>);
 
-// Always inlined: a function without AVX gets its vectors through memory.
+// `#[inline(always)]`, because a function that is compiled without AVX takes its vectors through memory.
 impl<M> Register<M> {
     #[inline(always)]
     fn of(numbers: __m256) -> Self {
@@ -54,7 +54,7 @@ impl<M> Register<M> {
     }
 }
 
-/// Calls an intrinsic of AVX2, or in the methods of its mask type one of AVX-512.
+/// Calls an intrinsic of AVX2, or, in the methods of AVX-512's mask type, one of AVX-512.
 macro_rules! avx {
     ($instruction:expr) => {
         // SAFETY: a `Register` or a mask exists only within `MaskOps::run`, whose caller guarantees the instruction
@@ -68,7 +68,7 @@ pub(super) use avx;
 /// Reduces eight registers to one, whose lanes are the minimum or maximum of each register.
 ///
 /// The reduction transposes: first neighbours are combined, then pairs, then halves.
-// Transposing takes three rounds. Loading the numbers one by one would take eight loads per register.
+// The transposition takes three rounds of shuffles. Loading the numbers one by one would take eight loads per register.
 macro_rules! of_each {
     ($choose:ident, $eights:expr) => {{
         let [a, b, c, d, e, f, g, h] = *$eights;
@@ -191,8 +191,8 @@ impl<M: MaskOps> Lanes for Register<M> {
     }
 
     #[inline(always)]
-    // Takes one permutation for all eight lanes. Lane by lane in memory, each load waited for a store, and surface
-    // points took a third longer.
+    // Takes one permutation for all eight lanes. Gathered lane by lane through memory, each load waited for a store,
+    // and computing surface points took a third longer.
     fn gather(self, lanes: Self) -> Self {
         Self::of(avx!(_mm256_permutevar8x32_ps(self.0, _mm256_castps_si256(lanes.0))))
     }

@@ -28,7 +28,8 @@ impl MaskOps for Mask256 {
     unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output {
         #[inline(never)]
         #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
-        // The only function that is compiled with these features. It must not be inlined into a caller without them.
+        // Only this function, with everything inlined into it, is compiled with these target features. It must not be
+        // inlined into a caller without them.
         fn compiled_for_avx2<K: SimdKernel>(kernel: K) -> K::Output {
             kernel.run::<Register<Mask256>>()
         }
@@ -53,7 +54,7 @@ impl MaskOps for Mask256 {
 
     #[inline(always)]
     fn from_bits(bits: u32) -> Self {
-        // Lane n keeps bit n of `bits`, and is set if that bit is.
+        // Lane n extracts bit n of `bits`, and is set if that bit is 1.
         let each = avx!(_mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128));
         let own = avx!(_mm256_and_si256(_mm256_set1_epi32(bits.cast_signed()), each));
         Self(avx!(_mm256_castsi256_ps(_mm256_cmpeq_epi32(own, each))))

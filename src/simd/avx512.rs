@@ -33,7 +33,8 @@ impl MaskOps for Bitmask {
     unsafe fn run<K: SimdKernel>(kernel: K) -> K::Output {
         #[inline(never)]
         #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,bmi1,bmi2,lzcnt,popcnt")]
-        // The only function that is compiled with these features. It must not be inlined into a caller without them.
+        // Only this function, with everything inlined into it, is compiled with these target features. It must not be
+        // inlined into a caller without them.
         fn compiled_for_avx512<K: SimdKernel>(kernel: K) -> K::Output {
             kernel.run::<Register<Bitmask>>()
         }

@@ -62,13 +62,13 @@ fn apply_to_halves(a: [__m128; 2], b: [__m128; 2], instruction: impl Fn(__m128, 
 
 #[inline(always)]
 fn select(mask: __m128, yes: __m128, no: __m128) -> __m128 {
-    // The blend instruction came only with SSE4.1.
+    // SSE2 has no blend instruction; it came with SSE4.1.
     sse!(_mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no)))
 }
 
 /// Rounds down: truncates each number, and subtracts 1 where the result is above the number.
-// The instruction for it came only with SSE4.1. Numbers from 2^23 on, and NaN, are returned unchanged, as SSE2's
-// conversion to integers overflows at 2^31.
+// SSE2 has no instruction for rounding; it came with SSE4.1. Numbers from 2^23 on, and NaN, are returned unchanged, as
+// SSE2's conversion to integers overflows at 2^31.
 #[inline(always)]
 fn floor(number: __m128) -> __m128 {
     sse!({
@@ -205,7 +205,7 @@ impl Lanes for Registers {
 
     #[inline(always)]
     fn mask_from_bits(bits: u32) -> Masks {
-        // Lane n keeps bit n of `bits`, and is set if that bit is.
+        // Lane n extracts bit n of `bits`, and is set if that bit is 1.
         let has = |each| {
             sse!(_mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(bits.cast_signed()), each), each)))
         };

@@ -36,7 +36,8 @@ impl Modes {
         let mut raw = before.clone();
         raw.make_raw();
         self.before = Some(Box::new(before));
-        // Before the change, so that a panic in between restores the terminal, too.
+        // Set before raw mode is switched on, so that the message of a panic in between is kept until the terminal is
+        // restored.
         panics::set_held(true);
         termios::tcsetattr(keys, OptionalActions::Now, &raw)?;
         fault_injection::reach("raw mode")?;
@@ -87,7 +88,7 @@ impl Modes {
         }
         let deadline = Instant::now() + RESTORE_TIMEOUT;
         let is_drained = output.drain(deadline);
-        // A terminal that has stopped reading does not reply either.
+        // A terminal that has stopped reading does not reply, so its replies are not waited for.
         if let Some((receiver, now)) = receiver.filter(|_| is_drained) {
             let read = read_until_last_reply(keys, receiver, now, deadline);
             if let Some(typed) = &mut typed {

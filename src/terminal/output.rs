@@ -131,7 +131,7 @@ fn next_boundary(bytes: &[u8], index: usize) -> usize {
     end + bytes[end..].iter().take_while(is_continuation).count()
 }
 
-/// Returns the escape sequences among `bytes`, which begin outside of one.
+/// Returns the escape sequences in `bytes`, whose start must not lie inside a sequence.
 fn sequences(mut bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     std::iter::from_fn(move || {
         let start = bytes.iter().position(|&byte| byte == ESCAPE)?;
@@ -172,8 +172,8 @@ fn is_writable(file: &impl AsFd, timeout: Duration) -> bool {
     loop {
         let left = deadline.saturating_duration_since(Instant::now());
         match poll(&mut [PollFd::new(file, PollFlags::OUT)], Some(&timespec(left))) {
-            // A signal does not end the wait: while a window is resized there is a SIGWINCH every few milliseconds, and
-            // the error message would be lost.
+            // A signal does not end the wait. While a window is resized there is a SIGWINCH every few milliseconds; if
+            // one ended the wait, the terminal would seem blocked, and the error message would be lost.
             Err(rustix::io::Errno::INTR) => {}
             ready => return ready.is_ok_and(|ready| ready > 0),
         }
@@ -195,7 +195,7 @@ pub fn stderr_accepts_message() -> bool {
 /// the device belongs to another user (after `su`); `/dev/tty` then works if it is the terminal of this session.
 fn reopen_non_blocking(terminal: &File) -> Option<File> {
     let open = |name: &[u8]| {
-        // Without NOCTTY, opening might make it the controlling terminal of a session that has none.
+        // Without NOCTTY, the opened terminal might become the controlling terminal of a session that has none.
         let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits().try_into().ok()?;
         OpenOptions::new().write(true).custom_flags(flags).open(OsStr::from_bytes(name)).ok()
     };

@@ -51,7 +51,8 @@ const UNBLOCKED: &[Signal] = &[
     // The system does not allow blocking these signals.
     Signal::SIGKILL,
     Signal::SIGSTOP,
-    // These report faults of the program itself; the standard library reports a stack overflow from their handlers.
+    // These signals report faults of the program itself; the standard library reports a stack overflow from their
+    // handlers.
     Signal::SIGSEGV,
     Signal::SIGBUS,
     // The default action of these signals does not end the process.
@@ -79,7 +80,7 @@ const UNBLOCKED: &[Signal] = &[
 // program.
 const GROUP_SIGNAL_TIMEOUT: Duration = Duration::from_millis(100);
 
-/// Which processes [`Signals::stop`] stops.
+/// The processes that [`Signals::stop`] stops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StopTarget {
     /// Only this process.
@@ -103,7 +104,7 @@ impl Signals {
     /// If the operating system refuses.
     pub fn catch() -> io::Result<Self> {
         let (read, write) = UnixStream::pair()?;
-        // `drain` reads until the pipe is empty.
+        // Non-blocking, because `drain` reads until the pipe is empty.
         read.set_nonblocking(true)?;
         let ignored = ignored_signals();
         let deadly = Arc::new(AtomicUsize::new(0));
@@ -187,8 +188,9 @@ impl Signals {
         let stop = stop_signal();
         let _ = raise(Signal::SIGTSTP);
         if self.take_continued() {
-            // The shell has seen the rest of the group stop and has continued it already, so it would not continue this
-            // process after a stop now.
+            // The shell has seen the rest of the group stop and has already continued it; it would not continue this
+            // process if it stopped now. So SIGTSTP is taken from the pending signals instead, raised again in case
+            // SIGCONT has removed it.
             let _ = raise(Signal::SIGTSTP);
             let _ = stop.wait();
         } else {
@@ -289,7 +291,8 @@ fn signals_to_block() -> SigSet {
 
 /// An iterator over the signals pending for the process.
 ///
-/// Not by `sigwait`, because nix's version returns an enumeration without the real-time signals.
+/// Reads a signalfd instead of calling `sigwait`, because nix's `sigwait` returns an enum without the real-time
+/// signals.
 #[cfg(target_os = "linux")]
 struct PendingSignals(nix::sys::signalfd::SignalFd);
 
@@ -328,7 +331,7 @@ fn stop_signal() -> SigSet {
     SigSet::from_iter([Signal::SIGTSTP])
 }
 
-/// Runs `work` with all signals blocked, which threads started in it inherit.
+/// Runs `work` with all signals blocked in this thread and in the threads that `work` starts.
 ///
 /// So signals are delivered to the thread that installed the handlers, and after a stop the SIGCONT handler has run
 /// before that thread goes on.
@@ -336,7 +339,7 @@ pub fn without_signals<T>(work: impl FnOnce() -> T) -> T {
     with_blocked(&SigSet::all(), work)
 }
 
-/// Lowers the priority of this thread, and of those that it will start, below that of all others.
+/// Lowers the priority of this thread, and of threads that it starts, below that of all others.
 // Only Linux has priorities of threads: elsewhere the whole process would be slower. A failure does no harm.
 pub fn yield_to_other_threads() {
     #[cfg(target_os = "linux")]
@@ -345,9 +348,9 @@ pub fn yield_to_other_threads() {
 
 /// Stops the process group by SIGTTOU, and returns whether it could: `false` if SIGTTOU is ignored.
 ///
-/// The kernel does the same when a background process changes its terminal. But it restarts the interrupted call after
-/// each caught signal, and so would stop the process again before the signal is handled. The whole group is stopped,
-/// because a shell does not notice a job of which only one process stops.
+/// The kernel does the same when a background process changes its terminal. But the kernel restarts the interrupted
+/// call after each caught signal, and so would stop the process again before the program reacts to the signal. The
+/// whole group is stopped, because a shell does not notice a job of which only one process stops.
 pub(super) fn stop_for_output() -> bool {
     let is_stopping = !contains_signal(ignored_signals(), SIGTTOU);
     is_stopping && rustix::process::kill_current_process_group(rustix::process::Signal::TTOU).is_ok()
@@ -384,11 +387,11 @@ fn ignored_in(status: &str) -> u64 {
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
-/// Wakes the loop from another thread.
+/// A writing end of the wake pipe, with which another thread wakes the event loop.
 pub struct Waker(UnixStream);
 
 impl Waker {
-    /// Returns another writing end.
+    /// Returns another writing end of the wake pipe.
     ///
     /// # Errors
     /// If the operating system refuses.
@@ -408,10 +411,10 @@ impl Waker {
 ///
 /// Returns only if that fails.
 pub fn die_of(signal: i32) {
-    // The call does not return for signals that signal-hook knows to end a process.
+    // Ends the process if signal-hook knows the signal as one that ends a process. The lines below are for all others.
     let _ = signal_hook::low_level::emulate_default_handler(signal);
-    // All other signals are blocked. `raise` makes the signal pending for this thread, and unblocking delivers signals
-    // that are pending for the thread before those that are pending for the process.
+    // These other signals are blocked. `raise` makes the signal pending for this thread, and unblocking delivers
+    // signals that are pending for the thread before those that are pending for the process.
     let _ = signal_hook::low_level::raise(signal);
     let _ = signals_to_block().thread_unblock();
 }

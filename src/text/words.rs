@@ -41,11 +41,13 @@ pub fn closest<'w>(word: &str, among: impl IntoIterator<Item = &'w str>) -> Opti
         .map(|(_, known)| known)
 }
 
-/// Returns the edit distance of `written` from `known`; `None` if it is above a third of the
-/// letters of `written`, unless that is a part of the name.
+/// Returns the edit distance of `written` from `known`, or `None` if they are too different.
+///
+/// They are too different if the distance is more than a third of the letters of `written`, unless `written` is one of
+/// the parts between the underscores of `known`.
 fn misspelling_distance(written: &str, known: &str) -> Option<usize> {
     let distance = edit_distance(written, known);
-    // Parts of one or two letters occur in too many names.
+    // A `written` of one or two letters does not count as a part: too many names have such parts.
     let is_part = written.len() >= 3 && known.split('_').any(|part| part == written);
     let allowed = match written.chars().count() {
         // No differences are allowed in words of one or two letters: they would have too little in common.

@@ -43,8 +43,8 @@ where
     I: Iterator<Item: Send> + Send,
     T: Send,
 {
-    // Rayon cut the fifteen tiles of a small picture into four pieces at most: with two threads it took 1.46 ms instead
-    // of 1.34.
+    // Without `par_bridge`, rayon split the fifteen tiles of a small picture into at most four pieces: with two threads
+    // the picture took 1.46 ms instead of 1.34 ms.
     items.par_bridge().map_init(state, work).collect()
 }
 

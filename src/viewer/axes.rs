@@ -12,8 +12,7 @@ const REACH: f32 = 5.0;
 /// Number of cells that an axis is drawn with: dots, and the letter at its end.
 const POINTS: u16 = 4;
 
-/// The layer that draws the axes of the scene, or for a mesh file without a scene those of the
-/// file.
+/// The layer that draws the axes of the scene, or of a mesh file shown without a scene file.
 pub(super) struct Axes;
 
 impl Layer for Axes {

@@ -79,8 +79,9 @@ impl Caption {
     }
 }
 
-/// Returns the number of a caption's rows: an eighth of the screen, which covers no object that the
-/// picture is about, and at least three.
+/// Returns the number of a caption's rows: an eighth of the screen, but at least three.
+///
+/// An eighth covers no object that the picture is about.
 fn caption_rows(screen: Rect) -> usize {
     usize::from(screen.height / 8).max(3)
 }

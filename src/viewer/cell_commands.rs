@@ -4,7 +4,7 @@ use super::Viewer;
 use crate::capabilities::Glyphs;
 
 impl Viewer {
-    /// Shows the picture by the next kind of cells that the terminal's locale can encode.
+    /// Switches to the next kind of cells that the terminal's locale can encode.
     pub(super) fn change_glyphs(&mut self) {
         let (before, size) = (*self.display.capabilities(), self.size());
         let shown = before.cell_mode.glyphs;

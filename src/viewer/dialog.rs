@@ -61,7 +61,7 @@ impl Layer for Dialog {
 }
 
 impl Dialog {
-    /// Returns the mode whose bindings the keys have while the question is open.
+    /// Returns the mode of the keymap that is in force while the question is open.
     fn key_mode(&self) -> KeyMode {
         match self {
             Self::Export => KeyMode::Export,

@@ -36,7 +36,7 @@ impl Display {
         &self.queries
     }
 
-    /// Sets the kind of glyphs, as the user chooses it.
+    /// Sets the kind of glyphs that the user has chosen.
     pub(super) fn choose_glyphs(&mut self, glyphs: Glyphs) {
         self.hints.choose_glyphs(glyphs);
         self.conclude_capabilities();

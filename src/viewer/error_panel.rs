@@ -39,8 +39,8 @@ impl ErrorPanel {
         let mut lines = wrapped(&self.0.message, width);
         if let Some(excerpt) = &self.0.excerpt {
             let [_, caret] = excerpt;
-            // Both lines of the excerpt lose as many columns on the left as bring the caret into view: the source line
-            // may be long, and its start says nothing about the error.
+            // Both lines of the excerpt are cut on the left, just far enough to show the caret: the source line may be
+            // long, and its start says nothing about the error.
             let cut = caret.width().saturating_sub(width).min(caret.find('^').unwrap_or(0));
             lines.extend(excerpt.iter().map(|line| columns_of(line, cut, width)));
         }
@@ -53,7 +53,7 @@ impl ErrorPanel {
     /// Returns the panel's area, above the lowest `below` rows of the screen.
     fn area(&self, screen: Rect, below: u16) -> Rect {
         let lines = self.lines(text_columns(screen.width)).len() as u16;
-        // At least two thirds of a low screen stay with the picture.
+        // On a low screen the panel takes at most a third of the rows, and the picture keeps the rest.
         let height = lines.min(MAX_ERROR_ROWS).min(screen.height / 3);
         Rect { y: (screen.bottom() - height).saturating_sub(below), height, ..screen }
     }

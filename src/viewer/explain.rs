@@ -35,8 +35,7 @@ pub(super) struct ExplainPanel {
     resolution: Resolution,
     explanation: Explanation,
     inset: Inset,
-    /// Lines on how the shown pixel's colour differs from that of the explained ray, because it is
-    /// a mean of more rays.
+    /// Lines on how the pixel's colour, a mean of several rays, differs from the explained ray's.
     notes: Vec<String>,
     /// The shown page of the text, from 0.
     page: usize,
@@ -54,7 +53,8 @@ impl Layer for ExplainPanel {
     /// Updates the explanation for a frame, which may be of another view or size.
     fn take_frame(&mut self, frame: &Frame) {
         let (old, new) = (self.resolution, frame.resolution());
-        // A refinement leaves the explained ray as it is and changes only the pixel's mean, of more rays.
+        // A refinement leaves the explained ray as it is and changes only the pixel's colour, which becomes the mean of
+        // more rays.
         if frame.refines && old == new {
             self.notes = notes(frame, self.pixel, &self.explanation);
             return;

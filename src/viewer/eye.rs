@@ -31,7 +31,7 @@ pub(super) struct Eye {
     reduced_motion: bool,
     /// The shown scene, whose surfaces stop the eye.
     scene: Option<Scene>,
-    /// Whether surfaces do not stop the eye.
+    /// Whether the eye passes through surfaces.
     passes_surfaces: bool,
     /// The time at which a surface stopped the held keys; `None` once they are released.
     stopped_at: Option<Duration>,
@@ -99,7 +99,7 @@ impl Eye {
 
     /// Sets the scene whose surfaces stop the eye, and the views that its file stores.
     ///
-    /// The scene is not part of the view, because the views of scenes that were left are kept.
+    /// The scene is not stored in the view, because the views of all scenes that were left are kept.
     pub(super) fn set_scene(&mut self, scene: &Scene) {
         self.scene = Some(scene.clone());
         if let Some(view) = &mut self.view {
@@ -107,7 +107,7 @@ impl Eye {
         }
     }
 
-    /// Sets whether surfaces do not stop the eye, as that which sees the tracer from outside.
+    /// Sets whether the eye passes through surfaces, as the second eye of an outside view does.
     pub(super) fn set_passes_surfaces(&mut self, passes_surfaces: bool) {
         self.passes_surfaces = passes_surfaces;
     }
@@ -282,7 +282,9 @@ impl Eye {
         }
     }
 
-    /// Carries out the motion so far, then passes the key to it. A press ends a jump at its view.
+    /// Carries out the motion so far, then passes the key to it.
+    ///
+    /// A press ends a jump in progress at once, at the jump's final view.
     ///
     /// The motion of a tap never passes a surface of the scene, so that it neither sinks through a floor nor enters an
     /// object. A key that is held stops at a surface for [`PASSING_TIME`].
@@ -298,7 +300,7 @@ impl Eye {
         if key.kind == KeyEventKind::Press {
             self.end_jump();
         }
-        // Any movement key stops the turntable, which would otherwise fight against it.
+        // Any movement key stops the turntable, which would otherwise turn the eye at the same time.
         self.turntable &= key.kind == KeyEventKind::Release || !meant.is_some_and(|(command, _)| command.moves());
         self.motion.take_key(key, meant, now);
         if let (Some(scene), Some(view), false) = (&self.scene, &self.view, self.passes_surfaces) {
@@ -371,7 +373,7 @@ fn short_of_surface(scene: &Scene, view: &ViewState, moved: &Camera) -> Option<C
     let (origin, pose) = (view.camera.pose().eye, moved.pose());
     let way = pose.eye - origin;
     let t = (way != Vec3::ZERO).then(|| closest_hit(scene, &Ray { origin, direction: way }))??.t;
-    // To the margin in front of the surface, but not behind the start of the way.
+    // Moves the eye back to the margin in front of the surface, but not beyond the start of the way.
     let back = ((t + 1.0 - SURFACE_MARGIN).max(0.0) - 1.0) * way;
     let pose = Pose { eye: pose.eye + back, target: pose.target + back, ..pose };
     // An eye that orbits stays where it is: its target must not move.

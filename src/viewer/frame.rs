@@ -26,7 +26,7 @@ pub(crate) struct Shot {
     pub(crate) outside: Option<Camera>,
     pub(crate) resolution: Resolution,
     pub(crate) layout: ViewLayout,
-    /// Whether both orders build the picture, side by side.
+    /// Whether image order and object order build the picture side by side.
     pub(crate) orders: bool,
     /// Whether the glyphs of the cells show the geometry, which is then traced besides the picture.
     pub(crate) geometry: bool,
@@ -78,7 +78,7 @@ pub(crate) struct Frame {
     pub(crate) sampling: Sampling,
     /// The legends of the maps, from left to right; empty for the shaded picture alone.
     pub(crate) legends: Vec<String>,
-    /// Both orders of the picture; `None` unless the shot has them, and for a refinement.
+    /// The comparison of both orders; `None` unless `Shot::orders` is set, and for a refinement.
     pub(crate) orders: Option<Arc<Comparison>>,
     /// Whether this frame has the same shot as the frame before, with more samples.
     pub(crate) refines: bool,

@@ -44,8 +44,7 @@ pub(super) trait Layer: Any + Send {
 
     fn draw(&mut self, canvas: &mut Canvas<'_>);
 
-    /// Returns the mode whose bindings keys have while the layer is open on a screen of this size,
-    /// if it has one.
+    /// Returns the mode of the keymap that the layer adds while it is open on this screen, if any.
     fn mode(&self, _screen: Rect) -> Option<KeyMode> {
         None
     }
@@ -88,14 +87,14 @@ impl Layers {
         self.stack.iter().find_map(|layer| (layer.as_ref() as &dyn Any).downcast_ref())
     }
 
-    /// Returns the layer of a type, if open, for changes.
+    /// Returns a mutable reference to the layer of a type, if open.
     pub(super) fn get_mut<L: Layer>(&mut self) -> Option<&mut L> {
         self.stack.iter_mut().find_map(|layer| (layer.as_mut() as &mut dyn Any).downcast_mut())
     }
 
     /// Returns the modes of the keymap that are in force on a screen of this size, topmost first.
     ///
-    /// `movement_mode` is that of the movement keys, which comes after the modes of the layers.
+    /// `movement_mode`, the mode of the movement keys, comes after the modes of the layers.
     pub(super) fn active_modes(&self, screen: Rect, movement_mode: KeyMode) -> Vec<KeyMode> {
         // A question excludes the mode of the movement keys, so that a key that does not answer only dismisses it.
         if let Some(question) = self.stack.iter().find(|layer| layer.takes_all_keys()) {

@@ -70,11 +70,11 @@ const COSTS: &str = "1   4   16  64  256 1024";
 
 /// Replaces the names of the colours in the legend of the map `cost` by a bar of them.
 ///
-/// Two columns of the bar are a factor of two. Where 16 colours or none can be shown, the names stay.
+/// The number of tests doubles with every two columns of the bar. A terminal with 16 colours or none keeps the names.
 fn draw_cost_bar(colors: Colors, area: Rect, buffer: &mut Buffer) {
     let ink = |Srgb8 { r, g, b }: Srgb8| match colors {
         Colors::Truecolor => Some(Color::Rgb(r, g, b)),
-        // The nearest colour of the cube, whose levels are about 51 apart.
+        // The nearest colour of the palette's 6x6x6 cube, whose levels are about 51 apart.
         Colors::Indexed256 => {
             let [r, g, b] = [r, g, b].map(|channel| (u16::from(channel) + 25) / 51);
             Some(Color::Indexed((16 + 36 * r + 6 * g + b) as u8))

@@ -116,7 +116,7 @@ impl Viewer {
 fn nearest_light(lights: &[Light], camera: &Camera, pointer: Vec2, aspect_ratio: f32) -> Option<usize> {
     let away = |position: Vec3| {
         let place = camera.project(position, aspect_ratio);
-        // In heights of the picture along both axes, as the user sees distances.
+        // Measured in heights of the picture along both axes, so that distances are those that the user sees.
         place.map_or(f32::INFINITY, |place| ((place - pointer) * Vec2::new(aspect_ratio, 1.0)).length())
     };
     let lights = lights.iter().enumerate().filter_map(|(light, of)| Some((light, away(of.position()?))));

@@ -85,7 +85,7 @@ impl PictureOnScreen {
         };
         let [across, down] = [middle.x / towards.x.abs(), middle.y / towards.y.abs()];
         let distance = way.length();
-        // From here on one decimal would be rounded to 100.0.
+        // From 99.95 on, the distance is rounded to 100 or more, and is shown without a decimal.
         let distance = if distance < 99.95 { format!("{distance:.1}") } else { format!("{distance:.0}") };
         let text = match (across < down, towards.x < 0.0, towards.y < 0.0) {
             (true, true, _) => format!("< {distance}{behind}"),

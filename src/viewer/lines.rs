@@ -1,4 +1,4 @@
-//! Lines and letters of the scene's space over the picture, in dots finer than cells.
+//! Lines and letters at points of the scene, drawn over the picture in dots finer than cells.
 
 use super::frame::Frame;
 use super::layers::Canvas;
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 /// The number of Braille dots in a cell, across and down.
 const DOTS: Vec2 = Vec2::new(2.0, 4.0);
 
-/// The most dots of a line: those of a line across a screen of 2000 columns or 1000 rows.
+/// Limit on the dots of a line: enough for a line across a screen of 2000 columns or 1000 rows.
 const MAX_DOTS: f32 = 4000.0;
 
 /// Share of the way from the eye to a point within which a surface hides the point.
@@ -68,7 +68,7 @@ impl<'f> Plot<'f> {
         let (Some(start), Some(end)) = (self.place(from), self.place(to)) else { return };
         let Some([first, last]) = range_in_box([start, end], self.cells) else { return };
         let (eye, w) = (self.camera.pose().eye, self.camera.rectangle_basis().w);
-        // Even steps on the screen are even in the inverse of the depth.
+        // Perspective-correct interpolation: equal steps on the screen are equal steps in 1/depth.
         let [near, far] = [from, to].map(|point| 1.0 / (eye - point).dot(w));
         let count = ((last - first) * ((end - start) * DOTS).abs().max_element()).clamp(1.0, MAX_DOTS).ceil();
         for dot in 0..=count as u32 {
@@ -95,7 +95,8 @@ impl<'f> Plot<'f> {
     }
 
     fn dot(&mut self, place: Vec2, color: u8) {
-        // The bits of Braille, from the upper left: the three upper rows were numbered first.
+        // The bit of each Braille dot, by row and column from the upper left. Unicode numbers the three upper rows
+        // first.
         const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
         if place.cmplt(Vec2::ZERO).any() || place.cmpge(self.cells).any() {
             return;
@@ -170,12 +171,12 @@ pub(super) fn clipped_to_front(camera: &Camera, ends: [Vec3; 2]) -> Option<[Vec3
     depths.iter().any(|&depth| depth > near).then(|| [at_front(0), at_front(1)])
 }
 
-/// Returns the shares of the way along a line within which it is in a box from (0, 0) to `size`.
+/// Returns the part of a line inside the box from (0, 0) to `size`, as two shares of its length.
 pub(super) fn range_in_box([from, to]: [Vec2; 2], size: Vec2) -> Option<[f32; 2]> {
     let way = to - from;
     let (mut first, mut last) = (0.0_f32, 1.0_f32);
     for (start, way, end) in [(from.x, way.x, size.x), (from.y, way.y, size.y)] {
-        // A line along two sides of the box crosses neither.
+        // A line parallel to two sides of the box never crosses them: it is between them or outside everywhere.
         if way == 0.0 && !(0.0..=end).contains(&start) {
             return None;
         }

@@ -98,7 +98,7 @@ impl Hiding {
 
     /// Returns the reason if only the back of `object` is visible.
     ///
-    /// `None` if the eye is outside the object's bounding box. The object is then visible after all: a mesh whose
+    /// `None` if the eye is outside the object's bounding box. The object then counts as visible: it is a mesh whose
     /// triangles have the opposite winding order.
     fn from_visible_back(scene: &Scene, Pose { eye, .. }: Pose, object: u32) -> Option<Self> {
         let of = &scene.objects()[object as usize];

@@ -56,11 +56,11 @@ impl Viewer {
             Gesture::Release => {}
             Gesture::DoubleClick if self.pointer.drag_target() == DragTarget::View => {
                 self.frame_object(self.pointer.object());
-                // The release that follows is not a click.
+                // Keeps the release that follows from counting as a click.
                 self.pointer.record_motion();
             }
-            // On the line, a light or the cursor, the second press of a double click acts like the first one: the
-            // view does not change.
+            // If the first press took hold of the line, a light or the cursor, the second press of a double click acts
+            // like the first one, and the view does not change.
             Gesture::DoubleClick => self.drag(at, at, Grip::Turn),
             Gesture::Wheel { at, notches } => self.wheel(at, notches),
         }

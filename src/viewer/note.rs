@@ -74,10 +74,9 @@ fn extended(area: Rect, legends: impl Iterator<Item = Rect>) -> Rect {
     Rect { width: ends.chain([area.right()]).max().unwrap_or(0) - area.x, ..area }
 }
 
-/// Returns the text without as many of its parts, which semicolons separate, as do not fit into
-/// `width` columns.
+/// Returns the text, shortened to `width` columns by leaving out parts between semicolons.
 ///
-/// The second part goes first, and the first one stays.
+/// The second part is left out first, then the third, and so on; the first one stays.
 fn shortened(text: &str, width: usize) -> String {
     let mut parts: Vec<_> = text.split("; ").collect();
     while parts.len() > 1 && parts.join("; ").width() > width {

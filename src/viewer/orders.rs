@@ -28,13 +28,13 @@ mod words;
 /// The colour of pixels that are not drawn yet.
 const EMPTY: Srgb8 = Srgb8::new(40, 42, 48);
 
-/// The colour of the pixel that is asked for its object.
+/// The colour of the pixel for which image order is looking for the visible object.
 const ASKED: Srgb8 = Srgb8::new(255, 208, 64);
 
-/// The panel with the words and figures of both orders, which builds their pictures.
+/// The panel that compares image order with object order, and builds their pictures step by step.
 pub(super) struct OrdersPanel {
     pace: Pace,
-    /// Both orders of the shown frame; `None` until it is traced.
+    /// The pictures of the shown frame as built so far; `None` until the frame is traced.
     build: Option<Build>,
 }
 
@@ -55,7 +55,7 @@ impl OrdersPanel {
         progress
     }
 
-    /// Returns the picture so far; `None` if it is that of the frame.
+    /// Returns the pictures as built so far; `None` if the frame's own picture is to be shown.
     pub(super) fn picture(&self, frame: &Frame) -> Option<Picture> {
         let build = self.build.as_ref().filter(|build| self.pace.tests() < build.comparison.total_tests())?;
         let [(_, left), (_, right)] = *frame.shot.layout.map_sizes(frame.resolution()) else { return None };
@@ -152,7 +152,7 @@ impl Viewer {
         self.screen.open(OrdersPanel::new(self.options.reduced_motion));
     }
 
-    /// Ends the comparison of both orders. Returns whether it was open.
+    /// Ends the comparison of image order with object order. Returns whether it was open.
     pub(super) fn close_orders(&mut self) -> bool {
         let is_open = self.screen.close::<OrdersPanel>().is_some();
         if is_open {
@@ -161,7 +161,7 @@ impl Viewer {
         is_open
     }
 
-    /// Changes the pace at which both orders build their pictures.
+    /// Changes the pace at which image order and object order build their pictures.
     pub(super) fn change_pace(&mut self, change: fn(&mut Pace)) {
         if let Some(panel) = self.screen.get_mut::<OrdersPanel>() {
             panel.change_pace(change);

@@ -115,15 +115,15 @@ impl Viewer {
         self.show_note(format!("{text}{explains}{hint}"));
     }
 
-    /// Returns the first pose of the second camera: beside the first one, which it sees.
+    /// Returns the initial second camera: beside the first one, which it sees.
     fn beside(&self, first: Camera) -> Camera {
         let Some(frame) = self.screen.frame() else { return first };
         camera_beside(&frame.scene, &first, 0.5 * self.resolution().aspect_ratio())
     }
 
-    /// Moves the eye back to the scene's first view, and a second eye beside the first camera.
+    /// Moves the eye back to the scene's own camera, or a second eye to its place beside the first.
     pub(super) fn reset_eye(&mut self) {
-        // In the scene's first view, the second camera would be where the first one is and not see it.
+        // At the scene's own camera, the second camera would be where the first one is, and would not see it.
         if let Outside::MovesSecond { first } = self.outside {
             let moved = self.beside(first);
             self.eye.change(self.now, |_, _| moved);
@@ -143,8 +143,9 @@ impl Viewer {
         self.screen.explain(|panel, frame| panel.move_to(frame, middle));
     }
 
-    /// Ends the view from outside, with the eye at the first camera. Returns whether there was one,
-    /// or vanishing points.
+    /// Ends the view from outside or with vanishing points. Returns whether there was one.
+    ///
+    /// The eye is then at the first camera.
     pub(super) fn end_outside(&mut self) -> bool {
         if let Outside::MovesSecond { first } = self.outside {
             self.eye.change(self.now, |_, _| first);
@@ -176,7 +177,7 @@ impl Viewer {
         }
     }
 
-    /// Returns the layout of the picture: the map twice while there are two cameras or two orders.
+    /// Returns the layout: the map twice for two cameras or for image order beside object order.
     pub(super) fn shown_layout(&self) -> ViewLayout {
         let is_twice = self.second_camera().is_some() || self.screen.get::<OrdersPanel>().is_some();
         if is_twice { self.layout.twice() } else { self.layout }
@@ -185,7 +186,7 @@ impl Viewer {
 
 /// Returns a camera that sees another one, its view rectangle and its target from the side.
 ///
-/// It is in front of a surface that is in the way, and may then not see all of them.
+/// If a surface is in the way, the camera is in front of it, and may then not see everything.
 fn camera_beside(scene: &Scene, camera: &Camera, aspect_ratio: f32) -> Camera {
     let (Pose { eye, target, up }, Basis { u, v, w }) = (camera.pose(), camera.basis());
     let distance = camera.target_distance();
@@ -198,7 +199,7 @@ fn camera_beside(scene: &Scene, camera: &Camera, aspect_ratio: f32) -> Camera {
     let from = middle + distance * (0.9 * u + 0.5 * v + 0.8 * w);
     let seen = Camera::look_at(from, middle).and_then(|seen| seen.with_up(up));
     let Ok(seen) = seen.map(|seen| seen.framing(&bounds, aspect_ratio)) else { return *camera };
-    // A wall between both eyes would hide the first one.
+    // A wall between the two eyes would hide the first one.
     let way = seen.pose().eye - eye;
     let t = closest_hit(scene, &Ray { origin: eye, direction: way }).map_or(1.0, |hit| (0.9 * hit.t).min(1.0));
     seen.with_pose(Pose { eye: eye + t * way, ..seen.pose() }).unwrap_or(seen)

@@ -30,7 +30,7 @@ impl Pacing {
         Self { link, quality: QualityControl::new(options.sampling), begun: None }
     }
 
-    /// Returns whether `shot` is that of the last frame begun.
+    /// Returns whether the last frame begun shows `shot`.
     pub(super) fn has_begun(&self, shot: &Shot) -> bool {
         self.begun.as_ref().is_some_and(|begun| begun.shot == *shot)
     }
@@ -47,8 +47,9 @@ impl Pacing {
         if before.as_ref().is_some_and(|before| !shot.takes_as_long_as(&before.shot)) {
             self.quality.forget_last();
         }
-        // On a slow link a frame begins when a reply arrives, and the link is idle while it is traced, so it gets few
-        // samples: of 50 KB/s, 81 to 84 % were used with as many samples as time allows, and 84.5 to 85.2 % with one.
+        // On a slow link a frame begins when a reply arrives, and the link is idle while the frame is traced, so the
+        // frame gets few samples. Of a link of 50 KB/s, frames used 81 to 84 % with as many samples as time allows, and
+        // 84.5 to 85.2 % with one per pixel.
         self.quality.for_new_view(before.is_some_and(|before| before.in_motion) && !self.link.is_slow())
     }
 
@@ -77,7 +78,7 @@ impl Pacing {
         self.link.min_frame_interval()
     }
 
-    /// Returns the time at which the link takes the next bytes, if no reply arrives before.
+    /// Returns the time from which more bytes may be sent, if no reply arrives before.
     pub(super) fn free_at(&self, now: Duration) -> Duration {
         self.link.free_at(now)
     }

@@ -1,19 +1,19 @@
-//! The time of a scene that moves.
+//! The time of a moving scene, which the user can pause.
 
 use super::Viewer;
 use std::time::Duration;
 
-/// The longest time between two frames that moves the scene.
-// The time for which the program is suspended does not count.
+/// Limit on the time by which a scene advances from one frame to the next.
+// Without the limit, the scene would jump ahead by the time for which the program was suspended.
 const MAX_STEP: Duration = Duration::from_secs(1);
 
-/// The time of the shown scene.
+/// The playback of the shown scene: its time, and whether it moves.
 #[derive(Debug, Default)]
 pub(super) struct Playback {
     time: Duration,
     /// The time of the viewer's clock up to which the scene has moved; `None` while it is still.
     moved_until: Option<Duration>,
-    /// Whether the user has paused it.
+    /// Whether the user has paused the scene.
     is_paused: bool,
 }
 
@@ -37,7 +37,7 @@ impl Playback {
         }
     }
 
-    /// Lets a scene that can move do so from `now` on, unless the user has paused it.
+    /// Starts the scene's motion at `now`, if the scene can move and the user has not paused it.
     pub(super) fn start(&mut self, can_move: bool, now: Duration) {
         self.moved_until = (can_move && !self.is_paused).then_some(now);
     }

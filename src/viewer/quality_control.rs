@@ -31,8 +31,8 @@ const INITIAL_COST_RATIOS: [f64; MAX_MOTION_LEVEL + 1] = [1.0, 4.0, 2.0, 3.0];
 const TRACING_SHARE: f64 = 0.75;
 /// A finer level is tried only if it is predicted to take at most this share of the time for
 /// tracing.
-// A share below 1 keeps the level from oscillating: a level that takes more is kept but not tried. The test
-// `no_level_flickers` covers all frame times up to 40 ms with a noise of a tenth.
+// A share below 1 keeps the level from oscillating: a level that takes more than this share is kept if it is in use,
+// but is not tried anew. The test `no_level_flickers` covers all frame times up to 40 ms with a noise of a tenth.
 const FINER_LEVEL_SHARE: f64 = 0.8;
 /// Number of frames in a row that must be fast enough for a finer level before it is tried.
 // An eighth of a second at 60 frames per second: a finer level this much later goes unnoticed, but an attempt that

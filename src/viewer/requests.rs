@@ -29,7 +29,7 @@ impl Viewer {
         }
     }
 
-    /// Requests to propose that the view is written into the scene's file.
+    /// Requests that the user is asked whether to write the view into the scene's file.
     pub(super) fn propose_view(&mut self) {
         self.requests.extend(self.first_camera().map(|camera| Request::ProposeView(camera.rounded())));
     }

@@ -110,7 +110,7 @@ impl Driver {
                 let size = Size::new(u16::from(next() % 70) + 1, u16::from(next() % 30) + 1);
                 self.viewer.resize(window(size)).expect("this takes little memory");
             }
-            // A quarter of a second at most, which is shorter than some timeouts and longer than others.
+            // Up to a quarter of a second passes, which is shorter than some timeouts and longer than others.
             2 => self.now += Duration::from_millis(u64::from(next())),
             3 => self.finish_job(next()),
             4 => self.is_sending = false,

@@ -28,8 +28,9 @@ struct Current {
 impl SceneHistory {
     /// Makes `scene` the shown one and returns the view that it starts from.
     ///
-    /// That is the view in which it was left, if its own camera has not changed since then, and otherwise its initial
-    /// view. `None` keeps the current view: the scene was shown already and is loaded again with the same own camera.
+    /// That is the view in which the scene was left, if the scene's own camera has not changed since then, and
+    /// otherwise its initial view. `None` keeps the current view: the scene was shown already and is loaded again with
+    /// the same own camera.
     pub(super) fn show(&mut self, scene: Scene, index: usize, orbits: bool) -> Option<ViewState> {
         let home = *scene.camera();
         let before = self.current.as_ref().map(|current| (current.index, current.home));

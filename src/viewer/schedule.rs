@@ -28,7 +28,7 @@ pub(crate) struct DriverState {
 /// Whether the last frame begun shows the wanted shot, and whether it can be refined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PictureState {
-    /// The wanted shot is another one than that of the last frame begun.
+    /// The wanted shot differs from the shot of the last frame begun.
     Stale,
     /// The last frame has the wanted shot and can be refined.
     Refinable,
@@ -50,7 +50,7 @@ pub(super) struct Facts {
     pub(super) moved_until: Option<Duration>,
     /// Least time between two frames.
     pub(super) min_frame_interval: Duration,
-    /// Time at which the link takes the next bytes.
+    /// Time from which more bytes may be sent on the link.
     pub(super) link_free_at: Duration,
     /// Whether the content of the screen has changed since it was drawn last.
     pub(super) is_changed: bool,
@@ -130,8 +130,8 @@ impl Facts {
         }
         let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + self.min_frame_interval);
         // If the view has changed, its frame is due a frame time after the last one was begun. If the eye is moving and
-        // its view has not changed yet, the next step waits until a frame time after `moved_until`, or the driver would
-        // loop without a pause.
+        // its view has not changed yet, the next step also waits until a frame time after `moved_until`; at once, the
+        // driver would loop without a pause.
         let at = if self.picture == PictureState::Stale {
             next(self.begun)
         } else {

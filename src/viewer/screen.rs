@@ -164,7 +164,7 @@ impl Screen {
 
     /// Closes the note if its time is over; otherwise returns the time at which it fades.
     pub(super) fn fade_note(&mut self, now: Duration) -> Option<Duration> {
-        // Quietly, because a look at the time is no change that would draw the screen.
+        // Uses `quietly`, because any other access for writing counts as a change, which draws the screen.
         let fades_at = self.content.quietly().layers.get_mut::<Note>()?.fades_at(now)?;
         if fades_at <= now {
             self.close::<Note>();
@@ -173,15 +173,16 @@ impl Screen {
         Some(fades_at)
     }
 
-    /// Returns the layer of a type, if open, for changes.
+    /// Returns a mutable reference to the layer of a type, if open.
     pub(super) fn get_mut<L: Layer>(&mut self) -> Option<&mut L> {
         // Checked first, because any access for writing counts as a change, which draws the screen.
         self.get::<L>()?;
         self.content.layers.get_mut()
     }
 
-    /// Lets both orders build their pictures up to `now`. Returns the time of their next step, if
-    /// there is one.
+    /// Builds the pictures of image order and object order up to `now`.
+    ///
+    /// Returns the time of the next step, if there is one.
     pub(super) fn advance_orders(&mut self, now: Duration) -> Option<Duration> {
         let (has_changed, next) = self.content.quietly().layers.get_mut::<OrdersPanel>()?.advance(now);
         if has_changed {
@@ -280,7 +281,7 @@ impl Screen {
         }
     }
 
-    /// Forgets what the terminal shows: the next bytes draw everything, with these half blocks.
+    /// Forgets what the terminal shows: the next bytes draw all cells, using these `half_blocks`.
     ///
     /// With `covers_a_part` (the picture covers only a part of the window) these bytes erase the window first.
     pub(super) fn redraw(&mut self, half_blocks: HalfBlocks, covers_a_part: bool) {

@@ -54,7 +54,7 @@ impl Theme {
         self.mark
     }
 
-    /// Returns the style of headings in panels, which without colours is that of text.
+    /// Returns the style of headings in panels; without colours it is the style of text.
     pub(super) fn heading(self) -> Style {
         Style { add_modifier: self.style.add_modifier, ..self.mark }
     }

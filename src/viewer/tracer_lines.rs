@@ -21,7 +21,7 @@ const WHITE: u8 = 15;
 const GREY: u8 = 8;
 const DARK_BLUE: u8 = 4;
 
-/// The distance from the eye at which the view rectangle is drawn, as a share of the target's.
+/// Distance from the eye at which the view rectangle is drawn, as a share of the target's distance.
 ///
 /// The distance is free, because only the ratio of the rectangle's sides to its distance matters for the rays.
 const RECTANGLE_DISTANCE: f32 = 0.45;
@@ -78,7 +78,7 @@ fn add_rectangle(plot: &mut Plot<'_>, camera: &Camera, part: Resolution) {
         plot.line([camera.pose().eye, corner], GREY);
     }
     let [columns, rows] = [part.width(), part.height()];
-    // Draws a coarser grid than that of single pixels, which would fill the rectangle unless the camera is close to it.
+    // The grid is coarser than single pixels, whose lines would fill the rectangle unless the camera is close to it.
     let size = |a: Vec3, b: Vec3| plot.place(a).zip(plot.place(b)).map_or(0.0, |(a, b)| a.distance(b));
     let widths = [size(corners[0], corners[1]) / columns as f32, size(corners[0], corners[3]) / rows as f32];
     let step = widths.map(|width| (0..16).map(|k| 1 << k).find(|&step| step as f32 * width >= MIN_GRID_CELLS));
@@ -116,7 +116,7 @@ pub(super) fn draw_eye_ray(canvas: &mut Canvas<'_>, frame: &Frame, explanation: 
         plot.line([p, end], MAGENTA);
         plot.letter(end, "n", MAGENTA);
     }
-    // A ray without a hit visibly passes the scene.
+    // A ray without a hit is drawn to twice the target's distance, so that it visibly passes the scene.
     plot.line([ray.origin, ray.at(hit.map_or(2.0 * distance, |shaded| shaded.hit.t))], WHITE);
     plot.letter(ray.at(near), "q", BLUE);
     // Adds these letters again, because the rays end at them and would cover them.
@@ -147,7 +147,7 @@ impl Layer for VanishingPoints {
             plot.line([from, to], WHITE);
         }
         for (direction, name, color) in vanishing_directions() {
-            // The point where the eye ray along the direction pierces the view rectangle.
+            // The vanishing point of a direction is the image of any point on the eye ray along it.
             let point = camera.pose().eye + direction;
             let Some(place) = plot.place(point) else { continue };
             // Four columns are as long as two rows, because a cell is twice as high as wide.
@@ -172,7 +172,7 @@ fn vanishing_directions() -> [(Vec3, &'static str, u8); 6] {
     ]
 }
 
-/// Returns lines around the eye, at the height of the eye: the images of all level directions.
+/// Returns a circle of short lines around the eye, at its height: their image is the horizon.
 fn horizon(camera: &Camera) -> impl Iterator<Item = [Vec3; 2]> + use<> {
     let (eye, up) = (camera.pose().eye, camera.pose().up.normalize_or_zero());
     let ahead = camera.basis().u.cross(up);

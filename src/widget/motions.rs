@@ -23,7 +23,7 @@ impl SceneState {
         self.move_camera(self.camera().panned(Vec2::new(-right / aspect_ratio, up), aspect_ratio));
     }
 
-    /// Multiplies the distance from the eye to the target by `factor`.
+    /// Multiplies the distance from the eye to the target by `factor`: below 1 moves nearer.
     ///
     /// The distance stays within 0.001 and 10,000 times that of the camera [set](Self::set_camera) last, or of the last
     /// [`frame`](Self::frame).

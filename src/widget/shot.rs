@@ -79,7 +79,7 @@ pub(super) struct Tracer {
 impl Tracer {
     /// Traces a shot and turns the picture into cells.
     pub(super) fn trace(&mut self, shot: Shot) -> RenderedShot {
-        // Only a token cancels, and this one is new.
+        // Tracing fails only if its token is cancelled, and nothing else has this new token.
         let seen = traced(&shot, shot.options.sampling, &Cancellation::default()).expect("not cancelled");
         self.rendered(shot, &seen, true)
     }

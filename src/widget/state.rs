@@ -16,8 +16,8 @@ use std::fmt;
 /// Positions are cells of the whole buffer, as in a terminal's mouse events. Queries by position refer to the picture
 /// drawn last, which may be older than the camera.
 ///
-/// A program with several scenes keeps one state for each: it holds the camera, the last picture and, off the draw
-/// thread, one thread. A state that is not drawn starts no work.
+/// A program with several scenes keeps one state for each: it holds the camera, the last picture and, if pictures are
+/// traced in the background, one thread. A state that is not drawn starts no work.
 ///
 /// ```
 /// use ratatui::{Terminal, backend::TestBackend, layout::Position};
@@ -99,7 +99,7 @@ impl SceneState {
     /// # Ok::<(), termtrace::LoadError>(())
     /// ```
     ///
-    /// `wake` must not wait for the drawing thread. A panic of the thread is continued in the next draw call, for which
+    /// `wake` must not wait for the drawing thread. A panic of the thread is resumed in the next draw call, for which
     /// `wake` is called. If no thread can be started, pictures are traced in the draw call.
     #[must_use]
     pub fn in_background(self, wake: impl Fn() + Send + 'static) -> Self {

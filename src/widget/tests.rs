@@ -109,7 +109,7 @@ fn without_cells_nothing_is_drawn_or_found() {
             assert_eq!(buffer, Buffer::filled(AREA, Cell::new("x")));
             assert!(!state.is_current() && !state.press(Position::ORIGIN, Grip::Turn));
         }
-        // A pane that had cells in an earlier draw call has none after a draw call with an empty area either.
+        // A draw call with an empty area leaves a pane without cells, even if it had some in an earlier draw call.
         drawn(&SceneView::new(&scene), area, &mut state);
         assert_eq!(state.cell_of(scene.camera().pose().target), None);
         assert!(AREA.positions().all(|at| state.hit(&scene, at).is_none()));

@@ -34,7 +34,7 @@ use std::num::NonZeroU32;
 /// `scene.at_time(seconds)`. A pane is not traced again while it gets copies of one scene.
 ///
 /// # Panics
-/// Drawing continues a panic of the [background](SceneState::in_background) thread.
+/// Drawing resumes a panic of the [background](SceneState::in_background) thread.
 #[derive(Clone, Debug)]
 #[must_use = "a widget does nothing before it is rendered"]
 pub struct SceneView<'a> {
@@ -128,7 +128,7 @@ impl StatefulWidget for &SceneView<'_> {
             return;
         };
         let Some((shown, part)) = state.show(shot, area) else { return };
-        // Rows are copied as a whole, because copying cell by cell would compute and check an index each.
+        // Rows are copied as a whole, because copying cell by cell would compute and check an index for each cell.
         let columns = usize::from(part.width);
         for (from, row) in part.rows().enumerate() {
             let (from, to) = (shown.cells.index_of(0, from as u16), buffer.index_of(row.x, row.y));

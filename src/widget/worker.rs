@@ -32,7 +32,7 @@ struct SharedState {
     /// The token that cancels the shot in progress.
     token: Cancellation,
     /// Whether a picture of the shot in progress has been delivered.
-    // A newer request cancels the shot only in this case: otherwise a camera in motion would never get a picture.
+    // A newer request cancels the shot only after its first picture: otherwise a camera in motion would never get one.
     is_refining: bool,
     /// The newest picture that has not been taken.
     finished: Option<RenderedShot>,
@@ -57,7 +57,7 @@ impl Worker {
             };
             if let Err(panic) = catch_unwind(AssertUnwindSafe(|| own.trace_all(&wake))) {
                 own.lock().panic = Some(panic);
-                // Wakes the application, whose next draw call continues the panic.
+                // Wakes the application, whose next draw call resumes the panic.
                 if !is_waking.get() {
                     wake();
                 }

@@ -1,6 +1,6 @@
 //! The roots of a quartic without a cubic term.
 
-/// The most steps towards a root.
+/// Limit on the steps of the search for one root.
 // Newton's method takes about six, and halving the interval about 60 near a double root.
 const MAX_STEPS: usize = 128;
 
@@ -30,14 +30,16 @@ impl Quartic {
         extrema[0] = -reach;
         let ends = [-reach, -inflection, inflection, reach];
         for (at, range) in ends.windows(2).enumerate() {
-            // Without a zero the end of the range splits a range of the quartic that is monotone anyway.
+            // If the derivative has no zero in this range, the range's end is stored instead, which only splits a range
+            // in which the quartic is monotone.
             extrema[at + 1] = root_between([range[0], range[1]], slope, bend).unwrap_or(range[1]);
         }
         let mut between = [None; 4];
         for (root, range) in between.iter_mut().zip(extrema.windows(2)) {
             *root = root_between([range[0], range[1]], value, slope);
         }
-        // A line along the axis of a torus that meets itself touches 0 where it enters.
+        // Finds double roots, at which the quartic touches 0 without changing its sign: a line along the axis of a
+        // torus that meets itself enters the torus at one.
         let touches = move |at: usize| between[at..(at + 2).min(4)].iter().all(Option::is_none);
         let touched =
             move |at: usize| Some(extrema[at + 1]).filter(|&s| at < 3 && touches(at) && value(s).abs() <= rounding);
@@ -47,8 +49,8 @@ impl Quartic {
 
 /// Returns the root of a function between two numbers, if it has different signs there.
 ///
-/// The function must be monotone between them. Newton's method is used as long as its steps stay between the two
-/// numbers, which come closer with each step.
+/// The function must be monotone between them. A step of Newton's method that would leave the interval between them is
+/// replaced by halving the interval; each step shrinks it.
 fn root_between([mut low, mut high]: [f64; 2], value: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> Option<f64> {
     let is_negative = value(low) <= 0.0;
     if is_negative == (value(high) <= 0.0) {

@@ -34,7 +34,8 @@ impl EdgeFunctions {
         let [b0, b1] = range(b, lane, common_origin);
         let [c0, c1] = range(c, lane, common_origin);
         let error_bound = N::splat(self.error_bound.0[lane]);
-        // With the least maximum and the greatest minimum, one comparison each serves all three edges.
+        // A group misses if one edge function is certainly negative and another certainly positive for all its rays: if
+        // the least maximum is below -error_bound and the greatest minimum above error_bound.
         let (negative, positive) = (a1.min(b1.min(c1)), a0.max(b0.max(c0)));
         (negative.lt(-error_bound) & error_bound.lt(positive)).bits()
     }

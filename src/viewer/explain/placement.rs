@@ -40,8 +40,8 @@ pub(super) fn panel_area(screen: Rect, [column, row]: [u16; 2]) -> Rect {
 /// The inset's area is empty if there is no room for it.
 pub(super) fn split_panel(inside: Rect, lines: u16) -> [Rect; 2] {
     let [least, most] = INSET_HEIGHT;
-    // No inset if the whole text fits into the panel without it, but not with it. A text that does not fit either way
-    // has to be scrolled anyway, and gets an inset.
+    // The inset is left out if the whole text fits into the panel without the inset, but not with it. A text that fits
+    // in neither case has to be scrolled anyway, and gets an inset.
     let fits_alone = (lines..=lines + least).contains(&inside.height);
     let inset = if inside.height < 2 * least || fits_alone {
         0

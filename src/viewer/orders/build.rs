@@ -25,15 +25,14 @@ pub(super) struct Build {
     steps: ObjectSteps,
     /// The number of the first primitive of each object.
     starts: Vec<u32>,
-    /// The colours of pixels that show an object which a later one hides, by the number of its
-    /// primitive.
+    /// For each pixel whose object a later object hides: the number and colour of its primitive.
     hidden: BTreeMap<[u32; 2], (u32, Srgb8)>,
     /// Whether all objects are drawn, so that the picture is that of the frame.
     is_complete: bool,
 }
 
 impl Build {
-    /// Returns the empty picture on the right of a frame with both orders.
+    /// Returns the object-order picture of a frame, the right one of two, without any object yet.
     pub(super) fn new(frame: &Frame) -> Option<Self> {
         let [_, (_, resolution)] = *frame.shot.layout.map_sizes(frame.resolution()) else { return None };
         let (scene, camera) = (frame.scene.clone(), *frame.camera());
@@ -87,7 +86,7 @@ impl Build {
         }
     }
 
-    /// Returns the colour of a pixel, which is `last` when all objects are drawn.
+    /// Returns a pixel's colour: `empty` without an object, `last` if its object stays visible.
     pub(super) fn pixel(&self, x: u32, y: u32, empty: Srgb8, last: Srgb8) -> Srgb8 {
         if self.is_complete {
             return last;

@@ -1,4 +1,4 @@
-//! The pace at which both orders build their pictures.
+//! The pace at which image order and object order build their pictures.
 
 use std::time::Duration;
 
@@ -12,21 +12,21 @@ const STEP: Duration = Duration::from_millis(50);
 /// The number of steps of a build with reduced motion, one for each press of a key.
 const STEPS: u64 = 16;
 
-/// The smallest and the largest power of two of the speed.
+/// The least and the greatest exponent of the speed, which is a power of two.
 // A build then takes from 160 s down to 0.16 s, which is three shown steps.
 const POWERS: [i32; 2] = [-4, 6];
 
 /// The progress of a build in tests of a ray or pixel against an object.
 pub(in crate::viewer) struct Pace {
     /// The tests carried out, at most `total`.
-    // With a fraction, because a step of a small scene may carry out less than one test.
+    // Not an integer, because a step of a small scene may carry out less than one test.
     tests: f64,
-    // The largest number until the first frame has been compared.
+    // The number of tests of the whole build; `u64::MAX` from `start` until `set_total`.
     total: u64,
-    /// The power of two of the speed.
+    /// The exponent of the speed, which is 2 to this power.
     power: i32,
     is_paused: bool,
-    /// Whether the build proceeds by presses of a key alone.
+    /// Whether the build proceeds only by key presses, one step each.
     by_steps: bool,
     /// The time up to which the build has been carried out; `None` if it has not begun or pauses.
     since: Option<Duration>,
@@ -37,7 +37,7 @@ impl Pace {
         Self { tests: 0.0, total: u64::MAX, power: 0, is_paused: false, by_steps, since: None }
     }
 
-    /// Begins a build, which is complete at once if it proceeds by steps.
+    /// Begins a build; one that proceeds by key presses is shown complete until the first press.
     pub(super) fn start(&mut self) {
         self.total = u64::MAX;
         self.tests = if self.by_steps { f64::INFINITY } else { 0.0 };
@@ -65,7 +65,7 @@ impl Pace {
         self.is_paused
     }
 
-    /// Returns whether the build proceeds by presses of a key alone.
+    /// Returns whether the build proceeds only by key presses, one step each.
     pub(super) fn is_by_steps(&self) -> bool {
         self.by_steps
     }
@@ -90,7 +90,7 @@ impl Pace {
         (true, (self.tests() < total).then_some(now + STEP))
     }
 
-    /// Pauses or goes on; builds a step if the build proceeds by steps.
+    /// Pauses or resumes the build, or builds one step if the build proceeds by key presses.
     ///
     /// After the end the build starts again.
     pub(in crate::viewer) fn pause(&mut self) {

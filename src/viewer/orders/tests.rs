@@ -12,7 +12,7 @@ use unicode_width::UnicodeWidthStr;
 
 const SIZE: [u32; 2] = [41, 20];
 
-/// Returns a frame with both orders of a red ball in front of a wall, drawn after the wall.
+/// Returns a frame that compares both orders: a red ball in front of a wall, drawn after the wall.
 fn frame() -> Frame {
     let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: \"#fff\", objects: [
         Sphere(center: (0, 0, -40), radius: 30, material: Diffuse(\"#fff\")),
@@ -68,7 +68,7 @@ fn both_pictures_are_built_up_to_that_of_the_frame() {
             break;
         };
         let rows = || picture.pixels.chunks(SIZE[0] as usize).zip(frame.picture.pixels.chunks(SIZE[0] as usize));
-        // In image order all pixels before the one that is asked are complete.
+        // In image order all pixels before the current one are complete.
         let built: Vec<_> = rows().flat_map(|(row, last)| row[..20].iter().zip(&last[..20])).collect();
         let count = built.iter().take_while(|(pixel, last)| pixel == last).count();
         assert!(count >= pixels && *built[count].0 == ASKED, "{count} after {pixels}");
@@ -83,7 +83,8 @@ fn both_pictures_are_built_up_to_that_of_the_frame() {
         now = next;
     }
     assert!(now >= seconds(9.5), "{now:?}");
-    // Nothing; the wall; the wall with the ball, whose pixels are those of the wall.
+    // The number of drawn pixels is first 0 and then that of the wall. The ball adds none, as it is in front of the
+    // wall.
     assert_eq!(objects.len(), 2, "{objects:?}");
     assert_eq!(objects[0], 0);
 }
@@ -152,7 +153,8 @@ fn the_words_fit_into_every_screen() {
             assert!(lines.len() < most, "{lines:?}");
             assert!(lines.iter().all(|line| line.width() + 2 <= usize::from(columns)), "{columns}: {lines:?}");
             assert!(lines.iter().any(|line| line.contains("123 ms")), "{lines:?}");
-            // At the end the first line has the factors of the tests: pixels, or objects, and the tests of each.
+            // At the end the first line shows each number of tests as a product: pixels, or objects, times the tests of
+            // each.
             let is_whole = lines[0].contains(" pixels x ") && lines[0].contains("2 objects x ");
             assert_eq!(is_whole, columns >= 80 && tests == total, "{lines:?}");
         }

@@ -1,4 +1,4 @@
-//! The words and figures of both orders.
+//! The text of the comparison of image order with object order: progress, tests and times.
 
 use super::pace::Pace;
 use crate::control::Command;
@@ -9,19 +9,19 @@ use crate::viewer::metadata::grouped;
 use std::time::Duration;
 use unicode_width::UnicodeWidthStr;
 
-/// The columns of each half from which on it holds the lecture's questions.
+/// Least width in columns of each half of the text at which the lecture's questions are shown.
 // The longer question, "at what pixels is this object visible?", has 38 characters.
 const WIDE_HALF: usize = 38;
 
-/// The rows from which on the table of times is shown while the pictures are built.
+/// Least height of the screen in rows at which the table of times is shown during the build.
 const TALL: u16 = 20;
 
-/// The columns of a number of the table.
+/// The width of a number in the table, in columns.
 const NUMBER: usize = 7;
 
-/// Returns the lines after this number of tests.
+/// Returns the lines of text to show after this number of tests.
 pub(super) fn lines(comparison: &Comparison, tests: u64, columns: u16, rows: u16) -> Vec<String> {
-    // A blank before each half, and the line between the pictures.
+    // Leaves a column for the line between the pictures, and one for the blank before each half.
     let half = usize::from((columns - 1) / 2).saturating_sub(1);
     let is_built = tests >= comparison.total_tests();
     let (pixels, objects) = (comparison.image_tests.len(), comparison.object_tests.len());
@@ -57,7 +57,7 @@ pub(super) fn lines(comparison: &Comparison, tests: u64, columns: u16, rows: u16
     lines
 }
 
-/// Returns the place of the current pixel or object among all.
+/// Returns the progress as text, such as `pixel 3 of 800`, or `800 pixels` at the end.
 fn progress(name: &str, done: usize, all: usize) -> String {
     if done == all {
         format!("{} {name}s", grouped(all))
@@ -66,7 +66,7 @@ fn progress(name: &str, done: usize, all: usize) -> String {
     }
 }
 
-/// Returns the mean number of tests of a pixel or object, as a factor.
+/// Returns the mean number of tests of a pixel or object as text, such as ` x 2.5 tests`.
 fn tests_each(until: &[u64]) -> Option<String> {
     let mean = *until.last()? as f64 / until.len() as f64;
     Some(if mean < 9.95 { format!(" x {mean:.1} tests") } else { format!(" x {mean:.0} tests") })
@@ -82,7 +82,7 @@ fn growth(comparison: &Comparison, is_wide: bool) -> [String; 3] {
     } else {
         ["spheres", "image ms", "object ms"]
     };
-    // As wide as the longest name.
+    // Wide enough for the longest name.
     let first = if is_wide { 20 } else { 9 };
     let rows: [Vec<String>; 3] = [
         comparison.growth.iter().map(|(number, _)| grouped(*number as usize)).collect(),
@@ -108,7 +108,7 @@ fn number(tests: u64) -> String {
     grouped(tests as usize)
 }
 
-/// Returns the row of keys.
+/// Returns the row that names the keys of the comparison.
 pub(super) fn keys(canvas: &Canvas<'_>, pace: &Pace) -> String {
     let key = |commands: &[Command], does: &str| {
         key_names(canvas.keymap, canvas.modes, commands).map(|keys| format!("{keys} {does}"))
@@ -129,7 +129,7 @@ pub(super) fn keys(canvas: &Canvas<'_>, pace: &Pace) -> String {
     .flatten()
     .collect();
     let width = usize::from(canvas.screen().width).saturating_sub(2);
-    // The keys that are pressed least go first.
+    // If the row is too long, the keys that are used least are left out first.
     while parts.len() > 2 && parts.join("; ").width() > width {
         parts.remove(parts.len() - 2);
     }

@@ -15,7 +15,7 @@ fn the_time_runs_until_it_is_paused() {
     playback.toggle(ms(1500));
     playback.advance(ms(9000));
     assert_eq!((playback.time(), playback.moved_until()), (ms(500), None));
-    // Its file is read again meanwhile.
+    // The scene's file is reloaded while the scene is paused.
     playback.start(true, ms(9100));
     assert_eq!(playback.moved_until(), None, "it stays paused");
     playback.toggle(ms(9200));

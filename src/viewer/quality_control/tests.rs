@@ -77,7 +77,7 @@ fn no_level_flickers() {
         let time = machine(f64::from(tenth) / 10.0);
         let mut control = QualityControl::new(None);
         fly(&mut control, 200, |_, level| time(level));
-        // The factor of a frame's time is 1 with pseudorandom noise of up to a tenth.
+        // Each frame's time is multiplied by a pseudorandom factor from 0.9 to 1.1.
         let noise = |frame: u32| 0.9 + 0.2 * f64::from(frame.wrapping_mul(2_654_435_769) >> 16) / 65_536.0;
         let levels = fly(&mut control, 600, |frame, level| time(level) * noise(frame));
         assert!(changes(&levels[1..]) <= 6, "{tenth} tenths of a millisecond: {levels:?}");
