@@ -113,7 +113,7 @@ macro_rules! materials {
             /// The names of all materials in scene files.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $material::NAME,)*];
 
-            /// Reads the material called `name`; `None` if the name is unknown or a field is missing.
+            /// Reads the material called `name`; `None` for an unknown name or a missing field.
             pub(crate) fn read(name: &str, reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
                 $($(#[$on])* if name == $material::NAME {
                     return $material::read_node(reader, node).map(Self::$material);
