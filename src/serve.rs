@@ -1,26 +1,25 @@
 //! Any number of viewers over SSH, each with a view of its own, in one process.
 //!
 //! A client gets a terminal with the view of a scene, and nothing else. One thread owns the sockets ([`tokio`],
-//! `russh`); it never traces. The other threads are the `stage`: each turn of a `seat` (one viewer) runs on one of
-//! them, from its input to its bytes, and the `run_queue` shares their time fairly. Between them is a `line` for each
-//! connection, with at most one frame. `limits` counts connections and places for viewers; `ssh` and `visit` define
-//! what a client may ask for.
+//! `russh`); it never traces. The other threads are the `worker_pool`: each turn of a `viewer_session` runs on one of
+//! them, from its input to its bytes, and the `run_queue` shares their time fairly. Between a connection and its
+//! session are the `session_buffers`, with at most one frame. `limits` counts connections and places for viewers; `ssh`
+//! and `client_command` define what a client may ask for; `visit` leads a client through the queue to its session.
 //!
-//! The modules `run_queue`, `seat`, `limits`, `total_rate`, `visit` and `client_terminal` are pure: they do no I/O, and
-//! the time is a parameter.
+//! The modules `run_queue`, `viewer_session`, `limits`, `total_rate`, `client_command` and `client_terminal` are pure:
+//! they do no I/O, and the time is a parameter.
 
 use crate::scene::Scene;
 use crate::terminal::{Signals, without_signals};
-use house::House;
 use limits::Refusal;
-use line::{Line, locked};
 use russh::keys::PublicKey;
 use russh::server::{Config, run_stream};
 use russh::{MethodKind, MethodSet, Preferred, SshId, mac};
 use rustix::event::{PollFd, PollFlags, poll};
+use session_buffers::{SessionBuffers, locked};
+use shared_state::SharedState;
 use socket::Socket;
 use ssh::Client;
-use stage::Stage;
 use std::borrow::Cow;
 use std::io;
 use std::net::{SocketAddr, TcpListener};
@@ -31,23 +30,24 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 use tokio::net::TcpStream;
 use tokio::time::{sleep, timeout};
+use worker_pool::WorkerPool;
 
+mod client_command;
 mod client_terminal;
 mod host_key;
-mod house;
 mod limits;
-mod line;
 mod metrics;
 mod pictures;
-mod reception;
 mod run_queue;
 mod scrape;
-mod seat;
+mod session_buffers;
+mod shared_state;
 mod socket;
 mod ssh;
-mod stage;
 mod total_rate;
+mod viewer_session;
 mod visit;
+mod worker_pool;
 
 /// Pause after a failed `accept`, such as with too many open files.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
@@ -149,7 +149,7 @@ pub fn authorized_keys(path: &Path) -> io::Result<Vec<PublicKey>> {
 
 /// A running server of views over SSH.
 pub struct Server {
-    house: Arc<House>,
+    state: Arc<SharedState>,
     address: SocketAddr,
     metrics: Option<SocketAddr>,
     fingerprint: String,
@@ -189,11 +189,11 @@ impl Server {
         let (address, listener) = bind(settings.listen)?;
         let (metrics, counts) = settings.metrics.map(bind).transpose()?.unzip();
         let cores = || thread::available_parallelism().map_or(1, usize::from);
-        let (stage, threads) = Stage::start(settings.threads.unwrap_or_else(cores))?;
+        let (pool, threads) = WorkerPool::start(settings.threads.unwrap_or_else(cores))?;
         let fingerprint = host_key::fingerprint(&key);
         let config = Arc::new(ssh_config(&settings, key));
-        let house = Arc::new(House::new(scenes, settings, stage));
-        let (ended, shared) = (Arc::new(AtomicBool::new(false)), Arc::clone(&house));
+        let state = Arc::new(SharedState::new(scenes, settings, pool));
+        let (ended, shared) = (Arc::new(AtomicBool::new(false)), Arc::clone(&state));
         let flag = Arc::clone(&ended);
         // One thread suffices for the sockets, and leaves the cores to the threads that draw.
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
@@ -207,7 +207,7 @@ impl Server {
             flag.store(true, Ordering::SeqCst);
             on_end();
         })?;
-        Ok(Self { house, address, metrics, fingerprint, sockets: Some(sockets), threads, ended })
+        Ok(Self { state, address, metrics, fingerprint, sockets: Some(sockets), threads, ended })
     }
 
     /// Returns the address that the server listens at.
@@ -227,18 +227,18 @@ impl Server {
 
     /// Returns the number of viewers.
     pub fn viewers(&self) -> usize {
-        self.house.stage.seat_count()
+        self.state.pool.session_count()
     }
 
     /// Makes each turn panic whose input contains `byte`, for tests.
     #[cfg(feature = "test-hooks")]
     pub fn panic_at(&self, byte: u8) {
-        let _ = self.house.stage.panics.set(byte);
+        let _ = self.state.pool.panics.set(byte);
     }
 
     /// Accepts no more connections, and tells all viewers that they have to leave.
     pub fn drain(&self) {
-        self.house.drain(self.house.stage.now() + self.house.settings.drain);
+        self.state.drain(self.state.pool.now() + self.state.settings.drain);
     }
 
     /// Returns whether the server has ended after [`drain`](Self::drain).
@@ -251,7 +251,7 @@ impl Server {
         if let Some(sockets) = self.sockets.take() {
             let _ = sockets.join();
         }
-        self.house.stage.close();
+        self.state.pool.close();
         for thread in self.threads.drain(..) {
             // An error means a panic of the thread, which the panic hook has already reported.
             let _ = thread.join();
@@ -318,8 +318,8 @@ fn ssh_config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
         event_buffer_size: 2,
         // As in OpenSSH.
         max_auth_attempts: 6,
-        // Not needed here: `Seat` limits the time without a key, and `Socket` the time in which a client takes no
-        // bytes.
+        // Not needed here: `ViewerSession` limits the time without a key, and `Socket` the time in which a client takes
+        // no bytes.
         inactivity_timeout: None,
         preferred: Preferred { mac: Cow::Owned(macs.to_vec()), ..Preferred::default() },
         ..Config::default()
@@ -327,18 +327,18 @@ fn ssh_config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
 }
 
 /// Accepts connections until the server drains, and waits until the last viewer has left.
-async fn serve_until_drained(house: Arc<House>, config: Arc<Config>, listener: TcpListener, log: Log) {
+async fn serve_until_drained(state: Arc<SharedState>, config: Arc<Config>, listener: TcpListener, log: Log) {
     let listener = match tokio::net::TcpListener::from_std(listener) {
         Ok(listener) => listener,
         Err(error) => return log(&format!("the socket cannot be used: {error}")),
     };
-    let mut changes = house.changes.subscribe();
-    let accepting = tokio::spawn(accept_all(Arc::clone(&house), config, listener, log));
-    while house.drained_at().is_none() && changes.changed().await.is_ok() {}
+    let mut changes = state.changes.subscribe();
+    let accepting = tokio::spawn(accept_all(Arc::clone(&state), config, listener, log));
+    while state.drain_deadline().is_none() && changes.changed().await.is_ok() {}
     accepting.abort();
     // Viewers get up to three seconds more, for the last replies of their terminals and the last bytes to them.
-    let end = house.drained_at().unwrap_or_default() + Duration::from_secs(3);
-    while house.stage.seat_count() > 0 && house.stage.now() < end {
+    let end = state.drain_deadline().unwrap_or_default() + Duration::from_secs(3);
+    while state.pool.session_count() > 0 && state.pool.now() < end {
         let _ = timeout(Duration::from_millis(200), changes.changed()).await;
     }
     // The tasks of the connections run on this thread, and need time to send their last messages.
@@ -347,16 +347,16 @@ async fn serve_until_drained(house: Arc<House>, config: Arc<Config>, listener: T
 
 /// Accepts connections for ever.
 // Used instead of the loop of `russh`, which ends at the first error of `accept`.
-async fn accept_all(house: Arc<House>, config: Arc<Config>, listener: tokio::net::TcpListener, log: Log) {
+async fn accept_all(state: Arc<SharedState>, config: Arc<Config>, listener: tokio::net::TcpListener, log: Log) {
     loop {
         match listener.accept().await {
             Ok((stream, address)) => {
-                let entry = locked(&house.door).enter(address.ip(), house.stage.now());
-                let metrics = &house.stage.metrics;
+                let entry = locked(&state.limiter).enter(address.ip(), state.pool.now());
+                let metrics = &state.pool.metrics;
                 match entry {
                     Ok(entry) => {
                         metrics.connections.add(1);
-                        let connection = connect(Arc::clone(&house), Arc::clone(&config), stream, entry);
+                        let connection = connect(Arc::clone(&state), Arc::clone(&config), stream, entry);
                         tokio::spawn(connection);
                     }
                     // Closing the connection costs the least; a message to the client would need the whole handshake.
@@ -384,14 +384,14 @@ fn refusal_text(refusal: Refusal) -> &'static str {
 }
 
 /// Serves one connection, and closes it if the client does not log in or request anything in time.
-async fn connect(house: Arc<House>, config: Arc<Config>, stream: TcpStream, entry: limits::Entry) {
-    let (login_time, idle) = (house.settings.login_time, house.settings.idle);
-    let socket = Socket::new(stream, house.settings.patience);
-    let (kick, line) = (socket.kick(), Arc::new(Line::default()));
+async fn connect(state: Arc<SharedState>, config: Arc<Config>, stream: TcpStream, entry: limits::Entry) {
+    let (login_time, idle) = (state.settings.login_time, state.settings.idle);
+    let socket = Socket::new(stream, state.settings.patience);
+    let (closer, buffers) = (socket.closer(), Arc::new(SessionBuffers::default()));
     let client = Client {
-        house,
-        line: Arc::clone(&line),
-        kick: kick.clone(),
+        state,
+        buffers: Arc::clone(&buffers),
+        closer: closer.clone(),
         entry: Some(entry),
         terminal: client_terminal::ClientTerminal::default(),
         channel: None,
@@ -399,16 +399,16 @@ async fn connect(house: Arc<House>, config: Arc<Config>, stream: TcpStream, entr
     };
     let log_in = async {
         let session = run_stream(config, socket, client).await.ok()?;
-        line.logged_in.notified().await;
+        buffers.logged_in.notified().await;
         Some(session)
     };
     match timeout(login_time, log_in).await {
         Ok(Some(_session)) => {
-            if timeout(idle, line.asked.notified()).await.is_err() {
-                kick.kick();
+            if timeout(idle, buffers.asked.notified()).await.is_err() {
+                closer.close();
             }
         }
         Ok(None) => {}
-        Err(_) => kick.kick(),
+        Err(_) => closer.close(),
     }
 }

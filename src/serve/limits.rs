@@ -15,7 +15,7 @@ const MAX_LOGGING_IN_PER_ADDRESS: usize = 8;
 /// Burst size of a token bucket of new connections per address; each [`REFILL_TIME`] adds a token.
 const BURST: f64 = 20.0;
 const REFILL_TIME: Duration = Duration::from_millis(200);
-/// The largest number of addresses that a [`Door`] remembers.
+/// The largest number of addresses that a [`ConnectionLimiter`] remembers.
 ///
 /// All others share one allowance, so that an attacker with many addresses does not make the table grow.
 const MAX_REMEMBERED: usize = 10_000;
@@ -56,7 +56,7 @@ pub(super) fn anonymized(address: IpAddr) -> String {
 
 /// The connections from one origin, and its allowance: the connections that it may open at once.
 #[derive(Clone, Copy, Debug)]
-struct Visitor {
+struct OriginCounts {
     connected: usize,
     logging_in: usize,
     allowance: f64,
@@ -74,7 +74,7 @@ pub(super) enum Refusal {
     Rate,
 }
 
-/// A connection that the [`Door`] has admitted and counts.
+/// A connection that the [`ConnectionLimiter`] has admitted and counts.
 #[derive(Debug)]
 pub(super) struct Entry {
     origin: Origin,
@@ -83,18 +83,18 @@ pub(super) struct Entry {
 
 /// The counts of connections, in total and by origin, by which new ones are admitted or refused.
 #[derive(Debug)]
-pub(super) struct Door {
+pub(super) struct ConnectionLimiter {
     per_address: usize,
     total: usize,
     connected: usize,
     logging_in: usize,
-    visitors: HashMap<Origin, Visitor>,
+    origins: HashMap<Origin, OriginCounts>,
 }
 
-impl Door {
-    /// Returns a door that admits at most `total` connections, and `per_address` from one address.
+impl ConnectionLimiter {
+    /// Returns a limiter of `total` connections, and of `per_address` from one address.
     pub(super) fn new(total: usize, per_address: usize) -> Self {
-        Self { per_address, total, connected: 0, logging_in: 0, visitors: HashMap::new() }
+        Self { per_address, total, connected: 0, logging_in: 0, origins: HashMap::new() }
     }
 
     /// Admits and counts a new connection, or returns the reason to refuse it.
@@ -106,20 +106,24 @@ impl Door {
         }
         let origin = self.remembered_or_others(Origin::of(address), now);
         let burst = BURST.max(self.per_address as f64);
-        let visitor =
-            self.visitors.entry(origin).or_insert(Visitor { connected: 0, logging_in: 0, allowance: burst, seen: now });
-        let refilled = now.saturating_sub(visitor.seen).as_secs_f64() / REFILL_TIME.as_secs_f64();
-        visitor.allowance = (visitor.allowance + refilled).min(burst);
-        visitor.seen = now;
-        if visitor.connected >= self.per_address || visitor.logging_in >= most_logging_in {
+        let counts = self.origins.entry(origin).or_insert(OriginCounts {
+            connected: 0,
+            logging_in: 0,
+            allowance: burst,
+            seen: now,
+        });
+        let refilled = now.saturating_sub(counts.seen).as_secs_f64() / REFILL_TIME.as_secs_f64();
+        counts.allowance = (counts.allowance + refilled).min(burst);
+        counts.seen = now;
+        if counts.connected >= self.per_address || counts.logging_in >= most_logging_in {
             return Err(Refusal::Address);
         }
-        if visitor.allowance < 1.0 {
+        if counts.allowance < 1.0 {
             return Err(Refusal::Rate);
         }
-        visitor.allowance -= 1.0;
-        visitor.connected += 1;
-        visitor.logging_in += 1;
+        counts.allowance -= 1.0;
+        counts.connected += 1;
+        counts.logging_in += 1;
         self.connected += 1;
         self.logging_in += 1;
         Ok(Entry { origin, logging_in: true })
@@ -129,8 +133,8 @@ impl Door {
     pub(super) fn log_in(&mut self, entry: &mut Entry) {
         if std::mem::take(&mut entry.logging_in) {
             self.logging_in -= 1;
-            if let Some(visitor) = self.visitors.get_mut(&entry.origin) {
-                visitor.logging_in -= 1;
+            if let Some(counts) = self.origins.get_mut(&entry.origin) {
+                counts.logging_in -= 1;
             }
         }
     }
@@ -139,19 +143,19 @@ impl Door {
     pub(super) fn leave(&mut self, mut entry: Entry) {
         self.log_in(&mut entry);
         self.connected -= 1;
-        if let Some(visitor) = self.visitors.get_mut(&entry.origin) {
-            visitor.connected -= 1;
+        if let Some(counts) = self.origins.get_mut(&entry.origin) {
+            counts.connected -= 1;
         }
     }
 
     /// Returns `origin`, or [`Origin::Others`] if it is new and there is no room for another one.
     fn remembered_or_others(&mut self, origin: Origin, now: Duration) -> Origin {
-        if self.visitors.len() >= MAX_REMEMBERED && !self.visitors.contains_key(&origin) {
+        if self.origins.len() >= MAX_REMEMBERED && !self.origins.contains_key(&origin) {
             // After the time `refilled` the allowance of an origin is full again, so forgetting the origin changes
             // nothing.
             let refilled = REFILL_TIME * BURST as u32;
-            self.visitors.retain(|_, visitor| visitor.connected > 0 || visitor.seen + refilled > now);
-            if self.visitors.len() >= MAX_REMEMBERED {
+            self.origins.retain(|_, counts| counts.connected > 0 || counts.seen + refilled > now);
+            if self.origins.len() >= MAX_REMEMBERED {
                 return Origin::Others;
             }
         }

@@ -1,6 +1,6 @@
 //! The answers to requests for the counts, on an address of their own (`--metrics`).
 
-use super::house::House;
+use super::shared_state::SharedState;
 use std::io;
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,17 +15,17 @@ const MAX_REQUEST: usize = 8 * 1024;
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 
 /// Answers requests for the counts, one after the other.
-pub(super) async fn serve(house: Arc<House>, listener: TcpListener) {
+pub(super) async fn serve(state: Arc<SharedState>, listener: TcpListener) {
     loop {
         match listener.accept().await {
-            Ok((stream, _)) => drop(timeout(REQUEST_TIME, answer(&stream, &house)).await),
+            Ok((stream, _)) => drop(timeout(REQUEST_TIME, answer(&stream, &state)).await),
             Err(_) => sleep(ACCEPT_PAUSE).await,
         }
     }
 }
 
 /// Answers one request, whatever it asks for.
-async fn answer(stream: &TcpStream, house: &House) -> io::Result<()> {
+async fn answer(stream: &TcpStream, state: &SharedState) -> io::Result<()> {
     let (mut request, mut part) = (Vec::new(), [0; 1024]);
     while !request.windows(4).any(|end| end == b"\r\n\r\n") {
         stream.readable().await?;
@@ -39,7 +39,7 @@ async fn answer(stream: &TcpStream, house: &House) -> io::Result<()> {
             return Ok(());
         }
     }
-    let text = house.metrics_text();
+    let text = state.metrics_text();
     let head = "HTTP/1.1 200 OK\r\nContent-Type: text/plain; version=0.0.4\r\nConnection: close";
     let response = format!("{head}\r\nContent-Length: {}\r\n\r\n{text}", text.len());
     let mut rest = response.as_bytes();

@@ -18,7 +18,7 @@ const SEND_BUFFER: usize = 64 * 1024;
 
 /// A client's socket.
 pub(super) struct Socket {
-    // Shared with `Kick`, whose reference is weak, so that it does not keep the socket open.
+    // Shared with `SocketCloser`, whose reference is weak, so that it does not keep the socket open.
     stream: Arc<TcpStream>,
     /// The longest time that a client may take no bytes while some wait to be sent.
     patience: Duration,
@@ -28,11 +28,11 @@ pub(super) struct Socket {
 
 /// A handle that closes a [`Socket`] which another task uses.
 #[derive(Clone)]
-pub(super) struct Kick(Weak<TcpStream>);
+pub(super) struct SocketCloser(Weak<TcpStream>);
 
-impl Kick {
+impl SocketCloser {
     /// Closes the socket: reading ends, and writing fails.
-    pub(super) fn kick(&self) {
+    pub(super) fn close(&self) {
         if let Some(stream) = self.0.upgrade() {
             let _ = shutdown(&*stream, Shutdown::Both);
         }
@@ -52,8 +52,8 @@ impl Socket {
     }
 
     /// Returns a handle that closes the socket.
-    pub(super) fn kick(&self) -> Kick {
-        Kick(Arc::downgrade(&self.stream))
+    pub(super) fn closer(&self) -> SocketCloser {
+        SocketCloser(Arc::downgrade(&self.stream))
     }
 }
 

@@ -6,23 +6,23 @@
 //! its whole connection after some messages; input comes by [`Handler::data`], output goes by [`Handle::data`], which
 //! waits while the client takes nothing.
 
+use super::client_command::{self, ClientCommand};
 use super::client_terminal::{self, ClientTerminal};
-use super::house::House;
 use super::limits::Entry;
-use super::line::{Line, locked};
-use super::reception;
-use super::socket::Kick;
-use super::visit::{self, Visit};
+use super::session_buffers::{SessionBuffers, locked};
+use super::shared_state::SharedState;
+use super::socket::SocketCloser;
+use super::visit::Visit;
 use russh::server::{Auth, ChannelOpenHandle, Handler, Msg, Session, VerifiedPublicKey};
 use russh::{Channel, ChannelId, Error, Pty};
 use std::sync::Arc;
 
 /// The state of one client's connection.
 pub(super) struct Client {
-    pub(super) house: Arc<House>,
-    pub(super) line: Arc<Line>,
-    pub(super) kick: Kick,
-    /// The connection's entry in the `Door`; taken when the connection ends.
+    pub(super) state: Arc<SharedState>,
+    pub(super) buffers: Arc<SessionBuffers>,
+    pub(super) closer: SocketCloser,
+    /// The connection's entry in the `ConnectionLimiter`; taken when the connection ends.
     pub(super) entry: Option<Entry>,
     pub(super) terminal: ClientTerminal,
     /// The one channel of the connection.
@@ -34,28 +34,28 @@ pub(super) struct Client {
 impl Drop for Client {
     fn drop(&mut self) {
         if let Some(entry) = self.entry.take() {
-            locked(&self.house.door).leave(entry);
+            locked(&self.state.limiter).leave(entry);
         }
-        self.line.hang_up();
+        self.buffers.hang_up();
         self.wake();
     }
 }
 
 impl Client {
-    /// Wakes the seat, or the connection's task if it still waits for a seat.
+    /// Wakes the session, or the connection's task if it still waits for a session.
     fn wake(&self) {
-        match self.line.seat() {
-            Some(id) => self.house.stage.wake(id),
-            None => self.line.rouse(),
+        match self.buffers.session() {
+            Some(id) => self.state.pool.wake(id),
+            None => self.buffers.wake_task(),
         }
     }
 
     fn log_in(&mut self) -> Auth {
         if let Some(entry) = &mut self.entry {
-            locked(&self.house.door).log_in(entry);
+            locked(&self.state.limiter).log_in(entry);
         }
-        self.house.stage.metrics.logins.add(1);
-        self.line.logged_in.notify_one();
+        self.state.pool.metrics.logins.add(1);
+        self.buffers.logged_in.notify_one();
         Auth::Accept
     }
 
@@ -66,23 +66,23 @@ impl Client {
             return session.channel_failure(channel);
         }
         session.channel_success(channel)?;
-        self.line.asked.notify_one();
-        let names = self.house.scenes.iter().map(|scene| scene.name.as_str());
-        let visit = visit::parse_command(command, names);
-        let reception = reception::Reception {
-            house: Arc::clone(&self.house),
-            line: Arc::clone(&self.line),
-            kick: self.kick.clone(),
+        self.buffers.asked.notify_one();
+        let names = self.state.scenes.iter().map(|scene| scene.name.as_str());
+        let command = client_command::parse_command(command, names);
+        let visit = Visit {
+            state: Arc::clone(&self.state),
+            buffers: Arc::clone(&self.buffers),
+            closer: self.closer.clone(),
             handle: session.handle(),
             channel,
         };
         let terminal = std::mem::take(&mut self.terminal);
         tokio::spawn(async move {
-            match (visit, terminal.window) {
-                (Ok(Visit::Scene(scene)), Some(window)) => reception.show(scene, &terminal, window).await,
-                (Ok(Visit::Scene(scene)), None) => reception.print(reception.house.text_frame(scene)).await,
-                (Ok(Visit::List), _) => reception.print(&reception.house.scene_list()).await,
-                (Err(message), _) => reception.refuse(&message).await,
+            match (command, terminal.window) {
+                (Ok(ClientCommand::Scene(scene)), Some(window)) => visit.show(scene, &terminal, window).await,
+                (Ok(ClientCommand::Scene(scene)), None) => visit.print(visit.state.text_frame(scene)).await,
+                (Ok(ClientCommand::List), _) => visit.print(&visit.state.scene_list()).await,
+                (Err(message), _) => visit.refuse(&message).await,
             }
         });
         Ok(())
@@ -93,19 +93,19 @@ impl Handler for Client {
     type Error = Error;
 
     async fn auth_none(&mut self, _user: &str) -> Result<Auth, Error> {
-        Ok(if self.house.settings.authorized_keys.is_none() { self.log_in() } else { Auth::reject() })
+        Ok(if self.state.settings.authorized_keys.is_none() { self.log_in() } else { Auth::reject() })
     }
 
     async fn auth_publickey(&mut self, _user: &str, key: VerifiedPublicKey<'_>) -> Result<Auth, Error> {
         let known = |keys: &Vec<_>| {
             keys.iter().any(|known: &russh::keys::PublicKey| known.key_data() == key.public_key.key_data())
         };
-        let accepts = self.house.settings.authorized_keys.as_ref().is_none_or(known);
+        let accepts = self.state.settings.authorized_keys.as_ref().is_none_or(known);
         Ok(if accepts { self.log_in() } else { Auth::reject() })
     }
 
     async fn authentication_banner(&mut self) -> Result<Option<String>, Error> {
-        Ok(self.house.settings.banner.clone())
+        Ok(self.state.settings.banner.clone())
     }
 
     async fn channel_open_session(
@@ -123,16 +123,16 @@ impl Handler for Client {
     }
 
     async fn channel_close(&mut self, _channel: ChannelId, _session: &mut Session) -> Result<(), Error> {
-        self.line.hang_up();
+        self.buffers.hang_up();
         self.wake();
         Ok(())
     }
 
     async fn data(&mut self, _channel: ChannelId, data: &[u8], _session: &mut Session) -> Result<(), Error> {
-        // The seat is woken after each part and not only at the end, because `push` waits for the seat once two parts
-        // of `MAX_INPUT` are queued.
+        // The session is woken after each part and not only at the end, because `push` waits for the session once two
+        // parts of `MAX_INPUT` are queued.
         for part in data.chunks(1024) {
-            self.line.push(part, self.house.stage.now()).await;
+            self.buffers.push(part, self.state.pool.now()).await;
             self.wake();
         }
         Ok(())
@@ -163,7 +163,7 @@ impl Handler for Client {
         height: u32,
         _session: &mut Session,
     ) -> Result<(), Error> {
-        self.line.resize(client_terminal::window([columns, rows, width, height]));
+        self.buffers.resize(client_terminal::window([columns, rows, width, height]));
         self.wake();
         Ok(())
     }

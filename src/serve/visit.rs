@@ -1,48 +1,181 @@
-//! The commands of clients: the name of a scene, or the list of scenes.
+//! One visit of a client, from the wait for a viewer's place to the last byte.
 
-/// The largest length of a command in bytes; no scene has a longer name.
-const MAX_COMMAND: usize = 256;
+use super::client_terminal::ClientTerminal;
+use super::session_buffers::{Outgoing, SessionBuffers, locked};
+use super::shared_state::{Place, SharedState};
+use super::socket::SocketCloser;
+use super::total_rate::TotalRate;
+use super::viewer_session::{ViewerSession, VisitLimits};
+use crate::grid::Window;
+use crate::text::visible;
+use russh::ChannelId;
+use russh::server::Handle;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::time::{sleep, timeout};
 
-/// The request of a client: a scene, or the list of scenes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Visit {
-    /// The view of the scene with this index.
-    Scene(usize),
-    /// The list of scenes.
-    List,
+/// The largest number of bytes in one SSH message to a client.
+// The buffer of a connection never shrinks: it keeps the size of the largest message.
+const MAX_MESSAGE: usize = 8 * 1024;
+/// The time within which a client that was told to leave has to close the connection.
+// After a disconnect `russh` itself waits for the client to close, without a limit.
+const CLOSING_TIME: Duration = Duration::from_secs(2);
+/// The keys that leave the waiting room: q, Ctrl-C, Ctrl-D.
+const LEAVING: &[u8] = b"q\x03\x04";
+
+/// One visit: the connection, and the client's channel.
+pub(super) struct Visit {
+    pub(super) state: Arc<SharedState>,
+    pub(super) buffers: Arc<SessionBuffers>,
+    pub(super) closer: SocketCloser,
+    pub(super) handle: Handle,
+    pub(super) channel: ChannelId,
 }
 
-/// Returns the request that a command makes of a server with scenes of these names.
-///
-/// # Errors
-/// The message for the client, of printable characters.
-pub(super) fn parse_command<'a>(command: &[u8], scene_names: impl Iterator<Item = &'a str>) -> Result<Visit, String> {
-    let wrong = || "a command is the name of a scene, or --list, which prints their names".to_owned();
-    let command = std::str::from_utf8(command).ok().filter(|command| command.len() <= MAX_COMMAND).ok_or_else(wrong)?;
-    match command.trim() {
-        "" => Ok(Visit::Scene(0)),
-        "--list" => Ok(Visit::List),
-        // The name is only compared and never used as a path or given to a shell.
-        name => scene_names.into_iter().position(|known| known == name).map(Visit::Scene).ok_or_else(wrong),
+impl Visit {
+    /// Shows a scene until the user leaves.
+    pub(super) async fn show(&self, scene: usize, terminal: &ClientTerminal, window: Window) {
+        let mut window = window;
+        let Some(_place) = self.wait_for_place(&mut window).await else {
+            return self.end(1).await;
+        };
+        let (state, now) = (&self.state, self.state.pool.now());
+        let settings = &state.settings;
+        let limits = VisitLimits { idle: settings.idle, ends: now + settings.session_max };
+        let options = state.viewer_options(terminal, window.size.columns);
+        let mut first = Vec::new();
+        let scenes = Arc::clone(&state.scenes);
+        let session =
+            ViewerSession::new(scenes, scene, (options, settings.link.clone()), window, limits, now, &mut first);
+        let Ok(session) = session else {
+            return self.refuse("there is not enough memory for a window of this size").await;
+        };
+        self.buffers.send(first, None);
+        let id = state.pool.add(session, Arc::clone(&self.buffers));
+        self.buffers.set_session(id);
+        if let Some(at) = state.drain_deadline() {
+            self.buffers.set_drain_deadline(at);
+        }
+        // Input that arrived before `set_session` has not woken the session.
+        state.pool.wake(id);
+        while let Some(Outgoing { bytes, ended }) = self.buffers.outgoing().await {
+            if !self.send(&bytes).await {
+                break;
+            }
+            self.buffers.record_sent();
+            match ended {
+                Some(status) => return self.end(status).await,
+                None => state.pool.wake(id),
+            }
+        }
+        self.buffers.hang_up();
+        state.pool.wake(id);
     }
-}
 
-#[cfg(all(test, unit_tests))]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_names_of_scenes_are_understood() {
-        let parse = |command: &[u8]| parse_command(command, ["balls", "corridor"].into_iter());
-        assert_eq!(parse(b"corridor"), Ok(Visit::Scene(1)));
-        assert_eq!(parse(b" corridor\n"), Ok(Visit::Scene(1)));
-        assert_eq!(parse(b""), Ok(Visit::Scene(0)));
-        assert_eq!(parse(b"--list"), Ok(Visit::List));
-        let long = vec![b'a'; 300 * 1024];
-        let wrong: [&[u8]; 7] = [b"../../etc/passwd", b"x;id", b"corridor; id", b"/", b"\x1b[2J", &[0xff, 0xfe], &long];
-        for command in wrong {
-            let message = parse(command).expect_err("there is no such scene");
-            assert!(message.chars().all(|c| (' '..='~').contains(&c)) && message.len() < 80, "{message}");
+    /// Waits for a free place, and meanwhile tells the user how many visitors are ahead.
+    ///
+    /// Returns `None` if the user leaves, the server drains, or too many visitors wait.
+    async fn wait_for_place(&self, window: &mut Window) -> Option<Place> {
+        let mut changes = self.state.changes.subscribe();
+        let Some(visitor) = self.state.queue_up() else {
+            self.send(b"full, and many wait; come back later\r\n").await;
+            return None;
+        };
+        let mut told = None;
+        loop {
+            // The changes so far are marked as seen before the checks, so that a change during the checks ends the wait
+            // below.
+            changes.mark_unchanged();
+            if self.state.drain_deadline().is_some() {
+                self.send(b"\r\x1b[Kthe server restarts; come back soon\r\n").await;
+                return None;
+            }
+            let ahead = match visitor.take_place() {
+                Ok(place) => {
+                    if told.is_some() {
+                        self.send(b"\r\x1b[K").await;
+                    }
+                    return Some(place);
+                }
+                Err(ahead) => ahead,
+            };
+            // The number is only printed if it is new: each change wakes all who wait, and most changes do not affect
+            // the number.
+            if told.replace(ahead) != Some(ahead) {
+                let text = format!("\r\x1b[Kfull, {ahead} ahead of you; q leaves");
+                self.send(text.as_bytes()).await;
+            }
+            first_of(changes.changed(), self.buffers.wait_for_wake()).await;
+            let input = self.buffers.take_input();
+            *window = input.window.unwrap_or(*window);
+            if self.buffers.is_hung_up() || input.bytes.iter().any(|byte| LEAVING.contains(byte)) {
+                self.send(b"\r\x1b[K").await;
+                return None;
+            }
         }
     }
+
+    /// Prints a text and ends the visit.
+    pub(super) async fn print(&self, text: &str) {
+        self.send(text.as_bytes()).await;
+        self.end(0).await;
+    }
+
+    /// Prints an error message and ends the visit.
+    pub(super) async fn refuse(&self, message: &str) {
+        let message = format!("error: {}\r\n", visible(message));
+        // Stream 1 is the standard error of a client's command.
+        let _ = self.handle.extended_data(self.channel, 1, message.into_bytes()).await;
+        self.end(2).await;
+    }
+
+    /// Sends bytes, and returns whether the connection has taken them.
+    ///
+    /// A client is disconnected if its SSH window has no room for the bytes for too long. (A client that does not read
+    /// its socket at all is noticed by `Socket`.)
+    async fn send(&self, bytes: &[u8]) -> bool {
+        let SharedState { total_rate, pool, .. } = &*self.state;
+        for message in bytes.chunks(if total_rate.is_some() { TotalRate::MAX_PART } else { MAX_MESSAGE }) {
+            if let Some(rate) = total_rate {
+                let wait = locked(rate).enqueue(message.len(), pool.now());
+                if !wait.is_zero() {
+                    sleep(wait).await;
+                }
+            }
+            let sent = timeout(self.state.settings.patience, self.handle.data(self.channel, message.to_vec())).await;
+            if !matches!(sent, Ok(Ok(()))) {
+                self.closer.close();
+                return false;
+            }
+            pool.metrics.bytes.add(message.len() as u64);
+        }
+        true
+    }
+
+    /// Ends the visit, and the connection if the client does not.
+    async fn end(&self, status: u32) {
+        let ending = async {
+            let _ = self.handle.exit_status_request(self.channel, status).await;
+            let _ = self.handle.eof(self.channel).await;
+            let _ = self.handle.close(self.channel).await;
+        };
+        // With a timeout, because these messages wait for room in the connection's queue, and a stalled client never
+        // makes any.
+        let _ = timeout(CLOSING_TIME, ending).await;
+        sleep(CLOSING_TIME).await;
+        self.closer.close();
+    }
+}
+
+/// Waits for the first of two events.
+async fn first_of<A, B>(first: impl Future<Output = A>, second: impl Future<Output = B>) {
+    let (mut first, mut second) = (std::pin::pin!(first), std::pin::pin!(second));
+    std::future::poll_fn(|cx| {
+        if first.as_mut().poll(cx).is_ready() || second.as_mut().poll(cx).is_ready() {
+            std::task::Poll::Ready(())
+        } else {
+            std::task::Poll::Pending
+        }
+    })
+    .await;
 }

@@ -107,7 +107,7 @@ fn without_a_terminal_one_frame_is_printed() {
 }
 
 #[test]
-fn a_full_house_tells_how_many_are_ahead() {
+fn a_full_server_tells_how_many_are_ahead() {
     let hosting = Hosting::start(|settings| settings.max_viewers = 1);
     run(async {
         let mut first = Guest::enter(&hosting).await;

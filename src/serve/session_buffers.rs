@@ -1,35 +1,35 @@
-//! The exchange between a connection and its seat: input in one direction, bytes in the other.
+//! The exchange between a connection and its viewer session: input one way, bytes the other.
 //!
 //! Both sides hold a lock only to move bytes, so the thread of the sockets never waits for a picture.
 
-use super::run_queue::SeatId;
-use super::seat::Arrived;
+use super::run_queue::SessionId;
+use super::viewer_session::PendingInput;
 use crate::grid::Window;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Duration;
 use tokio::sync::Notify;
 
-/// The size of a part of the input in bytes; at most two parts wait for a seat's turn.
+/// The size of a part of the input in bytes; at most two parts wait for a session's turn.
 ///
 /// While two parts wait, the connection is not read.
 // Keys and replies take a few bytes; only a paste is longer.
 const MAX_INPUT: usize = 4096;
 
-/// The size of the outbox in bytes above which the seat takes no input.
+/// The size of the outbox in bytes above which the session takes no input.
 // More than one frame: an exact redraw of 80x24 cells takes 44 kB.
 const MAX_OUTPUT: usize = 64 * 1024;
 
-/// The buffers between a connection and its seat: input in one direction, bytes to send in the
+/// The buffers between a connection and its session: input in one direction, bytes to send in the
 /// other.
 #[derive(Debug, Default)]
-pub(super) struct Line {
+pub(super) struct SessionBuffers {
     inbox: Mutex<Inbox>,
-    /// Notified when the seat has taken the input.
+    /// Notified when the session has taken the input.
     taken: Notify,
     outbox: Mutex<Outbox>,
-    /// Notified when there are bytes to send, or the connection or the seat has ended.
+    /// Notified when there are bytes to send, or the connection or the session has ended.
     filled: Notify,
-    seat: OnceLock<SeatId>,
+    session: OnceLock<SessionId>,
     /// Notified when the client has logged in, and when the connection has ended.
     pub(super) logged_in: Notify,
     /// Notified when the client has asked for a view, and when the connection has ended.
@@ -38,7 +38,7 @@ pub(super) struct Line {
 
 #[derive(Debug, Default)]
 struct Inbox {
-    arrived: Arrived,
+    pending: PendingInput,
     hung_up: bool,
 }
 
@@ -47,7 +47,7 @@ struct Outbox {
     bytes: Vec<u8>,
     /// Whether bytes are being sent.
     sending: bool,
-    /// The exit status, once the seat has ended.
+    /// The exit status, once the session has ended.
     ended: Option<u32>,
 }
 
@@ -66,25 +66,25 @@ pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Line {
+impl SessionBuffers {
     /// Appends input that arrives at `now`.
     ///
-    /// The input is appended in parts. Each part waits until there is room for it beside those that the seat has not
+    /// The input is appended in parts. Each part waits until there is room for it beside those that the session has not
     /// taken yet.
     pub(super) async fn push(&self, bytes: &[u8], now: Duration) {
         for part in bytes.chunks(MAX_INPUT) {
             loop {
-                // Created before the lock is taken, so that the wait also ends if the seat takes the input between the
-                // check and the wait.
+                // Created before the lock is taken, so that the wait also ends if the session takes the input between
+                // the check and the wait.
                 let taken = self.taken.notified();
                 {
                     let mut inbox = locked(&self.inbox);
                     if inbox.hung_up {
                         return;
                     }
-                    if inbox.arrived.bytes.len() + part.len() <= 2 * MAX_INPUT {
-                        inbox.arrived.bytes.extend_from_slice(part);
-                        inbox.arrived.at = now;
+                    if inbox.pending.bytes.len() + part.len() <= 2 * MAX_INPUT {
+                        inbox.pending.bytes.extend_from_slice(part);
+                        inbox.pending.at = now;
                         break;
                     }
                 }
@@ -95,12 +95,12 @@ impl Line {
 
     /// Sets the window's new size; of several sizes before a turn only the last one counts.
     pub(super) fn resize(&self, window: Window) {
-        locked(&self.inbox).arrived.window = Some(window);
+        locked(&self.inbox).pending.window = Some(window);
     }
 
-    /// Tells the seat the time at which the server ends.
-    pub(super) fn drain(&self, at: Duration) {
-        locked(&self.inbox).arrived.drained_at = Some(at);
+    /// Tells the session the time at which the server ends.
+    pub(super) fn set_drain_deadline(&self, at: Duration) {
+        locked(&self.inbox).pending.drain_deadline = Some(at);
     }
 
     /// Records that the connection has ended.
@@ -121,13 +121,13 @@ impl Line {
     /// sent.
     ///
     /// Handling input would add more bytes.
-    pub(super) fn take_arrived(&self) -> Arrived {
+    pub(super) fn take_input(&self) -> PendingInput {
         if locked(&self.outbox).bytes.len() > MAX_OUTPUT {
-            return Arrived::default();
+            return PendingInput::default();
         }
-        let arrived = std::mem::take(&mut locked(&self.inbox).arrived);
+        let input = std::mem::take(&mut locked(&self.inbox).pending);
         self.taken.notify_waiters();
-        arrived
+        input
     }
 
     /// Returns whether bytes are to be sent or being sent.
@@ -176,24 +176,24 @@ impl Line {
         locked(&self.outbox).sending = false;
     }
 
-    /// Records the number of the connection's seat.
-    pub(super) fn set_seat(&self, id: SeatId) {
-        // This never fails: a connection has only one seat in its life.
-        let _ = self.seat.set(id);
+    /// Records the number of the connection's session.
+    pub(super) fn set_session(&self, id: SessionId) {
+        // This never fails: a connection has only one session in its life.
+        let _ = self.session.set(id);
     }
 
-    /// Returns the number of the connection's seat, if it has one.
-    pub(super) fn seat(&self) -> Option<SeatId> {
-        self.seat.get().copied()
+    /// Returns the number of the connection's session, if it has one.
+    pub(super) fn session(&self) -> Option<SessionId> {
+        self.session.get().copied()
     }
 
-    /// Wakes the connection's task, which waits for a place and has no seat yet.
-    pub(super) fn rouse(&self) {
+    /// Wakes the connection's task, which waits for a place and has no session yet.
+    pub(super) fn wake_task(&self) {
         self.filled.notify_one();
     }
 
-    /// Waits for [`rouse`](Self::rouse), or until the connection has ended.
-    pub(super) async fn roused(&self) {
+    /// Waits for [`wake_task`](Self::wake_task), or until the connection has ended.
+    pub(super) async fn wait_for_wake(&self) {
         self.filled.notified().await;
     }
 }

@@ -3,7 +3,7 @@
 //! Pure: the time and the function that traces are parameters, and the bytes to send are returned.
 
 use super::HostedScene;
-use super::run_queue::{Class, Next};
+use super::run_queue::{AfterTurn, WorkKind};
 use crate::grid::Window;
 use crate::memory::OutOfMemory;
 use crate::protocol::{FENCE, TerminalMode, TerminalModes};
@@ -24,7 +24,7 @@ const MAX_STEPS: usize = 8;
 
 /// The reason why a viewer leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Parting {
+pub(super) enum LeaveReason {
     /// The user quit.
     Quit,
     /// No key was pressed for too long.
@@ -37,7 +37,7 @@ pub(super) enum Parting {
     OutOfMemory,
 }
 
-impl Parting {
+impl LeaveReason {
     /// Returns the note with the seconds that are left until the viewer has to leave for this
     /// reason.
     fn countdown_text(self, seconds: u64) -> String {
@@ -63,22 +63,22 @@ impl Parting {
 
 /// The limits on the duration of a visit.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stay {
+pub(super) struct VisitLimits {
     /// The longest time without a key, after which the visit ends.
     pub(super) idle: Duration,
     /// The time at which the visit ends.
     pub(super) ends: Duration,
 }
 
-/// The input that has arrived for a seat since its last turn.
+/// The input that has arrived for a session since its last turn.
 #[derive(Debug, Default)]
-pub(super) struct Arrived {
+pub(super) struct PendingInput {
     pub(super) bytes: Vec<u8>,
     /// The time at which the last of the bytes arrived.
     pub(super) at: Duration,
     pub(super) window: Option<Window>,
     /// The time at which the server ends, if it does.
-    pub(super) drained_at: Option<Duration>,
+    pub(super) drain_deadline: Option<Duration>,
 }
 
 /// A function that traces the frame of a job, or returns `None` if it was interrupted.
@@ -86,16 +86,16 @@ pub(super) struct Arrived {
 /// The flag allows an interruption; it is only set for refinements.
 pub(super) type Trace<'a> = dyn FnMut(&Job, bool) -> Option<Frame> + 'a;
 
-/// The place of one viewer on the server: the viewer's view, terminal modes and remaining time.
-pub(super) struct Seat {
+/// The state of one viewer on the server: the viewer's view, terminal modes and remaining time.
+pub(super) struct ViewerSession {
     viewer: Viewer,
     modes: TerminalModes,
     scenes: Arc<[HostedScene]>,
     shown: usize,
     link: Option<String>,
-    stay: Stay,
+    limits: VisitLimits,
     began: Duration,
-    drained_at: Option<Duration>,
+    drain_deadline: Option<Duration>,
     /// The seconds in the last note of the countdown; `None` before the countdown.
     counted: Option<u64>,
     /// The time at which the viewer began to leave and its terminal was restored; `None` before.
@@ -106,8 +106,8 @@ pub(super) struct Seat {
     drawn: u64,
 }
 
-impl Seat {
-    /// Returns a seat that shows the scene with index `shown`, and appends its first bytes to
+impl ViewerSession {
+    /// Returns a session that shows the scene with index `shown`, and appends its first bytes to
     /// `out`.
     ///
     /// # Errors
@@ -117,7 +117,7 @@ impl Seat {
         shown: usize,
         (options, link): (Options, Option<String>),
         window: Window,
-        stay: Stay,
+        limits: VisitLimits,
         now: Duration,
         out: &mut Vec<u8>,
     ) -> Result<Self, OutOfMemory> {
@@ -128,23 +128,23 @@ impl Seat {
             modes.switch_on(mode, out);
         }
         out.extend(viewer.queries(now));
-        let (began, drained_at, counted, leaving) = (now, None, None, None);
-        let mut seat = Self {
+        let (began, drain_deadline, counted, leaving) = (now, None, None, None);
+        let mut session = Self {
             viewer,
             modes,
             scenes,
             shown,
             link,
-            stay,
+            limits,
             began,
-            drained_at,
+            drain_deadline,
             counted,
             leaving,
             latest: now,
             drawn: 0,
         };
-        seat.show(shown);
-        Ok(seat)
+        session.show(shown);
+        Ok(session)
     }
 
     fn show(&mut self, index: usize) {
@@ -157,49 +157,49 @@ impl Seat {
     /// Handles the input that has arrived, carries out the viewer's actions, and appends the bytes
     /// to send.
     ///
-    /// `sending` tells whether earlier bytes still wait to be sent. `class` is the kind of work that the turn may do.
+    /// `sending` tells whether earlier bytes still wait to be sent. `kind` is the kind of work that the turn may do.
     /// At most one frame of a new view is traced.
     pub(super) fn take_turn(
         &mut self,
-        arrived: &Arrived,
-        (sending, class): (bool, Class),
+        input: &PendingInput,
+        (sending, kind): (bool, WorkKind),
         clock: &dyn Fn() -> Duration,
         trace: &mut Trace<'_>,
         out: &mut Vec<u8>,
-    ) -> Next {
+    ) -> AfterTurn {
         let now = clock();
-        self.drained_at = arrived.drained_at.or(self.drained_at);
+        self.drain_deadline = input.drain_deadline.or(self.drain_deadline);
         if self.leaving.is_some() {
-            return self.await_last_replies(&arrived.bytes, now);
+            return self.await_last_replies(&input.bytes, now);
         }
-        if self.take_arrived(arrived, now, out).is_err() {
-            return self.leave(Parting::OutOfMemory, now, out);
+        if self.apply_input(input, now, out).is_err() {
+            return self.leave(LeaveReason::OutOfMemory, now, out);
         }
         if self.carry_out_requests(out) {
-            return self.leave(Parting::Quit, now, out);
+            return self.leave(LeaveReason::Quit, now, out);
         }
-        let (end, parting) = self.next_end();
+        let (end, reason) = self.next_end();
         if now >= end {
-            return self.leave(parting, now, out);
+            return self.leave(reason, now, out);
         }
-        let counted = self.count_down(end, parting, now);
-        let next = self.carry_out_steps((sending, class), clock, trace, out);
+        let counted = self.count_down(end, reason, now);
+        let next = self.carry_out_steps((sending, kind), clock, trace, out);
         self.latest = clock();
         match next {
-            Next::Sleep(until) => Next::Sleep(until.into_iter().chain([counted]).min()),
+            AfterTurn::Sleep(until) => AfterTurn::Sleep(until.into_iter().chain([counted]).min()),
             next => next,
         }
     }
 
-    fn take_arrived(&mut self, arrived: &Arrived, now: Duration, out: &mut Vec<u8>) -> Result<(), OutOfMemory> {
-        if let Some(window) = arrived.window {
+    fn apply_input(&mut self, input: &PendingInput, now: Duration, out: &mut Vec<u8>) -> Result<(), OutOfMemory> {
+        if let Some(window) = input.window {
             self.viewer.resize(window)?;
         }
         // `receive` is called without bytes, too, so that a lone ESC becomes the Escape key after its timeout. It gets
         // the time at which the bytes arrived: their wait for this turn is not part of the link's round trip. With that
         // wait included, a busy server took each link for a slow one, and frames shrank to 540 bytes at 200 viewers.
-        let at = if arrived.bytes.is_empty() { now } else { arrived.at.max(self.latest).min(now) };
-        self.viewer.receive(&arrived.bytes, at)?;
+        let at = if input.bytes.is_empty() { now } else { input.at.max(self.latest).min(now) };
+        self.viewer.receive(&input.bytes, at)?;
         for mode in self.viewer.modes() {
             self.modes.switch_on(mode, out);
         }
@@ -207,19 +207,19 @@ impl Seat {
     }
 
     /// Returns the time at which the visit ends if no key is pressed, and the reason.
-    fn next_end(&self) -> (Duration, Parting) {
+    fn next_end(&self) -> (Duration, LeaveReason) {
         // Before the first key press, the idle time counts from the beginning of the visit.
-        let idle = (self.viewer.last_event().max(self.began) + self.stay.idle, Parting::Idle);
-        let ends = [(self.stay.ends, Parting::TimeOver), idle];
-        let drained = self.drained_at.map(|at| (at, Parting::Drained));
+        let idle = (self.viewer.last_event().max(self.began) + self.limits.idle, LeaveReason::Idle);
+        let ends = [(self.limits.ends, LeaveReason::TimeOver), idle];
+        let drained = self.drain_deadline.map(|at| (at, LeaveReason::Drained));
         drained.into_iter().chain(ends).min_by_key(|&(at, _)| at).expect("there are two")
     }
 
     /// Shows the seconds left during the countdown, and returns the time of the next change of that
     /// note.
-    fn count_down(&mut self, end: Duration, parting: Parting, now: Duration) -> Duration {
+    fn count_down(&mut self, end: Duration, reason: LeaveReason, now: Duration) -> Duration {
         // At most half the idle limit: otherwise, with a short limit, the note would be on the screen nearly always.
-        let countdown = if parting == Parting::Idle { COUNTDOWN.min(self.stay.idle / 2) } else { COUNTDOWN };
+        let countdown = if reason == LeaveReason::Idle { COUNTDOWN.min(self.limits.idle / 2) } else { COUNTDOWN };
         let left = end.saturating_sub(now);
         if left > countdown {
             self.counted = None;
@@ -229,7 +229,7 @@ impl Seat {
         let seconds = left.as_secs() + u64::from(left.subsec_nanos() > 0);
         // The note is set only once a second, because each new note causes a redraw.
         if self.counted.replace(seconds) != Some(seconds) {
-            self.viewer.show_note(parting.countdown_text(seconds));
+            self.viewer.show_note(reason.countdown_text(seconds));
         }
         end.saturating_sub(Duration::from_secs(seconds - 1))
     }
@@ -237,11 +237,11 @@ impl Seat {
     /// Draws, and traces at most one frame of a new view.
     fn carry_out_steps(
         &mut self,
-        (mut sending, class): (bool, Class),
+        (mut sending, kind): (bool, WorkKind),
         clock: &dyn Fn() -> Duration,
         trace: &mut Trace<'_>,
         out: &mut Vec<u8>,
-    ) -> Next {
+    ) -> AfterTurn {
         let mut traced = false;
         for _ in 0..MAX_STEPS {
             let now = clock();
@@ -250,7 +250,7 @@ impl Seat {
                     if !sending && until.is_none_or(|at| at > now + LONG_REST) {
                         self.viewer.free_buffers();
                     }
-                    return Next::Sleep(until);
+                    return AfterTurn::Sleep(until);
                 }
                 Step::GiveUp => {}
                 Step::Draw => {
@@ -261,10 +261,10 @@ impl Seat {
                     self.drawn += u64::from(!bytes.is_empty());
                     out.append(&mut bytes);
                 }
-                // Refinements wait for a turn of their class, except that of the first picture: it is refined before it
+                // Refinements wait for a turn of their kind, except that of the first picture: it is refined before it
                 // is shown, if that takes little time.
-                Step::Trace(_, job) if job.refines && class == Class::Picture && self.viewer.has_shown() => {
-                    return Next::Turn(Class::Refinement);
+                Step::Trace(_, job) if job.refines && kind == WorkKind::Picture && self.viewer.has_shown() => {
+                    return AfterTurn::Turn(WorkKind::Refinement);
                 }
                 Step::Trace(probe, job) => {
                     out.extend_from_slice(&probe);
@@ -272,16 +272,16 @@ impl Seat {
                     // moving view would stand still while other viewers interrupt it.
                     match trace(&job, job.refines && self.viewer.has_shown()) {
                         Some(frame) => self.viewer.take_frame(frame),
-                        None => return Next::Turn(Class::Refinement),
+                        None => return AfterTurn::Turn(WorkKind::Refinement),
                     }
                     // The first frame of a turn is drawn in this turn; after a second one, the turn ends.
                     if std::mem::replace(&mut traced, true) {
-                        return Next::Turn(class);
+                        return AfterTurn::Turn(kind);
                     }
                 }
             }
         }
-        Next::Turn(class)
+        AfterTurn::Turn(kind)
     }
 
     /// Carries out the viewer's requests. Returns whether the user leaves.
@@ -323,9 +323,9 @@ impl Seat {
     }
 
     /// Restores the terminal, and prints the farewell and the command that shows this view.
-    pub(super) fn leave(&mut self, parting: Parting, now: Duration, out: &mut Vec<u8>) -> Next {
+    pub(super) fn leave(&mut self, reason: LeaveReason, now: Duration, out: &mut Vec<u8>) -> AfterTurn {
         self.modes_off(now, out);
-        out.extend_from_slice(parting.farewell().as_bytes());
+        out.extend_from_slice(reason.farewell().as_bytes());
         let HostedScene { file, .. } = &self.scenes[self.shown];
         let camera = self.viewer.moved().map(|camera| format!(" {}", camera.rounded().to_flags()));
         let command = format!("this view at home: termtrace {file}{}\r\n", camera.unwrap_or_default());
@@ -352,11 +352,11 @@ impl Seat {
     /// Reads and drops the terminal's replies until the last one has arrived.
     ///
     /// Otherwise the user's shell would take them for typed text.
-    fn await_last_replies(&mut self, bytes: &[u8], now: Duration) -> Next {
+    fn await_last_replies(&mut self, bytes: &[u8], now: Duration) -> AfterTurn {
         let receiver = self.viewer.receiver();
         receiver.receive(bytes, now);
         let due = self.leaving.map_or(now, |since| since + LAST_REPLIES);
-        if receiver.reply_time_left(now).is_none() || now >= due { Next::End } else { Next::Sleep(Some(due)) }
+        if receiver.reply_time_left(now).is_none() || now >= due { AfterTurn::End } else { AfterTurn::Sleep(Some(due)) }
     }
 
     /// Restores the terminal after a panic in a turn.

@@ -1,10 +1,10 @@
 //! The state that all connections share: scenes, settings, limits, and the threads that draw.
 
 use super::client_terminal::ClientTerminal;
-use super::limits::{Door, Places};
-use super::line::locked;
-use super::stage::Stage;
+use super::limits::{ConnectionLimiter, Places};
+use super::session_buffers::locked;
 use super::total_rate::TotalRate;
+use super::worker_pool::WorkerPool;
 use super::{HostedScene, Settings};
 use crate::capabilities::{Colors, terminfo_colors};
 use crate::control::{Command, Keymap};
@@ -26,18 +26,18 @@ const LEFT_OUT: [Command; 6] =
 const MAX_TERMINALS: usize = 256;
 
 /// The state that all connections share.
-pub(super) struct House {
+pub(super) struct SharedState {
     pub(super) settings: Settings,
     pub(super) scenes: Arc<[HostedScene]>,
-    pub(super) stage: Arc<Stage>,
-    pub(super) door: Mutex<Door>,
+    pub(super) pool: Arc<WorkerPool>,
+    pub(super) limiter: Mutex<ConnectionLimiter>,
     places: Mutex<Places>,
     /// The queue that limits the bytes per second of all viewers together; `None` for no limit.
     pub(super) total_rate: Option<Mutex<TotalRate>>,
     /// A signal without a value: notifies receivers when a place is freed or the server begins to
     /// drain.
     pub(super) changes: watch::Sender<()>,
-    drained_at: OnceLock<Duration>,
+    drain_deadline: OnceLock<Duration>,
     keymap: Keymap,
     /// The colours of terminals according to terminfo, which is read once for each name.
     terminals: Mutex<HashMap<String, Option<Colors>>>,
@@ -46,23 +46,23 @@ pub(super) struct House {
     text_frames: Vec<OnceLock<String>>,
 }
 
-impl House {
-    pub(super) fn new(scenes: Vec<HostedScene>, settings: Settings, stage: Arc<Stage>) -> Self {
+impl SharedState {
+    pub(super) fn new(scenes: Vec<HostedScene>, settings: Settings, pool: Arc<WorkerPool>) -> Self {
         let mut keymap = Keymap::default();
         keymap.remove(&LEFT_OUT);
         // There may be more connections than viewers, because some only ask for text, and some wait for a place.
         let connections = 2 * settings.max_viewers + 64;
         Self {
-            door: Mutex::new(Door::new(connections, settings.max_per_address)),
+            limiter: Mutex::new(ConnectionLimiter::new(connections, settings.max_per_address)),
             places: Mutex::new(Places::new(settings.max_viewers)),
             total_rate: settings.max_rate_total.map(|rate| Mutex::new(TotalRate::new(rate))),
             changes: watch::Sender::new(()),
-            drained_at: OnceLock::new(),
+            drain_deadline: OnceLock::new(),
             text_frames: scenes.iter().map(|_| OnceLock::new()).collect(),
             scenes: scenes.into(),
             terminals: Mutex::default(),
             settings,
-            stage,
+            pool,
             keymap,
         }
     }
@@ -105,30 +105,30 @@ impl House {
 
     /// Returns the server's counts in the text format of Prometheus.
     pub(super) fn metrics_text(&self) -> String {
-        self.stage.metrics.text(&[
-            ("viewers", "Views that are open", self.stage.seat_count()),
+        self.pool.metrics.text(&[
+            ("viewers", "Views that are open", self.pool.session_count()),
             ("waiting", "Visitors who wait for a place", locked(&self.places).waiting()),
-            ("draining", "Whether the server ends soon", usize::from(self.drained_at().is_some())),
+            ("draining", "Whether the server ends soon", usize::from(self.drain_deadline().is_some())),
         ])
     }
 
     /// Begins to drain: the viewers have to leave by this time.
     pub(super) fn drain(&self, at: Duration) {
-        if self.drained_at.set(at).is_ok() {
-            self.stage.drain(at);
+        if self.drain_deadline.set(at).is_ok() {
+            self.pool.drain(at);
             self.changes.send_replace(());
         }
     }
 
     /// Returns the time by which the viewers have to leave; `None` unless the server drains.
-    pub(super) fn drained_at(&self) -> Option<Duration> {
-        self.drained_at.get().copied()
+    pub(super) fn drain_deadline(&self) -> Option<Duration> {
+        self.drain_deadline.get().copied()
     }
 
     /// Adds a visitor at the end of the queue for a place; `None` if too many visitors wait.
     pub(super) fn queue_up(self: &Arc<Self>) -> Option<Visitor> {
         let number = locked(&self.places).join()?;
-        Some(Visitor { house: Arc::clone(self), number })
+        Some(Visitor { state: Arc::clone(self), number })
     }
 }
 
@@ -143,27 +143,27 @@ fn welcome_line(scene_count: usize, link: Option<&str>, columns: u16) -> String 
 
 /// A visitor in the queue for a place, which leaves it when it is dropped.
 pub(super) struct Visitor {
-    house: Arc<House>,
+    state: Arc<SharedState>,
     number: u64,
 }
 
 impl Visitor {
     /// Takes a place; if none is free, returns how many visitors are ahead.
     pub(super) fn take_place(&self) -> Result<Place, usize> {
-        locked(&self.house.places).take(self.number)?;
-        Ok(Place(Arc::clone(&self.house)))
+        locked(&self.state.places).take(self.number)?;
+        Ok(Place(Arc::clone(&self.state)))
     }
 }
 
 impl Drop for Visitor {
     fn drop(&mut self) {
-        locked(&self.house.places).give_up(self.number);
-        self.house.changes.send_replace(());
+        locked(&self.state.places).give_up(self.number);
+        self.state.changes.send_replace(());
     }
 }
 
 /// A viewer's place, which is freed when it is dropped.
-pub(super) struct Place(Arc<House>);
+pub(super) struct Place(Arc<SharedState>);
 
 impl Drop for Place {
     fn drop(&mut self) {

@@ -3,11 +3,11 @@
 //! A turn is carried out by one thread from the input to the bytes: passing a frame of 0.1 ms to another thread would
 //! take as long as tracing it. Each thread is a rayon pool of its own, so that parallel functions stay on that thread.
 
-use super::line::{Line, locked};
 use super::metrics::Metrics;
 use super::pictures::{Pictures, is_shared};
-use super::run_queue::{Class, Next, RunQueue, SeatId};
-use super::seat::{Arrived, Seat};
+use super::run_queue::{AfterTurn, RunQueue, SessionId, WorkKind};
+use super::session_buffers::{SessionBuffers, locked};
+use super::viewer_session::{PendingInput, ViewerSession};
 use crate::app::Tracer;
 use crate::progress::Cancellation;
 use crate::viewer::{FIRST_FRAME_MOTION, Frame, Job};
@@ -18,17 +18,17 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// A seat, and the buffers between it and its connection.
-struct Staged {
-    seat: Mutex<Seat>,
-    line: Arc<Line>,
+/// A session, and the buffers between it and its connection.
+struct PooledSession {
+    session: Mutex<ViewerSession>,
+    buffers: Arc<SessionBuffers>,
 }
 
 #[derive(Default)]
-struct Shared {
+struct PoolState {
     queue: RunQueue,
-    seats: HashMap<SeatId, Arc<Staged>>,
-    next_id: SeatId,
+    sessions: HashMap<SessionId, Arc<PooledSession>>,
+    next_id: SessionId,
     /// The number of threads that wait for work.
     resting: usize,
     /// The token that cancels the refinements in progress; it is replaced when it is used.
@@ -37,9 +37,9 @@ struct Shared {
     closed: bool,
 }
 
-/// The seats, and the threads that serve them.
-pub(super) struct Stage {
-    shared: Mutex<Shared>,
+/// The sessions, and the threads that serve them.
+pub(super) struct WorkerPool {
+    state: Mutex<PoolState>,
     ready: Condvar,
     start: Instant,
     threads: usize,
@@ -51,12 +51,13 @@ pub(super) struct Stage {
     pub(super) panics: std::sync::OnceLock<u8>,
 }
 
-impl Stage {
-    /// Starts `threads` threads that carry out the turns of seats, and returns the stage with their
-    /// handles.
+impl WorkerPool {
+    /// Starts `threads` threads that carry out the turns of sessions.
+    ///
+    /// Returns the pool and the handles of the threads.
     pub(super) fn start(threads: usize) -> io::Result<(Arc<Self>, Vec<JoinHandle<()>>)> {
-        let stage = Arc::new(Self {
-            shared: Mutex::default(),
+        let pool = Arc::new(Self {
+            state: Mutex::default(),
             ready: Condvar::new(),
             start: Instant::now(),
             threads,
@@ -66,11 +67,11 @@ impl Stage {
             panics: std::sync::OnceLock::new(),
         });
         let start_thread = |index| {
-            let stage = Arc::clone(&stage);
-            thread::Builder::new().name(format!("stage {index}")).spawn(move || stage.serve())
+            let pool = Arc::clone(&pool);
+            thread::Builder::new().name(format!("worker {index}")).spawn(move || pool.serve())
         };
         let threads = (0..threads).map(start_thread).collect::<io::Result<_>>()?;
-        Ok((stage, threads))
+        Ok((pool, threads))
     }
 
     /// Returns the time of all viewers' clock.
@@ -80,65 +81,66 @@ impl Stage {
         FIRST_FRAME_MOTION + self.start.elapsed()
     }
 
-    /// Adds a seat.
-    pub(super) fn add(&self, seat: Seat, line: Arc<Line>) -> SeatId {
-        let mut shared = locked(&self.shared);
-        let id = shared.next_id;
-        shared.next_id += 1;
-        shared.seats.insert(id, Arc::new(Staged { seat: Mutex::new(seat), line }));
-        shared.queue.add(id);
+    /// Adds a session.
+    pub(super) fn add(&self, session: ViewerSession, buffers: Arc<SessionBuffers>) -> SessionId {
+        let mut state = locked(&self.state);
+        let id = state.next_id;
+        state.next_id += 1;
+        state.sessions.insert(id, Arc::new(PooledSession { session: Mutex::new(session), buffers }));
+        state.queue.add(id);
         self.metrics.visits.add(1);
-        self.rouse(&mut shared);
+        self.wake_a_thread(&mut state);
         id
     }
 
-    /// Makes a seat ready, because it has input or its bytes have been sent.
-    pub(super) fn wake(&self, id: SeatId) {
-        let mut shared = locked(&self.shared);
-        shared.queue.wake(id);
-        self.rouse(&mut shared);
+    /// Makes a session ready, because it has input or its bytes have been sent.
+    pub(super) fn wake(&self, id: SessionId) {
+        let mut state = locked(&self.state);
+        state.queue.wake(id);
+        self.wake_a_thread(&mut state);
     }
 
-    /// Tells all seats the time at which the server ends.
+    /// Tells all sessions the time at which the server ends.
     pub(super) fn drain(&self, at: Duration) {
-        let mut shared = locked(&self.shared);
-        let ids: Vec<_> = shared.seats.iter().map(|(&id, staged)| (staged.line.drain(at), id).1).collect();
+        let mut state = locked(&self.state);
+        let ids: Vec<_> =
+            state.sessions.iter().map(|(&id, pooled)| (pooled.buffers.set_drain_deadline(at), id).1).collect();
         for id in ids {
-            shared.queue.wake(id);
+            state.queue.wake(id);
         }
         self.ready.notify_all();
     }
 
-    /// Returns the number of seats.
-    pub(super) fn seat_count(&self) -> usize {
-        locked(&self.shared).queue.len()
+    /// Returns the number of sessions.
+    pub(super) fn session_count(&self) -> usize {
+        locked(&self.state).queue.len()
     }
 
     /// Ends the threads.
     pub(super) fn close(&self) {
-        locked(&self.shared).closed = true;
+        locked(&self.state).closed = true;
         self.ready.notify_all();
     }
 
     /// Wakes a resting thread; if there is none, interrupts the refinements.
-    fn rouse(&self, shared: &mut Shared) {
-        if shared.resting > 0 {
+    fn wake_a_thread(&self, state: &mut PoolState) {
+        if state.resting > 0 {
             self.ready.notify_one();
         } else {
-            std::mem::take(&mut shared.refinements).cancel();
+            std::mem::take(&mut state.refinements).cancel();
         }
     }
 
-    /// Carries out the turns of seats, one after the other, until the stage is closed.
+    /// Carries out the turns of sessions, one after the other, until the pool is closed.
     fn serve(&self) {
         // Makes this thread a rayon pool. Without it, each `rayon::join` would run on the global pool.
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
+        let rayon_pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
         let mut tracer = Tracer::default();
-        while let Some((id, staged, load, token)) = self.next_turn() {
-            // CPU time, because on a busy machine the elapsed time would charge a seat for the turns of others.
+        while let Some((id, pooled, load, token)) = self.next_turn() {
+            // CPU time, because on a busy machine the elapsed time would charge a session for the turns of others.
             let started = cpu_time();
-            let mut turn = || self.take_turn(&staged, load, &token, &mut tracer);
-            let turned = catch_unwind(AssertUnwindSafe(|| match &pool {
+            let mut turn = || self.take_turn(&pooled, load, &token, &mut tracer);
+            let turned = catch_unwind(AssertUnwindSafe(|| match &rayon_pool {
                 Ok(pool) => pool.install(&mut turn),
                 Err(_) => turn(),
             }));
@@ -148,78 +150,78 @@ impl Stage {
                 tracer = Tracer::default();
                 self.metrics.panics.add(1);
                 let mut out = Vec::new();
-                locked(&staged.seat).abandon(&mut out);
-                staged.line.send(out, Some(1));
-                Next::End
+                locked(&pooled.session).abandon(&mut out);
+                pooled.buffers.send(out, Some(1));
+                AfterTurn::End
             });
             let cost = cpu_time().saturating_sub(started);
             self.metrics.turn_micros.add(u64::try_from(cost.as_micros()).unwrap_or(0));
-            let mut shared = locked(&self.shared);
-            shared.queue.finish(id, cost, next);
-            if next == Next::End {
-                shared.seats.remove(&id);
+            let mut state = locked(&self.state);
+            state.queue.finish(id, cost, next);
+            if next == AfterTurn::End {
+                state.sessions.remove(&id);
             }
         }
     }
 
-    /// Waits for the next turn, and returns its seat, the load, and the token that cancels
+    /// Waits for the next turn, and returns its session, the load, and the token that cancels
     /// refinements.
     ///
-    /// The load is the number of seats that run or are ready for a picture. `None` if the stage is closed.
-    fn next_turn(&self) -> Option<(SeatId, Arc<Staged>, usize, Cancellation)> {
-        let mut shared = locked(&self.shared);
+    /// The load is the number of sessions that run or are ready for a picture. `None` if the pool is closed.
+    fn next_turn(&self) -> Option<(SessionId, Arc<PooledSession>, usize, Cancellation)> {
+        let mut state = locked(&self.state);
         loop {
-            if shared.closed {
+            if state.closed {
                 return None;
             }
             let now = self.now();
-            if let Some(id) = shared.queue.take(now) {
-                let (load, token) = (shared.queue.load(), shared.refinements.clone());
-                if let Some(staged) = shared.seats.get(&id) {
-                    return Some((id, Arc::clone(staged), load, token));
+            if let Some(id) = state.queue.take(now) {
+                let (load, token) = (state.queue.load(), state.refinements.clone());
+                if let Some(pooled) = state.sessions.get(&id) {
+                    return Some((id, Arc::clone(pooled), load, token));
                 }
-                shared.queue.finish(id, Duration::ZERO, Next::End);
+                state.queue.finish(id, Duration::ZERO, AfterTurn::End);
                 continue;
             }
-            shared.resting += 1;
-            let timeout = shared.queue.next_timer().map(|at| at.saturating_sub(now));
-            shared = match timeout {
-                Some(timeout) => self.ready.wait_timeout(shared, timeout).unwrap_or_else(PoisonError::into_inner).0,
-                None => self.ready.wait(shared).unwrap_or_else(PoisonError::into_inner),
+            state.resting += 1;
+            let timeout = state.queue.next_timer().map(|at| at.saturating_sub(now));
+            state = match timeout {
+                Some(timeout) => self.ready.wait_timeout(state, timeout).unwrap_or_else(PoisonError::into_inner).0,
+                None => self.ready.wait(state).unwrap_or_else(PoisonError::into_inner),
             };
-            shared.resting -= 1;
+            state.resting -= 1;
         }
     }
 
-    fn take_turn(&self, staged: &Staged, load: usize, token: &Cancellation, tracer: &mut Tracer) -> Next {
-        let line = &staged.line;
-        if line.is_hung_up() {
-            return Next::End;
+    fn take_turn(&self, pooled: &PooledSession, load: usize, token: &Cancellation, tracer: &mut Tracer) -> AfterTurn {
+        let buffers = &pooled.buffers;
+        if buffers.is_hung_up() {
+            return AfterTurn::End;
         }
-        let mut seat = locked(&staged.seat);
+        let mut session = locked(&pooled.session);
         let share = (load as f64 / self.threads as f64).max(1.0);
         // The first picture of a visit is never interrupted, because the screen is empty until it is drawn.
         let never = Cancellation::default();
         let mut trace = |job: &Job, may_interrupt: bool| -> Option<Frame> {
             let token = if may_interrupt { token } else { &never };
             let mut frame = self.picture(job, token, tracer)?;
-            // The trace time is scaled up if there are more seats than threads, because the viewer chooses the number
-            // of samples by that time.
+            // The trace time is scaled up if there are more sessions than threads, because the viewer chooses the
+            // number of samples by that time.
             frame.trace = frame.trace.mul_f64(share);
             Some(frame)
         };
         let mut out = Vec::new();
-        let arrived: Arrived = line.take_arrived();
+        let input: PendingInput = buffers.take_input();
         #[cfg(feature = "test-hooks")]
         assert!(
-            !self.panics.get().is_some_and(|key| arrived.bytes.contains(key)),
-            "a test asked for a panic in a seat"
+            !self.panics.get().is_some_and(|key| input.bytes.contains(key)),
+            "a test asked for a panic in a session"
         );
-        // If every ready seat has a thread, the turn may refine: that delays no picture of another viewer.
-        let class = if load <= self.threads { Class::Refinement } else { Class::Picture };
-        let next = seat.take_turn(&arrived, (line.is_sending(), class), &|| self.now(), &mut trace, &mut out);
-        self.metrics.frames.add(seat.take_drawn());
-        line.send(out, (next == Next::End).then_some(0));
+        // If every ready session has a thread, the turn may refine: that delays no picture of another viewer.
+        let kind = if load <= self.threads { WorkKind::Refinement } else { WorkKind::Picture };
+        let next = session.take_turn(&input, (buffers.is_sending(), kind), &|| self.now(), &mut trace, &mut out);
+        self.metrics.frames.add(session.take_drawn());
+        buffers.send(out, (next == AfterTurn::End).then_some(0));
         next
     }
 
