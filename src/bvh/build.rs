@@ -1,8 +1,8 @@
 //! The build of the tree: a binary tree from the root down, which is then collapsed into nodes with
 //! eight children.
 
-use super::cut::{Halves, Item, ItemBounds, cut, item};
-use super::wide::{BinaryNode, Wide};
+use super::cut::{CutSides, Item, ItemBounds, cut, item};
+use super::wide::{BinaryNode, WideBuilder};
 use super::{Bvh, Leaves};
 use crate::bounds::Bounds;
 use crate::threads;
@@ -20,8 +20,8 @@ pub(super) fn build<E: Send>(boxes: &[Bounds], report: Report<'_, E>) -> Result<
     }
     let mut items: Vec<Item> = (0..).zip(boxes).map(item).collect();
     let bounds = ItemBounds::of(&items);
-    let pairs = build_subtree(&mut items, &bounds, Place { first: 0, depth: 0 }, report)?;
-    let mut wide = Wide::from_binary(&pairs);
+    let pairs = build_subtree(&mut items, &bounds, NodePosition { first: 0, depth: 0 }, report)?;
+    let mut wide = WideBuilder::from_binary(&pairs);
     let root = Some(wide.append_node(0));
     // The items were partitioned in place, so they are in the order of the leaves.
     let order = items.iter().map(|item| item.min[3].to_bits()).collect();
@@ -30,12 +30,12 @@ pub(super) fn build<E: Send>(boxes: &[Bounds], report: Report<'_, E>) -> Result<
 
 /// The position of a binary node: the index of its first item, and the number of nodes above it.
 #[derive(Clone, Copy)]
-struct Place {
+struct NodePosition {
     first: usize,
     depth: usize,
 }
 
-impl Place {
+impl NodePosition {
     /// Returns the positions of both children, of which the first has `cut` items.
     fn children(self, cut: usize) -> [Self; 2] {
         let depth = self.depth + 1;
@@ -49,21 +49,21 @@ impl Place {
 fn build_subtree<E: Send>(
     items: &mut [Item],
     bounds: &ItemBounds,
-    place: Place,
+    position: NodePosition,
     report: Report<'_, E>,
 ) -> Result<Vec<BinaryNode>, E> {
     if items.len() < MIN_TASK_ITEMS {
         let mut nodes = Vec::with_capacity(items.len());
-        append_subtree(items, bounds, place, &mut nodes);
+        append_subtree(items, bounds, position, &mut nodes);
         return report(items.len()).map(|()| nodes);
     }
     // A report without progress, so that a large build can be cancelled between subtrees.
     report(0)?;
     let node_bounds = bounds.boxes.bounds();
-    let Halves { cut, bounds } =
-        cut(items, bounds, place.depth).unwrap_or_else(|| Halves::cut_at(items.len() / 2, items));
+    let CutSides { cut, bounds } =
+        cut(items, bounds, position.depth).unwrap_or_else(|| CutSides::cut_at(items.len() / 2, items));
     let (left, right) = items.split_at_mut(cut);
-    let [at_left, at_right] = place.children(cut);
+    let [at_left, at_right] = position.children(cut);
     let (left, right) = threads::join(
         || build_subtree(left, &bounds[0], at_left, report),
         || build_subtree(right, &bounds[1], at_right, report),
@@ -77,16 +77,16 @@ fn build_subtree<E: Send>(
 }
 
 /// Appends the binary tree over `items` to `nodes`, on one thread.
-fn append_subtree(items: &mut [Item], bounds: &ItemBounds, place: Place, nodes: &mut Vec<BinaryNode>) {
+fn append_subtree(items: &mut [Item], bounds: &ItemBounds, position: NodePosition, nodes: &mut Vec<BinaryNode>) {
     let node_bounds = bounds.boxes.bounds();
-    let Some(Halves { cut, bounds }) = cut(items, bounds, place.depth) else {
-        nodes.push(BinaryNode { bounds: node_bounds, count: items.len() as u32, at: place.first as u32 });
+    let Some(CutSides { cut, bounds }) = cut(items, bounds, position.depth) else {
+        nodes.push(BinaryNode { bounds: node_bounds, count: items.len() as u32, at: position.first as u32 });
         return;
     };
     let number = nodes.len();
     nodes.push(BinaryNode { bounds: node_bounds, count: 0, at: 0 });
     let (left, right) = items.split_at_mut(cut);
-    let [at_left, at_right] = place.children(cut);
+    let [at_left, at_right] = position.children(cut);
     append_subtree(left, &bounds[0], at_left, nodes);
     nodes[number].at = (nodes.len() - number) as u32;
     append_subtree(right, &bounds[1], at_right, nodes);

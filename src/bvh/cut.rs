@@ -13,12 +13,12 @@ use std::array::from_fn;
 // of the dragon's tree by 40 %.
 #[derive(Clone, Copy)]
 #[repr(align(16))]
-pub(super) struct Rows {
+pub(super) struct BoxRows {
     pub(super) min: [f32; 4],
     pub(super) max: [f32; 4],
 }
 
-impl Rows {
+impl BoxRows {
     const EMPTY: Self = Self { min: [f32::INFINITY; 4], max: [f32::NEG_INFINITY; 4] };
 
     #[inline(always)]
@@ -45,12 +45,12 @@ impl Rows {
 }
 
 /// A box with its index, whose bits are stored in `min[3]`: no computation uses that number.
-pub(super) type Item = Rows;
+pub(super) type Item = BoxRows;
 
 pub(super) fn item((number, bounds): (u32, &Bounds)) -> Item {
     let [x, y, z] = bounds.min.to_array();
     let [to_x, to_y, to_z] = bounds.max.to_array();
-    Rows { min: [x, y, z, f32::from_bits(number)], max: [to_x, to_y, to_z, 0.0] }
+    BoxRows { min: [x, y, z, f32::from_bits(number)], max: [to_x, to_y, to_z, 0.0] }
 }
 
 /// The largest number of boxes in a leaf, which are tested together.
@@ -62,18 +62,18 @@ const MAX_DEPTH: usize = 96;
 
 /// The depth from which on each cut halves the number of items, without regard to its cost.
 // So no path is longer than `MAX_DEPTH`: even 2^32 items can be halved only 32 times.
-const FREE_DEPTH: usize = MAX_DEPTH - 34;
+const HALVING_DEPTH: usize = MAX_DEPTH - 34;
 
 /// The bounds of some items.
 #[derive(Clone, Copy)]
 pub(super) struct ItemBounds {
-    pub(super) boxes: Rows,
-    /// The bounds of the items' centers times two, as [`Rows::doubled_center`] returns them.
-    doubled_centers: Rows,
+    pub(super) boxes: BoxRows,
+    /// The bounds of the items' centers times two, as [`BoxRows::doubled_center`] returns them.
+    doubled_centers: BoxRows,
 }
 
 impl ItemBounds {
-    const NOTHING: Self = Self { boxes: Rows::EMPTY, doubled_centers: Rows::EMPTY };
+    const NOTHING: Self = Self { boxes: BoxRows::EMPTY, doubled_centers: BoxRows::EMPTY };
 
     pub(super) fn of(items: &[Item]) -> Self {
         let mut bounds = Self::NOTHING;
@@ -87,37 +87,37 @@ impl ItemBounds {
     fn grow(&mut self, item: &Item) {
         let center = item.doubled_center();
         self.boxes.grow(item);
-        self.doubled_centers.grow(&Rows { min: center, max: center });
+        self.doubled_centers.grow(&BoxRows { min: center, max: center });
     }
 }
 
 /// A cut: the number of items before it, and the bounds of the items on each side.
-pub(super) struct Halves {
+pub(super) struct CutSides {
     pub(super) cut: usize,
     pub(super) bounds: [ItemBounds; 2],
 }
 
-impl Halves {
+impl CutSides {
     pub(super) fn cut_at(cut: usize, items: &[Item]) -> Self {
         Self { cut, bounds: [ItemBounds::of(&items[..cut]), ItemBounds::of(&items[cut..])] }
     }
 }
 
 /// Chooses a cut and partitions the items by it; `None` if they fit into a leaf.
-pub(super) fn cut(items: &mut [Item], bounds: &ItemBounds, depth: usize) -> Option<Halves> {
+pub(super) fn cut(items: &mut [Item], bounds: &ItemBounds, depth: usize) -> Option<CutSides> {
     if items.len() <= MAX_LEAF_BOXES {
         return None;
     }
-    let plane = if depth < FREE_DEPTH { Cut::cheapest(items, &bounds.doubled_centers) } else { None };
+    let plane = if depth < HALVING_DEPTH { Cut::cheapest(items, &bounds.doubled_centers) } else { None };
     // There is no plane if all centers coincide or the node is too deep. Any half of the items will do then.
-    let Some(Cut { bins, before, .. }) = plane else { return Some(Halves::cut_at(items.len() / 2, items)) };
+    let Some(Cut { bins, before, .. }) = plane else { return Some(CutSides::cut_at(items.len() / 2, items)) };
     Some(partition(items, |item| bins.index_of(item) < before))
 }
 
 /// Moves the items for which `is_first` is true before the others.
 // The partition also computes the bounds of both sides: with a separate pass over the items of each node, the build of
 // the dragon's tree of 871 k triangles took 1.01 times as long.
-fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> Halves {
+fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> CutSides {
     let (mut start, mut end) = (0, items.len());
     let [mut first, mut last] = [ItemBounds::NOTHING; 2];
     while start < end {
@@ -131,7 +131,7 @@ fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> Halves {
             items.swap(start, end);
         }
     }
-    Halves { cut: start, bounds: [first, last] }
+    CutSides { cut: start, bounds: [first, last] }
 }
 
 /// The largest number of bins per axis: the usual 16 (Wald 2007).
@@ -153,7 +153,7 @@ struct AxisBins {
 
 impl AxisBins {
     /// Divides the range of the items' centers along an axis into bins; `None` if they coincide.
-    fn divide(axis: usize, doubled_centers: &Rows, count: usize) -> Option<Self> {
+    fn divide(axis: usize, doubled_centers: &BoxRows, count: usize) -> Option<Self> {
         let extent = doubled_centers.max[axis] - doubled_centers.min[axis];
         // A little less than the number of bins, so that the largest center falls into the last bin; `min` in
         // `index_of` guards against rounding.
@@ -179,10 +179,10 @@ struct Cut {
 }
 
 impl Cut {
-    fn cheapest(items: &[Item], doubled_centers: &Rows) -> Option<Self> {
+    fn cheapest(items: &[Item], doubled_centers: &BoxRows) -> Option<Self> {
         let count = if items.len() < MIN_ITEMS_FOR_MAX_BINS { MAX_BINS / 2 } else { MAX_BINS };
         let axes = [0, 1, 2].map(|axis| AxisBins::divide(axis, doubled_centers, count));
-        let mut contents = [[(Rows::EMPTY, 0_u32); MAX_BINS]; 3];
+        let mut contents = [[(BoxRows::EMPTY, 0_u32); MAX_BINS]; 3];
         for item in items {
             for (bins, contents) in axes.iter().zip(&mut contents) {
                 let Some(bins) = bins else { continue };
@@ -197,15 +197,15 @@ impl Cut {
         planes.min_by(|a, b| a.cost.total_cmp(&b.cost))
     }
 
-    fn cheapest_between(bins: AxisBins, contents: &[(Rows, u32)]) -> Option<Self> {
+    fn cheapest_between(bins: AxisBins, contents: &[(BoxRows, u32)]) -> Option<Self> {
         let mut behind = [(0.0, 0); MAX_BINS];
-        let mut sum = (Rows::EMPTY, 0);
+        let mut sum = (BoxRows::EMPTY, 0);
         for at in (1..contents.len()).rev() {
             sum.0.grow(&contents[at].0);
             sum.1 += contents[at].1;
             behind[at] = (cost(sum), sum.1);
         }
-        let mut sum = (Rows::EMPTY, 0);
+        let mut sum = (BoxRows::EMPTY, 0);
         let mut cheapest: Option<Self> = None;
         for before in 1..contents.len() {
             sum.0.grow(&contents[before - 1].0);
@@ -228,7 +228,7 @@ impl Cut {
 // ties between cuts with the same number of blocks. Counting single boxes instead made 18 % more leaves of the dragon's
 // 871 k triangles, and 5 % slower rays.
 #[inline(always)]
-fn cost((rows, count): (Rows, u32)) -> f32 {
+fn cost((rows, count): (BoxRows, u32)) -> f32 {
     let [x, y, z, _]: [f32; 4] = from_fn(|at| rows.max[at] - rows.min[at]);
     let tests = count.div_ceil(LANES as u32) as f32 + count as f32 / 16.0;
     if count == 0 { 0.0 } else { tests * (x * y + y * z + z * x) }

@@ -17,16 +17,16 @@ pub(super) struct BinaryNode {
 }
 
 /// The wide tree under construction.
-pub(super) struct Wide<'p> {
+pub(super) struct WideBuilder<'p> {
     pairs: &'p [BinaryNode],
-    fillings: Vec<Filling>,
+    slot_divisions: Vec<SlotDivision>,
     pub(super) nodes: Vec<Node>,
     pub(super) leaves: Vec<Range<u32>>,
 }
 
-impl<'p> Wide<'p> {
+impl<'p> WideBuilder<'p> {
     pub(super) fn from_binary(pairs: &'p [BinaryNode]) -> Self {
-        Self { pairs, fillings: fillings(pairs), nodes: Vec::new(), leaves: Vec::new() }
+        Self { pairs, slot_divisions: slot_divisions(pairs), nodes: Vec::new(), leaves: Vec::new() }
     }
 
     pub(super) fn append_node(&mut self, index: usize) -> Child {
@@ -55,8 +55,8 @@ impl<'p> Wide<'p> {
 
     /// Adds the binary nodes that represent node `index` in at most `slots` slots of a wide node.
     fn gather_children(&self, index: usize, slots: usize, children: &mut Children) {
-        let left = usize::from(self.fillings[index][slots - 1]);
-        if left == WHOLE {
+        let left = usize::from(self.slot_divisions[index][slots - 1]);
+        if left == NODE_ITSELF {
             children.pairs[children.count] = index;
             children.count += 1;
         } else {
@@ -75,12 +75,12 @@ struct Children {
 
 /// The best ways to represent a binary node in 1 to 8 slots for children of a wide node.
 ///
-/// For each number of slots: how many of them represent the node's first child, or [`WHOLE`] if the node itself takes
-/// one slot.
-type Filling = [u8; LANES];
+/// For each number of slots: how many of them represent the node's first child, or [`NODE_ITSELF`] if the node itself
+/// takes one slot.
+type SlotDivision = [u8; LANES];
 
-/// The entry of a [`Filling`] for a node that takes one slot by itself.
-const WHOLE: usize = 0;
+/// The entry of a [`SlotDivision`] for a node that takes one slot by itself.
+const NODE_ITSELF: usize = 0;
 
 /// Chooses the wide nodes so that a ray is expected to visit as few as possible.
 ///
@@ -88,37 +88,37 @@ const WHOLE: usize = 0;
 /// Through Compressed Wide BVHs, 2017).
 // The simpler way, to replace the child with the largest box by its own children until there are eight, left a third of
 // the nodes with two children. Dynamic programming makes 28 % fewer nodes for the dragon's 871 k triangles.
-fn fillings(pairs: &[BinaryNode]) -> Vec<Filling> {
-    let mut fillings = vec![[WHOLE as u8; LANES]; pairs.len()];
+fn slot_divisions(pairs: &[BinaryNode]) -> Vec<SlotDivision> {
+    let mut slot_divisions = vec![[NODE_ITSELF as u8; LANES]; pairs.len()];
     // A stack of costs. From the last node to the first, both children come before their parent, with the cost of the
     // first child on top.
     let mut costs: Vec<[f32; LANES]> = Vec::new();
-    for (pair, filling) in pairs.iter().zip(&mut fillings).rev() {
+    for (pair, division) in pairs.iter().zip(&mut slot_divisions).rev() {
         let cost = match pair.count {
             0 => costs
                 .pop()
                 .zip(costs.pop())
-                .map(|(left, right)| cheapest_filling(pair.bounds.half_area(), left, right, filling)),
+                .map(|(left, right)| cheapest_division(pair.bounds.half_area(), left, right, division)),
             // A leaf costs the same in all wide trees, so it counts as 0.
             _ => None,
         };
         costs.push(cost.unwrap_or([0.0; LANES]));
     }
-    fillings
+    slot_divisions
 }
 
-/// Computes the cheapest filling of an inner node, and returns its cost for each number of slots.
+/// Computes the cheapest division of an inner node, and returns its cost for each number of slots.
 ///
 /// The cost is the sum of the half areas of all wide nodes. `area` is the half area of the node, `left` and `right` are
 /// the costs of its children.
-fn cheapest_filling(area: f32, left: [f32; LANES], right: [f32; LANES], filling: &mut Filling) -> [f32; LANES] {
+fn cheapest_division(area: f32, left: [f32; LANES], right: [f32; LANES], division: &mut SlotDivision) -> [f32; LANES] {
     let mut cost = [f32::INFINITY; LANES];
     for slots in 2..=LANES {
         for of_left in 1..slots {
             let both = left[of_left - 1] + right[slots - of_left - 1];
-            // The first filling is taken in any case, also where both sums are infinite because areas overflow f32.
+            // The first division is taken in any case, also where both sums are infinite because areas overflow f32.
             if both < cost[slots - 1] || of_left == 1 {
-                (cost[slots - 1], filling[slots - 1]) = (both, of_left as u8);
+                (cost[slots - 1], division[slots - 1]) = (both, of_left as u8);
             }
         }
     }
@@ -126,7 +126,7 @@ fn cheapest_filling(area: f32, left: [f32; LANES], right: [f32; LANES], filling:
     cost[0] = area + cost[LANES - 1];
     for slots in 2..LANES {
         if cost[0] < cost[slots - 1] {
-            (cost[slots - 1], filling[slots - 1]) = (cost[0], WHOLE as u8);
+            (cost[slots - 1], division[slots - 1]) = (cost[0], NODE_ITSELF as u8);
         }
     }
     cost

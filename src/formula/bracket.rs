@@ -53,7 +53,7 @@ impl Brackets {
     ///
     /// `count` is the number of earlier calls.
     #[inline(always)]
-    fn take(&mut self, values: &EightValues, count: u32) -> u32 {
+    fn take_values(&mut self, values: &EightValues, count: u32) -> u32 {
         let mut is_narrow = [false; LANES];
         let in_turn = count > 2 && count.is_multiple_of(2);
         for lane in 0..LANES {
@@ -62,7 +62,7 @@ impl Brackets {
             // The values at the ends are not needed, as their signs are known.
             let before = if is_before { t.max(self.before[lane]) } else { self.before[lane] };
             let after = if is_before { self.after[lane] } else { t.min(self.after[lane]) };
-            let (least, most) = (above(before), below(after));
+            let (least, most) = (next_f32_above(before), next_f32_below(after));
             let distance = t - self.last[0][lane];
             let secant = (value - self.last[1][lane]) / distance;
             // A secant that is NaN is not used, and neither is one between two t so close that rounding errors would
@@ -72,7 +72,7 @@ impl Brackets {
             // The next t is one f32 beyond the root by Newton's method, so that the root is soon enclosed from both
             // sides; later, every second t is the middle of the bracket.
             let root = f64::from((t - value / slope) as f32);
-            let beyond = if is_before { above(root) } else { below(root) };
+            let beyond = if is_before { next_f32_above(root) } else { next_f32_below(root) };
             let is_far = in_turn || !(root.abs() < f64::INFINITY);
             let next = if is_far { f64::from((0.5 * (before + after)) as f32) } else { beyond };
             (self.before[lane], self.after[lane], self.slope[lane]) = (before, after, slope);
@@ -99,7 +99,7 @@ impl SimdKernel for Narrowing<'_> {
         let Self { mut values, brackets, mut lanes } = self;
         let mut count = 0;
         while lanes != 0 {
-            lanes &= !brackets.take(&values.at(&brackets.next), count);
+            lanes &= !brackets.take_values(&values.at(&brackets.next), count);
             count += 1;
         }
         F32x8(from_fn(|lane| brackets.after[lane] as f32))
@@ -121,7 +121,7 @@ fn at_least(t: f64) -> f32 {
 /// Returns the next f32 above a finite f32.
 // Without the branches of `next_up`, which keep a loop from becoming vector instructions.
 #[inline(always)]
-fn above(t: f64) -> f64 {
+fn next_f32_above(t: f64) -> f64 {
     // Adding 0 turns -0 into 0: the bits of -0 are not beside those of the least positive number.
     let bits = (t as f32 + 0.0).to_bits();
     f64::from(f32::from_bits(if t < 0.0 { bits.wrapping_sub(1) } else { bits.wrapping_add(1) }))
@@ -129,6 +129,6 @@ fn above(t: f64) -> f64 {
 
 /// Returns the next f32 below a finite f32.
 #[inline(always)]
-fn below(t: f64) -> f64 {
-    -above(-t)
+fn next_f32_below(t: f64) -> f64 {
+    -next_f32_above(-t)
 }

@@ -3,7 +3,7 @@
 //! They are the models of [`model`](super::model) with the rounding of f32. The frequent operations have a vector form
 //! here; all others are computed lane by lane in f64. The bits of a lane do not depend on the other lanes.
 
-use super::elementary::{exp_of_each, wave_of_each};
+use super::elementary::{exp_of_each, sin_or_cos_of_each};
 use super::model::{Continuity, EPSILON as EPSILON_64, Evaluation, Model};
 use super::tape::{Binary, Index, Operation, Tape, Unary};
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Mask, SimdKernel, set_bits};
@@ -17,11 +17,11 @@ const BLUR: f32 = 1.0 / 16.0;
 
 /// A bound of the absolute error of the polynomials for sine and cosine.
 // The largest measured error, at every 37th float up to 8000, is 9.3e-8.
-const OF_SINE: f32 = 2.0 * EPSILON;
+const SINE_ERROR: f32 = 2.0 * EPSILON;
 
 /// A bound of the relative error of the polynomial for the exponential function.
 // The largest measured error, at every 37th float, is 8.1e-8.
-const OF_EXP: f32 = 4.0 * EPSILON;
+const EXP_RELATIVE_ERROR: f32 = 4.0 * EPSILON;
 
 /// The largest angle, in radians, at which the reduction to a quarter turn is exact enough.
 // Cephes gives 8192 as the limit of this reduction.
@@ -52,7 +52,7 @@ pub(super) struct Outcome {
     models: StoredModels,
     pub(super) may_jump: u32,
     pub(super) is_undefined: u32,
-    /// `near`, `far` and `blur` of each lane's [`View`].
+    /// `near`, `far` and `blur` of each lane's [`SignForecast`].
     pub(super) shares: [F32x8; 3],
     /// The lanes in which the sign is certain at the start of the piece.
     pub(super) is_certain: u32,
@@ -66,7 +66,7 @@ pub(super) struct Outcome {
 
 /// The sign of a model at the start of a piece, and where the sign may change.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct View {
+pub(super) struct SignForecast {
     /// The coefficients of u and u^2.
     pub(super) c: [f64; 2],
     /// The sign at the start, 1 or -1; 0 if it is uncertain.
@@ -84,7 +84,7 @@ pub(super) struct View {
 impl Outcome {
     #[cfg(test)]
     pub(super) fn model(&self, lane: usize) -> Model {
-        of_lane(&self.models, lane)
+        model_of_lane(&self.models, lane)
     }
 
     pub(super) fn continuity(&self, lane: usize) -> Continuity {
@@ -105,11 +105,11 @@ impl Outcome {
         if self.is_negative >> lane & 1 == 1 { -1.0 } else { 1.0 }
     }
 
-    pub(super) fn view(&self, lane: usize) -> View {
+    pub(super) fn forecast(&self, lane: usize) -> SignForecast {
         let [near, far, blur] = self.shares.map(|share| f64::from(share.0[lane]));
         let sign = if self.is_certain >> lane & 1 == 1 { self.sign(lane) } else { 0.0 };
         let c = [1, 2].map(|power: usize| f64::from(self.models[power].0[lane]));
-        View { c, sign, is_clear: self.is_clear(lane), near, far, blur }
+        SignForecast { c, sign, is_clear: self.is_clear(lane), near, far, blur }
     }
 }
 
@@ -129,16 +129,18 @@ impl SimdKernel for PacketModels<'_> {
                 Operation::Constant(bits) => Models::constant(f64::from_bits(bits)),
                 Operation::Coordinate(axis) => Models::load(&coordinates[usize::from(axis)]),
                 Operation::Unary(function, a) => {
-                    evaluation.unary(function, Models::of(known, a), tape.is_non_negative(usize::from(a)))
+                    evaluation.unary(function, Models::of_operation(known, a), tape.is_non_negative(usize::from(a)))
                 }
                 Operation::Binary(function, a, b) => match (function, tape.factor(a), tape.factor(b)) {
-                    (Binary::Multiply, Some(factor), _) => Models::of(known, b).scaled(N::splat(factor)),
-                    (Binary::Multiply, _, Some(factor)) => Models::of(known, a).scaled(N::splat(factor)),
-                    (Binary::Add, Some(term), _) => Models::of(known, b).shifted(N::splat(term)),
-                    (Binary::Add, _, Some(term)) => Models::of(known, a).shifted(N::splat(term)),
-                    (Binary::Subtract, Some(term), _) => Models::of(known, b).negate().shifted(N::splat(term)),
-                    (Binary::Subtract, _, Some(term)) => Models::of(known, a).shifted(N::splat(-term)),
-                    _ => evaluation.binary(function, Models::of(known, a), Models::of(known, b)),
+                    (Binary::Multiply, Some(factor), _) => Models::of_operation(known, b).scaled(N::splat(factor)),
+                    (Binary::Multiply, _, Some(factor)) => Models::of_operation(known, a).scaled(N::splat(factor)),
+                    (Binary::Add, Some(term), _) => Models::of_operation(known, b).shifted(N::splat(term)),
+                    (Binary::Add, _, Some(term)) => Models::of_operation(known, a).shifted(N::splat(term)),
+                    (Binary::Subtract, Some(term), _) => {
+                        Models::of_operation(known, b).negate().shifted(N::splat(term))
+                    }
+                    (Binary::Subtract, _, Some(term)) => Models::of_operation(known, a).shifted(N::splat(-term)),
+                    _ => evaluation.binary(function, Models::of_operation(known, a), Models::of_operation(known, b)),
                 },
             };
             rest[0] = models.store();
@@ -174,8 +176,8 @@ impl PacketValues<'_> {
                     let (o, d) = (&origins[usize::from(axis)], &directions[usize::from(axis)]);
                     (0..LANES).for_each(|lane| to[lane] = o[lane] + d[lane] * t[lane]);
                 }
-                Operation::Unary(function, a) => of_each(function, of(a), to),
-                Operation::Binary(function, a, b) => of_both(function, of(a), of(b), to),
+                Operation::Unary(function, a) => unary_of_each(function, of(a), to),
+                Operation::Binary(function, a, b) => binary_of_each(function, of(a), of(b), to),
             }
         }
         scratch.last().copied().unwrap_or([f64::NAN; LANES])
@@ -186,22 +188,22 @@ impl PacketValues<'_> {
 ///
 /// Frequent functions have a loop of their own, which becomes vector instructions.
 #[inline(always)]
-fn of_each(function: Unary, a: &EightValues, to: &mut EightValues) {
+fn unary_of_each(function: Unary, a: &EightValues, to: &mut EightValues) {
     match function {
         Unary::Negate => (0..LANES).for_each(|lane| to[lane] = -a[lane]),
         Unary::Abs => (0..LANES).for_each(|lane| to[lane] = a[lane].abs()),
         Unary::Square => (0..LANES).for_each(|lane| to[lane] = a[lane] * a[lane]),
         Unary::Sqrt => (0..LANES).for_each(|lane| to[lane] = a[lane].sqrt()),
-        Unary::Sin => wave_of_each(a, to, false),
-        Unary::Cos => wave_of_each(a, to, true),
+        Unary::Sin => sin_or_cos_of_each(a, to, false),
+        Unary::Cos => sin_or_cos_of_each(a, to, true),
         Unary::Exp => exp_of_each(a, to),
         _ => (0..LANES).for_each(|lane| to[lane] = function.at(a[lane])),
     }
 }
 
-/// Computes a function of two values in each lane; see [`of_each`].
+/// Computes a function of two values in each lane; see [`unary_of_each`].
 #[inline(always)]
-fn of_both(function: Binary, a: &EightValues, b: &EightValues, to: &mut EightValues) {
+fn binary_of_each(function: Binary, a: &EightValues, b: &EightValues, to: &mut EightValues) {
     match function {
         Binary::Add => (0..LANES).for_each(|lane| to[lane] = a[lane] + b[lane]),
         Binary::Subtract => (0..LANES).for_each(|lane| to[lane] = a[lane] - b[lane]),
@@ -232,7 +234,7 @@ fn coordinates([origins, directions]: &Lines, [from, to]: &[[f64; LANES]; 2]) ->
 }
 
 /// Returns the model of one lane.
-fn of_lane(models: &StoredModels, lane: usize) -> Model {
+fn model_of_lane(models: &StoredModels, lane: usize) -> Model {
     let [c0, c1, c2, error] = models.map(|numbers| f64::from(numbers.0[lane]));
     Model { c: [c0, c1, c2], error }
 }
@@ -268,7 +270,7 @@ impl<N: Lanes> Models<N> {
 
     /// Returns the models of the operation at `index`.
     #[inline(always)]
-    fn of(known: &[StoredModels], index: Index) -> Self {
+    fn of_operation(known: &[StoredModels], index: Index) -> Self {
         Self::load(&known[usize::from(index)])
     }
 
@@ -482,14 +484,14 @@ impl<N: Lanes> Models<N> {
 
     /// Returns the sines, or the cosines.
     #[inline(always)]
-    fn wave(self, is_cosine: bool) -> Self {
+    fn sin_or_cos(self, is_cosine: bool) -> Self {
         let (c0, one) = (self.c[0], N::splat(1.0));
         let [sin, cos] = sin_cos(c0);
         let [value, slope] = if is_cosine { [cos, -sin] } else { [sin, cos] };
         let taylor = Taylor {
             at: [value, slope, N::splat(-0.5) * value],
             third: N::splat(1.0 / 5.9),
-            off: N::select(c0.abs().le(N::splat(LARGEST_ANGLE)), N::splat(OF_SINE), N::splat(f32::INFINITY)),
+            off: N::select(c0.abs().le(N::splat(LARGEST_ANGLE)), N::splat(SINE_ERROR), N::splat(f32::INFINITY)),
         };
         self.function(taylor, Self::hull(-one, one))
     }
@@ -509,19 +511,19 @@ impl<N: Lanes> Models<N> {
         let ([low, high], zero, one) = (self.range(), N::splat(0.0), N::splat(1.0));
         let value = exp(self.c[0]);
         // Below -87 `exp` returns 1.6e-38, and the true value is between 0 and that.
-        let off = N::splat(OF_EXP) * value + N::splat(1e-37);
+        let off = N::splat(EXP_RELATIVE_ERROR) * value + N::splat(1e-37);
         // Up to s = 1, e^s is at most 1 + s + s^2, and the hull is not narrower than the Taylor model. Each lane
         // chooses for itself, as in `squared`.
         let spread = high - self.c[0];
         let (is_narrow, is_in_reach) = (spread.lt(one) & N::splat(-80.0).lt(self.c[0]), high.lt(N::splat(87.0)));
-        let most = value * (one + spread + spread * spread) * N::splat(1.0 + 2.0 * OF_EXP);
+        let most = value * (one + spread + spread * spread) * N::splat(1.0 + 2.0 * EXP_RELATIVE_ERROR);
         let narrow = self.exponential_taylor([value, most, off]);
         if (is_narrow & is_in_reach).all() {
             return narrow;
         }
-        let most = exp(high) * N::splat(1.0 + OF_EXP);
-        // From -86 on, the relative error of `exp` is at most `OF_EXP`.
-        let least = N::select(low.lt(N::splat(-86.0)), zero, exp(low) * N::splat(1.0 - OF_EXP));
+        let most = exp(high) * N::splat(1.0 + EXP_RELATIVE_ERROR);
+        // From -86 on, the relative error of `exp` is at most `EXP_RELATIVE_ERROR`.
+        let least = N::select(low.lt(N::splat(-86.0)), zero, exp(low) * N::splat(1.0 - EXP_RELATIVE_ERROR));
         let wide = self.exponential_taylor([value, most, off]).or_if_narrower(Self::hull(least, most));
         Self::select(is_in_reach, Self::select(is_narrow, narrow, wide), Self::anything())
     }
@@ -545,7 +547,7 @@ fn first_zero<N: Lanes>(start: N, slope: N, curvature: N) -> N {
     N::select(zero.lt(one), one, none).min(N::select(zero.lt(other), other, none))
 }
 
-/// Returns sine and cosine, off by at most [`OF_SINE`] up to [`LARGEST_ANGLE`].
+/// Returns sine and cosine, off by at most [`SINE_ERROR`] up to [`LARGEST_ANGLE`].
 #[inline(always)]
 fn sin_cos<N: Lanes>(x: N) -> [N; 2] {
     let number = |value: f64| N::splat(value as f32);
@@ -567,7 +569,7 @@ fn sin_cos<N: Lanes>(x: N) -> [N; 2] {
     [N::select(is_odd, cos, sin) * (one - two * turned), N::select(is_odd, sin, cos) * (one - two * sign_of_cos)]
 }
 
-/// Returns e^x with a relative error of at most [`OF_EXP`] for x from -86 to 87.
+/// Returns e^x with a relative error of at most [`EXP_RELATIVE_ERROR`] for x from -86 to 87.
 ///
 /// Below -87 and above 88, it returns the value at that limit.
 #[inline(always)]
@@ -598,8 +600,8 @@ impl PacketEvaluation {
             Unary::Negate => a.negate(),
             Unary::Abs => a.absolute(),
             Unary::Square => a.squared(),
-            Unary::Sin => a.wave(false),
-            Unary::Cos => a.wave(true),
+            Unary::Sin => a.sin_or_cos(false),
+            Unary::Cos => a.sin_or_cos(true),
             Unary::Exp => a.exponential(),
             Unary::Sqrt => self.square_root(a, is_non_negative),
             _ => self.lane_by_lane([a, a], |evaluation, [a, _]| evaluation.unary(function, a, is_non_negative)),
@@ -671,8 +673,10 @@ impl PacketEvaluation {
         let (operands, mut results) = (operands.map(Models::store), Models::<N>::anything().store());
         for lane in set_bits(self.lanes) {
             let mut continuity = Continuity::default();
-            let Model { c, error } =
-                operation(&mut Evaluation(&mut continuity), [of_lane(&operands[0], lane), of_lane(&operands[1], lane)]);
+            let Model { c, error } = operation(
+                &mut Evaluation(&mut continuity),
+                [model_of_lane(&operands[0], lane), model_of_lane(&operands[1], lane)],
+            );
             self.may_jump |= u32::from(continuity.may_jump) << lane;
             self.is_undefined |= u32::from(continuity.is_undefined) << lane;
             let rounding = EPSILON * c.iter().map(|c| c.abs() as f32).sum::<f32>();

@@ -14,7 +14,7 @@
 use super::Formula;
 use super::bracket::{Brackets, Narrowing, Root};
 use super::model::{Continuity, Model};
-use super::packet::{EightValues, Lines, Outcome, PacketModels, PacketValues, StoredModels, View};
+use super::packet::{EightValues, Lines, Outcome, PacketModels, PacketValues, SignForecast, StoredModels};
 use super::tape::Tape;
 use crate::lanes::{F32x8, LANES, Lanes, SimdKernel, set_bits};
 use crate::simd;
@@ -126,8 +126,8 @@ struct Walk {
 }
 
 /// The outcome of a step along a piece.
-enum Found {
-    Nothing,
+enum StepOutcome {
+    NoRoot,
     Root(Root),
 }
 
@@ -151,7 +151,7 @@ impl Searches {
                 numbers[lane] = number;
             }
         }
-        self.walks.put(lane, &Walk::new(from, to));
+        self.walks.set_walk(lane, &Walk::new(from, to));
         (self.ends[lane], self.until[lane]) = (to, f64::from(until));
         self.lanes |= 1 << lane;
     }
@@ -229,7 +229,8 @@ impl SimdKernel for Search<'_> {
             let outcome = packet.run::<N>();
             let [done, arrived] = walks.advance(&outcome, &pieces, *lanes, &mut brackets);
             let rest = *lanes & !done;
-            let ended = arrived | look_closely(tape, (lines, &pieces), rest, &outcome, walks, &mut brackets, scratch);
+            let ended =
+                arrived | advance_one_by_one(tape, (lines, &pieces), rest, &outcome, walks, &mut brackets, scratch);
             found |= ended;
             *lanes &= !ended;
         }
@@ -244,7 +245,7 @@ impl SimdKernel for Search<'_> {
 ///
 /// Returns the lanes whose first root is now in a bracket.
 #[inline(never)]
-fn look_closely(
+fn advance_one_by_one(
     tape: &Tape,
     (lines, pieces): (&Lines, &[EightValues; 2]),
     lanes: u32,
@@ -255,21 +256,21 @@ fn look_closely(
 ) -> u32 {
     let mut found = 0;
     for lane in set_bits(lanes) {
-        let (mut walk, piece) = (walks.of(lane), [pieces[0][lane], pieces[1][lane]]);
-        let (mut view, mut continuity) = (outcome.view(lane), outcome.continuity(lane));
+        let (mut walk, piece) = (walks.walk(lane), [pieces[0][lane], pieces[1][lane]]);
+        let (mut forecast, mut continuity) = (outcome.forecast(lane), outcome.continuity(lane));
         // In f32, the model of a short piece may be little more than its rounding errors.
         if outcome.is_blurred(lane) && walk.is_short(piece) {
             let line = line_in_lane(lines, lane);
             let (o, d) = (line.origin.to_array(), line.direction.to_array());
             let coordinates = [0, 1, 2].map(|axis| Model::coordinate(o[axis], d[axis], piece));
             let (model, of_model) = tape.model(coordinates, &mut scratch.models);
-            (view, continuity) = (View::of(&model), of_model);
+            (forecast, continuity) = (SignForecast::of(&model), of_model);
         }
-        if let Found::Root(root) = walk.advance(&view, continuity, piece) {
+        if let StepOutcome::Root(root) = walk.advance(&forecast, continuity, piece) {
             brackets.add(lane, root);
             found |= 1 << lane;
         }
-        walks.put(lane, &walk);
+        walks.set_walk(lane, &walk);
     }
     found
 }
@@ -296,7 +297,7 @@ impl Walks {
         }
     };
 
-    fn of(&self, lane: usize) -> Walk {
+    fn walk(&self, lane: usize) -> Walk {
         Walk {
             t: self.t[lane],
             length: self.length[lane],
@@ -310,7 +311,7 @@ impl Walks {
         }
     }
 
-    fn put(&mut self, lane: usize, walk: &Walk) {
+    fn set_walk(&mut self, lane: usize, walk: &Walk) {
         (self.t[lane], self.length[lane], self.sign[lane]) = (walk.t, walk.length, walk.sign);
         (self.since[lane], self.undecided[lane], self.stride[lane]) = (walk.since, walk.undecided, walk.stride);
         (self.skipped[lane], self.shortest[lane], self.range[lane]) = (walk.skipped, walk.shortest, walk.range);
@@ -365,8 +366,8 @@ impl Walks {
         }
         let arrived = bits(arrived);
         for lane in set_bits(arrived) {
-            let (view, width) = (outcome.view(lane), pieces[1][lane] - pieces[0][lane]);
-            brackets.add(lane, view.root([starts[lane], ends[lane]], self.sign[lane], width));
+            let (forecast, width) = (outcome.forecast(lane), pieces[1][lane] - pieces[0][lane]);
+            brackets.add(lane, forecast.root([starts[lane], ends[lane]], self.sign[lane], width));
         }
         [bits(done), arrived]
     }
@@ -396,59 +397,64 @@ impl Walk {
     /// Examines the piece, and returns its root or advances.
     ///
     /// Without a root, the walk moves past the piece, shortens it, or goes back to a part that was skipped.
-    fn advance(&mut self, view: &View, continuity: Continuity, piece @ [from, to]: [f64; 2]) -> Found {
-        let (width, sign) = (to - from, view.sign);
+    fn advance(
+        &mut self,
+        forecast: &SignForecast,
+        continuity: Continuity,
+        piece @ [from, to]: [f64; 2],
+    ) -> StepOutcome {
+        let (width, sign) = (to - from, forecast.sign);
         if continuity.is_undefined {
-            return self.pass(to, 2.0 * width, 0.0);
+            return self.move_past(to, 2.0 * width, 0.0);
         }
         if sign == 0.0 {
-            return self.undecided(view, continuity, piece);
+            return self.step_undecided(forecast, continuity, piece);
         }
         if self.skipped > 1.5 * self.shortest {
             return self.retreat(from);
         }
         (self.undecided, self.stride) = (0.0, self.shortest);
         if self.sign != 0.0 && sign != self.sign && from - self.since <= MAX_STRETCH * self.range {
-            return Found::Root(Root { low: self.since, high: from, sign: self.sign, guess: from, slope: 0.0 });
+            return StepOutcome::Root(Root { low: self.since, high: from, sign: self.sign, guess: from, slope: 0.0 });
         }
         (self.sign, self.since) = (sign, from);
-        if view.is_clear {
+        if forecast.is_clear {
             self.since = to;
-            return self.pass(to, view.factor(1.0, 4.0) * width, sign);
+            return self.move_past(to, forecast.factor(1.0, 4.0) * width, sign);
         }
         if continuity.may_jump {
             if width <= 1.5 * self.shortest {
-                return self.pass(to, 2.0 * width, 0.0);
+                return self.move_past(to, 2.0 * width, 0.0);
             }
             self.length = 0.5 * width;
-            return Found::Nothing;
+            return StepOutcome::NoRoot;
         }
-        self.approach(view, piece)
+        self.approach(forecast, piece)
     }
 
     /// Moves to `t`, where `sign` is certain, or unknown if it is 0.
-    fn pass(&mut self, t: f64, length: f64, sign: f64) -> Found {
+    fn move_past(&mut self, t: f64, length: f64, sign: f64) -> StepOutcome {
         (self.t, self.length, self.sign) = (t, length.max(self.shortest), sign);
         (self.undecided, self.stride, self.skipped) = (0.0, self.shortest, 0.0);
-        Found::Nothing
+        StepOutcome::NoRoot
     }
 
     /// Goes back to the start of the long piece passed last, and continues in shorter pieces.
     ///
     /// The sign was undecided in that piece and is certain at its end, so that roots may lie in it.
-    fn retreat(&mut self, from: f64) -> Found {
+    fn retreat(&mut self, from: f64) -> StepOutcome {
         self.stride = (0.125 * self.skipped).max(self.shortest);
         (self.t, self.length, self.skipped) = (from - self.skipped, self.stride, 0.0);
-        Found::Nothing
+        StepOutcome::NoRoot
     }
 
     /// Shortens a piece at whose start the sign is uncertain, or passes it if it is short.
-    fn undecided(&mut self, view: &View, continuity: Continuity, [from, to]: [f64; 2]) -> Found {
+    fn step_undecided(&mut self, forecast: &SignForecast, continuity: Continuity, [from, to]: [f64; 2]) -> StepOutcome {
         let width = to - from;
         // 1.5 instead of 1, because the rounding of its end may make a piece longer than `stride`.
         if width > 1.5 * self.stride {
-            self.length = (view.factor(0.0625, 0.5) * width).max(self.stride);
-            return Found::Nothing;
+            self.length = (forecast.factor(0.0625, 0.5) * width).max(self.stride);
+            return StepOutcome::NoRoot;
         }
         self.undecided += 1.0;
         if continuity.may_jump {
@@ -458,38 +464,42 @@ impl Walk {
             self.stride = (2.0 * self.stride).min(MAX_STRIDE * self.range);
         }
         (self.t, self.length, self.skipped) = (to, 2.0 * width, width);
-        Found::Nothing
+        StepOutcome::NoRoot
     }
 
     /// Advances to the first t of the piece that may be a root.
     ///
     /// If the sign is certainly the other one farther on, the next piece ends there; if it is short, it is returned as
     /// the bracket of a root.
-    fn approach(&mut self, view @ &View { near, far, .. }: &View, [from, to]: [f64; 2]) -> Found {
+    fn approach(
+        &mut self,
+        forecast @ &SignForecast { near, far, .. }: &SignForecast,
+        [from, to]: [f64; 2],
+    ) -> StepOutcome {
         let width = to - from;
         let start = from + near * width;
         self.since = start;
         if far <= 1.0 {
             let end = (from + far * width).min(to);
             if end - start <= BRACKET * self.range {
-                return Found::Root(view.root([start, end], self.sign, width));
+                return StepOutcome::Root(forecast.root([start, end], self.sign, width));
             }
             // The next piece is at least a quarter shorter than this one, so that the search comes to an end.
             (self.t, self.length) = (start, (end - start).min(0.75 * width));
-            return Found::Nothing;
+            return StepOutcome::NoRoot;
         }
         if width <= 1.5 * self.shortest {
             // The shortest piece shows no change of the sign: f is taken to touch zero here and to keep its sign.
             self.since = from;
-            return self.pass(to, 2.0 * width, self.sign);
+            return self.move_past(to, 2.0 * width, self.sign);
         }
-        (self.t, self.length) = (start, (view.factor(0.25, 0.75) * (to - start)).max(self.shortest));
-        Found::Nothing
+        (self.t, self.length) = (start, (forecast.factor(0.25, 0.75) * (to - start)).max(self.shortest));
+        StepOutcome::NoRoot
     }
 }
 
-impl View {
-    /// Returns the view of a model in f64.
+impl SignForecast {
+    /// Returns the forecast from a model in f64.
     fn of(&Model { c: [c0, c1, c2], error }: &Model) -> Self {
         // The coefficients in the Bernstein basis: the polynomial lies between the least and the greatest.
         let b = [c0 - c1 + c2, c0 - c2, c0 + c1 + c2];

@@ -436,19 +436,22 @@ fn models_of_eight_pieces_enclose_all_values() {
             let (bits, same) = (model_bits(&model), model_bits(&of_arrays.model(lane)));
             let is_same = (bits, outcome.is_clear(lane)) == (same, of_arrays.is_clear(lane));
             assert!(is_same, "{text}: {model:?}, {:?}, seed {SEED:#x}", of_arrays.model(lane));
-            let (continuity, view) = (outcome.continuity(lane), outcome.view(lane));
-            let has_shares = view.sign != 0.0 && !view.is_clear && continuity == model::Continuity::default();
-            let signed = |t: f64, values: &mut Vec<f64>| view.sign * formula.tape.value(o + d * t, values);
-            if has_shares && view.far <= 1.0 {
-                let far = signed(from + view.far * (to - from), &mut values);
-                assert!(far < 1e-11, "{text} in {from}..{to}: {far}, {view:?}, {o} + t {d}, seed {SEED:#x}");
+            let (continuity, forecast) = (outcome.continuity(lane), outcome.forecast(lane));
+            let has_shares = forecast.sign != 0.0 && !forecast.is_clear && continuity == model::Continuity::default();
+            let signed = |t: f64, values: &mut Vec<f64>| forecast.sign * formula.tape.value(o + d * t, values);
+            if has_shares && forecast.far <= 1.0 {
+                let far = signed(from + forecast.far * (to - from), &mut values);
+                assert!(far < 1e-11, "{text} in {from}..{to}: {far}, {forecast:?}, {o} + t {d}, seed {SEED:#x}");
             }
             for _ in 0..20 {
                 let t = random.between(from, to);
                 let value = formula.tape.value(o + d * t, &mut values);
-                if has_shares && t <= from + view.near * (to - from) {
-                    let near = view.sign * value;
-                    assert!(near > -1e-11, "{text} at {t} in {from}..{to}: {near}, {view:?}, {o} + t {d}, {SEED:#x}");
+                if has_shares && t <= from + forecast.near * (to - from) {
+                    let near = forecast.sign * value;
+                    assert!(
+                        near > -1e-11,
+                        "{text} at {t} in {from}..{to}: {near}, {forecast:?}, {o} + t {d}, {SEED:#x}"
+                    );
                 }
                 let u = ((t - 0.5 * (from + to)) / (0.5 * (to - from))).clamp(-1.0, 1.0);
                 let distance = (value - (c0 + u * (c1 + u * c2))).abs();

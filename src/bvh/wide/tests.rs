@@ -36,7 +36,7 @@ fn append_single_boxes(items: &mut [Item], first: usize, nodes: &mut Vec<BinaryN
     append_single_boxes(right, first + cut, nodes);
 }
 
-/// Returns the least possible sum of half areas of wide nodes, found by trying all fillings.
+/// Returns the least possible sum of half areas of wide nodes, found by trying all divisions.
 fn least_cost(pairs: &[BinaryNode], at: usize, slots: usize) -> f64 {
     let pair = &pairs[at];
     if pair.count > 0 {
@@ -53,7 +53,7 @@ fn least_cost(pairs: &[BinaryNode], at: usize, slots: usize) -> f64 {
 }
 
 /// Returns the sum of the half areas of all wide nodes, and the number of leaves below them.
-fn cost_and_boxes(wide: &Wide<'_>, at: usize) -> (f64, usize) {
+fn cost_and_boxes(wide: &WideBuilder<'_>, at: usize) -> (f64, usize) {
     if wide.pairs[at].count > 0 {
         return (0.0, 1);
     }
@@ -68,7 +68,7 @@ fn cost_and_boxes(wide: &Wide<'_>, at: usize) -> (f64, usize) {
 fn wide_nodes_are_the_cheapest_of_all_distributions() {
     for seed in 0..6 {
         let pairs = binary_tree(14, seed);
-        let (cost, boxes) = cost_and_boxes(&Wide::from_binary(&pairs), 0);
+        let (cost, boxes) = cost_and_boxes(&WideBuilder::from_binary(&pairs), 0);
         let least = least_cost(&pairs, 0, 1);
         assert_eq!(boxes, 14, "seed {seed}");
         assert!((cost - least).abs() < 1e-4 * least, "seed {seed}: {cost}, but {least} is possible");
