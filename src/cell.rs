@@ -14,7 +14,7 @@ use crate::text::{ParseError, named};
 use crate::tone::Picture;
 use glyph_kind::{Background, Fill, GlyphKind};
 use ink_converter::InkConverter;
-use memory::Memory;
+use last_frame::LastFrame;
 use std::borrow::Cow;
 use std::fmt;
 use std::num::NonZeroU32;
@@ -31,8 +31,8 @@ mod dots;
 mod glyph_kind;
 mod half;
 mod ink_converter;
+mod last_frame;
 mod lit;
-mod memory;
 mod mixes;
 mod mosaic;
 mod octants;
@@ -250,7 +250,7 @@ pub struct Painter {
     light_background: bool,
     inks: InkConverter,
     /// The last frame of the live view, for glyphs that show geometry.
-    memory: Memory,
+    last_frame: LastFrame,
 }
 
 impl fmt::Debug for Painter {
@@ -264,7 +264,12 @@ impl fmt::Debug for Painter {
 impl Painter {
     /// Returns a painter for a terminal with light text on a dark background.
     pub fn new(mode: CellMode) -> Self {
-        Self { mode, light_background: false, inks: InkConverter::for_colors(mode.colors), memory: Memory::default() }
+        Self {
+            mode,
+            light_background: false,
+            inks: InkConverter::for_colors(mode.colors),
+            last_frame: LastFrame::default(),
+        }
     }
 
     /// Sets whether the terminal's background is light.
@@ -334,7 +339,7 @@ impl Painter {
     /// are the same, or if another glyph is hardly better. At rest the glyphs depend on the picture alone.
     #[doc(hidden)]
     pub fn paint_view(&mut self, picture: &Picture, geometry: Option<&Geometry>, is_moving: bool, grid: &mut Grid) {
-        self.memory.is_moving = is_moving;
+        self.last_frame.is_moving = is_moving;
         self.paint_with(picture, geometry, true, grid);
     }
 
@@ -358,8 +363,8 @@ impl Painter {
                 let geometry = geometry.filter(|geometry| geometry.fits(picture.width, picture.height));
                 let geometry = geometry.map_or_else(|| Cow::Owned(unknown()), Cow::Borrowed);
                 let background = if self.light_background { Background::Light } else { Background::Dark };
-                let memory = is_view.then_some(&mut self.memory);
-                fill(grid, picture, &geometry, (background, self.mode.colors), memory);
+                let last_frame = is_view.then_some(&mut self.last_frame);
+                fill(grid, picture, &geometry, (background, self.mode.colors), last_frame);
             }
         }
     }

@@ -5,7 +5,7 @@
 
 use super::colors::{Colors, TextInks};
 use super::glyph_kind::{Background, Fill, GlyphKind};
-use super::memory::{KeptCell, LEAST_RANGE, Memory, Ranges, Remembered};
+use super::last_frame::{KeptCell, LEAST_RANGE, LastFrame, LightRanges, Remembered};
 use super::tint;
 use crate::color::{LinearRgb, Srgb8};
 use crate::grid::{Cell, Grid, Ink};
@@ -59,7 +59,7 @@ const OBJECT_LIMITS: [f32; OBJECT.len() - 1] = {
 };
 
 /// The object that most rays of a cell meet, and how the cell shows it.
-struct Part {
+struct CellContent {
     /// The object's index, plus 1; 0 for the background.
     object: u32,
     extent: Extent,
@@ -80,35 +80,37 @@ fn fill(
     picture: &Picture,
     geometry: &Geometry,
     (background, colors): (Background, Colors),
-    memory: Option<&mut Memory>,
+    last_frame: Option<&mut LastFrame>,
 ) {
     let (columns, rows) = (usize::from(grid.size().columns), usize::from(grid.size().rows));
-    let before = memory.as_ref().and_then(|memory| memory.before(picture));
-    let part =
-        |cell: usize| part(picture, geometry, [cell % columns, cell / columns], before.map(|it| &it.cells[cell]));
-    let mut parts: Vec<Part> = (0..columns * rows).map(part).collect();
-    let (heights, ranges) = set_tones(&mut parts, background, before);
-    let (crowds, inks) = (Crowds::of(&parts, columns, rows), TextInks::of(colors));
+    let before = last_frame.as_ref().and_then(|last_frame| last_frame.before(picture));
+    let content = |cell: usize| {
+        cell_content(picture, geometry, [cell % columns, cell / columns], before.map(|it| &it.cells[cell]))
+    };
+    let mut contents: Vec<CellContent> = (0..columns * rows).map(content).collect();
+    let (heights, ranges) = set_tones(&mut contents, background, before);
+    let (borders, inks) = (BorderCounts::of(&contents, columns, rows), TextInks::of(colors));
     for cell in 0..columns * rows {
         let pixels = pixels_of(picture, cell % columns, cell / columns);
         if let Some(shown) = before.and_then(|before| before.unchanged(picture, geometry, cell, &pixels)) {
             grid.set_at(cell, shown);
             continue;
         }
-        let glyph = glyph(&parts, columns, cell, &heights, &crowds);
+        let glyph = glyph(&contents, columns, cell, &heights, &borders);
         // The colour of a blank is invisible, and would take bytes.
         let is_plain = glyph == ' ' || inks.are_default();
-        let ink = if is_plain { Ink::Default } else { ink(picture, geometry, &parts[cell], cell, background, &inks) };
+        let ink =
+            if is_plain { Ink::Default } else { ink(picture, geometry, &contents[cell], cell, background, &inks) };
         grid.set_at(cell, &Cell::new(glyph, ink, Ink::Default));
     }
-    if let Some(memory) = memory {
-        let kept = |(part, shown): (&Part, Cell)| KeptCell {
-            object: part.object,
-            fill: part.tone.0,
-            edge: part.edge.map(|edge| edge.glyph),
+    if let Some(last_frame) = last_frame {
+        let kept = |(content, shown): (&CellContent, Cell)| KeptCell {
+            object: content.object,
+            fill: content.tone.0,
+            edge: content.edge.map(|edge| edge.glyph),
             shown,
         };
-        memory.remember(picture, geometry, ranges, parts.iter().zip(grid.cells()).map(kept).collect());
+        last_frame.remember(picture, geometry, ranges, contents.iter().zip(grid.cells()).map(kept).collect());
     }
 }
 
@@ -121,8 +123,13 @@ fn pixels_of(picture: &Picture, column: usize, row: usize) -> [usize; ACROSS * D
     })
 }
 
-/// Returns the part of a cell whose object most of the cell's rays meet, with the cell's edge.
-fn part(picture: &Picture, geometry: &Geometry, [column, row]: [usize; 2], before: Option<&KeptCell>) -> Part {
+/// Returns the content of a cell: the object that most of its rays meet, and the cell's edge.
+fn cell_content(
+    picture: &Picture,
+    geometry: &Geometry,
+    [column, row]: [usize; 2],
+    before: Option<&KeptCell>,
+) -> CellContent {
     let pixels = pixels_of(picture, column, row);
     let facets = pixels.map(|pixel| geometry.pixel(pixel));
     let count = |object: u32| facets.iter().filter(|facet| facet.object == object).count();
@@ -141,7 +148,7 @@ fn part(picture: &Picture, geometry: &Geometry, [column, row]: [usize; 2], befor
     let rows = [first, own.next_back().unwrap_or(first)].map(|at| DOWN * row + at / ACROSS);
     let edge = strokes::edge(geometry, [column, row], before.and_then(|before| before.edge));
     let kept_fill = before.filter(|before| before.object == owner.object).map(|before| before.fill);
-    Part { object: owner.object, extent: owner.extent, light, rows, kept_fill, tone: LEVEL[0], edge }
+    CellContent { object: owner.object, extent: owner.extent, light, rows, kept_fill, tone: LEVEL[0], edge }
 }
 
 /// Returns the luma of a pixel, in 0..=1.
@@ -149,17 +156,21 @@ fn luma(pixel: Srgb8) -> f32 {
     (0.2126 * f32::from(pixel.r) + 0.7152 * f32::from(pixel.g) + 0.0722 * f32::from(pixel.b)) / 255.0
 }
 
-/// Sets each part's tone by its object's range of light; returns the objects' heights and ranges.
-fn set_tones(parts: &mut [Part], background: Background, before: Option<&Remembered>) -> (Heights, Ranges) {
-    let mut order: Vec<u32> = (0..parts.len() as u32).collect();
+/// Sets the tone of each cell by its object's range of light; returns heights and ranges.
+fn set_tones(
+    contents: &mut [CellContent],
+    background: Background,
+    before: Option<&Remembered>,
+) -> (ObjectHeights, LightRanges) {
+    let mut order: Vec<u32> = (0..contents.len() as u32).collect();
     order.sort_unstable_by(|&a, &b| {
-        let [a, b] = [a, b].map(|at| &parts[at as usize]);
+        let [a, b] = [a, b].map(|at| &contents[at as usize]);
         a.object.cmp(&b.object).then(a.light.total_cmp(&b.light))
     });
-    let objects: Vec<u32> = parts.iter().map(|part| part.object).collect();
-    let (mut heights, mut ranges) = (Vec::new(), Ranges::default());
+    let objects: Vec<u32> = contents.iter().map(|content| content.object).collect();
+    let (mut heights, mut ranges) = (Vec::new(), LightRanges::default());
     for run in order.chunk_by(|&a, &b| objects[a as usize] == objects[b as usize]) {
-        let light = |at: usize| parts[run[at] as usize].light;
+        let light = |at: usize| contents[run[at] as usize].light;
         let quantile = |share: f32| {
             let at = share * (run.len() - 1) as f32;
             let below = at as usize;
@@ -169,19 +180,19 @@ fn set_tones(parts: &mut [Part], background: Background, before: Option<&Remembe
         let object = objects[run[0] as usize];
         // The darkest and the lightest 3 % of the object's cells are left out, so that a few cells do not take most of
         // the characters.
-        let [low, high] = ranges.add(object, [quantile(0.03), quantile(0.97)], before);
+        let [low, high] = ranges.add_limited(object, [quantile(0.03), quantile(0.97)], before);
         let range = (high - low).max(LEAST_RANGE);
         let least = 0.5 * (low + high - range);
         let [mut top, mut bottom] = [usize::MAX, 0];
         for &at in run {
-            let part = &mut parts[at as usize];
-            let share = ((part.light - least) / range).clamp(0.0, 1.0);
-            part.tone = tone(part.extent, share, background, part.kept_fill);
-            (top, bottom) = (top.min(part.rows[0]), bottom.max(part.rows[1]));
+            let content = &mut contents[at as usize];
+            let share = ((content.light - least) / range).clamp(0.0, 1.0);
+            content.tone = tone(content.extent, share, background, content.kept_fill);
+            (top, bottom) = (top.min(content.rows[0]), bottom.max(content.rows[1]));
         }
         heights.push((object, bottom + 1 - top));
     }
-    (Heights(heights), ranges)
+    (ObjectHeights(heights), ranges)
 }
 
 /// Returns the tone for a share of the range of an object's light.
@@ -212,11 +223,11 @@ fn tone(extent: Extent, share: f32, background: Background, kept: Option<u8>) ->
 }
 
 /// The height of each object in rows of pixels, sorted by the object.
-struct Heights(Vec<(u32, usize)>);
+struct ObjectHeights(Vec<(u32, usize)>);
 
-impl Heights {
+impl ObjectHeights {
     /// Returns whether an object is less than four and a half cells high.
-    fn is_low(&self, object: u32) -> bool {
+    fn is_small(&self, object: u32) -> bool {
         let found = self.0.binary_search_by_key(&object, |&(object, _)| object);
         // In many_spheres at 80x24 a sphere has three by two cells, which its outline alone would fill.
         !found.is_ok_and(|at| 2 * self.0[at].1 >= 9 * DOWN)
@@ -224,21 +235,21 @@ impl Heights {
 }
 
 /// A summed-area table that counts the cells with a border (Crow 1984).
-struct Crowds {
+struct BorderCounts {
     sums: Vec<u32>,
     columns: usize,
     rows: usize,
 }
 
-impl Crowds {
-    fn of(parts: &[Part], columns: usize, rows: usize) -> Self {
+impl BorderCounts {
+    fn of(contents: &[CellContent], columns: usize, rows: usize) -> Self {
         // A summed-area table (Crow 1984): the count of any rectangle takes four of its numbers.
         let width = columns + 1;
         let mut sums = vec![0; width * (rows + 1)];
         for row in 0..rows {
             let mut of_row = 0;
             for column in 0..columns {
-                of_row += u32::from(parts[row * columns + column].edge.is_some_and(|edge| edge.is_border));
+                of_row += u32::from(contents[row * columns + column].edge.is_some_and(|edge| edge.is_border));
                 sums[(row + 1) * width + column + 1] = sums[row * width + column + 1] + of_row;
             }
         }
@@ -262,15 +273,15 @@ impl Crowds {
 fn ink(
     picture: &Picture,
     geometry: &Geometry,
-    part: &Part,
+    content: &CellContent,
     cell: usize,
     background: Background,
     inks: &TextInks,
 ) -> Ink {
     let pixels = pixels_of(picture, cell % geometry.columns(), cell / geometry.columns());
     let is_of = |object: u32| pixels.iter().any(|&pixel| geometry.pixel(pixel).object == object);
-    let object = part.edge.map(|edge| edge.owner).filter(|&owner| is_of(owner)).unwrap_or(part.object);
-    let (mut light, mut extent) = (LinearRgb::BLACK, part.extent);
+    let object = content.edge.map(|edge| edge.owner).filter(|&owner| is_of(owner)).unwrap_or(content.object);
+    let (mut light, mut extent) = (LinearRgb::BLACK, content.extent);
     for &pixel in pixels.iter().filter(|&&pixel| geometry.pixel(pixel).object == object) {
         light += LinearRgb::from_srgb8(picture.pixels[pixel]);
         extent = geometry.pixel(pixel).extent;
@@ -286,28 +297,34 @@ fn ink(
 }
 
 /// Returns the character of a cell: its edge, or its fill.
-fn glyph(parts: &[Part], columns: usize, cell: usize, heights: &Heights, crowds: &Crowds) -> char {
+fn glyph(
+    contents: &[CellContent],
+    columns: usize,
+    cell: usize,
+    heights: &ObjectHeights,
+    borders: &BorderCounts,
+) -> char {
     let (column, row) = (cell % columns, cell / columns);
-    let part = &parts[cell];
-    let fill = char::from(part.tone.0);
-    let is_plane = matches!(part.extent, Extent::Level | Extent::Upright);
+    let content = &contents[cell];
+    let fill = char::from(content.tone.0);
+    let is_plane = matches!(content.extent, Extent::Level | Extent::Upright);
     let left = (column > 0).then(|| cell - 1);
     let right = (column + 1 < columns).then_some(cell + 1);
-    let (above, below) = (cell.checked_sub(columns), Some(cell + columns).filter(|&below| below < parts.len()));
-    let Some(edge) = part.edge else {
+    let (above, below) = (cell.checked_sub(columns), Some(cell + columns).filter(|&below| below < contents.len()));
+    let Some(edge) = content.edge else {
         // Planes stay blank beside a border, so that its line stands out: in the scene corridor, 98 % of the outlines
         // are seen instead of 83 %.
         let is_beside_line = || {
-            let has_border = |at: usize| parts[at].edge.is_some_and(|edge| edge.is_border);
+            let has_border = |at: usize| contents[at].edge.is_some_and(|edge| edge.is_border);
             [left, right, above, below].into_iter().flatten().any(has_border)
         };
         return if is_plane && is_beside_line() { ' ' } else { fill };
     };
-    if !(edge.is_border && heights.is_low(edge.owner) && crowds.is_crowded(column, row)) {
+    if !(edge.is_border && heights.is_small(edge.owner) && borders.is_crowded(column, row)) {
         return edge.glyph;
     }
     // Small objects in a crowd are drawn by their fill, because outlines around them would be a tangle.
-    let ink = |at: Option<usize>| at.map_or(0.0, |at| parts[at].tone.1);
+    let ink = |at: Option<usize>| at.map_or(0.0, |at| contents[at].tone.1);
     let [before, after] = if edge.is_steep { [left, right] } else { [above, below] };
     if !edge.is_inside || (ink(before) - ink(after)).abs() > 0.35 {
         if is_plane { ' ' } else { fill }

@@ -1,7 +1,7 @@
 //! The properties of a glyph kind, which are a row of the table of glyph kinds.
 
 use super::ink_converter::InkConverter;
-use super::memory::Memory;
+use super::last_frame::LastFrame;
 use super::{Colors, Glyphs};
 use crate::grid::Grid;
 use crate::render::Geometry;
@@ -30,8 +30,8 @@ pub(super) enum Fill {
     Lightness(fn(&mut Grid, &Picture)),
     /// Sets glyphs and colours from the picture, its surfaces and the terminal's background.
     ///
-    /// With a memory, cells of a moving view keep the glyphs of the frame before if these still fit well enough.
-    Geometry(fn(&mut Grid, &Picture, &Geometry, (Background, Colors), Option<&mut Memory>)),
+    /// With a last frame, cells of a moving view keep the glyphs of the frame before if these still fit well enough.
+    Geometry(fn(&mut Grid, &Picture, &Geometry, (Background, Colors), Option<&mut LastFrame>)),
 }
 
 /// The terminal's default background.

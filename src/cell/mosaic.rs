@@ -28,7 +28,7 @@ pub(super) struct Mosaic {
 /// Greatest difference of two colours, in each 8-bit channel, that is not drawn.
 // A difference of two levels is invisible. When it was drawn, mosaics took up to 25 % more bytes than half blocks and
 // gained only 0.02 dB.
-const FLAT: u8 = 2;
+const MAX_HIDDEN_DIFFERENCE: u8 = 2;
 
 /// The sum of some pixels, per channel.
 type Sum = [u32; 3];
@@ -43,7 +43,7 @@ struct Sums {
 
 /// A choice of the ink of a cell: its glyph, and the sum and number of the pixels inside.
 #[derive(Clone, Copy)]
-struct Choice {
+struct InkChoice {
     shape: Shape,
     sum: Sum,
     count: u32,
@@ -101,9 +101,13 @@ impl Mosaic {
         let (x, y) = (usize::from(column), 2 * usize::from(row));
         let (across, down) = self.pixels_per_cell();
         let (total, pixels) = (sums.rows.into_iter().fold([0; 3], plus), across * down);
-        let Choice { shape, sum, count, .. } = self.best(sums, total, pixels);
+        let InkChoice { shape, sum, count, .. } = self.best(sums, total, pixels);
         let [fg, bg] = [mean(sum, count), mean(minus(total, sum), pixels - count)];
-        if count == 0 || [fg.r.abs_diff(bg.r), fg.g.abs_diff(bg.g), fg.b.abs_diff(bg.b)].iter().all(|&by| by <= FLAT) {
+        if count == 0
+            || [fg.r.abs_diff(bg.r), fg.g.abs_diff(bg.g), fg.b.abs_diff(bg.b)]
+                .iter()
+                .all(|&by| by <= MAX_HIDDEN_DIFFERENCE)
+        {
             return Cell::new(' ', Ink::Default, inks.ink_at(mean(total, pixels), x, y));
         }
         // Palette colours are dithered in a pattern of two rows per cell, as for half blocks: the background colour
@@ -120,13 +124,13 @@ impl Mosaic {
     /// Returns the ink with the least squared error; the first of several equal ones.
     // Only masks without the upper left part are tried, because a mask and its complement show the same picture. Of the
     // two half blocks this leaves the lower one, as in `half`.
-    fn best(&self, sums: &Sums, total: Sum, pixels: u32) -> Choice {
-        let mut best = Choice { shape: Shape::Parts(0), sum: [0; 3], count: 0, gain: 0.0 };
+    fn best(&self, sums: &Sums, total: Sum, pixels: u32) -> InkChoice {
+        let mut best = InkChoice { shape: Shape::Parts(0), sum: [0; 3], count: 0, gain: 0.0 };
         let mut consider = |shape, sum: Sum, count: u32| {
             let [r, g, b] = std::array::from_fn(|i| (pixels * sum[i]) as f32 - (count * total[i]) as f32);
             let gain = (r * r + g * g + b * b) / (count * (pixels - count)) as f32;
             if gain > best.gain {
-                best = Choice { shape, sum, count, gain };
+                best = InkChoice { shape, sum, count, gain };
             }
         };
         let part_pixels = self.part_pixels[0] * self.part_pixels[1];

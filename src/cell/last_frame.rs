@@ -17,7 +17,7 @@ const MAX_RANGE_CHANGE: f32 = 0.05;
 /// The frame before, and whether the view moves.
 // A frame at rest is remembered too, so that a motion begins with the glyphs that were shown at rest.
 #[derive(Default)]
-pub(super) struct Memory {
+pub(super) struct LastFrame {
     pub(super) is_moving: bool,
     frame: Option<Remembered>,
 }
@@ -26,7 +26,7 @@ pub(super) struct Memory {
 pub(super) struct Remembered {
     picture: Picture,
     geometry: Geometry,
-    ranges: Ranges,
+    ranges: LightRanges,
     pub(super) cells: Vec<KeptCell>,
 }
 
@@ -39,14 +39,20 @@ pub(super) struct KeptCell {
     pub(super) shown: Cell,
 }
 
-impl Memory {
+impl LastFrame {
     /// Returns the remembered frame, if the view moves and the frame has the size of this picture.
     pub(super) fn before(&self, picture: &Picture) -> Option<&Remembered> {
         let size = |picture: &Picture| (picture.width, picture.height);
         self.frame.as_ref().filter(|frame| self.is_moving && size(&frame.picture) == size(picture))
     }
 
-    pub(super) fn remember(&mut self, picture: &Picture, geometry: &Geometry, ranges: Ranges, cells: Vec<KeptCell>) {
+    pub(super) fn remember(
+        &mut self,
+        picture: &Picture,
+        geometry: &Geometry,
+        ranges: LightRanges,
+        cells: Vec<KeptCell>,
+    ) {
         self.frame = Some(Remembered { picture: picture.clone(), geometry: geometry.clone(), ranges, cells });
     }
 }
@@ -69,13 +75,13 @@ impl Remembered {
 
 /// The range of each object's light, sorted by the object.
 #[derive(Default)]
-pub(super) struct Ranges(Vec<(u32, [f32; 2])>);
+pub(super) struct LightRanges(Vec<(u32, [f32; 2])>);
 
-impl Ranges {
+impl LightRanges {
     /// Adds the range of an object's light, and returns it.
     ///
     /// Each end is limited to a change of `MAX_RANGE_CHANGE` since the frame before.
-    pub(super) fn add(&mut self, object: u32, mut range: [f32; 2], before: Option<&Remembered>) -> [f32; 2] {
+    pub(super) fn add_limited(&mut self, object: u32, mut range: [f32; 2], before: Option<&Remembered>) -> [f32; 2] {
         if let Some(before) = before.and_then(|before| before.ranges.of(object)) {
             let most = MAX_RANGE_CHANGE * (before[1] - before[0]).max(LEAST_RANGE);
             for (end, before) in range.iter_mut().zip(before) {
