@@ -183,7 +183,7 @@ impl MeshFile {
 
     /// Returns the mesh turned so that this axis of its file points along +y; `None` if a position
     /// exceeds the range of f32.
-    pub fn turned_up(self, up: UpAxis) -> Option<Self> {
+    pub fn with_axis_up(self, up: UpAxis) -> Option<Self> {
         // A mesh that is not turned keeps the bits of its normals: `transformed` would normalise them once more.
         if up == UpAxis::Y { Some(self) } else { self.transformed(Vec3::ONE, up.turn(), Vec3::ZERO) }
     }

@@ -110,7 +110,7 @@ impl MeshBuilder {
         for triangle in &mut self.triangles {
             if !triangle.iter().all(|&i| self.positions[i as usize].is_finite()) {
                 *triangle = [whole; 3];
-                left_out.triangle();
+                left_out.count_incomplete_triangle();
             }
         }
         // A point of the mesh is taken, so that the extent of the mesh does not change.

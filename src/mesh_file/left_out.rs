@@ -35,13 +35,13 @@ impl<'a> LeftOut<'a> {
 
     /// Leaves out a faulty line, face or facet.
     ///
-    /// The parts of a file are its lines, unless [`of_parts`](Self::of_parts) counts others.
+    /// The parts of a file are its lines, unless [`set_part_count`](Self::set_part_count) counts others.
     ///
     /// # Errors
     /// The fault, if the reporter takes no notices or the fault is not of a part; the first fault of the file, if too
     /// many parts are faulty.
     #[cold]
-    pub(super) fn fault(&mut self, fault: MeshFault) -> Result<(), MeshFault> {
+    pub(super) fn leave_out(&mut self, fault: MeshFault) -> Result<(), MeshFault> {
         if !self.reporter.takes_notices() || !fault.is_of_part() {
             return Err(fault);
         }
@@ -63,12 +63,12 @@ impl<'a> LeftOut<'a> {
     }
 
     /// Converts a fault of a part of the mesh file to one that is never left out.
-    pub(super) fn fatal(&self, fault: MeshFault) -> MeshFault {
+    pub(super) fn never_left_out(&self, fault: MeshFault) -> MeshFault {
         self.error_of(fault).into()
     }
 
     /// Sets the number of parts, of which one in a hundred may be faulty.
-    pub(super) fn of_parts(&mut self, count: usize) {
+    pub(super) fn set_part_count(&mut self, count: usize) {
         self.limit = Some(count / 100);
     }
 
@@ -83,7 +83,7 @@ impl<'a> LeftOut<'a> {
     }
 
     /// Counts a triangle that lacks a corner.
-    pub(super) fn triangle(&mut self) {
+    pub(super) fn count_incomplete_triangle(&mut self) {
         self.triangles += 1;
     }
 

@@ -35,7 +35,7 @@ impl Library {
     }
 
     /// Records that the MTL file at `path` is missing.
-    pub(super) fn miss(&mut self, path: PathBuf) {
+    pub(super) fn record_missing(&mut self, path: PathBuf) {
         self.files.insert(path);
         self.is_incomplete = true;
     }
@@ -190,9 +190,9 @@ impl MtlReader<'_, '_> {
         loop {
             let start = self.text.at();
             match self.text.word() {
-                b"-s" => self.two_of_three(&mut scale)?,
-                b"-o" => self.two_of_three(&mut offset)?,
-                b"-t" => self.two_of_three(&mut [0.0; 2])?,
+                b"-s" => self.first_two_numbers(&mut scale)?,
+                b"-o" => self.first_two_numbers(&mut offset)?,
+                b"-t" => self.first_two_numbers(&mut [0.0; 2])?,
                 b"-mm" => self.skip_words(2),
                 b"-blendu" | b"-blendv" | b"-clamp" | b"-cc" | b"-bm" | b"-boost" | b"-texres" | b"-imfchan"
                 | b"-type" => self.skip_words(1),
@@ -219,7 +219,7 @@ impl MtlReader<'_, '_> {
 
     /// Reads one to three numbers. The first two are stored in `values`; the third is for 3D
     /// textures and is ignored.
-    fn two_of_three(&mut self, values: &mut [f32; 2]) -> Result<(), MeshFault> {
+    fn first_two_numbers(&mut self, values: &mut [f32; 2]) -> Result<(), MeshFault> {
         values[0] = self.text.number()?;
         for i in 1..3 {
             let start = self.text.at();

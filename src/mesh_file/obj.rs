@@ -31,7 +31,7 @@ pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, mut meter: Mete
         let start = reader.text.at();
         meter.advance_to(start)?;
         if let Err(fault) = reader.statement() {
-            reader.side_files.left_out.fault(fault)?;
+            reader.side_files.left_out.leave_out(fault)?;
             reader.leave_out(start);
         }
     }
@@ -206,7 +206,7 @@ impl ObjReader<'_, '_> {
                 Err(Corner::Early(fault) | Corner::Faulty(fault)) => Err(fault),
             };
             if let Err(fault) = read {
-                self.side_files.left_out.fault(fault)?;
+                self.side_files.left_out.leave_out(fault)?;
             }
         }
         Ok(())
@@ -239,7 +239,7 @@ impl ObjReader<'_, '_> {
         }
         if is_uneven {
             let message = "the corners of this face are not written alike: all v, all v/vt, all v//vn or all v/vt/vn";
-            self.side_files.left_out.fault(MeshFault::in_text(at, message))?;
+            self.side_files.left_out.leave_out(MeshFault::in_text(at, message))?;
         }
         self.triangles()
     }
@@ -326,7 +326,7 @@ impl ObjReader<'_, '_> {
             let name = shown(name);
             if !self.side_files.warn(&format!("colours missing: material {name} is in no MTL file")) {
                 let message = format!("material {name} is not in any MTL file named above this line");
-                return Err(self.side_files.left_out.fatal(MeshFault::in_text(at, message)));
+                return Err(self.side_files.left_out.never_left_out(MeshFault::in_text(at, message)));
             }
         }
         self.mesh.set_material(material);
@@ -341,7 +341,7 @@ impl ObjReader<'_, '_> {
         for name in library_names(&text) {
             self.read_library(name).map_err(|message| {
                 let message = format!("the materials are missing: {message}; add the file, or remove this line");
-                self.side_files.left_out.fatal(MeshFault::in_text(at, message))
+                self.side_files.left_out.never_left_out(MeshFault::in_text(at, message))
             })??;
         }
         self.text.skip_line();
@@ -354,7 +354,7 @@ impl ObjReader<'_, '_> {
         let path = match local_path(Path::new(""), name) {
             Ok(path) => path,
             Err(message) if self.side_files.warn(&format!("materials missing: {message}")) => {
-                library.miss(PathBuf::from(name));
+                library.record_missing(PathBuf::from(name));
                 return Ok(Ok(()));
             }
             Err(message) => return Err(message),
@@ -366,7 +366,7 @@ impl ObjReader<'_, '_> {
         if let Some(bytes) = self.side_files.read_colors(&path, "materials")? {
             return Ok(mtl::read(&path, &bytes, self.side_files, library));
         }
-        library.miss(path);
+        library.record_missing(path);
         Ok(Ok(()))
     }
 }

@@ -23,7 +23,7 @@ pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, meter: Meter<'_
     let header = Header::read(bytes, &mut side_files.left_out)?;
     let rows = header.elements.iter().map(|element| element.count as usize).sum::<usize>();
     // The header may claim more rows than the file has bytes.
-    side_files.left_out.of_parts(rows.min(bytes.len()));
+    side_files.left_out.set_part_count(rows.min(bytes.len()));
     match header.encoding {
         Encoding::Ascii => read_body(&header, AsciiRows::new(bytes, header.end, meter), side_files),
         Encoding::LittleEndian => read_body(&header, BinaryRows::<false>::new(bytes, header.end, meter), side_files),

@@ -5,14 +5,14 @@ use glam::{DVec2, DVec3, Vec3};
 /// Limit on the corners of a polygon that is cut by ear clipping, which takes cubic time: a file of
 /// one huge polygon would take hours. Modelled faces have few corners; larger ones are mostly caps of cylinders, which
 /// are convex.
-const MAX_EARS: usize = 64;
+const MAX_EAR_CLIPPED_CORNERS: usize = 64;
 
 /// Triangulates a polygon. `corners` are indices into `positions`; each triangle is three indices
 /// into `corners`, with the polygon's orientation. A convex polygon becomes a fan; any other is cut by ear clipping. If
 /// the positions are unknown, or no ear is left because the outline crosses itself, the rest becomes a fan.
 pub(super) fn triangulated(corners: &[u32], positions: &[Vec3]) -> impl Iterator<Item = [usize; 3]> + use<> {
     // A triangle is always convex, and large polygons always become fans: no outline is computed for either.
-    let may_be_concave = (4..=MAX_EARS).contains(&corners.len());
+    let may_be_concave = (4..=MAX_EAR_CLIPPED_CORNERS).contains(&corners.len());
     let outline = if may_be_concave { projected(corners, positions) } else { None };
     let mut ears = Vec::new();
     let mut fan: Vec<usize> = Vec::new();

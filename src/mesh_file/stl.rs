@@ -46,13 +46,13 @@ pub(super) fn read_binary(
         MeshFault::at_byte(bytes.len(), message)
     })?;
     let facets = bytes[HEADER..].chunks_exact(FACET);
-    left_out.of_parts(facets.len());
+    left_out.set_part_count(facets.len());
     if size != bytes.len() as u64 {
         let (triangles, found) = ((size - HEADER as u64) / FACET as u64, bytes.len());
         let message = format!(
             "a binary STL file of {triangles} triangles, as it says here, has {size} bytes; this file has {found}"
         );
-        left_out.fault(MeshFault::at_byte(HEADER - 4, message))?;
+        left_out.leave_out(MeshFault::at_byte(HEADER - 4, message))?;
     }
     if facets.len() > MAX_TRIANGLES {
         return Err(MeshFault::at_byte(HEADER - 4, too_many_triangles()));
@@ -71,7 +71,7 @@ pub(super) fn read_binary(
             match vertex_from(&facet[at..at + 12], HEADER + i * FACET + at) {
                 Ok(vertex) => mesh.positions.push(vertex),
                 Err(fault) => {
-                    left_out.fault(fault)?;
+                    left_out.leave_out(fault)?;
                     mesh.positions.push(Vec3::NAN);
                 }
             }
@@ -89,7 +89,7 @@ struct Coloring {
     /// The colour of facets without one of their own.
     default: LinearRgb,
     /// The value of the highest attribute bit of facets that have a colour of their own.
-    own: bool,
+    own_color_bit: bool,
     /// Whether red has the lowest bits; otherwise blue has them.
     is_red_low: bool,
 }
@@ -105,18 +105,18 @@ impl Coloring {
             && let Some(&[r, g, b]) = bytes[at + MARK.len()..HEADER - 4].first_chunk()
         {
             let default = LinearRgb::from_srgb8(Srgb8::new(r, g, b));
-            return Some(Self { default, own: false, is_red_low: true });
+            return Some(Self { default, own_color_bit: false, is_red_low: true });
         }
         // Programs other than `VisCAM` may write other numbers into the attribute bytes, such as checksums.
         let mut attributes = bytes[HEADER..].chunks_exact(FACET).map(attribute);
         let is_viscam =
             attributes.clone().any(|bits| bits != 0) && attributes.all(|bits| bits == 0 || bits & 0x8000 != 0);
-        is_viscam.then_some(Self { default: LinearRgb::grey(0.5), own: true, is_red_low: false })
+        is_viscam.then_some(Self { default: LinearRgb::grey(0.5), own_color_bit: true, is_red_low: false })
     }
 
     fn color(&self, facet: &[u8]) -> LinearRgb {
         let bits = attribute(facet);
-        if (bits & 0x8000 != 0) != self.own {
+        if (bits & 0x8000 != 0) != self.own_color_bit {
             return self.default;
         }
         let channel = |shift: u16| ((bits >> shift & 0x1f) * 255 / 31) as u8;
@@ -151,7 +151,7 @@ pub(super) fn read_text(bytes: &[u8], left_out: &mut LeftOut<'_>, mut meter: Met
         let start = reader.text.at();
         meter.advance_to(start)?;
         if let Err(fault) = reader.statement() {
-            left_out.fault(fault)?;
+            left_out.leave_out(fault)?;
             reader.leave_out(start);
         }
     }

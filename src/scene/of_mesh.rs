@@ -139,7 +139,7 @@ impl Draft {
     /// Returns the scene of [`Scene::of_mesh`] as a draft, with the mesh turned so that the axis
     /// `origin.up` points up.
     pub(super) fn around_mesh(mesh: MeshFile, origin: MeshOrigin) -> Option<Self> {
-        let mesh = mesh.turned_up(origin.up)?;
+        let mesh = mesh.with_axis_up(origin.up)?;
         let bounds = Bounds::of(mesh.positions().iter().copied());
         let middle = bounds.min + 0.5 * bounds.extent();
         let radius = 0.5 * bounds.extent().length();

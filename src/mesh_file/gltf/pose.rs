@@ -75,7 +75,7 @@ const MAX_TARGETS: usize = 64;
 
 impl<'a> Pose<'a> {
     /// Returns whether a skin or morph targets move the mesh: they may differ between primitives.
-    pub(super) fn is_by_primitive(&self) -> bool {
+    pub(super) fn differs_by_primitive(&self) -> bool {
         !self.joints.is_empty() || !self.weights.is_empty()
     }
 

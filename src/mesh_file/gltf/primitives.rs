@@ -97,7 +97,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
 
     fn add(&mut self, primitive: Json<'a>, pose: &Pose<'a>) -> Result<(), MeshFault> {
         // Primitives with the same accessor may have different morph targets or joints.
-        if pose.is_by_primitive() {
+        if pose.differs_by_primitive() {
             self.positions.clear();
             self.normals.clear();
         }

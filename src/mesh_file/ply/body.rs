@@ -65,7 +65,7 @@ pub(super) fn each_row<R: RowReader>(
         rows.begin_row(element, row)?;
         let start = rows.position();
         if let Err(fault) = read(rows, mesh).and_then(|()| rows.end_row(element)) {
-            left_out.fault(fault)?;
+            left_out.leave_out(fault)?;
             rows.skip_row(element, start)?;
             leave_out(mesh, row as usize);
         }

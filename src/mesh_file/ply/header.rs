@@ -151,7 +151,7 @@ impl<'a> HeaderReader<'a, '_, '_> {
             _ => {
                 let message =
                     format!("{} is not a keyword of a header (format, element, property, comment)", shown(word));
-                self.left_out.fault(MeshFault::in_text(at, message))?;
+                self.left_out.leave_out(MeshFault::in_text(at, message))?;
                 self.text.skip_line();
             }
         }

@@ -15,12 +15,12 @@ const POSITION: usize = 0;
 const NORMAL: usize = 3;
 const COLOR: usize = 6;
 const TEXTURE: usize = 9;
-const NOTHING: usize = 11;
+const SKIPPED: usize = 11;
 
 /// Returns the array index for the value of a vertex property.
 fn slot_of(property: &Property<'_>) -> usize {
     match property.name {
-        _ if matches!(property.shape, PropertyType::List { .. }) => NOTHING,
+        _ if matches!(property.shape, PropertyType::List { .. }) => SKIPPED,
         "x" => POSITION,
         "y" => POSITION + 1,
         "z" => POSITION + 2,
@@ -29,7 +29,7 @@ fn slot_of(property: &Property<'_>) -> usize {
         "nz" => NORMAL + 2,
         "s" | "u" | "texture_u" => TEXTURE,
         "t" | "v" | "texture_v" => TEXTURE + 1,
-        _ => color_channel(property).map_or(NOTHING, |channel| COLOR + channel),
+        _ => color_channel(property).map_or(SKIPPED, |channel| COLOR + channel),
     }
 }
 
@@ -68,11 +68,11 @@ pub(super) fn read<R: RowReader>(
     let mut odd_normals = 0;
     let read = |rows: &mut R, mesh: &mut MeshBuilder| {
         // An array on the stack, so that a vertex costs no allocation.
-        let mut values = [0.0; NOTHING + 1];
+        let mut values = [0.0; SKIPPED + 1];
         for (property, &slot) in element.properties.iter().zip(&slots) {
             match property.shape {
                 PropertyType::Scalar(kind) if slot < NORMAL => values[slot] = rows.number(kind)?,
-                PropertyType::Scalar(kind) if slot < NOTHING => values[slot] = rows.any_number(kind)?,
+                PropertyType::Scalar(kind) if slot < SKIPPED => values[slot] = rows.any_number(kind)?,
                 _ => rows.skip_properties(std::slice::from_ref(property))?,
             }
         }
