@@ -16,12 +16,12 @@
 //!
 //! // The Escape key, or the first byte of an arrow key: only a timeout can decide.
 //! assert!(parser.is_waiting());
-//! parser.give_up_waiting(&mut out);
+//! parser.time_out(&mut out);
 //! assert_eq!(out[2], Input::Event(Event::Key(KeyCode::Esc.into())));
 //! ```
 //!
 //! # Ambiguities and how they are resolved
-//! - **A lone Escape** is undecided until [`Parser::give_up_waiting`] is called. While a reply is outstanding the
+//! - **A lone Escape** is undecided until [`Parser::time_out`] is called. While a reply is outstanding the
 //!   caller should wait for a round trip, because the reply's first byte may arrive alone.
 //! - **`ESC ESC [ A`** is Alt+Up (rxvt, `PuTTY`, Terminal.app). `ESC ESC [ ? 62 c` is the Escape key and a reply.
 //! - **`CSI row ; column R`** is a cursor report, although some terminals send Shift+F3 as `CSI 1 ; 2 R`. F3 itself is
@@ -152,7 +152,7 @@ impl Parser {
     /// Returns whether an input is incomplete: after a lone `ESC`, or within a sequence, character
     /// or paste.
     ///
-    /// The caller then waits a short time (some 50 ms) for more bytes, and calls [`Parser::give_up_waiting`] if none
+    /// The caller then waits a short time (some 50 ms) for more bytes, and calls [`Parser::time_out`] if none
     /// arrive.
     pub fn is_waiting(&self) -> bool {
         self.state != State::Ground && self.late.is_none()
@@ -162,7 +162,7 @@ impl Parser {
     /// dropped.
     ///
     /// Afterwards the parser no longer waits, except for a paste, which ends after [`MAX_PASTE_WAITS`] such calls.
-    pub fn give_up_waiting(&mut self, out: &mut Vec<Input>) {
+    pub fn time_out(&mut self, out: &mut Vec<Input>) {
         // If the caller was late, bytes may have completed the sequence in the meantime.
         if !self.is_waiting() {
             return;

@@ -13,22 +13,22 @@ use std::{error, fmt, io};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutOfMemory {
     /// The purpose, such as "for a picture of 80x24 cells"; may be empty.
-    what_for: String,
+    purpose: String,
 }
 
 impl OutOfMemory {
     /// Returns the error with the purpose of the memory in its message, such as "for a picture of
     /// 80x24 cells".
     #[must_use]
-    pub fn when(self, what_for: impl Into<String>) -> Self {
-        Self { what_for: what_for.into() }
+    pub fn with_purpose(self, purpose: impl Into<String>) -> Self {
+        Self { purpose: purpose.into() }
     }
 }
 
 impl fmt::Display for OutOfMemory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let blank = if self.what_for.is_empty() { "" } else { " " };
-        write!(f, "there is not enough memory{blank}{}", self.what_for)
+        let blank = if self.purpose.is_empty() { "" } else { " " };
+        write!(f, "there is not enough memory{blank}{}", self.purpose)
     }
 }
 
@@ -50,7 +50,7 @@ const HEADROOM: usize = 32 << 20;
 /// If there is not enough memory.
 pub fn check(bytes: usize) -> Result<(), OutOfMemory> {
     let reserved = Vec::<u8>::new().try_reserve_exact(bytes.saturating_add(HEADROOM));
-    reserved.map_err(|_| OutOfMemory { what_for: String::new() })
+    reserved.map_err(|_| OutOfMemory { purpose: String::new() })
 }
 
 #[cfg(all(test, unit_tests))]

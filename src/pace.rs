@@ -95,7 +95,7 @@ const RESYNC_WINDOW: f64 = 4_000.0;
 /// A link to a terminal: what its replies show, and when it may be sent more bytes.
 pub struct Link {
     max_rate: Option<f64>,
-    frame: Duration,
+    min_frame_interval: Duration,
     replies: ReplyTracker,
     /// Share of its allowed bytes that the last frame used.
     utilisation: f64,
@@ -123,7 +123,7 @@ impl Link {
     pub fn new(max_rate: Option<u32>, max_frames: Option<f32>, may_ask: bool) -> Self {
         Self {
             max_rate: max_rate.map(f64::from),
-            frame: max_frames.map_or(FRAME_TIME, |fps| FRAME_TIME.max(Duration::from_secs_f32(1.0 / fps))),
+            min_frame_interval: max_frames.map_or(FRAME_TIME, |fps| FRAME_TIME.max(Duration::from_secs_f32(1.0 / fps))),
             replies: ReplyTracker::new(may_ask),
             utilisation: 0.0,
             free_at: Duration::ZERO,
@@ -151,7 +151,11 @@ impl Link {
 
     /// Returns the least time between two frames.
     pub fn min_frame_interval(&self) -> Duration {
-        if self.replies.is_responsive() { self.frame } else { self.frame.max(SILENT_FRAME_TIME) }
+        if self.replies.is_responsive() {
+            self.min_frame_interval
+        } else {
+            self.min_frame_interval.max(SILENT_FRAME_TIME)
+        }
     }
 
     /// Returns the number of frames per second that are sent on a slow link.

@@ -50,7 +50,7 @@ fn a_complete_sequence_leaves_no_wait() {
         let (mut parser, mut out) = (Parser::new(), Vec::new());
         parser.feed(bytes, &mut out);
         assert!(!parser.is_waiting(), "{}", bytes.escape_ascii());
-        parser.give_up_waiting(&mut out);
+        parser.time_out(&mut out);
         assert_eq!(out, expected, "{}", bytes.escape_ascii());
     }
 }
@@ -77,7 +77,7 @@ fn a_reply_is_never_reported_as_a_key() {
         for at in (0..=bytes.len()).filter(|&at| at == 0 || !bytes[..at].ends_with(b"\x1b")) {
             let (mut parser, mut out) = (Parser::new(), Vec::new());
             parser.feed(&bytes[..at], &mut out);
-            parser.give_up_waiting(&mut out);
+            parser.time_out(&mut out);
             parser.feed(&bytes[at..], &mut out);
             let (heard, rest): (Vec<&Input>, Vec<&Input>) = out.iter().partition(|i| !is_key(i));
             assert_eq!(heard, wanted, "{} late from {at}", bytes.escape_ascii());
@@ -90,7 +90,7 @@ fn a_reply_is_never_reported_as_a_key() {
 fn a_string_whose_terminator_is_late_is_still_a_reply() {
     let (mut parser, mut out) = (Parser::new(), Vec::new());
     parser.feed(b"\x1b]11;?\x1b", &mut out);
-    parser.give_up_waiting(&mut out);
+    parser.time_out(&mut out);
     parser.feed(b"\\x", &mut out);
     assert_eq!(out, [reply(Reply::Osc(b"11;?".to_vec())), letter('x', NONE)]);
 }
@@ -101,7 +101,7 @@ fn parse_around_timeout(begun: &[u8], later: &[u8]) -> (Vec<Input>, Vec<Input>) 
     let (mut parser, mut at_once, mut out) = (Parser::new(), Vec::new(), Vec::new());
     parser.feed(begun, &mut at_once);
     assert!(parser.is_waiting(), "{}", begun.escape_ascii());
-    parser.give_up_waiting(&mut at_once);
+    parser.time_out(&mut at_once);
     assert!(!parser.is_waiting(), "{}", begun.escape_ascii());
     parser.feed(later, &mut out);
     (at_once, out)
@@ -147,13 +147,13 @@ fn an_unfinished_paste_ends_after_its_timeouts() {
     let (mut parser, mut out) = (Parser::new(), Vec::new());
     parser.feed(b"\x1b[200~ab", &mut out);
     for _ in 1..MAX_PASTE_WAITS {
-        parser.give_up_waiting(&mut out);
+        parser.time_out(&mut out);
         assert!(parser.is_waiting());
     }
     parser.feed(b"c", &mut out);
     for _ in 0..MAX_PASTE_WAITS {
         assert_eq!(out, []);
-        parser.give_up_waiting(&mut out);
+        parser.time_out(&mut out);
     }
     assert!(!parser.is_waiting());
     parser.feed(b"x", &mut out);
@@ -214,7 +214,7 @@ fn a_lone_escape_is_not_a_key_with_the_kitty_protocol() {
     let inputs_after_timeout = |begun: &[u8], later: &[u8]| {
         let (mut parser, mut out) = (parser_of_sequences(), Vec::new());
         parser.feed(begun, &mut out);
-        parser.give_up_waiting(&mut out);
+        parser.time_out(&mut out);
         assert!(!parser.is_waiting());
         assert_eq!(out, [], "{}", begun.escape_ascii());
         parser.feed(later, &mut out);
@@ -259,7 +259,7 @@ proptest! {
         let (mut parser, mut out) = (Parser::new(), Vec::new());
         parser.feed(&bytes, &mut out);
         for _ in 0..MAX_PASTE_WAITS {
-            parser.give_up_waiting(&mut out);
+            parser.time_out(&mut out);
         }
         prop_assert!(!parser.is_waiting());
         out.clear();

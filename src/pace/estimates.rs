@@ -48,7 +48,7 @@ pub(super) struct RoundTrip {
     /// Time at which the current interval of [`ROUND_TRIP_INTERVAL`] began.
     since: Duration,
     /// The last estimate before [`invalidate`](Self::invalidate).
-    before: Duration,
+    last_estimate: Duration,
 }
 
 impl RoundTrip {
@@ -69,12 +69,12 @@ impl RoundTrip {
     /// Drops the estimate because the route may have changed; [`expected`](Self::expected) still
     /// returns it.
     pub(super) fn invalidate(&mut self) {
-        *self = Self { before: self.expected(), ..Self::default() };
+        *self = Self { last_estimate: self.expected(), ..Self::default() };
     }
 
     /// Returns the estimated shortest round trip, or the last estimate before it was dropped.
     pub(super) fn expected(&self) -> Duration {
-        self.shortest.into_iter().flatten().min().unwrap_or(self.before)
+        self.shortest.into_iter().flatten().min().unwrap_or(self.last_estimate)
     }
 
     /// Returns whether the shortest round trip is known: recorded since the estimate was dropped
@@ -145,7 +145,7 @@ pub(super) struct FrameFloor {
     /// Number of times that the floor was doubled.
     doublings: u32,
     /// Service time of a frame before the last doubling, with which the next frame's is compared.
-    before: Option<Duration>,
+    service_before_doubling: Option<Duration>,
     /// Time until which the floor is not doubled again, because frames took longer after it was
     /// doubled last.
     waits_until: Duration,
@@ -165,11 +165,11 @@ impl FrameFloor {
             return;
         }
         // Twice the bytes took much longer: the link is slow, and not just the drawing.
-        if self.before.take().is_some_and(|before| service > before.mul_f64(1.5)) {
+        if self.service_before_doubling.take().is_some_and(|before| service > before.mul_f64(1.5)) {
             self.doublings = self.doublings.saturating_sub(1);
             self.waits_until = now + FLOOR_PAUSE;
         } else if service >= MIN_DRAWING_TIME && now >= self.waits_until && self.doublings < MAX_DOUBLINGS {
-            self.before = Some(service);
+            self.service_before_doubling = Some(service);
             self.doublings += 1;
         }
     }

@@ -15,7 +15,7 @@ enum Fault {
     Foreign,
     Late(Duration),
     /// The reply is late, and no later reply arrives before it.
-    Held(Duration),
+    HeldBack(Duration),
     /// The reply is lost, and so is every third one after it.
     EachThird,
     /// The reply is late, and so is every third one after it.
@@ -32,8 +32,8 @@ const FAULTS: [Fault; 12] = [
     Fault::Late(ms(300)),
     Fault::Late(ms(2_000)),
     Fault::Late(ms(20_000)),
-    Fault::Held(ms(300)),
-    Fault::Held(ms(20_000)),
+    Fault::HeldBack(ms(300)),
+    Fault::HeldBack(ms(20_000)),
     Fault::EachThird,
     Fault::EachThirdLate(ms(400)),
     Fault::Stopped,
@@ -68,7 +68,7 @@ struct World {
     frames: Vec<(Duration, usize, Duration)>,
     /// The replies on their way, with their times of arrival.
     due: Vec<(Duration, Reply)>,
-    /// Time before which no reply of the simulated terminal arrives, as [`Fault::Held`] sets it.
+    /// Time before which no reply of the terminal arrives, as [`Fault::HeldBack`] sets it.
     held_until: Duration,
     /// Time at which the first round trip was known.
     first_reply: Option<Duration>,
@@ -176,7 +176,7 @@ impl World {
             Fault::Doubled => due.push((at, reply)),
             Fault::Foreign => due[0].1 = Reply::Mode(7),
             Fault::Late(late) => due[0].0 += late,
-            Fault::Held(late) => self.held_until = at + late,
+            Fault::HeldBack(late) => self.held_until = at + late,
             _ => {}
         }
         self.due.extend(due.into_iter().map(|(at, reply)| (at.max(self.held_until), reply)));
@@ -277,7 +277,7 @@ fn the_first_picture_of_a_slow_link_is_waited_for() {
 ///
 /// From that reply on, all replies are missing or more than a second late.
 fn hides_rate(fault: Fault) -> bool {
-    matches!(fault, Fault::Held(late) if late > ms(1_000)) || fault == Fault::Stopped
+    matches!(fault, Fault::HeldBack(late) if late > ms(1_000)) || fault == Fault::Stopped
 }
 
 /// Without faults the effect of a key is visible after 310 ms, or 400 ms at worst; a fault may cost
@@ -300,7 +300,7 @@ fn no_key_waits_much_longer_on_a_slow_link() {
 fn a_terminal_that_replies_again_gets_all_frames_again() {
     for tags in [true, false] {
         for late in [300, 5_000] {
-            let mut world = World::new(tags, Fault::Held(ms(late)), 30);
+            let mut world = World::new(tags, Fault::HeldBack(ms(late)), 30);
             world.simulate(ms(late + 3_000));
             let since = world.now.saturating_sub(ms(1_000));
             let frames = world.frames.iter().filter(|frame| frame.0 >= since).count();
@@ -345,7 +345,7 @@ fn a_lost_query_without_a_frame_is_sent_again() {
 /// If another terminal takes the place of the first, as after a detach, queries go back to DA1.
 #[test]
 fn a_terminal_that_no_longer_repeats_numbers_is_asked_without() {
-    let mut world = World::new(true, Fault::Held(ms(3_000)), 30);
+    let mut world = World::new(true, Fault::HeldBack(ms(3_000)), 30);
     world.simulate(ms(2_000));
     world.tags = false;
     world.simulate(ms(8_000));

@@ -33,10 +33,10 @@ pub(super) struct World {
     pub(super) round_trip: Duration,
     /// Whether the terminal replies to queries.
     pub(super) replies: bool,
-    /// Bytes of each frame that the program sends, cut to the link's limit if `fits`.
-    pub(super) frame: usize,
+    /// Bytes of each frame that the program sends, cut to the link's limit if `obeys_limit`.
+    pub(super) frame_bytes: usize,
     /// Whether frames obey the link's limit.
-    pub(super) fits: bool,
+    pub(super) obeys_limit: bool,
     /// Share of the link's limit that frames use.
     pub(super) utilisation: f64,
     pub(super) now: Duration,
@@ -57,8 +57,8 @@ impl World {
             rate,
             round_trip,
             replies: true,
-            frame: SCREEN,
-            fits: true,
+            frame_bytes: SCREEN,
+            obeys_limit: true,
             utilisation: 1.0,
             now: ms(1_000),
             begun: Duration::ZERO,
@@ -128,9 +128,9 @@ impl World {
             self.push(question.len(), false, true);
         }
         let limit = self.link.limit(SCREEN, self.now);
-        let most = limit.filter(|_| self.fits).map_or(self.frame, |limit| {
+        let most = limit.filter(|_| self.obeys_limit).map_or(self.frame_bytes, |limit| {
             let most = (limit.max_bytes as f64 * self.utilisation) as usize;
-            most.min(self.frame)
+            most.min(self.frame_bytes)
         });
         let mut frame = vec![b'x'; most.saturating_sub(FENCE.len()).max(1)];
         self.link.send(&mut frame, self.now);
@@ -174,8 +174,8 @@ impl World {
 
 #[test]
 fn keys_are_visible_soon_at_full_throughput() {
-    for (frame, fits, p50, p99) in [(SCREEN, true, 310, 400), (4_000, false, 420, 480)] {
-        let mut world = World { frame, fits, ..World::new(50_000.0, ms(200)) };
+    for (frame_bytes, obeys_limit, p50, p99) in [(SCREEN, true, 310, 400), (4_000, false, 420, 480)] {
+        let mut world = World { frame_bytes, obeys_limit, ..World::new(50_000.0, ms(200)) };
         world.simulate(ms(3_000));
         world.excess = f64::MIN;
         let from = world.now;
@@ -183,9 +183,9 @@ fn keys_are_visible_soon_at_full_throughput() {
         let to = world.ago(2_000);
         let [median, worst] = world.key_delays(from, to);
         let [fps, share] = world.throughput(from, to);
-        assert!(median <= ms(p50) && worst <= ms(p99), "{frame}: p50 {median:?} p99 {worst:?}");
-        assert!(fps >= 10.0 && share >= 0.85, "{frame}: {fps} fps, {share} of the link");
-        assert!(world.excess <= 0.0, "{frame}: {} bytes too many in flight", world.excess);
+        assert!(median <= ms(p50) && worst <= ms(p99), "{frame_bytes}: p50 {median:?} p99 {worst:?}");
+        assert!(fps >= 10.0 && share >= 0.85, "{frame_bytes}: {fps} fps, {share} of the link");
+        assert!(world.excess <= 0.0, "{frame_bytes}: {} bytes too many in flight", world.excess);
     }
 }
 
@@ -260,20 +260,20 @@ fn a_link_that_becomes_fast_is_fast_soon() {
 /// draws.
 #[test]
 fn a_fast_link_is_never_slow() {
-    for frame in [40, 700, SCREEN] {
+    for frame_bytes in [40, 700, SCREEN] {
         for round_trip in [0, 16, 30, 120] {
-            let mut world = World { frame, ..World::new(1e7, ms(round_trip)) };
+            let mut world = World { frame_bytes, ..World::new(1e7, ms(round_trip)) };
             world.simulate(ms(2_000));
-            assert_eq!(world.link.slow_limit(SCREEN), None, "{frame} bytes, {round_trip} ms");
+            assert_eq!(world.link.slow_limit(SCREEN), None, "{frame_bytes} bytes, {round_trip} ms");
             let [fps, _] = world.throughput(world.ago(1_000), world.now);
-            assert!(fps > if round_trip < 17 { 55.0 } else { 7.0 }, "{frame} bytes, {round_trip} ms: {fps} fps");
+            assert!(fps > if round_trip < 17 { 55.0 } else { 7.0 }, "{frame_bytes} bytes, {round_trip} ms: {fps} fps");
         }
     }
 }
 
 #[test]
 fn a_pause_does_not_make_a_link_slow_for_long() {
-    let mut world = World { frame: 2_000, ..World::new(1e7, ms(2)) };
+    let mut world = World { frame_bytes: 2_000, ..World::new(1e7, ms(2)) };
     world.simulate(ms(1_000));
     world.rate = 1.0;
     world.simulate(ms(400));
@@ -313,7 +313,7 @@ fn a_terminal_that_falls_silent_is_waited_for_a_while() {
 
 #[test]
 fn a_lost_reply_is_forgotten() {
-    let mut world = World { frame: 2_000, ..World::new(1e7, ms(20)) };
+    let mut world = World { frame_bytes: 2_000, ..World::new(1e7, ms(20)) };
     world.simulate(ms(1_000));
     let lost = world.replies_due.pop_front();
     assert!(lost.is_some());
@@ -418,9 +418,9 @@ fn an_old_limit_does_not_last() {
     let mut world = World::new(100_000.0, ms(20));
     world.simulate(ms(3_000));
     world.rate = 1e8;
-    (world.frame, world.fits) = (700, false);
+    (world.frame_bytes, world.obeys_limit) = (700, false);
     world.simulate(ms(5_000));
-    (world.frame, world.fits) = (SCREEN, true);
+    (world.frame_bytes, world.obeys_limit) = (SCREEN, true);
     world.simulate(ms(1_000));
     assert_eq!(world.link.slow_limit(SCREEN), None);
 }

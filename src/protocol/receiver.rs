@@ -40,7 +40,7 @@ impl Receiver {
             self.parser.feed(bytes, &mut inputs);
         } else if self.escape_due(now).is_some_and(|due| due <= now) {
             self.last_event = now;
-            self.parser.give_up_waiting(&mut inputs);
+            self.parser.time_out(&mut inputs);
         }
         for input in &inputs {
             if let Input::Reply(reply) = input {

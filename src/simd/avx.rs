@@ -69,7 +69,7 @@ pub(super) use avx;
 ///
 /// The reduction transposes: first neighbours are combined, then pairs, then halves.
 // The transposition takes three rounds of shuffles. Loading the numbers one by one would take eight loads per register.
-macro_rules! of_each {
+macro_rules! reduce_each {
     ($choose:ident, $eights:expr) => {{
         let [a, b, c, d, e, f, g, h] = *$eights;
         let (ab, cd) = (neighbours(a, b), neighbours(c, d));
@@ -218,12 +218,12 @@ impl<M: MaskOps> Lanes for Register<M> {
 
     #[inline(always)]
     fn min_of_each(eights: &[Self; LANES]) -> Self {
-        of_each!(min, eights)
+        reduce_each!(min, eights)
     }
 
     #[inline(always)]
     fn max_of_each(eights: &[Self; LANES]) -> Self {
-        of_each!(max, eights)
+        reduce_each!(max, eights)
     }
 }
 

@@ -39,7 +39,7 @@ pub(super) fn check_memory(size: Size, mode: CellMode) -> Result<(), OutOfMemory
     let pixels = size.cell_count() * (across * down) as usize;
     let Size { columns, rows } = size;
     memory::check(pixels * BYTES_PER_PIXEL)
-        .map_err(|error| error.when(format!("for a picture of {columns}x{rows} cells")))
+        .map_err(|error| error.with_purpose(format!("for a picture of {columns}x{rows} cells")))
 }
 
 #[cfg(all(test, unit_tests))]

@@ -57,10 +57,10 @@ fn keys_come_again(mut parser: Parser, pieces: &[&[u8]]) {
     let mut out = Vec::new();
     for piece in pieces {
         parser.feed(piece, &mut out);
-        parser.give_up_waiting(&mut out);
+        parser.time_out(&mut out);
     }
     for _ in 0..MAX_PASTE_WAITS {
-        parser.give_up_waiting(&mut out);
+        parser.time_out(&mut out);
     }
     assert!(!parser.is_waiting());
     out.clear();
