@@ -177,7 +177,7 @@ fn light_contribution(scene: &Scene, light: &Light, point: &SurfacePoint) -> Lig
     let incidence = shade::incidence_on_either_side(light, point);
     let ray = shade::shadow_ray(light, point);
     let blocker = (scene.shadows() && 0.0 < incidence.cosine)
-        .then(|| hit::any_hit_observed(scene, &ray, light.in_the_way(), &mut TestRecorder::default()))
+        .then(|| hit::any_hit_observed(scene, &ray, light.blocking_interval(), &mut TestRecorder::default()))
         .flatten();
     LightContribution {
         light: *light,

@@ -23,7 +23,7 @@ pub trait LightSource: InSceneFile + Copy {
     /// The interval of a shadow ray's t in which an object blocks the light.
     // Excludes t = 0: a ray's origin is offset from its surface in proportion to the coordinates, so that at the origin
     // of the world the ray starts exactly on the surface.
-    const IN_THE_WAY: Interval = Interval { min: f32::MIN_POSITIVE, max: 1.0 };
+    const BLOCKING_INTERVAL: Interval = Interval { min: f32::MIN_POSITIVE, max: 1.0 };
 
     /// Returns the vectors from points to the light; for a light at infinity, the unit vector
     /// towards it.
@@ -76,11 +76,11 @@ macro_rules! lights {
 
         impl Light {
             /// Returns the interval of a shadow ray's t in which an object blocks the light, by
-            /// [`LightSource::IN_THE_WAY`].
+            /// [`LightSource::BLOCKING_INTERVAL`].
             #[doc(hidden)]
-            pub fn in_the_way(&self) -> Interval {
+            pub fn blocking_interval(&self) -> Interval {
                 match self {
-                    $($(#[$on])* Self::$name(_) => $light::IN_THE_WAY,)*
+                    $($(#[$on])* Self::$name(_) => $light::BLOCKING_INTERVAL,)*
                 }
             }
 

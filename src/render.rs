@@ -104,7 +104,7 @@ pub fn render_by(
 /// Returns the total number of [progress units](steps::ProgressUnit) of a picture.
 fn progress_units(resolution: Resolution, sampling: Sampling) -> u64 {
     let pixels = resolution.pixel_count() as u64;
-    match sampling.bounded() {
+    match sampling.capped_at_max_samples() {
         Sampling::Coarse => u64::from(resolution.width().div_ceil(2)) * u64::from(resolution.height().div_ceil(2)),
         Sampling::Split => split::units(resolution),
         Sampling::Each(samples) => pixels * u64::from(samples.get()),
@@ -120,7 +120,7 @@ pub(crate) fn render_partial(
     resolution: Resolution,
     sampling: Sampling,
 ) -> Rendered {
-    match sampling.bounded() {
+    match sampling.capped_at_max_samples() {
         Sampling::Coarse => uniform::render(executor, scene, &Tiles::new(camera, resolution, 2), 1),
         Sampling::Split => split::render(executor, scene, camera, resolution),
         Sampling::Each(samples) => uniform::render(executor, scene, &Tiles::new(camera, resolution, 1), samples.get()),

@@ -107,7 +107,7 @@ impl ShadowRays {
     /// Finds the blocked rays, and returns the number of traced rays.
     fn trace(&mut self, scene: &Scene, light: &Light) -> u64 {
         if scene.shadows() {
-            hit::any_hits(Kernel::Auto, scene, &self.rays, light.in_the_way(), &mut self.blocked);
+            hit::any_hits(Kernel::Auto, scene, &self.rays, light.blocking_interval(), &mut self.blocked);
             count(&self.rays)
         } else {
             self.blocked.clear();

@@ -94,7 +94,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
         for (group, group_rays) in rays.iter().enumerate() {
             let active = group_rays.active;
             let rays = Rays::load(if active == 0 { one } else { group_rays }, needs_shear);
-            let hits = self.test_unculled(&rays, active);
+            let hits = self.test_single_leaves_and_unbounded(&rays, active);
             (self.t[group], self.primitive[group]) = (hits.t, hits.primitive);
             if has_tree_nodes {
                 self.groups[group] = rays;
@@ -168,7 +168,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     /// Tests the rays of a group against unbounded primitives, and against trees of a single leaf.
     // Called while the group's rays are still in registers, before they are stored for the traversal of the trees.
     #[inline(always)]
-    fn test_unculled(&self, rays: &Rays<N>, active: u32) -> GroupHits<N, ANY> {
+    fn test_single_leaves_and_unbounded(&self, rays: &Rays<N>, active: u32) -> GroupHits<N, ANY> {
         let accel = self.accel;
         let t = N::select(N::mask_from_bits(active), N::splat(self.within.max), N::splat(TERMINATED));
         let mut hits = GroupHits { t, primitive: N::splat(index_as_lane(NO_PRIMITIVE)) };
@@ -210,7 +210,7 @@ struct GroupHits<N, const ANY: bool> {
 impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
     /// Tests the group's rays against the primitives of a tree that is a single leaf.
     #[inline(always)]
-    fn test_unculled<S: SoaLeaf>(&mut self, tree: &Tree<S>, rays: &Rays<N>, min: N, accel: &Accelerator) {
+    fn test_single_leaf<S: SoaLeaf>(&mut self, tree: &Tree<S>, rays: &Rays<N>, min: N, accel: &Accelerator) {
         let Some(leaf) = tree.leaves.first() else { return };
         for lane in 0..tree.single_leaf_count {
             let shape = leaf.splat(lane);
@@ -285,7 +285,7 @@ impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Unculled<'_, N, ANY> 
 
     #[inline(always)]
     fn visit_tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
-        self.hits.test_unculled(tree, self.rays, self.min, self.accel);
+        self.hits.test_single_leaf(tree, self.rays, self.min, self.accel);
     }
 }
 

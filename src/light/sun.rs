@@ -19,7 +19,7 @@ pub struct Sun {
 
 impl LightSource for Sun {
     /// An object blocks the light at any distance.
-    const IN_THE_WAY: Interval = Interval { min: f32::MIN_POSITIVE, max: f32::INFINITY };
+    const BLOCKING_INTERVAL: Interval = Interval { min: f32::MIN_POSITIVE, max: f32::INFINITY };
 
     #[inline(always)]
     fn to_light<N: Number>(&self, _: Vector<N>) -> Vector<N> {

@@ -28,7 +28,7 @@ pub(super) fn test_count(scene: &Scene, sample: &GBufferSample) -> u32 {
     closest_hit_observed(scene, &sample.ray, &mut count);
     if let Some(surface) = sample.surface(scene).filter(|_| scene.shadows()) {
         for light in scene.lights().iter().filter(|light| shade::incidence(light, &surface).is_some()) {
-            any_hit_observed(scene, &shade::shadow_ray(light, &surface), light.in_the_way(), &mut count);
+            any_hit_observed(scene, &shade::shadow_ray(light, &surface), light.blocking_interval(), &mut count);
         }
     }
     count.0

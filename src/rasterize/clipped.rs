@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3, Vec3};
 /// pixels.
 #[cold]
 pub(super) fn draw(projection: &Projection, corners: [Vec3; 3], object: u32, buffer: &mut DepthBuffer) -> u64 {
-    let corners = corners.map(|corner| projection.in_exact_camera_space(corner));
+    let corners = corners.map(|corner| projection.in_camera_space_f64(corner));
     let farthest = corners.iter().fold(0.0_f64, |z, corner| z.max(corner.z));
     // The near plane is not at depth 0, because a corner at the depth of the eye would be projected to infinity.
     let near = 1e-6 * farthest;
@@ -32,7 +32,7 @@ pub(super) fn draw(projection: &Projection, corners: [Vec3; 3], object: u32, buf
 
 /// Fills a triangle in front of the eye: the pixels whose centre is on the inner side of all edges.
 fn fill(projection: &Projection, corners: [DVec3; 3], object: u32, buffer: &mut DepthBuffer) -> u64 {
-    let [a, b, c] = corners.map(|corner| projection.pixel(corner));
+    let [a, b, c] = corners.map(|corner| projection.project(corner));
     let area = (b - a).perp_dot(c - a);
     if area == 0.0 || !area.is_finite() {
         return 0;

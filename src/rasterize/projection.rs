@@ -19,7 +19,7 @@ pub(super) struct Projection {
     pub(super) scale: DVec2,
     /// The principal point in pixels: the foot of the perpendicular from the eye to the picture's
     /// plane.
-    pub(super) foot: DVec2,
+    pub(super) principal_point: DVec2,
     pub(super) size: [u32; 2],
     rays: EyeRays,
 }
@@ -64,8 +64,15 @@ impl Projection {
         let [columns, rows] = size.map(f64::from);
         // v points up, but rows are counted downwards.
         let scale = DVec2::new(columns / f64::from(width), -rows / f64::from(height));
-        let foot = 0.5 * DVec2::new(columns, rows) - middle.as_dvec2() * scale;
-        Self { eye: camera.pose().eye, basis: [u, v, -w], scale, foot, size, rays: camera.eye_rays(aspect_ratio) }
+        let principal_point = 0.5 * DVec2::new(columns, rows) - middle.as_dvec2() * scale;
+        Self {
+            eye: camera.pose().eye,
+            basis: [u, v, -w],
+            scale,
+            principal_point,
+            size,
+            rays: camera.eye_rays(aspect_ratio),
+        }
     }
 
     /// Returns the ray through the middle of a pixel.
@@ -91,14 +98,14 @@ impl Projection {
     }
 
     /// Returns a point in camera space, computed in f64.
-    pub(super) fn in_exact_camera_space(&self, point: Vec3) -> DVec3 {
+    pub(super) fn in_camera_space_f64(&self, point: Vec3) -> DVec3 {
         let away = point.as_dvec3() - self.eye.as_dvec3();
         DVec3::from(self.basis.map(|axis| axis.as_dvec3().dot(away)))
     }
 
     /// Returns the position in pixels, from the upper left, of a point in front of the eye.
-    pub(super) fn pixel(&self, from_eye: DVec3) -> DVec2 {
-        from_eye.truncate() / from_eye.z * self.scale + self.foot
+    pub(super) fn project(&self, from_eye: DVec3) -> DVec2 {
+        from_eye.truncate() / from_eye.z * self.scale + self.principal_point
     }
 
     /// Returns the whole picture.
@@ -119,7 +126,7 @@ impl Projection {
     /// Returns, for each lane, the half-open range of columns or rows whose centres lie from `min`
     /// to `max`.
     #[inline(always)]
-    pub(super) fn range<N: Lanes>(min: N, max: N, size: u32) -> [N; 2] {
+    pub(super) fn pixel_range<N: Lanes>(min: N, max: N, size: u32) -> [N; 2] {
         let (zero, half, last) = (N::splat(0.0), N::splat(0.5), N::splat(size as f32));
         // `Lanes` has no `ceil`, so it is computed as `-floor(-x)`.
         let first = -(half - min).floor();
@@ -134,7 +141,7 @@ impl Projection {
         let corners: [DVec3; 8] = from_fn(|corner| {
             let is_max = |axis: u32| corner >> axis & 1 == 1;
             let mask = BVec3::new(is_max(0), is_max(1), is_max(2));
-            self.in_exact_camera_space(Vec3::select(mask, bounds.max, bounds.min))
+            self.in_camera_space_f64(Vec3::select(mask, bounds.max, bounds.min))
         });
         if corners.iter().all(|corner| corner.z <= 0.0) {
             return None;
@@ -143,7 +150,7 @@ impl Projection {
         if corners.iter().any(|corner| corner.z <= 0.0) {
             return Some(self.whole());
         }
-        let places = corners.map(|corner| self.pixel(corner));
+        let places = corners.map(|corner| self.project(corner));
         let (min, max) = places.iter().fold((places[0], places[0]), |(min, max), at| (min.min(*at), max.max(*at)));
         // Widened by a pixel on each side, because the directions of rays are rounded.
         Some(self.rectangle(min - 1.0, max + 1.0))

@@ -65,29 +65,30 @@ fn rectangles<N: Lanes>(projection: &Projection, centers: Vector<N>, r: N) -> ([
     // z^2 - r^2, written as a product to avoid cancellation.
     let squared = (z - r) * (z + r);
     let [width, height] = projection.size;
-    let Projection { scale, foot, .. } = projection;
-    let across = extent(x, z, r, squared, [scale.x as f32, foot.x as f32]);
-    let down = extent(y, z, r, squared, [scale.y as f32, foot.y as f32]);
-    let [left, right] = whole_unless(is_ahead, Projection::range(across[0], across[1], width), width);
-    let [top, bottom] = whole_unless(is_ahead, Projection::range(down[0], down[1], height), height);
+    let Projection { scale, principal_point, .. } = projection;
+    let across = extent(x, z, r, squared, [scale.x as f32, principal_point.x as f32]);
+    let down = extent(y, z, r, squared, [scale.y as f32, principal_point.y as f32]);
+    let [left, right] = range_or_whole(is_ahead, Projection::pixel_range(across[0], across[1], width), width);
+    let [top, bottom] = range_or_whole(is_ahead, Projection::pixel_range(down[0], down[1], height), height);
     let visible = left.lt(right) & top.lt(bottom) & !is_behind;
     ([left.store(), right.store(), top.store(), bottom.store()], visible.bits())
 }
 
 /// Returns the extent of spheres along an axis of the picture, in pixels.
 #[inline(always)]
-fn extent<N: Lanes>(along: N, z: N, r: N, squared: N, [scale, foot]: [f32; 2]) -> [N; 2] {
+fn extent<N: Lanes>(along: N, z: N, r: N, squared: N, [scale, principal_point]: [f32; 2]) -> [N; 2] {
     let reach = r * (along * along + squared).sqrt();
-    let (scale, foot_in_lanes) = (N::splat(scale) / squared, N::splat(foot));
-    let (a, b) = ((along * z - reach) * scale + foot_in_lanes, (along * z + reach) * scale + foot_in_lanes);
+    let (scale, principal_in_lanes) = (N::splat(scale) / squared, N::splat(principal_point));
+    let (a, b) = ((along * z - reach) * scale + principal_in_lanes, (along * z + reach) * scale + principal_in_lanes);
     let (min, max) = (a.min(b), a.max(b));
-    let margin = N::splat(MARGIN + RELATIVE_MARGIN * foot.abs()) + N::splat(RELATIVE_MARGIN) * min.abs().max(max.abs());
+    let margin = N::splat(MARGIN + RELATIVE_MARGIN * principal_point.abs())
+        + N::splat(RELATIVE_MARGIN) * min.abs().max(max.abs());
     [min - margin, max + margin]
 }
 
 /// Returns the given range in the lanes of the mask, and the whole range 0 to `size` in the others.
 #[inline(always)]
-fn whole_unless<N: Lanes>(is_bounded: N::Mask, [first, end]: [N; 2], size: u32) -> [N; 2] {
+fn range_or_whole<N: Lanes>(is_bounded: N::Mask, [first, end]: [N; 2], size: u32) -> [N; 2] {
     [N::select(is_bounded, first, N::splat(0.0)), N::select(is_bounded, end, N::splat(size as f32))]
 }
 

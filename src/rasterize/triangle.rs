@@ -67,9 +67,11 @@ impl SimdKernel for DrawTriangles<'_> {
 #[inline(always)]
 fn placed<N: Lanes>(projection: &Projection, corner: Vector<N>) -> (Vector<N>, N::Mask) {
     let inverse = N::splat(1.0) / corner.z;
-    let place = |along: N, scale: f64, foot: f64| along * inverse * N::splat(scale as f32) + N::splat(foot as f32);
-    let x = place(corner.x, projection.scale.x, projection.foot.x);
-    let y = place(corner.y, projection.scale.y, projection.foot.y);
+    let place = |along: N, scale: f64, principal_point: f64| {
+        along * inverse * N::splat(scale as f32) + N::splat(principal_point as f32)
+    };
+    let x = place(corner.x, projection.scale.x, projection.principal_point.x);
+    let y = place(corner.y, projection.scale.y, projection.principal_point.y);
     let is_near = x.abs().max(y.abs()).le(N::splat(MAX_COORDINATE));
     (Vector { x, y, z: corner.z }, N::splat(0.0).lt(corner.z) & is_near)
 }
@@ -78,8 +80,8 @@ fn placed<N: Lanes>(projection: &Projection, corner: Vector<N>) -> (Vector<N>, N
 #[inline(always)]
 fn set_up<N: Lanes>(projection: &Projection, [a, b, c]: [Vector<N>; 3]) -> (SetUp, u32) {
     let (least, greatest) = (a.min(b).min(c), a.max(b).max(c));
-    let [left, right] = Projection::range(least.x, greatest.x, projection.size[0]);
-    let [top, bottom] = Projection::range(least.y, greatest.y, projection.size[1]);
+    let [left, right] = Projection::pixel_range(least.x, greatest.x, projection.size[0]);
+    let [top, bottom] = Projection::pixel_range(least.y, greatest.y, projection.size[1]);
     let (to_b, to_c) = (b - a, c - a);
     let area = to_b.x * to_c.y - to_c.x * to_b.y;
     let one = N::splat(1.0);

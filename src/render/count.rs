@@ -72,7 +72,7 @@ fn count_batch(kernel: Kernel, scene: &Scene, buffers: &mut Buffers) -> Counts {
     }
     for light in scene.lights().iter().filter(|_| scene.shadows()) {
         shade::shadow_rays(light, points, shadow_rays);
-        hit::any_hits(kernel, scene, shadow_rays, light.in_the_way(), blocked);
+        hit::any_hits(kernel, scene, shadow_rays, light.blocking_interval(), blocked);
         let (traced, blocked) = (shade::count(shadow_rays), blocked.iter().map(|met| u64::from(met.count_ones())));
         counts.rays += traced;
         counts.lit += traced - blocked.sum::<u64>();

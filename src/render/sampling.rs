@@ -36,7 +36,7 @@ impl Sampling {
     pub const MAX_SAMPLES: NonZeroU32 = NonZeroU32::new(1 << 16).expect("65,536 is not 0");
 
     /// Returns the sampling with at most [`MAX_SAMPLES`](Self::MAX_SAMPLES) samples per pixel.
-    pub(super) fn bounded(self) -> Self {
+    pub(super) fn capped_at_max_samples(self) -> Self {
         match self {
             Self::Each(samples) => Self::Each(samples.min(Self::MAX_SAMPLES)),
             Self::Coarse | Self::Split | Self::UpTo(_) => self,

@@ -20,7 +20,7 @@ const MAX_DOTS: f32 = 4000.0;
 
 /// Share of the way from the eye to a point within which a surface hides the point.
 // The interval ends before 1, because a point that lies on a surface must not be hidden by that surface.
-const IN_THE_WAY: Interval = Interval { min: 0.0, max: 0.99 };
+const HIDING_INTERVAL: Interval = Interval { min: 0.0, max: 0.99 };
 
 /// The part of the screen that a picture covers, and the camera of that picture.
 pub(super) struct Plot<'f> {
@@ -91,7 +91,7 @@ impl<'f> Plot<'f> {
 
     fn is_hidden(&self, point: Vec3) -> bool {
         let origin = self.camera.pose().eye;
-        self.scene.is_some_and(|scene| any_hit(scene, &Ray { origin, direction: point - origin }, IN_THE_WAY))
+        self.scene.is_some_and(|scene| any_hit(scene, &Ray { origin, direction: point - origin }, HIDING_INTERVAL))
     }
 
     fn dot(&mut self, place: Vec2, color: u8) {

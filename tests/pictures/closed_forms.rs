@@ -251,7 +251,7 @@ fn a_shadow_reaches_the_point_of_contact() {
     for x in [0.01, 0.03, 0.1, 0.5] {
         let down = Ray { origin: Vec3::new(3.0 + x, 1.0, 0.0), direction: -Vec3::Y };
         let shadow = shadow_ray(&lamp.into(), &floor().shape.primitive(0).at_crossing(&down, 1.0));
-        assert!(any_hit(&scene, &shadow, PointLight::IN_THE_WAY), "lit at {x} from the contact");
+        assert!(any_hit(&scene, &shadow, PointLight::BLOCKING_INTERVAL), "lit at {x} from the contact");
         assert!(shadow.origin.y < x * x / 2.0, "inside the ball at {x}: {}", shadow.origin);
     }
 }

@@ -126,15 +126,15 @@ fn maps_say_what_is_there() {
             // At a slant both are black; a plane is shown as nothing is.
             let is_right = if is_bounded { r == b || (b > r) == is_front } else { (r, b) == (16, 56) };
             assert!(is_right, "{name} {at}: {r} {b}");
-            let in_the_way = |light: &Light| {
+            let is_blocked = |light: &Light| {
                 scene.shadows()
                     && termtrace::internals::hit::any_hit(
                         &scene,
                         &shade::shadow_ray(light, &surface),
-                        light.in_the_way(),
+                        light.blocking_interval(),
                     )
             };
-            let lit = scene.lights().iter().filter(|light| arriving(light).is_some() && !in_the_way(light)).count();
+            let lit = scene.lights().iter().filter(|light| arriving(light).is_some() && !is_blocked(light)).count();
             let share = 0.22 + 0.78 * lit as f32 / scene.lights().len() as f32;
             assert!(shown(Map::Shadow, at).r.abs_diff((255.0 * share).round() as u8) <= 1, "{name} {at}: lit by {lit}");
         }

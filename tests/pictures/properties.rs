@@ -232,7 +232,7 @@ proptest! {
             prop_assert_eq!(bits(hits[at / LANES].hit(&scene, at % LANES)), bits(closest_hit(&scene, ray)));
         }
         let mut met = Vec::new();
-        for within in [Interval::IN_FRONT, PointLight::IN_THE_WAY, Interval { min: 0.3, max: 0.9 }] {
+        for within in [Interval::IN_FRONT, PointLight::BLOCKING_INTERVAL, Interval { min: 0.3, max: 0.9 }] {
             any_hits(Kernel::Auto, &scene, &eights, within, &mut met);
             for (at, ray) in rays.iter().enumerate() {
                 prop_assert_eq!(met[at / LANES] >> (at % LANES) & 1 == 1, any_hit(&scene, ray, within));
@@ -371,7 +371,7 @@ fn surfaces_do_not_shadow_themselves() {
                 let faces = (lamp.position() - point.position).normalize().dot(point.shading_normal) > 1e-3;
                 faces
                     && sphere
-                        .closest_crossing(&Probe::new(shadow_ray(&lamp.into(), &point)), PointLight::IN_THE_WAY)
+                        .closest_crossing(&Probe::new(shadow_ray(&lamp.into(), &point)), PointLight::BLOCKING_INTERVAL)
                         .is_some()
             })
             .count();
@@ -397,7 +397,7 @@ fn planes_do_not_shadow_themselves() {
                 let height = (lamp.position() - point.position).dot(point.shading_normal);
                 height > 1e-3 * scale
                     && plane
-                        .closest_crossing(&Probe::new(shadow_ray(&lamp.into(), &point)), PointLight::IN_THE_WAY)
+                        .closest_crossing(&Probe::new(shadow_ray(&lamp.into(), &point)), PointLight::BLOCKING_INTERVAL)
                         .is_some()
             })
             .count();

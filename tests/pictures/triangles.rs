@@ -156,7 +156,7 @@ fn meshes_do_not_shadow_themselves() {
                     PointLight::new(position, LinearRgb::grey(1.0)).expect("a light").with_falloff(Falloff::None);
                 // The mesh is convex: each surface that faces the light is lit.
                 let faces = (position - point.position).normalize().dot(point.geometric_normal) > 1e-3;
-                faces && any_hit(&scene, &shadow_ray(&lamp.into(), &point), PointLight::IN_THE_WAY)
+                faces && any_hit(&scene, &shadow_ray(&lamp.into(), &point), PointLight::BLOCKING_INTERVAL)
             })
             .count();
         assert!(shadowed <= 10, "{shadowed} false shadows of 100,000 at scale {scale}");
@@ -364,7 +364,7 @@ proptest! {
         let parts: u32 = scene.objects().iter().map(|object| object.shape.primitive_count()).sum();
         // There are more primitives than a leaf of each kind holds: the tree has inner nodes, whose root is visited.
         prop_assert!(parts <= 16 || observer.boxes > 0 || observer.tests.len() == parts as usize);
-        for within in [PointLight::IN_THE_WAY, Interval { min: 0.3, max: 0.7 }, Interval { min: -1.0, max: 0.5 }] {
+        for within in [PointLight::BLOCKING_INTERVAL, Interval { min: 0.3, max: 0.7 }, Interval { min: -1.0, max: 0.5 }] {
             let mut observer = TestRecorder::default();
             let met = any_hit_observed(&scene, &ray, within, &mut observer);
             prop_assert_eq!(met.is_some(), any_hit(&scene, &ray, within));
@@ -380,7 +380,7 @@ proptest! {
         for ray in &rays {
             let found = closest_hit(&scene, ray);
             prop_assert_eq!(found, brute_force(&scene, ray, Interval::IN_FRONT), "{:?}", ray);
-            for within in [PointLight::IN_THE_WAY, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }] {
+            for within in [PointLight::BLOCKING_INTERVAL, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }] {
                 prop_assert_eq!(any_hit(&scene, ray, within), brute_force(&scene, ray, within).is_some(), "{:?} {:?}", ray, within);
             }
         }
@@ -455,7 +455,7 @@ proptest! {
         };
         // The truth is computed once for all kernels.
         let closest = by_brute_force(Interval::IN_FRONT);
-        let met = [PointLight::IN_THE_WAY, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }, Interval { min: -0.5, max: 0.5 }].map(|within| {
+        let met = [PointLight::BLOCKING_INTERVAL, Interval::IN_FRONT, Interval { min: 0.3, max: 0.7 }, Interval { min: -0.5, max: 0.5 }].map(|within| {
             let bits = |hits: [Option<Hit>; LANES]| (0..LANES).filter(|&lane| hits[lane].is_some()).fold(0_u32, |met, lane| met | 1 << lane);
             (within, by_brute_force(within).into_iter().map(bits).collect::<Vec<_>>())
         });

@@ -82,7 +82,7 @@ impl Termtrace {
         if full {
             shade::surface_points(&self.scene, rays, hits, points);
             shade::shadow_rays(&self.light, points, shadow_rays);
-            hit::any_hits(self.kernel, &self.scene, shadow_rays, self.light.in_the_way(), blocked);
+            hit::any_hits(self.kernel, &self.scene, shadow_rays, self.light.blocking_interval(), blocked);
             // One from each hit.
             sum.rays = sum.hits;
             sum.lit = sum.hits - blocked.iter().map(|met| u64::from(met.count_ones())).sum::<u64>();
@@ -147,7 +147,7 @@ impl Backend for Termtrace {
         let start = Instant::now();
         for rays_of_a_tile in given.chunks(128) {
             if rays.any {
-                hit::any_hits(self.kernel, &self.scene, rays_of_a_tile, self.light.in_the_way(), &mut blocked);
+                hit::any_hits(self.kernel, &self.scene, rays_of_a_tile, self.light.blocking_interval(), &mut blocked);
                 sum.lit +=
                     shade::count(rays_of_a_tile) - blocked.iter().map(|met| u64::from(met.count_ones())).sum::<u64>();
             } else {

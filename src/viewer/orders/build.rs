@@ -125,7 +125,7 @@ fn light_along(scene: &Scene, ray: &Ray, hit: Hit) -> LinearRgb {
     let mut arriving = scene.ambient();
     for light in scene.lights() {
         let Some(incidence) = shade::incidence(light, &point) else { continue };
-        if !(scene.shadows() && any_hit(scene, &shade::shadow_ray(light, &point), light.in_the_way())) {
+        if !(scene.shadows() && any_hit(scene, &shade::shadow_ray(light, &point), light.blocking_interval())) {
             arriving += incidence.light;
         }
     }
