@@ -33,7 +33,7 @@ mod signals;
 
 #[cfg(feature = "test-hooks")]
 pub use fault_injection::inject_faults;
-pub(crate) use fault_injection::{reach, reach_in_thread, rest, take_worker_panic};
+pub(crate) use fault_injection::{report_idle, report_phase, report_phase_in_thread, take_worker_panic};
 use modes::Modes;
 pub use output::stderr_accepts_message;
 use output::{Output, timespec};

@@ -54,7 +54,7 @@ struct Pause {
 }
 
 /// The contents of a large picture, and the place to write it.
-pub(super) struct Order {
+pub(super) struct LargePictureJob {
     pub(super) job: Job,
     /// The position of the line between the two maps of a wipe, as a share of the width.
     pub(super) wipe: f32,
@@ -72,8 +72,8 @@ impl LargePicture {
     ///
     /// # Errors
     /// If there is not enough memory, or no thread can be started.
-    pub(super) fn start(order: Order, mut waker: Waker) -> io::Result<Self> {
-        memory::check(BYTES_PER_PIXEL * order.job.shot.resolution.pixel_count())?;
+    pub(super) fn start(picture_job: LargePictureJob, mut waker: Waker) -> io::Result<Self> {
+        memory::check(BYTES_PER_PIXEL * picture_job.job.shot.resolution.pixel_count())?;
         let shared = Arc::new(Shared::default());
         let (done, ended) = channel();
         let of_thread = Arc::clone(&shared);
@@ -82,7 +82,7 @@ impl LargePicture {
             terminal::yield_to_other_threads();
             // `ended` resumes a panic of this thread in the event loop, so that the terminal is restored before the
             // message is printed.
-            let work = AssertUnwindSafe(|| of_thread.write(&order, &for_progress));
+            let work = AssertUnwindSafe(|| of_thread.write(&picture_job, &for_progress));
             let _ = done.send(catch_unwind(work));
             waker.wake();
         })?;
@@ -130,42 +130,42 @@ impl Drop for LargePicture {
 }
 
 impl Shared {
-    fn write(&self, order: &Order, waker: &Mutex<Waker>) -> Written {
-        let Some(picture) = self.traced(order, waker) else { return Ok(None) };
+    fn write(&self, picture_job: &LargePictureJob, waker: &Mutex<Waker>) -> Written {
+        let Some(picture) = self.traced(picture_job, waker) else { return Ok(None) };
         let file = png(&picture, 1.0, 1).map_err(io::Error::other)?;
         // Writing takes only a few milliseconds, so it does not check for cancellation.
         if self.token.is_cancelled() {
             return Ok(None);
         }
-        picture_export::write_new(&order.folder, &order.stem, Format::Png, &file).map(Some)
+        picture_export::write_new(&picture_job.folder, &picture_job.stem, Format::Png, &file).map(Some)
     }
 
     /// Traces the picture. Returns `None` if it was cancelled.
-    fn traced(&self, order: &Order, waker: &Mutex<Waker>) -> Option<crate::tone::Picture> {
-        let shot = &order.job.shot;
+    fn traced(&self, picture_job: &LargePictureJob, waker: &Mutex<Waker>) -> Option<crate::tone::Picture> {
+        let shot = &picture_job.job.shot;
         let (mut part, parts) = (0, shot.layout.map_sizes(shot.resolution).len());
-        let mut frame = frame_of(&order.job, |map, resolution, camera| {
+        let mut frame = frame_of(&picture_job.job, |map, resolution, camera| {
             let report = |share: f32| {
                 self.wait_while_paused();
                 self.set_progress((part as f32 + share) / parts as f32, waker);
                 ControlFlow::Continue(())
             };
-            let scene = &order.job.scene;
+            let scene = &picture_job.job.scene;
             let picture = if map == Map::Shaded {
                 let render = Render::new(scene).camera(camera).resolution(resolution);
-                let render = render.threads(order.thread_count()).cancelled_by(&self.token).on_progress(report);
+                let render = render.threads(picture_job.thread_count()).cancelled_by(&self.token).on_progress(report);
                 TracedMap::new(tone(&render.run()?, scene), Cost::default())
             } else {
                 self.wait_while_paused();
                 // `maps::trace` reports no progress, so the thread can pause only before this call.
                 let executor = Executor::Cancellable(&self.token);
-                maps::trace(map, executor, scene, camera, resolution, order.job.sampling)?
+                maps::trace(map, executor, scene, camera, resolution, picture_job.job.sampling)?
             };
             part += 1;
             Ok::<_, Cancelled>(picture)
         });
         if let Ok(frame) = &mut frame {
-            frame.wipe(order.wipe);
+            frame.wipe(picture_job.wipe);
         }
         frame.ok().map(|frame| frame.picture)
     }
@@ -190,7 +190,7 @@ impl Shared {
     }
 }
 
-impl Order {
+impl LargePictureJob {
     /// Returns the number of threads that trace the picture: all but one, left to the live view.
     fn thread_count(&self) -> usize {
         let cores = || thread::available_parallelism().map_or(1, NonZeroUsize::get);

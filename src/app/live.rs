@@ -4,7 +4,7 @@
 //! carries out the viewer's decisions. Frames are traced and scenes are read on other threads, so that keys and signals
 //! are handled meanwhile; only frames that take less time than waking a thread are traced by the loop itself.
 
-use super::large_picture::{LargePicture, Order};
+use super::large_picture::{LargePicture, LargePictureJob};
 use super::loading::LoadEvent;
 use super::picture_export;
 use super::renderer::Renderer;
@@ -137,7 +137,7 @@ impl Live {
                 return Ok(Ending::Left);
             }
             if signals.take_resized() {
-                terminal::reach("resize")?;
+                terminal::report_phase("resize")?;
                 self.viewer.resize(self.terminal.window()?)?;
             }
             // Repeated in each turn of the loop, because the wanted modes depend on the terminal's replies; a mode that
@@ -171,7 +171,7 @@ impl Live {
                 Step::Trace(probe, job) => {
                     self.terminal.send(&probe)?;
                     if job.refines {
-                        terminal::reach("refinement")?;
+                        terminal::report_phase("refinement")?;
                     }
                     if let Some(frame) = renderer.start_frame(job) {
                         self.viewer.take_frame(frame);
@@ -187,7 +187,7 @@ impl Live {
     fn wait(&mut self, until: Option<Duration>, renderer: &Renderer, signals: &mut Signals) -> io::Result<()> {
         let mut timeout = until.map(|until| until.saturating_sub(self.clock.now()));
         if timeout.is_none() && renderer.tracing().is_none() && !self.terminal.is_sending() {
-            timeout = terminal::rest()?;
+            timeout = terminal::report_idle()?;
         }
         let woken = self.terminal.wait(signals.wake_pipe(), timeout)?;
         if woken.wake {
@@ -288,8 +288,8 @@ impl Live {
     fn start_large_picture(&mut self, signals: &Signals) -> io::Result<()> {
         let Some((job, wipe)) = self.viewer.large_picture() else { return Ok(()) };
         let ((folder, stem), waker) = (self.export_place()?, signals.waker()?);
-        let order = Order { job, wipe, folder, stem, threads: self.threads };
-        self.large_picture = Some(terminal::without_signals(|| LargePicture::start(order, waker))?);
+        let picture_job = LargePictureJob { job, wipe, folder, stem, threads: self.threads };
+        self.large_picture = Some(terminal::without_signals(|| LargePicture::start(picture_job, waker))?);
         self.show_activity();
         Ok(())
     }

@@ -295,7 +295,7 @@ fn build<E>(draft: Draft, reporter: &Reporter<'_>, events: &EventSender<'_, E>) 
     if let Some(sketch) = draft.sketch() {
         events.send(LoadEvent::Sketch(sketch));
     }
-    let _ = terminal::reach_in_thread("build");
+    let _ = terminal::report_phase_in_thread("build");
     if let Ok(scene) = draft.build_or_cancel(reporter) {
         events.send(LoadEvent::Scene(scene));
     }

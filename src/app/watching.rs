@@ -68,7 +68,7 @@ const MAX_RESOLUTIONS: usize = 8;
 impl Watching {
     /// Starts the watching thread, without any folder to watch.
     pub(super) fn start(mut waker: Waker) -> Result<Self, String> {
-        terminal::reach("watching").map_err(|error| error.to_string())?;
+        terminal::report_phase("watching").map_err(|error| error.to_string())?;
         let shared = Arc::<Mutex<Shared>>::default();
         let theirs = Arc::clone(&shared);
         let hear = move |event: notify::Result<Event>| {

@@ -116,7 +116,7 @@ impl Camera {
     /// If the rectangle cannot be shifted farther.
     #[cfg(feature = "live")]
     pub(crate) fn shifted_rectangle(&self, steps: Vec2) -> Result<Self, CameraError> {
-        let shift = stepped(self.rectangle.shift / SHIFT_STEP, steps) * SHIFT_STEP;
+        let shift = plus_whole_steps(self.rectangle.shift / SHIFT_STEP, steps) * SHIFT_STEP;
         Ok(self.with_rectangle(self.rectangle.with_shift(shift)?))
     }
 
@@ -131,7 +131,8 @@ impl Camera {
     pub(crate) fn tilted_rectangle(&self, steps: Vec2) -> Result<Self, CameraError> {
         let Vec2 { x: right, y: up } = self.rectangle.tilt;
         let degrees = Vec2::new(right.to_degrees(), up.to_degrees()) / TILT_STEP_DEGREES;
-        let [right, next] = (stepped(degrees, steps) * TILT_STEP_DEGREES).to_array().map(|angle| radians(angle.into()));
+        let [right, next] =
+            (plus_whole_steps(degrees, steps) * TILT_STEP_DEGREES).to_array().map(|angle| radians(angle.into()));
         let upright = self.upright_tilt();
         let passes = (up < upright && upright < next) || (next < upright && upright < up);
         let tilt = Vec2::new(right, if passes { upright } else { next });
@@ -193,11 +194,11 @@ impl Camera {
         self.with_valid_pose(Pose { eye: target + wanted * self.basis.w, ..self.pose })
     }
 
-    /// Returns the camera on the way to `end`: this one at `share` 0, exactly `end` at 1.
+    /// Returns the camera between this one and `end`: this one at `share` 0, exactly `end` at 1.
     ///
     /// The direction of view turns evenly, about the target or about the eye, whichever of them moves less.
     #[cfg(feature = "live")]
-    pub(crate) fn on_the_way_to(&self, end: &Self, share: f32) -> Self {
+    pub(crate) fn interpolated(&self, end: &Self, share: f32) -> Self {
         if share >= 1.0 {
             return *end;
         }
@@ -298,6 +299,6 @@ fn rotated(v: Vec3, axis: Vec3, angle: f32) -> Vec3 {
 
 /// Returns `number` plus `steps`, rounded to whole steps along axes where `steps` is not 0.
 #[cfg(feature = "live")]
-fn stepped(number: Vec2, steps: Vec2) -> Vec2 {
+fn plus_whole_steps(number: Vec2, steps: Vec2) -> Vec2 {
     Vec2::select(steps.cmpeq(Vec2::ZERO), number, (number + steps).round())
 }

@@ -87,9 +87,9 @@ fn a_jump_leads_evenly_to_another_rectangle() {
     let start = camera(Vec3::Z, Vec3::ZERO);
     let end =
         start.with_rectangle(start.rectangle().with_shift(Vec2::X).and_then(|r| r.with_tilt(Vec2::Y)).expect("one"));
-    let half = start.on_the_way_to(&end, 0.5).rectangle();
+    let half = start.interpolated(&end, 0.5).rectangle();
     assert_eq!((half.shift(), half.tilt()), (0.5 * Vec2::X, 0.5 * Vec2::Y));
-    assert_eq!(start.on_the_way_to(&end, 1.0), end);
+    assert_eq!(start.interpolated(&end, 1.0), end);
 }
 
 /// Many orbits in small steps keep the distance, the up direction and the target.

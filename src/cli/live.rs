@@ -22,9 +22,9 @@ use termtrace::internals::{app, cell};
 use termtrace::live::{Ending, Options, Outcome, Signals, Source};
 use termtrace::{Camera, Colors, Sampling, Size, export};
 
-/// The occasion on which the live view opens, which decides its first hint and its captions.
+/// The content with which the live view opens; it decides the first hint and the captions.
 #[derive(Clone, Copy)]
-pub(super) enum Occasion {
+pub(super) enum Opening {
     /// The default scene, because none was named.
     Demo,
     /// Scenes that the user named.
@@ -34,7 +34,7 @@ pub(super) enum Occasion {
 }
 
 /// Returns the hint shown until the first key press: the main commands and the keys bound to them.
-fn hint(keymap: &Keymap, occasion: Occasion) -> String {
+fn hint(keymap: &Keymap, opening: Opening) -> String {
     let key = |command| keymap.key_of(&[KeyMode::Fly, KeyMode::Always], command).map(|key| key.to_string());
     let moves = [Direction::Forward, Direction::Left, Direction::Back, Direction::Right];
     let moves: Option<Vec<_>> = moves.into_iter().map(|direction| key(Command::Move(direction))).collect();
@@ -44,12 +44,12 @@ fn hint(keymap: &Keymap, occasion: Occasion) -> String {
     let (help, quit) = (does(Command::Help, "keys"), does(Command::Quit, "quit"));
     // Each line fits into 80 columns. On narrower screens the second part is left out first, then the third and so on;
     // the first part stays.
-    let parts = match occasion {
-        Occasion::Demo => vec![moves, Some("termtrace FILE opens yours".to_owned()), help, quit],
-        Occasion::Scenes => {
+    let parts = match opening {
+        Opening::Demo => vec![moves, Some("termtrace FILE opens yours".to_owned()), help, quit],
+        Opening::Scenes => {
             vec![moves, does(Command::NextMap, "maps"), does(Command::Explain, "explain"), help, quit]
         }
-        Occasion::Tour(_) => {
+        Opening::Tour(_) => {
             vec![does(Command::NextScene, "next scene"), does(Command::LastScene, "previous scene"), moves, help, quit]
         }
     };
@@ -83,7 +83,7 @@ pub(super) struct ViewArgs {
 impl ViewArgs {
     /// Returns the options of the live view from the effective `settings`, which already include
     /// this command line's flags.
-    fn options(&self, settings: &SettingArgs, keymap: Keymap, occasion: Occasion) -> Options {
+    fn options(&self, settings: &SettingArgs, keymap: Keymap, opening: Opening) -> Options {
         let mut options = Options::new(settings.terminal.detection_hints());
         options.order = self.order.order();
         options.quality = settings.loss.given_quality();
@@ -94,8 +94,8 @@ impl ViewArgs {
         options.reduced_motion = settings.reduced_motion();
         options.map = settings.map.map();
         options.exports = Some(PathBuf::from("."));
-        options.welcome = settings.shows_hint().then(|| hint(&keymap, occasion));
-        options.tour = if let Occasion::Tour(scenes) = occasion { Some(scenes) } else { None };
+        options.welcome = settings.shows_hint().then(|| hint(&keymap, opening));
+        options.tour = if let Opening::Tour(scenes) = opening { Some(scenes) } else { None };
         options.few_colors = settings.shows_hint().then(|| "256 colours; try --color truecolor".to_owned());
         options.keymap = keymap;
         options
@@ -116,8 +116,8 @@ pub(super) fn run(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
     if !io::stdout().is_terminal() {
         return print_frame(args);
     }
-    let occasion = if args.scenes.is_empty() { Occasion::Demo } else { Occasion::Scenes };
-    open_view(&args.view, given, occasion, args.camera_args.threads, || sources(args))
+    let opening = if args.scenes.is_empty() { Opening::Demo } else { Opening::Scenes };
+    open_view(&args.view, given, opening, args.camera_args.threads, || sources(args))
 }
 
 /// Prints one frame as `termtrace frame` does. Only flags are used, because output to a file or
@@ -155,7 +155,7 @@ fn print_frame(args: &LiveArgs) -> CommandResult {
 pub(super) fn open_view(
     args: &ViewArgs,
     given: &ArgMatches,
-    occasion: Occasion,
+    opening: Opening,
     threads: Option<u16>,
     sources: impl FnOnce() -> Result<Vec<Source<Failure>>, Failure>,
 ) -> CommandResult {
@@ -164,7 +164,7 @@ pub(super) fn open_view(
     let settings = Settings::gather(given)?.args;
     settings.check_samples()?;
     let keymap = keys::keymap(given.get_flag("no_config"))?;
-    let (sources, mut options) = (sources()?, args.options(&settings, keymap, occasion));
+    let (sources, mut options) = (sources()?, args.options(&settings, keymap, opening));
     options.threads = threads.map(usize::from);
     // Signal handlers are installed before the terminal is put into raw mode, so that no signal can leave it so.
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;

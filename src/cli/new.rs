@@ -1,6 +1,6 @@
 //! `termtrace new FILE`: writes a commented starter scene, or one of a formula, and views it.
 
-use super::live::{Occasion, ViewArgs, live_source, open_view};
+use super::live::{Opening, ViewArgs, live_source, open_view};
 use super::outcome::{CommandResult, Failure, reason, write_stdout};
 use super::scene_args::CameraArgs;
 use super::scene_source::{SceneSource, warn_of_invisibility};
@@ -58,7 +58,7 @@ pub(super) fn run(args: &NewArgs, given: &ArgMatches) -> CommandResult {
     if is_live {
         let scene = args.file.clone().map_or(SceneSource::Formula(text), SceneSource::File);
         let source = || Ok(vec![live_source(scene.clone(), &CameraArgs::default())]);
-        return open_view(&args.view, given, Occasion::Scenes, None, source);
+        return open_view(&args.view, given, Opening::Scenes, None, source);
     }
     let Some(path) = &args.file else { return write_stdout(text.as_bytes()) };
     let name = visible(&path.to_string_lossy());

@@ -1,6 +1,6 @@
 //! `termtrace tour`: the built-in scenes in the order of the lecture, each with its caption.
 
-use super::live::{Occasion, ViewArgs, live_source, open_view};
+use super::live::{Opening, ViewArgs, live_source, open_view};
 use super::outcome::{CommandResult, write_stdout};
 use super::scene_args::CameraArgs;
 use super::scene_source::SceneSource;
@@ -31,7 +31,7 @@ pub(super) fn run(args: &TourArgs, given: &ArgMatches) -> CommandResult {
     let sources = || {
         Ok(ShippedScene::all().map(|scene| live_source(SceneSource::Shipped(scene), &CameraArgs::default())).collect())
     };
-    open_view(&args.view, given, Occasion::Tour(ShippedScene::all().count()), None, sources)
+    open_view(&args.view, given, Opening::Tour(ShippedScene::all().count()), None, sources)
 }
 
 fn print_captions() -> CommandResult {

@@ -13,12 +13,12 @@ use std::time::Duration;
 static TEST: OnceLock<Mutex<UnixStream>> = OnceLock::new();
 /// Whether the next job of a worker thread must panic, because the test has asked for it.
 static WORKER: AtomicBool = AtomicBool::new(false);
-/// Delay before [`rest`] is retried while another thread is reporting its phase.
-const REST_RETRY: Duration = Duration::from_millis(2);
+/// Delay before [`report_idle`] is retried while another thread is reporting its phase.
+const IDLE_RETRY: Duration = Duration::from_millis(2);
 /// Number of bytes that the event loop has read from the terminal.
 static READ: AtomicU64 = AtomicU64::new(0);
 
-/// Connects to a test, to which `reach` reports each phase and whose answers it obeys.
+/// Connects to a test, to which `report_phase` reports each phase and whose answers it obeys.
 ///
 /// Only the first call has an effect.
 #[cfg(feature = "test-hooks")]
@@ -36,13 +36,13 @@ pub fn inject_faults(test: UnixStream) {
 ///
 /// # Panics
 /// If the test asks for one.
-pub(crate) fn reach(phase: &str) -> io::Result<()> {
+pub(crate) fn report_phase(phase: &str) -> io::Result<()> {
     report(connection().and_then(|test| test.try_lock().ok()), phase)
 }
 
-/// Reports a phase of another thread as [`reach`] does, but waits until no other thread is
+/// Reports a phase of another thread as [`report_phase`] does, but waits until no other thread is
 /// reporting.
-pub(crate) fn reach_in_thread(phase: &str) -> io::Result<()> {
+pub(crate) fn report_phase_in_thread(phase: &str) -> io::Result<()> {
     report(connection().and_then(|test| test.lock().ok()), phase)
 }
 
@@ -63,9 +63,9 @@ fn report(test: Option<MutexGuard<'_, UnixStream>>, phase: &str) -> io::Result<(
 ///
 /// A test then knows without waiting that nothing more will happen. Returns the delay after which to call again if
 /// another thread is reporting.
-pub(crate) fn rest() -> io::Result<Option<Duration>> {
+pub(crate) fn report_idle() -> io::Result<Option<Duration>> {
     let Some(test) = connection() else { return Ok(None) };
-    let Ok(test) = test.try_lock() else { return Ok(Some(REST_RETRY)) };
+    let Ok(test) = test.try_lock() else { return Ok(Some(IDLE_RETRY)) };
     report(Some(test), &format!("rest {}", READ.load(Ordering::SeqCst)))?;
     Ok(None)
 }

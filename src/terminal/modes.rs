@@ -40,13 +40,13 @@ impl Modes {
         // restored.
         panics::set_held(true);
         termios::tcsetattr(keys, OptionalActions::Now, &raw)?;
-        fault_injection::reach("raw mode")?;
+        fault_injection::report_phase("raw mode")?;
         let mut bytes = Vec::new();
         for mode in TerminalMode::ALL_TERMINALS {
             self.on.switch_on(mode, &mut bytes);
         }
         output.send(&bytes)?;
-        fault_injection::reach("all modes")
+        fault_injection::report_phase("all modes")
     }
 
     /// Switches on a mode unless it is on already.
@@ -57,7 +57,7 @@ impl Modes {
             return Ok(());
         }
         output.send(&bytes)?;
-        if mode == TerminalMode::Keyboard { fault_injection::reach("keyboard") } else { Ok(()) }
+        if mode == TerminalMode::Keyboard { fault_injection::report_phase("keyboard") } else { Ok(()) }
     }
 
     /// Switches off all modes, newest first, and waits for the outstanding replies of `receiver`.
@@ -96,7 +96,7 @@ impl Modes {
             }
         }
         let flushes = typed.is_none();
-        signals::in_the_background(|| restore_settings(keys, &before, flushes));
+        signals::with_sigttou_blocked(|| restore_settings(keys, &before, flushes));
         panics::set_held(false);
         is_drained
     }

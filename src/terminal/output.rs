@@ -69,7 +69,9 @@ impl Output {
                 // Trying again might loop for ever.
                 Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
                 Ok(count) => self.record_written(count),
-                Err(error) if error.kind() == io::ErrorKind::WouldBlock => return fault_injection::reach("frame"),
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
+                    return fault_injection::report_phase("frame");
+                }
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => return Err(error),
             }

@@ -357,7 +357,7 @@ pub(super) fn stop_for_output() -> bool {
 }
 
 /// Runs `work` with SIGTTOU blocked, so that a background process may change its terminal.
-pub(super) fn in_the_background<T>(work: impl FnOnce() -> T) -> T {
+pub(super) fn with_sigttou_blocked<T>(work: impl FnOnce() -> T) -> T {
     with_blocked(&SigSet::from_iter([Signal::SIGTTOU]), work)
 }
 

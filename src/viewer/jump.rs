@@ -44,7 +44,7 @@ impl Jump {
             return self.to;
         }
         let x = now.saturating_sub(self.start).as_secs_f32() / JUMP_TIME.as_secs_f32();
-        self.from.on_the_way_to(&self.to, x * x * (3.0 - 2.0 * x))
+        self.from.interpolated(&self.to, x * x * (3.0 - 2.0 * x))
     }
 }
 
