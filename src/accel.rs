@@ -95,7 +95,7 @@ impl<N: Lanes> PrimitiveIds<N> {
 ///
 /// `group of T` is the type that stores the surface's primitives, `group from S` the type that collects them for the
 /// build. `group in other_group code` is `code` if both groups are the same, else nothing.
-macro_rules! only {
+macro_rules! by_group {
     (list of $kept:ty) => { List<$kept> };
     (tree of $kept:ty) => { Tree<$kept> };
     (list from $surface:ident) => { Vec<(PrimitiveId, crate::shape::$surface)> };
@@ -118,13 +118,13 @@ macro_rules! accelerator {
         /// are the lane.
         #[derive(Clone, Default, PartialEq)]
         pub(crate) struct Accelerator {
-            $($(#[$on])* $name: only!($group of $kept),)*
+            $($(#[$on])* $name: by_group!($group of $kept),)*
             /// The tree of all bounded surfaces that have no tree of their own.
             scalars: Tree<ScalarLeaf<Scalar>>,
             /// Whether any mesh has interpolated normals.
             pub(crate) has_smooth: bool,
             /// Whether any surface depends on the time.
-            moves: bool,
+            depends_on_time: bool,
             bounds: Option<Bounds>,
         }
 
@@ -132,8 +132,8 @@ macro_rules! accelerator {
             /// Visits all lists, then all trees, each in the order of the table of surfaces.
             #[inline(always)]
             pub(crate) fn visit<'a>(&'a self, visitor: &mut impl Visitor<'a>) {
-                $($(#[$on])* { only! { list in $group visitor.visit_list(&self.$name); } })*
-                $($(#[$on])* { only! { tree in $group visitor.visit_tree(&self.$name); } })*
+                $($(#[$on])* { by_group! { list in $group visitor.visit_list(&self.$name); } })*
+                $($(#[$on])* { by_group! { tree in $group visitor.visit_tree(&self.$name); } })*
                 visitor.visit_tree(&self.scalars);
             }
 
@@ -141,7 +141,7 @@ macro_rules! accelerator {
             #[inline(always)]
             pub(crate) fn has_tree_nodes(&self) -> bool {
                 let mut has_tree_nodes = self.scalars.has_nodes();
-                $($(#[$on])* { only! { tree in $group has_tree_nodes |= self.$name.has_nodes(); } })*
+                $($(#[$on])* { by_group! { tree in $group has_tree_nodes |= self.$name.has_nodes(); } })*
                 has_tree_nodes
             }
 
@@ -150,7 +150,7 @@ macro_rules! accelerator {
             #[inline(always)]
             pub(crate) fn needs_shear(&self) -> bool {
                 let mut needs_shear = self.scalars.needs_shear();
-                $($(#[$on])* { only! { tree in $group needs_shear |= self.$name.needs_shear(); } })*
+                $($(#[$on])* { by_group! { tree in $group needs_shear |= self.$name.needs_shear(); } })*
                 needs_shear
             }
         }
@@ -158,7 +158,7 @@ macro_rules! accelerator {
         /// The primitives of all shapes, by kind and in the order of the scene, before the build.
         #[derive(Default)]
         struct PrimitiveLists {
-            $($(#[$on])* $name: only!($group from $surface),)*
+            $($(#[$on])* $name: by_group!($group from $surface),)*
             scalars: TreeBuilder<Scalar>,
         }
 
@@ -166,8 +166,8 @@ macro_rules! accelerator {
             fn push(&mut self, id: PrimitiveId, primitive: Primitive<'_>) {
                 match primitive {
                     $($(#[$on])* Primitive::$surface(surface) => {
-                        only! { list in $group self.$name.push((id, *surface)); }
-                        only! { tree in $group self.$name.push(id, surface.clone()); }
+                        by_group! { list in $group self.$name.push((id, *surface)); }
+                        by_group! { tree in $group self.$name.push(id, surface.clone()); }
                     })*
                     $($(#[$also_on])* Primitive::$shared(surface) => self.scalars.push(id, surface.clone().into()),)*
                     Primitive::Facet(facet) => self.triangles.push(id, *facet.triangle()),
@@ -177,7 +177,7 @@ macro_rules! accelerator {
             /// Returns the boxes of all bounded primitives.
             fn boxes(&self) -> impl Iterator<Item = &Bounds> {
                 let mut boxes: Vec<&[Bounds]> = Vec::new();
-                $($(#[$on])* { only! { tree in $group boxes.push(&self.$name.boxes); } })*
+                $($(#[$on])* { by_group! { tree in $group boxes.push(&self.$name.boxes); } })*
                 boxes.push(&self.scalars.boxes);
                 boxes.into_iter().flatten()
             }
@@ -185,13 +185,13 @@ macro_rules! accelerator {
             fn build<E: Send>(self, report: &(dyn Fn(usize) -> Result<(), E> + Sync)) -> Result<Accelerator, E> {
                 let bounds = self.boxes().copied().reduce(|all, next| all.union(&next));
                 let (mut built, mut end) = (Accelerator { bounds, ..Accelerator::default() }, 0);
-                $($(#[$on])* { only! { list in $group
+                $($(#[$on])* { by_group! { list in $group
                     built.$name = List { first: end, primitives: self.$name };
                     end = built.$name.end_index();
                 } })*
                 // The indices of a leaf start at a multiple of eight, so that index % 8 is the lane.
                 end = end.next_multiple_of(LANES as u32);
-                $($(#[$on])* { only! { tree in $group
+                $($(#[$on])* { by_group! { tree in $group
                     built.$name = self.$name.build(end, report)?;
                     end = built.$name.end_index();
                 } })*
@@ -299,10 +299,10 @@ impl Accelerator {
     ) -> Result<Self, E> {
         #[cfg(all(test, unit_tests))]
         builds::count_build();
-        let (mut lists, mut has_smooth, mut moves) = (PrimitiveLists::default(), false, false);
+        let (mut lists, mut has_smooth, mut depends_on_time) = (PrimitiveLists::default(), false, false);
         for (object, shape) in (0..).zip(shapes) {
             has_smooth |= matches!(shape, Shape::Mesh(mesh) if mesh.is_smooth());
-            moves |= shape.moves();
+            depends_on_time |= shape.moves();
             for index in 0..shape.primitive_count() {
                 lists.push(PrimitiveId { object, index }, shape.primitive(index));
             }
@@ -313,12 +313,12 @@ impl Accelerator {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
             report(Progress { work: Work::Building, done, total })
         };
-        Ok(Self { has_smooth, moves, ..lists.build(&report_more)? })
+        Ok(Self { has_smooth, depends_on_time, ..lists.build(&report_more)? })
     }
 
     /// Returns whether any surface depends on the time.
-    pub(crate) fn moves(&self) -> bool {
-        self.moves
+    pub(crate) fn depends_on_time(&self) -> bool {
+        self.depends_on_time
     }
 
     /// Returns the trees with the surfaces as they are at a time in seconds.

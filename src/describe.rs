@@ -156,8 +156,8 @@ impl Description<'_> {
             let objects: Vec<_> = objects.into_iter().filter(|other| !is_unbounded(other)).collect();
             (!objects.is_empty()).then(|| listed_objects(&objects))
         };
-        let before = list(self.survey.objects_behind(object)).map(|others| format!("; in front of {others}"));
-        let after = list(self.survey.objects_before(object)).map(|others| format!("; partly behind {others}"));
+        let before = list(self.survey.hidden_by(object)).map(|others| format!("; in front of {others}"));
+        let after = list(self.survey.hiding(object)).map(|others| format!("; partly behind {others}"));
         let relations: String = [before, after].into_iter().flatten().collect();
         relations + self.enclosing_remark(object)
     }
@@ -188,7 +188,7 @@ impl Description<'_> {
 
     /// Returns the reason why an object is not in the picture.
     fn reason_hidden(&self, object: u32, resolution: Resolution) -> String {
-        let before = self.survey.objects_before(object);
+        let before = self.survey.hiding(object);
         if !before.is_empty() {
             return format!("hidden behind {}", listed_objects(&before));
         }
@@ -252,7 +252,7 @@ impl Description<'_> {
             LinearRgb::new(r, g, b).luminance()
         };
         lights.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
-        if let Some(darkness) = self.scene.darkness() {
+        if let Some(darkness) = self.scene.darkness_warning() {
             // The warning begins with a small letter, because elsewhere it follows the name of a file.
             return format!("N{}.\n", darkness.trim_start_matches('n'));
         }

@@ -182,7 +182,7 @@ impl Scene {
 
     /// Returns a warning if no light falls on any object.
     #[doc(hidden)]
-    pub fn darkness(&self) -> Option<&'static str> {
+    pub fn darkness_warning(&self) -> Option<&'static str> {
         let Checked { ambient, lights, objects, background, .. } = &*self.checked;
         let is_black = *background == Background::Color(LinearRgb::BLACK);
         let is_unlit = *ambient == LinearRgb::BLACK && lights.iter().all(|light| light.color() == LinearRgb::BLACK);
@@ -195,7 +195,7 @@ impl Scene {
 
     /// Returns a warning for each mesh with triangles that have no area.
     #[doc(hidden)]
-    pub fn flat_meshes(&self) -> Vec<String> {
+    pub fn flat_mesh_warnings(&self) -> Vec<String> {
         let warning = |(at, object): (usize, &Object)| {
             let Shape::Mesh(mesh) = &object.shape else { return None };
             let (flat, all) = (mesh.file().flat_triangle_count(), mesh.file().triangles().len());
@@ -207,7 +207,7 @@ impl Scene {
 
     /// Returns a warning for each formula that certainly has no surface within its bounds.
     #[doc(hidden)]
-    pub fn invisible_formulas(&self) -> Vec<String> {
+    pub fn invisible_formula_warnings(&self) -> Vec<String> {
         let warning = |(at, object): (usize, &Object)| match &object.shape {
             Shape::Implicit(implicit) => implicit.warning().map(|warning| format!("object {at}: {warning}")),
             _ => None,
@@ -217,14 +217,14 @@ impl Scene {
 
     /// Returns whether any surface or its colours depend on the time.
     #[doc(hidden)]
-    pub fn moves(&self) -> bool {
-        self.accelerator.moves()
+    pub fn depends_on_time(&self) -> bool {
+        self.accelerator.depends_on_time()
     }
 
     /// Returns the scene at a time in seconds; a scene that is loaded or built is at time 0.
     #[doc(hidden)]
     pub fn at_time(mut self, seconds: f64) -> Self {
-        if !self.moves() {
+        if !self.depends_on_time() {
             return self;
         }
         self.accelerator = Arc::new(self.accelerator.at_time(seconds));

@@ -319,7 +319,7 @@ impl Viewer {
         // The cameras of the view from outside belong to the previous scene.
         self.end_outside();
         let (before, shown) = (self.scenes.shown(), scene.clone());
-        for warning in scene.darkness().map(str::to_owned).into_iter().chain(scene.invisible_formulas()) {
+        for warning in scene.darkness_warning().map(str::to_owned).into_iter().chain(scene.invisible_formula_warnings()) {
             self.warn(warning);
         }
         if let Some(mesh) = scene.mesh().filter(|mesh| mesh.is_guess) {
@@ -344,7 +344,7 @@ impl Viewer {
             }
         }
         // A reloaded scene goes on from its current time.
-        self.playback.start(shown.moves() && !self.options.reduced_motion, self.now);
+        self.playback.start(shown.depends_on_time() && !self.options.reduced_motion, self.now);
         self.screen.set_name(self.names.get(index).map_or("", String::as_str));
         // The eye needs the scene even if the view is kept, because a reloaded file may contain other views.
         self.eye.set_scene(&shown.at_time(self.playback.time().as_secs_f64()));

@@ -31,8 +31,8 @@ pub(super) fn run(args: &CheckArgs) -> CommandResult {
     let objects = count(scene.objects().len(), "object");
     let lights = count(scene.lights().len(), "light");
     let path = args.scene.display().to_string();
-    let faults = scene.darkness().map(str::to_owned).into_iter().chain(scene.invisible_formulas());
-    let faults = faults.chain(scene.flat_meshes());
+    let faults = scene.darkness_warning().map(str::to_owned).into_iter().chain(scene.invisible_formula_warnings());
+    let faults = faults.chain(scene.flat_mesh_warnings());
     let warnings: String = faults.flat_map(|warning| [", but ".to_owned(), warning]).collect();
     write_stdout(format!("{}: OK ({objects}, {lights}){warnings}\n", visible(&path)).as_bytes())
 }

@@ -119,8 +119,8 @@ fn shipped_like(name: &Path) -> Option<PathBuf> {
 ///
 /// Other maps need no light.
 pub(super) fn warn_of_invisibility(map: Map, scene: &Scene) {
-    scene.invisible_formulas().iter().for_each(warn);
-    if let Some(darkness) = scene.darkness().filter(|_| map == Map::Shaded) {
+    scene.invisible_formula_warnings().iter().for_each(warn);
+    if let Some(darkness) = scene.darkness_warning().filter(|_| map == Map::Shaded) {
         warn(darkness);
     }
 }

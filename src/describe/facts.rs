@@ -96,8 +96,8 @@ impl Description<'_> {
             color: self.color_of(object, &part),
             name: self.name_of(object, &part),
             seen: covered.map(seen).ok_or_else(|| self.reason_hidden(object, resolution)),
-            in_front_of: numbers(self.survey.objects_behind(object)),
-            behind: numbers(self.survey.objects_before(object)),
+            in_front_of: numbers(self.survey.hidden_by(object)),
+            behind: numbers(self.survey.hiding(object)),
             eye_is_inside: shape.encloses(self.camera.pose().eye),
         }
     }

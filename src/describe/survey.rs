@@ -123,7 +123,7 @@ impl Survey {
     }
 
     /// Returns the objects that `object` hides at least partly.
-    pub(super) fn objects_behind(&self, object: u32) -> Vec<u32> {
+    pub(super) fn hidden_by(&self, object: u32) -> Vec<u32> {
         let of_object = self.hides.range((object, 0)..=(object, u32::MAX));
         of_object
             .filter(|&(&(_, behind), &pixels)| self.is_significant(behind, pixels))
@@ -132,7 +132,7 @@ impl Survey {
     }
 
     /// Returns the objects that hide `object` at least partly.
-    pub(super) fn objects_before(&self, object: u32) -> Vec<u32> {
+    pub(super) fn hiding(&self, object: u32) -> Vec<u32> {
         let of_object = self
             .hides
             .iter()

@@ -17,7 +17,7 @@ pub(super) fn leading_comment(file: &str) -> Option<String> {
 /// characters.
 ///
 /// Blank lines separate paragraphs. Returns `None` if the result is empty.
-pub(super) fn shown(written: &str) -> Option<Arc<str>> {
+pub(super) fn displayed_caption(written: &str) -> Option<Arc<str>> {
     let mut paragraphs = vec![String::new()];
     let mut bytes = 0;
     // A caption that is too long is cut between lines, so that no character is cut in two.

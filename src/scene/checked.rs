@@ -45,7 +45,7 @@ pub(super) fn check(
         Some(WrittenToneCurve::Filmic) => ToneCurve::Filmic,
     };
     Some(Draft::new(Checked {
-        caption: file.caption.as_deref().and_then(caption::shown),
+        caption: file.caption.as_deref().and_then(caption::displayed_caption),
         views,
         background: background.unwrap_or(Background::Color(LinearRgb::BLACK)),
         ambient: ambient.unwrap_or(LinearRgb::BLACK),

@@ -41,7 +41,7 @@ pub(super) fn is_shared(job: &Job) -> bool {
     // The pictures of a moving scene are not shared, because each of its times is a separate copy of the scene.
     shot.camera == *scene.camera()
         && shot.resolution.pixel_count() <= MAX_PIXELS
-        && !(shot.geometry || shot.orders || scene.moves())
+        && !(shot.geometry || shot.orders || scene.depends_on_time())
 }
 
 fn is_of(frame: &Frame, job: &Job) -> bool {

@@ -52,7 +52,7 @@ impl Playback {
 impl Viewer {
     /// Pauses the scene's motion, or lets it go on, unless the user has asked for reduced motion.
     pub(super) fn toggle_playback(&mut self) {
-        if !self.scenes.lights().is_some_and(|lights| lights.scene().moves()) {
+        if !self.scenes.lights().is_some_and(|lights| lights.scene().depends_on_time()) {
             return self.show_note("this scene does not move");
         }
         if self.options.reduced_motion {

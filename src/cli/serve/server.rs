@@ -189,7 +189,7 @@ fn scenes(paths: &[PathBuf]) -> Result<Vec<HostedScene>, Failure> {
 
 fn hosted(source: &SceneSource) -> Result<HostedScene, Failure> {
     let scene = CameraArgs::default().load_scene(source)?;
-    if let Some(darkness) = scene.darkness() {
+    if let Some(darkness) = scene.darkness_warning() {
         warn(darkness);
     }
     let title = scene.caption().and_then(|caption| caption.lines().next()).unwrap_or_default().to_owned();

@@ -3,9 +3,9 @@ use crate::scene::Scene;
 
 #[test]
 fn the_lines_of_a_paragraph_are_joined() {
-    assert_eq!(shown("One\n two.\n\n\n Three. \n").as_deref(), Some("One two.\nThree."));
-    assert_eq!(shown("a\x1b[2Jb").as_deref(), Some("a\u{fffd}[2Jb"));
-    assert_eq!(shown(" \n\n"), None);
+    assert_eq!(displayed_caption("One\n two.\n\n\n Three. \n").as_deref(), Some("One two.\nThree."));
+    assert_eq!(displayed_caption("a\x1b[2Jb").as_deref(), Some("a\u{fffd}[2Jb"));
+    assert_eq!(displayed_caption(" \n\n"), None);
 }
 
 #[test]
@@ -20,6 +20,6 @@ fn the_leading_comment_is_the_caption_unless_the_file_has_one() {
 
 #[test]
 fn a_huge_caption_is_cut() {
-    let caption = shown(&"word\n".repeat(1 << 20)).expect("a caption");
+    let caption = displayed_caption(&"word\n".repeat(1 << 20)).expect("a caption");
     assert!(caption.len() <= 2 * MAX_BYTES, "{}", caption.len());
 }

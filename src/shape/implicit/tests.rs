@@ -127,5 +127,5 @@ fn it_is_described_and_explained() {
 #[test]
 fn formulas_without_a_surface_are_warned_of() {
     let scene = scene(&format!(r#"{BALL}, Implicit(f: "x - 5", bounds: Sphere(center: (0, 0, 0), radius: 1))"#));
-    assert_eq!(scene.invisible_formulas(), ["object 2: f has no zero inside the bounds: nothing is seen"]);
+    assert_eq!(scene.invisible_formula_warnings(), ["object 2: f has no zero inside the bounds: nothing is seen"]);
 }
