@@ -155,5 +155,5 @@ fn drive_scenes<E: Into<Notice> + Send + 'static>(
         fault @ Error::Scene(_) => Err(fault),
     })?;
     let heard = live.restore();
-    Ok(Outcome { ending, moved: live.moved(), heard })
+    Ok(Outcome { ending, moved: live.moved_camera(), heard })
 }

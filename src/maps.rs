@@ -168,7 +168,7 @@ impl Map {
 
     /// Returns the previous map; before the first, the last.
     #[doc(hidden)]
-    pub fn back(self) -> Self {
+    pub fn previous(self) -> Self {
         self.after(Self::ALL.len() - 1)
     }
 

@@ -148,7 +148,7 @@ pub(crate) enum Step {
     /// Send these bytes, if any; then trace this frame and pass it to [`Viewer::take_frame`].
     Trace(Vec<u8>, Job),
     /// Cancel the refinement in progress.
-    GiveUp,
+    CancelRefinement,
     /// Wait for an event, at most until this time if given.
     Wait(Option<Duration>),
 }
@@ -261,7 +261,7 @@ impl Viewer {
         // A new font may have cells of another shape, which decides which half blocks join without gaps.
         self.apply_changed_capabilities(&before)?;
         self.display.check_memory()?;
-        self.redraw();
+        self.forget_screen();
         Ok(())
     }
 
@@ -277,11 +277,11 @@ impl Viewer {
     /// Forgets what the terminal shows.
     ///
     /// Everything is drawn anew, and the part outside the picture is cleared.
-    pub(crate) fn redraw(&mut self) {
+    pub(crate) fn forget_screen(&mut self) {
         let (size, window) = (self.display.size(), self.display.window_size());
         // The window is erased only if the picture leaves a part of it free: otherwise the next frame covers all of it,
         // and erasing first would flash.
-        self.screen.redraw(self.display.capabilities().half_blocks, size != window);
+        self.screen.forget_shown(self.display.capabilities().half_blocks, size != window);
         if size != window {
             let [size, window] = [size, window].map(|Size { columns, rows }| format!("{columns}x{rows}"));
             self.show_note(format!("the picture covers {size} of the window's {window} cells"));
@@ -319,7 +319,8 @@ impl Viewer {
         // The cameras of the view from outside belong to the previous scene.
         self.end_outside();
         let (before, shown) = (self.scenes.shown(), scene.clone());
-        for warning in scene.darkness_warning().map(str::to_owned).into_iter().chain(scene.invisible_formula_warnings()) {
+        for warning in scene.darkness_warning().map(str::to_owned).into_iter().chain(scene.invisible_formula_warnings())
+        {
             self.warn(warning);
         }
         if let Some(mesh) = scene.mesh().filter(|mesh| mesh.is_guess) {
@@ -443,14 +444,14 @@ impl Viewer {
         }
         // Moves the eye to its place at `now` first, because `decide` compares the picture with the eye's current view.
         self.eye.advance(now);
-        self.screen.set_moving(self.eye.mode());
+        self.screen.set_movement_mode(self.eye.mode());
         self.screen.set_in_motion(self.is_in_motion());
         self.mark_light();
         self.note_few_colors();
-        let fades_at = self.screen.fade_note(now);
+        let fades_at = self.screen.close_faded_note(now);
         let builds_at = self.screen.advance_orders(now);
         match decide(&self.facts(busy), now) {
-            Action::GiveUp => Step::GiveUp,
+            Action::CancelRefinement => Step::CancelRefinement,
             Action::Draw => Step::Draw,
             Action::Trace => self.begin_new_view(),
             Action::Refine => self.begin_refinement(),
@@ -466,7 +467,7 @@ impl Viewer {
         Facts {
             busy,
             picture: self.picture_state(),
-            holds_first_back: !self.screen.has_shown() && self.pacing.ends_within(FIRST_REFINEMENT),
+            holds_first_back: !self.screen.has_shown() && self.pacing.refines_within(FIRST_REFINEMENT),
             begun: self.pacing.begun_at(),
             moved_until: self.eye.moved_until().or(self.playback.moved_until()),
             min_frame_interval: self.pacing.min_frame_interval(),
@@ -515,7 +516,7 @@ impl Viewer {
         let (lights, camera) = (self.scenes.lights()?, self.first_camera()?);
         let (outside, layout) = (self.second_camera(), self.shown_layout());
         let (scene, resolution) = (self.scenes.count(), self.display.resolution());
-        let (lights, orders) = (lights.moves(), self.screen.get::<OrdersPanel>().is_some());
+        let (lights, orders) = (lights.move_count(), self.screen.get::<OrdersPanel>().is_some());
         let geometry = self.display.capabilities().cell_mode.shows_geometry();
         let time = self.playback.time();
         Some(Shot { scene, lights, time, camera, outside, resolution, layout, orders, geometry })
@@ -621,7 +622,7 @@ impl Viewer {
     }
 
     /// Returns the camera if the user has moved it.
-    pub(crate) fn moved(&self) -> Option<Camera> {
+    pub(crate) fn moved_camera(&self) -> Option<Camera> {
         self.first_camera().filter(|&camera| !self.eye.is_home(camera))
     }
 

@@ -90,8 +90,8 @@ impl Live {
     }
 
     /// Returns the camera if the user has moved it.
-    pub(super) fn moved(&self) -> Option<Camera> {
-        self.viewer.moved()
+    pub(super) fn moved_camera(&self) -> Option<Camera> {
+        self.viewer.moved_camera()
     }
 
     /// Restores the terminal and returns whether it accepted all bytes.
@@ -157,7 +157,7 @@ impl Live {
             let busy = DriverState { sending: self.terminal.is_sending(), tracing: renderer.tracing() };
             match self.viewer.next_step(busy, self.clock.now()) {
                 Step::Wait(until) => return Ok(until),
-                Step::GiveUp => renderer.cancel_refinements(),
+                Step::CancelRefinement => renderer.cancel_refinements(),
                 Step::Draw => {
                     self.bytes.clear();
                     let now = self.clock.now();
@@ -328,7 +328,7 @@ impl Live {
         };
         // The recording starts with a complete frame, because a player has no earlier one to which changes could apply.
         if self.recording.is_some() {
-            self.viewer.redraw();
+            self.viewer.forget_screen();
         }
         self.viewer.show_note(note);
         self.show_activity();

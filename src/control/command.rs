@@ -332,12 +332,12 @@ impl Command {
     }
 
     /// Returns whether the command lasts as long as its key is held.
-    pub fn moves(self) -> bool {
+    pub fn is_motion(self) -> bool {
         matches!(self, Self::Move(_) | Self::Look(_) | Self::Around(_) | Self::Nearer | Self::Farther)
     }
 
     /// Returns whether the command answers a dialog.
-    pub fn answers(self) -> bool {
+    pub fn answers_dialog(self) -> bool {
         matches!(self, Self::Write(_) | Self::Yes | Self::No)
     }
 
@@ -354,7 +354,7 @@ impl Command {
     /// Returns whether Shift with the key makes the command faster.
     pub fn has_faster(self) -> bool {
         // The wipe and the zoom are left out, because their steps are already coarse.
-        self.moves() || self.moves_light() || matches!(self, Self::Point(_))
+        self.is_motion() || self.moves_light() || matches!(self, Self::Point(_))
     }
 
     fn moves_light(self) -> bool {

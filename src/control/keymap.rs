@@ -58,7 +58,7 @@ impl KeyMode {
             Self::Export => matches!(command, Command::Write(_) | Command::No),
             Self::Keep => matches!(command, Command::Yes | Command::No),
             // All other modes belong to no dialog and bind no answers.
-            _ => !command.answers(),
+            _ => !command.answers_dialog(),
         }
     }
 

@@ -56,7 +56,7 @@ struct Held {
     /// Time at which the speed, which falls evenly after `full_until`, is 0.
     ends: Duration,
     /// Factor of the motion: 1, or less for a tap that is shortened before a surface.
-    share: f32,
+    tap_factor: f32,
 }
 
 impl Held {
@@ -69,7 +69,7 @@ impl Held {
             let left = self.ends.saturating_sub(at.max(self.full_until)).as_secs_f32();
             if falls > 0.0 { 0.5 * left * (left / falls) } else { 0.0 }
         };
-        self.share * (full.as_secs_f32() + left(from) - left(to))
+        self.tap_factor * (full.as_secs_f32() + left(from) - left(to))
     }
 
     /// Releases the key at time `now`. The rest of an incomplete step follows at a falling speed.
@@ -129,7 +129,7 @@ impl Motion {
     pub fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) {
         // A release is matched by the physical key, not by the command, because the mode may have changed since the
         // press.
-        match (key.kind, meant.filter(|(command, _)| command.moves())) {
+        match (key.kind, meant.filter(|(command, _)| command.is_motion())) {
             (KeyEventKind::Release, _) => {
                 let key = physical_key(key);
                 let lets_go = |held: &&mut Held| held.key == key && held.full_until > now;
@@ -162,7 +162,7 @@ impl Motion {
         // because terminals repeat only the key pressed last.
         self.held.retain(|held| self.reports_releases && held.key != key && held.ends > now);
         self.fast = fast;
-        let mut held = Held { key, command, pressed, full_until: Duration::MAX, ends: Duration::MAX, share: 1.0 };
+        let mut held = Held { key, command, pressed, full_until: Duration::MAX, ends: Duration::MAX, tap_factor: 1.0 };
         match (self.reports_releases, again) {
             // The key moves until the terminal reports its release, or that the window has lost the focus.
             (true, _) => {}
@@ -185,10 +185,10 @@ impl Motion {
             if is_free(self) {
                 return;
             }
-            self.held.iter_mut().for_each(|held| held.share *= 0.5);
+            self.held.iter_mut().for_each(|held| held.tap_factor *= 0.5);
         }
         // The key stays in `held`, because another press within `AGAIN_TIME` means that it is held.
-        self.held.iter_mut().for_each(|held| held.share = 0.0);
+        self.held.iter_mut().for_each(|held| held.tap_factor = 0.0);
     }
 
     /// Ends the motion of all keys at once.

@@ -252,7 +252,7 @@ impl ViewerSession {
                     }
                     return AfterTurn::Sleep(until);
                 }
-                Step::GiveUp => {}
+                Step::CancelRefinement => {}
                 Step::Draw => {
                     let mut bytes = Vec::new();
                     self.viewer.draw(clock(), &mut bytes);
@@ -327,7 +327,7 @@ impl ViewerSession {
         self.modes_off(now, out);
         out.extend_from_slice(reason.farewell().as_bytes());
         let HostedScene { file, .. } = &self.scenes[self.shown];
-        let camera = self.viewer.moved().map(|camera| format!(" {}", camera.rounded().to_flags()));
+        let camera = self.viewer.moved_camera().map(|camera| format!(" {}", camera.rounded().to_flags()));
         let command = format!("this view at home: termtrace {file}{}\r\n", camera.unwrap_or_default());
         out.extend_from_slice(command.as_bytes());
         if let Some(link) = &self.link {

@@ -17,7 +17,7 @@ impl Viewer {
     /// Shows a notice if the user has moved the eye so that nothing of the scene is visible.
     pub(super) fn note_lost(&mut self) {
         // No notice for the view that the scene's author has chosen.
-        let frame = self.screen.frame().filter(|_| self.eye.moved().is_some());
+        let frame = self.screen.frame().filter(|_| self.eye.moved_camera().is_some());
         let aspect_ratio = self.first_map_resolution().aspect_ratio();
         let hiding = frame.and_then(|frame| Hiding::find(&frame.scene, frame.camera(), aspect_ratio));
         let modes = self.screen.active_modes(self.size());
@@ -33,7 +33,7 @@ impl Viewer {
         // The point is computed from the shown frame, which may be older than the camera.
         let in_the_middle = self.point_in_the_middle();
         self.eye.change_mode(in_the_middle);
-        self.screen.set_moving(self.eye.mode());
+        self.screen.set_movement_mode(self.eye.mode());
         self.show_note(format!("{}{}", self.eye.mode().name(), self.hint(Command::Help, "shows its keys")));
     }
 

@@ -21,7 +21,7 @@ impl Viewer {
         }
         self.screen.set_capabilities(self.display.capabilities());
         if self.size() != size {
-            self.redraw();
+            self.forget_screen();
         }
         self.show_note(format!("{} (--glyphs {next})", next.title()));
     }

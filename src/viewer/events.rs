@@ -72,7 +72,7 @@ impl Viewer {
                 // Without the focus, the terminal will not report the release of keys that are held now.
                 Input::Event(Event::FocusLost) => {
                     self.pointer.release();
-                    self.eye.release(now);
+                    self.eye.release_keys(now);
                 }
                 Input::Reply(reply) => self.take_reply(reply)?,
                 Input::Event(_) => {}
@@ -103,7 +103,7 @@ impl Viewer {
         // The picture's size in cells may have changed, because its limit is in pixels and the pixels per cell depend
         // on the glyphs.
         if self.size() != size {
-            self.redraw();
+            self.forget_screen();
         }
         Ok(())
     }
@@ -130,7 +130,7 @@ impl Viewer {
             return;
         }
         // An open question takes all keys, except keys with Ctrl that do not answer it, such as Ctrl-C.
-        let answer = meant.map(|(command, _)| command).filter(|command| command.answers() || !is_ctrl);
+        let answer = meant.map(|(command, _)| command).filter(|command| command.answers_dialog() || !is_ctrl);
         if is_press && (answer.is_some() || !is_ctrl) && self.take_answer(answer) {
             return;
         }
@@ -186,14 +186,14 @@ impl Viewer {
             Command::LightNearer => self.wheel_light(-1.0),
             Command::LightBack => self.put_light_back(),
             Command::NextMap => self.layout.change_map(Map::next),
-            Command::LastMap => self.layout.change_map(Map::back),
+            Command::LastMap => self.layout.change_map(Map::previous),
             Command::Compare => self.layout.compare(),
             Command::Wipe(side) => self.move_wipe(side),
             Command::Explain => self.toggle_explaining(),
             Command::Point(toward) => self.point(toward, more),
             Command::ScrollUp => self.turn_explanation(-1),
             Command::ScrollDown => self.turn_explanation(1),
-            Command::Redraw => self.redraw(),
+            Command::Redraw => self.forget_screen(),
             Command::Caption => self.turn_caption(),
             Command::NextGlyphs => self.change_glyphs(),
             Command::TurnMesh => self.turn_mesh(),

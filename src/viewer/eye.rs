@@ -118,7 +118,7 @@ impl Eye {
     }
 
     /// Returns the camera if it is not the scene's own one.
-    pub(super) fn moved(&self) -> Option<Camera> {
+    pub(super) fn moved_camera(&self) -> Option<Camera> {
         self.view.as_ref().filter(|view| view.camera != view.home).map(|view| view.camera)
     }
 
@@ -154,14 +154,14 @@ impl Eye {
         let since = jump.map_or(since, |jump| since.max(jump.end()).min(now));
         let moved = self.motion.step(&view.camera, view.speed, since, now);
         let scene = self.scene.as_ref().filter(|_| !self.passes_surfaces);
-        let short = scene.and_then(|scene| short_of_surface(scene, view, &moved));
-        if short.is_some() {
+        let stopped = scene.and_then(|scene| stopped_at_surface(scene, view, &moved));
+        if stopped.is_some() {
             self.stopped_at.get_or_insert(now);
         } else if !self.motion.is_moving(now) {
             self.stopped_at = None;
         }
         let passes = self.stopped_at.is_some_and(|stopped| now >= stopped + PASSING_TIME);
-        view.camera = short.filter(|_| !passes).unwrap_or(moved);
+        view.camera = stopped.filter(|_| !passes).unwrap_or(moved);
         if self.turntable {
             view.camera = control::on_turntable(&view.camera, now.saturating_sub(since).as_secs_f32());
         }
@@ -301,7 +301,7 @@ impl Eye {
             self.end_jump();
         }
         // Any movement key stops the turntable, which would otherwise turn the eye at the same time.
-        self.turntable &= key.kind == KeyEventKind::Release || !meant.is_some_and(|(command, _)| command.moves());
+        self.turntable &= key.kind == KeyEventKind::Release || !meant.is_some_and(|(command, _)| command.is_motion());
         self.motion.take_key(key, meant, now);
         if let (Some(scene), Some(view), false) = (&self.scene, &self.view, self.passes_surfaces) {
             self.motion.shorten_taps(now, |motion| passes_no_surface(motion, view, scene, now));
@@ -318,14 +318,14 @@ impl Eye {
         motion.take_key(&KeyEvent { kind: KeyEventKind::Press, ..*key }, meant, Duration::ZERO);
         let moved = motion.step(&view.camera, view.speed, Duration::ZERO, REDUCED_MOTION_STEP);
         let scene = self.scene.as_ref().filter(|_| !self.passes_surfaces);
-        let short = scene.and_then(|scene| short_of_surface(scene, view, &moved));
+        let stopped = scene.and_then(|scene| stopped_at_surface(scene, view, &moved));
         // A surface stops a step. If the eye is already close to the surface, as after such a stop, the step passes it.
         let way = |camera: &Camera| camera.pose().eye.distance(view.camera.pose().eye);
-        view.camera = short.filter(|short| way(short) > LEAST_STEP * way(&moved)).unwrap_or(moved);
+        view.camera = stopped.filter(|stopped| way(stopped) > LEAST_STEP * way(&moved)).unwrap_or(moved);
     }
 
     /// Ends the motion by keys, as if all keys were released.
-    pub(super) fn release(&mut self, now: Duration) {
+    pub(super) fn release_keys(&mut self, now: Duration) {
         self.advance(now);
         self.motion.stop();
         self.moved_until = self.moved_until.filter(|_| self.turntable || self.jump.is_some());
@@ -333,7 +333,7 @@ impl Eye {
 
     /// Stops all motion: that by keys, and the turntable.
     pub(super) fn stop(&mut self, now: Duration) {
-        self.release(now);
+        self.release_keys(now);
         self.end_jump();
         self.turntable = false;
         self.moved_until = None;
@@ -343,7 +343,7 @@ impl Eye {
     pub(super) fn set_reports_releases(&mut self, reports_releases: bool, now: Duration) {
         // The release of a held key would never be reported, and the key would move the eye for ever.
         if self.reports_releases() && !reports_releases {
-            self.release(now);
+            self.release_keys(now);
         }
         self.motion.set_reports_releases(reports_releases);
     }
@@ -367,9 +367,10 @@ fn passes_no_surface(motion: &Motion, view: &ViewState, scene: &Scene, now: Dura
     origin == end || !any_hit(scene, &Ray { origin, direction: end - origin }, within)
 }
 
-/// Returns the camera short of the first surface on the eye's way to `moved`, or `None` if the way
-/// is free.
-fn short_of_surface(scene: &Scene, view: &ViewState, moved: &Camera) -> Option<Camera> {
+/// Returns the camera stopped in front of the first surface on the way to `moved`.
+///
+/// Returns `None` if the way is free.
+fn stopped_at_surface(scene: &Scene, view: &ViewState, moved: &Camera) -> Option<Camera> {
     let (origin, pose) = (view.camera.pose().eye, moved.pose());
     let way = pose.eye - origin;
     let t = (way != Vec3::ZERO).then(|| closest_hit(scene, &Ray { origin, direction: way }))??.t;
@@ -377,8 +378,8 @@ fn short_of_surface(scene: &Scene, view: &ViewState, moved: &Camera) -> Option<C
     let back = ((t + 1.0 - SURFACE_MARGIN).max(0.0) - 1.0) * way;
     let pose = Pose { eye: pose.eye + back, target: pose.target + back, ..pose };
     // An eye that orbits stays where it is: its target must not move.
-    let short = if view.orbits { view.camera } else { moved.with_pose(pose).unwrap_or(view.camera) };
-    (t < SURFACE_MARGIN).then_some(short)
+    let stopped = if view.orbits { view.camera } else { moved.with_pose(pose).unwrap_or(view.camera) };
+    (t < SURFACE_MARGIN).then_some(stopped)
 }
 
 /// Time for which a surface stops a held key, which passes it after that.

@@ -13,13 +13,13 @@ pub(super) struct Lights {
     /// Index of the held light.
     held: Option<usize>,
     /// Number of times that a light has been moved.
-    moves: u32,
+    move_count: u32,
 }
 
 impl Lights {
     /// Returns the lights of a scene before any move.
     pub(super) fn new(scene: Scene) -> Self {
-        Self { written: scene.lights().to_vec(), scene, held: None, moves: 0 }
+        Self { written: scene.lights().to_vec(), scene, held: None, move_count: 0 }
     }
 
     /// Returns the scene with its lights where the user has moved them.
@@ -32,8 +32,8 @@ impl Lights {
     }
 
     /// Returns the number of times that a light has been moved.
-    pub(super) fn moves(&self) -> u32 {
-        self.moves
+    pub(super) fn move_count(&self) -> u32 {
+        self.move_count
     }
 
     /// Takes hold of the next light after the held one and returns its index.
@@ -71,7 +71,7 @@ impl Lights {
             lights[held] = lights[held].moved_to(position);
             // Cloning is cheap, because clones of a scene share its objects and trees.
             self.scene = self.scene.clone().with_lights(lights);
-            self.moves += 1;
+            self.move_count += 1;
         }
     }
 }

@@ -61,8 +61,8 @@ impl Pacing {
 
     /// Returns whether the refinements of the last picture are expected to take at most `time` in
     /// total.
-    pub(super) fn ends_within(&self, time: Duration) -> bool {
-        self.quality.ends_within(time)
+    pub(super) fn refines_within(&self, time: Duration) -> bool {
+        self.quality.refines_within(time)
     }
 
     /// Records a finished frame.

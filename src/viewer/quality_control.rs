@@ -94,7 +94,7 @@ impl QualityControl {
 
     /// Returns whether the refinements of the last picture are expected to take at most `time` in
     /// total.
-    pub(super) fn ends_within(&self, time: Duration) -> bool {
+    pub(super) fn refines_within(&self, time: Duration) -> bool {
         self.last.is_some_and(|last| self.predicted_time(last, MAX_MOTION_LEVEL) <= time.as_secs_f64())
     }
 

@@ -211,7 +211,7 @@ impl Driver {
                 Step::Wait(until) if until.is_none_or(|until| until > self.now) => return until,
                 // The timeout of an incomplete escape sequence has passed.
                 Step::Wait(_) => self.receive(&[]),
-                Step::GiveUp => {
+                Step::CancelRefinement => {
                     assert!(self.job.take().is_some_and(|job| job.refines), "only a refinement is given up");
                 }
                 Step::Draw => {

@@ -63,7 +63,7 @@ pub(super) struct Facts {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Action {
     /// Cancel the refinement of a view that has changed.
-    GiveUp,
+    CancelRefinement,
     /// Draw the content of the screen.
     Draw,
     /// Begin a frame of the new view.
@@ -82,7 +82,7 @@ pub(super) fn decide(facts: &Facts, now: Duration) -> Action {
     // Cancelling comes first, because the tracing thread stays busy with the old view until its job is cancelled. A
     // frame of a new view is never cancelled: while the view keeps changing, no frame would ever be finished.
     if picture == PictureState::Stale && busy.tracing == Some(Tracing::Refinement) {
-        return Action::GiveUp;
+        return Action::CancelRefinement;
     }
     let (draw_at, frame_at) = (facts.draw_at(), facts.frame_at());
     // A finished frame is drawn before the next one is begun, so that its bytes are sent while the next one is traced.
@@ -104,7 +104,7 @@ impl Facts {
     /// Returns whether to hold back the first picture until it is refined.
     ///
     /// Drawing the picture twice would take longer than drawing the final one at once.
-    fn perfects_first(&self) -> bool {
+    fn holds_back_first_picture(&self) -> bool {
         self.holds_first_back && self.picture == PictureState::Refinable && self.moved_until.is_none()
     }
 
@@ -112,7 +112,7 @@ impl Facts {
     ///
     /// An improvement of the shown picture waits while a frame of a newer view is in progress.
     fn draw_at(&self) -> Option<Duration> {
-        if self.perfects_first() {
+        if self.holds_back_first_picture() {
             return None;
         }
         // The shown picture lasts if no newer view is wanted or being traced. On a link of 50 KB/s and 200 ms,
@@ -125,7 +125,7 @@ impl Facts {
 
     /// Returns the earliest time for the next frame, or for the next step of the motion.
     fn frame_at(&self) -> Duration {
-        if self.perfects_first() {
+        if self.holds_back_first_picture() {
             return Duration::ZERO;
         }
         let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + self.min_frame_interval);

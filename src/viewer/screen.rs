@@ -163,7 +163,7 @@ impl Screen {
     }
 
     /// Closes the note if its time is over; otherwise returns the time at which it fades.
-    pub(super) fn fade_note(&mut self, now: Duration) -> Option<Duration> {
+    pub(super) fn close_faded_note(&mut self, now: Duration) -> Option<Duration> {
         // Uses `quietly`, because any other access for writing counts as a change, which draws the screen.
         let fades_at = self.content.quietly().layers.get_mut::<Note>()?.fades_at(now)?;
         if fades_at <= now {
@@ -237,7 +237,7 @@ impl Screen {
     }
 
     /// Sets whether the eye flies or orbits.
-    pub(super) fn set_moving(&mut self, moving: KeyMode) {
+    pub(super) fn set_movement_mode(&mut self, moving: KeyMode) {
         // The mode is written only if it differs, because any access for writing counts as a change, which draws the
         // screen.
         if self.content.moving != moving {
@@ -284,7 +284,7 @@ impl Screen {
     /// Forgets what the terminal shows: the next bytes draw all cells, using these `half_blocks`.
     ///
     /// With `covers_a_part` (the picture covers only a part of the window) these bytes erase the window first.
-    pub(super) fn redraw(&mut self, half_blocks: HalfBlocks, covers_a_part: bool) {
+    pub(super) fn forget_shown(&mut self, half_blocks: HalfBlocks, covers_a_part: bool) {
         self.encoder.forget();
         self.erases = covers_a_part;
         self.encoder.set_half_blocks(half_blocks);

@@ -187,9 +187,9 @@ fn legends_are_short() {
 #[test]
 fn the_last_map_is_followed_by_the_first() {
     for map in Map::ALL {
-        assert_eq!(map.next().back(), map);
+        assert_eq!(map.next().previous(), map);
         assert_eq!(Map::named(map.name()), Some(map));
     }
-    assert_eq!(Map::Shaded.back().next(), Map::Shaded);
+    assert_eq!(Map::Shaded.previous().next(), Map::Shaded);
     assert_eq!(Map::named("nothing"), None);
 }

@@ -44,7 +44,7 @@ fn no_tap_passes_a_surface_of_a_shipped_scene() {
                         press(&mut eye, release, Some(&scene), ms(1_010));
                         let what = format!("{name}: {key:?} in {mode:?}, releases {reports_releases}");
                         assert_passes_nothing(&mut eye, &scene, &what);
-                        assert!(eye.moved().is_some() && !eye.is_moving(), "{what}");
+                        assert!(eye.moved_camera().is_some() && !eye.is_moving(), "{what}");
                     }
                 }
             }

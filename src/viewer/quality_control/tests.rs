@@ -10,7 +10,7 @@ fn ms(milliseconds: f64) -> Duration {
 /// Simulates `frames` frames of a motion that starts from rest, and returns the level of each.
 ///
 /// `time` returns the milliseconds that the frame with this number takes at this level.
-fn fly(control: &mut QualityControl, frames: u32, mut time: impl FnMut(u32, usize) -> f64) -> Vec<usize> {
+fn simulate_motion(control: &mut QualityControl, frames: u32, mut time: impl FnMut(u32, usize) -> f64) -> Vec<usize> {
     let levels = (0..frames).map(|frame| {
         let sampling = control.for_new_view(frame > 0);
         let level = LEVELS.iter().position(|&level| level == sampling).expect("it is one of them");
@@ -24,7 +24,7 @@ fn fly(control: &mut QualityControl, frames: u32, mut time: impl FnMut(u32, usiz
 /// pixels has edges.
 ///
 /// A frame with one sample per pixel takes `one` milliseconds.
-fn machine(one: f64) -> impl Fn(usize) -> f64 {
+fn frame_time_by_level(one: f64) -> impl Fn(usize) -> f64 {
     move |level| one * [0.25, 1.0, 2.0, 6.0][level]
 }
 
@@ -36,9 +36,9 @@ fn changes(levels: &[usize]) -> usize {
 #[test]
 fn as_many_samples_as_fit_the_time() {
     for (one, level) in [(0.1, 3), (1.0, 3), (1.6, 3), (2.5, 2), (4.5, 2), (8.0, 1), (12.0, 1), (14.0, 0), (1e3, 0)] {
-        let time = machine(one);
+        let time = frame_time_by_level(one);
         let mut control = QualityControl::new(None);
-        let levels = fly(&mut control, 300, |_, level| time(level));
+        let levels = simulate_motion(&mut control, 300, |_, level| time(level));
         assert!(levels[60..].iter().all(|&it| it == level), "{one} ms: {levels:?}");
         // There are at most two changes up from the first level, and two by a failed attempt at a finer one: up and
         // down.
@@ -50,23 +50,23 @@ fn as_many_samples_as_fit_the_time() {
 fn the_first_frame_after_a_rest_is_no_finer_than_one_sample() {
     let mut control = QualityControl::new(None);
     assert_eq!(control.for_new_view(false), LEVELS[1], "nothing is known");
-    fly(&mut control, 100, |_, level| machine(0.5)(level));
+    simulate_motion(&mut control, 100, |_, level| frame_time_by_level(0.5)(level));
     assert_eq!((control.for_new_view(false), control.for_new_view(true)), (LEVELS[1], LEVELS[3]));
     // On a slow machine even one sample per pixel is too much.
-    fly(&mut control, 100, |_, level| machine(50.0)(level));
+    simulate_motion(&mut control, 100, |_, level| frame_time_by_level(50.0)(level));
     assert_eq!((control.for_new_view(false), control.for_new_view(true)), (LEVELS[0], LEVELS[0]));
 }
 
 #[test]
 fn a_scene_that_becomes_slow_is_soon_kept_up_with() {
     let mut control = QualityControl::new(None);
-    fly(&mut control, 100, |_, level| machine(0.5)(level));
+    simulate_motion(&mut control, 100, |_, level| frame_time_by_level(0.5)(level));
     // The level falls at once after a frame that is far too late, and after two frames that are a little late.
-    let levels = fly(&mut control, 20, |_, level| machine(5.0)(level));
+    let levels = simulate_motion(&mut control, 20, |_, level| frame_time_by_level(5.0)(level));
     assert!(levels[1..].iter().all(|&level| level == 2), "{levels:?}");
     let mut control = QualityControl::new(None);
-    fly(&mut control, 100, |_, level| machine(1.6)(level));
-    let levels = fly(&mut control, 20, |_, level| machine(2.5)(level));
+    simulate_motion(&mut control, 100, |_, level| frame_time_by_level(1.6)(level));
+    let levels = simulate_motion(&mut control, 20, |_, level| frame_time_by_level(2.5)(level));
     assert!(levels[..2] == [1, 3] && levels[2..].iter().all(|&level| level == 2), "{levels:?}");
 }
 
@@ -74,12 +74,12 @@ fn a_scene_that_becomes_slow_is_soon_kept_up_with() {
 #[test]
 fn no_level_flickers() {
     for tenth in 1..400 {
-        let time = machine(f64::from(tenth) / 10.0);
+        let time = frame_time_by_level(f64::from(tenth) / 10.0);
         let mut control = QualityControl::new(None);
-        fly(&mut control, 200, |_, level| time(level));
+        simulate_motion(&mut control, 200, |_, level| time(level));
         // Each frame's time is multiplied by a pseudorandom factor from 0.9 to 1.1.
         let noise = |frame: u32| 0.9 + 0.2 * f64::from(frame.wrapping_mul(2_654_435_769) >> 16) / 65_536.0;
-        let levels = fly(&mut control, 600, |frame, level| time(level) * noise(frame));
+        let levels = simulate_motion(&mut control, 600, |frame, level| time(level) * noise(frame));
         assert!(changes(&levels[1..]) <= 6, "{tenth} tenths of a millisecond: {levels:?}");
     }
 }
@@ -88,8 +88,10 @@ fn no_level_flickers() {
 #[test]
 fn one_late_frame_changes_nothing() {
     let mut control = QualityControl::new(None);
-    fly(&mut control, 100, |_, level| machine(1.0)(level));
-    let levels = fly(&mut control, 100, |frame, level| machine(1.0)(level) * if frame % 10 == 9 { 3.0 } else { 1.0 });
+    simulate_motion(&mut control, 100, |_, level| frame_time_by_level(1.0)(level));
+    let levels = simulate_motion(&mut control, 100, |frame, level| {
+        frame_time_by_level(1.0)(level) * if frame % 10 == 9 { 3.0 } else { 1.0 }
+    });
     assert_eq!(changes(&levels[1..]), 0, "{levels:?}");
 }
 
@@ -97,7 +99,9 @@ fn one_late_frame_changes_nothing() {
 #[test]
 fn room_now_and_then_is_no_room() {
     let mut control = QualityControl::new(None);
-    let levels = fly(&mut control, 200, |frame, level| machine(if frame % 4 == 3 { 9.0 } else { 2.0 })(level));
+    let levels = simulate_motion(&mut control, 200, |frame, level| {
+        frame_time_by_level(if frame % 4 == 3 { 9.0 } else { 2.0 })(level)
+    });
     assert_eq!(changes(&levels), 0, "{levels:?}");
 }
 
@@ -107,7 +111,7 @@ fn room_now_and_then_is_no_room() {
 #[test]
 fn the_cost_ratio_of_a_level_is_learnt() {
     let mut control = QualityControl::new(None);
-    let levels = fly(&mut control, 600, |_, level| 4.0 * [0.25, 1.0, 4.0, 16.0][level]);
+    let levels = simulate_motion(&mut control, 600, |_, level| 4.0 * [0.25, 1.0, 4.0, 16.0][level]);
     assert!(levels.contains(&2) && changes(&levels) <= 6, "{levels:?}");
 }
 
@@ -118,7 +122,7 @@ fn the_time_of_a_frame_is_what_counts() {
     for _ in 0..100 {
         let sampling = control.for_new_view(true);
         let level = LEVELS.iter().position(|&level| level == sampling).expect("it is one of them");
-        control.record_time(sampling, ms(machine(10.0)(level)), 6 * FRAME);
+        control.record_time(sampling, ms(frame_time_by_level(10.0)(level)), 6 * FRAME);
     }
     assert_eq!(control.for_new_view(true), LEVELS[3]);
 }

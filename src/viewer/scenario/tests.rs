@@ -36,11 +36,11 @@ fn a_scene_is_drawn_and_moves() {
     driver.carry_out_steps();
     assert!(driver.viewer.has_shown());
     driver.come_to_rest();
-    let home = driver.viewer.moved();
+    let home = driver.viewer.moved_camera();
     driver.receive(b"w");
     driver.now += Duration::from_millis(100);
     driver.carry_out_steps();
-    assert!(home.is_none() && driver.viewer.moved().is_some(), "{home:?}");
+    assert!(home.is_none() && driver.viewer.moved_camera().is_some(), "{home:?}");
     assert!(driver.job.is_some());
     driver.come_to_rest();
 }
@@ -61,7 +61,7 @@ fn an_eye_stops_at_a_moving_surface_where_it_is_now() {
             driver.now += Duration::from_millis(100);
             driver.carry_out_steps();
         });
-        driver.viewer.moved().map_or(5.0, |camera| camera.pose().eye.z)
+        driver.viewer.moved_camera().map_or(5.0, |camera| camera.pose().eye.z)
     };
     driver.carry_out_steps();
     driver.now += Duration::from_millis(900);

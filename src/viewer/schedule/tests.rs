@@ -33,7 +33,7 @@ fn the_newest_picture_wins() {
     let stale = Facts { picture: PictureState::Stale, ..AT_REST };
     assert_eq!(decide(&stale, NOW), Action::Trace);
     let refining = Facts { busy: tracing(Tracing::Refinement), ..stale };
-    assert_eq!(decide(&refining, NOW), Action::GiveUp);
+    assert_eq!(decide(&refining, NOW), Action::CancelRefinement);
     // A frame of a view that is no longer wanted is nevertheless finished and drawn before the next one is begun.
     let behind = Facts { busy: tracing(Tracing::NewView), ..stale };
     assert_eq!(decide(&behind, NOW), Action::Wait(None));
@@ -124,7 +124,7 @@ proptest! {
         match decide(&facts, NOW) {
             Action::Draw => prop_assert!(!facts.busy.sending),
             Action::Trace | Action::Refine => prop_assert_eq!(facts.busy, DriverState::default()),
-            Action::GiveUp => prop_assert_eq!(facts.busy.tracing, Some(Tracing::Refinement)),
+            Action::CancelRefinement => prop_assert_eq!(facts.busy.tracing, Some(Tracing::Refinement)),
             Action::Wait(_) => {}
         }
     }

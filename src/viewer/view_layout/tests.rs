@@ -14,7 +14,7 @@ fn maps_go_round_and_the_right_one_alone_of_two() {
     let mut two = shown(Map::Lambert, Map::Shaded, Split::Beside);
     two.change_map(Map::next);
     assert_eq!(two, shown(Map::Lambert, Map::Depth, Split::Beside), "not what is on the left");
-    two.change_map(Map::back);
+    two.change_map(Map::previous);
     assert_eq!(two, shown(Map::Lambert, Map::Shaded, Split::Beside));
 }
 
