@@ -125,10 +125,10 @@ impl Mixes {
 
     /// Returns the numbers of the mixes that are a single palette colour, and its position in the
     /// palette.
-    pub(super) fn flat(&self) -> impl Iterator<Item = (usize, usize)> {
-        let flat =
+    pub(super) fn single_colors(&self) -> impl Iterator<Item = (usize, usize)> {
+        let single =
             |(number, mix): (usize, &Mix)| (mix.lighter_quarters == 0).then(|| (number, usize::from(mix.colors[0])));
-        self.sorted.iter().enumerate().filter_map(flat)
+        self.sorted.iter().enumerate().filter_map(single)
     }
 
     /// Returns the number of the mix with the least cost for a colour.

@@ -59,9 +59,9 @@ impl Palette {
     fn mix(&mut self, color: Srgb8) -> Mix {
         let Choices { mixes, chosen } = self.choices.get_or_insert_with(|| Choices::new(&self.colors));
         let levels = levels(color);
-        let number = &mut chosen[place(levels)];
+        let number = &mut chosen[choice_index(levels)];
         if *number == 0 {
-            *number = counted(mixes.best(color_of(levels)));
+            *number = one_based(mixes.best(color_of(levels)));
         }
         mixes.get(usize::from(*number) - 1)
     }
@@ -74,8 +74,8 @@ impl Choices {
     fn new(colors: &[Srgb8]) -> Self {
         let mixes = Mixes::new(colors);
         let mut chosen = vec![0; LEVELS.iter().product()];
-        for (number, position) in mixes.flat() {
-            chosen[place(levels(colors[position]))] = counted(number);
+        for (number, position) in mixes.single_colors() {
+            chosen[choice_index(levels(colors[position]))] = one_based(number);
         }
         Self { mixes, chosen }
     }
@@ -98,13 +98,13 @@ fn color_of(levels: [usize; 3]) -> Srgb8 {
     Srgb8::new(code(0), code(1), code(2))
 }
 
-/// Returns the place of the levels in the list of choices.
-fn place([r, g, b]: [usize; 3]) -> usize {
+/// Returns the index of the levels in the list of choices.
+fn choice_index([r, g, b]: [usize; 3]) -> usize {
     (r * LEVELS[1] + g) * LEVELS[2] + b
 }
 
 /// Returns the number of a mix, counted from 1.
-fn counted(number: usize) -> u16 {
+fn one_based(number: usize) -> u16 {
     1 + number as u16 // 256 colours have fewer than 5,000 mixes
 }
 
