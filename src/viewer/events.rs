@@ -6,7 +6,7 @@ use super::explain::ExplainPanel;
 use super::help::HelpPanel;
 use super::metadata::Metadata;
 use super::note::Note;
-use super::orders::Pace;
+use super::orders::BuildPace;
 use super::status::StatusLine;
 use super::warnings::Warnings;
 use super::{Request, Viewer, mouse_actions};
@@ -201,10 +201,10 @@ impl Viewer {
             Command::Wireframe => self.layout.toggle_wire(),
             Command::Outside => self.show_next_outside_view(),
             Command::Orders => self.toggle_orders(),
-            Command::BuildPause => self.change_pace(Pace::pause),
-            Command::BuildFaster => self.change_pace(Pace::faster),
-            Command::BuildSlower => self.change_pace(Pace::slower),
-            Command::BuildAgain => self.change_pace(Pace::restart),
+            Command::BuildPause => self.change_pace(BuildPace::pause),
+            Command::BuildFaster => self.change_pace(BuildPace::faster),
+            Command::BuildSlower => self.change_pace(BuildPace::slower),
+            Command::BuildAgain => self.change_pace(BuildPace::restart),
             Command::Axes => self.toggle_axes(),
             Command::Metadata => self.toggle_metadata(),
             // Keys of motion have been passed to the eye, and answers do nothing without an open question.

@@ -13,7 +13,7 @@ use crate::color::Srgb8;
 use crate::control::KeyMode;
 use crate::tone::Picture;
 use build::Build;
-pub(super) use pace::Pace;
+pub(super) use pace::BuildPace;
 use ratatui_core::layout::Rect;
 use ratatui_core::text::Line;
 use ratatui_core::widgets::Widget;
@@ -29,11 +29,11 @@ mod words;
 const EMPTY: Srgb8 = Srgb8::new(40, 42, 48);
 
 /// The colour of the pixel for which image order is looking for the visible object.
-const ASKED: Srgb8 = Srgb8::new(255, 208, 64);
+const CURRENT_PIXEL_COLOR: Srgb8 = Srgb8::new(255, 208, 64);
 
 /// The panel that compares image order with object order, and builds their pictures step by step.
 pub(super) struct OrdersPanel {
-    pace: Pace,
+    pace: BuildPace,
     /// The pictures of the shown frame as built so far; `None` until the frame is traced.
     build: Option<Build>,
 }
@@ -43,7 +43,7 @@ impl OrdersPanel {
     ///
     /// With `reduced_motion` the pictures are complete until the user builds them step by step.
     pub(super) fn new(reduced_motion: bool) -> Self {
-        Self { pace: Pace::new(reduced_motion), build: None }
+        Self { pace: BuildPace::new(reduced_motion), build: None }
     }
 
     /// Builds the pictures up to `now`. Returns whether they have changed, and the time of the next
@@ -75,7 +75,7 @@ impl OrdersPanel {
             let of_row = built.saturating_sub(y * left).min(left);
             row[of_row..left].fill(EMPTY);
             if y == built / left && of_row < left {
-                row[of_row] = ASKED;
+                row[of_row] = CURRENT_PIXEL_COLOR;
             }
             for (x, pixel) in row[start..].iter_mut().enumerate() {
                 *pixel = build.pixel(x as u32, y as u32, EMPTY, *pixel);
@@ -85,7 +85,7 @@ impl OrdersPanel {
     }
 
     /// Changes the pace, and draws the objects anew if the build starts again.
-    pub(super) fn change_pace(&mut self, change: fn(&mut Pace)) {
+    pub(super) fn change_pace(&mut self, change: fn(&mut BuildPace)) {
         let Some(build) = &mut self.build else { return };
         self.pace.set_total(build.comparison.total_tests());
         let before = self.pace.tests();
@@ -162,7 +162,7 @@ impl Viewer {
     }
 
     /// Changes the pace at which image order and object order build their pictures.
-    pub(super) fn change_pace(&mut self, change: fn(&mut Pace)) {
+    pub(super) fn change_pace(&mut self, change: fn(&mut BuildPace)) {
         if let Some(panel) = self.screen.get_mut::<OrdersPanel>() {
             panel.change_pace(change);
         }

@@ -17,7 +17,7 @@ const STEPS: u64 = 16;
 const POWERS: [i32; 2] = [-4, 6];
 
 /// The progress of a build in tests of a ray or pixel against an object.
-pub(in crate::viewer) struct Pace {
+pub(in crate::viewer) struct BuildPace {
     /// The tests carried out, at most `total`.
     // Not an integer, because a step of a small scene may carry out less than one test.
     tests: f64,
@@ -32,7 +32,7 @@ pub(in crate::viewer) struct Pace {
     since: Option<Duration>,
 }
 
-impl Pace {
+impl BuildPace {
     pub(super) fn new(by_steps: bool) -> Self {
         Self { tests: 0.0, total: u64::MAX, power: 0, is_paused: false, by_steps, since: None }
     }
@@ -56,7 +56,7 @@ impl Pace {
     }
 
     /// Returns the speed as a factor, such as `2x` or `1/2x`.
-    pub(super) fn speed(&self) -> String {
+    pub(super) fn factor_text(&self) -> String {
         let factor = 1_u32 << self.power.unsigned_abs();
         if self.power < 0 { format!("1/{factor}x") } else { format!("{factor}x") }
     }

@@ -71,7 +71,7 @@ fn both_pictures_are_built_up_to_that_of_the_frame() {
         // In image order all pixels before the current one are complete.
         let built: Vec<_> = rows().flat_map(|(row, last)| row[..20].iter().zip(&last[..20])).collect();
         let count = built.iter().take_while(|(pixel, last)| pixel == last).count();
-        assert!(count >= pixels && *built[count].0 == ASKED, "{count} after {pixels}");
+        assert!(count >= pixels && *built[count].0 == CURRENT_PIXEL_COLOR, "{count} after {pixels}");
         assert!(built[count + 1..].iter().all(|(pixel, _)| **pixel == EMPTY));
         pixels = count;
         let shown = rows().flat_map(|(row, _)| &row[21..]).filter(|pixel| **pixel != EMPTY).count();
@@ -112,18 +112,18 @@ fn keys_change_the_pace() {
     panel.advance(Duration::ZERO);
     assert!(panel.advance(seconds(2.0)).0);
     let after_two = panel.pace.tests();
-    panel.change_pace(Pace::pause);
+    panel.change_pace(BuildPace::pause);
     assert_eq!(panel.advance(seconds(3.0)), (false, None), "no timer while it pauses");
-    panel.change_pace(Pace::pause);
-    panel.change_pace(Pace::faster);
+    panel.change_pace(BuildPace::pause);
+    panel.change_pace(BuildPace::faster);
     panel.advance(seconds(4.0));
     panel.advance(seconds(5.0));
     assert!(panel.pace.tests().abs_diff(2 * after_two) <= 2, "a second at twice the speed");
-    panel.change_pace(Pace::restart);
+    panel.change_pace(BuildPace::restart);
     assert_eq!(panel.pace.tests(), 0);
-    assert_eq!(panel.pace.speed(), "2x");
-    (0..3).for_each(|_| panel.change_pace(Pace::slower));
-    assert_eq!(panel.pace.speed(), "1/4x");
+    assert_eq!(panel.pace.factor_text(), "2x");
+    (0..3).for_each(|_| panel.change_pace(BuildPace::slower));
+    assert_eq!(panel.pace.factor_text(), "1/4x");
 }
 
 /// With reduced motion the pictures are complete, and each press builds a step.
@@ -135,7 +135,7 @@ fn with_reduced_motion_nothing_moves_by_itself() {
     assert_eq!(panel.advance(Duration::ZERO), (false, None));
     assert!(panel.picture(&frame).is_none(), "complete");
     for press in 1..=16 {
-        panel.change_pace(Pace::pause);
+        panel.change_pace(BuildPace::pause);
         assert_eq!(panel.advance(seconds(f64::from(press))), (false, None));
         assert_eq!(panel.picture(&frame).is_none(), press == 16, "press {press}");
     }

@@ -1,6 +1,6 @@
 //! The text of the comparison of image order with object order: progress, tests and times.
 
-use super::pace::Pace;
+use super::pace::BuildPace;
 use crate::control::Command;
 use crate::rasterize::{Comparison, OrderTimes};
 use crate::viewer::help::key_names;
@@ -109,7 +109,7 @@ fn number(tests: u64) -> String {
 }
 
 /// Returns the row that names the keys of the comparison.
-pub(super) fn keys(canvas: &Canvas<'_>, pace: &Pace) -> String {
+pub(super) fn keys(canvas: &Canvas<'_>, pace: &BuildPace) -> String {
     let key = |commands: &[Command], does: &str| {
         key_names(canvas.keymap, canvas.modes, commands).map(|keys| format!("{keys} {does}"))
     };
@@ -118,7 +118,7 @@ pub(super) fn keys(canvas: &Canvas<'_>, pace: &Pace) -> String {
         (false, true) => "goes on",
         (false, false) => "pauses",
     };
-    let speed = format!("speed {}", pace.speed());
+    let speed = format!("speed {}", pace.factor_text());
     let mut parts: Vec<_> = [
         key(&[Command::BuildPause], pause),
         key(&[Command::BuildFaster, Command::BuildSlower], &speed).filter(|_| !pace.is_by_steps()),
