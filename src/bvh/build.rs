@@ -44,7 +44,7 @@ impl NodePosition {
 }
 
 /// Returns the binary tree over `items`, whose bounds are `bounds`.
-// Large halves are built in parallel. They can be joined unchanged, as a node stores the distance to its second child,
+// Large sides are built in parallel. They can be joined unchanged, as a node stores the distance to its second child,
 // not the child's index.
 fn build_subtree<E: Send>(
     items: &mut [Item],

@@ -212,7 +212,7 @@ impl Driver {
                 // The timeout of an incomplete escape sequence has passed.
                 Step::Wait(_) => self.receive(&[]),
                 Step::CancelRefinement => {
-                    assert!(self.job.take().is_some_and(|job| job.refines), "only a refinement is given up");
+                    assert!(self.job.take().is_some_and(|job| job.refines), "only a refinement is cancelled");
                 }
                 Step::Draw => {
                     assert!(!self.is_sending, "a frame is drawn that cannot be sent");
