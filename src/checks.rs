@@ -125,6 +125,12 @@ pub(crate) fn factor(value: f64) -> Result<f32, Message> {
     }
 }
 
+/// Checks an angle of a rotation in degrees.
+pub(crate) fn angle(degrees: f64) -> Result<f32, Message> {
+    const MAX_ANGLE: f64 = 36_000.0;
+    if degrees.abs() <= MAX_ANGLE { Ok(degrees as f32) } else { Err("an angle must lie within ±36000 degrees".into()) }
+}
+
 /// Checks an amount of light; `what` is its name for messages.
 pub(crate) fn amount(what: &str, value: f64) -> Result<f32, Message> {
     if value < 0.0 {

@@ -17,8 +17,8 @@ pub use path::{PathFile, WrittenKeyframe};
 use crate::light::WrittenLight;
 use crate::material::WrittenMaterial;
 use crate::progress::Reporter;
-use crate::scene_text::{Faults, SyntaxNode, Value};
-use crate::shape::WrittenShape;
+use crate::scene_text::{Faults, Span, SyntaxNode, Value};
+use crate::shape::{WrittenPlacement, WrittenShape};
 use crate::written::{Fields, NodeReader, Spanned, WrittenColor, WrittenNumber};
 
 /// A whole scene file.
@@ -100,6 +100,11 @@ pub enum MaterialUse {
 pub struct WrittenObject {
     /// The surface.
     pub shape: WrittenShape,
+    /// The range of the name of the surface in the text.
+    pub span: Span,
+    /// The placement, if the surface is scaled, rotated or moved.
+    // The box keeps objects without it small: a scene may have 300,000.
+    pub placement: Option<Box<WrittenPlacement>>,
     /// The material and its span. By default light grey, or for a mesh the colours of its file.
     pub material: Option<Spanned<MaterialUse>>,
 }

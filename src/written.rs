@@ -51,8 +51,7 @@ pub trait InSceneFile {
     /// The full form for messages: "Sphere(center: ..., radius: ...)".
     const FORM: &'static str;
 
-    /// The names of the fields. The last one of a surface is `material`, which belongs to the
-    /// object.
+    /// The names of the fields; those of objects are not among those of a surface.
     const FIELDS: &'static [&'static str];
 
     /// Reads the value from its fields.

@@ -13,7 +13,7 @@ use crate::material::{Material, WrittenMaterial};
 use crate::progress::Reporter;
 use crate::scene_file::{MaterialUse, NamedMaterial, SceneFile, WrittenBackground, WrittenObject, WrittenToneCurve};
 use crate::scene_text::{Faults, quoted};
-use crate::shape::{Meshes, without_coordinates};
+use crate::shape::{Meshes, Placement, Shape, without_coordinates};
 use crate::text::{closest, listed};
 use crate::written::{Spanned, Validator};
 use std::collections::HashMap;
@@ -79,8 +79,17 @@ impl Validator<'_> {
         }
         let object = |written: &WrittenObject| {
             let (shape, material) = (written.shape.check(self, meshes), self.material_of(written, file, &materials));
-            // The shape and the material have been checked by now, so that the faults of both are reported.
+            let placement = written.placement.as_ref().map(|placement| placement.check(self));
+            // All parts have been checked by now, so that the faults of each are reported.
             let (shape, material) = (shape?, material?);
+            let shape = match placement {
+                // The coordinates of a mesh are checked as it is placed.
+                None if !matches!(shape, Shape::Mesh(_)) => shape,
+                placement => {
+                    let placed = shape.placed(&placement.unwrap_or(Some(Placement::NONE))?);
+                    self.accept(written.span, placed.map_err(|fault| fault.message().to_owned().into()))?
+                }
+            };
             Some(Object { shape, material })
         };
         file.objects.iter().take_while(|_| !reporter.is_cancelled()).filter_map(object).collect()

@@ -3,7 +3,7 @@
 use super::{MaterialUse, NamedMaterial, WrittenObject};
 use crate::material::WrittenMaterial;
 use crate::scene_text::{Body, SyntaxNode, Value, quoted};
-use crate::shape::WrittenShape;
+use crate::shape::{WrittenPlacement, WrittenShape};
 use crate::written::{NodeReader, Spanned, description, values};
 use std::collections::HashSet;
 
@@ -17,7 +17,9 @@ impl NodeReader<'_> {
         const FORM: &str = "an object, such as Sphere(center: ..., radius: ...)";
         let name = self.group_name(node, "an object", FORM, WrittenShape::NAMES)?;
         let (shape, fields) = WrittenShape::read(name, self, node)?;
-        Some(WrittenObject { shape, material: self.optional(&fields, "material", NodeReader::material_use) })
+        let placement = WrittenPlacement::read(self, &fields).map(Box::new);
+        let material = self.optional(&fields, "material", NodeReader::material_use);
+        Some(WrittenObject { shape, span: node.head(), placement, material })
     }
 
     fn material_use(&mut self, node: &SyntaxNode<'_>) -> Option<Spanned<MaterialUse>> {

@@ -1,9 +1,8 @@
 //! Capsules: cylinders with round ends.
 
 use super::described::length_in_words;
-use super::exact::{self, Crossings, Exact, Inside, rounded_outward};
+use super::exact::{self, Crossings, Exact, Frame, Inside};
 use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
-use crate::bounds::Bounds;
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Axis, Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
@@ -15,14 +14,12 @@ use glam::{DVec3, Vec3};
 pub struct Capsule {
     axis: Axis,
     radius: f64,
-    bounds: Bounds,
+    frame: Frame,
 }
 
 impl Capsule {
     fn new(axis: Axis, radius: f64) -> Self {
-        let [from, to] = axis.ends().map(|end| axis.middle + end);
-        let bounds = rounded_outward(from.min(to) - radius, from.max(to) + radius);
-        Self { axis, radius, bounds }
+        exact::framed(Self { axis, radius, frame: Frame::NONE })
     }
 
     /// Returns the vector to a point from the nearest point of the segment.
@@ -33,12 +30,20 @@ impl Capsule {
 }
 
 impl Exact for Capsule {
-    fn bounding_box(&self) -> &Bounds {
-        &self.bounds
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
     }
 
     fn center(&self) -> DVec3 {
         self.axis.middle
+    }
+
+    fn reach(&self, direction: DVec3) -> f64 {
+        self.axis.half_length * direction.dot(self.axis.direction).abs() + self.radius * direction.length()
     }
 
     /// Joins the parts of the line in the cylinder and in the balls at both ends.
@@ -61,7 +66,7 @@ impl Described for Capsule {
 
     fn described(&self, color: &str) -> String {
         let [radius, length] = [self.radius, 2.0 * (self.axis.half_length + self.radius)].map(length_in_words);
-        format!("a {color} capsule of radius {radius} and length {length}")
+        format!("a {color} capsule of radius {radius} and length {length}") + &self.frame.scale_in_words()
     }
 
     /// States the equation, whose parts are those of a cylinder and of two spheres.
@@ -76,7 +81,7 @@ impl Described for Capsule {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        self.outward(point.as_dvec3() - self.axis.middle).length() < self.radius
+        self.outward(self.frame.point(point) - self.axis.middle).length() < self.radius
     }
 }
 
@@ -93,7 +98,7 @@ impl InSceneFile for Capsule {
     const NAME: &'static str = "Capsule";
     const OWNER: &'static str = "a Capsule";
     const FORM: &'static str = "Capsule(from: ..., to: ..., radius: ...)";
-    const FIELDS: &'static [&'static str] = &["from", "to", "radius", "material"];
+    const FIELDS: &'static [&'static str] = &["from", "to", "radius"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenCapsule {
         WrittenCapsule {

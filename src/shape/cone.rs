@@ -2,9 +2,8 @@
 
 use super::cylinder::{CAPS, SIDE};
 use super::described::length_in_words;
-use super::exact::{self, Crossings, Exact, Inside};
+use super::exact::{self, Crossings, Exact, Frame, Inside};
 use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
-use crate::bounds::Bounds;
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Axis, Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
@@ -21,7 +20,7 @@ pub struct Cone {
     radii: [f64; 2],
     /// Whether the cone has no caps.
     open: bool,
-    bounds: Bounds,
+    frame: Frame,
 }
 
 /// The coefficients of A t^2 + 2 B t + C, which is negative inside the infinite double cone.
@@ -33,8 +32,7 @@ struct Quadratic {
 
 impl Cone {
     fn new(axis: Axis, radii: [f64; 2], open: bool) -> Self {
-        let bounds = axis.bounds_of_circles(radii);
-        Self { axis, radii, open, bounds }
+        exact::framed(Self { axis, radii, open, frame: Frame::NONE })
     }
 
     /// Returns the growth of the radius per unit of length along the axis.
@@ -88,12 +86,20 @@ impl Cone {
 }
 
 impl Exact for Cone {
-    fn bounding_box(&self) -> &Bounds {
-        &self.bounds
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
     }
 
     fn center(&self) -> DVec3 {
         self.axis.middle
+    }
+
+    fn reach(&self, direction: DVec3) -> f64 {
+        self.axis.reach_of_circles(self.radii, direction)
     }
 
     fn crossings(&self, line: &Line) -> Crossings {
@@ -124,13 +130,14 @@ impl Described for Cone {
         let open = if self.open { "open " } else { "" };
         let radius =
             if self.radii[1] == 0.0 { format!("of radius {wide}") } else { format!("of radii {wide} to {narrow}") };
-        format!("a {color} {open}cone {radius} and length {length}")
+        format!("a {color} {open}cone {radius} and length {length}") + &self.frame.scale_in_words()
     }
 
     /// Solves A t^2 + 2 B t + C = 0 for the infinite double cone, with x relative to the end
     /// `from`.
     fn equation(&self, ray: &Ray) -> Equation {
-        let Quadratic { a, half_b, c } = self.quadratic(&self.axis.line_from_start(ray), self.radii[0]);
+        let Quadratic { a, half_b, c } =
+            self.quadratic(&self.axis.relative_to_start(self.frame.line(ray)), self.radii[0]);
         let steps = vec![
             Step::Text("|x|^2 - h^2 - (r + k h)^2 = 0"),
             Step::Text("x = o + t d - from, h = x.a"),
@@ -145,7 +152,7 @@ impl Described for Cone {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let from_middle = point.as_dvec3() - self.axis.middle;
+        let from_middle = self.frame.point(point) - self.axis.middle;
         let along = from_middle.dot(self.axis.direction);
         let radius = 0.5 * (self.radii[0] + self.radii[1]) + self.slope() * along;
         !self.open && along.abs() < self.axis.half_length && self.axis.across(from_middle).length() < radius
@@ -168,7 +175,7 @@ impl InSceneFile for Cone {
     const NAME: &'static str = "Cone";
     const OWNER: &'static str = "a Cone";
     const FORM: &'static str = "Cone(from: ..., to: ..., radius: ...)";
-    const FIELDS: &'static [&'static str] = &["from", "to", "radius", "to_radius", "open", "material"];
+    const FIELDS: &'static [&'static str] = &["from", "to", "radius", "to_radius", "open"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenCone {
         WrittenCone {

@@ -2,6 +2,7 @@
 //!
 //! It shows that a new surface takes one file and one line in the table `surfaces`.
 
+use super::placement::{Place, Placement};
 use super::{CheckedShape, Described, Equation, Meshes, Points, Shape, Step, Surface, SurfacePoint};
 use crate::bounds::{Bounds, crossed};
 use crate::lanes::Vector;
@@ -95,7 +96,7 @@ impl InSceneFile for Cube {
     const NAME: &'static str = "Cube";
     const OWNER: &'static str = "a Cube";
     const FORM: &'static str = "Cube(center: ..., side: ...)";
-    const FIELDS: &'static [&'static str] = &["center", "side", "material"];
+    const FIELDS: &'static [&'static str] = &["center", "side"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenCube {
         WrittenCube {
@@ -110,5 +111,13 @@ impl CheckedShape for Cube {
         let center = written.center.and_then(|center| validator.point(center));
         let side = written.side.map_or(Some(1.0), |side| validator.length("side", side));
         Some(Self::new(center?, 0.5 * side?).into())
+    }
+}
+
+impl Place for Cube {
+    /// Maps the centre; a cube cannot be rotated, or scaled differently along the axes.
+    fn placed(self, placement: &Placement) -> Option<Shape> {
+        let scale = placement.uniform_scale()? as f32;
+        Some(Self::new(placement.map().point(self.center.as_dvec3()).as_vec3(), self.half_side * scale).into())
     }
 }

@@ -1,9 +1,8 @@
 //! Boxes whose faces are perpendicular to the axes.
 
 use super::described::size_in_words;
-use super::exact::{self, Crossings, Exact, Inside, rounded_outward};
+use super::exact::{self, Crossings, Exact, Frame, Inside};
 use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
-use crate::bounds::Bounds;
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::scene_text::Span;
@@ -16,12 +15,12 @@ use glam::{DVec3, Vec3};
 pub struct Cuboid {
     min: DVec3,
     max: DVec3,
-    bounds: Bounds,
+    frame: Frame,
 }
 
 impl Cuboid {
     fn new(min: DVec3, max: DVec3) -> Self {
-        Self { min, max, bounds: rounded_outward(min, max) }
+        exact::framed(Self { min, max, frame: Frame::NONE })
     }
 
     /// Returns the part of a line between the planes of the two faces that are perpendicular to an
@@ -34,12 +33,20 @@ impl Cuboid {
 }
 
 impl Exact for Cuboid {
-    fn bounding_box(&self) -> &Bounds {
-        &self.bounds
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
     }
 
     fn center(&self) -> DVec3 {
         (self.min + self.max) * 0.5
+    }
+
+    fn reach(&self, direction: DVec3) -> f64 {
+        ((self.max - self.min) * 0.5).dot(direction.abs())
     }
 
     fn crossings(&self, line: &Line) -> Crossings {
@@ -69,14 +76,14 @@ impl Described for Cuboid {
     const KIND: &'static str = "box";
 
     fn described(&self, color: &str) -> String {
-        format!("a {color} box, {}", size_in_words(&self.bounds))
+        format!("a {color} box, {}", size_in_words(self.frame.bounds()))
     }
 
     /// Solves o + t d = min and o + t d = max for each axis.
     ///
     /// The line is inside the box from the last of the three entries to the first of the three exits.
     fn equation(&self, ray: &Ray) -> Equation {
-        let line = Line { origin: ray.origin.as_dvec3(), direction: ray.direction.as_dvec3() };
+        let line = self.frame.line(ray);
         let mut steps = vec![Step::Text("o + t d = min and max, each axis")];
         for (axis, name) in ["x: t in ", "y: t in ", "z: t in "].into_iter().enumerate() {
             let Inside { enters, leaves } = self.slab(axis, &line, DVec3::ZERO);
@@ -87,7 +94,7 @@ impl Described for Cuboid {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let point = point.as_dvec3();
+        let point = self.frame.point(point);
         point.cmpgt(self.min).all() && point.cmplt(self.max).all()
     }
 }
@@ -118,7 +125,7 @@ impl InSceneFile for Cuboid {
     const NAME: &'static str = "Box";
     const OWNER: &'static str = "a Box";
     const FORM: &'static str = "Box(min: ..., max: ...)";
-    const FIELDS: &'static [&'static str] = &["min", "max", "material"];
+    const FIELDS: &'static [&'static str] = &["min", "max"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenBox {
         let min = reader.required(fields, "min", NodeReader::point);

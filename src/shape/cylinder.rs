@@ -1,9 +1,8 @@
 //! Cylinders, with caps or open.
 
 use super::described::length_in_words;
-use super::exact::{self, Crossings, Exact, Inside, extent_of_circle, rounded_outward};
+use super::exact::{self, Crossings, Exact, Frame, Inside, reach_of_circle};
 use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
-use crate::bounds::Bounds;
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Axis, Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
@@ -23,22 +22,20 @@ pub struct Cylinder {
     radius: f64,
     /// Whether the cylinder has no caps.
     open: bool,
-    bounds: Bounds,
+    frame: Frame,
 }
 
 impl Cylinder {
     fn new(axis: Axis, radius: f64, open: bool) -> Self {
-        let bounds = axis.bounds_of_circles([radius; 2]);
-        Self { axis, radius, open, bounds }
+        exact::framed(Self { axis, radius, open, frame: Frame::NONE })
     }
 }
 
 impl Axis {
-    /// Returns the smallest box around two circles about the ends of the axis, with these radii.
-    pub(super) fn bounds_of_circles(&self, radii: [f64; 2]) -> Bounds {
-        let [from, to] = self.ends().map(|end| self.middle + end);
-        let [wide, narrow] = radii.map(|radius| extent_of_circle(self.direction) * radius);
-        rounded_outward((from - wide).min(to - narrow), (from + wide).max(to + narrow))
+    /// Returns the largest dot product of a vector and a point of the circles about both ends.
+    pub(super) fn reach_of_circles(&self, radii: [f64; 2], direction: DVec3) -> f64 {
+        let (along, circle) = (direction.dot(self.direction), reach_of_circle(self.direction, direction));
+        (radii[0] * circle - along * self.half_length).max(radii[1] * circle + along * self.half_length)
     }
 
     /// Returns the part of a line between the planes of both ends.
@@ -57,20 +54,27 @@ impl Axis {
         if part == CAPS[0] { -self.direction } else { self.direction }
     }
 
-    /// Returns the line of a ray, in coordinates relative to the end `from`.
-    pub(super) fn line_from_start(&self, ray: &Ray) -> Line {
-        let start = self.middle + self.ends()[0];
-        Line { origin: ray.origin.as_dvec3() - start, direction: ray.direction.as_dvec3() }
+    /// Returns a line relative to the end `from`.
+    pub(super) fn relative_to_start(&self, line: Line) -> Line {
+        Line { origin: line.origin - (self.middle + self.ends()[0]), ..line }
     }
 }
 
 impl Exact for Cylinder {
-    fn bounding_box(&self) -> &Bounds {
-        &self.bounds
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
     }
 
     fn center(&self) -> DVec3 {
         self.axis.middle
+    }
+
+    fn reach(&self, direction: DVec3) -> f64 {
+        self.axis.reach_of_circles([self.radius; 2], direction)
     }
 
     fn crossings(&self, line: &Line) -> Crossings {
@@ -90,11 +94,12 @@ impl Described for Cylinder {
     fn described(&self, color: &str) -> String {
         let [radius, length] = [self.radius, 2.0 * self.axis.half_length].map(length_in_words);
         format!("a {color} {}cylinder of radius {radius} and length {length}", if self.open { "open " } else { "" })
+            + &self.frame.scale_in_words()
     }
 
     /// Solves A t^2 + 2 B t + C = 0 for the infinite cylinder, with x relative to the end `from`.
     fn equation(&self, ray: &Ray) -> Equation {
-        let line = self.axis.line_from_start(ray);
+        let line = self.axis.relative_to_start(self.frame.line(ray));
         let [o, d] = [line.origin, line.direction].map(|vector| self.axis.across(vector));
         let steps = vec![
             Step::Text("|x|^2 - (x.a)^2 - r^2 = 0"),
@@ -109,7 +114,7 @@ impl Described for Cylinder {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let from_middle = point.as_dvec3() - self.axis.middle;
+        let from_middle = self.frame.point(point) - self.axis.middle;
         let is_between = from_middle.dot(self.axis.direction).abs() < self.axis.half_length;
         !self.open && is_between && self.axis.across(from_middle).length() < self.radius
     }
@@ -129,7 +134,7 @@ impl InSceneFile for Cylinder {
     const NAME: &'static str = "Cylinder";
     const OWNER: &'static str = "a Cylinder";
     const FORM: &'static str = "Cylinder(from: ..., to: ..., radius: ...)";
-    const FIELDS: &'static [&'static str] = &["from", "to", "radius", "open", "material"];
+    const FIELDS: &'static [&'static str] = &["from", "to", "radius", "open"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenCylinder {
         WrittenCylinder {

@@ -1,6 +1,7 @@
 //! Surfaces in the text of descriptions and explanations.
 
-use super::{Equation, Mesh, Primitive, Shape, Surface, surfaces};
+use super::placement::Place;
+use super::{Equation, Mesh, Primitive, Shape, Step, Surface, surfaces};
 use crate::bounds::Bounds;
 use crate::ray::Ray;
 use crate::text::number;
@@ -80,10 +81,14 @@ macro_rules! described {
         impl Primitive<'_> {
             /// Returns the equation of the lecture whose roots are the crossings of the ray.
             pub fn equation(&self, ray: &Ray) -> Equation {
-                match self {
-                    $($(#[$on])* Self::$surface(surface) => surface.equation(ray),)*
-                    Self::Facet(facet) => facet.triangle().equation(ray),
+                let (mut equation, has_map) = match self {
+                    $($(#[$on])* Self::$surface(surface) => (surface.equation(ray), surface.has_map()),)*
+                    Self::Facet(facet) => (facet.triangle().equation(ray), false),
+                };
+                if has_map {
+                    equation.steps.insert(0, Step::Text("o, d in coordinates of the shape:"));
                 }
+                equation
             }
 
             /// Returns the centre and radius if the outline is a circle from every direction, as a

@@ -1,10 +1,9 @@
 //! Disks: the part of a plane within a circle.
 
 use super::described::length_in_words;
-use super::exact::{Crossing, Crossings, Exact, extent_of_circle, rounded_outward};
+use super::exact::{self, Crossing, Crossings, Exact, Frame, reach_of_circle};
 use super::plane::{self, pattern_axis};
 use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
-use crate::bounds::Bounds;
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
@@ -19,25 +18,32 @@ pub struct Disk {
     radius: f64,
     /// Unit vectors in the plane of the disk, along which patterns are measured.
     axes: [Vec3; 2],
-    bounds: Bounds,
+    frame: Frame,
 }
 
 impl Disk {
     fn new(center: DVec3, normal: DVec3, radius: f64) -> Self {
-        let extent = extent_of_circle(normal) * radius;
         let u = pattern_axis(normal.as_vec3());
         let axes = [u, u.cross(normal.as_vec3())];
-        Self { center, normal, radius, axes, bounds: rounded_outward(center - extent, center + extent) }
+        exact::framed(Self { center, normal, radius, axes, frame: Frame::NONE })
     }
 }
 
 impl Exact for Disk {
-    fn bounding_box(&self) -> &Bounds {
-        &self.bounds
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
     }
 
     fn center(&self) -> DVec3 {
         self.center
+    }
+
+    fn reach(&self, direction: DVec3) -> f64 {
+        self.radius * reach_of_circle(self.normal, direction)
     }
 
     /// Returns the crossing, if any. A ray in the plane of the disk has none: it would see only the
@@ -69,14 +75,15 @@ impl Described for Disk {
     const KIND: &'static str = "disk";
 
     fn described(&self, color: &str) -> String {
-        format!("a {color} disk of radius {}", length_in_words(self.radius))
+        format!("a {color} disk of radius {}", length_in_words(self.radius)) + &self.frame.scale_in_words()
     }
 
     /// Solves t = (c - o).n / d.n for the plane of the disk.
     fn equation(&self, ray: &Ray) -> Equation {
-        let mut equation = plane::equation(ray, self.center, self.normal);
+        let line = self.frame.line(ray);
+        let mut equation = plane::equation(&line, self.center, self.normal);
         if let Some(&t) = equation.roots.first() {
-            let from_center = (ray.origin.as_dvec3() + ray.direction.as_dvec3() * t).distance(self.center);
+            let from_center = (line.origin + line.direction * t).distance(self.center);
             equation.steps.push(Step::Value("|o + t d - a|", from_center));
             equation.is_outside = from_center > self.radius;
         }
@@ -98,7 +105,7 @@ impl InSceneFile for Disk {
     const NAME: &'static str = "Disk";
     const OWNER: &'static str = "a Disk";
     const FORM: &'static str = "Disk(center: ..., normal: ..., radius: ...)";
-    const FIELDS: &'static [&'static str] = &["center", "normal", "radius", "material"];
+    const FIELDS: &'static [&'static str] = &["center", "normal", "radius"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenDisk {
         WrittenDisk {

@@ -1,9 +1,8 @@
 //! Ellipsoids whose axes are parallel to the coordinate axes.
 
 use super::described::size_in_words;
-use super::exact::{self, Crossings, Exact, Inside, rounded_outward};
+use super::exact::{self, Crossings, Exact, Frame, Inside};
 use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
-use crate::bounds::Bounds;
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
@@ -15,16 +14,31 @@ use glam::{DVec3, Vec3};
 pub struct Ellipsoid {
     center: DVec3,
     radii: DVec3,
-    bounds: Bounds,
+    frame: Frame,
+}
+
+impl Ellipsoid {
+    /// Returns the ellipsoid about `center`.
+    pub(super) fn new(center: DVec3, radii: DVec3) -> Self {
+        exact::framed(Self { center, radii, frame: Frame::NONE })
+    }
 }
 
 impl Exact for Ellipsoid {
-    fn bounding_box(&self) -> &Bounds {
-        &self.bounds
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
     }
 
     fn center(&self) -> DVec3 {
         self.center
+    }
+
+    fn reach(&self, direction: DVec3) -> f64 {
+        (self.radii * direction).length()
     }
 
     /// Divides the line by the radii, and intersects it with the unit ball.
@@ -41,14 +55,14 @@ impl Described for Ellipsoid {
     const KIND: &'static str = "ellipsoid";
 
     fn described(&self, color: &str) -> String {
-        format!("a {color} ellipsoid, {}", size_in_words(&self.bounds))
+        format!("a {color} ellipsoid, {}", size_in_words(self.frame.bounds()))
     }
 
     /// Solves A t^2 + 2 B t + C = 0, as for a sphere of radius 1, for the line divided by the
     /// radii.
     fn equation(&self, ray: &Ray) -> Equation {
-        let d = ray.direction.as_dvec3() / self.radii;
-        let from_center = (ray.origin.as_dvec3() - self.center) / self.radii;
+        let Line { origin, direction } = self.frame.line(ray);
+        let (d, from_center) = (direction / self.radii, (origin - self.center) / self.radii);
         let steps = vec![
             Step::Text("|(o + t d - c) / r|^2 - 1 = 0"),
             Step::Text("e = d / r, f = (o - c) / r"),
@@ -61,7 +75,7 @@ impl Described for Ellipsoid {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        ((point.as_dvec3() - self.center) / self.radii).length() < 1.0
+        ((self.frame.point(point) - self.center) / self.radii).length() < 1.0
     }
 }
 
@@ -78,7 +92,7 @@ impl InSceneFile for Ellipsoid {
     const NAME: &'static str = "Ellipsoid";
     const OWNER: &'static str = "an Ellipsoid";
     const FORM: &'static str = "Ellipsoid(center: ..., radii: (..., ..., ...))";
-    const FIELDS: &'static [&'static str] = &["center", "radii", "material"];
+    const FIELDS: &'static [&'static str] = &["center", "radii"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenEllipsoid {
         WrittenEllipsoid {
@@ -95,6 +109,6 @@ impl CheckedShape for Ellipsoid {
         let radii = written.radii?.map(|radius| validator.length("radius", radius));
         let (center, [Some(x), Some(y), Some(z)]) = (center?, radii) else { return None };
         let radii = Vec3::new(x, y, z).as_dvec3();
-        Some(Self { center, radii, bounds: rounded_outward(center - radii, center + radii) }.into())
+        Some(Self::new(center, radii).into())
     }
 }

@@ -5,13 +5,16 @@
 //! the code only once. For a ray that grazes the surface, or passes through an edge between two of its parts, all
 //! kernels decide by the same computation whether it hits. The price is speed: surfaces are tested one by one.
 
+use super::described::length_in_words;
 use super::equation::{Equation, Step};
-use super::{Points, Surface, SurfacePoint, flat_footprint};
+use super::placement::{AffineMap, Place, Placement, shape_line};
+use super::{Points, Shape, Surface, SurfacePoint, flat_footprint};
 use crate::bounds::Bounds;
 use crate::formula::Line;
 use crate::lanes::{Number, Vector};
 use crate::ray::{Interval, Probe, Ray, nearest_in};
 use glam::{DVec3, Vec3};
+use std::sync::Arc;
 
 /// The largest number of crossings of a line and a surface: a torus has up to four.
 const MAX_CROSSINGS: usize = 4;
@@ -25,13 +28,22 @@ const RELATIVE_ERROR: f32 = 1e-6;
 
 /// A bounded surface whose crossings with a line follow from a formula in f64.
 ///
-/// Lines and points are relative to the [centre](Self::center).
+/// Lines and points are in the coordinates of the shape, before it is scaled, rotated and moved, and relative to the
+/// [centre](Self::center).
 pub(crate) trait Exact {
-    /// Returns the smallest box around the surface.
-    fn bounding_box(&self) -> &Bounds;
+    /// Returns the bounds and the placement of the surface.
+    fn frame(&self) -> &Frame;
+
+    /// Returns the bounds and the placement of the surface, to be changed.
+    fn frame_mut(&mut self) -> &mut Frame;
 
     /// Returns the middle of the surface.
     fn center(&self) -> DVec3;
+
+    /// Returns the largest dot product of a vector and a point of the surface.
+    ///
+    /// The bounds follow from it.
+    fn reach(&self, direction: DVec3) -> f64;
 
     /// Returns the crossings of a line whose origin is its point nearest to the centre.
     fn crossings(&self, line: &Line) -> Crossings;
@@ -47,6 +59,68 @@ pub(crate) trait Exact {
     /// Returns the axes u and v of patterns at points with a given normal; `None` without patterns.
     fn pattern_axes(&self, _normal: Vec3) -> Option<[Vec3; 2]> {
         None
+    }
+}
+
+/// The bounds of a surface in the scene, and its map to the scene if it is placed.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Frame {
+    bounds: Bounds,
+    map: Option<Arc<AffineMap>>,
+}
+
+impl Frame {
+    /// The frame of a surface before [`framed`].
+    pub(super) const NONE: Self = Self { bounds: Bounds { min: Vec3::ZERO, max: Vec3::ZERO }, map: None };
+
+    /// Returns the bounds in the scene.
+    pub(super) fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    /// Returns the line of a ray in the coordinates of the shape.
+    #[inline]
+    pub(super) fn line(&self, ray: &Ray) -> Line {
+        shape_line(self.map.as_deref(), ray)
+    }
+
+    /// Returns a point of the scene in the coordinates of the shape.
+    pub(super) fn point(&self, point: Vec3) -> DVec3 {
+        self.shape_point(point.as_dvec3())
+    }
+
+    #[inline]
+    fn shape_point(&self, point: DVec3) -> DVec3 {
+        self.map.as_ref().map_or(point, |map| map.shape_point(point))
+    }
+
+    /// Returns the factors by which the shape is scaled, to be added to its description.
+    pub(super) fn scale_in_words(&self) -> String {
+        match self.map.as_ref().map(|map| map.factors().map(length_in_words)) {
+            Some([x, y, z]) if x != y || y != z => format!(", scaled by {x}, {y} and {z}"),
+            Some([x, ..]) if x != "1" => format!(", scaled by {x}"),
+            _ => String::new(),
+        }
+    }
+}
+
+/// Returns a surface with its bounds, where the author has put it.
+pub(super) fn framed<S: Exact>(mut surface: S) -> S {
+    let map = surface.frame().map.clone();
+    let bounds = AffineMap::bounds(map.as_deref(), surface.center(), |direction| surface.reach(direction));
+    *surface.frame_mut() = Frame { bounds, map };
+    surface
+}
+
+impl<S: Exact + Into<Shape>> Place for S {
+    fn placed(mut self, placement: &Placement) -> Option<Shape> {
+        let (old, new) = (self.frame().map.as_deref(), placement.map());
+        self.frame_mut().map = Some(Arc::new(old.map_or(new, |old| old.then(&new))));
+        Some(framed(self).into())
+    }
+
+    fn has_map(&self) -> bool {
+        self.frame().map.is_some()
     }
 }
 
@@ -174,12 +248,20 @@ impl Inside {
 
 /// Returns the crossings of a surface and the line of a ray.
 fn crossings<S: Exact>(surface: &S, ray: &Ray) -> Crossings {
-    let (direction, from_center) = (ray.direction.as_dvec3(), ray.origin.as_dvec3() - surface.center());
+    let Line { origin, direction } = surface.frame().line(ray);
+    let from_center = origin - surface.center();
     // With the line's origin at its point nearest to the centre, all its numbers are about as large as the surface.
     let nearest = -from_center.dot(direction) / direction.dot(direction);
     let mut crossings = surface.crossings(&Line { origin: from_center + direction * nearest, direction });
     crossings.found.iter_mut().for_each(|crossing| crossing.t += nearest);
     crossings
+}
+
+/// Returns the axes of patterns, for dot products with vectors of the scene.
+fn pattern_axes_in_scene<S: Exact>(surface: &S, normal: Vec3) -> Option<[Vec3; 2]> {
+    let Some(map) = &surface.frame().map else { return surface.pattern_axes(normal) };
+    let axes = surface.pattern_axes(map.shape_normal(normal.as_dvec3()).as_vec3());
+    axes.map(|axes| axes.map(|axis| map.normal(axis.as_dvec3()).as_vec3()))
 }
 
 /// Returns the equation with the steps `steps` and the crossings of a ray's line as its roots.
@@ -192,27 +274,18 @@ pub(super) fn equation<S: Exact>(surface: &S, ray: &Ray, mut steps: Vec<Step>) -
     Equation { steps, roots, without_root: "miss", is_outside: false }
 }
 
-/// Returns the smallest box with f32 coordinates around a box in f64.
-pub(super) fn rounded_outward(min: DVec3, max: DVec3) -> Bounds {
-    let down = |exact: f64| if f64::from(exact as f32) > exact { (exact as f32).next_down() } else { exact as f32 };
-    let [x, y, z] = min.to_array().map(down);
-    let [far_x, far_y, far_z] = max.to_array().map(|exact| -down(-exact));
-    Bounds { min: Vec3::new(x, y, z), max: Vec3::new(far_x, far_y, far_z) }
-}
-
-/// Returns half the extent, along each axis, of a circle of radius 1 perpendicular to a unit
-/// vector.
-pub(super) fn extent_of_circle(DVec3 { x, y, z }: DVec3) -> DVec3 {
-    DVec3::new((y * y + z * z).sqrt(), (z * z + x * x).sqrt(), (x * x + y * y).sqrt())
+/// Returns the largest dot product of a vector and a point of a circle of radius 1 about an axis.
+pub(super) fn reach_of_circle(axis: DVec3, direction: DVec3) -> f64 {
+    (direction - axis * direction.dot(axis)).length()
 }
 
 impl<S: Exact> Surface for S {
     fn bounds(&self) -> Option<Bounds> {
-        Some(*self.bounding_box())
+        Some(*self.frame().bounds())
     }
 
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let Interval { min, max } = self.bounding_box().crossed(probe);
+        let Interval { min, max } = self.frame().bounds().crossed(probe);
         if !(min <= max && within.min <= max && min <= within.max) {
             return None;
         }
@@ -227,17 +300,19 @@ impl<S: Exact> Surface for S {
         let Crossing { t, part } = nearest.unwrap_or(Crossing { t: f64::from(t), part: 0 });
         let direction = ray.direction.as_dvec3();
         let position = ray.origin.as_dvec3() + direction * t;
-        let normal = self.normal(part, position - self.center());
+        let at = self.frame().shape_point(position);
+        let shape_normal = self.normal(part, at - self.center());
+        let normal = self.frame().map.as_ref().map_or(shape_normal, |map| map.normal(shape_normal));
         let length = normal.dot(normal).sqrt();
         // The tip of a pointed torus has no normal.
         let normal = if length > 0.0 { normal / length } else { -direction / direction.dot(direction).sqrt() };
         let normal = normal.as_vec3();
-        let uv = self.pattern_axes(normal).map(|axes| {
-            let from_origin = position - self.pattern_origin();
+        let uv = self.pattern_axes(shape_normal.normalize_or_zero().as_vec3()).map(|axes| {
+            let from_origin = at - self.pattern_origin();
             axes.map(|axis| from_origin.dot(axis.as_dvec3()) as f32)
         });
         let position = position.as_vec3();
-        let size = position.abs().max_element().max(RELATIVE_ERROR * self.bounding_box().extent().max_element());
+        let size = position.abs().max_element().max(RELATIVE_ERROR * self.frame().bounds().extent().max_element());
         let rays = Probe::new(*ray).rays;
         Points::seen_by(&rays, Vector::splat(position), Vector::splat(normal), size, uv.unwrap_or_default()).point()
     }
@@ -254,7 +329,7 @@ impl<S: Exact> Surface for S {
         let (Vector { x: dx, y: dy, z: dz }, Vector { x, y, z }) = (direction, normal());
         N::map_lanes([dx, dy, dz, t, x, y, z], |[dx, dy, dz, t, x, y, z]| {
             let (direction, normal) = (Vector { x: dx, y: dy, z: dz }, Vector { x, y, z });
-            let axes = self.pattern_axes(normal.into());
+            let axes = pattern_axes_in_scene(self, normal.into());
             axes.map_or([0.0; 2], |axes| flat_footprint(direction, t, normal, axes.map(Vector::splat), direction_steps))
         })
     }

@@ -2,6 +2,7 @@
 
 use super::cuboid::WrittenBox;
 use super::described::size_in_words;
+use super::placement::{AffineMap, Place, Placement, shape_line};
 use super::{CheckedShape, Cuboid, Described, Equation, Meshes, Points, Shape, Step, Surface, SurfacePoint};
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
@@ -26,14 +27,19 @@ const MAX_SHOWN: usize = 48;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Implicit(Arc<Definition>);
 
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 struct Definition {
     formula: Formula,
     /// The reflectances of red, green and blue, if the surface has its own colours.
     colors: Option<[Formula; 3]>,
     /// The formula as written, on one line.
     text: String,
+    /// The bounds, in the coordinates of the formula.
     bounds: Bounds,
+    /// The map to the scene, if the surface is scaled, rotated or moved.
+    map: Option<AffineMap>,
+    /// The bounds in the scene.
+    bounds_in_scene: Bounds,
     /// The ball that cuts the surface, if the bounds are not a box.
     ball: Option<Ball>,
     /// The reason why nothing of the surface is visible, if that is certain.
@@ -50,7 +56,8 @@ impl Implicit {
     fn new(text: &str, formula: Formula, colors: Option<[Formula; 3]>, bounds: Bounds, ball: Option<Ball>) -> Self {
         let warning = formula.lack_of_surface(bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let text = visible(&text.split_whitespace().collect::<Vec<_>>().join(" "));
-        Self(Arc::new(Definition { formula, colors, text, bounds, ball, warning }))
+        let (map, bounds_in_scene) = (None, bounds);
+        Self(Arc::new(Definition { formula, colors, text, bounds, map, bounds_in_scene, ball, warning }))
     }
 
     /// Returns whether the surface or its colours depend on the time.
@@ -63,15 +70,10 @@ impl Implicit {
         if !self.moves() {
             return self.clone();
         }
-        let Definition { formula, colors, text, bounds, ball, warning } = &*self.0;
-        Self(Arc::new(Definition {
-            formula: formula.at_time(seconds),
-            colors: colors.as_ref().map(|colors| colors.each_ref().map(|color| color.at_time(seconds))),
-            text: text.clone(),
-            bounds: *bounds,
-            ball: *ball,
-            warning: *warning,
-        }))
+        let mut definition = Definition::clone(&self.0);
+        definition.formula = definition.formula.at_time(seconds);
+        definition.colors = definition.colors.map(|colors| colors.map(|color| color.at_time(seconds)));
+        Self(Arc::new(definition))
     }
 
     /// Returns the reflectance at a point of the surface, if it has its own colours.
@@ -79,7 +81,7 @@ impl Implicit {
     /// Values are clamped to 0 to 1; undefined values (NaN) count as 0.
     pub(super) fn own_reflectance(&self, position: Vec3) -> Option<LinearRgb> {
         let [r, g, b] = self.0.colors.as_ref()?.each_ref().map(|color| {
-            let value = color.value(position.as_dvec3());
+            let value = color.value(self.point(position));
             if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) as f32 }
         });
         Some(LinearRgb::new(r, g, b))
@@ -90,15 +92,18 @@ impl Implicit {
         self.0.warning
     }
 
-    /// Returns the part of a ray's line that is within the bounds; it is empty if `min > max`.
-    fn within_bounds(&self, probe: &Probe) -> Interval {
-        self.within_ball(&probe.ray, self.0.bounds.crossed(probe))
-    }
-
-    /// Returns the part of the interval `of_box` that is within the ball, if the bounds are a ball.
-    fn within_ball(&self, ray: &Ray, of_box: Interval) -> Interval {
+    /// Returns the part of an interval in which a line is within the bounds; empty if `min > max`.
+    ///
+    /// `of_box` is the part within the bounds in the scene.
+    fn within_bounds(&self, line: &Line, of_box: Interval) -> Interval {
+        let of_box = if self.0.map.is_some() {
+            let inside = line_in_box(line, &self.0.bounds);
+            Interval { min: of_box.min.max(inside.min), max: of_box.max.min(inside.max) }
+        } else {
+            of_box
+        };
         let Some(Ball { center, radius }) = self.0.ball else { return of_box };
-        let (d, from_center) = (ray.direction.as_dvec3(), ray.origin.as_dvec3() - center);
+        let (d, from_center) = (line.direction, line.origin - center);
         let (squared, half_b) = (d.dot(d), from_center.dot(d));
         let nearest = from_center - d * (half_b / squared);
         // The root is NaN for a line that misses the ball.
@@ -110,6 +115,16 @@ impl Implicit {
             return Interval { min: f32::INFINITY, max: f32::NEG_INFINITY };
         }
         Interval { min: of_box.min.max(enters), max: of_box.max.min(leaves) }
+    }
+
+    /// Returns the line of a ray, in which f is evaluated and its roots are enclosed.
+    fn line_of_ray(&self, ray: &Ray) -> Line {
+        shape_line(self.0.map.as_ref(), ray)
+    }
+
+    /// Returns a point of the scene in the coordinates of the formula.
+    fn point(&self, point: Vec3) -> DVec3 {
+        self.0.map.as_ref().map_or(point.as_dvec3(), |map| map.shape_point(point.as_dvec3()))
     }
 
     /// Returns the formula as an equation on one line, shortened if it is long.
@@ -130,18 +145,19 @@ impl Implicit {
     }
 }
 
-/// Returns the ray in f64, in which f is evaluated and its roots are enclosed.
-fn line_of_ray(ray: &Ray) -> Line {
-    Line { origin: ray.origin.as_dvec3(), direction: ray.direction.as_dvec3() }
+/// Returns the part of a line in a box; it is empty if `min > max`.
+fn line_in_box(line: &Line, bounds: &Bounds) -> Interval {
+    let ray = Ray { origin: line.origin.as_vec3(), direction: line.direction.as_vec3() };
+    bounds.crossed(&Probe::new(ray))
 }
 
 impl Surface for Implicit {
     fn bounds(&self) -> Option<Bounds> {
-        Some(self.0.bounds)
+        Some(self.0.bounds_in_scene)
     }
 
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let (inside, splat) = (self.0.bounds.crossed(probe), |number| F32x8([number; LANES]));
+        let (inside, splat) = (self.0.bounds_in_scene.crossed(probe), |number| F32x8([number; LANES]));
         let (inside, within) = ([inside.min, inside.max].map(splat), [within.min, within.max].map(splat));
         let (crosses, t) = self.closest_crossings(&EightRays::of(&[probe.ray]), &inside, &within);
         (crosses != 0).then_some(t.0[0])
@@ -154,11 +170,11 @@ impl Surface for Implicit {
         let mut searches = Searches::NONE;
         for lane in set_bits(rays.active) {
             let [of_box, within] = [inside, within].map(|[min, max]| Interval { min: min.0[lane], max: max.0[lane] });
-            let ray = rays.ray(lane);
-            let inside = self.within_ball(&ray, of_box);
+            let line = self.line_of_ray(&rays.ray(lane));
+            let inside = self.within_bounds(&line, of_box);
             let start = inside.min.max(within.min);
             if start <= within.max {
-                searches.add(lane, &line_of_ray(&ray), [start, inside.max], within.max);
+                searches.add(lane, &line, [start, inside.max], within.max);
             }
         }
         if searches.is_empty() {
@@ -176,7 +192,7 @@ impl Surface for Implicit {
     /// Where the gradient is zero or undefined, as at the tip of a cone, the normal is taken from a point a little in
     /// front. If that has none either, the normal is opposite to the ray.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        let Line { origin, direction } = line_of_ray(ray);
+        let Line { origin, direction } = self.line_of_ray(ray);
         let at = origin + direction * f64::from(t);
         let (value, gradient) = self.0.formula.gradient(at);
         let step = gradient * (value / gradient.dot(gradient));
@@ -188,6 +204,14 @@ impl Surface for Implicit {
         let normal = Self::normal(gradient)
             .or_else(|| Self::normal(self.0.formula.gradient(at - in_front).1))
             .unwrap_or(-direction / direction.length());
+        let (position, normal, size) = match &self.0.map {
+            None => (position, normal, size),
+            Some(map) => {
+                let (position, normal) = (map.point(position), map.normal(normal));
+                let extent = f64::from(self.0.bounds_in_scene.extent().max_element());
+                (position, normal / normal.length(), position.abs().max_element().max(extent))
+            }
+        };
         let [position, normal] = [position, normal].map(|vector| Vector::splat(vector.as_vec3()));
         Points::seen_by(&Probe::new(*ray).rays, position, normal, size as f32, [0.0; 2]).point()
     }
@@ -198,13 +222,17 @@ impl Described for Implicit {
 
     fn described(&self, color: &str) -> String {
         let zero = if self.0.text.contains('=') { "" } else { " = 0" };
-        format!("a {color} implicit surface, {}{zero}, {}", self.equation_text(), size_in_words(&self.0.bounds))
+        format!(
+            "a {color} implicit surface, {}{zero}, {}",
+            self.equation_text(),
+            size_in_words(&self.0.bounds_in_scene)
+        )
     }
 
     /// Finds the first roots of f(o + t d) within the bounds, in front of the eye.
     fn equation(&self, ray: &Ray) -> Equation {
-        let (probe, line) = (Probe::new(*ray), line_of_ray(ray));
-        let Interval { min, max } = self.within_bounds(&probe);
+        let line = self.line_of_ray(ray);
+        let Interval { min, max } = self.within_bounds(&line, self.0.bounds_in_scene.crossed(&Probe::new(*ray)));
         let (solver, mut roots, mut from) = (Solver::new(&self.0.formula), Vec::new(), min.max(0.0));
         while roots.len() < MAX_ROOTS
             && let Some(root) = solver.first_root(&line, [from, max], max)
@@ -222,8 +250,8 @@ impl Described for Implicit {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let (Definition { formula, bounds, ball, .. }, at) = (&*self.0, point.as_dvec3());
-        let in_box = point.cmpge(bounds.min).all() && point.cmple(bounds.max).all();
+        let (Definition { formula, bounds, ball, .. }, at) = (&*self.0, self.point(point));
+        let in_box = at.cmpge(bounds.min.as_dvec3()).all() && at.cmple(bounds.max.as_dvec3()).all();
         in_box && ball.is_none_or(|ball| ball.center.distance(at) < ball.radius) && formula.value(at) < 0.0
     }
 }
@@ -250,7 +278,7 @@ impl InSceneFile for Implicit {
     const NAME: &'static str = "Implicit";
     const OWNER: &'static str = "an Implicit";
     const FORM: &'static str = "Implicit(f: \"...\", bounds: Box(min: ..., max: ...))";
-    const FIELDS: &'static [&'static str] = &["f", "bounds", "params", "color", "material"];
+    const FIELDS: &'static [&'static str] = &["f", "bounds", "params", "color"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenImplicit {
         WrittenImplicit {
@@ -337,6 +365,25 @@ impl CheckedShape for Implicit {
             None => None,
         };
         Some(Self::new(&text.value, formula, colors, bounds, ball).into())
+    }
+}
+
+impl Place for Implicit {
+    fn placed(self, placement: &Placement) -> Option<Shape> {
+        let (mut definition, new) = (Arc::unwrap_or_clone(self.0), placement.map());
+        let map = definition.map.map_or(new, |old| old.then(&new));
+        let Bounds { min, max } = definition.bounds;
+        let [middle, half] = [(max.as_dvec3() + min.as_dvec3()) * 0.5, (max.as_dvec3() - min.as_dvec3()) * 0.5];
+        definition.bounds_in_scene = AffineMap::bounds(Some(&map), middle, |direction| match definition.ball {
+            Some(Ball { radius, .. }) => radius * direction.length(),
+            None => half.dot(direction.abs()),
+        });
+        definition.map = Some(map);
+        Some(Self(Arc::new(definition)).into())
+    }
+
+    fn has_map(&self) -> bool {
+        self.0.map.is_some()
     }
 }
 

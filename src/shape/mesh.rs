@@ -1,5 +1,6 @@
 //! A mesh: triangles that share their corners.
 
+use super::placement::{Place, Placement};
 use super::{CheckedShape, Meshes, Shape, Surface, SurfacePoint, Triangle};
 use crate::bounds::Bounds;
 use crate::checks::{self, SceneFault};
@@ -7,9 +8,8 @@ use crate::color::LinearRgb;
 use crate::mesh_file::{MAX_TRIANGLES, MeshFile};
 use crate::progress::Unfinished;
 use crate::ray::{Interval, Probe, Ray};
-use crate::scene_text::{SyntaxNode, Value};
-use crate::written::{Fields, InSceneFile, NodeReader, Spanned, Validator, WrittenVector};
-use glam::{DMat3, DVec3, Mat3, Vec2, Vec3};
+use crate::written::{Fields, InSceneFile, NodeReader, Spanned, Validator};
+use glam::{Vec2, Vec3};
 use std::fmt;
 use std::ops::{Add, Mul};
 
@@ -189,17 +189,11 @@ fn interpolate<T: Add<Output = T> + Mul<f32, Output = T>>([a, b, c]: [T; 3], sha
     a * (1.0 - shares.x - shares.y) + b * shares.x + c * shares.y
 }
 
-/// A mesh as written: `Mesh(path: ..., scale: ..., rotate: ..., translate: ...)`.
+/// A mesh as written: `Mesh(path: ...)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrittenMesh {
     /// The path of the mesh's file, relative to the scene's file.
     pub path: Option<Spanned<String>>,
-    /// The scale along each axis; 1 if none is given.
-    pub scale: Option<WrittenVector>,
-    /// The rotation about x, then y, then z, in degrees.
-    pub rotate: Option<WrittenVector>,
-    /// The translation, after scale and rotation.
-    pub translate: Option<WrittenVector>,
 }
 
 impl InSceneFile for Mesh {
@@ -208,15 +202,11 @@ impl InSceneFile for Mesh {
     const NAME: &'static str = "Mesh";
     const OWNER: &'static str = "a Mesh";
     const FORM: &'static str = "Mesh(path: \"...\")";
-    const FIELDS: &'static [&'static str] = &["path", "scale", "rotate", "translate", "material"];
+    const FIELDS: &'static [&'static str] = &["path"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenMesh {
-        WrittenMesh {
-            path: reader.required(fields, "path", read_path),
-            scale: reader.optional(fields, "scale", read_scale),
-            rotate: reader.optional(fields, "rotate", read_angles),
-            translate: reader.optional(fields, "translate", NodeReader::point),
-        }
+        let path = reader.required(fields, "path", |reader, node| reader.text(node, "the path of a mesh in quotes"));
+        WrittenMesh { path }
     }
 }
 
@@ -225,93 +215,21 @@ impl CheckedShape for Mesh {
         true
     }
 
+    /// Returns the mesh of the file, whose coordinates are checked when it is placed.
     fn check(written: &WrittenMesh, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
-        // Checked before the mesh file is read, so that faults of both are reported at once.
-        let placed = checked_placement(validator, written);
         let path = written.path.as_ref()?;
-        let mesh = match meshes.mesh(&path.value) {
-            Ok(mesh) => mesh,
-            Err(Unfinished::Cancelled) => return None,
-            Err(Unfinished::Failed(message)) => return validator.fault(path.span, || message),
-        };
-        let (scale, turn, translation) = placed?;
-        match mesh.transformed(scale, turn, translation) {
-            Some(mesh) if checks::are_near(mesh.positions()) => Some(Self { file: mesh }.into()),
-            _ => validator.fault(path.span, || checks::MESH_TOO_FAR.to_owned()),
+        match meshes.mesh(&path.value) {
+            Ok(file) => Some(Self { file }.into()),
+            Err(Unfinished::Cancelled) => None,
+            Err(Unfinished::Failed(message)) => validator.fault(path.span, || message),
         }
     }
 }
 
-fn read_path(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Spanned<String>> {
-    reader.text(node, "the path of a mesh in quotes")
-}
-
-/// Reads the scale: one factor for all axes, or three.
-fn read_scale(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenVector> {
-    if matches!(node.value, Value::Number(_)) {
-        let number = reader.number(node)?;
-        return Some(WrittenVector { components: [number; 3], span: node.span });
-    }
-    let components = reader.numbers(node, "a factor, or one for each axis (x, y, z)")?;
-    Some(WrittenVector { components, span: node.span })
-}
-
-fn read_angles(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenVector> {
-    let components = reader.numbers(node, "angles in degrees about the axes (x, y, z)")?;
-    Some(WrittenVector { components, span: node.span })
-}
-
-/// Checks the scale, the rotation and the translation of a mesh, and returns them in this order.
-fn checked_placement(
-    validator: &mut Validator<'_>,
-    &WrittenMesh { scale, rotate, translate, .. }: &WrittenMesh,
-) -> Option<(Vec3, Mat3, Vec3)> {
-    let scale = match scale {
-        Some(scale) => checked_factors(validator, scale),
-        None => Some(Vec3::ONE),
-    };
-    let turn = match rotate {
-        Some(angles) => checked_rotation(validator, angles),
-        None => Some(Mat3::IDENTITY),
-    };
-    let translation = match translate {
-        Some(translation) => validator.point(translation),
-        None => Some(Vec3::ZERO),
-    };
-    Some((scale?, turn?, translation?))
-}
-
-/// Checks the factors of a scale, which may be negative, to mirror the mesh, but not 0.
-fn checked_factors(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Vec3> {
-    for factor in written.components {
-        validator.accept(factor.span, checks::factor(factor.value))?;
-    }
-    Some(DVec3::from_array(written.components.map(|factor| factor.value)).as_vec3())
-}
-
-/// Checks the angles, and returns the rotation about x, then y, then z: counterclockwise seen from
-/// the axis's end.
-fn checked_rotation(validator: &mut Validator<'_>, written: WrittenVector) -> Option<Mat3> {
-    const MAX_ANGLE: f64 = 36_000.0;
-    if let Some(angle) = written.components.iter().find(|angle| angle.value.abs() > MAX_ANGLE) {
-        return validator.fault(angle.span, || "an angle must lie within ±36000 degrees".to_owned());
-    }
-    let [x, y, z] = written.components.map(|angle| cosine_and_sine(angle.value));
-    let about_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, x.0, x.1), DVec3::new(0.0, -x.1, x.0));
-    let about_y = DMat3::from_cols(DVec3::new(y.0, 0.0, -y.1), DVec3::Y, DVec3::new(y.1, 0.0, y.0));
-    let about_z = DMat3::from_cols(DVec3::new(z.0, z.1, 0.0), DVec3::new(-z.1, z.0, 0.0), DVec3::Z);
-    Some((about_z * about_y * about_x).as_mat3())
-}
-
-/// Returns cosine and sine of an angle in degrees; exact for quarter turns.
-fn cosine_and_sine(degrees: f64) -> (f64, f64) {
-    // The angle is reduced to a quarter turn before the conversion to radians, as multiples of 90 are exact in degrees.
-    let quarters = libm::round(degrees / 90.0);
-    let (sine, cosine) = libm::sincos((degrees - 90.0 * quarters).to_radians());
-    match (quarters as i64).rem_euclid(4) {
-        0 => (cosine, sine),
-        1 => (-sine, cosine),
-        2 => (-cosine, -sine),
-        _ => (sine, -cosine),
+impl Place for Mesh {
+    fn placed(self, placement: &Placement) -> Option<Shape> {
+        let Placement { scale, turn, translation } = placement;
+        let file = self.file.transformed(scale.as_vec3(), turn.as_mat3(), translation.as_vec3())?;
+        Some(Self { file }.into())
     }
 }

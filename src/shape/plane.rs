@@ -1,12 +1,14 @@
 //! Ray-plane intersection (lecture, "Ray intersection").
 
 use super::equation::finite_quotient;
+use super::placement::{Place, Placement};
 use super::{
     AtCrossing, CheckedShape, Crossable, Described, Endless, Equation, Meshes, Points, Shape, Step, Surface,
     SurfacePoint, flat_footprint,
 };
 use crate::bounds::Bounds;
 use crate::checks::{self, SceneFault};
+use crate::formula::Line;
 use crate::lanes::{Lanes, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
@@ -27,8 +29,9 @@ use glam::{DVec3, Vec3};
 pub struct Plane {
     point: Vec3,
     normal: Vec3,
-    /// The axis u of patterns on the plane; u, `normal` and v form a right-handed orthonormal
-    /// basis.
+    /// The axes u and v of patterns, whose dot products with an offset are its coordinates.
+    ///
+    /// Unless the plane was scaled, u, normal and v are a right-handed orthonormal basis.
     u: Vec3,
     v: Vec3,
 }
@@ -156,13 +159,13 @@ impl Described for Plane {
     }
 
     fn equation(&self, ray: &Ray) -> Equation {
-        equation(ray, self.point.as_dvec3(), self.normal.as_dvec3())
+        let line = Line { origin: ray.origin.as_dvec3(), direction: ray.direction.as_dvec3() };
+        equation(&line, self.point.as_dvec3(), self.normal.as_dvec3())
     }
 }
 
 /// Solves t = (a - o).n / d.n, for a point a of a plane and its normal n.
-pub(super) fn equation(ray: &Ray, a: DVec3, n: DVec3) -> Equation {
-    let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+pub(super) fn equation(&Line { origin: o, direction: d }: &Line, a: DVec3, n: DVec3) -> Equation {
     let (above, below) = ((a - o).dot(n), d.dot(n));
     let t = finite_quotient(above, below);
     let steps = vec![
@@ -189,7 +192,7 @@ impl InSceneFile for Plane {
     const NAME: &'static str = "Plane";
     const OWNER: &'static str = "a Plane";
     const FORM: &'static str = "Plane(point: ..., normal: ...)";
-    const FIELDS: &'static [&'static str] = &["point", "normal", "material"];
+    const FIELDS: &'static [&'static str] = &["point", "normal"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenPlane {
         WrittenPlane {
@@ -206,6 +209,15 @@ impl CheckedShape for Plane {
         let point = written.point.and_then(|point| validator.point(point));
         let normal = written.normal.and_then(|normal| validator.unit_vector("normal", normal));
         Some(Self::unchecked(point?, normal?.as_vec3()).into())
+    }
+}
+
+impl Place for Plane {
+    fn placed(self, placement: &Placement) -> Option<Shape> {
+        let (map, point) = (placement.map(), self.point.as_dvec3());
+        let [normal, u, v] = [self.normal, self.u, self.v].map(|vector| map.normal(vector.as_dvec3()));
+        let [normal, u, v] = [normal.normalize(), u, v].map(DVec3::as_vec3);
+        Some(Self { point: map.point(point).as_vec3(), normal, u, v }.into())
     }
 }
 

@@ -1,9 +1,8 @@
 //! Quads: rectangles and other parallelograms.
 
 use super::described::length_in_words;
-use super::exact::{Crossing, Crossings, Exact, rounded_outward};
+use super::exact::{self, Crossing, Crossings, Exact, Frame};
 use super::{CheckedShape, Described, Equation, Meshes, Shape, Step, plane};
-use crate::bounds::Bounds;
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::scene_text::Span;
@@ -29,7 +28,7 @@ pub struct Quad {
     normal: DVec3,
     /// The vectors whose dot products with the offset of a point from the corner are its s and t.
     shares: [DVec3; 2],
-    bounds: Bounds,
+    frame: Frame,
 }
 
 impl Quad {
@@ -37,19 +36,25 @@ impl Quad {
         let [a, b] = edges;
         let normal = a.cross(b);
         let shares = [b.cross(normal), normal.cross(a)].map(|across| across / normal.dot(normal));
-        let corners = [corner, corner + a, corner + b, corner + a + b];
-        let [min, max] = [DVec3::min, DVec3::max].map(|outer| corners.into_iter().fold(corner, outer));
-        Self { corner, edges, normal, shares, bounds: rounded_outward(min, max) }
+        exact::framed(Self { corner, edges, normal, shares, frame: Frame::NONE })
     }
 }
 
 impl Exact for Quad {
-    fn bounding_box(&self) -> &Bounds {
-        &self.bounds
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
     }
 
     fn center(&self) -> DVec3 {
         self.corner + (self.edges[0] + self.edges[1]) * 0.5
+    }
+
+    fn reach(&self, direction: DVec3) -> f64 {
+        0.5 * self.edges.iter().map(|edge| edge.dot(direction).abs()).sum::<f64>()
     }
 
     fn crossings(&self, Line { origin, direction }: &Line) -> Crossings {
@@ -82,14 +87,15 @@ impl Described for Quad {
 
     fn described(&self, color: &str) -> String {
         let [a, b] = self.edges.map(|edge| length_in_words(edge.length()));
-        format!("a {color} quad with edges of {a} and {b}")
+        format!("a {color} quad with edges of {a} and {b}") + &self.frame.scale_in_words()
     }
 
     /// Solves t = (a - o).n / d.n for the plane of the quad.
     fn equation(&self, ray: &Ray) -> Equation {
-        let mut equation = plane::equation(ray, self.corner, self.normal.normalize());
+        let line = self.frame.line(ray);
+        let mut equation = plane::equation(&line, self.corner, self.normal.normalize());
         if let Some(&t) = equation.roots.first() {
-            let from_corner = ray.origin.as_dvec3() + ray.direction.as_dvec3() * t - self.corner;
+            let from_corner = line.origin + line.direction * t - self.corner;
             let shares = self.shares.map(|share| share.dot(from_corner));
             equation.is_outside = shares.iter().any(|share| !(0.0..=1.0).contains(share));
             equation.steps.push(Step::Values("edges at ", " ", shares.to_vec()));
@@ -111,7 +117,7 @@ impl InSceneFile for Quad {
     const NAME: &'static str = "Quad";
     const OWNER: &'static str = "a Quad";
     const FORM: &'static str = "Quad(corner: ..., edges: [..., ...])";
-    const FIELDS: &'static [&'static str] = &["corner", "edges", "material"];
+    const FIELDS: &'static [&'static str] = &["corner", "edges"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenQuad {
         WrittenQuad {

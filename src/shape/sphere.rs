@@ -1,7 +1,8 @@
 //! Ray-sphere intersection (lecture, "Ray intersection").
 
+use super::placement::{Place, Placement};
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SoaLeaf, Step, Surface,
+    AtCrossing, CheckedShape, Crossable, Described, Ellipsoid, Equation, Meshes, Points, Shape, SoaLeaf, Step, Surface,
     SurfacePoint,
 };
 use crate::bounds::{Bounds, crossed};
@@ -10,7 +11,7 @@ use crate::lanes::{F32x8, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays, nearest_in};
 use crate::text::number;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
 /// The distance from a ray's origin to the center, in radii, from which on a Newton step refines
@@ -256,7 +257,7 @@ impl InSceneFile for Sphere {
     const NAME: &'static str = "Sphere";
     const OWNER: &'static str = "a Sphere";
     const FORM: &'static str = "Sphere(center: ..., radius: ...)";
-    const FIELDS: &'static [&'static str] = &["center", "radius", "material"];
+    const FIELDS: &'static [&'static str] = &["center", "radius"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenSphere {
         WrittenSphere {
@@ -271,6 +272,17 @@ impl CheckedShape for Sphere {
         let center = written.center.and_then(|center| validator.point(center));
         let radius = written.radius.and_then(|radius| validator.length("radius", radius));
         Some(Self { center: center?, radius: radius? }.into())
+    }
+}
+
+impl Place for Sphere {
+    /// Maps the sphere to a sphere, or to an ellipsoid if its factors differ.
+    fn placed(self, placement: &Placement) -> Option<Shape> {
+        let (center, radius) = (self.center.as_dvec3(), f64::from(self.radius));
+        let Some(scale) = placement.uniform_scale() else {
+            return Ellipsoid::new(center, DVec3::splat(radius)).placed(placement);
+        };
+        Some(Self { center: placement.map().point(center).as_vec3(), radius: (radius * scale) as f32 }.into())
     }
 }
 

@@ -1,9 +1,8 @@
 //! Tori: rings.
 
 use super::described::length_in_words;
-use super::exact::{self, Crossing, Crossings, Exact, extent_of_circle, rounded_outward};
+use super::exact::{self, Crossing, Crossings, Exact, Frame, reach_of_circle};
 use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
-use crate::bounds::Bounds;
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
@@ -26,14 +25,12 @@ pub struct Torus {
     axis: DVec3,
     radius: f64,
     tube_radius: f64,
-    bounds: Bounds,
+    frame: Frame,
 }
 
 impl Torus {
     fn new(center: DVec3, axis: DVec3, [radius, tube_radius]: [f64; 2]) -> Self {
-        let extent = extent_of_circle(axis) * radius + tube_radius;
-        let bounds = rounded_outward(center - extent, center + extent);
-        Self { center, axis, radius, tube_radius, bounds }
+        exact::framed(Self { center, axis, radius, tube_radius, frame: Frame::NONE })
     }
 
     /// Returns the height of a point over the plane of the ring, and its distance from the axis.
@@ -63,12 +60,20 @@ impl Torus {
 }
 
 impl Exact for Torus {
-    fn bounding_box(&self) -> &Bounds {
-        &self.bounds
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
     }
 
     fn center(&self) -> DVec3 {
         self.center
+    }
+
+    fn reach(&self, direction: DVec3) -> f64 {
+        self.radius * reach_of_circle(self.axis, direction) + self.tube_radius * direction.length()
     }
 
     fn crossings(&self, line: &Line) -> Crossings {
@@ -104,14 +109,15 @@ impl Described for Torus {
 
     fn described(&self, color: &str) -> String {
         let [radius, tube] = [self.radius, self.tube_radius].map(length_in_words);
-        format!("a {color} torus of radius {radius} with a tube of radius {tube}")
+        format!("a {color} torus of radius {radius} with a tube of radius {tube}") + &self.frame.scale_in_words()
     }
 
     /// Solves s^4 + P s^2 + Q s + C = 0.
     ///
     /// s is the distance along the line from its point closest to the centre.
     fn equation(&self, ray: &Ray) -> Equation {
-        let (o, d) = (ray.origin.as_dvec3() - self.center, ray.direction.as_dvec3());
+        let Line { origin, direction: d } = self.frame.line(ray);
+        let o = origin - self.center;
         let nearest = -o.dot(d) / d.dot(d);
         let Quartic { squares, linear, constant, .. } = self.quartic(&Line { origin: o + d * nearest, direction: d });
         let steps = vec![
@@ -128,7 +134,7 @@ impl Described for Torus {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let (height, distance) = self.height_and_distance(point.as_dvec3() - self.center);
+        let (height, distance) = self.height_and_distance(self.frame.point(point) - self.center);
         let from_ring = distance - self.radius;
         from_ring * from_ring + height * height < self.tube_radius * self.tube_radius
     }
@@ -149,7 +155,7 @@ impl InSceneFile for Torus {
     const NAME: &'static str = "Torus";
     const OWNER: &'static str = "a Torus";
     const FORM: &'static str = "Torus(center: ..., axis: ..., radius: ..., tube_radius: ...)";
-    const FIELDS: &'static [&'static str] = &["center", "axis", "radius", "tube_radius", "material"];
+    const FIELDS: &'static [&'static str] = &["center", "axis", "radius", "tube_radius"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenTorus {
         WrittenTorus {

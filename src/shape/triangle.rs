@@ -4,6 +4,7 @@
 
 use super::described::size_in_words;
 use super::equation::finite_quotient;
+use super::placement::{Place, Placement};
 use super::{
     AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SoaLeaf, Step, Surface,
     SurfacePoint,
@@ -432,7 +433,7 @@ impl InSceneFile for Triangle {
     const NAME: &'static str = "Triangle";
     const OWNER: &'static str = "a Triangle";
     const FORM: &'static str = "Triangle(corners: [(x, y, z), (x, y, z), (x, y, z)])";
-    const FIELDS: &'static [&'static str] = &["corners", "material"];
+    const FIELDS: &'static [&'static str] = &["corners"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenTriangle {
         WrittenTriangle { corners: reader.required(fields, "corners", read_corners) }
@@ -446,6 +447,16 @@ impl CheckedShape for Triangle {
         let whole = Span { start: all[0].span.start, end: all[2].span.end };
         let corners = validator.accept(whole, checks::corners([a?, b?, c?]))?;
         Some(Self { corners }.into())
+    }
+}
+
+impl Place for Triangle {
+    /// Maps the corners, in the opposite order if mirrored, so that the front stays in front.
+    fn placed(self, placement: &Placement) -> Option<Shape> {
+        let (map, is_mirrored) = (placement.map(), placement.scale.element_product() < 0.0);
+        let [a, b, c] = self.corners.map(|corner| map.point(corner.as_dvec3()).as_vec3());
+        let corners = checks::corners(if is_mirrored { [a, c, b] } else { [a, b, c] });
+        Some(Self { corners: corners.ok()? }.into())
     }
 }
 

@@ -1,11 +1,13 @@
 //! The surfaces and meshes of scene files, before they are checked.
 
+use super::placement::{Place, Placement, WrittenPlacement};
 use super::{Shape, surfaces};
 use crate::mesh_file::MeshFile;
 use crate::progress::Unfinished;
 use crate::scene_text::SyntaxNode;
 use crate::text;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator};
+use std::sync::Arc;
 
 /// A surface in a scene file, and its check.
 pub trait CheckedShape: InSceneFile {
@@ -28,6 +30,22 @@ pub trait Meshes {
     /// # Errors
     /// The message for the user, or a cancellation.
     fn mesh(&mut self, path: &str) -> Result<MeshFile, Unfinished<String>>;
+}
+
+/// The fields of all objects, whatever their shape.
+const OF_OBJECTS: [&str; 4] = {
+    let [scale, rotate, translate] = WrittenPlacement::FIELDS;
+    [scale, rotate, translate, "material"]
+};
+
+/// Returns the fields of a shape, followed by those of all objects.
+const fn with_those_of_objects<const ALL: usize>(own: &[&'static str]) -> [&'static str; ALL] {
+    let (mut all, mut at) = ([""; ALL], 0);
+    while at < ALL {
+        all[at] = if at < own.len() { own[at] } else { OF_OBJECTS[at - own.len()] };
+        at += 1;
+    }
+    all
 }
 
 /// Defines [`WrittenShape`] from the table of surfaces.
@@ -58,7 +76,9 @@ macro_rules! written {
             ) -> Option<(Self, Fields<'n>)> {
                 $($(#[$on])* if name == super::$surface::NAME {
                     use super::$surface as Surface;
-                    let fields = reader.fields(node, Surface::OWNER, Surface::FORM, Surface::FIELDS)?;
+                    const COUNT: usize = Surface::FIELDS.len() + OF_OBJECTS.len();
+                    const FIELDS: [&str; COUNT] = with_those_of_objects(Surface::FIELDS);
+                    let fields = reader.fields(node, Surface::OWNER, Surface::FORM, &FIELDS)?;
                     return Some((Self::$surface(Surface::read(reader, &fields)), fields));
                 })*
                 None
@@ -112,6 +132,14 @@ macro_rules! of_kind {
                 match self {
                     $($(#[$on])* Self::$surface(_) => super::$surface::OWNER,)*
                     Self::Mesh(_) => super::Mesh::OWNER,
+                }
+            }
+
+            /// Returns the shape placed anywhere, also where no ray can be traced to it.
+            pub(super) fn placed_anywhere(self, placement: &Placement) -> Option<Self> {
+                match self {
+                    $($(#[$on])* Self::$surface(surface) => surface.placed(placement),)*
+                    Self::Mesh(mesh) => Arc::unwrap_or_clone(mesh).placed(placement),
                 }
             }
 
