@@ -11,7 +11,7 @@
 
 use super::moves::{CellPosition, cheapest_move};
 use super::numbering::Numbering;
-use super::pen::Pen;
+use super::pen::{Pen, rgb_len};
 use super::strokes::cursor_after;
 use crate::grid::{Attributes, Grid, HalfBlocks, PackedCell, PackedInk};
 use std::ops::Range;
@@ -29,8 +29,7 @@ pub(super) struct Scratch {
     positions: Vec<CellPosition>,
     pairs: Vec<Pair>,
     colors: Vec<Color>,
-    pairs_by_color: Vec<usize>,
-    tried: Vec<usize>,
+    pairs_by_color: Vec<u32>,
 }
 
 /// Lists the changed cells in the order of writing: text row by row, then the picture's tour.
@@ -51,9 +50,12 @@ pub(super) fn order(
     }
     let last = order.last().copied();
     let pen = last.map_or(pen, |position| pen.pen_for(wanted.packed_cell(position.column, position.row)));
-    let mut tour = Tour::new(wanted, half_blocks, pen, scratch);
+    scratch.list_pairs(wanted, half_blocks);
+    scratch.list_positions();
+    scratch.list_pairs_by_color();
+    let mut tour = Tour::new(half_blocks, pen, scratch);
     tour.cursor = last.and_then(|position| cursor_after(wanted, position));
-    tour.visit_all(order);
+    tour.visit_all(wanted, order);
 }
 
 /// Returns the glyph and background colours of a picture cell, equal for a space; `None` for text.
@@ -70,23 +72,23 @@ fn picture_inks(cell: PackedCell) -> Option<(PackedInk, PackedInk)> {
 
 /// A pair of colours, and all cells that have it.
 struct Pair {
-    fg: PackedInk,
-    bg: PackedInk,
+    /// The indices in `Tour::colors` of the glyph's and the background's colour; both are equal
+    /// for spaces.
+    colors: [u32; 2],
+    /// The first of the pair's cells.
+    first: CellPosition,
     /// The range of the pair's cells in `Tour::positions`, in reading order.
-    positions: Range<usize>,
-    /// The indices of the pair's colours in `Tour::colors`; both are equal for spaces.
-    colors: [usize; 2],
+    positions: Range<u32>,
     /// Whether the tour has written the pair's cells.
     visited: bool,
 }
 
 /// A greedy tour over the pairs of colours, with the pen and cursor where it has arrived.
 struct Tour<'a> {
-    wanted: &'a Grid,
     half_blocks: HalfBlocks,
-    pen: Pen,
-    /// The indices in `colors` of the pen's glyph and background colours, if the picture has them.
-    pen_colors: [Option<usize>; 2],
+    pen: PenColors,
+    /// The colours whose pairs are tried next: those of the pen, if the picture has them.
+    near: [Option<u32>; 2],
     cursor: Option<CellPosition>,
     /// The number of neighbours whose costs may still be computed.
     lookups: usize,
@@ -98,21 +100,30 @@ struct Tour<'a> {
     colors: &'a mut [Color],
     /// The indices of the pairs that contain each colour: a range for each (see [`Color::pairs`]).
     // A single list, because one list per colour would take an allocation for each.
-    pairs_by_color: &'a mut [usize],
-    /// The neighbours whose costs are compared.
-    tried: &'a mut Vec<usize>,
+    pairs_by_color: &'a mut [u32],
 }
 
 /// A colour of the picture, and the pairs that contain it.
+#[derive(Clone)]
 struct Color {
-    /// The bits of the colour.
-    key: u64,
     /// The range of the colour's pairs in `Tour::pairs_by_color`, used as a stack with the first
     /// pair in reading order on top.
-    // A visited pair is dropped once it is on top, which is cheaper than searching for it when it is visited.
-    pairs: Range<usize>,
+    // A visited pair is dropped once it is near the top, which is cheaper than searching for it when it is visited.
+    pairs: Range<u32>,
     /// The number of the colour's pairs that the tour has not visited.
-    unvisited: usize,
+    unvisited: u32,
+    /// The bytes that make it the glyph's or the background's colour.
+    len: u8,
+}
+
+/// The colours of a pen without attributes.
+#[derive(Clone, Copy)]
+struct PenColors {
+    /// The indices in `Tour::colors` of the glyph's and the background's colour; `u32::MAX` for a
+    /// colour that the picture does not have.
+    colors: [u32; 2],
+    /// The bytes of the codes that the next sequence begins with, which end the attributes of text.
+    code_len: u32,
 }
 
 /// Largest number of neighbours whose costs are compared, for each colour of the pen.
@@ -126,110 +137,115 @@ const MAX_NEIGHBOURS_PER_COLOR: usize = 64;
 const MEAN_LOOKUPS_PER_PAIR: usize = 8;
 
 impl<'a> Tour<'a> {
-    fn new(wanted: &'a Grid, half_blocks: HalfBlocks, pen: Pen, scratch: &'a mut Scratch) -> Self {
-        scratch.list_pairs(wanted, half_blocks);
-        scratch.list_positions();
-        scratch.list_pairs_by_color();
-        let Scratch { inks, positions, pairs, colors, pairs_by_color, tried, .. } = scratch;
-        let pen_colors = [pen.fg, pen.bg].map(|ink| inks.get(ink.bits().into()));
+    fn new(half_blocks: HalfBlocks, pen: Pen, scratch: &'a mut Scratch) -> Self {
+        let Scratch { inks, positions, pairs, colors, pairs_by_color, .. } = scratch;
+        let color_of = |ink: PackedInk| inks.get(ink.bits().into()).map(|color| color as u32);
+        let plain = pen.after_attributes(Attributes::empty());
+        let pen_colors = PenColors {
+            colors: [plain.fg, plain.bg].map(|ink| color_of(ink).unwrap_or(u32::MAX)),
+            code_len: pen.attributes_len(Attributes::empty()) as u32,
+        };
         Self {
-            wanted,
             half_blocks,
-            pen,
-            pen_colors,
+            pen: pen_colors,
+            near: [pen.fg, pen.bg].map(color_of),
             cursor: None,
             lookups: 0,
             positions,
             pairs,
             colors,
             pairs_by_color,
-            tried,
         }
     }
 
     /// Visits all pairs, and appends the positions of their cells to `order`.
-    fn visit_all(&mut self, order: &mut Vec<CellPosition>) {
+    fn visit_all(&mut self, wanted: &Grid, order: &mut Vec<CellPosition>) {
         for next in 0..self.pairs.len() {
             // Reading order is the fallback, so the tour visits every pair.
             while !self.pairs[next].visited {
-                let pair = self.cheapest_pair(next);
-                self.visit_pair(pair, order);
+                let pair = self.cheapest_pair(next as u32);
+                self.visit_pair(pair, wanted, order);
             }
         }
     }
 
     /// Returns the index of the cheapest pair among `next` and unvisited pairs that share a colour
     /// with the pen.
-    fn cheapest_pair(&mut self, next: usize) -> usize {
-        let mut best = (self.cost(next), next);
+    fn cheapest_pair(&mut self, next: u32) -> u32 {
+        let mut best = self.cheaper((u32::MAX, next), next);
         self.lookups += MEAN_LOOKUPS_PER_PAIR;
-        for color in self.pen_colors.into_iter().flatten() {
-            self.tried.clear();
-            while self.tried.len() < MAX_NEIGHBOURS_PER_COLOR.min(self.lookups)
-                && let Some(at) = self.colors[color].pairs.next_back()
-            {
-                let pair = self.pairs_by_color[at];
-                if !self.pairs[pair].visited {
-                    best = best.min((self.cost(pair), pair));
-                    self.tried.push(pair);
+        for color in self.near.into_iter().flatten() {
+            let Range { start, end } = self.colors[color as usize].pairs;
+            let (mut rest, mut kept) = (end, end);
+            while ((end - kept) as usize) < MAX_NEIGHBOURS_PER_COLOR.min(self.lookups) && rest > start {
+                rest -= 1;
+                let pair = self.pairs_by_color[rest as usize];
+                if !self.pairs[pair as usize].visited {
+                    best = self.cheaper(best, pair);
+                    kept -= 1;
+                    self.pairs_by_color[kept as usize] = pair;
                 }
             }
-            self.lookups -= self.tried.len();
-            // The pairs are pushed back in reverse, so that the first one in reading order is on top of the stack
-            // again.
-            for &pair in self.tried.iter().rev() {
-                let end = &mut self.colors[color].pairs.end;
-                self.pairs_by_color[*end] = pair;
-                *end += 1;
+            self.lookups -= (end - kept) as usize;
+            if rest < kept {
+                self.pairs_by_color.copy_within(kept as usize..end as usize, rest as usize);
+                self.colors[color as usize].pairs.end -= kept - rest;
             }
         }
         best.1
     }
 
-    /// Returns the cost in bytes of continuing the tour with the pair at an index.
+    /// Returns the cheaper pair, with its cost in bytes: the `best` one so far or another.
     ///
-    /// The cost consists of the change of pen and the move to the pair's first cell. Up to eight bytes are added for
-    /// unvisited pairs that share a colour with this one, because a pair with few such neighbours is better visited
-    /// early.
-    fn cost(&self, pair: usize) -> usize {
-        let pair = &self.pairs[pair];
-        let change = self.pen.switch_cost(&self.pair_pen(pair));
-        let move_len = cheapest_move(self.cursor, self.positions[pair.positions.start]).len();
-        let unvisited = pair.colors.map(|color| self.colors[color].unvisited);
-        change + move_len + unvisited[0].min(unvisited[1]).min(8)
-    }
-
-    /// Returns the cheaper pen for a pair: its colours as they are or, where allowed, exchanged.
-    fn pair_pen(&self, pair: &Pair) -> Pen {
-        let pen = |fg, bg| Pen { fg, bg, ..self.pen.after_attributes(Attributes::empty()) };
-        if pair.fg == pair.bg {
-            return pen(self.pen.fg, pair.bg);
+    /// The cost of continuing the tour with a pair consists of the change of pen and the move to the pair's first cell.
+    /// Up to eight bytes are added for unvisited pairs that share a colour with this one, because a pair with few such
+    /// neighbours is better visited early.
+    #[inline]
+    fn cheaper(&self, best: (u32, u32), index: u32) -> (u32, u32) {
+        let pair = &self.pairs[index as usize];
+        let unvisited = pair.colors.map(|color| self.colors[color as usize].unvisited);
+        let cost = self.pen_after(pair).0 + unvisited[0].min(unvisited[1]).min(8);
+        if cost > best.0 {
+            return best;
         }
-        let (plain, flipped) = (pen(pair.fg, pair.bg), pen(pair.bg, pair.fg));
-        let flip =
-            self.half_blocks == HalfBlocks::Either && self.pen.switch_cost(&flipped) < self.pen.switch_cost(&plain);
-        if flip { flipped } else { plain }
+        let move_len = cheapest_move(self.cursor, pair.first).len() as u32;
+        best.min((cost + move_len, index))
     }
 
-    /// Appends the cells of pair `index` to `order`, and updates pen and cursor.
-    fn visit_pair(&mut self, index: usize, order: &mut Vec<CellPosition>) {
-        self.pen = self.pair_pen(&self.pairs[index]);
-        let pair = &mut self.pairs[index];
-        pair.visited = true;
-        let [a, b] = pair.colors;
-        self.pen_colors = if a == b {
-            [self.pen_colors[0], Some(a)]
-        } else if self.colors[a].key == u64::from(self.pen.fg.bits()) {
-            [Some(a), Some(b)]
+    /// Returns the cheaper pen for a pair, with the bytes of the change: its colours as they are
+    /// or, where allowed, exchanged.
+    #[inline]
+    fn pen_after(&self, pair: &Pair) -> (u32, [u32; 2]) {
+        let PenColors { colors: [pen_fg, pen_bg], code_len } = self.pen;
+        let [fg, bg] = pair.colors;
+        let [fg_len, bg_len] = pair.colors.map(|color| u32::from(self.colors[color as usize].len));
+        let needed = |len: u32, is_set: bool| if is_set { 0 } else { len };
+        let sequence_len = |len: u32| if len == 0 { 0 } else { 2 + len };
+        if fg == bg {
+            return (sequence_len(code_len + needed(bg_len, bg == pen_bg)), [pen_fg, bg]);
+        }
+        let plain = code_len + needed(fg_len, fg == pen_fg) + needed(bg_len, bg == pen_bg);
+        let flipped = code_len + needed(fg_len, fg == pen_bg) + needed(bg_len, bg == pen_fg);
+        if self.half_blocks == HalfBlocks::Either && flipped < plain {
+            (sequence_len(flipped), [bg, fg])
         } else {
-            [Some(b), Some(a)]
-        };
-        for &color in distinct_colors(&pair.colors) {
-            self.colors[color].unvisited -= 1;
+            (sequence_len(plain), [fg, bg])
         }
-        let positions = &self.positions[pair.positions.clone()];
+    }
+
+    /// Appends the cells of a pair to `order`, and sets pen and cursor to those after them.
+    fn visit_pair(&mut self, index: u32, wanted: &Grid, order: &mut Vec<CellPosition>) {
+        let (_, colors) = self.pen_after(&self.pairs[index as usize]);
+        self.pen = PenColors { colors, code_len: 0 };
+        let pair = &mut self.pairs[index as usize];
+        pair.visited = true;
+        self.near = [if pair.colors[0] == pair.colors[1] { self.near[0] } else { Some(colors[0]) }, Some(colors[1])];
+        for &color in distinct_colors(&pair.colors) {
+            self.colors[color as usize].unvisited -= 1;
+        }
+        let positions = &self.positions[pair.positions.start as usize..pair.positions.end as usize];
         order.extend_from_slice(positions);
-        self.cursor = positions.last().and_then(|last| cursor_after(self.wanted, *last));
+        self.cursor = positions.last().and_then(|last| cursor_after(wanted, *last));
     }
 }
 
@@ -241,14 +257,15 @@ impl Scratch {
         self.inks.clear(2 * count);
         self.pair_of_cell.clear();
         self.pairs.clear();
-        for &CellPosition { column, row } in &self.picture {
-            let (fg, bg) = picture_inks(wanted.packed_cell(column, row)).unwrap_or_default();
-            // If a cell may use either half block, (fg, bg) and (bg, fg) are the same pair.
+        for &position in &self.picture {
+            let cell = wanted.packed_cell(position.column, position.row);
+            let (fg, bg) = picture_inks(cell).unwrap_or_default();
+            // Both orders are the same pair if a cell may be flipped.
             let (a, b) = if half_blocks == HalfBlocks::Either && bg < fg { (bg, fg) } else { (fg, bg) };
             let pair = self.pair_keys.add(u64::from(a.bits()) << 32 | u64::from(b.bits()));
             if pair == self.pairs.len() {
-                let colors = [a, b].map(|ink| self.inks.add(ink.bits().into()));
-                self.pairs.push(Pair { fg, bg, positions: 0..0, colors, visited: false });
+                let colors = [fg, bg].map(|ink| self.inks.add(ink.bits().into()) as u32);
+                self.pairs.push(Pair { colors, first: position, positions: 0..0, visited: false });
             }
             self.pairs[pair].positions.end += 1;
             self.pair_of_cell.push(pair as u32);
@@ -264,10 +281,10 @@ impl Scratch {
             start += count;
         }
         self.positions.clear();
-        self.positions.resize(start, CellPosition { column: 0, row: 0 });
+        self.positions.resize(start as usize, CellPosition { column: 0, row: 0 });
         for (&position, &pair) in self.picture.iter().zip(&self.pair_of_cell) {
             let end = &mut self.pairs[pair as usize].positions.end;
-            self.positions[*end] = position;
+            self.positions[*end as usize] = position;
             *end += 1;
         }
     }
@@ -276,9 +293,13 @@ impl Scratch {
     fn list_pairs_by_color(&mut self) {
         let Self { inks, pairs, colors, pairs_by_color, .. } = self;
         colors.clear();
-        colors.extend(inks.keys().iter().map(|&key| Color { key, pairs: 0..0, unvisited: 0 }));
+        colors.extend(inks.keys().iter().map(|&key| Color {
+            pairs: 0..0,
+            unvisited: 0,
+            len: PackedInk::from_bits(key as u32).color().map_or(0, rgb_len) as u8,
+        }));
         for &color in pairs.iter().flat_map(|pair| distinct_colors(&pair.colors)) {
-            colors[color].unvisited += 1;
+            colors[color as usize].unvisited += 1;
         }
         let mut end = 0;
         for color in colors.iter_mut() {
@@ -286,12 +307,12 @@ impl Scratch {
             end += color.unvisited;
         }
         pairs_by_color.clear();
-        pairs_by_color.resize(end, 0);
-        // In reverse, so that the first pair in reading order is on top of each colour's stack.
+        pairs_by_color.resize(end as usize, 0);
+        // In reverse for the same reason: the first pair in reading order is on top.
         for (at, pair) in pairs.iter().enumerate().rev() {
             for &color in distinct_colors(&pair.colors) {
-                let end = &mut colors[color].pairs.end;
-                pairs_by_color[*end] = at;
+                let end = &mut colors[color as usize].pairs.end;
+                pairs_by_color[*end as usize] = at as u32;
                 *end += 1;
             }
         }
@@ -299,6 +320,6 @@ impl Scratch {
 }
 
 /// Returns the two colours of a pair, or one if they are equal.
-fn distinct_colors(colors: &[usize; 2]) -> &[usize] {
+fn distinct_colors(colors: &[u32; 2]) -> &[u32] {
     if colors[0] == colors[1] { &colors[..1] } else { colors }
 }

@@ -1,6 +1,7 @@
 //! The pen (a terminal's current colours and attributes), and the SGR sequences that change it.
 
 use super::numbers::{channel_digit_count, digit_count, write_channels, write_number};
+use crate::color::Srgb8;
 use crate::grid::{Attributes, Grid, Ink, PackedCell, PackedInk};
 use std::mem;
 
@@ -145,9 +146,14 @@ impl Pen {
         [1 + ink_len(self.fg, fg), 1 + ink_len(self.bg, bg)]
     }
 
-    /// Returns the number of bytes of a switch to `wanted` if the attributes change.
+    /// Returns the bytes of the codes that change the attributes, each with its separator.
+    pub(super) fn attributes_len(&self, attributes: Attributes) -> usize {
+        self.attribute_codes(attributes).map(|code| 1 + code.len()).sum()
+    }
+
+    /// Returns the bytes of a switch to `wanted` if the attributes change.
     fn cost_with_attributes(&self, wanted: &Self, lens: [usize; 2]) -> usize {
-        let codes = self.attribute_codes(wanted.attributes).map(|code| 1 + code.len()).sum();
+        let codes = self.attributes_len(wanted.attributes);
         let split = if self.is_split(wanted, InkForm::Short) { 2 } else { 0 };
         self.after_attributes(wanted.attributes).cost_of_colors(codes, wanted, lens) + split
     }
@@ -318,8 +324,14 @@ fn ink_len(ink: PackedInk, form: InkForm) -> usize {
         Ink::Default => 2,
         Ink::Indexed(_) if is_basic(ink) && form == InkForm::Short => 2,
         Ink::Indexed(index) => 5 + digit_count(index.into()),
-        Ink::Rgb(color) => 7 + [color.r, color.g, color.b].into_iter().map(channel_digit_count).sum::<usize>(),
+        Ink::Rgb(color) => rgb_len(color) - 1,
     }
+}
+
+/// Returns the number of bytes that set a colour in truecolor, with its separator.
+#[inline]
+pub(super) fn rgb_len(color: Srgb8) -> usize {
+    8 + [color.r, color.g, color.b].into_iter().map(channel_digit_count).sum::<usize>()
 }
 
 /// Returns the number of SGR parameters that [`write_ink`] appends.

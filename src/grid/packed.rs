@@ -32,6 +32,12 @@ impl PackedInk {
         if kind == 2 { Some(Srgb8 { r, g, b }) } else { None }
     }
 
+    /// Returns the colour with these [bits](Self::bits).
+    #[inline]
+    pub(crate) const fn from_bits(bits: u32) -> Self {
+        Self(bits)
+    }
+
     /// Returns the colour as a number.
     #[inline]
     pub(crate) const fn bits(self) -> u32 {
