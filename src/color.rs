@@ -48,8 +48,13 @@ impl LinearRgb {
     #[doc(hidden)]
     pub fn from_srgb8(color: Srgb8) -> Self {
         // A table is faster than `powf`, which would be called three times for each pixel of a texture.
-        let table = &TRANSFER.linear_from_srgb8;
-        Self::new(table[usize::from(color.r)], table[usize::from(color.g)], table[usize::from(color.b)])
+        Self::new(Self::of_code(color.r), Self::of_code(color.g), Self::of_code(color.b))
+    }
+
+    /// Returns the light of an 8-bit sRGB code, in 0..=1.
+    #[inline]
+    pub(crate) fn of_code(code: u8) -> f32 {
+        TRANSFER.linear_from_srgb8[usize::from(code)]
     }
 
     /// Returns the relative luminance Y of CIE 1931.
@@ -197,55 +202,35 @@ impl Oklab {
         Self::from_linear(LinearRgb::from_srgb8(color))
     }
 
+    /// The matrix from linear light to the responses of the eye's cones, whose cube roots OKLab
+    /// mixes.
+    pub(crate) const CONES: [[f32; 3]; 3] = [
+        [0.412_221_46, 0.536_332_55, 0.051_445_995],
+        [0.211_903_5, 0.680_699_5, 0.107_396_96],
+        [0.088_302_46, 0.281_718_85, 0.629_978_7],
+    ];
+
+    /// The matrix from these cube roots to OKLab.
+    pub(crate) const FROM_ROOTS: [[f32; 3]; 3] = [
+        [0.210_454_26, 0.793_617_8, -0.004_072_047],
+        [1.977_998_5, -2.428_592_2, 0.450_593_7],
+        [0.025_904_037, 0.782_771_77, -0.808_675_77],
+    ];
+
     /// Converts linear light to OKLab, with Ottosson's matrices.
-    pub(crate) fn from_linear(light: LinearRgb) -> Self {
+    pub(crate) fn from_linear(LinearRgb { r, g, b }: LinearRgb) -> Self {
+        let times = |matrix: [[f32; 3]; 3], [x, y, z]: [f32; 3]| matrix.map(|row| row[0] * x + row[1] * y + row[2] * z);
         // `libm` instead of the platform's `cbrt`, so that the choices that depend on it are the same on every machine.
-        Self::from_linear_with(light, libm::cbrtf)
-    }
-
-    /// Converts an sRGB colour to OKLab, with an error of at most 2e-6, in a fraction of the time.
-    pub(crate) fn near_srgb8(color: Srgb8) -> Self {
-        Self::from_linear_with(LinearRgb::from_srgb8(color), near_cbrt)
-    }
-
-    #[inline]
-    fn from_linear_with(LinearRgb { r, g, b }: LinearRgb, cbrt: impl Fn(f32) -> f32) -> Self {
-        let l = cbrt(0.412_221_46 * r + 0.536_332_55 * g + 0.051_445_995 * b);
-        let m = cbrt(0.211_903_5 * r + 0.680_699_5 * g + 0.107_396_96 * b);
-        let s = cbrt(0.088_302_46 * r + 0.281_718_85 * g + 0.629_978_7 * b);
-        Self {
-            l: 0.210_454_26 * l + 0.793_617_8 * m - 0.004_072_047 * s,
-            a: 1.977_998_5 * l - 2.428_592_2 * m + 0.450_593_7 * s,
-            b: 0.025_904_037 * l + 0.782_771_77 * m - 0.808_675_77 * s,
-        }
+        let [l, a, b] = times(Self::FROM_ROOTS, times(Self::CONES, [r, g, b]).map(libm::cbrtf));
+        Self { l, a, b }
     }
 
     /// Returns the perceived difference of two colours: their distance, which is 1 between black
     /// and white.
     pub fn distance(self, other: Self) -> f32 {
-        self.squared_distance(other).sqrt()
-    }
-
-    /// Returns the square of the [distance](Self::distance).
-    pub(crate) fn squared_distance(self, other: Self) -> f32 {
         let (l, a, b) = (self.l - other.l, self.a - other.a, self.b - other.b);
-        l * l + a * a + b * b
+        (l * l + a * a + b * b).sqrt()
     }
-}
-
-/// Returns nearly the cube root of a number from 0 to 1.
-// A first guess from the bits, within 4 %, and two steps of Halley's method, each of which cubes the relative error.
-#[inline]
-fn near_cbrt(x: f32) -> f32 {
-    if x < f32::MIN_POSITIVE {
-        return 0.0;
-    }
-    let mut root = f32::from_bits(x.to_bits() / 3 + 0x2a51_19f2);
-    for _ in 0..2 {
-        let cube = root * root * root;
-        root *= (cube + 2.0 * x) / (2.0 * cube + x);
-    }
-    root
 }
 
 /// Encodes by sRGB's transfer function: linear to encoded (IEC 61966-2-1), both in 0..=1.

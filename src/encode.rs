@@ -26,6 +26,7 @@ mod backend;
 mod by_color;
 mod capped;
 mod change_times;
+mod eights;
 #[cfg(feature = "backend")]
 mod foreign_output;
 mod halves;

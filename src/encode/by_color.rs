@@ -9,7 +9,7 @@
 //! With the pairs `ab`, `bc`, `ac` and `dd` in reading order and a pen of `ab`, the tour is `ab` (no change), then
 //! `bc` and `ac` in either order (one colour each), then `dd`.
 
-use super::moves::{CellPosition, cheapest_move};
+use super::moves::{CellPosition, cheapest_len};
 use super::numbering::Numbering;
 use super::pen::{Pen, rgb_len};
 use super::strokes::cursor_after;
@@ -24,8 +24,8 @@ pub(super) struct Scratch {
     /// The index of the pair of each cell in `picture`.
     pair_of_cell: Vec<u32>,
     /// The pairs' colours, in reading order of their first cells.
-    pair_keys: Numbering,
-    inks: Numbering,
+    pair_keys: Numbering<[PackedInk; 2]>,
+    inks: Numbering<PackedInk>,
     positions: Vec<CellPosition>,
     pairs: Vec<Pair>,
     colors: Vec<Color>,
@@ -139,7 +139,7 @@ const MEAN_LOOKUPS_PER_PAIR: usize = 8;
 impl<'a> Tour<'a> {
     fn new(half_blocks: HalfBlocks, pen: Pen, scratch: &'a mut Scratch) -> Self {
         let Scratch { inks, positions, pairs, colors, pairs_by_color, .. } = scratch;
-        let color_of = |ink: PackedInk| inks.get(ink.bits().into()).map(|color| color as u32);
+        let color_of = |ink: PackedInk| inks.get(ink).map(|color| color as u32);
         let plain = pen.after_attributes(Attributes::empty());
         let pen_colors = PenColors {
             colors: [plain.fg, plain.bg].map(|ink| color_of(ink).unwrap_or(u32::MAX)),
@@ -208,8 +208,7 @@ impl<'a> Tour<'a> {
         if cost > best.0 {
             return best;
         }
-        let move_len = cheapest_move(self.cursor, pair.first).len() as u32;
-        best.min((cost + move_len, index))
+        best.min((cost + cheapest_len(self.cursor, pair.first) as u32, index))
     }
 
     /// Returns the cheaper pen for a pair, with the bytes of the change: its colours as they are
@@ -261,10 +260,10 @@ impl Scratch {
             let cell = wanted.packed_cell(position.column, position.row);
             let (fg, bg) = picture_inks(cell).unwrap_or_default();
             // Both orders are the same pair if a cell may be flipped.
-            let (a, b) = if half_blocks == HalfBlocks::Either && bg < fg { (bg, fg) } else { (fg, bg) };
-            let pair = self.pair_keys.add(u64::from(a.bits()) << 32 | u64::from(b.bits()));
+            let key = if half_blocks == HalfBlocks::Either && bg < fg { [bg, fg] } else { [fg, bg] };
+            let pair = self.pair_keys.add(key);
             if pair == self.pairs.len() {
-                let colors = [fg, bg].map(|ink| self.inks.add(ink.bits().into()) as u32);
+                let colors = [fg, bg].map(|ink| self.inks.add(ink) as u32);
                 self.pairs.push(Pair { colors, first: position, positions: 0..0, visited: false });
             }
             self.pairs[pair].positions.end += 1;
@@ -293,11 +292,8 @@ impl Scratch {
     fn list_pairs_by_color(&mut self) {
         let Self { inks, pairs, colors, pairs_by_color, .. } = self;
         colors.clear();
-        colors.extend(inks.keys().iter().map(|&key| Color {
-            pairs: 0..0,
-            unvisited: 0,
-            len: PackedInk::from_bits(key as u32).color().map_or(0, rgb_len) as u8,
-        }));
+        let color = |ink: &PackedInk| Color { pairs: 0..0, unvisited: 0, len: rgb_len(ink.channels()) as u8 };
+        colors.extend(inks.keys().iter().map(color));
         for &color in pairs.iter().flat_map(|pair| distinct_colors(&pair.colors)) {
             colors[color as usize].unvisited += 1;
         }

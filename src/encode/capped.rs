@@ -15,7 +15,7 @@
 //! It is facility location (Cornuejols, Nemhauser and Wolsey 1990), solved in one greedy pass, because a full search
 //! gains another tenth of the quality in forty times the time.
 
-use super::halves::{Halves, half_block_cell, picture_halves, squared_difference};
+use super::halves::{Halves, half_block_cell, picture_halves, squared_differences};
 use super::moves::CellPosition;
 use crate::grid::{Grid, HalfBlocks, PackedCell};
 use colors::Palette;
@@ -274,5 +274,6 @@ fn find_active(shown: &Grid, wanted: &Grid, rate: ExchangeRate, active: &mut Vec
 
 /// Returns the squared error of both halves.
 fn error(shown: Halves, wanted: Halves) -> f32 {
-    (squared_difference(shown[0], wanted[0]) + squared_difference(shown[1], wanted[1])) as f32
+    let [upper, lower] = squared_differences(shown, wanted);
+    (upper + lower) as f32
 }

@@ -1,12 +1,12 @@
 //! The colours of the two halves of a picture cell, and the tolerance of their differences.
 
-use crate::color::{Oklab, Srgb8};
 use crate::grid::{PackedCell, PackedInk};
 
 /// The largest allowed difference between the shown and the wanted colour of a half cell.
 #[derive(Clone, Copy)]
 pub(super) struct Tolerance {
-    /// The largest distance of the two colours in OKLab, less the error of [`Oklab::near_srgb8`].
+    /// The largest distance of the two colours in OKLab, less the error of
+    /// [`ColorList::fill`](super::eights::ColorList::fill).
     pub(super) distance: f32,
     /// The largest squared difference in 8-bit sRGB, summed over the channels.
     // Two measures are needed: `distance` in OKLab bounds the visible difference in a cell, `square` in sRGB the
@@ -14,41 +14,35 @@ pub(super) struct Tolerance {
     pub(super) square: u32,
 }
 
-impl Tolerance {
-    /// Returns whether the colour `shown` is within the tolerance of `wanted`.
-    pub(super) fn allows(self, shown: Srgb8, wanted: Srgb8) -> bool {
-        // The cheaper measure is tested first: OKLab takes six cube roots.
-        shown == wanted
-            || squared_difference(shown, wanted) <= self.square
-                && self.is_near(Oklab::near_srgb8(shown), Oklab::near_srgb8(wanted))
-    }
-
-    /// Returns whether two colours are within the distance.
-    #[inline]
-    pub(super) fn is_near(self, a: Oklab, b: Oklab) -> bool {
-        a.squared_distance(b) <= self.distance * self.distance
-    }
+/// Returns the squared difference of two colours in truecolor, summed over the channels.
+#[inline]
+pub(super) fn squared_difference(a: PackedInk, b: PackedInk) -> u32 {
+    let ([r, g, b], [other_r, other_g, other_b]) = (a.channels(), b.channels());
+    let square = |a: u8, b: u8| (i32::from(a) - i32::from(b)).pow(2).cast_unsigned();
+    square(r, other_r) + square(g, other_g) + square(b, other_b)
 }
 
-/// Returns the squared difference of two colours, summed over the channels.
-pub(super) fn squared_difference(a: Srgb8, b: Srgb8) -> u32 {
-    [a.r.abs_diff(b.r), a.g.abs_diff(b.g), a.b.abs_diff(b.b)].map(|channel| u32::from(channel).pow(2)).iter().sum()
-}
+/// The colours, in truecolor, of the upper and the lower half of a picture cell.
+pub(super) type Halves = [PackedInk; 2];
 
-/// The colours of the upper and the lower half of a picture cell.
-pub(super) type Halves = [Srgb8; 2];
+/// Returns the squared differences of both halves.
+#[inline]
+pub(super) fn squared_differences(a: Halves, b: Halves) -> [u32; 2] {
+    [squared_difference(a[0], b[0]), squared_difference(a[1], b[1])]
+}
 
 /// Returns the colours of the halves of a truecolor half block or space; `None` for text.
 // A space counts as picture only without a glyph colour. Panels give their blanks one, so these are never lossy.
 #[inline]
 pub(super) fn picture_halves(cell: PackedCell) -> Option<Halves> {
-    let bg = cell.bg.color()?;
-    match (cell.code(), cell.fg.color()) {
-        (SPACE, None) if cell.fg == PackedInk::DEFAULT => Some([bg; 2]),
-        (LOWER_HALF, Some(fg)) => Some([bg, fg]),
-        (UPPER_HALF, Some(fg)) => Some([fg, bg]),
-        _ => None,
-    }
+    let PackedCell { fg, bg, .. } = cell;
+    let (halves, is_picture) = match cell.code() {
+        SPACE => ([bg, bg], fg == PackedInk::DEFAULT),
+        LOWER_HALF => ([bg, fg], fg.is_rgb()),
+        UPPER_HALF => ([fg, bg], fg.is_rgb()),
+        _ => return None,
+    };
+    (is_picture && bg.is_rgb()).then_some(halves)
 }
 
 /// [Codes](PackedCell::code) of cells without attributes: the numbers of the characters.
@@ -57,8 +51,8 @@ const LOWER_HALF: u32 = '▄' as u32;
 const UPPER_HALF: u32 = '▀' as u32;
 
 /// Returns a cell that shows these halves, with the half block of `wanted`.
-pub(super) fn half_block_cell(halves: Halves, wanted: PackedCell) -> PackedCell {
-    let [upper, lower] = halves.map(PackedInk::rgb);
+#[inline]
+pub(super) fn half_block_cell([upper, lower]: Halves, wanted: PackedCell) -> PackedCell {
     if upper == lower {
         PackedCell::new(' ', PackedInk::DEFAULT, upper)
     } else if wanted.has_char('▀') {

@@ -9,7 +9,8 @@
 
 use super::Quality;
 use super::change_times::ChangeTimes;
-use super::halves::{Halves, Tolerance, half_block_cell, picture_halves, squared_difference};
+use super::eights::ColorList;
+use super::halves::{Halves, Tolerance, half_block_cell, picture_halves, squared_differences};
 use super::palette::Reduction;
 use crate::grid::{Grid, HalfBlocks, PackedInk};
 use std::cell::RefCell;
@@ -18,13 +19,45 @@ use std::cmp::Reverse;
 /// The working memory of a frame, which all encoders of a thread share.
 #[derive(Default)]
 struct Scratch {
-    differences: Vec<Difference>,
+    /// The cells of the picture that do not show their wanted halves: their indices in the grid,
+    /// and their halves.
+    places: Vec<u32>,
+    wanted: Vec<Halves>,
+    /// The halves that the terminal shows; `UNKNOWN` if the cell shows text or is unknown.
+    shown: Vec<Halves>,
+    /// The squared differences of both halves; `u32::MAX` for unknown ones.
+    squares: Vec<[u32; 2]>,
+    small: SmallDifferences,
+    /// The differences to write.
+    written: Vec<WrittenDifference>,
     /// The indices of the cells that are text in the wanted grid.
-    text: Vec<usize>,
-    /// The indices in `differences` of the cells to write inexactly; `snapped` has their halves.
-    inexact: Vec<usize>,
+    text: Vec<u32>,
+    /// The places of the written cells that need not be exact, with their wanted halves and those
+    /// of the palette.
+    inexact: Vec<u32>,
+    unsnapped: Vec<Halves>,
     snapped: Vec<Halves>,
     reduction: Reduction,
+}
+
+/// The shown halves of a cell that shows text or is unknown.
+const UNKNOWN: Halves = [PackedInk::DEFAULT; 2];
+
+/// The differences that are small enough to be tolerated in sRGB.
+#[derive(Default)]
+struct SmallDifferences {
+    shown: Vec<PackedInk>,
+    wanted: Vec<PackedInk>,
+    colors: [ColorList; 2],
+    /// The masks of the halves that are also within the tolerance in OKLab.
+    near: Vec<u8>,
+}
+
+/// A difference to write.
+struct WrittenDifference {
+    /// The index among all differences.
+    at: u32,
+    urgency: Urgency,
 }
 
 thread_local! {
@@ -78,21 +111,9 @@ pub(super) struct LossyFrame<'a> {
     pub(super) change_times: &'a ChangeTimes,
 }
 
-/// A cell of the picture that does not show its wanted halves.
-struct Difference {
-    /// The cell's index in the grid.
-    at: usize,
-    wanted: Halves,
-    /// The halves that the terminal shows; `None` if the cell shows text or is unknown.
-    shown: Option<Halves>,
-    urgency: Urgency,
-}
-
 /// The urgency of writing a cell, in ascending order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Urgency {
-    /// The shown halves are within the tolerance and need not be written now.
-    Waits,
     /// The shown halves are within the tolerance, but the cell is due to be shown exactly.
     // These cells are not ordered by the size of the difference, which is invisible: neighbours that are written in one
     // frame take the fewest bytes.
@@ -109,8 +130,8 @@ pub(super) struct Plan<'a> {
     frame: LossyFrame<'a>,
     tolerance: Tolerance,
     scratch: &'a mut Scratch,
-    /// The number of differences to write, from the first.
-    writes: usize,
+    /// The sum of the squared differences of all known halves.
+    squares: u64,
     /// Whether the differences to write are in order, the most urgent first.
     is_sorted: bool,
 }
@@ -126,27 +147,33 @@ const DISTANCE_ERROR: f32 = 4e-6;
 impl<'a> Plan<'a> {
     fn new(frame: LossyFrame<'a>, scratch: &'a mut Scratch) -> Self {
         let tolerance = Tolerance { distance: frame.caps.distance - DISTANCE_ERROR, square: 0 };
-        let mut plan = Self { tolerance, frame, scratch, writes: 0, is_sorted: false };
+        let mut plan = Self { tolerance, frame, scratch, squares: 0, is_sorted: false };
         plan.find_differences();
         plan.tolerance.square = plan.max_square();
-        plan.rank_differences();
+        plan.compare_small();
+        plan.list_written();
         plan
     }
 
     fn find_differences(&mut self) {
-        let wanted = self.frame.wanted.packed();
-        let shown = self.frame.shown.packed();
-        let Scratch { differences, text, .. } = &mut *self.scratch;
-        differences.clear();
-        text.clear();
-        for (at, (&cell, &shown)) in wanted.iter().zip(shown).enumerate() {
-            let Some(wanted) = picture_halves(cell) else {
-                text.push(at);
+        let Scratch { places, wanted, shown, text, .. } = &mut *self.scratch;
+        for list in [&mut *places, text] {
+            list.clear();
+        }
+        for list in [&mut *wanted, shown] {
+            list.clear();
+        }
+        let cells = self.frame.wanted.packed().iter().zip(self.frame.shown.packed());
+        for (at, (&of_wanted, &of_shown)) in cells.enumerate() {
+            let Some(halves) = picture_halves(of_wanted) else {
+                text.push(at as u32);
                 continue;
             };
-            let shown = picture_halves(shown);
-            if shown != Some(wanted) {
-                differences.push(Difference { at, wanted, shown, urgency: Urgency::Appears });
+            let halves_shown = picture_halves(of_shown).unwrap_or(UNKNOWN);
+            if halves_shown != halves {
+                places.push(at as u32);
+                wanted.push(halves);
+                shown.push(halves_shown);
             }
         }
     }
@@ -155,16 +182,23 @@ impl<'a> Plan<'a> {
     /// exceeding the cap on the mean.
     // Halves that differ more are written. Their new squared difference may be anything up to this value, and is
     // counted as a third of it.
-    fn max_square(&self) -> u32 {
+    fn max_square(&mut self) -> u32 {
         const HISTOGRAM_LEN: usize = 1024;
         let mut counts = [0_usize; HISTOGRAM_LEN];
-        for difference in &self.scratch.differences {
-            let squares = difference.shown.map_or([u32::MAX; 2], |shown| squared_differences(shown, difference.wanted));
-            for square in squares {
+        let Scratch { wanted, shown, squares, .. } = &mut *self.scratch;
+        squares.clear();
+        squares.extend(shown.iter().zip(wanted).map(|(&shown, &mut wanted)| squared_differences(shown, wanted)));
+        for (squares, &shown) in squares.iter_mut().zip(&*shown) {
+            if shown == UNKNOWN {
+                *squares = [u32::MAX; 2];
+            } else {
+                self.squares += sum(*squares);
+            }
+            for &square in &*squares {
                 counts[(square as usize).min(HISTOGRAM_LEN - 1)] += 1;
             }
         }
-        let (mut beyond, mut sum, mut max_square) = (2 * self.scratch.differences.len(), 0.0, 0);
+        let (mut beyond, mut sum, mut max_square) = (2 * self.scratch.squares.len(), 0.0, 0);
         for (square, count) in counts.into_iter().enumerate() {
             beyond -= count;
             sum += (square * count) as f64;
@@ -182,26 +216,37 @@ impl<'a> Plan<'a> {
         self.frame.caps.mean_square * (3 * halves) as f64
     }
 
-    /// Finds the urgency of all differences, and puts those to write first.
-    fn rank_differences(&mut self) {
-        let LossyFrame { change_times, .. } = self.frame;
-        let differences = &mut self.scratch.differences;
-        for at in 0..differences.len() {
-            let difference = &mut differences[at];
-            if let Some(shown) = difference.shown {
-                let square = squared_differences(shown, difference.wanted).into_iter().fold(0, u32::max);
-                let is_near = square <= self.tolerance.square
-                    && (0..2).all(|half| self.tolerance.allows(shown[half], difference.wanted[half]));
-                difference.urgency = match (is_near, is_near && change_times.has_waited(difference.at)) {
-                    (false, _) => Urgency::Differs(square),
-                    (true, true) => Urgency::Refines,
-                    (true, false) => Urgency::Waits,
-                };
-            }
-            if difference.urgency >= Urgency::Refines {
-                differences.swap(at, self.writes);
-                self.writes += 1;
-            }
+    /// Compares the colours of all differences that are small enough to be tolerated in sRGB.
+    fn compare_small(&mut self) {
+        let Scratch { wanted, shown, squares, small, .. } = &mut *self.scratch;
+        small.shown.clear();
+        small.wanted.clear();
+        for at in (0..squares.len()).filter(|&at| is_small(squares[at], self.tolerance)) {
+            small.shown.extend(shown[at]);
+            small.wanted.extend(wanted[at]);
+        }
+        let [shown, wanted] = &mut small.colors;
+        shown.fill(&small.shown);
+        wanted.fill(&small.wanted);
+        shown.compare(wanted, self.tolerance, &mut small.near);
+    }
+
+    /// Lists the differences to write, and their urgency.
+    fn list_written(&mut self) {
+        let Scratch { places, squares, small, written, .. } = &mut *self.scratch;
+        written.clear();
+        let mut pairs_of_bits = small.near.iter().flat_map(|mask| [0, 2, 4, 6].map(|place| mask >> place & 3));
+        for (at, (&squares, &place)) in squares.iter().zip(&*places).enumerate() {
+            let is_near = is_small(squares, self.tolerance) && pairs_of_bits.next() == Some(3);
+            let urgency = if !is_near {
+                let square = squares[0].max(squares[1]);
+                if square == u32::MAX { Urgency::Appears } else { Urgency::Differs(square) }
+            } else if self.frame.change_times.has_waited(place as usize) {
+                Urgency::Refines
+            } else {
+                continue;
+            };
+            written.push(WrittenDifference { at: at as u32, urgency });
         }
     }
 
@@ -209,19 +254,18 @@ impl<'a> Plan<'a> {
     // Only for frames that do not fit: in others the order does not matter.
     fn sort(&mut self) {
         if !self.is_sorted {
-            let written = &mut self.scratch.differences[..self.writes];
-            written.sort_unstable_by_key(|difference| (Reverse(difference.urgency), difference.at));
+            self.scratch.written.sort_unstable_by_key(|written| (Reverse(written.urgency), written.at));
             self.is_sorted = true;
         }
     }
 
     fn count_from(&self, least: Urgency) -> usize {
-        self.scratch.differences[..self.writes].iter().filter(|difference| difference.urgency >= least).count()
+        self.scratch.written.iter().filter(|written| written.urgency >= least).count()
     }
 
     /// Returns the number of picture cells to write.
     pub(super) fn write_count(&self) -> usize {
-        self.writes
+        self.scratch.written.len()
     }
 
     /// Returns the number of picture cells that must be written in this frame.
@@ -236,51 +280,52 @@ impl<'a> Plan<'a> {
     ///
     /// `grid` must be a copy of the shown grid.
     pub(super) fn draw(&mut self, writes: usize, used: &mut UsedPart, grid: &mut Grid) {
-        if writes < self.writes {
+        if writes < self.write_count() {
             self.sort();
         }
-        self.find_inexact(writes);
-        self.snap(writes, used);
-        let Scratch { differences, text, inexact, snapped, .. } = &*self.scratch;
+        let Scratch { places, wanted: halves, written, text, inexact, unsnapped, .. } = &mut *self.scratch;
         let wanted = self.frame.wanted;
-        for &at in text {
-            grid.copy_cell(at, wanted, wanted.packed()[at]);
+        for &at in &*text {
+            grid.copy_cell(at as usize, wanted, wanted.packed()[at as usize]);
         }
-        for &Difference { at, wanted: halves, .. } in &differences[..writes] {
-            grid.set_packed(at, half_block_cell(halves, wanted.packed()[at]));
-        }
-        for (&inexact, &halves) in inexact.iter().zip(snapped) {
-            let at = differences[inexact].at;
-            grid.set_packed(at, half_block_cell(halves, wanted.packed()[at]));
-        }
-    }
-
-    /// Lists the first `writes` differences without the cells that are due to be exact.
-    fn find_inexact(&mut self, writes: usize) {
-        let Scratch { differences, inexact, .. } = &mut *self.scratch;
         inexact.clear();
-        inexact.extend((0..writes).filter(|&at| !self.frame.change_times.has_waited(differences[at].at)));
+        unsnapped.clear();
+        for &WrittenDifference { at, .. } in &written[..writes] {
+            let (place, halves) = (places[at as usize], halves[at as usize]);
+            if self.frame.change_times.has_waited(place as usize) {
+                grid.set_packed(place as usize, half_block_cell(halves, wanted.packed()[place as usize]));
+            } else {
+                inexact.push(place);
+                unsnapped.push(halves);
+            }
+        }
+        self.snap(writes, used);
+        for (&place, &halves) in self.scratch.inexact.iter().zip(&self.scratch.snapped) {
+            grid.set_packed(place as usize, half_block_cell(halves, wanted.packed()[place as usize]));
+        }
     }
 
     /// Chooses palette colours for the cells that need not be exact.
     fn snap(&mut self, writes: usize, used: &mut UsedPart) {
-        let square = |difference: &Difference| Some(sum(squared_differences(difference.shown?, difference.wanted)));
-        let left: u64 = self.scratch.differences[writes..].iter().filter_map(square).sum();
+        let squares = |written: &WrittenDifference| match written.urgency {
+            Urgency::Appears => 0,
+            _ => sum(self.scratch.squares[written.at as usize]),
+        };
+        let left = self.squares - self.scratch.written[..writes].iter().map(squares).sum::<u64>();
         let is_whole = writes >= self.min_writes(true);
         let max_squares = if is_whole { self.square_budget() - left as f64 } else { f64::INFINITY };
         let LossyFrame { pen, half_blocks, .. } = self.frame;
-        let Scratch { differences, inexact, snapped, reduction, .. } = &mut *self.scratch;
+        let Scratch { unsnapped, snapped, reduction, .. } = &mut *self.scratch;
         let mut tolerance = self.tolerance;
         let full = f64::from(tolerance.square);
         if is_whole {
             tolerance.square = (full * used.0) as u32;
         }
         loop {
-            snapped.clear();
-            snapped.extend(inexact.iter().map(|&at| differences[at].wanted));
-            reduction.snap(snapped, pen, tolerance, half_blocks);
-            let of_cell = |(&at, &halves): (&usize, &Halves)| sum(squared_differences(halves, differences[at].wanted));
-            let squares = inexact.iter().zip(&*snapped).map(of_cell).sum::<u64>() as f64;
+            reduction.snap(unsnapped, pen, tolerance, half_blocks, snapped);
+            let halves = unsnapped.iter().zip(&*snapped);
+            let squares =
+                halves.map(|(&wanted, &snapped)| sum(squared_differences(snapped, wanted))).sum::<u64>() as f64;
             if squares <= max_squares || tolerance.square == 0 {
                 if is_whole && full > 0.0 {
                     // The used share grows only while the error is well below its cap, so that the next frame does not
@@ -299,14 +344,15 @@ impl<'a> Plan<'a> {
 
     /// Returns the indices of the picture cells that differ between `grid` and the wanted grid.
     pub(super) fn inexact_cells(&self, grid: &Grid) -> impl Iterator<Item = usize> {
-        let is_inexact =
-            |difference: &&Difference| picture_halves(grid.packed()[difference.at]) != Some(difference.wanted);
-        self.scratch.differences.iter().filter(is_inexact).map(|difference| difference.at)
+        let Scratch { places, wanted, .. } = &*self.scratch;
+        let cells = places.iter().zip(wanted).map(|(&place, &wanted)| (place as usize, wanted));
+        cells.filter(|&(at, wanted)| picture_halves(grid.packed()[at]) != Some(wanted)).map(|(at, _)| at)
     }
 }
 
-fn squared_differences(a: Halves, b: Halves) -> [u32; 2] {
-    [squared_difference(a[0], b[0]), squared_difference(a[1], b[1])]
+/// Returns whether the differences of both halves are small enough to be tolerated in sRGB.
+fn is_small(squares: [u32; 2], tolerance: Tolerance) -> bool {
+    squares[0].max(squares[1]) <= tolerance.square
 }
 
 fn sum(squares: [u32; 2]) -> u64 {

@@ -50,6 +50,19 @@ pub(super) fn cheapest_move(from: Option<CellPosition>, to: CellPosition) -> Mov
     if relative.len() <= absolute.len() { relative } else { absolute }
 }
 
+/// Returns the number of bytes of the cheapest move.
+#[inline]
+pub(super) fn cheapest_len(from: Option<CellPosition>, to: CellPosition) -> usize {
+    let absolute = Move::To(to).len();
+    let Some(from) = from.filter(|from| from.row <= to.row) else { return absolute };
+    let rows = usize::from(to.row - from.row);
+    if rows >= absolute {
+        return absolute;
+    }
+    absolute.min(rows + cheapest_along(from.column, to.column).len())
+}
+
+#[inline]
 fn cheapest_along(from: u16, to: u16) -> Along {
     if to == from {
         Along::Stay
@@ -66,6 +79,7 @@ fn cheapest_along(from: u16, to: u16) -> Along {
 
 impl Move {
     /// Returns the length of the move's sequence in bytes.
+    #[inline]
     pub(super) fn len(self) -> usize {
         match self {
             Self::To(CellPosition { column: 0, row: 0 }) => 3,
@@ -96,6 +110,7 @@ impl Move {
 }
 
 impl Along {
+    #[inline]
     fn len(self) -> usize {
         match self {
             Self::Stay => 0,

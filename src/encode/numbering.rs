@@ -2,10 +2,29 @@
 //!
 //! Own code, because a map of the standard library takes several times as long.
 
+use crate::grid::PackedInk;
+
+/// A key, of which all bits count.
+pub(super) trait Key: Copy + PartialEq {
+    fn bits(self) -> u64;
+}
+
+impl Key for PackedInk {
+    fn bits(self) -> u64 {
+        self.bits().into()
+    }
+}
+
+impl Key for [PackedInk; 2] {
+    fn bits(self) -> u64 {
+        u64::from(self[0].bits()) << 32 | u64::from(self[1].bits())
+    }
+}
+
 /// Distinct keys, each with a number from 0.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Numbering {
-    keys: Vec<u64>,
+#[derive(Clone, Debug)]
+pub(super) struct Numbering<K> {
+    keys: Vec<K>,
     /// A hash table with open addressing: the number of a key, or `FREE`.
     slots: Vec<u32>,
 }
@@ -13,7 +32,13 @@ pub(super) struct Numbering {
 /// The mark of a slot without a key.
 const FREE: u32 = u32::MAX;
 
-impl Numbering {
+impl<K> Default for Numbering<K> {
+    fn default() -> Self {
+        Self { keys: Vec::new(), slots: Vec::new() }
+    }
+}
+
+impl<K: Key> Numbering<K> {
     /// Removes all keys, and makes room for `count` others.
     pub(super) fn clear(&mut self, count: usize) {
         self.keys.clear();
@@ -24,8 +49,8 @@ impl Numbering {
 
     /// Returns the number of a key, which is given one if it has none.
     ///
-    /// [`clear`](Self::clear) must have made room for the key.
-    pub(super) fn add(&mut self, key: u64) -> usize {
+    /// There must be room for it.
+    pub(super) fn add(&mut self, key: K) -> usize {
         let slot = self.slot_of(key);
         if self.slots[slot] == FREE {
             self.slots[slot] = self.keys.len() as u32;
@@ -35,7 +60,7 @@ impl Numbering {
     }
 
     /// Returns the number of a key, if it has one.
-    pub(super) fn get(&self, key: u64) -> Option<usize> {
+    pub(super) fn get(&self, key: K) -> Option<usize> {
         if self.keys.is_empty() {
             return None;
         }
@@ -44,15 +69,16 @@ impl Numbering {
     }
 
     /// Returns the keys in the order of their numbers.
-    pub(super) fn keys(&self) -> &[u64] {
+    pub(super) fn keys(&self) -> &[K] {
         &self.keys
     }
 
     /// Returns the slot of a key, or the free one where it would be.
-    fn slot_of(&self, key: u64) -> usize {
+    fn slot_of(&self, key: K) -> usize {
         let last = self.slots.len() - 1;
         // Fibonacci hashing (Knuth 1973). The highest bits are the best mixed ones.
-        let hash = (key ^ key >> 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let bits = key.bits();
+        let hash = (bits ^ bits >> 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let mut slot = (hash >> (64 - self.slots.len().trailing_zeros())) as usize;
         while self.slots[slot] != FREE && self.keys[self.slots[slot] as usize] != key {
             slot = (slot + 1) & last;

@@ -7,20 +7,14 @@
 //! All lists are in memory that is kept from frame to frame, and nothing large is sorted by comparison: with a vector
 //! for each colour and such sorts, these took more than half of the time of a frame.
 
-use super::halves::{Halves, Tolerance, squared_difference};
+use super::eights::{ColorList, NEIGHBOURS};
+use super::halves::{Halves, Tolerance, squared_differences};
 use super::numbering::Numbering;
-use crate::color::{Oklab, Srgb8};
 use crate::grid::{HalfBlocks, PackedInk};
-use std::ops::Range;
 
 /// Largest number of palette colours that are considered for a half cell.
 // More would hardly save bytes, and the number of possible pairs grows with the square.
 const MAX_CHOICES: usize = 4;
-
-/// Number of colours, nearest in lightness on either side, with which each colour is compared.
-// In pictures, nearly all colours within the tolerance are among these. In noise many more are within it: without this
-// limit and two others, a frame of noise took 192 times ratatui's time; with them it takes 21 times.
-const LIGHTNESS_NEIGHBOURS: usize = 24;
 
 /// The number of steps of lightness by which colours are sorted.
 const LIGHTNESS_STEPS: usize = 4096;
@@ -32,30 +26,30 @@ const NONE: u32 = u32::MAX;
 #[derive(Default)]
 pub(super) struct Reduction {
     /// The distinct colours of the cells and of the pen, in the order in which they are found.
-    found: Numbering,
-    found_oklab: Vec<Oklab>,
-    /// The index in `colors` of each found colour; at first the step of its lightness.
+    found: Numbering<PackedInk>,
+    found_colors: ColorList,
+    /// The place of each found colour among the sorted ones; at first the step of its lightness.
     places: Vec<u32>,
     /// The distinct colours, sorted by the steps of their lightness.
-    colors: Vec<Srgb8>,
-    oklab: Vec<Oklab>,
+    inks: Vec<PackedInk>,
+    colors: ColorList,
     /// The number of halves that want each colour.
     halves: Vec<u32>,
     /// The index of the colour that each half wants.
     wanted: Vec<u32>,
-    /// Two colours within the tolerance of each other.
-    near: Vec<[u32; 2]>,
+    /// The colours within the tolerance of each other.
+    near: Bands,
     /// The palette colours that may replace each colour, those that replace the most halves first.
     choices: Vec<Choices>,
     possible: Vec<PossiblePair>,
     /// Working memory for sorting `possible`.
     sorted: Vec<PossiblePair>,
     counts: Vec<u32>,
-    /// The pairs that several cells can show.
+    /// The pairs that several cells can show, and these cells.
     pairs: Vec<[u32; 2]>,
+    cells_of_pairs: AnySets,
     /// The pair of each cell.
     chosen: Vec<[u32; 2]>,
-    sets: Sets,
     cover: Cover,
 }
 
@@ -80,34 +74,36 @@ struct PossiblePair {
 }
 
 impl Reduction {
-    /// Replaces the cells' colours by palette colours within the tolerance.
+    /// Lists palette colours within the tolerance of the cells' colours.
     ///
     /// With [`HalfBlocks::Either`] a pair of colours counts as the same pair in either order. The pen's colours are
     /// also candidates for the palette.
     pub(super) fn snap(
         &mut self,
-        cells: &mut [Halves],
+        cells: &[Halves],
         pen: [PackedInk; 2],
         tolerance: Tolerance,
         half_blocks: HalfBlocks,
+        snapped: &mut Vec<Halves>,
     ) {
         self.list_colors(cells, pen);
-        self.find_near(tolerance);
+        // OKLab distance is at least the difference in lightness, so only neighbours in an order by lightness are
+        // compared.
+        self.colors.compare_neighbours(tolerance, &mut self.near.after);
         self.choose_colors();
         self.list_possible_pairs(cells.len(), half_blocks);
         self.choose_pairs(cells.len());
-        for (at, cell) in cells.iter_mut().enumerate() {
-            *cell = self.snapped(at, *cell, half_blocks);
-        }
+        snapped.clear();
+        snapped.extend(cells.iter().enumerate().map(|(at, &cell)| self.snapped(at, cell, half_blocks)));
     }
 
     /// Returns the palette colours of the cell at index `at`, exchanged if that is more exact.
     fn snapped(&self, at: usize, cell: Halves, half_blocks: HalfBlocks) -> Halves {
         let pair = self.chosen[at];
-        let [a, b] = pair.map(|index| self.colors[index as usize]);
+        let [a, b] = pair.map(|index| self.inks[index as usize]);
         let choices = |half: usize| &self.choices[self.wanted[2 * at + half] as usize];
         let fits = |pair: [u32; 2]| (0..2).all(|half| choices(half).as_slice().contains(&pair[half]));
-        let error = |halves: Halves| squared_difference(halves[0], cell[0]) + squared_difference(halves[1], cell[1]);
+        let error = |halves: Halves| squared_differences(halves, cell).iter().sum::<u32>();
         let flipped = half_blocks == HalfBlocks::Either
             && fits([pair[1], pair[0]])
             && (!fits(pair) || error([b, a]) < error([a, b]));
@@ -116,35 +112,29 @@ impl Reduction {
 
     /// Lists the distinct colours, and the index of the one that each half wants.
     fn list_colors(&mut self, cells: &[Halves], pen: [PackedInk; 2]) {
-        let Self { found, found_oklab, places, colors, oklab, halves, wanted, counts, .. } = self;
-        let key = |Srgb8 { r, g, b }| u64::from(u32::from_be_bytes([0, r, g, b]));
+        let Self { found, found_colors, places, inks, colors, halves, wanted, counts, .. } = self;
         found.clear(2 * cells.len() + pen.len());
         wanted.clear();
-        wanted.extend(cells.iter().flatten().map(|&color| found.add(key(color)) as u32));
-        pen.into_iter().filter_map(PackedInk::color).for_each(|color| _ = found.add(key(color)));
-        let of_key = |&key: &u64| {
-            let [_, r, g, b] = (key as u32).to_be_bytes();
-            Srgb8 { r, g, b }
-        };
-        found_oklab.clear();
-        found_oklab.extend(found.keys().iter().map(of_key).map(Oklab::near_srgb8));
+        wanted.extend(cells.iter().flatten().map(|&ink| found.add(ink) as u32));
+        pen.into_iter().filter(|ink| ink.is_rgb()).for_each(|ink| _ = found.add(ink));
+        found_colors.fill(found.keys());
         places.clear();
         counts.clear();
         counts.resize(LIGHTNESS_STEPS + 1, 0);
-        for &Oklab { l, .. } in found_oklab.iter() {
-            let step = ((l * LIGHTNESS_STEPS as f32) as usize).min(LIGHTNESS_STEPS - 1);
+        for lightness in found_colors.lightness() {
+            let step = ((lightness * LIGHTNESS_STEPS as f32) as usize).min(LIGHTNESS_STEPS - 1);
             places.push(step as u32);
             counts[step + 1] += 1;
         }
         sum_up(counts);
-        colors.clear();
-        colors.resize(places.len(), Srgb8::new(0, 0, 0));
-        oklab.clear();
-        oklab.resize(places.len(), Oklab::default());
-        for ((place, key), &lab) in places.iter_mut().zip(found.keys()).zip(found_oklab.iter()) {
+        inks.clear();
+        inks.resize(places.len(), PackedInk::DEFAULT);
+        colors.resize(places.len());
+        for (at, (place, &ink)) in places.iter_mut().zip(found.keys()).enumerate() {
             let next = &mut counts[*place as usize];
-            (colors[*next as usize], oklab[*next as usize]) = (of_key(key), lab);
             (*place, *next) = (*next, *next + 1);
+            inks[*place as usize] = ink;
+            colors.copy(*place as usize, found_colors, at);
         }
         halves.clear();
         halves.resize(places.len(), 0);
@@ -154,36 +144,17 @@ impl Reduction {
         }
     }
 
-    /// Lists the pairs of colours within the tolerance of each other.
-    // OKLab distance is at least the difference in lightness, so only neighbours in an order by lightness are compared.
-    fn find_near(&mut self, tolerance: Tolerance) {
-        let Self { near, colors, oklab, .. } = self;
-        near.clear();
-        for (a, (&color, &lab)) in colors.iter().zip(oklab.iter()).enumerate() {
-            // One step of lightness more, because the colours of a step are not sorted.
-            let lightest = lab.l + tolerance.distance + 1.0 / LIGHTNESS_STEPS as f32;
-            let others = (a + 1..colors.len()).take(LIGHTNESS_NEIGHBOURS);
-            for b in others.take_while(|&b| oklab[b].l <= lightest) {
-                if tolerance.is_near(lab, oklab[b]) && squared_difference(color, colors[b]) <= tolerance.square {
-                    near.push([a as u32, b as u32]);
-                }
-            }
-        }
-    }
-
     /// Chooses the palette, and for each colour the palette colours that may replace it.
     fn choose_colors(&mut self) {
-        let Self { near, colors, halves, choices, sets, cover, .. } = self;
-        sets.fill_symmetric(colors.len(), near);
+        let Self { near, inks, halves, choices, cover, .. } = self;
         choices.clear();
-        choices.resize(colors.len(), Choices::default());
-        cover.choose(sets, halves, |color, members, _| {
-            for &half in members {
-                let choices = &mut choices[half as usize];
-                if usize::from(choices.len) < MAX_CHOICES {
-                    choices.colors[usize::from(choices.len)] = color as u32;
-                    choices.len += 1;
-                }
+        choices.resize(inks.len(), Choices::default());
+        near.weigh(halves, &mut cover.gains);
+        cover.choose(near, halves, |color, half, _| {
+            let choices = &mut choices[half];
+            if usize::from(choices.len) < MAX_CHOICES {
+                choices.colors[usize::from(choices.len)] = color as u32;
+                choices.len += 1;
             }
         });
     }
@@ -208,9 +179,9 @@ impl Reduction {
 
     /// Sorts the possible pairs by the colour at index `place`; the sort is stable.
     fn sort_possible_by(&mut self, place: usize) {
-        let Self { possible, sorted, counts, colors, .. } = self;
+        let Self { possible, sorted, counts, inks, .. } = self;
         counts.clear();
-        counts.resize(colors.len() + 1, 0);
+        counts.resize(inks.len() + 1, 0);
         for pair in possible.iter() {
             counts[pair.colors[place] as usize + 1] += 1;
         }
@@ -227,22 +198,25 @@ impl Reduction {
 
     /// Chooses the pair of each cell, using few distinct pairs.
     fn choose_pairs(&mut self, cell_count: usize) {
-        let Self { possible, pairs, chosen, wanted, choices, halves, sets, cover, .. } = self;
+        let Self { possible, pairs, cells_of_pairs, chosen, wanted, choices, halves, cover, .. } = self;
         pairs.clear();
-        sets.clear();
+        cells_of_pairs.members.clear();
+        cover.gains.clear();
         // A pair that only one cell can show saves nothing.
         for same in possible.chunk_by(|a, b| a.colors == b.colors).filter(|same| same.len() > 1) {
             pairs.push(same[0].colors);
-            sets.push(same.iter().map(|pair| pair.cell));
+            cells_of_pairs.members.push(same.iter().map(|pair| pair.cell));
+            cover.gains.push(same.len() as u32);
         }
+        cells_of_pairs.index(cell_count);
         // A cell without a shared pair takes, for each half, the colour that the most halves can take.
         chosen.clear();
         chosen.extend(wanted.chunks_exact(2).map(|cell| [0, 1].map(|half| choices[cell[half] as usize].colors[0])));
         halves.clear();
         halves.resize(cell_count, 1);
-        cover.choose(sets, halves, |pair, cells, left| {
-            for &cell in cells.iter().filter(|&&cell| left[cell as usize] > 0) {
-                chosen[cell as usize] = pairs[pair];
+        cover.choose(cells_of_pairs, halves, |pair, cell, is_left| {
+            if is_left {
+                chosen[cell] = pairs[pair];
             }
         });
     }
@@ -257,63 +231,127 @@ fn sum_up(counts: &mut [u32]) {
     }
 }
 
-/// Sets of numbers, in one list.
+/// Sets of numbers.
+trait Sets {
+    /// Returns the numbers in a set.
+    fn members(&self, set: usize) -> impl Iterator<Item = usize>;
+
+    /// Returns the sets with a number.
+    fn sets_with(&self, member: usize) -> impl Iterator<Item = usize>;
+}
+
+/// Any sets.
 #[derive(Default)]
-struct Sets {
-    members: Vec<u32>,
-    /// The end of each set in `members`.
+struct AnySets {
+    members: Lists,
+    /// The sets with each number.
+    sets_with: Lists,
+}
+
+impl AnySets {
+    /// Lists the sets with each number below `count`.
+    fn index(&mut self, count: usize) {
+        let Self { members, sets_with } = self;
+        // Each end counts the sets at first, is the start of the list then, and moves to its end.
+        sets_with.ends.clear();
+        sets_with.ends.resize(count + 1, 0);
+        for &member in &members.items {
+            sets_with.ends[member as usize + 1] += 1;
+        }
+        sum_up(&mut sets_with.ends);
+        sets_with.items.clear();
+        sets_with.items.resize(members.items.len(), 0);
+        for set in 0..members.ends.len() {
+            for member in members.list(set) {
+                let end = &mut sets_with.ends[member];
+                sets_with.items[*end as usize] = set as u32;
+                *end += 1;
+            }
+        }
+    }
+}
+
+impl Sets for AnySets {
+    fn members(&self, set: usize) -> impl Iterator<Item = usize> {
+        self.members.list(set)
+    }
+
+    fn sets_with(&self, member: usize) -> impl Iterator<Item = usize> {
+        self.sets_with.list(member)
+    }
+}
+
+/// Lists of numbers, in one.
+#[derive(Default)]
+struct Lists {
+    items: Vec<u32>,
+    /// The end of each list in `items`.
     ends: Vec<u32>,
 }
 
-impl Sets {
+impl Lists {
     fn clear(&mut self) {
-        self.members.clear();
+        self.items.clear();
         self.ends.clear();
     }
 
-    fn push(&mut self, members: impl Iterator<Item = u32>) {
-        self.members.extend(members);
-        self.ends.push(self.members.len() as u32);
+    fn push(&mut self, items: impl Iterator<Item = u32>) {
+        self.items.extend(items);
+        self.ends.push(self.items.len() as u32);
     }
 
-    /// Fills `count` sets: set i has the number i and all numbers that are linked to i.
-    fn fill_symmetric(&mut self, count: usize, links: &[[u32; 2]]) {
-        self.clear();
-        // `ends` first has the number of members of each set, then the set's start, which moves to the end with each
-        // added member.
-        self.ends.resize(count, 1);
-        for &end in links.iter().flatten() {
-            self.ends[end as usize] += 1;
+    fn list(&self, at: usize) -> impl Iterator<Item = usize> {
+        let start = at.checked_sub(1).map_or(0, |before| self.ends[before]);
+        self.items[start as usize..self.ends[at] as usize].iter().map(|&item| item as usize)
+    }
+}
+
+/// A set of neighbours for each number, which contains the number itself.
+#[derive(Default)]
+struct Bands {
+    /// The masks of the neighbours after each number, of which there are at most [`NEIGHBOURS`].
+    after: Vec<u32>,
+    /// The masks of all neighbours, from [`NEIGHBOURS`] before each number.
+    masks: Vec<u64>,
+}
+
+impl Bands {
+    /// Fills in the masks of all neighbours, and lists the weight of each set.
+    fn weigh(&mut self, weights: &[u32], sums: &mut Vec<u32>) {
+        let Self { after, masks } = self;
+        masks.clear();
+        masks.extend(after.iter().map(|&mask| (u64::from(mask) << 1 | 1) << NEIGHBOURS));
+        sums.clear();
+        sums.extend_from_slice(weights);
+        for (at, &mask) in after.iter().enumerate() {
+            for bit in bits(mask.into()) {
+                let next = at + 1 + bit;
+                masks[next] |= 1 << NEIGHBOURS >> (bit + 1);
+                sums[next] += weights[at];
+                sums[at] += weights[next];
+            }
         }
-        let mut start = 0;
-        for end in &mut self.ends {
-            start += std::mem::replace(end, start);
-        }
-        self.members.resize(start as usize, 0);
-        let mut add = |set: u32, member: u32| {
-            let end = &mut self.ends[set as usize];
-            self.members[*end as usize] = member;
-            *end += 1;
-        };
-        (0..count as u32).for_each(|at| add(at, at));
-        for &[a, b] in links {
-            add(a, b);
-            add(b, a);
-        }
+    }
+}
+
+impl Sets for Bands {
+    fn members(&self, set: usize) -> impl Iterator<Item = usize> {
+        bits(self.masks[set]).map(move |bit| set + bit - NEIGHBOURS as usize)
     }
 
-    fn len(&self) -> usize {
-        self.ends.len()
+    // Two numbers are in the sets of each other.
+    fn sets_with(&self, member: usize) -> impl Iterator<Item = usize> {
+        self.members(member)
     }
+}
 
-    fn range(&self, set: usize) -> Range<usize> {
-        let start = set.checked_sub(1).map_or(0, |before| self.ends[before]);
-        start as usize..self.ends[set] as usize
-    }
-
-    fn members(&self, set: usize) -> &[u32] {
-        &self.members[self.range(set)]
-    }
+/// Returns the places of the bits that are set, the lowest first.
+fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lowest = (mask != 0).then(|| mask.trailing_zeros() as usize);
+        mask &= mask.wrapping_sub(1);
+        lowest
+    })
 }
 
 /// The working memory of a greedy cover.
@@ -321,6 +359,8 @@ impl Sets {
 // those above it are done (Minoux 1978).
 #[derive(Default)]
 struct Cover {
+    /// The weight of each set's members that are not covered.
+    gains: Vec<u32>,
     /// The first set of each bucket.
     heads: Vec<u32>,
     /// The set after each set in its bucket.
@@ -330,37 +370,39 @@ struct Cover {
 
 impl Cover {
     /// Chooses sets that together cover all members, greedily by the weight of members not yet
-    /// covered.
+    /// covered, from the `gains` of all sets on.
     ///
-    /// Among sets of equal weight, the first one is chosen. Calls `take` with each chosen set, its members and all
-    /// weights at that moment, and then sets the weights of its members to 0.
-    fn choose(&mut self, sets: &Sets, left: &mut [u32], mut take: impl FnMut(usize, &[u32], &[u32])) {
-        let gain = |set: usize, left: &[u32]| sets.members(set).iter().map(|&at| left[at as usize]).sum::<u32>();
-        let most = (0..sets.len()).map(|set| gain(set, left)).max().unwrap_or(0);
+    /// Of equal sets the first one is chosen. Calls `take` with each chosen set and each of its members, and whether
+    /// the member had weight left, and sets its weight to 0.
+    fn choose(&mut self, sets: &impl Sets, left: &mut [u32], mut take: impl FnMut(usize, usize, bool)) {
+        let most = self.gains.iter().copied().max().unwrap_or(0);
         self.heads.clear();
         self.heads.resize(most as usize + 1, NONE);
         self.next.clear();
-        self.next.resize(sets.len(), NONE);
-        for set in 0..sets.len() {
-            self.push(set, gain(set, left));
-        }
+        self.next.resize(self.gains.len(), NONE);
+        (0..self.gains.len()).for_each(|set| self.push(set));
         for promised in (1..=most).rev() {
             self.empty_bucket(promised);
             for at in 0..self.bucket.len() {
                 let set = self.bucket[at] as usize;
-                let added = gain(set, left);
-                if added == promised {
-                    take(set, sets.members(set), left);
-                    sets.members(set).iter().for_each(|&member| left[member as usize] = 0);
-                } else {
-                    self.push(set, added);
+                if self.gains[set] < promised {
+                    self.push(set);
+                    continue;
+                }
+                for member in sets.members(set) {
+                    let weight = std::mem::take(&mut left[member]);
+                    take(set, member, weight > 0);
+                    if weight > 0 {
+                        sets.sets_with(member).for_each(|set| self.gains[set] -= weight);
+                    }
                 }
             }
         }
     }
 
-    fn push(&mut self, set: usize, gain: u32) {
-        self.next[set] = std::mem::replace(&mut self.heads[gain as usize], set as u32);
+    /// Puts a set into the bucket of its gain.
+    fn push(&mut self, set: usize) {
+        self.next[set] = std::mem::replace(&mut self.heads[self.gains[set] as usize], set as u32);
     }
 
     /// Moves a bucket's sets to `self.bucket`, in ascending order.

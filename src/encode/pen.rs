@@ -1,7 +1,6 @@
 //! The pen (a terminal's current colours and attributes), and the SGR sequences that change it.
 
 use super::numbers::{channel_digit_count, digit_count, write_channels, write_number};
-use crate::color::Srgb8;
 use crate::grid::{Attributes, Grid, Ink, PackedCell, PackedInk};
 use std::mem;
 
@@ -125,11 +124,19 @@ impl Pen {
     /// `lens`.
     // Computing the lengths once per cell instead of up to eight times takes a quarter of a frame's instructions away:
     // 1.52 million instead of 2.00 for 80x24 cells that all change.
-    #[inline]
+    // Always inlined, as `cost_of_colors` is: the innermost step of the choice of half blocks.
+    #[inline(always)]
     pub(super) fn switch_cost_with_lens(&self, wanted: &Self, lens: [usize; 2]) -> usize {
-        // The background is compared first: it is never the default in a picture, which makes the whole comparison
-        // rare.
-        if wanted.bg == PackedInk::DEFAULT && *wanted == Self::default() {
+        // The background is compared first: it is never the default in a picture, whose pens have no attributes.
+        if wanted.bg == PackedInk::DEFAULT || self.attributes != wanted.attributes {
+            return self.other_switch_cost(wanted, lens);
+        }
+        self.cost_of_colors(0, wanted, lens)
+    }
+
+    /// Returns the bytes of a switch to the default background, or to other attributes.
+    fn other_switch_cost(&self, wanted: &Self, lens: [usize; 2]) -> usize {
+        if *wanted == Self::default() {
             return if self == wanted { 0 } else { SGR_RESET.len() };
         }
         if self.attributes == wanted.attributes {
@@ -141,7 +148,11 @@ impl Pen {
 
     /// Returns the number of bytes that set the pen's glyph and background colours, each with its
     /// separator.
+    #[inline]
     pub(super) fn ink_lens(&self) -> [usize; 2] {
+        if self.fg.is_rgb() && self.bg.is_rgb() {
+            return [self.fg, self.bg].map(|ink| rgb_len(ink.channels()));
+        }
         let [fg, bg] = self.ink_forms(InkForm::Short);
         [1 + ink_len(self.fg, fg), 1 + ink_len(self.bg, bg)]
     }
@@ -188,19 +199,16 @@ impl Pen {
     fn write_sgr(&mut self, wanted: Self, form: InkForm, bytes: &mut Vec<u8>) {
         // Nearly all cells of a picture share their attributes: without this test the encoder takes 6 % more
         // instructions.
-        let mut lead: &[u8] = b"\x1b[";
-        if self.attributes != wanted.attributes {
-            lead = self.write_attributes(&wanted, form, bytes);
-        }
+        let mut is_open = self.attributes != wanted.attributes && self.write_attributes(&wanted, form, bytes);
         let from = self.after_attributes(wanted.attributes);
         let [fg, bg] = wanted.ink_forms(form);
         for (from, to, tens, form) in [(from.fg, wanted.fg, b'3', fg), (from.bg, wanted.bg, b'4', bg)] {
             if from != to {
-                bytes.extend_from_slice(mem::replace(&mut lead, b";"));
+                lead_in(mem::replace(&mut is_open, true), bytes);
                 write_ink(to, tens, form, bytes);
             }
         }
-        if lead == b";" {
+        if is_open {
             bytes.push(b'm');
         }
         if from.underline != wanted.underline {
@@ -211,18 +219,18 @@ impl Pen {
 
     /// Appends the parameters of a change of attributes.
     ///
-    /// Returns the bytes that go before the next parameter.
-    fn write_attributes(&self, wanted: &Self, form: InkForm, bytes: &mut Vec<u8>) -> &'static [u8] {
-        let mut lead: &[u8] = b"\x1b[";
+    /// Returns whether the sequence is open for more.
+    fn write_attributes(&self, wanted: &Self, form: InkForm, bytes: &mut Vec<u8>) -> bool {
+        let mut is_open = false;
         for code in self.attribute_codes(wanted.attributes) {
-            bytes.extend_from_slice(mem::replace(&mut lead, b";"));
+            lead_in(mem::replace(&mut is_open, true), bytes);
             bytes.extend_from_slice(code);
         }
         if self.is_split(wanted, form) {
             bytes.push(b'm');
-            lead = b"\x1b[";
+            is_open = false;
         }
-        lead
+        is_open
     }
 
     /// Returns whether a switch to `wanted` needs a sequence for attributes and another for
@@ -298,6 +306,16 @@ pub(super) fn write_char(character: char, bytes: &mut Vec<u8>) {
     bytes.extend_from_slice(character.encode_utf8(&mut utf8).as_bytes());
 }
 
+/// Begins a sequence or, if one is open, its next parameter.
+#[inline]
+fn lead_in(is_open: bool, bytes: &mut Vec<u8>) {
+    if is_open {
+        bytes.push(b';');
+    } else {
+        bytes.extend_from_slice(b"\x1b[");
+    }
+}
+
 /// Appends the SGR parameters of a colour. Their first digit is `tens`: 3 for glyphs, 4 for
 /// backgrounds.
 fn write_ink(ink: PackedInk, tens: u8, form: InkForm, bytes: &mut Vec<u8>) {
@@ -310,9 +328,9 @@ fn write_ink(ink: PackedInk, tens: u8, form: InkForm, bytes: &mut Vec<u8>) {
             bytes.extend_from_slice(&[tens, b'8', b';', b'5', b';']);
             write_number(index.into(), bytes);
         }
-        Ink::Rgb(color) => {
+        Ink::Rgb(_) => {
             bytes.extend_from_slice(&[tens, b'8', b';', b'2']);
-            write_channels([color.r, color.g, color.b], bytes);
+            write_channels(ink.channels(), bytes);
         }
     }
 }
@@ -324,14 +342,14 @@ fn ink_len(ink: PackedInk, form: InkForm) -> usize {
         Ink::Default => 2,
         Ink::Indexed(_) if is_basic(ink) && form == InkForm::Short => 2,
         Ink::Indexed(index) => 5 + digit_count(index.into()),
-        Ink::Rgb(color) => rgb_len(color) - 1,
+        Ink::Rgb(_) => rgb_len(ink.channels()) - 1,
     }
 }
 
 /// Returns the number of bytes that set a colour in truecolor, with its separator.
 #[inline]
-pub(super) fn rgb_len(color: Srgb8) -> usize {
-    8 + [color.r, color.g, color.b].into_iter().map(channel_digit_count).sum::<usize>()
+pub(super) fn rgb_len(channels: [u8; 3]) -> usize {
+    8 + channels.into_iter().map(channel_digit_count).sum::<usize>()
 }
 
 /// Returns the number of SGR parameters that [`write_ink`] appends.

@@ -25,17 +25,11 @@ impl PackedInk {
         }
     }
 
-    /// Returns the colour, if it is in truecolor.
+    /// Returns red, green and blue of a colour in truecolor.
     #[inline]
-    pub(crate) const fn color(self) -> Option<Srgb8> {
-        let [kind, r, g, b] = self.0.to_be_bytes();
-        if kind == 2 { Some(Srgb8 { r, g, b }) } else { None }
-    }
-
-    /// Returns the colour with these [bits](Self::bits).
-    #[inline]
-    pub(crate) const fn from_bits(bits: u32) -> Self {
-        Self(bits)
+    pub(crate) const fn channels(self) -> [u8; 3] {
+        let [_, r, g, b] = self.0.to_be_bytes();
+        [r, g, b]
     }
 
     /// Returns the colour as a number.
@@ -67,8 +61,8 @@ impl From<Ink> for PackedInk {
 
 /// A cell in 16 bytes.
 ///
-/// A cluster is stored as its index in the list of the cell's grid, so the cell is valid in that grid only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// A cluster is an index into the list of the cell's grid, so that such a cell means nothing outside it.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct PackedCell {
     /// The glyph and the attributes.
     // From the highest bit: a flag for clusters, nine attributes, and in 22 bits the character, the index of the
@@ -78,6 +72,22 @@ pub(crate) struct PackedCell {
     pub(crate) bg: PackedInk,
     pub(crate) underline: PackedInk,
 }
+
+/// Compares all bits at once.
+// The derived comparison tests field by field, and frames are compared cell by cell.
+impl PartialEq for PackedCell {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        let halves = |cell: &Self| {
+            let pair = |a: u32, b: u32| u64::from(a) << 32 | u64::from(b);
+            [pair(cell.code, cell.fg.0), pair(cell.bg.0, cell.underline.0)]
+        };
+        let ([a, b], [other_a, other_b]) = (halves(self), halves(other));
+        (a ^ other_a) | (b ^ other_b) == 0
+    }
+}
+
+impl Eq for PackedCell {}
 
 /// The number of bits of a glyph.
 // The nine attributes and the flag for clusters take the other ten bits. A character needs 21.

@@ -6,6 +6,7 @@
 
 use super::{ActiveCell, ExchangeRate};
 use crate::color::Srgb8;
+use crate::grid::PackedInk;
 use std::cmp::Reverse;
 
 /// Largest number of colours; half as many are used if the byte limit leaves few cells to write.
@@ -22,7 +23,7 @@ const LANES: usize = 8;
 
 #[derive(Default)]
 pub(super) struct Palette {
-    colors: Vec<Srgb8>,
+    colors: Vec<PackedInk>,
     /// The colours in blocks, as [`Self::nearest_two`] compares them.
     blocks: Vec<Block>,
     bins: Vec<Bin>,
@@ -88,7 +89,7 @@ impl Palette {
     }
 
     /// Returns a colour of the palette.
-    pub(super) fn color(&self, index: u8) -> Srgb8 {
+    pub(super) fn color(&self, index: u8) -> PackedInk {
         self.colors[usize::from(index)]
     }
 
@@ -109,10 +110,9 @@ impl Palette {
         self.bin_of_half.clear();
         for color in active.iter().flat_map(|cell| cell.wanted) {
             let bin = self.bin(color, bits);
-            let channels = [color.r, color.g, color.b];
             let Bin { count, sum, .. } = &mut self.bins[usize::from(bin)];
             *count += 1;
-            for (sum, channel) in sum.iter_mut().zip(channels) {
+            for (sum, channel) in sum.iter_mut().zip(color.channels()) {
                 *sum += u32::from(channel);
             }
             self.bin_of_half.push(bin);
@@ -123,9 +123,8 @@ impl Palette {
     }
 
     /// Returns the index of the bin of a colour, a new one if there is none.
-    fn bin(&mut self, color: Srgb8, bits: u32) -> u16 {
-        let key =
-            [color.r, color.g, color.b].iter().fold(0, |key, channel| key << bits | u32::from(channel >> (8 - bits)));
+    fn bin(&mut self, color: PackedInk, bits: u32) -> u16 {
+        let key = color.channels().iter().fold(0, |key, channel| key << bits | u32::from(channel >> (8 - bits)));
         // Multiplicative hashing (Knuth 1973), with linear probing.
         let mut slot = (key.wrapping_mul(0x9e37_79b9) >> (32 - SLOTS.ilog2())) as usize;
         loop {
@@ -223,7 +222,7 @@ impl Palette {
             (block.r[lane], block.g[lane], block.b[lane]) = (r as f32, g as f32, b as f32);
             block.index[lane] = self.colors.len() as f32;
         }
-        self.colors.push(Srgb8::new(r as u8, g as u8, b as u8));
+        self.colors.push(PackedInk::rgb(Srgb8::new(r as u8, g as u8, b as u8)));
     }
 
     fn find_nearest(&mut self) {
@@ -257,7 +256,11 @@ impl Palette {
     }
 
     fn distance(&self, color: u8, mean: [i32; 3]) -> i32 {
-        let Srgb8 { r, g, b } = self.color(color);
-        [r, g, b].into_iter().zip(mean).map(|(channel, mean)| (i32::from(channel) - mean).pow(2)).sum()
+        self.color(color)
+            .channels()
+            .into_iter()
+            .zip(mean)
+            .map(|(channel, mean)| (i32::from(channel) - mean).pow(2))
+            .sum()
     }
 }

@@ -4,7 +4,7 @@ use super::colors::{MAX_COLORS, Palette};
 use super::{ActiveCell, ExchangeRate, WrittenCell, error};
 use crate::color::Srgb8;
 use crate::encode::halves::{Halves, squared_difference};
-use crate::grid::HalfBlocks;
+use crate::grid::{HalfBlocks, PackedInk};
 
 /// The number of possible keys of pairs.
 // A key consists of the numbers of two colours, eight bits each.
@@ -74,15 +74,15 @@ impl Pairs {
         let shown = |cell: &ActiveCell| cell.pair.filter(is_written).map(|_| cell.shown);
         for (cell, shown) in active.iter().filter_map(|cell| Some((cell, shown(cell)?))) {
             for (color, wanted) in shown.into_iter().zip(cell.wanted) {
-                let values = [wanted.r.into(), wanted.g.into(), wanted.b.into(), 1];
-                for (sum, value) in sums[usize::from(color)].iter_mut().zip(values) {
-                    *sum += value;
+                let [r, g, b] = wanted.channels();
+                for (sum, value) in sums[usize::from(color)].iter_mut().zip([r, g, b, 1]) {
+                    *sum += u32::from(value);
                 }
             }
         }
         let means = sums.map(|[r, g, b, count]| {
             let [r, g, b] = [r, g, b].map(|sum| ((sum + count / 2) / count.max(1)) as u8);
-            Srgb8 { r, g, b }
+            PackedInk::rgb(Srgb8 { r, g, b })
         });
         for (cell, shown) in active.iter().filter_map(|cell| Some((cell, shown(cell)?))) {
             let halves = shown.map(|color| means[usize::from(color)]);
