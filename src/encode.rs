@@ -513,7 +513,7 @@ impl Writing {
                 self.strokes.choose(wanted, &self.order, half_blocks, *pen);
                 // Colours are shared in this order only. In raster order sharing costs more bytes than it saves,
                 // because a compressor then finds fewer repetitions.
-                self.strokes.share_next_fg(wanted);
+                self.strokes.share_next_fg();
             }
         }
         self.strokes.write(wanted, half_blocks, pen, bytes)
@@ -547,7 +547,14 @@ fn update_row(shown: &mut Grid, wanted: &Grid, start: usize, columns: usize, mut
     let mut column = 0;
     let row = &wanted.packed()[start..start + columns];
     while column < columns {
-        let end = column + widths::leading_width(&row[column..]);
+        let is_narrow = row.get(column + 1).is_none_or(|next| !next.is_covered());
+        let (own, other) = (shown.packed()[start + column], row[column]);
+        // The common case first.
+        if is_narrow && own == other && !other.is_cluster() && column >= safe_from {
+            column += 1;
+            continue;
+        }
+        let end = if is_narrow { column + 1 } else { column + widths::leading_width(&row[column..]) };
         let cells = || (column..end).map(|column| (start + column, shown.packed()[start + column], row[column]));
         let is_ours = !row[column].is_covered() && !row[column].is_foreign();
         let is_same = cells().all(|(_, own, other)| shown.is_same(own, wanted, other));

@@ -232,7 +232,7 @@ impl<'a> Tour<'a> {
         }
     }
 
-    /// Appends the cells of a pair to `order`, and sets pen and cursor to those after them.
+    /// Appends the cells of a pair to `order`, and updates pen and cursor.
     fn visit_pair(&mut self, index: u32, wanted: &Grid, order: &mut Vec<CellPosition>) {
         let (_, colors) = self.pen_after(&self.pairs[index as usize]);
         self.pen = PenColors { colors, code_len: 0 };
@@ -259,7 +259,7 @@ impl Scratch {
         for &position in &self.picture {
             let cell = wanted.packed_cell(position.column, position.row);
             let (fg, bg) = picture_inks(cell).unwrap_or_default();
-            // Both orders are the same pair if a cell may be flipped.
+            // If a cell may use either half block, (fg, bg) and (bg, fg) are the same pair.
             let key = if half_blocks == HalfBlocks::Either && bg < fg { [bg, fg] } else { [fg, bg] };
             let pair = self.pair_keys.add(key);
             if pair == self.pairs.len() {
@@ -304,7 +304,7 @@ impl Scratch {
         }
         pairs_by_color.clear();
         pairs_by_color.resize(end as usize, 0);
-        // In reverse for the same reason: the first pair in reading order is on top.
+        // In reverse, so that the first pair in reading order is on top of each colour's stack.
         for (at, pair) in pairs.iter().enumerate().rev() {
             for &color in distinct_colors(&pair.colors) {
                 let end = &mut colors[color as usize].pairs.end;

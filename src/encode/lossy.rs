@@ -32,8 +32,8 @@ struct Scratch {
     written: Vec<WrittenDifference>,
     /// The indices of the cells that are text in the wanted grid.
     text: Vec<u32>,
-    /// The places of the written cells that need not be exact, with their wanted halves and those
-    /// of the palette.
+    /// The places of the cells to write inexactly, with their wanted halves and those of the
+    /// palette.
     inexact: Vec<u32>,
     unsnapped: Vec<Halves>,
     snapped: Vec<Halves>,

@@ -49,7 +49,7 @@ impl<K: Key> Numbering<K> {
 
     /// Returns the number of a key, which is given one if it has none.
     ///
-    /// There must be room for it.
+    /// [`clear`](Self::clear) must have made room for the key.
     pub(super) fn add(&mut self, key: K) -> usize {
         let slot = self.slot_of(key);
         if self.slots[slot] == FREE {

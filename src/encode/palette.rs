@@ -28,7 +28,7 @@ pub(super) struct Reduction {
     /// The distinct colours of the cells and of the pen, in the order in which they are found.
     found: Numbering<PackedInk>,
     found_colors: ColorList,
-    /// The place of each found colour among the sorted ones; at first the step of its lightness.
+    /// The index in `colors` of each found colour; at first the step of its lightness.
     places: Vec<u32>,
     /// The distinct colours, sorted by the steps of their lightness.
     inks: Vec<PackedInk>,
@@ -252,7 +252,8 @@ impl AnySets {
     /// Lists the sets with each number below `count`.
     fn index(&mut self, count: usize) {
         let Self { members, sets_with } = self;
-        // Each end counts the sets at first, is the start of the list then, and moves to its end.
+        // `ends` first has the number of sets with each number, then the start of each list, which moves to the end
+        // with each added set.
         sets_with.ends.clear();
         sets_with.ends.resize(count + 1, 0);
         for &member in &members.items {
@@ -370,10 +371,11 @@ struct Cover {
 
 impl Cover {
     /// Chooses sets that together cover all members, greedily by the weight of members not yet
-    /// covered, from the `gains` of all sets on.
+    /// covered.
     ///
-    /// Of equal sets the first one is chosen. Calls `take` with each chosen set and each of its members, and whether
-    /// the member had weight left, and sets its weight to 0.
+    /// `gains` must have the weight of each set. Among sets of equal weight, the first one is chosen. For each member
+    /// of a chosen set, calls `take` with the set, the member, and whether the member was uncovered; then sets the
+    /// member's weight to 0.
     fn choose(&mut self, sets: &impl Sets, left: &mut [u32], mut take: impl FnMut(usize, usize, bool)) {
         let most = self.gains.iter().copied().max().unwrap_or(0);
         self.heads.clear();

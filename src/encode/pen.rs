@@ -162,7 +162,7 @@ impl Pen {
         self.attribute_codes(attributes).map(|code| 1 + code.len()).sum()
     }
 
-    /// Returns the bytes of a switch to `wanted` if the attributes change.
+    /// Returns the number of bytes of a switch to `wanted` if the attributes change.
     fn cost_with_attributes(&self, wanted: &Self, lens: [usize; 2]) -> usize {
         let codes = self.attributes_len(wanted.attributes);
         let split = if self.is_split(wanted, InkForm::Short) { 2 } else { 0 };

@@ -20,6 +20,8 @@ pub(super) struct Stroke {
 /// The strokes of a frame, in memory that is kept from frame to frame.
 #[derive(Default)]
 pub(super) struct Strokes {
+    /// The cells in the order of writing.
+    cells: Vec<PackedCell>,
     chosen: Vec<Stroke>,
     forms: Vec<BlockForm>,
     /// For each cell and each of its two forms, the form of the previous cell on the cheapest path.
@@ -30,10 +32,13 @@ impl Strokes {
     /// Chooses strokes that write the cells in `order` with the fewest bytes for changes of the
     /// pen.
     pub(super) fn choose(&mut self, wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, mut pen: Pen) {
-        self.choose_forms(wanted, order, half_blocks, pen);
+        self.cells.clear();
+        self.cells.extend(order.iter().map(|&CellPosition { column, row }| wanted.packed_cell(column, row)));
+        self.choose_forms(half_blocks, pen);
         self.chosen.clear();
-        self.chosen.extend(order.iter().zip(&self.forms).map(|(&position, &form)| {
-            pen = form.pen(wanted.packed_cell(position.column, position.row), &pen);
+        let cells = self.cells.iter().zip(order).zip(&self.forms);
+        self.chosen.extend(cells.map(|((&cell, &position), &form)| {
+            pen = form.pen(cell, &pen);
             Stroke { position, form, pen }
         }));
     }
@@ -41,12 +46,12 @@ impl Strokes {
     /// Gives plain spaces the pen of the next stroke if it differs in the glyph colour only.
     // A space's glyph colour is invisible, so the space's sequence can set it for the next stroke. Not in reverse
     // video, where the glyph colour fills the cell.
-    pub(super) fn share_next_fg(&mut self, wanted: &Grid) {
+    pub(super) fn share_next_fg(&mut self) {
         for at in (1..self.chosen.len()).rev() {
             let next = self.chosen[at].pen;
             let stroke = &mut self.chosen[at - 1];
             let only_fg = stroke.pen.attributes.is_empty() && Pen { fg: next.fg, ..stroke.pen } == next;
-            if only_fg && is_plain_space(wanted.packed_cell(stroke.position.column, stroke.position.row)) {
+            if only_fg && is_plain_space(self.cells[at - 1]) {
                 stroke.pen = next;
             }
         }
@@ -64,27 +69,26 @@ impl Strokes {
         bytes: &mut Vec<u8>,
     ) -> Option<CellPosition> {
         let mut cursor = None;
-        for stroke in &self.chosen {
+        for (stroke, &cell) in self.chosen.iter().zip(&self.cells) {
             move_to(wanted, cursor, stroke.position, half_blocks, pen, bytes);
             pen.switch_to(stroke.pen, bytes);
-            write_cell(wanted, stroke, bytes);
+            write_cell(wanted, stroke, cell, bytes);
             cursor = cursor_after(wanted, stroke.position);
         }
         cursor
     }
 
-    /// Chooses forms of the cells in `order` with the fewest bytes for changes of the pen.
-    fn choose_forms(&mut self, wanted: &Grid, order: &[CellPosition], half_blocks: HalfBlocks, pen: Pen) {
-        let Self { forms, predecessors, .. } = self;
+    /// Chooses forms of the cells with the fewest bytes for changes of the pen.
+    fn choose_forms(&mut self, half_blocks: HalfBlocks, pen: Pen) {
+        let Self { cells, forms, predecessors, .. } = self;
         forms.clear();
-        forms.resize(order.len(), BlockForm::AsWanted);
+        forms.resize(cells.len(), BlockForm::AsWanted);
         if half_blocks == HalfBlocks::Lower {
             return;
         }
         let mut paths = [SurvivorPath { pen, cost: 0 }; 2];
         predecessors.clear();
-        for position in order {
-            let cell = wanted.packed_cell(position.column, position.row);
+        for &cell in &*cells {
             // Written out for each element, because `map` over arrays of pens copies them in pieces, which took a third
             // of the encoder's time.
             let pens = [paths[0].pen.pen_for(cell), paths[1].pen.pen_for(cell)];
@@ -110,8 +114,8 @@ impl Strokes {
             }
         }
         let mut last = u8::from(paths[1].cost < paths[0].cost);
-        for (at, position) in order.iter().enumerate().rev() {
-            if last == 1 && can_be_flipped(wanted.packed_cell(position.column, position.row)) {
+        for (at, &cell) in cells.iter().enumerate().rev() {
+            if last == 1 && can_be_flipped(cell) {
                 forms[at] = BlockForm::Flipped;
             }
             last = predecessors[at][usize::from(last)];
@@ -121,9 +125,8 @@ impl Strokes {
 
 /// Appends the glyph of a stroke.
 // Before a wide cluster, blanks clear its cells, because some terminals draw the cluster in its first cell only.
-fn write_cell(wanted: &Grid, stroke: &Stroke, bytes: &mut Vec<u8>) {
+fn write_cell(wanted: &Grid, stroke: &Stroke, cell: PackedCell, bytes: &mut Vec<u8>) {
     let CellPosition { column, row } = stroke.position;
-    let cell = wanted.packed_cell(column, row);
     if cell.is_cluster() && widths::width_at(wanted, column, row) > 1 {
         bytes.extend(std::iter::repeat_n(b' ', widths::width_at(wanted, column, row).into()));
         Move::To(stroke.position).write(bytes);

@@ -61,7 +61,7 @@ impl From<Ink> for PackedInk {
 
 /// A cell in 16 bytes.
 ///
-/// A cluster is an index into the list of the cell's grid, so that such a cell means nothing outside it.
+/// A cluster is stored as its index in the list of the cell's grid, so the cell is valid in that grid only.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PackedCell {
     /// The glyph and the attributes.
