@@ -236,7 +236,8 @@ fn any_quality_is_exact_at_rest() {
 fn invisible_differences_are_not_sent_while_moving() {
     let [exact, equal] = ["exact", "equal"].map(|quality| {
         let mut session = looking(termtrace().arg("--reduced-motion").arg("--quality").arg(quality));
-        let per_frame = (0..40).find_map(|_| bytes_per_frame(&mut session));
+        // On a busy machine a frame may carry more than one step, or a refined picture: the least of three counts.
+        let per_frame = (0..40).filter_map(|_| bytes_per_frame(&mut session)).take(3).min();
         leave(&mut session);
         per_frame.expect("each frame ends with a query")
     });
