@@ -489,15 +489,13 @@ fn a_program_in_the_background_leaves_the_terminal_alone() {
     session.wait_for_text("status <148>");
     let before = session.seen().bytes().len();
     session.send(b"\n");
-    session.wait_for("it to be parked again", SOON, |seen| {
-        seen.bytes()[before..].windows(6).any(|text| text == b"parked")
-    });
+    session.wait_for("it to be parked again", SOON, |seen| seen.has_after(before, b"parked"));
     assert!(!session.seen().bytes()[before..].contains(&0x1b), "after bg");
     session.assert_clean();
     session.send(b"\n");
     session.wait_for("the picture", SOON, |seen| shows_all(&seen.bytes()[before..], Size::cells(80, 24)));
     // The job was continued twice, and has taken the terminal once: giving it back drops keys.
-    let leaves = |seen: &Seen| seen.bytes()[before..].windows(8).any(|bytes| bytes == b"\x1b[?1049l");
+    let leaves = |seen: &Seen| seen.has_after(before, b"\x1b[?1049l");
     session.send(b"i");
     session.wait_for_text(" sample");
     assert!(!leaves(session.seen()), "taken a second time");

@@ -45,12 +45,9 @@ fn a_window_of_any_size_shows_a_picture_of_bounded_size() {
         let before = session.seen().bytes().len();
         claim(&session, columns, rows);
         let told = format!("of the window's {columns}x{rows} cells");
-        session.wait_for("the limit is told", SOON, |seen| {
-            seen.bytes()[before..].windows(told.len()).any(|bytes| bytes == told.as_bytes())
-        });
+        session.wait_for("the limit is told", SOON, |seen| seen.has_after(before, told.as_bytes()));
         // Cells outside the picture are erased in the terminal's own colours.
-        let erase = b"\x1b[m\x1b[2J";
-        assert!(session.seen().bytes()[before..].windows(erase.len()).any(|bytes| bytes == erase));
+        assert!(session.seen().has_after(before, b"\x1b[m\x1b[2J"));
     }
     #[cfg(target_os = "linux")]
     assert!(peak(&session) < 600_000_000, "{} bytes", peak(&session));
