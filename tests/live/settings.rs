@@ -196,6 +196,8 @@ fn below_40x12_panels_are_hidden_and_their_keys_off() {
     session.resize(Size::cells(60, 10));
     wait_for_last(&mut session, "save: p png a ansi t text s svg h html");
     session.resize(Size::cells(20, 10));
+    // Until then the resized screen may show no question, and Escape with the next key would be one key with Alt.
+    wait_for_last(&mut session, "save: p a t s h Esc");
     session.send(b"\x1b");
     wait_for_no(&mut session, "save:");
     // The cursor of an explanation that cannot be seen takes no key: the eye looks to the left.
