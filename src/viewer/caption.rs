@@ -63,10 +63,13 @@ impl Caption {
 
     /// Returns the row of keys below a page, without the last ones if it does not fit into `width`
     /// columns.
-    fn keys_row(&self, canvas: &Canvas<'_>, is_last: bool, width: usize) -> String {
+    ///
+    /// `page` is counted from 1, up to `pages`.
+    fn keys_row(&self, canvas: &Canvas<'_>, [page, pages]: [usize; 2], width: usize) -> String {
         let key =
             |command, does: &str| key_names(canvas.keymap, canvas.modes, &[command]).map(|key| format!("{key} {does}"));
-        let turn = key(Command::Caption, if is_last { "hides this" } else { "more" });
+        let turn = if page < pages { format!("more ({page} of {pages})") } else { "hides this".to_owned() };
+        let turn = key(Command::Caption, &turn);
         let place = self.place.map(|(number, count)| format!("{number} of {count}"));
         let on_tour = |command, does| self.place.and_then(|_| key(command, does));
         let on = on_tour(Command::NextScene, "next scene");
@@ -99,9 +102,9 @@ impl Layer for Caption {
         let mut pages = self.pages(screen);
         // In a larger window there may be fewer pages than when the page was turned.
         let page = self.page.min(pages.len().saturating_sub(1));
-        let is_last = page + 1 >= pages.len();
+        let keys = self.keys_row(canvas, [page + 1, pages.len()], usize::from(screen.width).saturating_sub(2));
         let mut lines = if page < pages.len() { pages.swap_remove(page) } else { Vec::new() };
-        lines.push(self.keys_row(canvas, is_last, usize::from(screen.width).saturating_sub(2)));
+        lines.push(keys);
         let width = lines.iter().map(|line| line.trim_end().width() as u16 + 2).max().unwrap_or(0).min(screen.width);
         let height = lines.len() as u16;
         let below = canvas.status_rows.max(canvas.note_rows);

@@ -111,7 +111,7 @@ fn outside_a_tour_a_note_names_the_key_of_the_caption() {
 #[test]
 fn a_small_screen_shows_a_caption_in_pages() {
     let mut session = start(&["tour"], Size::cells(40, 12));
-    session.wait_for_text("' more");
+    session.wait_for_text("' more (1 of ");
     turn_to_the_last_page(&mut session);
     session.send(b"'");
     wait_for_no(&mut session, "hides this");
