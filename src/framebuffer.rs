@@ -123,11 +123,10 @@ impl Resolution {
         self.width as usize * self.height as usize
     }
 
-    /// Returns the size of a part of the picture: with at most `width` columns, and the same
-    /// height.
+    /// Returns the size of a part of the picture, with at most `width` columns and `height` rows.
     #[cfg(feature = "live")]
-    pub(crate) fn with_width(self, width: u32) -> Self {
-        Self { width: width.min(self.width), ..self }
+    pub(crate) fn part(self, width: u32, height: u32) -> Self {
+        Self { width: width.min(self.width), height: height.min(self.height), ..self }
     }
 }
 

@@ -98,19 +98,15 @@ impl Viewer {
         self.change_rectangle("tilt", |camera| camera.tilted_rectangle(steps.into()));
     }
 
-    /// Changes the view rectangle, and shows the changed `offset` or the error in a note.
+    /// Changes the view rectangle of the first camera, and shows the changed `offset` or the error
+    /// in a note.
     fn change_rectangle(&mut self, offset: &str, change: impl FnOnce(&Camera) -> Result<Camera, CameraError>) {
-        let mut error = None;
-        self.eye.change(self.now, |camera, _| {
-            change(camera).unwrap_or_else(|fault| {
-                error = Some(fault);
-                *camera
-            })
-        });
-        if let Some(error) = error {
-            return self.show_note(error.to_string());
-        }
-        let Some(camera) = self.eye.camera() else { return };
+        let Some(camera) = self.first_camera() else { return };
+        let camera = match change(&camera) {
+            Ok(camera) => camera,
+            Err(error) => return self.show_note(error.to_string()),
+        };
+        self.change_first_camera(camera);
         let text = camera.rectangle().offset_texts().into_iter().find(|text| text.starts_with(offset));
         let mut text = text.unwrap_or_else(|| format!("{offset} 0 0"));
         if offset == "tilt" && camera.has_upright_rectangle() {

@@ -107,10 +107,14 @@ impl Frame {
     pub(super) fn part_at(&self, [x, y]: [u32; 2]) -> (Resolution, [u32; 2]) {
         let resolution = self.resolution();
         match *self.shot.layout.map_sizes(resolution) {
-            [(_, left), (_, right)] if left.width() < resolution.width() => match x.checked_sub(left.width() + 1) {
-                Some(x) if x < right.width() => (right, [x, y]),
-                _ => (left, [x.min(left.width() - 1), y]),
-            },
+            [(_, left), (_, right)] if left.width() < resolution.width() => {
+                // Pixels under a panel count as those above it.
+                let y = y.min(left.height().saturating_sub(1));
+                match x.checked_sub(left.width() + 1) {
+                    Some(x) if x < right.width() => (right, [x, y]),
+                    _ => (left, [x.min(left.width() - 1), y]),
+                }
+            }
             _ => (resolution, [x, y]),
         }
     }

@@ -71,7 +71,7 @@ impl OrdersPanel {
         let built = build.comparison.built_pixels(self.pace.tests());
         let width = frame.resolution().width() as usize;
         let (left, start) = (left.width() as usize, left.width() as usize + 1);
-        for (y, row) in picture.pixels.chunks_mut(width).enumerate() {
+        for (y, row) in picture.pixels.chunks_mut(width).take(right.height() as usize).enumerate() {
             let of_row = built.saturating_sub(y * left).min(left);
             row[of_row..left].fill(EMPTY);
             if y == built / left && of_row < left {
@@ -98,6 +98,13 @@ impl OrdersPanel {
     }
 }
 
+/// Returns the rows at the bottom of the screen that the panel covers, with the row of notes.
+///
+/// The pictures are above them.
+pub(super) fn panel_rows(screen: Rect) -> u16 {
+    if theme::has_room(screen) { words::height(screen.width, screen.height) + 1 } else { 0 }
+}
+
 impl Layer for OrdersPanel {
     fn level(&self) -> LayerLevel {
         LayerLevel::Side
@@ -121,7 +128,9 @@ impl Layer for OrdersPanel {
             return;
         }
         let mut lines = match &self.build {
-            Some(build) => words::lines(&build.comparison, self.pace.tests(), screen.width, screen.height),
+            Some(build) => {
+                words::lines(&build.comparison, build.object_name(), self.pace.tests(), screen.width, screen.height)
+            }
             None => vec!["measuring both orders".to_owned()],
         };
         lines.push(words::keys(canvas, &self.pace));

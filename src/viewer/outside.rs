@@ -3,7 +3,7 @@
 
 use super::Viewer;
 use super::explain::ExplainPanel;
-use super::orders::OrdersPanel;
+use super::orders::{OrdersPanel, panel_rows};
 use super::theme;
 use super::tracer_lines::{TracerMarks, VanishingPoints};
 use super::view_layout::ViewLayout;
@@ -13,7 +13,6 @@ use crate::control::Command;
 use crate::hit::closest_hit;
 use crate::ray::Ray;
 use crate::scene::Scene;
-use glam::Vec3;
 
 /// Whether a second camera shows the first one from outside, and which of the two the keys move.
 ///
@@ -57,14 +56,16 @@ impl Outside {
 // The first two rows of each caption are its first page on a screen of 80x24 cells.
 const SECOND_EYE_CAPTION: &str = "\
 The tracer from outside: o is the eye; u points to the right, v up, and the camera looks along -w, through the view \
-rectangle (blue) with its pixel grid.
+rectangle (cyan) with its pixel grid.
 The white ray is that of the pixel under the cross: from o through the pixel at q to its hit p, where n is the normal.
 From p a shadow ray leads to each light (*): yellow if the light arrives, grey if it does not.
-Keys: the arrows choose another pixel, w a s d and e c walk around the tracer, which stays.";
+The right picture is that of a second eye, which is no part of the tracer: it only watches.
+Keys: the arrows choose another pixel, w a s d and e c move the second eye, ( ) shift the view rectangle, { } tilt it.";
 
 const FIRST_CAMERA_CAPTION: &str = "\
 Now the keys move the first camera: o, u, v, w and the view rectangle move along, and the left picture is what it sees.
-Keys: w a s d move the eye o; [ ] resize the view rectangle, ( ) shift it, { } tilt it.";
+Keys: w a s d move the eye o; [ ] resize the view rectangle, ( ) shift it down and up, { } tilt it down and up, \
+; : to the left and right.";
 
 const VANISHING_CAPTION: &str = "\
 Parallel lines meet in their vanishing point: where the ray from the eye along them goes through the view rectangle.
@@ -168,6 +169,15 @@ impl Viewer {
         }
     }
 
+    /// Replaces the first camera, whichever camera the keys move.
+    pub(super) fn change_first_camera(&mut self, camera: Camera) {
+        if let Outside::MovesSecond { first } = &mut self.outside {
+            *first = camera;
+        } else {
+            self.eye.change(self.now, |_, _| camera);
+        }
+    }
+
     /// Returns the second camera, which shows the first one from outside, if there is one.
     pub(super) fn second_camera(&self) -> Option<Camera> {
         match self.outside {
@@ -179,8 +189,11 @@ impl Viewer {
 
     /// Returns the layout: the map twice for two cameras or for image order beside object order.
     pub(super) fn shown_layout(&self) -> ViewLayout {
-        let is_twice = self.second_camera().is_some() || self.screen.get::<OrdersPanel>().is_some();
-        if is_twice { self.layout.twice() } else { self.layout }
+        if self.screen.get::<OrdersPanel>().is_some() {
+            let (_, pixels) = self.display.capabilities().cell_mode.pixels_per_cell();
+            return self.layout.twice(pixels * u32::from(panel_rows(theme::area(self.size()))));
+        }
+        if self.second_camera().is_some() { self.layout.twice(0) } else { self.layout }
     }
 }
 
@@ -190,11 +203,11 @@ impl Viewer {
 fn camera_beside(scene: &Scene, camera: &Camera, aspect_ratio: f32) -> Camera {
     let (Pose { eye, target, up }, Basis { u, v, w }) = (camera.pose(), camera.basis());
     let distance = camera.target_distance();
-    let around = Vec3::splat(0.3 * distance);
-    // The box includes the end of the axis w, a little beyond its drawn length of 0.16: no other drawn point is farther
-    // from the target.
+    // The end of the axis w, a little beyond its drawn length of 0.16: no other drawn point is farther from the target.
     let end_of_w = eye + 0.2 * distance * w;
-    let bounds = Bounds::of([eye, end_of_w, target - around, target + around]);
+    let around = [u, v, w].map(|axis| 0.3 * distance * axis).map(|aside| [target - aside, target + aside]);
+    let shown = [[eye, end_of_w], around[0], around[1], around[2]];
+    let bounds = Bounds::of(shown.into_iter().flatten());
     let middle = 0.5 * (bounds.min + bounds.max);
     let from = middle + distance * (0.9 * u + 0.5 * v + 0.8 * w);
     let seen = Camera::look_at(from, middle).and_then(|seen| seen.with_up(up));
@@ -202,7 +215,11 @@ fn camera_beside(scene: &Scene, camera: &Camera, aspect_ratio: f32) -> Camera {
     // A wall between the two eyes would hide the first one.
     let way = seen.pose().eye - eye;
     let t = closest_hit(scene, &Ray { origin: eye, direction: way }).map_or(1.0, |hit| (0.9 * hit.t).min(1.0));
-    seen.with_pose(Pose { eye: eye + t * way, ..seen.pose() }).unwrap_or(seen)
+    let seen = seen.with_pose(Pose { eye: eye + t * way, ..seen.pose() }).unwrap_or(seen);
+    // The box of an oblique line is much larger than the line: without a zoom, half of the picture would show neither.
+    let places = shown.into_iter().flatten().filter_map(|point| seen.project(point, aspect_ratio));
+    let reach = places.map(|place| (2.0 * place - 1.0).abs().max_element()).fold(0.0, f32::max);
+    if reach > 0.0 { seen.zoomed((reach / 0.95).min(1.0)) } else { seen }
 }
 
 #[cfg(all(test, unit_tests))]

@@ -82,7 +82,8 @@ impl Viewer {
         let resolution = large_resolution(shot.resolution);
         // The file has pixels, so it needs neither the geometry that glyphs show nor the comparison that a panel
         // explains.
-        let shot = Shot { resolution, orders: false, geometry: false, ..shot };
+        let layout = if shot.orders { self.layout } else { shot.layout };
+        let shot = Shot { resolution, layout, orders: false, geometry: false, ..shot };
         Some((Job { scene, shot, sampling: Sampling::BEST, refines: false }, self.screen.wipe()))
     }
 

@@ -19,7 +19,7 @@ const MAGENTA: u8 = 13;
 const CYAN: u8 = 14;
 const WHITE: u8 = 15;
 const GREY: u8 = 8;
-const DARK_BLUE: u8 = 4;
+const DARK_CYAN: u8 = 6;
 
 /// Distance from the eye at which the view rectangle is drawn, as a share of the target's distance.
 ///
@@ -46,7 +46,7 @@ impl Layer for TracerMarks {
         let (camera, (part, _)) = (frame.camera(), frame.part_at([0, 0]));
         add_rectangle(&mut plot, camera, part);
         let (Basis { u, v, w }, eye) = (camera.basis(), camera.pose().eye);
-        for (axis, name, color) in [(u, "u", RED), (v, "v", GREEN), (w, "w", CYAN)] {
+        for (axis, name, color) in [(u, "u", RED), (v, "v", GREEN), (w, "w", BLUE)] {
             let end = eye + VECTOR_LENGTH * camera.target_distance() * axis;
             plot.line([eye, end], color);
             plot.letter(end, name, color);
@@ -85,15 +85,15 @@ fn add_rectangle(plot: &mut Plot<'_>, camera: &Camera, part: Resolution) {
     if let [Some(across), Some(up)] = step {
         for column in (across..columns).step_by(across as usize) {
             let qu = column as f32 / columns as f32;
-            plot.line([at(qu, 0.0), at(qu, 1.0)], DARK_BLUE);
+            plot.line([at(qu, 0.0), at(qu, 1.0)], DARK_CYAN);
         }
         for row in (up..rows).step_by(up as usize) {
             let qv = 1.0 - row as f32 / rows as f32;
-            plot.line([at(0.0, qv), at(1.0, qv)], DARK_BLUE);
+            plot.line([at(0.0, qv), at(1.0, qv)], DARK_CYAN);
         }
     }
     for side in 0..4 {
-        plot.line([corners[side], corners[(side + 1) % 4]], BLUE);
+        plot.line([corners[side], corners[(side + 1) % 4]], CYAN);
     }
 }
 
@@ -118,7 +118,7 @@ pub(super) fn draw_eye_ray(canvas: &mut Canvas<'_>, frame: &Frame, explanation: 
     }
     // A ray without a hit is drawn to twice the target's distance, so that it visibly passes the scene.
     plot.line([ray.origin, ray.at(hit.map_or(2.0 * distance, |shaded| shaded.hit.t))], WHITE);
-    plot.letter(ray.at(near), "q", BLUE);
+    plot.letter(ray.at(near), "q", CYAN);
     // Adds these letters again, because the rays end at them and would cover them.
     add_letters(&mut plot, frame);
     if let Some(hit) = hit {

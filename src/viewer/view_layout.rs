@@ -33,8 +33,9 @@ struct RightMap {
 /// The way in which two maps share the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Split {
-    /// Side by side: each map shows the whole view, in half of the columns.
-    Beside,
+    /// Side by side: each map shows the whole view, in half of the columns, above a number of black
+    /// pixel rows for a panel.
+    Beside { panel_height: u32 },
     /// One view with a movable line: the left map on one side of the line, the right map on the
     /// other.
     Wipe,
@@ -46,9 +47,10 @@ impl ViewLayout {
         Self { map, right: None }
     }
 
-    /// Returns the layout with its left map twice, side by side.
-    pub(super) fn twice(self) -> Self {
-        Self { right: Some(RightMap { map: self.map, split: Split::Beside }), ..self }
+    /// Returns the layout with its left map twice, side by side, above this number of black pixel
+    /// rows for a panel.
+    pub(super) fn twice(self, panel_height: u32) -> Self {
+        Self { right: Some(RightMap { map: self.map, split: Split::Beside { panel_height } }), ..self }
     }
 
     /// Replaces the single map, or the right one of two, by the map that `step` returns for it.
@@ -73,8 +75,8 @@ impl ViewLayout {
     /// Switches from one map to two side by side, to a wipe, and back.
     pub(super) fn compare(&mut self) {
         self.right = match self.right {
-            None => Some(RightMap { map: self.map.next(), split: Split::Beside }),
-            Some(RightMap { map, split: Split::Beside }) => Some(RightMap { map, split: Split::Wipe }),
+            None => Some(RightMap { map: self.map.next(), split: Split::Beside { panel_height: 0 } }),
+            Some(RightMap { map, split: Split::Beside { .. } }) => Some(RightMap { map, split: Split::Wipe }),
             Some(RightMap { split: Split::Wipe, .. }) => None,
         };
     }
@@ -92,7 +94,9 @@ impl ViewLayout {
     /// Returns the maps to trace for a picture of size `whole`, each with its own size in pixels.
     pub(crate) fn map_sizes(self, whole: Resolution) -> Vec<(Map, Resolution)> {
         match self.right {
-            Some(RightMap { split: Split::Beside, .. }) => self.maps().zip(side_by_side_sizes(whole)).collect(),
+            Some(RightMap { split: Split::Beside { panel_height }, .. }) => {
+                self.maps().zip(side_by_side_sizes(whole, panel_height)).collect()
+            }
             // Both maps of a wipe have the full size, so that moving the line traces nothing.
             _ => self.maps().map(|map| (map, whole)).collect(),
         }
@@ -123,7 +127,7 @@ impl ViewLayout {
     /// `None` for a single map.
     pub(crate) fn combined(self, parts: &[Picture], wipe: f32) -> Option<Picture> {
         match (self.right?.split, parts) {
-            (Split::Beside, [left, right]) => Some(side_by_side(left, right)),
+            (Split::Beside { panel_height }, [left, right]) => Some(side_by_side(left, right, panel_height)),
             (Split::Wipe, [left, right]) => Some(wiped(left, right, wipe)),
             _ => None,
         }
@@ -133,22 +137,30 @@ impl ViewLayout {
 /// The colour of the line between the two maps of a picture, side by side or in a wipe.
 const LINE: Srgb8 = Srgb8::new(255, 208, 64);
 
+/// The colour of the rows below two maps that a panel covers.
+const BLACK: Srgb8 = Srgb8::new(0, 0, 0);
+
 /// Returns the sizes of two maps side by side, with a line of one column between them.
 ///
 /// In a picture too narrow for two maps, the left one has all columns and the right one none.
-fn side_by_side_sizes(whole: Resolution) -> [Resolution; 2] {
+fn side_by_side_sizes(whole: Resolution, panel_height: u32) -> [Resolution; 2] {
     // Both maps and the line between them need at least one column each.
     let left = if whole.width() < 3 { whole.width() } else { (whole.width() - 1) / 2 };
-    [left, whole.width().saturating_sub(left + 1)].map(|width| whole.with_width(width))
+    let height = whole.height().saturating_sub(panel_height);
+    [left, whole.width().saturating_sub(left + 1)].map(|width| whole.part(width, height))
 }
 
-fn side_by_side(left: &Picture, right: &Picture) -> Picture {
-    if right.width == 0 {
-        return left.clone();
-    }
-    let rows = left.pixels.chunks(left.width as usize).zip(right.pixels.chunks(right.width as usize));
-    let pixels = rows.flat_map(|(left, right)| [left, &[LINE], right].concat()).collect();
-    Picture { width: left.width + 1 + right.width, height: left.height, pixels }
+fn side_by_side(left: &Picture, right: &Picture, panel_height: u32) -> Picture {
+    let mut whole = if right.width == 0 {
+        left.clone()
+    } else {
+        let rows = left.pixels.chunks(left.width as usize).zip(right.pixels.chunks(right.width as usize));
+        let pixels = rows.flat_map(|(left, right)| [left, &[LINE], right].concat()).collect();
+        Picture { width: left.width + 1 + right.width, height: left.height, pixels }
+    };
+    whole.height += panel_height;
+    whole.pixels.resize((whole.width * whole.height) as usize, BLACK);
+    whole
 }
 
 fn wiped(left: &Picture, right: &Picture, wipe: f32) -> Picture {

@@ -149,6 +149,9 @@ fn v_shows_the_tracer_from_outside() {
         let text = seen.screen().text().concat();
         ["o", "v", "q", "p"].iter().all(|letter| text.contains(letter)) && text.contains("first camera")
     });
+    // The second eye has a view rectangle, too, but the one to see is the first camera's.
+    session.send(b"}");
+    session.wait_for_text("tilt 0 2");
     // A key without a binding ends the note, which would be under way for five seconds. The second eye goes back to its
     // place beside the first camera, which stays in the picture.
     session.send(b"[r\x1b[24~");
@@ -169,6 +172,7 @@ fn v_shows_the_tracer_from_outside() {
     let camera = camera(&mut session).expect("it was changed");
     assert_eq!(camera.pose(), load(BALL).camera().pose(), "the second eye has not moved the first camera");
     assert!((camera.rectangle().vertical_fov().to_degrees() - 41.3).abs() < 0.1, "one step of the zoom");
+    assert!((camera.rectangle().tilt().y.to_degrees() - 2.0).abs() < 0.01, "one step of the tilt");
 }
 
 /// `I` builds the picture in both orders, up to the end; keys change the pace.
@@ -187,6 +191,8 @@ fn i_builds_the_picture_in_both_orders() {
         session.send(b" ");
         session.wait_for_text("Space goes on; +- speed 1x");
         session.wait_for_rest();
+        let text = session.seen().screen().text();
+        assert_eq!(text.last().map(|row| row.trim()), Some(""), "the pictures end above the panel");
         session.send(b"++++++ ");
         session.wait_for_text("Space pauses; +- speed 64x");
         session.wait_for_text("10,000");

@@ -105,7 +105,7 @@ impl Inset {
             }
             // Each colour has its own canvas layer, because all dots of a layer in one cell share the cell's colour.
             canvas.layer();
-            canvas.draw(&line(self.rectangle[0], self.rectangle[1], Color::LightBlue));
+            canvas.draw(&line(self.rectangle[0], self.rectangle[1], Color::LightCyan));
             canvas.draw(&line(Vec2::ZERO, self.end, Color::LightGreen));
             canvas.layer();
             let letter = |text: &'static str| Text::styled(text, Style::new().patch(style));
@@ -124,7 +124,7 @@ impl Inset {
         let has_colors = colors != Colors::None;
         let words = [
             (true, "o eye", Color::Reset),
-            (true, "q rectangle", Color::LightBlue),
+            (true, "q rectangle", Color::LightCyan),
             (self.has_hit, "p hit", Color::Reset),
             (has_colors && lit, "lit", Color::LightYellow),
             (has_colors && hidden, "shadow", Color::DarkGray),

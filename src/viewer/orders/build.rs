@@ -54,6 +54,11 @@ impl Build {
         })
     }
 
+    /// Returns the name of the objects that the build counts, most of which may be triangles.
+    pub(super) fn object_name(&self) -> &'static str {
+        if self.comparison.object_tests.len() > 2 * self.starts.len() { "triangle" } else { "object" }
+    }
+
     /// Returns the size of the picture.
     pub(super) fn resolution(&self) -> Resolution {
         self.resolution

@@ -12,6 +12,9 @@ use unicode_width::UnicodeWidthStr;
 
 const SIZE: [u32; 2] = [41, 20];
 
+/// The pixel rows below the pictures.
+const PANEL_HEIGHT: u32 = 4;
+
 /// Returns a frame that compares both orders: a red ball in front of a wall, drawn after the wall.
 fn frame() -> Frame {
     let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), ambient: \"#fff\", objects: [
@@ -19,7 +22,8 @@ fn frame() -> Frame {
         Sphere(center: (0, 0, 0), radius: 1, material: Diffuse(\"#f00\")),
     ])";
     let scene = Scene::from_ron("ball", text).expect("a scene");
-    let (layout, resolution) = (ViewLayout::single(Map::Shaded).twice(), Resolution::square(SIZE[0], SIZE[1]));
+    let (layout, resolution) =
+        (ViewLayout::single(Map::Shaded).twice(PANEL_HEIGHT), Resolution::square(SIZE[0], SIZE[1]));
     let [(_, left), (_, right)] = *layout.map_sizes(resolution) else { panic!("two pictures") };
     let camera = *scene.camera();
     let parts = [left, right].map(|part| tone(&render(&scene, &camera, part, NonZeroU32::MIN), &scene));
@@ -67,7 +71,8 @@ fn both_pictures_are_built_up_to_that_of_the_frame() {
             assert_eq!(next, None, "no timer after the end");
             break;
         };
-        let rows = || picture.pixels.chunks(SIZE[0] as usize).zip(frame.picture.pixels.chunks(SIZE[0] as usize));
+        let [width, height] = [SIZE[0], SIZE[1] - PANEL_HEIGHT].map(|side| side as usize);
+        let rows = || picture.pixels.chunks(width).zip(frame.picture.pixels.chunks(width)).take(height);
         // In image order all pixels before the current one are complete.
         let built: Vec<_> = rows().flat_map(|(row, last)| row[..20].iter().zip(&last[..20])).collect();
         let count = built.iter().take_while(|(pixel, last)| pixel == last).count();
@@ -146,10 +151,12 @@ fn the_words_fit_into_every_screen() {
     let frame = frame();
     let mut comparison = (**frame.orders.as_ref().expect("both orders")).clone();
     comparison.times.image = seconds(0.1234);
-    for (columns, rows, most) in [(40, 12, 7), (80, 24, 7), (200, 60, 7), (81, 12, 7)] {
+    for (columns, rows, most) in [(40, 12, 7), (80, 24, 8), (200, 60, 8), (81, 12, 7)] {
         let total = comparison.total_tests();
         for tests in [0, total / 2, total] {
-            let lines = words::lines(&comparison, tests, columns, rows);
+            let lines = words::lines(&comparison, "object", tests, columns, rows);
+            let height = usize::from(words::height(columns, rows));
+            assert!(tests == total || lines.len() + 1 == height, "{height}: {lines:?}");
             assert!(lines.len() < most, "{lines:?}");
             assert!(lines.iter().all(|line| line.width() + 2 <= usize::from(columns)), "{columns}: {lines:?}");
             assert!(lines.iter().any(|line| line.contains("123 ms")), "{lines:?}");

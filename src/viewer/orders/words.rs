@@ -11,28 +11,42 @@ use unicode_width::UnicodeWidthStr;
 
 /// Least width in columns of each half of the text at which the lecture's questions are shown.
 // The longer question, "at what pixels is this object visible?", has 38 characters.
-const WIDE_HALF: usize = 38;
+const MIN_QUESTION_COLUMNS: usize = 38;
 
-/// Least height of the screen in rows at which the table of times is shown during the build.
-const TALL: u16 = 20;
+/// Least height of the screen in rows at which the step and the table of times are always shown.
+const MIN_PANEL_TEXT_ROWS: u16 = 20;
 
 /// The width of a number in the table, in columns.
 const NUMBER: usize = 7;
 
-/// Returns the lines of text to show after this number of tests.
-pub(super) fn lines(comparison: &Comparison, tests: u64, columns: u16, rows: u16) -> Vec<String> {
+/// Returns the number of lines while the pictures are built, with the row of keys.
+pub(super) fn height(columns: u16, rows: u16) -> u16 {
+    let is_wide = half_width(columns) >= MIN_QUESTION_COLUMNS;
+    let step = u16::from(is_wide && rows >= MIN_PANEL_TEXT_ROWS);
+    let table = if rows >= MIN_PANEL_TEXT_ROWS { 3 } else { 0 };
+    3 + step + table + 1
+}
+
+/// Returns the columns of text below each picture.
+fn half_width(columns: u16) -> usize {
     // Leaves a column for the line between the pictures, and one for the blank before each half.
-    let half = usize::from((columns - 1) / 2).saturating_sub(1);
+    usize::from((columns - 1) / 2).saturating_sub(1)
+}
+
+/// Returns the lines of text to show after this number of tests, in which an object is called
+/// `name`.
+pub(super) fn lines(comparison: &Comparison, name: &str, tests: u64, columns: u16, rows: u16) -> Vec<String> {
+    let half = half_width(columns);
     let is_built = tests >= comparison.total_tests();
     let (pixels, objects) = (comparison.image_tests.len(), comparison.object_tests.len());
     let built = comparison.built_pixels(tests);
     let drawn = comparison.object_tests.partition_point(|&until| until <= tests);
-    let is_wide = half >= WIDE_HALF;
+    let is_wide = half >= MIN_QUESTION_COLUMNS;
     let mut pairs = vec![if is_wide {
         let image = tests_each(&comparison.image_tests).filter(|_| built == pixels).unwrap_or_default();
         let object = tests_each(&comparison.object_tests).filter(|_| drawn == objects).unwrap_or_default();
         let image = format!("Image order: {}{image}", progress("pixel", built, pixels));
-        [image, format!("Object order: {}{object}", progress("object", drawn, objects))]
+        [image, format!("Object order: {}{object}", progress(name, drawn, objects))]
     } else {
         ["image order".to_owned(), "object order".to_owned()]
     }];
@@ -40,7 +54,7 @@ pub(super) fn lines(comparison: &Comparison, tests: u64, columns: u16, rows: u16
         let questions = ["what object is visible at this pixel?", "at what pixels is this object visible?"];
         pairs.push(questions.map(str::to_owned));
     } else if !is_built {
-        pairs.push([progress("pixel", built, pixels), progress("object", drawn, objects)]);
+        pairs.push([progress("pixel", built, pixels), progress(name, drawn, objects)]);
     }
     let figures = |of: &[u64], time: Duration| {
         let all = of.last().copied().unwrap_or(0);
@@ -51,8 +65,11 @@ pub(super) fn lines(comparison: &Comparison, tests: u64, columns: u16, rows: u16
     let OrderTimes { image, object } = comparison.times;
     pairs.push([figures(&comparison.image_tests, image), figures(&comparison.object_tests, object)]);
     let mut lines: Vec<_> = pairs.into_iter().map(|[left, right]| format!("{left:<half$}  {right}")).collect();
-    if is_built || rows >= TALL {
-        lines.extend(growth(comparison, is_wide));
+    if is_wide && rows >= MIN_PANEL_TEXT_ROWS {
+        lines.push(STEP.to_owned());
+    }
+    if is_built || rows >= MIN_PANEL_TEXT_ROWS {
+        lines.extend(times_table(comparison, is_wide));
     }
     lines
 }
@@ -72,11 +89,14 @@ fn tests_each(until: &[u64]) -> Option<String> {
     Some(if mean < 9.95 { format!(" x {mean:.1} tests") } else { format!(" x {mean:.0} tests") })
 }
 
-/// The unit that both orders count, in words beside the table of times, if there is room.
-const TEST: [&str; 3] = ["a test: a ray against", "an object or a box, or", "an object at a pixel"];
+/// The step by which both pictures advance, in words above the table of times, if there is room.
+const STEP: &str = "A step is one test on each side: of a ray or pixel against an object or box.";
+
+/// The meaning of the times, in words beside the table of times, if there is room.
+const TIMES: [&str; 3] = ["times of whole pictures", "at full speed, without", "this slow build"];
 
 /// Returns a table of the times of both orders for growing numbers of spheres.
-fn growth(comparison: &Comparison, is_wide: bool) -> [String; 3] {
+fn times_table(comparison: &Comparison, is_wide: bool) -> [String; 3] {
     let names = if is_wide {
         ["spheres in a cube", "image order, ms", "object order, ms"]
     } else {
@@ -89,11 +109,11 @@ fn growth(comparison: &Comparison, is_wide: bool) -> [String; 3] {
         comparison.growth.iter().map(|(_, times)| milliseconds(times.image)).collect(),
         comparison.growth.iter().map(|(_, times)| milliseconds(times.object)).collect(),
     ];
-    let mut names = names.into_iter().zip(TEST);
+    let mut names = names.into_iter().zip(TIMES);
     rows.map(|row| {
-        let (name, test) = names.next().unwrap_or_default();
+        let (name, about) = names.next().unwrap_or_default();
         let line = row.iter().fold(format!("{name:<first$}"), |line, number| line + &format!("{number:>NUMBER$}"));
-        if is_wide { format!("{line}    {test}") } else { line }
+        if is_wide { format!("{line}    {about}") } else { line }
     })
 }
 

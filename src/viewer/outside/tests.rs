@@ -1,4 +1,5 @@
 use super::*;
+use glam::Vec3;
 
 #[test]
 fn the_first_eye_and_its_target_are_seen_from_outside() {

@@ -1,5 +1,7 @@
 use super::*;
 
+const BESIDE: Split = Split::Beside { panel_height: 0 };
+
 fn shown(map: Map, other: Map, split: Split) -> ViewLayout {
     ViewLayout { map, right: Some(RightMap { map: other, split }) }
 }
@@ -11,18 +13,18 @@ fn maps_go_round_and_the_right_one_alone_of_two() {
         seen.change_map(Map::next);
         assert_eq!(seen, ViewLayout::single(map));
     }
-    let mut two = shown(Map::Lambert, Map::Shaded, Split::Beside);
+    let mut two = shown(Map::Lambert, Map::Shaded, BESIDE);
     two.change_map(Map::next);
-    assert_eq!(two, shown(Map::Lambert, Map::Depth, Split::Beside), "not what is on the left");
+    assert_eq!(two, shown(Map::Lambert, Map::Depth, BESIDE), "not what is on the left");
     two.change_map(Map::previous);
-    assert_eq!(two, shown(Map::Lambert, Map::Shaded, Split::Beside));
+    assert_eq!(two, shown(Map::Lambert, Map::Shaded, BESIDE));
 }
 
 #[test]
 fn two_maps_are_beside_each_other_then_wiped_then_one() {
     let mut seen = ViewLayout::single(Map::Depth);
     seen.compare();
-    assert_eq!(seen, shown(Map::Depth, Map::Normal, Split::Beside));
+    assert_eq!(seen, shown(Map::Depth, Map::Normal, BESIDE));
     seen.compare();
     assert!(seen.is_wipe());
     seen.compare();
@@ -34,7 +36,7 @@ fn two_maps_are_beside_each_other_then_wiped_then_one() {
 #[test]
 fn two_maps_side_by_side_cost_one_picture_and_a_wipe_two() {
     let whole = Resolution::square(80, 4).with_pixel_aspect(0.5).expect("a shape of pixels");
-    let parts = shown(Map::Shaded, Map::Depth, Split::Beside).map_sizes(whole);
+    let parts = shown(Map::Shaded, Map::Depth, BESIDE).map_sizes(whole);
     let widths: Vec<_> = parts.iter().map(|(_, part)| part.width()).collect();
     assert_eq!(widths, [39, 40]);
     assert!(parts.iter().all(|(_, part)| part.height() == 4 && part.pixel_aspect() == 0.5));
@@ -50,7 +52,7 @@ fn only_the_shaded_map_is_refined() {
     assert_eq!(ViewLayout::single(Map::Depth).sampling(Sampling::BEST), one);
     assert_eq!(ViewLayout::single(Map::Depth).sampling(Sampling::Coarse), Sampling::Coarse);
     assert_eq!(shown(Map::Depth, Map::Shaded, Split::Wipe).sampling(Sampling::BEST), Sampling::BEST);
-    assert_eq!(shown(Map::Depth, Map::Object, Split::Beside).sampling(Sampling::BEST), one);
+    assert_eq!(shown(Map::Depth, Map::Object, BESIDE).sampling(Sampling::BEST), one);
 }
 
 fn flat(width: u32, band: u8) -> Picture {
@@ -66,8 +68,13 @@ fn rows(picture: &Picture) -> Vec<String> {
 
 #[test]
 fn a_line_separates_two_pictures() {
-    let beside = shown(Map::Shaded, Map::Depth, Split::Beside);
+    let beside = shown(Map::Shaded, Map::Depth, BESIDE);
     assert_eq!(rows(&beside.combined(&[flat(3, 1), flat(4, 2)], 0.5).expect("two")), ["111|2222"; 2]);
+    let above_panel = ViewLayout::single(Map::Shaded).twice(1);
+    let combined = above_panel.combined(&[flat(3, 1), flat(4, 2)], 0.5).expect("two");
+    assert_eq!(rows(&combined), ["111|2222", "111|2222", "00000000"]);
+    let heights = above_panel.map_sizes(Resolution::square(8, 3)).into_iter().map(|(_, part)| part.height());
+    assert!(heights.eq([2, 2]));
     let wipe = shown(Map::Shaded, Map::Depth, Split::Wipe);
     for (share, row) in [(0.0, "|222"), (0.5, "11|2"), (0.9, "111|"), (1.0, "111|")] {
         assert_eq!(rows(&wipe.combined(&[flat(4, 1), flat(4, 2)], share).expect("two")), [row; 2]);
@@ -78,7 +85,7 @@ fn a_line_separates_two_pictures() {
 fn no_screen_is_too_narrow() {
     for width in 1..5 {
         let whole = Resolution::square(width, 2);
-        for split in [Split::Beside, Split::Wipe] {
+        for split in [BESIDE, Split::Wipe] {
             let seen = shown(Map::Shaded, Map::Depth, split);
             let parts: Vec<_> = seen.map_sizes(whole).iter().map(|(_, part)| flat(part.width(), 1)).collect();
             let combined = seen.combined(&parts, 0.5).expect("two");
