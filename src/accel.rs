@@ -233,7 +233,7 @@ impl<S> List<S> {
         self.first + self.primitives.len() as u32
     }
 
-    /// Returns whether a primitive is in the list.
+    /// Returns whether the primitive with this index belongs to this list.
     #[inline(always)]
     pub(crate) fn contains(&self, primitive: u32) -> bool {
         (self.first..self.end_index()).contains(&primitive)
@@ -321,7 +321,7 @@ impl Accelerator {
         self.depends_on_time
     }
 
-    /// Returns the trees with the surfaces as they are at a time in seconds.
+    /// Returns the accelerator with the surfaces as they are at a time in seconds.
     // Bounds do not move, so the trees stay as they are. Triangles are copied: 100,000 take about a millisecond.
     pub(crate) fn at_time(&self, seconds: f64) -> Self {
         let mut moved = self.clone();
@@ -413,7 +413,7 @@ impl<S> Tree<S> {
         self.first + (self.leaves.len() * LANES) as u32
     }
 
-    /// Returns whether a primitive is in one of the leaves.
+    /// Returns whether the primitive with this index belongs to this tree.
     #[inline(always)]
     pub(crate) fn contains(&self, primitive: u32) -> bool {
         (self.first..self.end_index()).contains(&primitive)
@@ -425,7 +425,7 @@ impl<S> Tree<S> {
         !self.bvh.is_leaf()
     }
 
-    /// Returns the leaf of a primitive, and the ids in it.
+    /// Returns the leaf of the primitive with this index, and the ids of the leaf's primitives.
     #[inline(always)]
     pub(crate) fn leaf(&self, primitive: u32) -> (&S, &PrimitiveIds<F32x8>) {
         let leaf = (primitive - self.first) as usize / LANES;
@@ -438,7 +438,7 @@ impl<S> Tree<S> {
         simd::prefetch(&self.leaves[leaf]);
     }
 
-    /// Returns the id of a primitive.
+    /// Returns the id of the primitive with this index.
     #[inline(always)]
     pub(crate) fn id(&self, primitive: u32) -> PrimitiveId {
         let at = (primitive - self.first) as usize;
@@ -494,7 +494,7 @@ impl<T: Surface + Clone + Sync> TreeBuilder<T> {
             (S::of(&shapes[..numbers.len()]), PrimitiveIds::of(from_fn(|lane| self.ids[number(lane)])))
         };
         let single_leaf_count = if bvh.is_leaf() { self.ids.len() } else { 0 };
-        let count = places.count();
+        let count = places.leaf_count();
         let (leaves, ids) =
             if count < MIN_PARALLEL_LEAVES { (0..count).map(leaf).unzip() } else { threads::unzip(count, leaf) };
         Ok(Tree { bvh, leaves, ids, first, single_leaf_count })

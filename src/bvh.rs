@@ -36,7 +36,7 @@ pub struct Leaves {
 
 impl Leaves {
     /// Returns the number of leaves.
-    pub fn count(&self) -> usize {
+    pub fn leaf_count(&self) -> usize {
         self.ranges.len()
     }
 

@@ -289,7 +289,7 @@ impl Basis {
         if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
             return Err(CameraError::NotFinite);
         }
-        if ![eye, target, up].into_iter().all(checks::is_near) {
+        if ![eye, target, up].into_iter().all(checks::is_within_range) {
             return Err(CameraError::TooFar);
         }
         let w = unit_vector(eye - target).ok_or(CameraError::EyeIsTarget)?;

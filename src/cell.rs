@@ -199,7 +199,7 @@ impl CellMode {
         trace(map, executor, scene, camera, resolution, sampling)
     }
 
-    /// Returns the default sampling of a frame: at most 17 rays per cell.
+    /// Returns the default sampling of a frame: at most 17 rays per cell on average.
     #[doc(hidden)]
     pub const fn sampling(self) -> Sampling {
         // With one ray for 2 by 2 pixels, and four where these differ, quadrants and eighths have a PSNR of 30.60 dB,

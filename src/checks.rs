@@ -89,11 +89,11 @@ pub(crate) const TOO_FAR: &str =
     "coordinates must lie within ±1e9; light cannot be followed farther in single precision";
 
 /// Returns whether all points are within the range that rays can be traced in.
-pub(crate) fn are_near(points: &[Vec3]) -> bool {
+pub(crate) fn are_within_range(points: &[Vec3]) -> bool {
     points.iter().all(|point| f64::from(point.abs().max_element()) <= MAX_COORDINATE)
 }
 
-/// The message for a mesh that is not [near](are_near).
+/// The message for a mesh that is not [within range](are_within_range).
 pub(crate) const MESH_TOO_FAR: &str = "this mesh reaches beyond ±1e9; scale it down, or light cannot be followed";
 
 /// Checks that a length is positive and can be squared twice in f32; `what` is its name for
@@ -108,7 +108,7 @@ pub(crate) fn length(what: &str, value: f64) -> Result<f32, Message> {
     Ok(value as f32)
 }
 
-/// Checks that two points, whose names are given, are apart.
+/// Checks that `length`, the distance of two points named `from` and `to`, is not too small.
 pub(crate) fn distance(from: &str, to: &str, length: f64) -> Result<f64, Message> {
     if length < MIN_LENGTH {
         return Err(format!("{from} and {to} must be different points, at least 1e-9 apart").into());
@@ -125,8 +125,8 @@ pub(crate) fn factor(value: f64) -> Result<f32, Message> {
     }
 }
 
-/// Checks an angle of a rotation in degrees.
-pub(crate) fn angle(degrees: f64) -> Result<f32, Message> {
+/// Checks an angle of a rotation, which stays in degrees.
+pub(crate) fn angle_in_degrees(degrees: f64) -> Result<f32, Message> {
     const MAX_ANGLE: f64 = 36_000.0;
     if degrees.abs() <= MAX_ANGLE { Ok(degrees as f32) } else { Err("an angle must lie within ±36000 degrees".into()) }
 }
@@ -199,8 +199,8 @@ pub(crate) fn is_long(vector: Vec3) -> bool {
 }
 
 /// Returns whether a point is within the range that rays can be traced in.
-pub(crate) fn is_near(vector: DVec3) -> bool {
-    vector.abs().max_element() <= MAX_COORDINATE
+pub(crate) fn is_within_range(point: DVec3) -> bool {
+    point.abs().max_element() <= MAX_COORDINATE
 }
 
 // Parameters of constructors
@@ -216,8 +216,8 @@ pub(crate) fn checked_number(
     checked.map_err(|message| SceneFault::new(format!("{name} is {value}"), message))
 }
 
-/// Checks the coordinates of a vector that is given in code, and returns the result of a rule for
-/// it.
+/// Checks the coordinates of a vector that is given in code, and returns the result of `rule`
+/// for it.
 fn checked_vector<T>(
     name: impl fmt::Display,
     vector: Vec3,

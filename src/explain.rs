@@ -186,7 +186,7 @@ fn light_contribution(scene: &Scene, light: &Light, point: &SurfacePoint) -> Lig
     }
 }
 
-/// An observer that records the surfaces and nodes that a ray is tested against.
+/// An observer that records the surfaces that a ray is tested against, and counts the nodes.
 #[derive(Default)]
 struct TestRecorder {
     nodes: u32,

@@ -109,8 +109,8 @@ impl Resolution {
         }
     }
 
-    /// Returns the pixels of a picture of this size, enlarged to `across` by `down` by repeating
-    /// them.
+    /// Returns the pixels of a picture of this size, repeated to fill `across` columns and `down`
+    /// rows.
     #[cfg(any(feature = "png", feature = "gif"))]
     pub(crate) fn repeated<T: Copy>(self, pixels: &[T], [across, down]: [usize; 2]) -> impl Iterator<Item = T> {
         let (width, height) = (self.width as usize, self.height as usize);

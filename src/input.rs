@@ -269,7 +269,7 @@ impl Parser {
             return;
         }
         let tokens = self.tokeniser.tokens_after(byte, &[]);
-        // After a leading byte of UTF-8 the character is unfinished. After a continuation byte it is unfinished if the
+        // A character of several bytes goes on after its leading byte, and after a continuation byte for which the
         // tokeniser has returned no token.
         let unfinished = match byte {
             0xc2..=0xf4 => true,

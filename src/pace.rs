@@ -73,7 +73,7 @@ const MIN_FRAME_BYTES: usize = 200;
 // of 50 KB/s and 200 ms are used, and the effect of a key is visible after 303 ms in the median.
 const PACING_GAIN: f64 = 0.86;
 /// Transmission time to assume if the computed one is not a valid duration, as for a rate of zero.
-const MAX_TRANSMISSION_TIME: Duration = Duration::from_secs(1);
+const FALLBACK_TRANSMISSION_TIME: Duration = Duration::from_secs(1);
 /// Limit on the time without sending that is made up for by sending sooner afterwards.
 // The loop may send a frame up to a frame time (16.7 ms) after it is due; without credit for that, each delay would
 // lose link time for good. A longer credit would allow bursts that queue.
@@ -310,7 +310,7 @@ impl Link {
         let share = if matches!(self.replies.state, State::Resyncing { .. }) { PACING_GAIN / 2.0 } else { PACING_GAIN };
         let measured = measured.map_or(f64::INFINITY, |rate| share * rate.bytes_per_second);
         let rate = measured.min(self.max_rate.unwrap_or(f64::INFINITY));
-        let takes = Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(MAX_TRANSMISSION_TIME);
+        let takes = Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(FALLBACK_TRANSMISSION_TIME);
         self.free_at = self.free_at.max(now.saturating_sub(BURST_CREDIT)) + takes;
         self.drained_at = self.drained_at.max(now) + takes;
     }

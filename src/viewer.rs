@@ -174,7 +174,7 @@ pub(crate) struct Viewer {
     requests: VecDeque<Request>,
     /// The names of the scenes, by the index of the scene.
     names: Vec<String>,
-    /// The current time, which the last call passed.
+    /// The time of the viewer's clock, which the last call passed.
     now: Duration,
     /// The time of the last key or movement of the mouse; 0 before the first.
     last_event: Duration,
@@ -237,7 +237,8 @@ impl Viewer {
         }
     }
 
-    fn set_time(&mut self, now: Duration) {
+    /// Sets the time of the viewer's clock.
+    fn set_now(&mut self, now: Duration) {
         self.now = now;
     }
 
@@ -436,7 +437,7 @@ impl Viewer {
 
     /// Returns the driver's next action.
     pub(crate) fn next_step(&mut self, busy: DriverState, now: Duration) -> Step {
-        self.set_time(now);
+        self.set_now(now);
         self.playback.advance(now);
         // Gives the eye the scene at its current time, because a moving surface stops the eye where the surface is now.
         if let Some(scene) = self.scene().filter(|_| self.playback.moved_until().is_some()) {
@@ -487,9 +488,9 @@ impl Viewer {
         }
     }
 
-    /// Begins a frame of a shot that no frame has been begun for.
+    /// Begins a frame of a shot that no frame has been begun for; returns the step that traces it.
     ///
-    /// The returned step sends a query first, which measures the link's round trip without a frame's bytes.
+    /// The step sends a query first, which measures the link's round trip without a frame's bytes.
     fn begin_new_view(&mut self) -> Step {
         let Some((scene, shot)) = self.scene().zip(self.wanted_shot()) else { return Step::Wait(None) };
         let probe = self.pacing.probe(self.now);
@@ -498,7 +499,7 @@ impl Viewer {
         Step::Trace(probe, Job { scene, shot, sampling: self.layout.sampling(sampling), refines: false })
     }
 
-    /// Begins the next refinement of the last frame.
+    /// Returns the step that traces the next refinement of the last frame.
     fn begin_refinement(&self) -> Step {
         let wanted = self.scene().zip(self.wanted_shot()).zip(self.next_refinement());
         let Some(((scene, shot), sampling)) = wanted else { return Step::Wait(None) };
@@ -541,7 +542,7 @@ impl Viewer {
     ///
     /// Call [`end_frame`](Self::end_frame) with these bytes afterwards.
     pub(crate) fn draw(&mut self, now: Duration, bytes: &mut Vec<u8>) {
-        self.set_time(now);
+        self.set_now(now);
         let size = self.display.size();
         let limit = self.pacing.limit(Screen::usual_bytes(size), now);
         self.screen.draw(size, &self.options.keymap, limit, now, bytes);

@@ -122,11 +122,11 @@ impl Watching {
         self.problem.as_deref()
     }
 
-    /// Resolves the paths to the files and watches their folders.
+    /// Follows the links to the scene's files, watches their folders, and returns whether a file
+    /// has changed.
     ///
-    /// Returns whether a file has changed. Unless `compares_all` is set, only files in newly watched folders are
-    /// compared: in a folder that was watched before, an event follows when a file's writer closes it, and until then
-    /// the file may be incomplete.
+    /// With `compares_all` all files are compared, otherwise those in folders that were not watched before. In the
+    /// other folders a file may be incomplete: an event follows when its writer closes it.
     fn watch_and_find_change(&mut self, compares_all: bool) -> bool {
         let mut fresh = HashSet::new();
         for _ in 0..MAX_RESOLUTIONS {

@@ -53,7 +53,7 @@ impl<'p> WideBuilder<'p> {
         Child::node(number as u32)
     }
 
-    /// Adds the binary nodes that represent node `index` in at most `slots` slots of a wide node.
+    /// Adds to `children` the binary nodes that represent node `index` in at most `slots` slots.
     fn gather_children(&self, index: usize, slots: usize, children: &mut Children) {
         let left = usize::from(self.slot_divisions[index][slots - 1]);
         if left == NODE_ITSELF {
@@ -82,7 +82,8 @@ type SlotDivision = [u8; LANES];
 /// The entry of a [`SlotDivision`] for a node that takes one slot by itself.
 const NODE_ITSELF: usize = 0;
 
-/// Chooses the wide nodes so that a ray is expected to visit as few as possible.
+/// Returns the division of each binary node for which a ray is expected to visit the fewest wide
+/// nodes.
 ///
 /// By dynamic programming over the binary tree (Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal on GPUs
 /// Through Compressed Wide BVHs, 2017).
@@ -107,7 +108,8 @@ fn slot_divisions(pairs: &[BinaryNode]) -> Vec<SlotDivision> {
     slot_divisions
 }
 
-/// Computes the cheapest division of an inner node, and returns its cost for each number of slots.
+/// Divides each number of slots between the two children of an inner node as cheaply as possible,
+/// and returns the costs.
 ///
 /// The cost is the sum of the half areas of all wide nodes. `area` is the half area of the node, `left` and `right` are
 /// the costs of its children.

@@ -70,8 +70,8 @@ pub(super) struct PictureArgs {
     /// Rays per pixel; best: 1 to 64 [default: 1; PNG, GIF: best]
     ///
     /// The first ray goes through the centre of the pixel. best traces one ray, and up to 64 at edges. The default for
-    /// blocks, octants, sextants and braille is one ray for 2 by 2 pixels, and one per pixel where the contrast is
-    /// high: at most 17 rays per cell.
+    /// blocks, octants, sextants and braille is one ray for each block of 2 by 2 pixels, and one per pixel in the
+    /// blocks with the highest contrast, at most 9 of 32.
     #[arg(long, value_name = "N|best", value_parser = parse_samples)]
     samples: Option<Sampling>,
     /// Picture files: draw each pixel as N by N pixels of the file [default: 1]

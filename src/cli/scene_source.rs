@@ -70,11 +70,11 @@ impl SceneSource {
                 let draft = Draft::from_mesh_bytes(STDIN, *stated, bytes, up, reporter);
                 draft.map_err(usage)
             }
-            Self::Stdin(text, _) => Draft::from_bytes(STDIN, text, reporter).map_err(wrong),
+            Self::Stdin(text, _) => Draft::from_bytes(STDIN, text, reporter).map_err(scene_failure),
             Self::Shipped(scene) => {
-                Draft::from_embedded(scene.name, scene.text.as_bytes(), scene.meshes, reporter).map_err(wrong)
+                Draft::from_embedded(scene.name, scene.text.as_bytes(), scene.meshes, reporter).map_err(scene_failure)
             }
-            Self::Formula(text) => Draft::from_bytes(FORMULA, text.as_bytes(), reporter).map_err(wrong),
+            Self::Formula(text) => Draft::from_bytes(FORMULA, text.as_bytes(), reporter).map_err(scene_failure),
         }
     }
 }
@@ -90,7 +90,8 @@ impl fmt::Display for SceneSource {
     }
 }
 
-fn wrong(unfinished: Unfinished<SceneError>) -> Failure {
+/// Returns the failure of a scene that is wrong, or whose loading was cancelled.
+fn scene_failure(unfinished: Unfinished<SceneError>) -> Failure {
     match unfinished {
         Unfinished::Failed(error) => Failure::Scene(error),
         Unfinished::Cancelled => usage(unfinished),

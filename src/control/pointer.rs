@@ -82,7 +82,7 @@ impl Pointer {
             MouseEventKind::Up(_) => self.held.take().map(|_| Gesture::Release),
             MouseEventKind::ScrollUp => Some(Gesture::Wheel { at, notches: 1.0 }),
             MouseEventKind::ScrollDown => Some(Gesture::Wheel { at, notches: -1.0 }),
-            // Motion without a button is not requested from the terminal, and no gesture uses it.
+            // No gesture uses these; motion without a button is not even requested from the terminal.
             MouseEventKind::Moved | MouseEventKind::ScrollLeft | MouseEventKind::ScrollRight => None,
         }
     }

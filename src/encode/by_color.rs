@@ -16,7 +16,7 @@ use super::strokes::cursor_after;
 use crate::grid::{Attributes, Grid, HalfBlocks, PackedCell, PackedInk};
 use std::ops::Range;
 
-/// The working memory of the order.
+/// The working memory of [`order`].
 #[derive(Default)]
 pub(super) struct Scratch {
     /// The cells of the picture, in reading order.
@@ -119,8 +119,8 @@ struct Color {
 /// The colours of a pen without attributes.
 #[derive(Clone, Copy)]
 struct PenColors {
-    /// The indices in `Tour::colors` of the glyph's and the background's colour; `u32::MAX` for a
-    /// colour that the picture does not have.
+    /// The indices in `Tour::colors` of the pen's colours, for glyphs and for the background;
+    /// `u32::MAX` for one that no cell of the picture has.
     colors: [u32; 2],
     /// The bytes of the codes that the next sequence begins with, which end the attributes of text.
     code_len: u32,

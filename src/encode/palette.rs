@@ -22,7 +22,7 @@ const LIGHTNESS_STEPS: usize = 4096;
 /// The number that marks the end of a linked list.
 const NONE: u32 = u32::MAX;
 
-/// The working memory of the reduction.
+/// The working memory of the reduction of colours.
 #[derive(Default)]
 pub(super) struct Reduction {
     /// The distinct colours of the cells and of the pen, in the order in which they are found.

@@ -35,14 +35,14 @@ pub(super) struct Continuity {
 impl Model {
     pub(super) const ANYTHING: Self = Self { c: [0.0; 3], error: f64::INFINITY };
 
-    /// Returns the model with room for the rounding errors of `error` itself.
+    /// Returns the model with `error`, raised a little because its own computation was rounded.
     fn new(c: [f64; 3], error: f64) -> Self {
         // No term of `error` is rounded more than 32 times, each time by half of EPSILON at most. Products that
         // underflow to 0 add less than MIN_POSITIVE.
         Self { c, error: error * (1.0 + 16.0 * EPSILON) + f64::MIN_POSITIVE }
     }
 
-    /// Returns an exact constant.
+    /// Returns the model of a constant, whose error is 0.
     pub(super) fn constant(value: f64) -> Self {
         Self { c: [value, 0.0, 0.0], error: 0.0 }
     }
@@ -94,7 +94,7 @@ impl Model {
         self.plus(other.negate())
     }
 
-    /// Returns the product, whose terms of orders 3 and 4 go into the error.
+    /// Returns the model of the product, whose terms of orders 3 and 4 go into the error.
     fn times(self, other: Self) -> Self {
         let ([a0, a1, a2], [b0, b1, b2]) = (self.c, other.c);
         let (of_a, of_b) = (self.magnitude(), other.magnitude());
@@ -133,7 +133,7 @@ impl Model {
 pub(super) struct Evaluation<'c>(pub(super) &'c mut Continuity);
 
 impl Evaluation<'_> {
-    /// Notes that the function may jump or be undefined on the range, and returns
+    /// Notes that an operation may jump, and whether it is undefined everywhere; returns
     /// [`Model::ANYTHING`].
     fn anything(&mut self, is_undefined: bool) -> Model {
         self.0.may_jump = true;
@@ -327,7 +327,9 @@ fn minimum(a: Model, b: Model) -> Model {
 }
 
 impl Tape {
-    /// Returns the model of the formula for models of x, y and z; `models` is scratch memory.
+    /// Returns the model and the continuity of the formula for models of x, y and z.
+    ///
+    /// `models` is scratch memory.
     pub(super) fn model(&self, coordinates: [Model; 3], models: &mut Vec<Model>) -> (Model, Continuity) {
         models.clear();
         let mut continuity = Continuity::default();

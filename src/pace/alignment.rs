@@ -7,7 +7,7 @@
 //! query are due; on a link that has merely become slower they do not.
 
 use super::ledger::InFlight;
-use super::{MAX_TRANSMISSION_TIME, MIN_FRAME_BYTES};
+use super::{FALLBACK_TRANSMISSION_TIME, MIN_FRAME_BYTES};
 use std::time::Duration;
 
 /// Number of consecutive misaligned replies after which a reply counts as lost.
@@ -53,7 +53,7 @@ impl Alignment {
         now: Duration,
     ) -> bool {
         let is_on_time = |query: &InFlight, rate: f64, tolerance: Duration| {
-            let takes = Duration::try_from_secs_f64(query.bytes as f64 / rate).unwrap_or(MAX_TRANSMISSION_TIME);
+            let takes = Duration::try_from_secs_f64(query.bytes as f64 / rate).unwrap_or(FALLBACK_TRANSMISSION_TIME);
             (query.sent + takes + round_trip).abs_diff(now) <= tolerance
         };
         let mut queries = queries.into_iter();

@@ -4,7 +4,7 @@ use super::alignment::Alignment;
 use super::estimates::{BusyPeriod, FrameFloor, Rates, RoundTrip};
 use super::initial_window::InitialWindow;
 use super::ledger::{InFlight, Ledger, Matched, Query, Validity};
-use super::{FRAME_TIME, MAX_TRANSMISSION_TIME};
+use super::{FALLBACK_TRANSMISSION_TIME, FRAME_TIME};
 use crate::protocol::{FENCE, Tag};
 use std::time::Duration;
 
@@ -255,7 +255,7 @@ impl ReplyTracker {
     /// unknown.
     pub(super) fn transmission_time(&self, bytes: usize) -> Duration {
         let rate = self.rates.best().map_or(f64::INFINITY, |rate| rate.bytes_per_second);
-        Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(MAX_TRANSMISSION_TIME)
+        Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(FALLBACK_TRANSMISSION_TIME)
     }
 
     pub(super) fn is_probe_due(&self, now: Duration) -> bool {

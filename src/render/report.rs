@@ -6,13 +6,13 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The time after a progress report at which the next report is due.
+/// The time after a render's progress report at which the next is due, however small the progress.
 // A render of 1920x1080 with best samples made 198 reports, at most 27 ms apart.
-const MAX_REPORT_PERIOD: Duration = Duration::from_millis(10);
+const REPORT_PERIOD: Duration = Duration::from_millis(10);
 
 /// The progress since a report, as a fraction of the work, at which the next report is due.
 // Half a percent gives even a render of a few milliseconds enough reports to draw a bar.
-const MIN_REPORT_STEP: f32 = 0.005;
+const REPORT_STEP: f32 = 0.005;
 
 /// The progress of a render, and the callback that receives it.
 pub struct Report<'a> {
@@ -60,7 +60,7 @@ impl<'a> Report<'a> {
         done.units += units;
         let part = done.units as f32 / self.total as f32;
         if part < 1.0
-            && (part - done.reported >= MIN_REPORT_STEP || done.at.elapsed() >= MAX_REPORT_PERIOD)
+            && (part - done.reported >= REPORT_STEP || done.at.elapsed() >= REPORT_PERIOD)
             && !self.is_cancelled()
         {
             self.call_callback(part);

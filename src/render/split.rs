@@ -12,7 +12,7 @@ use crate::scene::Scene;
 use crate::shade;
 
 /// The greatest share of blocks that are split, as a fraction.
-// A glyph kind with 4 by 8 pixels then has at most 8 + 32 * 9 / 32 = 17 rays per cell.
+// A glyph kind with 4 by 8 pixels then has at most 8 + 32 * 9 / 32 = 17 rays per cell on average.
 const MAX_SHARE: (usize, usize) = (9, 32);
 
 /// The least difference of the square roots of light between two blocks at which both may be split.

@@ -268,13 +268,14 @@ const SUFFIXES: [&str; 12] = ["f32", "f64", "i8", "i16", "i32", "i64", "i128", "
 /// Parses a number: decimal or with a base prefix, with underscores and Rust's suffixes.
 fn parse_number(token: &str) -> Option<f64> {
     if is_prefixed(token) {
-        return prefixed_number(token);
+        return number_in_other_base(token);
     }
     let digits = SUFFIXES.iter().find_map(|suffix| token.strip_suffix(suffix)).unwrap_or(token);
     digits.replace('_', "").parse().ok()
 }
 
-fn prefixed_number(text: &str) -> Option<f64> {
+/// Parses a number with a sign and one of the prefixes 0x, 0o and 0b.
+fn number_in_other_base(text: &str) -> Option<f64> {
     let digits = text.trim_start_matches(['+', '-']);
     let base = match digits.as_bytes()[1].to_ascii_lowercase() {
         b'x' => 16,

@@ -81,7 +81,7 @@ impl Implicit {
     /// Values are clamped to 0 to 1; undefined values (NaN) count as 0.
     pub(super) fn own_reflectance(&self, position: Vec3) -> Option<LinearRgb> {
         let [r, g, b] = self.0.colors.as_ref()?.each_ref().map(|color| {
-            let value = color.value(self.point(position));
+            let value = color.value(self.in_formula_space(position));
             if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) as f32 }
         });
         Some(LinearRgb::new(r, g, b))
@@ -92,9 +92,9 @@ impl Implicit {
         self.0.warning
     }
 
-    /// Returns the part of an interval in which a line is within the bounds; empty if `min > max`.
+    /// Returns the part of `of_box` in which a line is within the bounds; empty if `min > max`.
     ///
-    /// `of_box` is the part within the bounds in the scene.
+    /// `of_box` is the interval in which the line is in the scene's box around the bounds.
     fn within_bounds(&self, line: &Line, of_box: Interval) -> Interval {
         let of_box = if self.0.map.is_some() {
             let inside = line_in_box(line, &self.0.bounds);
@@ -117,13 +117,13 @@ impl Implicit {
         Interval { min: of_box.min.max(enters), max: of_box.max.min(leaves) }
     }
 
-    /// Returns the line of a ray, in which f is evaluated and its roots are enclosed.
+    /// Returns the line of a ray in the coordinates of the formula.
     fn line_of_ray(&self, ray: &Ray) -> Line {
         shape_line(self.0.map.as_ref(), ray)
     }
 
     /// Returns a point of the scene in the coordinates of the formula.
-    fn point(&self, point: Vec3) -> DVec3 {
+    fn in_formula_space(&self, point: Vec3) -> DVec3 {
         self.0.map.as_ref().map_or(point.as_dvec3(), |map| map.shape_point(point.as_dvec3()))
     }
 
@@ -145,7 +145,7 @@ impl Implicit {
     }
 }
 
-/// Returns the part of a line in a box; it is empty if `min > max`.
+/// Returns the interval of t in which a line is in a box; empty if `min > max`.
 fn line_in_box(line: &Line, bounds: &Bounds) -> Interval {
     let ray = Ray { origin: line.origin.as_vec3(), direction: line.direction.as_vec3() };
     bounds.crossed(&Probe::new(ray))
@@ -163,9 +163,10 @@ impl Surface for Implicit {
         (crosses != 0).then_some(t.0[0])
     }
 
-    /// Returns the first root along each active ray; the rays are searched together.
+    /// Returns the mask of the rays that cross the surface, and the t of their first roots.
     ///
-    /// `inside` has the intervals of the box, `within` those in which a root counts.
+    /// The rays are searched together. `inside` has the intervals of t in which they are in the box around the surface,
+    /// `within` those in which a root counts.
     fn closest_crossings(&self, rays: &EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8) {
         let mut searches = Searches::NONE;
         for lane in set_bits(rays.active) {
@@ -185,7 +186,7 @@ impl Surface for Implicit {
         (set_bits(found).filter(is_within).fold(0, |lanes, lane| lanes | 1 << lane), t)
     }
 
-    /// Returns the point, moved onto the surface along the gradient.
+    /// Returns the point of the ray at `t`, moved onto the surface along the gradient.
     ///
     /// The move corrects the rounding of t.
     ///
@@ -250,7 +251,7 @@ impl Described for Implicit {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let (Definition { formula, bounds, ball, .. }, at) = (&*self.0, self.point(point));
+        let (Definition { formula, bounds, ball, .. }, at) = (&*self.0, self.in_formula_space(point));
         let in_box = at.cmpge(bounds.min.as_dvec3()).all() && at.cmple(bounds.max.as_dvec3()).all();
         in_box && ball.is_none_or(|ball| ball.center.distance(at) < ball.radius) && formula.value(at) < 0.0
     }

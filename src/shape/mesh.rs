@@ -33,7 +33,7 @@ impl Mesh {
     /// If a coordinate lies outside ±1e9.
     #[doc(hidden)]
     pub fn new(file: MeshFile) -> Result<Self, SceneFault> {
-        if !checks::are_near(file.positions()) {
+        if !checks::are_within_range(file.positions()) {
             return Err(SceneFault::new("positions", checks::MESH_TOO_FAR));
         }
         Ok(Self { file })

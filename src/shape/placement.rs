@@ -43,7 +43,7 @@ impl Placement {
         let fault = |name, value: f64, message| SceneFault::new(format!("{name} is {value}"), message);
         for axis in 0..3 {
             checks::factor(scale[axis]).map_err(|message| fault("scale", scale[axis], message))?;
-            checks::angle(degrees[axis]).map_err(|message| fault("rotation", degrees[axis], message))?;
+            checks::angle_in_degrees(degrees[axis]).map_err(|message| fault("rotation", degrees[axis], message))?;
             let coordinate = translation[axis];
             checks::coordinate(coordinate).map_err(|message| fault("translation", coordinate, message))?;
         }
@@ -168,8 +168,10 @@ impl Shape {
     pub fn placed(self, placement: &Placement) -> Result<Self, SceneFault> {
         let is_mesh = matches!(self, Self::Mesh(_));
         let placed = self.placed_anywhere(placement).filter(|shape| match (shape, shape.bounds()) {
-            (Self::Plane(plane), _) => checks::are_near(&[plane.point()]),
-            (_, Some(Bounds { min, max })) => checks::are_near(&[min, max]) && (is_mesh || checks::is_long(max - min)),
+            (Self::Plane(plane), _) => checks::are_within_range(&[plane.point()]),
+            (_, Some(Bounds { min, max })) => {
+                checks::are_within_range(&[min, max]) && (is_mesh || checks::is_long(max - min))
+            }
             (_, None) => true,
         });
         placed.ok_or_else(|| SceneFault::new("placement", if is_mesh { checks::MESH_TOO_FAR } else { OUT_OF_REACH }))
@@ -209,7 +211,8 @@ impl WrittenPlacement {
     pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Placement> {
         // All three are checked before a fault ends the function, so that the faults of each are reported.
         let scale = self.scale.map_or(Some(DVec3::ONE), |scale| checked(validator, scale, checks::factor));
-        let degrees = self.rotate.map_or(Some(DVec3::ZERO), |angles| checked(validator, angles, checks::angle));
+        let degrees =
+            self.rotate.map_or(Some(DVec3::ZERO), |angles| checked(validator, angles, checks::angle_in_degrees));
         let translation = self.translate.map_or(Some(DVec3::ZERO), |translation| validator.coordinates(translation));
         Some(Placement { scale: scale?, turn: rotation(degrees?.to_array()), translation: translation? })
     }

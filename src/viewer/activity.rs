@@ -4,7 +4,7 @@ use super::layers::{Canvas, Layer, LayerLevel};
 use super::legend;
 use ratatui_core::layout::Rect;
 
-/// The work in the background, shown in the upper right corner.
+/// The work shown in the upper right corner: a recording of the session, and a large picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Activity {
     /// Whether the session is recorded.

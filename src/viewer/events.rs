@@ -37,7 +37,7 @@ impl Viewer {
     /// Releases all keys and buttons and forgets the outstanding queries, before another program
     /// gets the terminal.
     pub(crate) fn lose_terminal(&mut self, now: Duration) {
-        self.set_time(now);
+        self.set_now(now);
         self.eye.stop(now);
         self.eye.set_reports_releases(false, now);
         self.pointer.release();
@@ -60,7 +60,7 @@ impl Viewer {
 
     /// Handles inputs in order. Those after a request to leave or to suspend are dropped.
     fn take_inputs(&mut self, inputs: &[Input], now: Duration) -> Result<(), OutOfMemory> {
-        self.set_time(now);
+        self.set_now(now);
         for (at, input) in inputs.iter().enumerate() {
             if matches!(input, Input::Event(Event::Key(_) | Event::Mouse(_))) {
                 self.record_event(now);

@@ -36,7 +36,7 @@ pub(super) enum PictureState {
     Finished,
 }
 
-/// The facts that the decision depends on. Times are those of the viewer's clock.
+/// The facts by which [`decide`] chooses an action. Times are those of the viewer's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Facts {
     pub(super) busy: DriverState,

@@ -32,7 +32,8 @@ const VECTOR_LENGTH: f32 = 0.16;
 /// The least number of cells between two lines of the pixel grid.
 const MIN_GRID_CELLS: f32 = 1.5;
 
-/// The first camera as geometry in the picture from outside: o, u v w, the view rectangle, lights.
+/// The first camera, drawn into the second camera's picture of it: o, u v w, the view rectangle,
+/// and the lights.
 pub(super) struct TracerMarks;
 
 impl Layer for TracerMarks {

@@ -418,7 +418,7 @@ proptest! {
     fn every_box_is_in_one_leaf(boxes in prop::collection::vec([place(), place()], 0..300)) {
         let boxes: Vec<Bounds> = boxes.into_iter().map(Bounds::of).collect();
         let leaves = Bvh::new(&boxes).1;
-        let mut order: Vec<u32> = (0..leaves.count()).flat_map(|leaf| leaves.boxes(leaf).to_vec()).collect();
+        let mut order: Vec<u32> = (0..leaves.leaf_count()).flat_map(|leaf| leaves.boxes(leaf).to_vec()).collect();
         order.sort_unstable();
         prop_assert_eq!(order, (0..boxes.len() as u32).collect::<Vec<_>>());
     }

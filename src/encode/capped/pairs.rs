@@ -104,7 +104,8 @@ impl Pairs {
     /// The number is less than `ranks`.
     pub(super) fn ranks_within(&self, ranks: usize, share: f32) -> usize {
         let bytes = |open: &[OpenPair]| open.iter().map(|open| open.bytes).sum::<f32>();
-        // The sum of bytes is an estimate. With one per cent less, the next try hardly ever fails.
+        // The bytes of the pairs are estimates. With one per cent less, the frame made of the pairs found here hardly
+        // ever exceeds its limit again.
         let mut left = 0.99 * share * bytes(&self.open[..ranks]);
         let fits = |open: &&OpenPair| {
             left -= open.bytes;

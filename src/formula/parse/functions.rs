@@ -19,7 +19,7 @@ pub(super) struct Function {
     pub(super) kind: Kind,
 }
 
-/// The operations of a function.
+/// The operations that a call of a function such as `sin`, `max` or `tanh` consists of.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
     Unary(Unary),
@@ -134,7 +134,7 @@ pub(super) static FUNCTIONS: &[Function] = &[
 ];
 
 impl Function {
-    /// Returns how many operands the function takes, for messages.
+    /// Returns text for messages on the number of operands: `` `sin` takes one argument ``.
     pub(super) fn takes(&self) -> String {
         let Range { start, end } = self.operands;
         let count = ["no", "one", "two", "three"][start.min(3)];
@@ -157,7 +157,8 @@ pub(super) struct Composer<'p, 't> {
 }
 
 impl Parser<'_> {
-    /// Adds the operations of a call of a function, whose name is at `range`.
+    /// Adds the operations of a call of a function, whose name is at `range`, and returns the
+    /// index of its result.
     pub(super) fn apply(&mut self, kind: Kind, operands: &[Index], range: Range<usize>) -> Result<Index, Fault> {
         match kind {
             Kind::Unary(function) => self.unary_of(function, operands[0], range),
@@ -198,7 +199,8 @@ impl Composer<'_, '_> {
         self.binary(Binary::Add, from, product)
     }
 
-    /// Returns half the sum, or the difference, of e^a and e^-a.
+    /// Adds the operations of half the sum of e^a and e^-a for the operand a, or of half their
+    /// difference if `function` subtracts.
     fn hyperbolic(&mut self, operand: Index, function: Binary) -> Result<Index, Fault> {
         let negative = self.unary(Unary::Negate, operand)?;
         let (power, inverse) = (self.unary(Unary::Exp, operand)?, self.unary(Unary::Exp, negative)?);

@@ -1,10 +1,10 @@
-//! Edge functions of triangles in the image plane of a common origin.
+//! Edge functions of triangles, as seen from the common origin of a packet's rays.
 
 use super::TriangleN;
 use crate::lanes::{F32x8, LaneMask, Lanes, Vector};
 use crate::ray::CommonOrigin;
 
-/// The edge functions of eight triangles in the image plane of a packet's common origin.
+/// The edge functions of eight triangles, as seen from the common origin of a packet's rays.
 ///
 /// (Pineda, A Parallel Algorithm for Polygon Rasterization, 1988.)
 ///

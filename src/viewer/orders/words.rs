@@ -19,7 +19,7 @@ const MIN_PANEL_TEXT_ROWS: u16 = 20;
 /// The width of a number in the table, in columns.
 const NUMBER: usize = 7;
 
-/// Returns the number of lines while the pictures are built, with the row of keys.
+/// Returns the number of lines of text while the pictures are built, including the row of keys.
 pub(super) fn height(columns: u16, rows: u16) -> u16 {
     let is_wide = half_width(columns) >= MIN_QUESTION_COLUMNS;
     let step = u16::from(is_wide && rows >= MIN_PANEL_TEXT_ROWS);
@@ -27,14 +27,14 @@ pub(super) fn height(columns: u16, rows: u16) -> u16 {
     3 + step + table + 1
 }
 
-/// Returns the columns of text below each picture.
+/// Returns the width in columns of the text below each picture.
 fn half_width(columns: u16) -> usize {
     // Leaves a column for the line between the pictures, and one for the blank before each half.
     usize::from((columns - 1) / 2).saturating_sub(1)
 }
 
-/// Returns the lines of text to show after this number of tests, in which an object is called
-/// `name`.
+/// Returns the lines of text to show after this number of tests. They call each object `name`:
+/// "object" or "triangle".
 pub(super) fn lines(comparison: &Comparison, name: &str, tests: u64, columns: u16, rows: u16) -> Vec<String> {
     let half = half_width(columns);
     let is_built = tests >= comparison.total_tests();
@@ -84,6 +84,8 @@ fn progress(name: &str, done: usize, all: usize) -> String {
 }
 
 /// Returns the mean number of tests of a pixel or object as text, such as ` x 2.5 tests`.
+///
+/// `until` has the number of tests up to and including each of them; `None` if there are none.
 fn tests_each(until: &[u64]) -> Option<String> {
     let mean = *until.last()? as f64 / until.len() as f64;
     Some(if mean < 9.95 { format!(" x {mean:.1} tests") } else { format!(" x {mean:.0} tests") })
@@ -117,7 +119,7 @@ fn times_table(comparison: &Comparison, is_wide: bool) -> [String; 3] {
     })
 }
 
-/// Returns a time in milliseconds with three digits, or three decimals.
+/// Returns a time in milliseconds as text, with up to three decimals: 0.123, 1.23, 12.3, 1234.
 fn milliseconds(time: Duration) -> String {
     let time = 1e3 * time.as_secs_f64();
     let decimals = [1.0, 10.0, 100.0].iter().filter(|&&limit| time < limit).count();
