@@ -28,6 +28,7 @@ mod exact;
 pub mod implicit;
 pub mod mesh;
 pub mod scalar_leaf;
+#[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written placements"))]
 mod placement;
 pub mod plane;
 pub mod quad;
