@@ -25,8 +25,8 @@ COLORTERM, TERM, TERM_PROGRAM
 LC_ALL, LC_CTYPE, LANG
     whether the locale is UTF-8, which half blocks need";
 
-/// Returns the man page of a command to which its deferred arguments were added. `exit_status` is
-/// the text of its section "Exit status".
+/// Returns the man page of a built command: `Command::build` adds the arguments that clap defers.
+/// `exit_status` is the text of its section "Exit status".
 pub(super) fn page(command: Command, exit_status: &str) -> io::Result<Vec<u8>> {
     let has_commands = command.has_subcommands();
     let text = command.get_after_long_help().map(ToString::to_string).unwrap_or_default();

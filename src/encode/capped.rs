@@ -6,8 +6,8 @@
 //!
 //! 1. Cells whose error is worth two bytes are active. The [`colors`] of their halves become a palette, whose
 //!    colours are as far apart as the rate allows.
-//! 2. The [`pairs`] of these colours that pay for their pen are opened, and each cell takes the cheapest open pair, or
-//!    keeps what it shows.
+//! 2. A [pair](pairs) of these colours is opened, that is, may be used, if it removes more error than the bytes that
+//!    set its two colours are worth. Each cell takes the cheapest open pair, or keeps what it shows.
 //! 3. If the bytes exceed the limit, the pairs that gain the least per byte are given up.
 //!
 //! The picture here is what [`picture_halves`] takes for one: half blocks and spaces in truecolor. All else is text.

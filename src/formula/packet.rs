@@ -1,4 +1,4 @@
-//! Models of a formula on pieces of eight rays at once, in f32.
+//! Taylor models of a formula on pieces of rays, of eight rays at once, in f32.
 //!
 //! They are the models of [`model`](super::model) with the rounding of f32. The frequent operations have a vector form
 //! here; all others are computed lane by lane in f64. The bits of a lane do not depend on the other lanes.

@@ -142,7 +142,7 @@ pub(super) struct Rate {
 // it drew for 70 ms or longer, a near terminal got 1 % of what it could draw; now it gets a quarter or more.
 #[derive(Default)]
 pub(super) struct FrameFloor {
-    /// Number of times that the floor was doubled.
+    /// Number of doublings of [`MIN_FRAME_BYTES`] in the bytes that a frame may have at any rate.
     doublings: u32,
     /// Service time of a frame before the last doubling, with which the next frame's is compared.
     service_before_doubling: Option<Duration>,

@@ -13,7 +13,7 @@ pub(super) const MAX_WINDOW: Size = Size::new(500, 200);
 /// They are not set in the server's process, and none of them names a file.
 const ACCEPTED: [&str; 6] = ["TERM", "COLORTERM", "NO_COLOR", "LC_ALL", "LC_CTYPE", "LANG"];
 
-/// The most characters of a variable's value.
+/// Limit on the characters of a variable's value; a variable with a longer one is ignored.
 const MAX_VALUE: usize = 64;
 
 /// The terminal of a client.

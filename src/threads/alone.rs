@@ -18,8 +18,8 @@ pub(crate) fn unzip<A: Send, B: Send>(count: usize, make: impl Fn(usize) -> (A, 
     (0..count).map(make).unzip()
 }
 
-/// Calls `work` with each chunk of `length` values of `written`, and the chunk of `read` at the
-/// same position.
+/// Calls `work` for one chunk of `length` values of `written` after the other, each with the chunk
+/// of `read` at the same position.
 pub(crate) fn for_each_chunk<A: Send, B: Sync>(
     written: &mut [A],
     read: &[B],

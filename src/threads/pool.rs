@@ -20,8 +20,8 @@ pub(crate) fn unzip<A: Send, B: Send>(count: usize, make: impl Fn(usize) -> (A, 
     (first, second)
 }
 
-/// Calls `work` with each chunk of `length` values of `written`, and the chunk of `read` at the
-/// same position.
+/// Calls `work` in parallel with each chunk of `length` values of `written`, and the chunk of
+/// `read` at the same position.
 pub(crate) fn for_each_chunk<A: Send, B: Sync>(
     written: &mut [A],
     read: &[B],

@@ -179,7 +179,9 @@ impl Eye {
         }
     }
 
-    /// Jumps to the camera that `to` returns, and records the camera that the jump leaves.
+    /// Starts the flight to the camera that `to` returns; with reduced motion, goes there at once.
+    ///
+    /// Records the camera that is left.
     pub(super) fn jump(&mut self, now: Duration, to: impl FnOnce(&Camera) -> Camera) {
         self.jump_with(now, |view| {
             let to = to(&view.camera);
@@ -190,13 +192,13 @@ impl Eye {
         });
     }
 
-    /// Jumps back to the view before the last jump, or with `forward` to the view that the last
-    /// jump back has left. Returns whether there is such a view.
+    /// Starts the flight back to the view before the last jump, or with `forward` to the view that
+    /// the last jump back has left. Returns whether there is such a view.
     pub(super) fn retrace(&mut self, forward: bool, now: Duration) -> bool {
         self.jump_with(now, |view| view.history.retrace(view.camera, forward))
     }
 
-    /// Jumps to the camera that `to` returns, at once with reduced motion.
+    /// Starts the flight to the camera that `to` returns; with reduced motion, goes there at once.
     ///
     /// Returns whether `to` returned one.
     fn jump_with(&mut self, now: Duration, to: impl FnOnce(&mut ViewState) -> Option<Camera>) -> bool {

@@ -30,7 +30,7 @@ fn frames_are_events_with_their_times() {
     assert_eq!(lines(&folder.path().join("ball.cast")), expected);
 }
 
-/// A recording that a signal or another error drops still gets its name and its last event.
+/// A recording that is dropped because of a signal or an error still gets its last event and name.
 #[test]
 fn a_dropped_recording_is_whole_and_replaces_nothing() {
     let folder = tempfile::tempdir().expect("a folder can be made");

@@ -137,10 +137,10 @@ impl Inset {
         spans.collect()
     }
 
-    /// Returns the ranges of x and y to draw in an area of this width and height, which are in
-    /// units of a cell's width.
+    /// Returns the ranges of x and y to draw, in world units.
     ///
-    /// The eye, the view rectangle and the ray are centred in them, with a margin.
+    /// `width` and `height` are those of the area, in units of a cell's width. The eye, the view rectangle and the ray
+    /// are in the middle of the ranges, with a margin.
     fn drawn_ranges(&self, width: f32, height: f32) -> [[f64; 2]; 2] {
         // Spheres and lights may lie outside: including a distant one would shrink the ray to a dot.
         let points = [Vec2::ZERO, self.rectangle[0], self.rectangle[1], self.end];
