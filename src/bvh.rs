@@ -115,8 +115,8 @@ struct Slabs<N> {
     /// The negated inverse direction, widened so that the ray enters each slab earlier.
     ///
     /// `far` is widened so that the ray leaves each slab later.
-    // Negated, because `origin - plane` lets the CPU subtract a memory operand. Together with smaller leaves, this
-    // makes incoherent rays 1 to 5 % faster.
+    // The inverse direction is negated, so that `origin - plane` can replace `plane - origin`: the CPU subtracts the
+    // plane straight from memory. Together with smaller leaves, this makes incoherent rays 1 to 5 % faster.
     near: [N; 3],
     far: [N; 3],
     is_backward: [bool; 3],

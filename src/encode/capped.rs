@@ -55,7 +55,9 @@ pub(super) const LEAST_BYTES: usize = 200;
 /// The rate below which errors are invisible: a frame of the allowed quality is tried again.
 const LEAST_RATE: ExchangeRate = 0.3;
 
-/// The shortage of bytes, as carried over from one frame to the next.
+/// How scarce bytes are, as learnt from the frames so far, for choosing the cells of the next one.
+///
+/// It is not a number of bytes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shortage {
     /// The exchange rate of the next frame; `None` while frames of the allowed quality fit the
@@ -228,7 +230,7 @@ pub(super) fn is_possible(shown: &Grid, wanted: &Grid) -> bool {
     appearing.count() <= MAX_APPEARING
 }
 
-/// Sets `grid` to `shown` with the wanted text, and the wanted picture where `shown` has text.
+/// Sets `grid` to `shown`, with the wanted cells wherever the shown or the wanted one is text.
 ///
 /// Returns `false`, and leaves `grid` as it is, if `shown` is that grid already.
 pub(super) fn put_text(shown: &Grid, wanted: &Grid, grid: &mut Grid) -> bool {

@@ -362,10 +362,13 @@ fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
 struct Cover {
     /// The weight of each set's members that are not covered.
     gains: Vec<u32>,
-    /// The first set of each bucket.
+    /// For each gain, the first set in its bucket; [`NONE`] if the bucket is empty.
+    ///
+    /// A set is in the bucket of the gain that it had when it was put there.
     heads: Vec<u32>,
-    /// The set after each set in its bucket.
+    /// For each set, the next one in its bucket; [`NONE`] for the last.
     next: Vec<u32>,
+    /// The sets of the bucket that is being emptied, in ascending order.
     bucket: Vec<u32>,
 }
 

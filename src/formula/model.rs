@@ -63,7 +63,7 @@ impl Model {
         Self::new([origin + at_middle, slope, 0.0], rounding)
     }
 
-    /// Returns the model of a coordinate that is anything between two numbers, for boxes.
+    /// Returns the model of a coordinate that may be any number in a range, for points in a box.
     pub(super) fn anything_between(low: f64, high: f64) -> Self {
         Self::hull(low, high)
     }

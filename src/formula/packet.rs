@@ -27,7 +27,8 @@ const EXP_RELATIVE_ERROR: f32 = 4.0 * EPSILON;
 // Cephes gives 8192 as the limit of this reduction.
 const LARGEST_ANGLE: f32 = 8000.0;
 
-/// Eight models in memory: the coefficients, then the error.
+/// Eight Taylor models in memory, one per lane: the three coefficients of the quadratic polynomial,
+/// then the largest distance from it.
 pub(super) type StoredModels = [F32x8; 4];
 
 /// The origins of eight lines, then their directions, axis by axis.

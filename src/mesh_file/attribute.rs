@@ -16,7 +16,7 @@ enum CornerIndices {
     /// No triangle has the attribute.
     #[default]
     Absent,
-    /// Every triangle has the attribute, at the indices of its positions.
+    /// Every triangle has the attribute; its indices are those of its positions.
     OfPositions,
     /// The indices for each triangle, or [`NONE`] for a triangle without the attribute.
     Own(Vec<[u32; 3]>),

@@ -217,8 +217,9 @@ impl MtlReader<'_, '_> {
         }
     }
 
-    /// Reads one to three numbers. The first two are stored in `values`; the third is for 3D
-    /// textures and is ignored.
+    /// Reads the one to three numbers of a texture's option, such as `-s` (scale) or `-o` (offset).
+    ///
+    /// The first two are stored in `values`; the third is for 3D textures and is ignored.
     fn first_two_numbers(&mut self, values: &mut [f32; 2]) -> Result<(), MeshFault> {
         values[0] = self.text.number()?;
         for i in 1..3 {

@@ -62,7 +62,7 @@ fn is_convex(outline: &[DVec2]) -> bool {
 fn cut_ears(outline: &[DVec2]) -> (Vec<[usize; 3]>, Vec<usize>) {
     let mut ears = Vec::new();
     let mut left: Vec<usize> = (0..outline.len()).collect();
-    // The last three corners become the fan.
+    // The last three corners are left to the caller, which cuts them as a fan.
     while left.len() > 3 {
         let Some(ear) = (0..left.len()).find(|&i| is_ear(outline, &left, i)) else { break };
         ears.push(with_neighbours(&left, ear));

@@ -55,8 +55,8 @@ impl<'a> SideFiles<'a> {
 
     /// Returns the bytes of a side file that only adds colours, or the message of a fault.
     ///
-    /// If the file is not there, its name is also looked for in the folder of the mesh. `None` if it is missing and the
-    /// reporter takes warnings. `what` names the kind of file in the warning.
+    /// If the file is not there, its name is also looked for in the folder of the mesh. `None`, after a
+    /// warning, if it is missing and warnings are not errors. `what` names the kind of file in the warning.
     // A warning instead of an error: among 2,418 third-party files 105 lack an MTL file, and 26 a texture.
     pub(super) fn read_colors(&mut self, path: &Path, what: &str) -> Result<Option<Vec<u8>>, String> {
         let is_missing =

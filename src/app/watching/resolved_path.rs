@@ -18,9 +18,10 @@ const MAX_LINKS: usize = 40;
 pub(super) struct ResolvedPath {
     /// The folders and links on the path, each of which may be replaced.
     steps: Vec<Step>,
-    /// The file, or the first missing component.
+    /// The file; if the path cannot be resolved to its end, the component at which that failed.
     end: PathBuf,
-    /// Whether the file exists.
+    /// Whether the path was resolved to its end: no component is missing or unreadable, and links
+    /// form no cycle.
     is_complete: bool,
 }
 
