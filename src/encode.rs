@@ -26,6 +26,7 @@ mod backend;
 mod by_color;
 mod capped;
 mod change_times;
+mod differences;
 mod eights;
 #[cfg(feature = "backend")]
 mod foreign_output;
@@ -42,6 +43,7 @@ mod widths;
 #[cfg(feature = "backend")]
 pub use backend::EncoderBackend;
 use change_times::ChangeTimes;
+use differences::Differences;
 use moves::CellPosition;
 pub(crate) use pen::Pen;
 use std::cell::RefCell;
@@ -240,58 +242,74 @@ impl Encoder {
     fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let Some(caps) = lossy::QualityCaps::for_quality(allowance.quality) else { return self.draw(wanted, bytes) };
         let in_motion = self.change_times.record(wanted, allowance.now);
-        let mut known = self.take_state(wanted.size(), bytes);
-        // At rest, the cells get their final colours, those with the largest errors first: coarser colours
-        // (`draw_capped`) would soon have to be sent again.
-        let is_capped = |&max_bytes: &usize| in_motion && max_bytes >= capped::LEAST_BYTES;
-        let cap = allowance.max_bytes.filter(is_capped).filter(|_| capped::is_possible(&known.shown, wanted));
-        if let Some(max_bytes) = cap
-            && self.shortage.is_known()
-        {
-            return self.draw_capped(wanted, known, max_bytes, allowance.now, bytes);
-        }
+        let known = self.take_state(wanted.size(), bytes);
+        FRAME.with_borrow_mut(|frame| {
+            frame.differences.find(&known.shown, wanted);
+            // At rest, the cells get their final colours, those with the largest errors first: coarser colours
+            // (`draw_capped`) would soon have to be sent again.
+            let is_capped = in_motion && frame.differences.appearing <= capped::MAX_APPEARING;
+            let cap = allowance.max_bytes.filter(|&max_bytes| is_capped && max_bytes >= capped::LEAST_BYTES);
+            match cap {
+                Some(max_bytes) if self.shortage.is_known() => {
+                    self.draw_capped(wanted, known, (max_bytes, allowance.now), frame, bytes)
+                }
+                _ => self.draw_lossy(wanted, known, (allowance, caps, in_motion, cap), frame, bytes),
+            }
+        })
+    }
+
+    /// Appends a frame of the allowed quality or, if that exceeds `cap`, one within the cap.
+    ///
+    /// Returns the cursor's position after the frame, or `None` if it depends on the terminal.
+    fn draw_lossy(
+        &mut self,
+        wanted: &Grid,
+        mut known: TerminalState,
+        (allowance, caps, in_motion, cap): (Allowance, lossy::QualityCaps, bool, Option<usize>),
+        frame: &mut FrameMemory,
+        bytes: &mut Vec<u8>,
+    ) -> Option<CellPosition> {
+        let FrameMemory { drawn, next, differences } = &mut *frame;
         let mut used = self.used_part;
-        let drawn = GRIDS.with_borrow_mut(|grids| {
-            let frame = lossy::LossyFrame {
-                shown: &known.shown,
-                wanted,
-                caps,
-                half_blocks: self.half_blocks,
-                pen: [known.pen.fg, known.pen.bg],
-                change_times: &self.change_times,
-            };
-            let drawn = lossy::with_plan(frame, |plan| {
-                self.draw_plan(plan, &known, (allowance, in_motion, cap), &mut used, (&mut *grids, &mut *bytes))
-            });
-            // Copied instead of swapped: the thread's grid may have the memory of a larger screen, which the encoder
-            // would keep.
-            drawn.inspect(|_| known.shown.clone_from(&grids.next))
+        let inputs = lossy::LossyFrame {
+            wanted,
+            differences,
+            caps,
+            half_blocks: self.half_blocks,
+            pen: [known.pen.fg, known.pen.bg],
+            change_times: &self.change_times,
+        };
+        let result = lossy::with_plan(inputs, |plan| {
+            self.draw_plan(plan, &known, (allowance, in_motion, cap), &mut used, ([drawn, next], &mut *bytes))
         });
         self.used_part = used;
-        match drawn {
+        match result {
             Ok(Drawn { pen, cursor, due, is_full }) => {
                 self.is_full = is_full;
+                // Copied instead of swapped: the thread's grid may have the memory of a larger screen, which the
+                // encoder would keep.
+                known.shown.clone_from(next);
                 self.known = Some(TerminalState { pen, ..known });
                 self.due = due;
                 cursor
             }
             Err(Exceeds { bytes: taken, max_bytes }) => {
                 self.shortage.begin(taken, max_bytes);
-                self.draw_capped(wanted, known, max_bytes, allowance.now, bytes)
+                self.draw_capped(wanted, known, (max_bytes, allowance.now), frame, bytes)
             }
         }
     }
 
     /// Appends the frame of a plan: all of it or, above the limit, its most urgent cells.
     ///
-    /// Sets `grids.next` to the grid that the terminal shows after the frame.
+    /// Sets `next` to the grid that the terminal shows after the frame.
     fn draw_plan(
         &self,
         plan: &mut lossy::Plan<'_>,
         known: &TerminalState,
         (allowance, in_motion, cap): (Allowance, bool, Option<usize>),
         used: &mut lossy::UsedPart,
-        (grids, bytes): (&mut Grids, &mut Vec<u8>),
+        ([drawn, next], bytes): ([&mut Grid; 2], &mut Vec<u8>),
     ) -> Result<Drawn, Exceeds> {
         let max_bytes = allowance.max_bytes.unwrap_or(usize::MAX);
         let usual = max_bytes.min(TMUX_BYTES_PER_CELL * known.shown.size().cell_count());
@@ -301,11 +319,11 @@ impl Encoder {
         let mut writes = if in_motion && self.is_full { refines_from } else { plan.write_count() };
         let start = bytes.len();
         loop {
-            grids.drawn.clone_from(&known.shown);
-            plan.draw(writes, used, &mut grids.drawn);
-            grids.next.clone_from(&known.shown);
+            drawn.clone_from(&known.shown);
+            plan.draw(writes, used, drawn);
+            next.clone_from(&known.shown);
             let mut pen = known.pen;
-            let cursor = self.write(&grids.drawn, &mut grids.next, &mut pen, bytes);
+            let cursor = self.write(drawn, next, &mut pen, bytes);
             let taken = bytes.len() - start + self.synchronized_len();
             let refines = writes > refines_from;
             let (limit, fewest) = if refines { (usual, refines_from) } else { (max_bytes, plan.min_writes(false)) };
@@ -316,7 +334,7 @@ impl Encoder {
                 // All inexact cells are made exact together, when the last of them is due. When each was sent at its
                 // own time, a dozen frames of a few scattered cells followed each movement: 1.40 full frames of bytes
                 // (orbit, 80x24) instead of 1.14.
-                let refines = self.change_times.exact_at(plan.inexact_cells(&grids.next));
+                let refines = self.change_times.exact_at(plan.differences().inexact_cells(next));
                 let due = if is_cut { Some(allowance.now) } else { refines };
                 return Ok(Drawn { pen, cursor, due, is_full: is_full(taken) });
             }
@@ -343,19 +361,22 @@ impl Encoder {
         &mut self,
         wanted: &Grid,
         mut known: TerminalState,
-        max_bytes: usize,
-        now: Duration,
+        (max_bytes, now): (usize, Duration),
+        FrameMemory { drawn, differences, .. }: &mut FrameMemory,
         bytes: &mut Vec<u8>,
     ) -> Option<CellPosition> {
         let start = bytes.len();
-        let mut cursor = GRIDS.with_borrow_mut(|Grids { drawn, .. }| {
-            let has_text = capped::put_text(&known.shown, wanted, drawn);
-            has_text.then(|| self.write(drawn, &mut known.shown, &mut known.pen, bytes)).flatten()
-        });
+        let mut cursor = None;
+        if differences.has_text(&known.shown, wanted) {
+            drawn.clone_from(&known.shown);
+            capped::put_text(wanted, differences, drawn);
+            cursor = self.write(drawn, &mut known.shown, &mut known.pen, bytes);
+        }
         let (picture, pen) = (bytes.len(), known.pen);
         let frame = capped::CappedFrame {
             shown: &mut known.shown,
             wanted,
+            differences,
             half_blocks: self.half_blocks,
             max_bytes: max_bytes.saturating_sub(picture - start + self.synchronized_len()),
         };
@@ -367,7 +388,7 @@ impl Encoder {
             bytes.len() - picture
         });
         self.shortage = shortage;
-        self.due = capped::is_inexact(&known.shown, wanted).then_some(now);
+        self.due = differences.inexact_cells(&known.shown).next().map(|_| now);
         self.known = Some(known);
         cursor
     }
@@ -468,12 +489,13 @@ struct Exceeds {
     max_bytes: usize,
 }
 
-/// The working memory of the grids of a frame.
-struct Grids {
-    /// The grid that a frame is to show.
+/// The working memory of a lossy frame.
+struct FrameMemory {
+    /// The grid that the frame is to show.
     drawn: Grid,
     /// The grid that the terminal shows after the frame.
     next: Grid,
+    differences: Differences,
 }
 
 /// The working memory of the bytes of a frame.
@@ -487,9 +509,9 @@ struct Writing {
 
 thread_local! {
     // Working memory per thread instead of per encoder, because a server has many encoders and few threads.
-    static GRIDS: RefCell<Grids> = RefCell::new({
+    static FRAME: RefCell<FrameMemory> = RefCell::new({
         let empty = Grid::new(Size::new(0, 0));
-        Grids { drawn: empty.clone(), next: empty }
+        FrameMemory { drawn: empty.clone(), next: empty, differences: Differences::default() }
     });
     static WRITING: RefCell<Writing> = RefCell::default();
 }

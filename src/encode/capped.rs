@@ -10,14 +10,15 @@
 //!    set its two colours are worth. Each cell takes the cheapest open pair, or keeps what it shows.
 //! 3. If the bytes exceed the limit, the pairs that gain the least per byte are given up.
 //!
-//! The picture here is what [`picture_halves`] takes for one: half blocks and spaces in truecolor. All else is text.
+//! The picture here is what [`picture_halves`](super::halves::picture_halves) takes for one: half blocks and spaces in truecolor. All else is text.
 //!
 //! It is facility location (Cornuejols, Nemhauser and Wolsey 1990), solved in one greedy pass, because a full search
 //! gains another tenth of the quality in forty times the time.
 
-use super::halves::{Halves, half_block_cell, picture_halves, squared_differences};
+use super::differences::Differences;
+use super::halves::{Halves, half_block_cell};
 use super::moves::CellPosition;
-use crate::grid::{Grid, HalfBlocks, PackedCell};
+use crate::grid::{Grid, HalfBlocks, PackedCell, PackedInk};
 use colors::Palette;
 use pairs::{Colors, Pairs};
 use std::cell::RefCell;
@@ -33,6 +34,8 @@ struct ActiveCell {
     /// The cell's index in the grid.
     at: usize,
     wanted: Halves,
+    /// The channels of the wanted halves.
+    channels: [Channels; 2],
     /// The error if the cell is not written.
     stay: f32,
     /// The least cost of this cell among the choices tried so far.
@@ -96,6 +99,8 @@ pub(super) struct CappedFrame<'a> {
     /// The grid that the terminal shows; updated to the grid that it shows after the frame.
     pub(super) shown: &'a mut Grid,
     pub(super) wanted: &'a Grid,
+    /// The differences of `wanted` from the grid that was shown before the text.
+    pub(super) differences: &'a Differences,
     pub(super) half_blocks: HalfBlocks,
     /// The largest number of bytes.
     pub(super) max_bytes: usize,
@@ -165,7 +170,7 @@ impl Scratch {
         write: &mut impl FnMut(&Grid, &[CellPosition]) -> usize,
     ) -> usize {
         let Self { active, palette, pairs, .. } = self;
-        find_active(frame.shown, frame.wanted, rate, active);
+        find_active(frame.differences, rate, active);
         palette.choose(active, rate, radius);
         let colors = Colors { palette, rate, half_blocks: frame.half_blocks };
         pairs.choose(active, &colors, frame.wanted.size().columns.into());
@@ -220,41 +225,15 @@ impl Scratch {
 /// Such cells never wait, and are written exactly, before the exchange rate decides on the others.
 // A status line that gets shorter uncovers a few cells, which are below this limit. A closing panel uncovers more:
 // their exact colours would take more bytes than a frame of the allowed quality, so the exchange rate is not used.
-const MAX_APPEARING: usize = 64;
+pub(super) const MAX_APPEARING: usize = 64;
 
-/// Returns whether at most [`MAX_APPEARING`] picture cells replace text or unknown contents.
-pub(super) fn is_possible(shown: &Grid, wanted: &Grid) -> bool {
-    let cells = shown.packed().iter().zip(wanted.packed());
-    let appearing =
-        cells.filter(|&(&shown, &wanted)| picture_halves(shown).is_none() && picture_halves(wanted).is_some());
-    appearing.count() <= MAX_APPEARING
-}
-
-/// Sets `grid` to `shown`, with the wanted cells wherever the shown or the wanted one is text.
-///
-/// Returns `false`, and leaves `grid` as it is, if `shown` is that grid already.
-pub(super) fn put_text(shown: &Grid, wanted: &Grid, grid: &mut Grid) -> bool {
-    let is_text = |(of_shown, of_wanted): (PackedCell, PackedCell)| {
-        (picture_halves(of_wanted).is_none() || picture_halves(of_shown).is_none())
-            && !shown.is_same(of_shown, wanted, of_wanted)
-    };
-    let cells = || shown.packed().iter().copied().zip(wanted.packed().iter().copied());
-    if !cells().any(is_text) {
-        return false;
+/// Draws the wanted text into `grid`, and the wanted picture where the terminal shows text.
+pub(super) fn put_text(wanted: &Grid, differences: &Differences, grid: &mut Grid) {
+    differences.copy_text(wanted, grid);
+    for (&place, _) in differences.places.iter().zip(&differences.squares).filter(|&(_, &squares)| is_unknown(squares))
+    {
+        grid.set_packed(place as usize, wanted.packed()[place as usize]);
     }
-    grid.clone_from(shown);
-    for (at, cells) in cells().enumerate().filter(|&(_, cells)| is_text(cells)) {
-        grid.copy_cell(at, wanted, cells.1);
-    }
-    true
-}
-
-/// Returns whether a cell of the picture does not show its wanted halves.
-pub(super) fn is_inexact(shown: &Grid, wanted: &Grid) -> bool {
-    let cells = shown.packed().iter().zip(wanted.packed());
-    cells
-        .filter_map(|(&shown, &wanted)| Some((shown, picture_halves(wanted)?)))
-        .any(|(shown, wanted)| picture_halves(shown) != Some(wanted))
 }
 
 /// The number of bytes that the error of a cell must be worth for the cell to be considered.
@@ -263,19 +242,47 @@ pub(super) fn is_inexact(shown: &Grid, wanted: &Grid) -> bool {
 const LEAST_GAIN: f32 = 2.0;
 
 /// Collects the cells whose error is worth the bytes of a glyph.
-fn find_active(shown: &Grid, wanted: &Grid, rate: ExchangeRate, active: &mut Vec<ActiveCell>) {
+fn find_active(differences: &Differences, rate: ExchangeRate, active: &mut Vec<ActiveCell>) {
+    let Differences { places, wanted, squares, .. } = differences;
     active.clear();
-    for (at, (&shown, &wanted)) in shown.packed().iter().zip(wanted.packed()).enumerate() {
-        let (Some(shown), Some(wanted)) = (picture_halves(shown), picture_halves(wanted)) else { continue };
-        let stay = error(shown, wanted);
-        if stay > LEAST_GAIN * rate {
-            active.push(ActiveCell { at, wanted, stay, cost: stay, pair: None, shown: [0; 2], nearest: [[0; 2]; 2] });
+    for ((&place, &wanted), &[upper, lower]) in places.iter().zip(wanted).zip(squares) {
+        let stay = upper.saturating_add(lower) as f32;
+        // Halves that were unknown are shown exactly by now.
+        if stay > LEAST_GAIN * rate && !is_unknown([upper, lower]) {
+            active.push(ActiveCell {
+                at: place as usize,
+                wanted,
+                channels: wanted.map(channels),
+                stay,
+                cost: stay,
+                pair: None,
+                shown: [0; 2],
+                nearest: [[0; 2]; 2],
+            });
         }
     }
 }
 
+fn is_unknown(squares: [u32; 2]) -> bool {
+    squares == [u32::MAX; 2]
+}
+
+/// Red, green and blue, from 0 to 255.
+type Channels = [f32; 3];
+
+fn channels(ink: PackedInk) -> Channels {
+    ink.channels().map(f32::from)
+}
+
+/// Returns the squared difference of two colours.
+#[inline]
+fn square([r, g, b]: Channels, [other_r, other_g, other_b]: Channels) -> f32 {
+    let (r, g, b) = (r - other_r, g - other_g, b - other_b);
+    r * r + g * g + b * b
+}
+
 /// Returns the squared error of both halves.
-fn error(shown: Halves, wanted: Halves) -> f32 {
-    let [upper, lower] = squared_differences(shown, wanted);
-    (upper + lower) as f32
+#[inline]
+fn error(shown: [Channels; 2], wanted: [Channels; 2]) -> f32 {
+    square(shown[0], wanted[0]) + square(shown[1], wanted[1])
 }

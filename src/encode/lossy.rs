@@ -9,8 +9,9 @@
 
 use super::Quality;
 use super::change_times::ChangeTimes;
+use super::differences::Differences;
 use super::eights::ColorList;
-use super::halves::{Halves, Tolerance, half_block_cell, picture_halves, squared_differences};
+use super::halves::{Halves, Tolerance, half_block_cell, squared_differences};
 use super::palette::Reduction;
 use crate::grid::{Grid, HalfBlocks, PackedInk};
 use std::cell::RefCell;
@@ -19,19 +20,9 @@ use std::cmp::Reverse;
 /// The working memory of a frame, which all encoders of a thread share.
 #[derive(Default)]
 struct Scratch {
-    /// The cells of the picture that do not show their wanted halves: their indices in the grid,
-    /// and their halves.
-    places: Vec<u32>,
-    wanted: Vec<Halves>,
-    /// The halves that the terminal shows; `UNKNOWN` if the cell shows text or is unknown.
-    shown: Vec<Halves>,
-    /// The squared differences of both halves; `u32::MAX` for unknown ones.
-    squares: Vec<[u32; 2]>,
     small: SmallDifferences,
     /// The differences to write.
     written: Vec<WrittenDifference>,
-    /// The indices of the cells that are text in the wanted grid.
-    text: Vec<u32>,
     /// The places of the cells to write inexactly, with their wanted halves and those of the
     /// palette.
     inexact: Vec<u32>,
@@ -39,9 +30,6 @@ struct Scratch {
     snapped: Vec<Halves>,
     reduction: Reduction,
 }
-
-/// The shown halves of a cell that shows text or is unknown.
-const UNKNOWN: Halves = [PackedInk::DEFAULT; 2];
 
 /// The differences that are small enough to be tolerated in sRGB.
 #[derive(Default)]
@@ -99,9 +87,10 @@ impl QualityCaps {
 }
 
 /// The inputs of a lossy frame.
+#[derive(Clone, Copy)]
 pub(super) struct LossyFrame<'a> {
-    pub(super) shown: &'a Grid,
     pub(super) wanted: &'a Grid,
+    pub(super) differences: &'a Differences,
     pub(super) caps: QualityCaps,
     /// The half blocks that cells may use. With both, a pair of colours can be drawn either way
     /// round.
@@ -130,8 +119,6 @@ pub(super) struct Plan<'a> {
     frame: LossyFrame<'a>,
     tolerance: Tolerance,
     scratch: &'a mut Scratch,
-    /// The sum of the squared differences of all known halves.
-    squares: u64,
     /// Whether the differences to write are in order, the most urgent first.
     is_sorted: bool,
 }
@@ -147,58 +134,25 @@ const DISTANCE_ERROR: f32 = 4e-6;
 impl<'a> Plan<'a> {
     fn new(frame: LossyFrame<'a>, scratch: &'a mut Scratch) -> Self {
         let tolerance = Tolerance { distance: frame.caps.distance - DISTANCE_ERROR, square: 0 };
-        let mut plan = Self { tolerance, frame, scratch, squares: 0, is_sorted: false };
-        plan.find_differences();
+        let mut plan = Self { tolerance, frame, scratch, is_sorted: false };
         plan.tolerance.square = plan.max_square();
         plan.compare_small();
         plan.list_written();
         plan
     }
 
-    fn find_differences(&mut self) {
-        let Scratch { places, wanted, shown, text, .. } = &mut *self.scratch;
-        for list in [&mut *places, text] {
-            list.clear();
-        }
-        for list in [&mut *wanted, shown] {
-            list.clear();
-        }
-        let cells = self.frame.wanted.packed().iter().zip(self.frame.shown.packed());
-        for (at, (&of_wanted, &of_shown)) in cells.enumerate() {
-            let Some(halves) = picture_halves(of_wanted) else {
-                text.push(at as u32);
-                continue;
-            };
-            let halves_shown = picture_halves(of_shown).unwrap_or(UNKNOWN);
-            if halves_shown != halves {
-                places.push(at as u32);
-                wanted.push(halves);
-                shown.push(halves_shown);
-            }
-        }
-    }
-
     /// Returns the largest squared difference of a half cell that may be tolerated without
     /// exceeding the cap on the mean.
     // Halves that differ more are written. Their new squared difference may be anything up to this value, and is
     // counted as a third of it.
-    fn max_square(&mut self) -> u32 {
+    fn max_square(&self) -> u32 {
         const HISTOGRAM_LEN: usize = 1024;
         let mut counts = [0_usize; HISTOGRAM_LEN];
-        let Scratch { wanted, shown, squares, .. } = &mut *self.scratch;
-        squares.clear();
-        squares.extend(shown.iter().zip(wanted).map(|(&shown, &mut wanted)| squared_differences(shown, wanted)));
-        for (squares, &shown) in squares.iter_mut().zip(&*shown) {
-            if shown == UNKNOWN {
-                *squares = [u32::MAX; 2];
-            } else {
-                self.squares += sum(*squares);
-            }
-            for &square in &*squares {
-                counts[(square as usize).min(HISTOGRAM_LEN - 1)] += 1;
-            }
+        let squares = self.frame.differences.squares.as_flattened();
+        for &square in squares {
+            counts[(square as usize).min(HISTOGRAM_LEN - 1)] += 1;
         }
-        let (mut beyond, mut sum, mut max_square) = (2 * self.scratch.squares.len(), 0.0, 0);
+        let (mut beyond, mut sum, mut max_square) = (squares.len(), 0.0, 0);
         for (square, count) in counts.into_iter().enumerate() {
             beyond -= count;
             sum += (square * count) as f64;
@@ -212,13 +166,14 @@ impl<'a> Plan<'a> {
 
     /// Returns the largest allowed sum of the squared differences of all half cells.
     fn square_budget(&self) -> f64 {
-        let halves = 2 * (self.frame.wanted.packed().len() - self.scratch.text.len());
+        let halves = 2 * (self.frame.wanted.packed().len() - self.frame.differences.text.len());
         self.frame.caps.mean_square * (3 * halves) as f64
     }
 
     /// Compares the colours of all differences that are small enough to be tolerated in sRGB.
     fn compare_small(&mut self) {
-        let Scratch { wanted, shown, squares, small, .. } = &mut *self.scratch;
+        let Differences { wanted, shown, squares, .. } = self.frame.differences;
+        let small = &mut self.scratch.small;
         small.shown.clear();
         small.wanted.clear();
         for at in (0..squares.len()).filter(|&at| is_small(squares[at], self.tolerance)) {
@@ -233,10 +188,11 @@ impl<'a> Plan<'a> {
 
     /// Lists the differences to write, and their urgency.
     fn list_written(&mut self) {
-        let Scratch { places, squares, small, written, .. } = &mut *self.scratch;
+        let Differences { places, squares, .. } = self.frame.differences;
+        let Scratch { small, written, .. } = &mut *self.scratch;
         written.clear();
         let mut pairs_of_bits = small.near.iter().flat_map(|mask| [0, 2, 4, 6].map(|place| mask >> place & 3));
-        for (at, (&squares, &place)) in squares.iter().zip(&*places).enumerate() {
+        for (at, (&squares, &place)) in squares.iter().zip(places).enumerate() {
             let is_near = is_small(squares, self.tolerance) && pairs_of_bits.next() == Some(3);
             let urgency = if !is_near {
                 let square = squares[0].max(squares[1]);
@@ -257,6 +213,11 @@ impl<'a> Plan<'a> {
             self.scratch.written.sort_unstable_by_key(|written| (Reverse(written.urgency), written.at));
             self.is_sorted = true;
         }
+    }
+
+    /// Returns the frame's differences.
+    pub(super) fn differences(&self) -> &'a Differences {
+        self.frame.differences
     }
 
     fn count_from(&self, least: Urgency) -> usize {
@@ -283,16 +244,14 @@ impl<'a> Plan<'a> {
         if writes < self.write_count() {
             self.sort();
         }
-        let Scratch { places, wanted: halves, written, text, inexact, unsnapped, .. } = &mut *self.scratch;
-        let wanted = self.frame.wanted;
-        for &at in &*text {
-            grid.copy_cell(at as usize, wanted, wanted.packed()[at as usize]);
-        }
+        let LossyFrame { wanted, differences, change_times, .. } = self.frame;
+        differences.copy_text(wanted, grid);
+        let Scratch { written, inexact, unsnapped, .. } = &mut *self.scratch;
         inexact.clear();
         unsnapped.clear();
         for &WrittenDifference { at, .. } in &written[..writes] {
-            let (place, halves) = (places[at as usize], halves[at as usize]);
-            if self.frame.change_times.has_waited(place as usize) {
+            let (place, halves) = (differences.places[at as usize], differences.wanted[at as usize]);
+            if change_times.has_waited(place as usize) {
                 grid.set_packed(place as usize, half_block_cell(halves, wanted.packed()[place as usize]));
             } else {
                 inexact.push(place);
@@ -307,11 +266,10 @@ impl<'a> Plan<'a> {
 
     /// Chooses palette colours for the cells that need not be exact.
     fn snap(&mut self, writes: usize, used: &mut UsedPart) {
-        let squares = |written: &WrittenDifference| match written.urgency {
-            Urgency::Appears => 0,
-            _ => sum(self.scratch.squares[written.at as usize]),
-        };
-        let left = self.squares - self.scratch.written[..writes].iter().map(squares).sum::<u64>();
+        let squares = &self.frame.differences.squares;
+        let all: u64 = squares.as_flattened().iter().map(|&square| u64::from(square)).sum();
+        let written = self.scratch.written[..writes].iter().map(|written| sum(squares[written.at as usize]));
+        let left = all - written.sum::<u64>();
         let is_whole = writes >= self.min_writes(true);
         let max_squares = if is_whole { self.square_budget() - left as f64 } else { f64::INFINITY };
         let LossyFrame { pen, half_blocks, .. } = self.frame;
@@ -340,13 +298,6 @@ impl<'a> Plan<'a> {
             let step = (0.85 * max_squares / squares).clamp(0.0, 0.85);
             tolerance.square = (f64::from(tolerance.square) * step) as u32;
         }
-    }
-
-    /// Returns the indices of the picture cells that differ between `grid` and the wanted grid.
-    pub(super) fn inexact_cells(&self, grid: &Grid) -> impl Iterator<Item = usize> {
-        let Scratch { places, wanted, .. } = &*self.scratch;
-        let cells = places.iter().zip(wanted).map(|(&place, &wanted)| (place as usize, wanted));
-        cells.filter(|&(at, wanted)| picture_halves(grid.packed()[at]) != Some(wanted)).map(|(at, _)| at)
     }
 }
 

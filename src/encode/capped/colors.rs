@@ -4,28 +4,25 @@
 //! (leader clustering, Hartigan 1975). Colours that few halves would miss are then dropped, and the others moved to the
 //! mean of their halves (Lloyd 1982).
 
-use super::{ActiveCell, ExchangeRate};
-use crate::color::Srgb8;
+use super::{ActiveCell, Channels, ExchangeRate, square};
 use crate::grid::PackedInk;
+use crate::lanes::{F32x8, LANES, Lanes, Mask, SimdKernel, Vector};
+use crate::simd::dispatch;
+use glam::Vec3;
 use std::cmp::Reverse;
 
 /// Largest number of colours; half as many are used if the byte limit leaves few cells to write.
 // With 127 colours at every rate, a slowly moving picture never came nearer than 38 dB. With 255 at every rate, a fast
-// one loses 0.5 dB, as more colours mean more changes of the pen. A colour's number takes eight bits in the results of
-// `nearest_two` and in the keys of pairs.
+// one loses 0.5 dB, as more colours mean more changes of the pen. A colour's number takes eight bits in the distances
+// of `FindNearest` and in the keys of pairs.
 pub(super) const MAX_COLORS: usize = 255;
 
 /// The number of slots of the hash table of bins, a power of two.
 const SLOTS: usize = 1 << 14;
 
-/// Colours compared at a time.
-const LANES: usize = 8;
-
 #[derive(Default)]
 pub(super) struct Palette {
-    colors: Vec<PackedInk>,
-    /// The colours in blocks, as [`Self::nearest_two`] compares them.
-    blocks: Vec<Block>,
+    colors: Colors,
     bins: Vec<Bin>,
     /// The hash table of the bins: the index of a bin, or `u16::MAX` for an empty slot.
     slots: Vec<u16>,
@@ -35,22 +32,137 @@ pub(super) struct Palette {
     fullest: Vec<u16>,
 }
 
-/// Some colours of the palette, channel by channel.
+/// The colours of a palette.
+#[derive(Default)]
+struct Colors {
+    channels: Vec<Channels>,
+    /// The colours in blocks of eight, as they are compared.
+    blocks: Vec<Block>,
+}
+
+/// Eight colours of the palette: 16 times each channel, and their indices.
+// Squared distances are then multiples of 256, to which the index is added: the least sum is that of the nearest
+// colour. An f32 has 24 bits for both.
 #[derive(Clone, Copy)]
 struct Block {
-    r: [f32; LANES],
-    g: [f32; LANES],
-    b: [f32; LANES],
-    index: [f32; LANES],
+    channels: Vector<F32x8>,
+    index: F32x8,
 }
 
 impl Block {
     /// A block without colours: its entries are farther away than any colour.
-    const EMPTY: Self = Self { r: [1e4; LANES], g: [1e4; LANES], b: [1e4; LANES], index: [0.0; LANES] };
+    const EMPTY: Self = {
+        let far = F32x8([1e5; LANES]);
+        Self { channels: Vector { x: far, y: far, z: far }, index: F32x8::ZERO }
+    };
+
+    /// Returns 256 times the squared distances from a colour, at most [`FARTHEST`].
+    #[inline(always)]
+    fn distances<N: Lanes>(&self, color: Vector<N>) -> N {
+        let difference = self.channels.load::<N>() - color;
+        difference.dot(difference).min(N::splat(FARTHEST))
+    }
 }
 
-/// The greatest distance in the units of [`Palette::nearest_two`]: 256 times a squared distance.
+/// The greatest distance: 256 times a squared distance.
 const FARTHEST: f32 = (1 << 24) as f32 - 256.0;
+
+/// Returns 16 times the channels of a colour in all lanes.
+#[inline(always)]
+fn splat<N: Lanes>([r, g, b]: [i32; 3]) -> Vector<N> {
+    Vector { x: N::splat((16 * r) as f32), y: N::splat((16 * g) as f32), z: N::splat((16 * b) as f32) }
+}
+
+/// Finds the two nearest colours of each bin.
+struct FindNearest<'a> {
+    blocks: &'a [Block],
+    bins: &'a mut [Bin],
+}
+
+impl SimdKernel for FindNearest<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        let farthest = N::splat(FARTHEST);
+        for bin in self.bins {
+            let color = splat::<N>(bin.mean);
+            let (mut first, mut second) = (farthest, farthest);
+            for block in self.blocks {
+                let distance = block.distances(color) + N::load(&block.index);
+                second = second.min(first.max(distance));
+                first = first.min(distance);
+            }
+            let nearest = first.store().reduce_min();
+            // The second nearest is the first one of another lane, or the second one of this lane.
+            let others = N::select(first.le(N::splat(nearest)), second, first);
+            let next = others.store().reduce_min();
+            bin.nearest = [nearest as u32 as u8, if next < FARTHEST { next } else { nearest } as u32 as u8];
+        }
+    }
+}
+
+/// Makes colours of the means of bins, the fullest first, unless one is within the radius.
+///
+/// Returns whether the palette has room for all of them.
+struct Lead<'a> {
+    fullest: &'a [u16],
+    bins: &'a [Bin],
+    colors: &'a mut Colors,
+    radius: f32,
+    most: usize,
+}
+
+impl SimdKernel for Lead<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) -> bool {
+        let Self { fullest, bins, colors, radius, most } = self;
+        // A colour at the greatest distance may be farther away.
+        let limit = N::splat(if 256.0 * radius < FARTHEST { 256.0 * radius } else { FARTHEST });
+        for &bin in fullest {
+            let mean = bins[usize::from(bin)].mean;
+            let color = splat::<N>(mean);
+            let mut is_near = false;
+            for block in &colors.blocks {
+                is_near = block.distances(color).le(limit).any();
+                if is_near {
+                    break;
+                }
+            }
+            if !is_near {
+                if colors.channels.len() == most {
+                    return false;
+                }
+                colors.push(mean);
+            }
+        }
+        true
+    }
+}
+
+impl Colors {
+    /// Removes all colours.
+    fn clear(&mut self) {
+        self.channels.clear();
+        self.blocks.clear();
+    }
+
+    /// Adds a colour.
+    fn push(&mut self, channels: [i32; 3]) {
+        let index = self.channels.len();
+        if index.is_multiple_of(LANES) {
+            self.blocks.push(Block::EMPTY);
+        }
+        let channels = channels.map(|channel| channel as f32);
+        if let Some(block) = self.blocks.last_mut() {
+            block.channels.put(index % LANES, 16.0 * Vec3::from(channels));
+            block.index.0[index % LANES] = index as f32;
+        }
+        self.channels.push(channels);
+    }
+}
 
 /// A bin: similar colours of halves, with their number, sum and mean.
 struct Bin {
@@ -89,8 +201,9 @@ impl Palette {
     }
 
     /// Returns a colour of the palette.
-    pub(super) fn color(&self, index: u8) -> PackedInk {
-        self.colors[usize::from(index)]
+    #[inline]
+    pub(super) fn color(&self, index: u8) -> Channels {
+        self.colors.channels[usize::from(index)]
     }
 
     /// Counts the colours of the halves in bins, whose size grows with the exchange rate.
@@ -162,74 +275,13 @@ impl Palette {
 
     /// Returns whether the palette has room for all bins that have no colour within the radius.
     fn leads_within(&mut self, most: usize, radius: f32) -> bool {
-        self.clear();
-        for at in 0..self.fullest.len() {
-            let mean = self.bins[usize::from(self.fullest[at])].mean;
-            if !self.colors.is_empty() && (self.nearest_two(mean)[0] >> 8) as f32 <= radius {
-                continue;
-            }
-            if self.colors.len() == most {
-                return false;
-            }
-            self.push(mean);
-        }
-        true
-    }
-
-    /// Returns the two nearest colours: squared distances times 256, plus the indices.
-    // The distances are f32, whose 24 bits hold a distance and an index: with integers, SSE2 needs several instructions
-    // for a multiplication or a minimum.
-    fn nearest_two(&self, color: [i32; 3]) -> [u32; 2] {
-        let [r, g, b] = color.map(|channel| channel as f32);
-        let min = |a: f32, b: f32| if a < b { a } else { b };
-        let max = |a: f32, b: f32| if a > b { a } else { b };
-        let (mut first, mut second) = ([FARTHEST; LANES], [FARTHEST; LANES]);
-        for block in &self.blocks {
-            for lane in 0..LANES {
-                let (r, g, b) = (block.r[lane] - r, block.g[lane] - g, block.b[lane] - b);
-                let distance = 256.0 * min(r * r + g * g + b * b, FARTHEST / 256.0) + block.index[lane];
-                second[lane] = min(second[lane], max(first[lane], distance));
-                first[lane] = min(first[lane], distance);
-            }
-        }
-        // The upper half of the lanes is merged into the lower half until one is left: merging lane by lane would take
-        // a third of the time.
-        let mut lanes = LANES / 2;
-        while lanes > 0 {
-            for lane in 0..lanes {
-                let other = lane + lanes;
-                second[lane] = min(min(second[lane], second[other]), max(first[lane], first[other]));
-                first[lane] = min(first[lane], first[other]);
-            }
-            lanes /= 2;
-        }
-        [first[0] as u32, if second[0] < FARTHEST { second[0] } else { first[0] } as u32]
-    }
-
-    /// Removes all colours.
-    fn clear(&mut self) {
-        self.colors.clear();
-        self.blocks.clear();
-    }
-
-    /// Adds a colour.
-    fn push(&mut self, [r, g, b]: [i32; 3]) {
-        let lane = self.colors.len() % LANES;
-        if lane == 0 {
-            self.blocks.push(Block::EMPTY);
-        }
-        if let Some(block) = self.blocks.last_mut() {
-            (block.r[lane], block.g[lane], block.b[lane]) = (r as f32, g as f32, b as f32);
-            block.index[lane] = self.colors.len() as f32;
-        }
-        self.colors.push(PackedInk::rgb(Srgb8::new(r as u8, g as u8, b as u8)));
+        let Self { colors, bins, fullest, .. } = self;
+        colors.clear();
+        dispatch(Lead { fullest, bins, colors, radius, most })
     }
 
     fn find_nearest(&mut self) {
-        for at in 0..self.bins.len() {
-            let nearest = self.nearest_two(self.bins[at].mean);
-            self.bins[at].nearest = nearest.map(|distance| distance as u8);
-        }
+        dispatch(FindNearest { blocks: &self.colors.blocks, bins: &mut self.bins });
     }
 
     /// Drops the colours without which the error grows the least, and moves the others to the mean
@@ -237,30 +289,22 @@ impl Palette {
     fn improve(&mut self, rate: ExchangeRate) {
         let mut shares = [Share::default(); MAX_COLORS];
         for bin in &self.bins {
-            let [first, second] = bin.nearest.map(|color| self.distance(color, bin.mean));
+            let mean = bin.mean.map(|channel| channel as f32);
+            let [first, second] = bin.nearest.map(|color| square(self.color(color), mean));
             let share = &mut shares[usize::from(bin.nearest[0])];
             share.count += bin.count;
             for (sum, of_bin) in share.sum.iter_mut().zip(bin.sum) {
                 *sum += of_bin;
             }
-            share.loss += (bin.count.cast_signed() * (second - first)) as f32;
+            share.loss += bin.count as f32 * (second - first);
         }
         // A change of the pen to one new colour takes 15 bytes (`pen_len`).
         let is_kept = |share: &Share| share.count > 0 && share.loss >= 15.0 * rate;
         // The colour that most halves have always stays.
         let most = shares.iter().map(|share| share.count).max().unwrap_or(0);
-        self.clear();
+        self.colors.clear();
         for share in shares.iter().filter(|share| share.count > 0 && (is_kept(share) || share.count == most)) {
-            self.push(share.sum.map(|sum| ((sum + share.count / 2) / share.count).cast_signed()));
+            self.colors.push(share.sum.map(|sum| ((sum + share.count / 2) / share.count).cast_signed()));
         }
-    }
-
-    fn distance(&self, color: u8, mean: [i32; 3]) -> i32 {
-        self.color(color)
-            .channels()
-            .into_iter()
-            .zip(mean)
-            .map(|(channel, mean)| (i32::from(channel) - mean).pow(2))
-            .sum()
     }
 }

@@ -1,9 +1,8 @@
 //! The pairs of colours of a frame under a limit, and the choice of a pair for each cell.
 
 use super::colors::{MAX_COLORS, Palette};
-use super::{ActiveCell, ExchangeRate, WrittenCell, error};
+use super::{ActiveCell, Channels, ExchangeRate, WrittenCell, channels, error, square};
 use crate::color::Srgb8;
-use crate::encode::halves::{Halves, squared_difference};
 use crate::grid::{HalfBlocks, PackedInk};
 
 /// The number of possible keys of pairs.
@@ -82,13 +81,13 @@ impl Pairs {
         }
         let means = sums.map(|[r, g, b, count]| {
             let [r, g, b] = [r, g, b].map(|sum| ((sum + count / 2) / count.max(1)) as u8);
-            PackedInk::rgb(Srgb8 { r, g, b })
+            Srgb8 { r, g, b }
         });
         for (cell, shown) in active.iter().filter_map(|cell| Some((cell, shown(cell)?))) {
-            let halves = shown.map(|color| means[usize::from(color)]);
+            let halves = shown.map(|color| PackedInk::rgb(means[usize::from(color)]));
             // The mean is best for all cells that share it, but a single cell may be farther from it than from what it
             // shows, and would raise the error of the frame if the limit left out the others.
-            if error(halves, cell.wanted) < cell.stay {
+            if error(halves.map(channels), cell.channels) < cell.stay {
                 cells.push(WrittenCell { at: cell.at, halves });
             }
         }
@@ -126,8 +125,8 @@ impl Pairs {
             let near = [upper[0], upper[1], lower[0], lower[1]];
             // Each half's squared difference from each of the four near colours, from which the errors of all pairs
             // follow.
-            let squares =
-                cell.wanted.map(|half| near.map(|color| squared_difference(colors.palette.color(color), half) as f32));
+            let near_channels = near.map(|color| colors.palette.color(color));
+            let squares = cell.channels.map(|half| near_channels.map(|color| square(color, half)));
             let is_new = |place: usize| !near[..place].contains(&near[place]);
             for a in 0..4 {
                 if is_new(a) {
@@ -203,7 +202,7 @@ impl Pairs {
         self.open.clear();
         for cell in active.iter_mut() {
             let Some(key) = cell.pair else { continue };
-            let (error, shown) = colors.cheapest(key, cell.wanted);
+            let (error, shown) = colors.cheapest(key, cell.channels);
             cell.shown = shown;
             let pair = &mut self.table[usize::from(key)];
             if pair.rank == u16::MAX {
@@ -245,15 +244,16 @@ impl Colors<'_> {
         u16::from(a) << 8 | u16::from(b)
     }
 
-    /// Returns the least error with which a pair of colours shows the halves, and for each half the
-    /// number of its colour in the palette.
-    fn cheapest(&self, key: u16, wanted: Halves) -> (f32, [u8; 2]) {
+    /// Returns the least error of halves shown with a pair, and the numbers of the colours for it.
+    #[inline]
+    fn cheapest(&self, key: u16, wanted: [Channels; 2]) -> (f32, [u8; 2]) {
         let [a, b] = key.to_be_bytes();
-        let plain = error([self.palette.color(a), self.palette.color(b)], wanted);
+        let [upper, lower] = [a, b].map(|color| self.palette.color(color));
+        let plain = error([upper, lower], wanted);
         if a == b || self.half_blocks == HalfBlocks::Lower {
             return (plain, [a, b]);
         }
-        let flipped = error([self.palette.color(b), self.palette.color(a)], wanted);
+        let flipped = error([lower, upper], wanted);
         if flipped < plain { (flipped, [b, a]) } else { (plain, [a, b]) }
     }
 }
@@ -268,7 +268,7 @@ fn take_neighbours(active: &mut [ActiveCell], colors: &Colors<'_>, columns: usiz
             if !is_beside {
                 continue;
             }
-            let cost = colors.cheapest(key, cell.wanted).0 + colors.rate * glyph_len(key);
+            let cost = colors.cheapest(key, cell.channels).0 + colors.rate * glyph_len(key);
             if cost < cell.cost {
                 (cell.cost, cell.pair) = (cost, Some(key));
             }
