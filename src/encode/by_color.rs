@@ -9,7 +9,8 @@
 //! With the pairs `ab`, `bc`, `ac` and `dd` in reading order and a pen of `ab`, the tour is `ab` (no change), then
 //! `bc` and `ac` in either order (one colour each), then `dd`.
 
-use super::moves::{CellPosition, cheapest_len};
+use super::halves::{LOWER_HALF, SPACE, UPPER_HALF};
+use super::moves::{CellPosition, Move, cheapest_len};
 use super::numbering::Numbering;
 use super::pen::{Pen, rgb_len};
 use super::strokes::cursor_after;
@@ -19,8 +20,8 @@ use std::ops::Range;
 /// The working memory of [`order`].
 #[derive(Default)]
 pub(super) struct Scratch {
-    /// The cells of the picture, in reading order.
-    picture: Vec<CellPosition>,
+    /// The cells of the picture, in reading order, with the colours of glyph and background.
+    picture: Vec<(CellPosition, [PackedInk; 2])>,
     /// The index of the pair of each cell in `picture`.
     pair_of_cell: Vec<u32>,
     /// The pairs' colours, in reading order of their first cells.
@@ -29,7 +30,7 @@ pub(super) struct Scratch {
     positions: Vec<CellPosition>,
     pairs: Vec<Pair>,
     colors: Vec<Color>,
-    pairs_by_color: Vec<u32>,
+    links: Vec<[Link; 2]>,
 }
 
 /// Lists the changed cells in the order of writing: text row by row, then the picture's tour.
@@ -44,30 +45,28 @@ pub(super) fn order(
     order.clear();
     scratch.picture.clear();
     for &position in changed {
-        let is_picture = picture_inks(wanted.packed_cell(position.column, position.row)).is_some();
-        let list = if is_picture { &mut scratch.picture } else { &mut *order };
-        list.push(position);
+        match picture_inks(wanted.packed_cell(position.column, position.row)) {
+            Some(inks) => scratch.picture.push((position, inks)),
+            None => order.push(position),
+        }
     }
     let last = order.last().copied();
     let pen = last.map_or(pen, |position| pen.pen_for(wanted.packed_cell(position.column, position.row)));
-    scratch.list_pairs(wanted, half_blocks);
+    scratch.list_pairs(half_blocks);
     scratch.list_positions();
-    scratch.list_pairs_by_color();
-    let mut tour = Tour::new(half_blocks, pen, scratch);
-    tour.cursor = last.and_then(|position| cursor_after(wanted, position));
-    tour.visit_all(wanted, order);
+    scratch.link_pairs();
+    let cursor = last.and_then(|position| cursor_after(wanted, position));
+    Tour::new(half_blocks, pen, cursor, scratch).visit_all(wanted, order);
 }
 
 /// Returns the glyph and background colours of a picture cell, equal for a space; `None` for text.
-fn picture_inks(cell: PackedCell) -> Option<(PackedInk, PackedInk)> {
-    if !cell.attributes().is_empty() || !cell.bg.is_rgb() {
-        return None;
-    }
-    match cell.character()? {
-        '▄' | '▀' if cell.fg.is_rgb() => Some((cell.fg, cell.bg)),
-        ' ' => Some((cell.bg, cell.bg)),
-        _ => None,
-    }
+fn picture_inks(cell: PackedCell) -> Option<[PackedInk; 2]> {
+    let inks = match cell.code() {
+        LOWER_HALF | UPPER_HALF => [cell.fg, cell.bg],
+        SPACE => [cell.bg; 2],
+        _ => return None,
+    };
+    inks.iter().all(|ink| ink.is_rgb()).then_some(inks)
 }
 
 /// A pair of colours, and all cells that have it.
@@ -75,21 +74,23 @@ struct Pair {
     /// The indices in `Tour::colors` of the glyph's and the background's colour; both are equal
     /// for spaces.
     colors: [u32; 2],
+    /// The bytes that set each of them.
+    lens: [u8; 2],
+    /// The bytes of an absolute move to the first cell.
+    move_len: u8,
+    /// Whether the tour has written the pair's cells.
+    visited: bool,
     /// The first of the pair's cells.
     first: CellPosition,
     /// The range of the pair's cells in `Tour::positions`, in reading order.
     positions: Range<u32>,
-    /// Whether the tour has written the pair's cells.
-    visited: bool,
 }
 
-/// A greedy tour over the pairs of colours, with the pen and cursor where it has arrived.
+/// A greedy tour over the pairs of colours.
 struct Tour<'a> {
-    half_blocks: HalfBlocks,
-    pen: PenColors,
+    place: Place,
     /// The colours whose pairs are tried next: those of the pen, if the picture has them.
     near: [Option<u32>; 2],
-    cursor: Option<CellPosition>,
     /// The number of neighbours whose costs may still be computed.
     lookups: usize,
     /// The cells of all pairs, one pair after another.
@@ -98,33 +99,43 @@ struct Tour<'a> {
     pairs: &'a mut [Pair],
     /// The colours of the picture.
     colors: &'a mut [Color],
-    /// The indices of the pairs that contain each colour: a range for each (see [`Color::pairs`]).
-    // A single list, because one list per colour would take an allocation for each.
-    pairs_by_color: &'a mut [u32],
+    /// For each pair, its links in the lists of its two colours.
+    links: &'a mut [[Link; 2]],
 }
 
-/// A colour of the picture, and the pairs that contain it.
-#[derive(Clone)]
-struct Color {
-    /// The range of the colour's pairs in `Tour::pairs_by_color`, used as a stack with the first
-    /// pair in reading order on top.
-    // A visited pair is dropped once it is near the top, which is cheaper than searching for it when it is visited.
-    pairs: Range<u32>,
-    /// The number of the colour's pairs that the tour has not visited.
-    unvisited: u32,
-    /// The bytes that make it the glyph's or the background's colour.
-    len: u8,
-}
-
-/// The colours of a pen without attributes.
+/// The place where a tour has arrived: its pen, which has no attributes, and its cursor.
 #[derive(Clone, Copy)]
-struct PenColors {
-    /// The indices in `Tour::colors` of the pen's colours, for glyphs and for the background;
-    /// `u32::MAX` for one that no cell of the picture has.
-    colors: [u32; 2],
+struct Place {
+    half_blocks: HalfBlocks,
+    /// The indices in `Tour::colors` of the pen's glyph and background colours; `u32::MAX` for a
+    /// colour that the picture does not have.
+    pen: [u32; 2],
     /// The bytes of the codes that the next sequence begins with, which end the attributes of text.
     code_len: u32,
+    cursor: Option<CellPosition>,
 }
+
+/// A colour of the picture, and the list of the pairs that contain it and are not visited.
+#[derive(Clone)]
+struct Color {
+    /// The first pair in reading order.
+    first: PairOfColor,
+    /// The number of pairs.
+    unvisited: u32,
+}
+
+/// The neighbours of a pair in the list of a colour.
+#[derive(Clone, Copy)]
+struct Link {
+    before: PairOfColor,
+    next: PairOfColor,
+}
+
+/// Twice the index of a pair, plus the place of a colour in the pair; `u32::MAX` at the end of a
+/// list.
+type PairOfColor = u32;
+
+const END: PairOfColor = u32::MAX;
 
 /// Largest number of neighbours whose costs are compared, for each colour of the pen.
 // Without a limit, a frame in which thousands of pairs share a colour takes quadratic time. With a limit of 64, 80,000
@@ -137,25 +148,17 @@ const MAX_NEIGHBOURS_PER_COLOR: usize = 64;
 const MEAN_LOOKUPS_PER_PAIR: usize = 8;
 
 impl<'a> Tour<'a> {
-    fn new(half_blocks: HalfBlocks, pen: Pen, scratch: &'a mut Scratch) -> Self {
-        let Scratch { inks, positions, pairs, colors, pairs_by_color, .. } = scratch;
+    fn new(half_blocks: HalfBlocks, pen: Pen, cursor: Option<CellPosition>, scratch: &'a mut Scratch) -> Self {
+        let Scratch { inks, positions, pairs, colors, links, .. } = scratch;
         let color_of = |ink: PackedInk| inks.get(ink).map(|color| color as u32);
         let plain = pen.after_attributes(Attributes::empty());
-        let pen_colors = PenColors {
-            colors: [plain.fg, plain.bg].map(|ink| color_of(ink).unwrap_or(u32::MAX)),
-            code_len: pen.attributes_len(Attributes::empty()) as u32,
-        };
-        Self {
+        let place = Place {
             half_blocks,
-            pen: pen_colors,
-            near: [pen.fg, pen.bg].map(color_of),
-            cursor: None,
-            lookups: 0,
-            positions,
-            pairs,
-            colors,
-            pairs_by_color,
-        }
+            pen: [plain.fg, plain.bg].map(|ink| color_of(ink).unwrap_or(u32::MAX)),
+            code_len: pen.attributes_len(Attributes::empty()) as u32,
+            cursor,
+        };
+        Self { place, near: [pen.fg, pen.bg].map(color_of), lookups: 0, positions, pairs, colors, links }
     }
 
     /// Visits all pairs, and appends the positions of their cells to `order`.
@@ -172,99 +175,119 @@ impl<'a> Tour<'a> {
     /// Returns the index of the cheapest pair among `next` and unvisited pairs that share a colour
     /// with the pen.
     fn cheapest_pair(&mut self, next: u32) -> u32 {
-        let mut best = self.cheaper((u32::MAX, next), next);
+        let Self { place, pairs, colors, links, .. } = self;
+        let mut best = place.cheaper((u32::MAX, next), next, &pairs[next as usize], colors);
         self.lookups += MEAN_LOOKUPS_PER_PAIR;
         for color in self.near.into_iter().flatten() {
-            let Range { start, end } = self.colors[color as usize].pairs;
-            let (mut rest, mut kept) = (end, end);
-            while ((end - kept) as usize) < MAX_NEIGHBOURS_PER_COLOR.min(self.lookups) && rest > start {
-                rest -= 1;
-                let pair = self.pairs_by_color[rest as usize];
-                if !self.pairs[pair as usize].visited {
-                    best = self.cheaper(best, pair);
-                    kept -= 1;
-                    self.pairs_by_color[kept as usize] = pair;
-                }
+            let most = self.lookups.min(MAX_NEIGHBOURS_PER_COLOR);
+            let (mut tried, mut pair_of_color) = (0, colors[color as usize].first);
+            while tried < most && pair_of_color != END {
+                let index = pair_of_color / 2;
+                best = place.cheaper(best, index, &pairs[index as usize], colors);
+                pair_of_color = links[index as usize][(pair_of_color % 2) as usize].next;
+                tried += 1;
             }
-            self.lookups -= (end - kept) as usize;
-            if rest < kept {
-                self.pairs_by_color.copy_within(kept as usize..end as usize, rest as usize);
-                self.colors[color as usize].pairs.end -= kept - rest;
-            }
+            self.lookups -= tried;
         }
         best.1
     }
 
+    /// Appends the cells of a pair to `order`, and updates pen and cursor.
+    fn visit_pair(&mut self, index: u32, wanted: &Grid, order: &mut Vec<CellPosition>) {
+        let pair = &mut self.pairs[index as usize];
+        pair.visited = true;
+        let (_, pen) = self.place.pen_after(pair);
+        self.near = [if pair.colors[0] == pair.colors[1] { self.near[0] } else { Some(pen[0]) }, Some(pen[1])];
+        let colors = pair.colors;
+        let positions = &self.positions[pair.positions.start as usize..pair.positions.end as usize];
+        for (place, &color) in distinct_colors(&colors).iter().enumerate() {
+            self.unlink(index, place, color);
+        }
+        match positions {
+            // Most pairs have one cell, for which copying a slice takes several times as long.
+            &[position] => order.push(position),
+            _ => order.extend_from_slice(positions),
+        }
+        let cursor = positions.last().and_then(|last| cursor_after(wanted, *last));
+        self.place = Place { pen, code_len: 0, cursor, ..self.place };
+    }
+
+    /// Removes a pair from the list of a colour, which has this place in the pair.
+    fn unlink(&mut self, index: u32, place: usize, color: u32) {
+        let Link { before, next } = self.links[index as usize][place];
+        let link = |of: PairOfColor| ((of / 2) as usize, (of % 2) as usize);
+        if before == END {
+            self.colors[color as usize].first = next;
+        } else {
+            let (pair, place) = link(before);
+            self.links[pair][place].next = next;
+        }
+        if next != END {
+            let (pair, place) = link(next);
+            self.links[pair][place].before = before;
+        }
+        self.colors[color as usize].unvisited -= 1;
+    }
+}
+
+impl Place {
     /// Returns the cheaper pair, with its cost in bytes: the `best` one so far or another.
     ///
     /// The cost of continuing the tour with a pair consists of the change of pen and the move to the pair's first cell.
     /// Up to eight bytes are added for unvisited pairs that share a colour with this one, because a pair with few such
     /// neighbours is better visited early.
     #[inline]
-    fn cheaper(&self, best: (u32, u32), index: u32) -> (u32, u32) {
-        let pair = &self.pairs[index as usize];
-        let unvisited = pair.colors.map(|color| self.colors[color as usize].unvisited);
+    fn cheaper(&self, best: (u32, u32), index: u32, pair: &Pair, colors: &[Color]) -> (u32, u32) {
+        let unvisited = pair.colors.map(|color| colors[color as usize].unvisited);
         let cost = self.pen_after(pair).0 + unvisited[0].min(unvisited[1]).min(8);
         if cost > best.0 {
             return best;
         }
-        best.min((cost + cheapest_len(self.cursor, pair.first) as u32, index))
+        best.min((cost + cheapest_len(self.cursor, pair.first, pair.move_len.into()) as u32, index))
     }
 
-    /// Returns the cheaper pen for a pair, with the bytes of the change: its colours as they are
-    /// or, where allowed, exchanged.
+    /// Returns the bytes of the cheaper change of pen for a pair, and its colours then: the pair's
+    /// as they are or, where allowed, exchanged.
     #[inline]
     fn pen_after(&self, pair: &Pair) -> (u32, [u32; 2]) {
-        let PenColors { colors: [pen_fg, pen_bg], code_len } = self.pen;
-        let [fg, bg] = pair.colors;
-        let [fg_len, bg_len] = pair.colors.map(|color| u32::from(self.colors[color as usize].len));
+        let ([pen_fg, pen_bg], [fg, bg]) = (self.pen, pair.colors);
+        let [fg_len, bg_len] = pair.lens.map(u32::from);
         let needed = |len: u32, is_set: bool| if is_set { 0 } else { len };
         let sequence_len = |len: u32| if len == 0 { 0 } else { 2 + len };
         if fg == bg {
-            return (sequence_len(code_len + needed(bg_len, bg == pen_bg)), [pen_fg, bg]);
+            return (sequence_len(self.code_len + needed(bg_len, bg == pen_bg)), [pen_fg, bg]);
         }
-        let plain = code_len + needed(fg_len, fg == pen_fg) + needed(bg_len, bg == pen_bg);
-        let flipped = code_len + needed(fg_len, fg == pen_bg) + needed(bg_len, bg == pen_fg);
+        let plain = self.code_len + needed(fg_len, fg == pen_fg) + needed(bg_len, bg == pen_bg);
+        let flipped = self.code_len + needed(fg_len, fg == pen_bg) + needed(bg_len, bg == pen_fg);
         if self.half_blocks == HalfBlocks::Either && flipped < plain {
             (sequence_len(flipped), [bg, fg])
         } else {
             (sequence_len(plain), [fg, bg])
         }
     }
-
-    /// Appends the cells of a pair to `order`, and updates pen and cursor.
-    fn visit_pair(&mut self, index: u32, wanted: &Grid, order: &mut Vec<CellPosition>) {
-        let (_, colors) = self.pen_after(&self.pairs[index as usize]);
-        self.pen = PenColors { colors, code_len: 0 };
-        let pair = &mut self.pairs[index as usize];
-        pair.visited = true;
-        self.near = [if pair.colors[0] == pair.colors[1] { self.near[0] } else { Some(colors[0]) }, Some(colors[1])];
-        for &color in distinct_colors(&pair.colors) {
-            self.colors[color as usize].unvisited -= 1;
-        }
-        let positions = &self.positions[pair.positions.start as usize..pair.positions.end as usize];
-        order.extend_from_slice(positions);
-        self.cursor = positions.last().and_then(|last| cursor_after(wanted, *last));
-    }
 }
 
 impl Scratch {
     /// Lists the pairs of the picture's cells and their colours.
-    fn list_pairs(&mut self, wanted: &Grid, half_blocks: HalfBlocks) {
+    fn list_pairs(&mut self, half_blocks: HalfBlocks) {
         let count = self.picture.len();
         self.pair_keys.clear(count);
         self.inks.clear(2 * count);
         self.pair_of_cell.clear();
         self.pairs.clear();
-        for &position in &self.picture {
-            let cell = wanted.packed_cell(position.column, position.row);
-            let (fg, bg) = picture_inks(cell).unwrap_or_default();
+        for &(position, [fg, bg]) in &self.picture {
             // If a cell may use either half block, (fg, bg) and (bg, fg) are the same pair.
             let key = if half_blocks == HalfBlocks::Either && bg < fg { [bg, fg] } else { [fg, bg] };
             let pair = self.pair_keys.add(key);
             if pair == self.pairs.len() {
-                let colors = [fg, bg].map(|ink| self.inks.add(ink) as u32);
-                self.pairs.push(Pair { colors, first: position, positions: 0..0, visited: false });
+                self.pairs.push(Pair {
+                    colors: [fg, bg].map(|ink| self.inks.add(ink) as u32),
+                    lens: [fg, bg].map(|ink| rgb_len(ink.channels()) as u8),
+                    move_len: Move::To(position).len() as u8,
+                    visited: false,
+                    first: position,
+                    positions: 0..0,
+                });
             }
             self.pairs[pair].positions.end += 1;
             self.pair_of_cell.push(pair as u32);
@@ -281,35 +304,31 @@ impl Scratch {
         }
         self.positions.clear();
         self.positions.resize(start as usize, CellPosition { column: 0, row: 0 });
-        for (&position, &pair) in self.picture.iter().zip(&self.pair_of_cell) {
+        for (&(position, _), &pair) in self.picture.iter().zip(&self.pair_of_cell) {
             let end = &mut self.pairs[pair as usize].positions.end;
             self.positions[*end as usize] = position;
             *end += 1;
         }
     }
 
-    /// Lists the colours, and in `pairs_by_color` the pairs that contain each of them.
-    fn list_pairs_by_color(&mut self) {
-        let Self { inks, pairs, colors, pairs_by_color, .. } = self;
+    /// Lists the colours, and links the pairs that contain each of them.
+    fn link_pairs(&mut self) {
+        let Self { inks, pairs, colors, links, .. } = self;
         colors.clear();
-        let color = |ink: &PackedInk| Color { pairs: 0..0, unvisited: 0, len: rgb_len(ink.channels()) as u8 };
-        colors.extend(inks.keys().iter().map(color));
-        for &color in pairs.iter().flat_map(|pair| distinct_colors(&pair.colors)) {
-            colors[color as usize].unvisited += 1;
-        }
-        let mut end = 0;
-        for color in colors.iter_mut() {
-            color.pairs = end..end;
-            end += color.unvisited;
-        }
-        pairs_by_color.clear();
-        pairs_by_color.resize(end as usize, 0);
-        // In reverse, so that the first pair in reading order is on top of each colour's stack.
+        colors.resize(inks.keys().len(), Color { first: END, unvisited: 0 });
+        links.clear();
+        links.resize(pairs.len(), [Link { before: END, next: END }; 2]);
+        // In reverse, so that the first pair in reading order is the first of each list.
         for (at, pair) in pairs.iter().enumerate().rev() {
-            for &color in distinct_colors(&pair.colors) {
-                let end = &mut colors[color as usize].pairs.end;
-                pairs_by_color[*end as usize] = at as u32;
-                *end += 1;
+            for (place, &color) in distinct_colors(&pair.colors).iter().enumerate() {
+                let Color { first, unvisited } = &mut colors[color as usize];
+                let (own, next) = ((2 * at + place) as PairOfColor, *first);
+                links[at][place].next = next;
+                if next != END {
+                    links[(next / 2) as usize][(next % 2) as usize].before = own;
+                }
+                *first = own;
+                *unvisited += 1;
             }
         }
     }

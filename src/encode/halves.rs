@@ -17,9 +17,9 @@ pub(super) struct Tolerance {
 /// Returns the squared difference of two colours in truecolor, summed over the channels.
 #[inline]
 pub(super) fn squared_difference(a: PackedInk, b: PackedInk) -> u32 {
-    let ([r, g, b], [other_r, other_g, other_b]) = (a.channels(), b.channels());
-    let square = |a: u8, b: u8| (i32::from(a) - i32::from(b)).pow(2).cast_unsigned();
-    square(r, other_r) + square(g, other_g) + square(b, other_b)
+    let difference = |shift: u32| (a.bits() >> shift & 255).cast_signed() - (b.bits() >> shift & 255).cast_signed();
+    let (r, g, b) = (difference(16), difference(8), difference(0));
+    (r * r + g * g + b * b).cast_unsigned()
 }
 
 /// The colours, in truecolor, of the upper and the lower half of a picture cell.
@@ -46,9 +46,9 @@ pub(super) fn picture_halves(cell: PackedCell) -> Option<Halves> {
 }
 
 /// [Codes](PackedCell::code) of cells without attributes: the numbers of the characters.
-const SPACE: u32 = ' ' as u32;
-const LOWER_HALF: u32 = '▄' as u32;
-const UPPER_HALF: u32 = '▀' as u32;
+pub(super) const SPACE: u32 = ' ' as u32;
+pub(super) const LOWER_HALF: u32 = '▄' as u32;
+pub(super) const UPPER_HALF: u32 = '▀' as u32;
 
 /// Returns a cell that shows these halves, with the half block of `wanted`.
 #[inline]

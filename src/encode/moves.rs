@@ -50,12 +50,12 @@ pub(super) fn cheapest_move(from: Option<CellPosition>, to: CellPosition) -> Mov
     if relative.len() <= absolute.len() { relative } else { absolute }
 }
 
-/// Returns the number of bytes of the cheapest move.
+/// Returns the number of bytes of the cheapest move, given those of an absolute one.
 #[inline]
-pub(super) fn cheapest_len(from: Option<CellPosition>, to: CellPosition) -> usize {
-    let absolute = Move::To(to).len();
-    let Some(from) = from.filter(|from| from.row <= to.row) else { return absolute };
-    let rows = usize::from(to.row - from.row);
+pub(super) fn cheapest_len(from: Option<CellPosition>, to: CellPosition, absolute: usize) -> usize {
+    let Some(from) = from else { return absolute };
+    // For rows upwards, which only an absolute move reaches, the difference wraps around to a large number.
+    let rows = usize::from(to.row.wrapping_sub(from.row));
     if rows >= absolute {
         return absolute;
     }
@@ -102,7 +102,8 @@ impl Move {
                 bytes.push(b'H');
             }
             Self::Down(rows, along) => {
-                bytes.extend(std::iter::repeat_n(b'\n', rows.into()));
+                // Few rows: filling a slice takes longer.
+                (0..rows).for_each(|_| bytes.push(b'\n'));
                 along.write(bytes);
             }
         }
@@ -126,7 +127,7 @@ impl Along {
         match self {
             Self::Stay => {}
             Self::Start => bytes.push(b'\r'),
-            Self::Left(columns) => bytes.extend(std::iter::repeat_n(b'\x08', columns.into())),
+            Self::Left(columns) => (0..columns).for_each(|_| bytes.push(b'\x08')),
             Self::Right(1) => bytes.extend_from_slice(b"\x1b[C"),
             Self::Right(columns) => write_sequence(bytes, columns, b'C'),
             Self::Column(column) => write_sequence(bytes, column + 1, b'G'),

@@ -6,7 +6,8 @@ fn bytes(from: Option<(u16, u16)>, to: (u16, u16)) -> String {
     let mut bytes = Vec::new();
     cheapest.write(&mut bytes);
     assert_eq!(bytes.len(), cheapest.len(), "{cheapest:?}");
-    assert_eq!(bytes.len(), cheapest_len(from.map(position), position(to)), "{cheapest:?}");
+    let absolute = Move::To(position(to)).len();
+    assert_eq!(bytes.len(), cheapest_len(from.map(position), position(to), absolute), "{cheapest:?}");
     String::from_utf8(bytes).unwrap()
 }
 
