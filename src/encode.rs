@@ -334,7 +334,7 @@ impl Encoder {
                 // All inexact cells are made exact together, when the last of them is due. When each was sent at its
                 // own time, a dozen frames of a few scattered cells followed each movement: 1.40 full frames of bytes
                 // (orbit, 80x24) instead of 1.14.
-                let refines = self.change_times.exact_at(plan.differences().inexact_cells(next));
+                let refines = self.change_times.exact_at(plan.inexact_cells(writes));
                 let due = if is_cut { Some(allowance.now) } else { refines };
                 return Ok(Drawn { pen, cursor, due, is_full: is_full(taken) });
             }
@@ -569,16 +569,22 @@ fn update_row(shown: &mut Grid, wanted: &Grid, start: usize, columns: usize, mut
     let mut column = 0;
     let row = &wanted.packed()[start..start + columns];
     while column < columns {
-        let is_narrow = row.get(column + 1).is_none_or(|next| !next.is_covered());
         let (own, other) = (shown.packed()[start + column], row[column]);
-        // The common case first.
-        if is_narrow && own == other && !other.is_cluster() && column >= safe_from {
+        let is_ours = !other.is_covered() && !other.is_foreign();
+        // The common case first: characters of one column, as in pictures.
+        if row.get(column + 1).is_none_or(|next| !next.is_covered()) && !own.is_cluster() && !other.is_cluster() {
+            let is_overwritten = column < safe_from;
+            if is_ours && (is_overwritten || own != other) {
+                shown.set_packed(start + column, other);
+                if is_overwritten || !pen::look_alike(own, other) {
+                    write(column as u16);
+                }
+            }
             column += 1;
             continue;
         }
-        let end = if is_narrow { column + 1 } else { column + widths::leading_width(&row[column..]) };
+        let end = column + widths::leading_width(&row[column..]);
         let cells = || (column..end).map(|column| (start + column, shown.packed()[start + column], row[column]));
-        let is_ours = !row[column].is_covered() && !row[column].is_foreign();
         let is_same = cells().all(|(_, own, other)| shown.is_same(own, wanted, other));
         if is_ours && (column < safe_from || !is_same) {
             let looks_alike = cells().all(|(_, own, other)| look_alike(shown, own, wanted, other));
@@ -587,7 +593,7 @@ fn update_row(shown: &mut Grid, wanted: &Grid, start: usize, columns: usize, mut
             (column..end).for_each(|column| shown.copy_cell(start + column, wanted, row[column]));
             if !looks_alike || column < safe_from {
                 write(column as u16);
-                if let Some(text) = wanted.cluster(row[column]) {
+                if let Some(text) = wanted.cluster(other) {
                     safe_from = safe_from.max(column + widths::max_cluster_width(text));
                 }
             }

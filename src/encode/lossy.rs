@@ -15,7 +15,6 @@ use super::halves::{Halves, Tolerance, half_block_cell, squared_differences};
 use super::palette::Reduction;
 use crate::grid::{Grid, HalfBlocks, PackedInk};
 use std::cell::RefCell;
-use std::cmp::Reverse;
 
 /// The working memory of a frame, which all encoders of a thread share.
 #[derive(Default)]
@@ -23,6 +22,8 @@ struct Scratch {
     small: SmallDifferences,
     /// The differences to write.
     written: Vec<WrittenDifference>,
+    /// The places of the other differences.
+    waiting: Vec<u32>,
     /// The places of the cells to write inexactly, with their wanted halves and those of the
     /// palette.
     inexact: Vec<u32>,
@@ -41,11 +42,23 @@ struct SmallDifferences {
     near: Vec<u8>,
 }
 
-/// A difference to write.
-struct WrittenDifference {
-    /// The index among all differences.
-    at: u32,
-    urgency: Urgency,
+/// A difference to write: its urgency, complemented, and its index among all differences.
+// In one number, because sorting pairs of an enum and an index takes three times as long.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct WrittenDifference(u64);
+
+impl WrittenDifference {
+    fn new(urgency: Urgency, at: usize) -> Self {
+        Self(u64::from(!urgency.0) << 32 | at as u64)
+    }
+
+    fn urgency(self) -> Urgency {
+        Urgency(!((self.0 >> 32) as u32))
+    }
+
+    fn at(self) -> usize {
+        self.0 as u32 as usize
+    }
 }
 
 thread_local! {
@@ -100,18 +113,22 @@ pub(super) struct LossyFrame<'a> {
     pub(super) change_times: &'a ChangeTimes,
 }
 
-/// The urgency of writing a cell, in ascending order.
+/// The urgency of writing a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Urgency {
+struct Urgency(u32);
+
+impl Urgency {
     /// The shown halves are within the tolerance, but the cell is due to be shown exactly.
     // These cells are not ordered by the size of the difference, which is invisible: neighbours that are written in one
     // frame take the fewest bytes.
-    Refines,
-    /// The halves differ by more than the tolerance; the number is the larger squared difference of
-    /// the two.
-    Differs(u32),
+    const REFINES: Self = Self(0);
+
+    /// The halves differ by more than the tolerance. The larger squared difference of the two is
+    /// added.
+    const DIFFERS: Self = Self(1);
+
     /// The cell does not show the picture yet, but text or unknown contents.
-    Appears,
+    const APPEARS: Self = Self(u32::MAX);
 }
 
 /// The differences between the shown and the wanted grid.
@@ -189,20 +206,22 @@ impl<'a> Plan<'a> {
     /// Lists the differences to write, and their urgency.
     fn list_written(&mut self) {
         let Differences { places, squares, .. } = self.frame.differences;
-        let Scratch { small, written, .. } = &mut *self.scratch;
+        let Scratch { small, written, waiting, .. } = &mut *self.scratch;
         written.clear();
+        waiting.clear();
         let mut pairs_of_bits = small.near.iter().flat_map(|mask| [0, 2, 4, 6].map(|place| mask >> place & 3));
         for (at, (&squares, &place)) in squares.iter().zip(places).enumerate() {
             let is_near = is_small(squares, self.tolerance) && pairs_of_bits.next() == Some(3);
             let urgency = if !is_near {
-                let square = squares[0].max(squares[1]);
-                if square == u32::MAX { Urgency::Appears } else { Urgency::Differs(square) }
+                // Unknown halves have the largest difference.
+                Urgency(squares[0].max(squares[1]).saturating_add(Urgency::DIFFERS.0))
             } else if self.frame.change_times.has_waited(place as usize) {
-                Urgency::Refines
+                Urgency::REFINES
             } else {
+                waiting.push(place);
                 continue;
             };
-            written.push(WrittenDifference { at: at as u32, urgency });
+            written.push(WrittenDifference::new(urgency, at));
         }
     }
 
@@ -210,18 +229,24 @@ impl<'a> Plan<'a> {
     // Only for frames that do not fit: in others the order does not matter.
     fn sort(&mut self) {
         if !self.is_sorted {
-            self.scratch.written.sort_unstable_by_key(|written| (Reverse(written.urgency), written.at));
+            self.scratch.written.sort_unstable();
             self.is_sorted = true;
         }
     }
 
-    /// Returns the frame's differences.
-    pub(super) fn differences(&self) -> &'a Differences {
-        self.frame.differences
+    /// Returns the places of the picture cells that are not exact after the last [`draw`](Self::draw)
+    /// of `writes` differences.
+    pub(super) fn inexact_cells(&self, writes: usize) -> impl Iterator<Item = usize> {
+        let Scratch { written, waiting, inexact, unsnapped, snapped, .. } = &*self.scratch;
+        let places = &self.frame.differences.places;
+        let unwritten = written[writes..].iter().map(|written| places[written.at()]);
+        let snapped = inexact.iter().zip(unsnapped.iter().zip(snapped));
+        let inexact = snapped.filter(|(_, (wanted, snapped))| wanted != snapped).map(|(&place, _)| place);
+        waiting.iter().copied().chain(unwritten).chain(inexact).map(|place| place as usize)
     }
 
     fn count_from(&self, least: Urgency) -> usize {
-        self.scratch.written.iter().filter(|written| written.urgency >= least).count()
+        self.scratch.written.iter().filter(|written| written.urgency() >= least).count()
     }
 
     /// Returns the number of picture cells to write.
@@ -234,7 +259,7 @@ impl<'a> Plan<'a> {
     /// They are those that replace text or unknown contents and, with `within_caps`, those that exceed the quality's
     /// caps.
     pub(super) fn min_writes(&self, within_caps: bool) -> usize {
-        self.count_from(if within_caps { Urgency::Differs(0) } else { Urgency::Appears })
+        self.count_from(if within_caps { Urgency::DIFFERS } else { Urgency::APPEARS })
     }
 
     /// Draws the wanted text and the `writes` most urgent picture cells into `grid`.
@@ -249,8 +274,8 @@ impl<'a> Plan<'a> {
         let Scratch { written, inexact, unsnapped, .. } = &mut *self.scratch;
         inexact.clear();
         unsnapped.clear();
-        for &WrittenDifference { at, .. } in &written[..writes] {
-            let (place, halves) = (differences.places[at as usize], differences.wanted[at as usize]);
+        for at in written[..writes].iter().map(|written| written.at()) {
+            let (place, halves) = (differences.places[at], differences.wanted[at]);
             if change_times.has_waited(place as usize) {
                 grid.set_packed(place as usize, half_block_cell(halves, wanted.packed()[place as usize]));
             } else {
@@ -268,7 +293,7 @@ impl<'a> Plan<'a> {
     fn snap(&mut self, writes: usize, used: &mut UsedPart) {
         let squares = &self.frame.differences.squares;
         let all: u64 = squares.as_flattened().iter().map(|&square| u64::from(square)).sum();
-        let written = self.scratch.written[..writes].iter().map(|written| sum(squares[written.at as usize]));
+        let written = self.scratch.written[..writes].iter().map(|written| sum(squares[written.at()]));
         let left = all - written.sum::<u64>();
         let is_whole = writes >= self.min_writes(true);
         let max_squares = if is_whole { self.square_budget() - left as f64 } else { f64::INFINITY };

@@ -50,22 +50,19 @@ impl<K: Key> Numbering<K> {
     /// Returns the number of a key, which is given one if it has none.
     ///
     /// [`clear`](Self::clear) must have made room for the key.
+    #[inline]
     pub(super) fn add(&mut self, key: K) -> usize {
-        let slot = self.slot_of(key);
-        if self.slots[slot] == FREE {
-            self.slots[slot] = self.keys.len() as u32;
+        self.find(key).unwrap_or_else(|slot| {
+            let number = self.keys.len();
+            self.slots[slot] = number as u32;
             self.keys.push(key);
-        }
-        self.slots[slot] as usize
+            number
+        })
     }
 
     /// Returns the number of a key, if it has one.
     pub(super) fn get(&self, key: K) -> Option<usize> {
-        if self.keys.is_empty() {
-            return None;
-        }
-        let number = self.slots[self.slot_of(key)];
-        (number != FREE).then_some(number as usize)
+        if self.keys.is_empty() { None } else { self.find(key).ok() }
     }
 
     /// Returns the keys in the order of their numbers.
@@ -73,17 +70,24 @@ impl<K: Key> Numbering<K> {
         &self.keys
     }
 
-    /// Returns the slot of a key, or the free one where it would be.
-    fn slot_of(&self, key: K) -> usize {
+    /// Returns the number of a key or, if it has none, the slot for it.
+    #[inline]
+    fn find(&self, key: K) -> Result<usize, usize> {
         let last = self.slots.len() - 1;
         // Fibonacci hashing (Knuth 1973). The highest bits are the best mixed ones.
         let bits = key.bits();
         let hash = (bits ^ bits >> 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let mut slot = (hash >> (64 - self.slots.len().trailing_zeros())) as usize;
-        while self.slots[slot] != FREE && self.keys[self.slots[slot] as usize] != key {
+        loop {
+            let number = self.slots[slot];
+            if number == FREE {
+                return Err(slot);
+            }
+            if self.keys[number as usize] == key {
+                return Ok(number as usize);
+            }
             slot = (slot + 1) & last;
         }
-        slot
     }
 }
 

@@ -91,7 +91,7 @@ impl Reduction {
         // compared.
         self.colors.compare_neighbours(tolerance, &mut self.near.after);
         self.choose_colors();
-        self.list_possible_pairs(cells.len(), half_blocks);
+        self.list_possible_pairs(half_blocks);
         self.choose_pairs(cells.len());
         snapped.clear();
         snapped.extend(cells.iter().enumerate().map(|(at, &cell)| self.snapped(at, cell, half_blocks)));
@@ -160,36 +160,36 @@ impl Reduction {
     }
 
     /// Lists the pairs of palette colours for each cell, sorted by pair and then by cell.
-    fn list_possible_pairs(&mut self, cell_count: usize, half_blocks: HalfBlocks) {
+    fn list_possible_pairs(&mut self, half_blocks: HalfBlocks) {
         self.possible.clear();
-        for cell in 0..cell_count {
-            let [upper, lower] = [0, 1].map(|half| self.choices[self.wanted[2 * cell + half] as usize]);
+        for (cell, halves) in (0..).zip(self.wanted.as_chunks::<2>().0) {
+            let [upper, lower] = halves.map(|half| &self.choices[half as usize]);
             for &a in upper.as_slice() {
                 for &b in lower.as_slice() {
                     let colors = if half_blocks == HalfBlocks::Either { [a.min(b), a.max(b)] } else { [a, b] };
-                    self.possible.push(PossiblePair { colors, cell: cell as u32 });
+                    self.possible.push(PossiblePair { colors, cell });
                 }
             }
         }
         // The list is in ascending order of cells already, and counting sorts are stable.
-        self.sort_possible_by(1);
-        self.sort_possible_by(0);
+        self.sort_possible_by::<1>();
+        self.sort_possible_by::<0>();
         self.possible.dedup();
     }
 
-    /// Sorts the possible pairs by the colour at index `place`; the sort is stable.
-    fn sort_possible_by(&mut self, place: usize) {
+    /// Sorts the possible pairs by the colour at index `PLACE`; the sort is stable.
+    fn sort_possible_by<const PLACE: usize>(&mut self) {
         let Self { possible, sorted, counts, inks, .. } = self;
         counts.clear();
         counts.resize(inks.len() + 1, 0);
         for pair in possible.iter() {
-            counts[pair.colors[place] as usize + 1] += 1;
+            counts[pair.colors[PLACE] as usize + 1] += 1;
         }
         sum_up(counts);
         sorted.clear();
         sorted.resize(possible.len(), PossiblePair::default());
         for &pair in possible.iter() {
-            let place = &mut counts[pair.colors[place] as usize];
+            let place = &mut counts[pair.colors[PLACE] as usize];
             sorted[*place as usize] = pair;
             *place += 1;
         }
@@ -236,8 +236,8 @@ trait Sets {
     /// Returns the numbers in a set.
     fn members(&self, set: usize) -> impl Iterator<Item = usize>;
 
-    /// Returns the sets with a number.
-    fn sets_with(&self, member: usize) -> impl Iterator<Item = usize>;
+    /// Subtracts a weight from those numbers in `sums` whose sets contain `member`.
+    fn subtract(&self, member: usize, weight: u32, sums: &mut [u32]);
 }
 
 /// Any sets.
@@ -277,8 +277,8 @@ impl Sets for AnySets {
         self.members.list(set)
     }
 
-    fn sets_with(&self, member: usize) -> impl Iterator<Item = usize> {
-        self.sets_with.list(member)
+    fn subtract(&self, member: usize, weight: u32, sums: &mut [u32]) {
+        self.sets_with.list(member).for_each(|set| sums[set] -= weight);
     }
 }
 
@@ -325,12 +325,14 @@ impl Bands {
         sums.clear();
         sums.extend_from_slice(weights);
         for (at, &mask) in after.iter().enumerate() {
+            let (masks, next_sums, next_weights) = (&mut masks[at..], &mut sums[at..], &weights[at..]);
+            let mut sum = 0;
             for bit in bits(mask.into()) {
-                let next = at + 1 + bit;
-                masks[next] |= 1 << NEIGHBOURS >> (bit + 1);
-                sums[next] += weights[at];
-                sums[at] += weights[next];
+                masks[bit + 1] |= 1 << NEIGHBOURS >> (bit + 1);
+                next_sums[bit + 1] += weights[at];
+                sum += next_weights[bit + 1];
             }
+            sums[at] += sum;
         }
     }
 }
@@ -341,8 +343,19 @@ impl Sets for Bands {
     }
 
     // Two numbers are in the sets of each other.
-    fn sets_with(&self, member: usize) -> impl Iterator<Item = usize> {
-        self.members(member)
+    fn subtract(&self, member: usize, weight: u32, sums: &mut [u32]) {
+        let start = member.checked_sub(NEIGHBOURS as usize);
+        let Some(window) = start.and_then(|start| sums.get_mut(start..start + 13 * 4)) else {
+            return self.members(member).for_each(|set| sums[set] -= weight);
+        };
+        // Without a loop over bits, whose end would be mispredicted.
+        let mut mask = self.masks[member];
+        for sums in window.as_chunks_mut::<4>().0 {
+            for (lane, sum) in sums.iter_mut().enumerate() {
+                *sum -= if mask as u32 & 1 << lane == 0 { 0 } else { weight };
+            }
+            mask >>= 4;
+        }
     }
 }
 
@@ -385,7 +398,8 @@ impl Cover {
         self.heads.resize(most as usize + 1, NONE);
         self.next.clear();
         self.next.resize(self.gains.len(), NONE);
-        (0..self.gains.len()).for_each(|set| self.push(set));
+        // In reverse, so that the buckets are in ascending order.
+        (0..self.gains.len()).rev().for_each(|set| self.push(set));
         for promised in (1..=most).rev() {
             self.empty_bucket(promised);
             for at in 0..self.bucket.len() {
@@ -398,7 +412,7 @@ impl Cover {
                     let weight = std::mem::take(&mut left[member]);
                     take(set, member, weight > 0);
                     if weight > 0 {
-                        sets.sets_with(member).for_each(|set| self.gains[set] -= weight);
+                        sets.subtract(member, weight, &mut self.gains);
                     }
                 }
             }
