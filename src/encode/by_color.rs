@@ -107,8 +107,8 @@ struct Tour<'a> {
 #[derive(Clone, Copy)]
 struct Place {
     half_blocks: HalfBlocks,
-    /// The indices in `Tour::colors` of the pen's glyph and background colours; `u32::MAX` for a
-    /// colour that the picture does not have.
+    /// The indices in `Tour::colors` of the pen's colours, for glyphs and for the background;
+    /// `u32::MAX` for one that no cell of the picture has.
     pen: [u32; 2],
     /// The bytes of the codes that the next sequence begins with, which end the attributes of text.
     code_len: u32,

@@ -10,7 +10,8 @@
 //!    set its two colours are worth. Each cell takes the cheapest open pair, or keeps what it shows.
 //! 3. If the bytes exceed the limit, the pairs that gain the least per byte are given up.
 //!
-//! The picture here is what [`picture_halves`](super::halves::picture_halves) takes for one: half blocks and spaces in truecolor. All else is text.
+//! The picture here is what [`picture_halves`](super::halves::picture_halves) takes for one: half blocks and spaces in
+//! truecolor. All else is text.
 //!
 //! It is facility location (Cornuejols, Nemhauser and Wolsey 1990), solved in one greedy pass, because a full search
 //! gains another tenth of the quality in forty times the time.

@@ -234,8 +234,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the places of the picture cells that are not exact after the last [`draw`](Self::draw)
-    /// of `writes` differences.
+    /// Returns the places of the picture cells that are not exact after the last
+    /// [`draw`](Self::draw) of `writes` differences.
     pub(super) fn inexact_cells(&self, writes: usize) -> impl Iterator<Item = usize> {
         let Scratch { written, waiting, inexact, unsnapped, snapped, .. } = &*self.scratch;
         let places = &self.frame.differences.places;

@@ -102,11 +102,24 @@ impl Strokes {
                 ];
             } else if can_be_flipped(cell) {
                 let lens = pens[0].ink_lens();
-                let (plain, from_plain) = cheaper_extension(&paths, pens, lens, is_lower);
-                let flipped_pens = [swapped_colors(pens[0]), swapped_colors(pens[1])];
-                let (flipped, from_flipped) = cheaper_extension(&paths, flipped_pens, [lens[1], lens[0]], !is_lower);
-                predecessors.push([from_plain, from_flipped]);
-                paths = [plain, flipped];
+                let (plain, flipped) = if paths[1].pen == swapped_colors(paths[0].pen) {
+                    // After a cell that can be flipped, each path's pen is that of the other with exchanged colours: a
+                    // change from one to a form takes as many bytes as one from the other to the other form.
+                    let same = paths[0].pen.switch_cost_with_lens(&pens[0], lens);
+                    let other = paths[1].pen.switch_cost_with_lens(&pens[1], lens);
+                    (
+                        cheaper_path(&paths, [same, other], pens[0], is_lower),
+                        cheaper_path(&paths, [other, same], swapped_colors(pens[0]), !is_lower),
+                    )
+                } else {
+                    let flipped_pens = [swapped_colors(pens[0]), swapped_colors(pens[1])];
+                    (
+                        cheaper_extension(&paths, pens, lens, is_lower),
+                        cheaper_extension(&paths, flipped_pens, [lens[1], lens[0]], !is_lower),
+                    )
+                };
+                predecessors.push([plain.1, flipped.1]);
+                paths = [plain.0, flipped.0];
             } else {
                 let (plain, from_plain) = cheaper_extension(&paths, pens, pens[0].ink_lens(), is_lower);
                 predecessors.push([from_plain; 2]);
@@ -195,6 +208,17 @@ type PathCost = u64;
 /// The cost of a byte. It exceeds the number of cells in a grid, so that lower half blocks only
 /// break ties.
 const COST_PER_BYTE: PathCost = 1 << 32;
+
+/// Extends both paths by a cell that is written with `pen`.
+///
+/// `bytes` are those of the change of the pen from each path. Returns the cheaper path and its index, 0 or 1.
+#[inline]
+fn cheaper_path(paths: &[SurvivorPath; 2], bytes: [usize; 2], pen: Pen, is_lower: bool) -> (SurvivorPath, u8) {
+    let cost = |path: usize| paths[path].cost + bytes[path] as PathCost * COST_PER_BYTE + PathCost::from(is_lower);
+    let (first, second) = (cost(0), cost(1));
+    let is_second = second < first;
+    (SurvivorPath { pen, cost: if is_second { second } else { first } }, is_second.into())
+}
 
 /// Extends both paths by a cell, written with `pens`. Returns the cheaper one and its index, 0 or
 /// 1.

@@ -244,7 +244,8 @@ impl Colors<'_> {
         u16::from(a) << 8 | u16::from(b)
     }
 
-    /// Returns the least error of halves shown with a pair, and the numbers of the colours for it.
+    /// Returns the least error with which a pair of colours shows the halves, and for each half the
+    /// number of its colour in the palette.
     #[inline]
     fn cheapest(&self, key: u16, wanted: [Channels; 2]) -> (f32, [u8; 2]) {
         let [a, b] = key.to_be_bytes();
