@@ -314,9 +314,21 @@ pub struct RayStack {
     ///
     /// The rest of the vector is spare room, so that a push needs no check.
     len: usize,
+    /// The entries of the stack for trees inside the leaves of a tree.
+    inner: Vec<RayStackEntry>,
 }
 
 impl RayStack {
+    /// Returns the stack for trees inside the leaves of a tree, until [`put_back`](Self::put_back).
+    pub fn take_inner(&mut self) -> Self {
+        Self { entries: std::mem::take(&mut self.inner), ..Self::default() }
+    }
+
+    /// Keeps the memory of the stack for trees inside the leaves of a tree.
+    pub fn put_back(&mut self, inner: Self) {
+        self.inner = inner.entries;
+    }
+
     /// Returns the nearest hit child, and pushes the others, nearer ones above farther ones.
     ///
     /// `hit_mask` is not 0, and `starts` has the t at which the ray enters each box.

@@ -125,6 +125,16 @@ pub(crate) fn factor(value: f64) -> Result<f32, Message> {
     }
 }
 
+/// Checks a number of copies.
+#[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have copies"))]
+pub(crate) fn count(value: f64) -> Result<f32, Message> {
+    if value >= 1.0 && libm::trunc(value) == value {
+        Ok(value as f32)
+    } else {
+        Err("a number of copies must be a whole number from 1 on".into())
+    }
+}
+
 /// Checks an angle of a rotation, which stays in degrees.
 pub(crate) fn angle_in_degrees(degrees: f64) -> Result<f32, Message> {
     const MAX_ANGLE: f64 = 36_000.0;

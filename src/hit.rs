@@ -15,6 +15,7 @@ use single::SingleRay;
 
 mod packet;
 mod single;
+mod instances;
 mod split;
 mod observer;
 

@@ -184,9 +184,10 @@
 //! # What is not here
 //!
 //! - No trait objects in the tracer: a [`Shape`] is an enum, and rays are tested against its primitives. A new
-//!   surface is one file under `shape/`, which implements `Surface` (or `Exact`, in f64), `Described`, `InSceneFile`
-//!   and `CheckedShape`, and one line in the table of `shape`. The enums, the lists and trees of `accel`, and the code
-//!   that reads, describes and explains it are generated from the table (`shape::cube` is such a surface, for tests).
+//!   surface is one file under `shape/`, which implements `Surface` and `Place` (or `Exact`, in f64), `Described`,
+//!   `InSceneFile` and `CheckedShape`, and one line in the table of `shape`. The enums, the lists and trees of `accel`,
+//!   and the code that reads, describes and explains it are generated from the table (`shape::cube` is such a surface,
+//!   for tests).
 //!   Surfaces whose Rust form may still change are hidden: scenes with them are files. A new material is a file under
 //!   `material/` with a `Reflecting` type and a line in the table of `material`, and a new light a file under `light/`
 //!   with a `LightSource` and a line in the table of `light` (`material::stripes` and `light::sun`, for tests).
@@ -244,6 +245,8 @@
 //! Surfaces and trees:
 //! - **shape**: a surface f(p) = 0 of an object: sphere, plane, triangle or mesh.
 //! - **primitive**: a single sphere, triangle or plane that rays are tested against; a mesh has one for each triangle.
+//! - **placement**: scale, rotation and translation of a shape; **map**: the affine map that they make, in f64.
+//! - **instance**: a mesh that shares the triangles of its file; rays are mapped to the coordinates of the file.
 //! - **primitive index**: the number of a primitive among all of its kind in the scene.
 //! - **BVH**: bounding volume hierarchy, a tree of axis-aligned boxes over primitives; a **node** has eight children.
 //! - **leaf**: a node's child with up to eight primitives, stored as **SoA** (structure of arrays), one lane each.

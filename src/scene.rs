@@ -36,6 +36,7 @@ use crate::color::LinearRgb;
 use crate::light::Light;
 use crate::material::Material;
 use crate::shape::Shape;
+use std::collections::HashSet;
 use std::fmt;
 use std::sync::Arc;
 
@@ -196,8 +197,13 @@ impl Scene {
     /// Returns a warning for each mesh with triangles that have no area.
     #[doc(hidden)]
     pub fn flat_mesh_warnings(&self) -> Vec<String> {
+        let mut shared = HashSet::new();
         let warning = |(at, object): (usize, &Object)| {
             let Shape::Mesh(mesh) = &object.shape else { return None };
+            // Of instances, only the first is examined.
+            if mesh.is_instance() && !shared.insert(Arc::as_ptr(mesh.shared_file())) {
+                return None;
+            }
             let (flat, all) = (mesh.file().flat_triangle_count(), mesh.file().triangles().len());
             let have = if flat == 1 { "has" } else { "have" };
             (flat > 0).then(|| format!("object {at}: {flat} of its {all} triangles {have} no area"))

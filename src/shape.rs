@@ -9,7 +9,7 @@
 
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
-use crate::lanes::{F32x8, Lanes, Number, Vector, set_bits};
+use crate::lanes::{F32x8, LANES, Lanes, Number, Vector, set_bits};
 use crate::ray::{CommonOrigin, EightRays, Interval, Probe, Ray, Rays};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
@@ -26,6 +26,8 @@ pub mod ellipsoid;
 pub mod equation;
 mod exact;
 pub mod implicit;
+#[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have instances"))]
+mod instance;
 pub mod mesh;
 pub mod scalar_leaf;
 #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written placements"))]
@@ -49,7 +51,10 @@ pub use disk::Disk;
 pub use ellipsoid::Ellipsoid;
 pub use equation::{Equation, Step};
 pub use implicit::Implicit;
-pub use mesh::{Facet, Mesh};
+#[cfg(feature = "ron")]
+pub(crate) use instance::Hull;
+pub(crate) use instance::Passage;
+pub use mesh::{Facet, Mesh, WrittenMesh};
 pub use placement::{Placement, WrittenPlacement};
 pub use plane::Plane;
 pub use quad::Quad;
@@ -220,6 +225,32 @@ impl<N: Number> Points<N> {
             is_front: mask & yes.is_front | !mask & no.is_front,
             clearance: of_two(yes.clearance, no.clearance),
             uv: [of_two(yes.uv[0], no.uv[0]), of_two(yes.uv[1], no.uv[1])],
+        }
+    }
+}
+
+impl<N: Lanes> Points<N> {
+    /// Returns the points of all lanes, without shading normals.
+    ///
+    /// Lanes without a point are unspecified.
+    #[inline(always)]
+    pub fn of_lanes(points: &[Option<SurfacePoint>; LANES]) -> Self {
+        let (mut position, mut geometric_normal) = (Vector::ZERO, Vector::ZERO);
+        let (mut is_front, mut clearance, mut uv) = (0, F32x8::ZERO, [F32x8::ZERO; 2]);
+        for (lane, point) in points.iter().enumerate() {
+            let Some(point) = point else { continue };
+            position.put(lane, point.position);
+            geometric_normal.put(lane, point.geometric_normal);
+            is_front |= u32::from(point.side == Side::Front) << lane;
+            clearance.0[lane] = point.clearance;
+            (uv[0].0[lane], uv[1].0[lane]) = (point.uv.x, point.uv.y);
+        }
+        Self {
+            position: position.load(),
+            geometric_normal: geometric_normal.load(),
+            is_front: N::mask_from_bits(is_front),
+            clearance: N::load(&clearance),
+            uv: [N::load(&uv[0]), N::load(&uv[1])],
         }
     }
 }

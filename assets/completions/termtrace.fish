@@ -210,7 +210,8 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
-teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
+crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is frame" -a '(__termtrace_scenes)'
 complete -c termtrace -n "__termtrace_is record" -l eye -r -f -d 'Eye point, instead of the scene\'s'
 complete -c termtrace -n "__termtrace_is record" -l target -r -f -d 'Point that the camera looks at, instead of the scene\'s target'
@@ -287,7 +288,8 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
-teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
+crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is record" -a '(__termtrace_scenes)'
 complete -c termtrace -n "__termtrace_is explain" -l eye -r -f -d 'Eye point, instead of the scene\'s'
 complete -c termtrace -n "__termtrace_is explain" -l target -r -f -d 'Point that the camera looks at, instead of the scene\'s target'
@@ -333,7 +335,8 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
-teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
+crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is explain" -a '(__termtrace_scenes)'
 complete -c termtrace -n "__termtrace_is check" -l eye -r -f -d 'Eye point, instead of the scene\'s'
 complete -c termtrace -n "__termtrace_is check" -l target -r -f -d 'Point that the camera looks at, instead of the scene\'s target'
@@ -373,7 +376,8 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
-teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
+crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is check" -a '(__termtrace_scenes)'
 complete -c termtrace -n "__termtrace_is describe" -l eye -r -f -d 'Eye point, instead of the scene\'s'
 complete -c termtrace -n "__termtrace_is describe" -l target -r -f -d 'Point that the camera looks at, instead of the scene\'s target'
@@ -416,7 +420,8 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
-teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
+crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is describe" -a '(__termtrace_scenes)'
 complete -c termtrace -n "__termtrace_is bench" -l scene -r -f -a "three\t'Three spheres on a plane'
 s10\t'10 larger spheres in the same cube'
@@ -455,7 +460,8 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
-teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
+crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is bench" -a '(__termtrace_scenes)'
 complete -c termtrace -n "__termtrace_is serve" -s h -l help -d 'Print help; -h prints a summary'
 complete -c termtrace -n "__termtrace_is serve"
@@ -655,5 +661,6 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
-teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'"
+teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
+crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is ''" -a '(__termtrace_scenes)'

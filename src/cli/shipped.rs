@@ -52,6 +52,7 @@ shipped! {
     "two_lights",
     "three_lights",
     "teapots" ["teapot.obj"],
+    "crowd" ["teapot.obj"],
 }
 
 impl ShippedScene {

@@ -6,7 +6,7 @@
 
 use super::single::SingleRay;
 use super::{Stacks, split};
-use crate::accel::{self, Accelerator, List, Tree};
+use crate::accel::{self, Accelerator, Instances, List, Tree};
 use crate::bounds::crossed;
 use crate::bvh::{Child, GROUPS, Packet, Prefetch, RayStack, Visitor};
 use crate::hit::{EightHits, Kernel};
@@ -165,6 +165,24 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
         }
     }
 
+    /// Finds the packet's hits with instances of meshes, by single rays.
+    #[inline(always)]
+    fn trace_instances(&mut self, instances: &'p Instances, stack: &mut RayStack) {
+        let Some(bounds) = instances.bounds else { return };
+        let node_box = [Vector::splat(bounds.min), Vector::splat(bounds.max)];
+        for group in 0..self.rays.len() {
+            let waiting = split::NodeRays::hit_mask(&NodeRays { rays: self, node_box }, group);
+            let mut hits = SingleHits::of(self, group);
+            for lane in set_bits(waiting) {
+                let mut ray = hits.ray(self, group, lane);
+                ray.trace_instances(instances, stack);
+                hits.record(&ray, lane);
+            }
+            hits.store(self, group);
+        }
+        self.update_packet_t_max();
+    }
+
     /// Tests the rays of a group against unbounded primitives, and against trees of a single leaf.
     // Called while the group's rays are still in registers, before they are stored for the traversal of the trees.
     #[inline(always)]
@@ -265,6 +283,11 @@ impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Trees<'_, 'p, N, ANY>
     fn visit_tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
         self.rays.trace_tree(tree, &mut self.packet, self.stacks);
     }
+
+    #[inline(always)]
+    fn visit_instances(&mut self, instances: &'p Instances) {
+        self.rays.trace_instances(instances, &mut self.stacks.single);
+    }
 }
 
 /// The visitor that tests a group against all primitives outside trees.
@@ -287,6 +310,9 @@ impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Unculled<'_, N, ANY> 
     fn visit_tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
         self.hits.test_single_leaf(tree, self.rays, self.min, self.accel);
     }
+
+    #[inline(always)]
+    fn visit_instances(&mut self, _: &'p Instances) {}
 }
 
 /// Returns the mask of lanes whose primitive in `others` comes after `primitive` in the scene.
@@ -452,20 +478,56 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool> InTree<'_, '_, N, S, ANY> {
             return;
         }
         self.rays.rays_left += rays.count_ones();
-        let (mut t, mut primitive) = (self.rays.t[group].store(), self.rays.primitive[group].store());
+        let mut hits = SingleHits::of(self.rays, group);
         for lane in set_bits(rays) {
-            let within = Interval { min: self.rays.within.min, max: t.0[lane] };
-            let known = primitive.0[lane].to_bits();
-            let ray = SingleRay::<N, ANY>::new(self.rays.accel, &self.rays.groups[group], lane, within);
-            let mut ray = ray.with_known_hit((known != NO_PRIMITIVE).then_some(known));
+            let mut ray = hits.ray(self.rays, group, lane);
             ray.trace_from(from, self.tree, self.ray_stack);
-            if let (hit_t, Some(found)) = ray.t_and_primitive() {
-                t.0[lane] = if ANY { TERMINATED } else { hit_t };
-                primitive.0[lane] = index_as_lane(found);
-            }
+            hits.record(&ray, lane);
         }
-        self.rays.t[group] = N::load(&t);
-        self.rays.primitive[group] = N::load(&primitive);
-        self.rays.group_t_max.0[group] = t.reduce_max();
+        hits.store(self.rays, group);
+    }
+}
+
+/// The hits of a group's rays while some of them are traced singly.
+struct SingleHits {
+    t: F32x8,
+    primitive: F32x8,
+}
+
+impl SingleHits {
+    #[inline(always)]
+    fn of<N: Lanes, const ANY: bool>(rays: &PacketRays<'_, N, ANY>, group: usize) -> Self {
+        Self { t: rays.t[group].store(), primitive: rays.primitive[group].store() }
+    }
+
+    /// Returns a ray of the group as a single ray, with its hit so far.
+    #[inline(always)]
+    fn ray<'r, N: Lanes, const ANY: bool>(
+        &self,
+        rays: &'r PacketRays<'_, N, ANY>,
+        group: usize,
+        lane: usize,
+    ) -> SingleRay<'r, N, ANY> {
+        let within = Interval { min: rays.within.min, max: self.t.0[lane] };
+        let known = self.primitive.0[lane].to_bits();
+        let ray = SingleRay::new(rays.accel, &rays.groups[group], lane, within);
+        ray.with_known_hit((known != NO_PRIMITIVE).then_some(known))
+    }
+
+    /// Records the hit of a ray of the group.
+    #[inline(always)]
+    fn record<N: Lanes, const ANY: bool>(&mut self, ray: &SingleRay<'_, N, ANY>, lane: usize) {
+        if let (t, Some(found)) = ray.t_and_primitive() {
+            self.t.0[lane] = if ANY { TERMINATED } else { t };
+            self.primitive.0[lane] = index_as_lane(found);
+        }
+    }
+
+    /// Stores the hits in the packet.
+    #[inline(always)]
+    fn store<N: Lanes, const ANY: bool>(self, rays: &mut PacketRays<'_, N, ANY>, group: usize) {
+        rays.t[group] = N::load(&self.t);
+        rays.primitive[group] = N::load(&self.primitive);
+        rays.group_t_max.0[group] = self.t.reduce_max();
     }
 }

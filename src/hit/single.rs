@@ -1,7 +1,8 @@
 //! Single-ray traversal: one ray against eight boxes or primitives at a time.
 
+use super::instances::{self, SearchOn};
 use super::observer::{NoObserver, Observer, PrimitiveTest};
-use crate::accel::{Accelerator, List, PrimitiveId, Tree, Visitor};
+use crate::accel::{Accelerator, Instances, List, PrimitiveId, Tree, Visitor};
 use crate::bvh::{Child, LeafVisitor, Prefetch, RayStack};
 use crate::lanes::{F32x8, LaneMask, Lanes, SimdKernel, set_bits};
 use crate::ray::{Interval, Rays};
@@ -94,6 +95,18 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
         }
     }
 
+    /// Finds the hit among the instances of meshes.
+    #[inline(always)]
+    pub(super) fn trace_instances(&mut self, instances: &'p Instances, stack: &mut RayStack) {
+        if ANY && self.primitive.is_some() {
+            return;
+        }
+        let (rays, Self { accel, within, primitive, .. }) = (&self.rays.splat_lane(self.lane), &*self);
+        let (accel, within, primitive) = (*accel, *within, *primitive);
+        let search = instances::Search { accel, instances, rays, within, primitive, observer: &mut self.observer };
+        (self.within.max, self.primitive) = N::call_no_inline(SearchOn::<N, ANY, W> { search, stack });
+    }
+
     /// Finds the hit below a node or leaf of a tree.
     // The search itself is not inlined: inside the packet's function, the single ray's values were in memory instead of
     // in registers. A separate function saved 14 to 16 % of the instructions of incoherent rays.
@@ -162,6 +175,11 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> Visitor<'p> for AllPrimitives<'
     #[inline(always)]
     fn visit_tree<S: SoaLeaf>(&mut self, tree: &'p Tree<S>) {
         self.ray.trace_tree(tree, self.stack);
+    }
+
+    #[inline(always)]
+    fn visit_instances(&mut self, instances: &'p Instances) {
+        self.ray.trace_instances(instances, self.stack);
     }
 }
 

@@ -7,16 +7,18 @@ mod camera;
 pub(super) mod path;
 
 use super::{Background, Checked, Draft, Object, ToneCurve, caption};
-use crate::checks;
+use crate::checks::{self, Message, SceneFault};
 use crate::color::{LinearRgb, Srgb8};
 use crate::material::{Material, WrittenMaterial};
+use crate::mesh_file::MeshFile;
 use crate::progress::Reporter;
 use crate::scene_file::{MaterialUse, NamedMaterial, SceneFile, WrittenBackground, WrittenObject, WrittenToneCurve};
 use crate::scene_text::{Faults, quoted};
-use crate::shape::{Meshes, Placement, Shape, without_coordinates};
+use crate::shape::{Hull, Mesh, Meshes, Placement, Shape, WrittenMesh, WrittenShape, without_coordinates};
 use crate::text::{closest, listed};
 use crate::written::{Spanned, Validator};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Returns the checked scene, or `None` after all faults have been added to `faults`.
 ///
@@ -77,22 +79,26 @@ impl Validator<'_> {
             let checked = material.as_ref().map(|written| CheckedMaterial { written, material: written.check(self) });
             materials.insert(&**name, checked);
         }
-        let object = |written: &WrittenObject| {
+        let (mut objects, mut sharing) = (Vec::new(), Sharing::of(file));
+        for written in file.objects.iter().take_while(|_| !reporter.is_cancelled()) {
             let (shape, material) = (written.shape.check(self, meshes), self.material_of(written, file, &materials));
-            let placement = written.placement.as_ref().map(|placement| placement.check(self));
+            let placements = written.placement.as_ref().map(|placement| placement.check(self));
             // All parts have been checked by now, so that the faults of each are reported.
-            let (shape, material) = (shape?, material?);
-            let shape = match placement {
+            let (Some(shape), Some(material)) = (shape, material) else { continue };
+            match placements {
+                Some(None) => {}
                 // The coordinates of a mesh are checked as it is placed.
-                None if !matches!(shape, Shape::Mesh(_)) => shape,
-                placement => {
-                    let placed = shape.placed(&placement.unwrap_or(Some(Placement::NONE))?);
-                    self.accept(written.span, placed.map_err(|fault| fault.message().to_owned().into()))?
+                None if !matches!(shape, Shape::Mesh(_)) => objects.push(Object { shape, material }),
+                placements => {
+                    let placements = placements.flatten().unwrap_or_else(|| vec![Placement::NONE]);
+                    let placed = |placement| sharing.placed(written, &shape, placement);
+                    let placed: Result<Vec<_>, _> = placements.iter().map(placed).collect();
+                    let shapes = self.accept(written.span, placed).unwrap_or_default();
+                    objects.extend(shapes.into_iter().map(|shape| Object { shape, material }));
                 }
-            };
-            Some(Object { shape, material })
-        };
-        file.objects.iter().take_while(|_| !reporter.is_cancelled()).filter_map(object).collect()
+            }
+        }
+        objects
     }
 
     /// Returns the material of an object: the one written in place or named, or the default of its
@@ -122,6 +128,52 @@ impl Validator<'_> {
             return self.fault(*span, || without_coordinates(pattern, object.shape.owner()));
         }
         material
+    }
+}
+
+/// The meshes that objects share.
+struct Sharing<'f> {
+    /// The number of objects with each path.
+    objects: HashMap<&'f str, usize>,
+    /// The corners of each mesh that is shared; `None` for one that each object copies.
+    hulls: HashMap<*const MeshFile, Option<Hull>>,
+    /// The number of triangles so far, those of each copy and instance counted.
+    triangles: usize,
+}
+
+/// The most triangles of a scene, those of each copy and instance counted.
+// Traversal numbers them with 32 bits, of which other primitives need a part.
+const MAX_TRIANGLES: usize = 2_000_000_000;
+
+impl<'f> Sharing<'f> {
+    fn of(file: &'f SceneFile) -> Self {
+        let mut objects = HashMap::new();
+        for WrittenObject { shape, placement, .. } in &file.objects {
+            if let WrittenShape::Mesh(WrittenMesh { path: Some(path) }) = shape {
+                let copies = placement.as_ref().map_or(1, |placement| placement.copy_count());
+                let count: &mut usize = objects.entry(&*path.value).or_default();
+                *count = count.saturating_add(copies);
+            }
+        }
+        Self { objects, hulls: HashMap::new(), triangles: 0 }
+    }
+
+    /// Returns a shape of an object scaled, rotated and moved.
+    fn placed(&mut self, object: &WrittenObject, shape: &Shape, placement: &Placement) -> Result<Shape, Message> {
+        let of_fault = |fault: SceneFault| fault.message().to_owned().into();
+        let (Shape::Mesh(mesh), WrittenShape::Mesh(WrittenMesh { path: Some(path) })) = (shape, &object.shape) else {
+            return shape.clone().placed(placement).map_err(of_fault);
+        };
+        self.triangles = self.triangles.saturating_add(mesh.triangle_count() as usize);
+        if self.triangles > MAX_TRIANGLES {
+            return Err("a scene may have up to 2,000,000,000 triangles, those of each copy counted".into());
+        }
+        let (file, count) = (mesh.shared_file(), self.objects.get(&*path.value).copied().unwrap_or(1));
+        let hull = self.hulls.entry(Arc::as_ptr(file));
+        match hull.or_insert_with(|| Hull::of_shared(file, count)) {
+            Some(hull) => Mesh::instance(file, hull, placement).map(Shape::from).ok_or(checks::MESH_TOO_FAR.into()),
+            None => shape.clone().placed(placement).map_err(of_fault),
+        }
     }
 }
 

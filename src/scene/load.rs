@@ -17,6 +17,7 @@ use std::fmt;
 use std::io;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 impl Scene {
     /// Parses a scene from text in RON.
@@ -385,7 +386,7 @@ struct Meshes<'w> {
     folder: PathBuf,
     /// The names and bytes of mesh files in memory, which are used instead of files in the folder.
     embedded: &'w [(&'w str, &'w [u8])],
-    read: HashMap<PathBuf, MeshFile>,
+    read: HashMap<PathBuf, Arc<MeshFile>>,
     reporter: &'w Reporter<'w>,
 }
 
@@ -396,11 +397,10 @@ impl<'w> Meshes<'w> {
 }
 
 impl shape::Meshes for Meshes<'_> {
-    fn mesh(&mut self, name: &str) -> Result<MeshFile, Unfinished<String>> {
+    fn mesh(&mut self, name: &str) -> Result<Arc<MeshFile>, Unfinished<String>> {
         let path = self.folder.join(name);
-        // Returns a copy, because each object applies its own transform to the mesh.
         if let Some(mesh) = self.read.get(&path) {
-            return Ok(mesh.clone());
+            return Ok(Arc::clone(mesh));
         }
         let mesh = if let Some((_, bytes)) = self.embedded.iter().find(|(embedded, _)| *embedded == name) {
             MeshFile::of_file(&path, None, bytes, self.reporter)
@@ -409,8 +409,8 @@ impl shape::Meshes for Meshes<'_> {
             // Pipes are not accepted, as they can be read only once, and a scene is loaded again when it changes.
             MeshFile::read_whole(&path, Accepted::Files, self.reporter)
         };
-        let mesh = mesh.map_err(|unfinished| unfinished.map(|error| error.to_string()))?;
-        self.read.insert(path, mesh.clone());
+        let mesh = Arc::new(mesh.map_err(|unfinished| unfinished.map(|error| error.to_string()))?);
+        self.read.insert(path, Arc::clone(&mesh));
         Ok(mesh)
     }
 }

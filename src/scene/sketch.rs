@@ -2,6 +2,8 @@
 
 use super::{Checked, Draft, Object, Scene};
 use crate::shape::{Mesh, Shape};
+use std::collections::HashMap;
+use std::sync::Arc;
 
 /// The least number of triangles for which a sketch is made.
 // The trees of fewer triangles are built in about the same time as a sketch, a few hundredths of a second.
@@ -17,15 +19,19 @@ impl Draft {
     ///
     /// Returns `None` if the trees of the scene itself are built as fast.
     pub fn sketch(&self) -> Option<Scene> {
-        let meshes = || self.checked.objects.iter().filter_map(|object| mesh_of(&object.shape));
-        if meshes().map(Mesh::triangle_count).fold(0, u32::saturating_add) < MIN_SKETCHED_TRIANGLES {
+        let meshes = self.checked.objects.iter().filter_map(|object| mesh_of(&object.shape));
+        // Instances share a file, which is decimated once.
+        let files: HashMap<_, _> = meshes.map(|mesh| (Arc::as_ptr(mesh.shared_file()), mesh)).collect();
+        if files.values().map(|mesh| mesh.triangle_count()).fold(0, u32::saturating_add) < MIN_SKETCHED_TRIANGLES {
             return None;
         }
         // The number of triangles of a decimated mesh grows with the square of the number of cubes along its side.
-        let details = DETAILS / (meshes().count() as f32).sqrt();
+        let (details, mut decimated) = (DETAILS / (files.len() as f32).sqrt(), HashMap::new());
         let sketched = |object: &Object| match mesh_of(&object.shape) {
             Some(mesh) => {
-                mesh.file().decimated(details as u32).map(|mesh| Object::new(Mesh::of_checked(mesh), object.material))
+                let file = decimated.entry(Arc::as_ptr(mesh.shared_file()));
+                let file = file.or_insert_with(|| mesh.file().decimated(details as u32).map(Arc::new));
+                Some(Object::new(mesh.with_file(Arc::clone(file.as_ref()?)), object.material))
             }
             None => Some(object.clone()),
         };

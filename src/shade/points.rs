@@ -3,12 +3,12 @@
 //! Traversal keeps only t and a primitive's index per ray. Normals and coordinates are computed here, once per ray
 //! instead of once per test.
 
-use crate::accel::{Accelerator, List, PrimitiveId, PrimitiveIds, Tree, Visitor};
+use crate::accel::{Accelerator, Instances, List, PrimitiveId, PrimitiveIds, Tree, Visitor};
 use crate::hit::EightHits;
 use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Vector, set_bits};
 use crate::ray::{EightRays, Rays};
 use crate::scene::Scene;
-use crate::shape::{AtCrossing, Endless, Points, Primitive, SoaLeaf};
+use crate::shape::{AtCrossing, Endless, Points, Primitive, SoaLeaf, SurfacePoint};
 use crate::simd::{self, SimdKernel};
 use glam::Vec2;
 
@@ -142,6 +142,33 @@ impl<'a, N: Lanes> Visitor<'a> for SurfacesOfPrimitive<'_, N> {
                 surfaces_in_tree(tree, self.rays, self.hits, self.hits.mask_of_range(tree.first, tree.end_index()));
         }
     }
+
+    #[inline(always)]
+    fn visit_instances(&mut self, instances: &'a Instances) {
+        let [first, end] = instances.range();
+        if (first..end).contains(&self.primitive) {
+            let lanes = self.hits.mask_of_range(first, end);
+            let (ids, points) = surfaces_of_instances(instances, self.rays, self.hits, lanes);
+            self.found = (lanes, ids.load(), Points::of_lanes(&points));
+        }
+    }
+}
+
+/// Computes the flat surface points of the rays in the mask `lanes`, which hit instances.
+fn surfaces_of_instances(
+    instances: &Instances,
+    rays: &EightRays,
+    hits: &EightHits,
+    lanes: u32,
+) -> (PrimitiveIds<F32x8>, [Option<SurfacePoint>; LANES]) {
+    let (mut ids, mut points) = ([PrimitiveId { object: 0, index: 0 }; LANES], [None; LANES]);
+    for lane in set_bits(lanes) {
+        if let Some((id, mesh)) = instances.primitive(hits.primitive(lane)) {
+            ids[lane] = id;
+            points[lane] = Some(mesh.facet(id.index).flat_point(&rays.ray(lane), hits.t.0[lane]));
+        }
+    }
+    (PrimitiveIds::of(ids), points)
 }
 
 /// Computes the surface points of the rays in the mask `lanes`, which hit primitives of `tree`.

@@ -1,7 +1,7 @@
 //! Surfaces in the text of descriptions and explanations.
 
 use super::placement::Place;
-use super::{Equation, Mesh, Primitive, Shape, Step, Surface, surfaces};
+use super::{Equation, Primitive, Shape, Step, Surface, surfaces};
 use crate::bounds::Bounds;
 use crate::ray::Ray;
 use crate::text::number;
@@ -51,7 +51,7 @@ macro_rules! described {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.described(color),)*
                     Self::Mesh(mesh) => {
-                        let size = size_in_words(&bounds_of(mesh));
+                        let size = size_in_words(mesh.bounds());
                         format!("a {color} mesh of {} triangles, {size}", mesh.triangle_count())
                     }
                 }
@@ -73,7 +73,7 @@ macro_rules! described {
             pub fn bounds(&self) -> Option<Bounds> {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.bounds(),)*
-                    Self::Mesh(mesh) => Some(bounds_of(mesh)),
+                    Self::Mesh(mesh) => Some(*mesh.bounds()),
                 }
             }
         }
@@ -104,10 +104,6 @@ macro_rules! described {
 }
 
 surfaces! { described }
-
-fn bounds_of(mesh: &Mesh) -> Bounds {
-    Bounds::of(mesh.file().positions().iter().copied())
-}
 
 /// Returns the size of a box along each axis, in words.
 pub(super) fn size_in_words(bounds: &Bounds) -> String {

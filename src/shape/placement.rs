@@ -119,6 +119,17 @@ impl AffineMap {
         Line { origin: self.shape_point(*origin), direction: self.inverse * *direction }
     }
 
+    /// Maps a ray of the scene to the shape, in single precision.
+    pub(super) fn shape_ray(&self, ray: &Ray) -> Ray {
+        let Line { origin, direction } = shape_line(Some(self), ray);
+        Ray { origin: origin.as_vec3(), direction: direction.as_vec3() }
+    }
+
+    /// Returns whether the map mirrors, so that triangles are turned inside out.
+    pub(super) fn is_mirrored(&self) -> bool {
+        self.linear.determinant() < 0.0
+    }
+
     /// Maps a normal of the scene to the shape, with unit length.
     pub(super) fn shape_normal(&self, normal: DVec3) -> DVec3 {
         (self.linear.transpose() * normal).normalize()
@@ -191,11 +202,24 @@ pub struct WrittenPlacement {
     rotate: Option<WrittenVector>,
     /// The translation, after scale and rotation.
     translate: Option<WrittenVector>,
+    copies: Option<WrittenCopies>,
 }
+
+/// Copies in rows as written: `copies: (count: ..., step: ...)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct WrittenCopies {
+    /// The number of copies along each axis.
+    count: WrittenVector,
+    /// The distances between neighbours along the axes.
+    step: WrittenVector,
+}
+
+/// The most copies of an object.
+const MAX_COPIES: f64 = 100_000.0;
 
 impl WrittenPlacement {
     /// The names of the fields.
-    pub(crate) const FIELDS: [&'static str; 3] = ["scale", "rotate", "translate"];
+    pub(crate) const FIELDS: [&'static str; 4] = ["scale", "rotate", "translate", "copies"];
 
     /// Reads the placement from the fields of an object; `None` if it has none.
     pub(crate) fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> Option<Self> {
@@ -203,19 +227,55 @@ impl WrittenPlacement {
             scale: reader.optional(fields, "scale", read_scale),
             rotate: reader.optional(fields, "rotate", read_angles),
             translate: reader.optional(fields, "translate", NodeReader::point),
+            copies: reader.optional(fields, "copies", read_copies),
         };
-        [placement.scale, placement.rotate, placement.translate].iter().any(Option::is_some).then_some(placement)
+        let is_any = [placement.scale, placement.rotate, placement.translate].iter().any(Option::is_some);
+        (is_any || placement.copies.is_some()).then_some(placement)
     }
 
-    /// Returns the placement, or `None` after a fault has been reported to `validator`.
-    pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Placement> {
+    /// Returns the number of copies as written.
+    pub(crate) fn copy_count(&self) -> usize {
+        self.copies
+            .map_or(1, |copies| copies.count.components.iter().map(|count| count.value).product::<f64>() as usize)
+    }
+
+    /// Returns the placement of each copy, or `None` after a fault has been reported.
+    pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Vec<Placement>> {
         // All three are checked before a fault ends the function, so that the faults of each are reported.
         let scale = self.scale.map_or(Some(DVec3::ONE), |scale| checked(validator, scale, checks::factor));
         let degrees =
             self.rotate.map_or(Some(DVec3::ZERO), |angles| checked(validator, angles, checks::angle_in_degrees));
         let translation = self.translate.map_or(Some(DVec3::ZERO), |translation| validator.coordinates(translation));
-        Some(Placement { scale: scale?, turn: rotation(degrees?.to_array()), translation: translation? })
+        let offsets = self.copies.map_or(Some(vec![DVec3::ZERO]), |copies| copies.check(validator));
+        let placement = Placement { scale: scale?, turn: rotation(degrees?.to_array()), translation: translation? };
+        let moved = |offset| Placement { translation: placement.translation + offset, ..placement };
+        Some(offsets?.into_iter().map(moved).collect())
     }
+}
+
+impl WrittenCopies {
+    /// Returns the offset of each copy, in rows along x, or `None` after a fault.
+    fn check(&self, validator: &mut Validator<'_>) -> Option<Vec<DVec3>> {
+        let count = checked(validator, self.count, checks::count);
+        let (count, step) = (count?, validator.coordinates(self.step)?);
+        if count.element_product() > MAX_COPIES {
+            return validator.fault(self.count.span, || "an object can have up to 100,000 copies".to_owned());
+        }
+        let [x, y, z] = count.to_array().map(|count| count as u32);
+        let offset = |at: u32| step * DVec3::new((at % x).into(), (at / x % y).into(), (at / x / y).into());
+        Some((0..x * y * z).map(offset).collect())
+    }
+}
+
+fn read_copies(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenCopies> {
+    const FORM: &str = "copies (count: (x, y, z), step: (x, y, z))";
+    let fields = reader.fields(node, "the field copies", FORM, &["count", "step"])?;
+    let count = reader.required(&fields, "count", |reader, node| {
+        let components = reader.numbers(node, "the number of copies along each axis (x, y, z)")?;
+        Some(WrittenVector { components, span: node.span })
+    });
+    let step = reader.required(&fields, "step", NodeReader::direction);
+    Some(WrittenCopies { count: count?, step: step? })
 }
 
 /// Checks the numbers of a vector by a rule, up to the first fault.

@@ -1,6 +1,6 @@
 //! A leaf for surfaces whose formula is written for one ray and one surface.
 
-use super::{AtCrossing, Crossable, Points, Side, SoaLeaf, Surface};
+use super::{AtCrossing, Crossable, Points, SoaLeaf, Surface};
 use crate::bounds::crossed;
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Vector, set_bits};
 use crate::ray::{EightRays, Rays};
@@ -136,22 +136,6 @@ impl<S: Surface, N: Lanes> AtCrossing<N> for ScalarLeaf<S> {
             let surface = self.surface(lane)?;
             Some(surface.at_crossing(&rays.ray(lane), t.0[lane]))
         });
-        let (mut position, mut geometric_normal) = (Vector::ZERO, Vector::ZERO);
-        let (mut is_front, mut clearance, mut uv) = (0, F32x8::ZERO, [F32x8::ZERO; 2]);
-        for (lane, point) in points.iter().enumerate() {
-            let Some(point) = point else { continue };
-            position.put(lane, point.position);
-            geometric_normal.put(lane, point.geometric_normal);
-            is_front |= u32::from(point.side == Side::Front) << lane;
-            clearance.0[lane] = point.clearance;
-            (uv[0].0[lane], uv[1].0[lane]) = (point.uv.x, point.uv.y);
-        }
-        Points {
-            position: position.load(),
-            geometric_normal: geometric_normal.load(),
-            is_front: N::mask_from_bits(is_front),
-            clearance: N::load(&clearance),
-            uv: [N::load(&uv[0]), N::load(&uv[1])],
-        }
+        Points::of_lanes(&points)
     }
 }

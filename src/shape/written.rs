@@ -29,13 +29,13 @@ pub trait Meshes {
     ///
     /// # Errors
     /// The message for the user, or a cancellation.
-    fn mesh(&mut self, path: &str) -> Result<MeshFile, Unfinished<String>>;
+    fn mesh(&mut self, path: &str) -> Result<Arc<MeshFile>, Unfinished<String>>;
 }
 
 /// The fields of all objects, whatever their shape.
-const OF_OBJECTS: [&str; 4] = {
-    let [scale, rotate, translate] = WrittenPlacement::FIELDS;
-    [scale, rotate, translate, "material"]
+const OF_OBJECTS: [&str; 5] = {
+    let [scale, rotate, translate, copies] = WrittenPlacement::FIELDS;
+    [scale, rotate, translate, copies, "material"]
 };
 
 /// Returns the fields of a shape, followed by those of all objects.

@@ -1,0 +1,149 @@
+//! The instances of meshes: a tree over their boxes, and one tree for each mesh that they share.
+
+use super::{PrimitiveId, Tree, TreeBuilder};
+use crate::bounds::Bounds;
+use crate::bvh::{Bvh, Prefetch};
+use crate::lanes::{F32x8, LANES, Vector};
+use crate::shape::{Mesh, Triangle, TriangleN};
+use crate::simd;
+use glam::Vec3;
+use std::array::from_fn;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::sync::Arc;
+
+/// The instances in a scene.
+///
+/// Their primitives are numbered through after all others: those of an instance are the triangles of its mesh.
+#[derive(Clone, Default, PartialEq)]
+pub(crate) struct Instances {
+    /// The tree over the boxes of the instances.
+    pub(crate) bvh: Bvh,
+    pub(crate) leaves: Vec<InstanceLeaf>,
+    /// The instances, in the order of the scene.
+    all: Vec<Instance>,
+    pub(crate) bounds: Option<Bounds>,
+}
+
+/// Up to eight instances: their boxes and their numbers.
+#[derive(Clone, PartialEq)]
+pub(crate) struct InstanceLeaf {
+    /// The least and the greatest coordinates.
+    ///
+    /// An unused lane has an inverted infinite box, which no ray hits.
+    pub(crate) boxes: [Vector<F32x8>; 2],
+    numbers: [u32; LANES],
+}
+
+/// An instance of a mesh.
+#[derive(Clone, PartialEq)]
+pub(crate) struct Instance {
+    object: u32,
+    pub(crate) mesh: Arc<Mesh>,
+    /// The tree over the triangles of the mesh, in the coordinates of its file.
+    pub(crate) triangles: Arc<Tree<TriangleN<F32x8>>>,
+    /// The index of the first primitive.
+    pub(crate) first: u32,
+}
+
+impl Instance {
+    /// Returns the id of a triangle.
+    pub(crate) fn id(&self, triangle: u32) -> PrimitiveId {
+        PrimitiveId { object: self.object, index: triangle }
+    }
+}
+
+impl Instances {
+    /// Builds the trees over instances, which are given with the indices of their objects.
+    ///
+    /// `first` is the index of the first primitive.
+    pub(super) fn build<E: Send>(
+        list: Vec<(u32, Arc<Mesh>)>,
+        mut first: u32,
+        report: &(dyn Fn(usize) -> Result<(), E> + Sync),
+    ) -> Result<Self, E> {
+        let (mut trees, mut all) = (HashMap::new(), Vec::with_capacity(list.len()));
+        for (object, mesh) in list {
+            let file = Arc::as_ptr(mesh.shared_file());
+            let tree = match trees.entry(file) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(new) => new.insert(Arc::new(tree_of(&mesh, report)?)),
+            };
+            let (triangles, end) = (Arc::clone(tree), first.saturating_add(mesh.triangle_count()));
+            all.push(Instance { object, mesh, triangles, first });
+            first = end;
+        }
+        let boxes: Vec<_> = all.iter().map(|instance| *instance.mesh.bounds()).collect();
+        let bounds = boxes.iter().copied().reduce(|all, next| all.union(&next));
+        let (bvh, places) = Bvh::new_or_cancel(&boxes, &|_| report(0))?;
+        let leaf = |leaf: usize| {
+            let numbers = places.boxes(leaf);
+            let of_lane = |lane: usize| numbers.get(lane).map(|&number| &boxes[number as usize]);
+            let min = from_fn(|lane| of_lane(lane).map_or(Vec3::INFINITY, |bounds| bounds.min));
+            let max = from_fn(|lane| of_lane(lane).map_or(Vec3::NEG_INFINITY, |bounds| bounds.max));
+            let numbers = from_fn(|lane| numbers[lane.min(numbers.len() - 1)]);
+            InstanceLeaf { boxes: [Vector::of(min), Vector::of(max)], numbers }
+        };
+        let leaves = (0..places.leaf_count()).map(leaf).collect();
+        Ok(Self { bvh, leaves, all, bounds })
+    }
+
+    /// Returns the number of triangles in the trees of the meshes that instances in `list` share.
+    pub(super) fn triangle_count(list: &[(u32, Arc<Mesh>)]) -> usize {
+        let files: HashMap<_, _> = list.iter().map(|(_, mesh)| (Arc::as_ptr(mesh.shared_file()), mesh)).collect();
+        files.values().map(|mesh| mesh.triangle_count() as usize).sum()
+    }
+
+    /// Returns whether there are none.
+    #[inline(always)]
+    pub(crate) fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// Returns the instance in a lane of a leaf.
+    pub(crate) fn in_leaf(&self, leaf: usize, lane: usize) -> &Instance {
+        &self.all[self.leaves[leaf].numbers[lane] as usize]
+    }
+
+    /// Returns the index of the first primitive, and the index after the last one.
+    pub(crate) fn range(&self) -> [u32; 2] {
+        let end = |last: &Instance| last.first.saturating_add(last.mesh.triangle_count());
+        [self.all.first().map_or(u32::MAX, |instance| instance.first), self.all.last().map_or(0, end)]
+    }
+
+    /// Returns the id and the mesh of a primitive; `None` if it is not part of an instance.
+    pub(crate) fn primitive(&self, primitive: u32) -> Option<(PrimitiveId, &Mesh)> {
+        let number = self.all.partition_point(|instance| instance.first <= primitive).checked_sub(1)?;
+        let instance = &self.all[number];
+        Some((instance.id(primitive - instance.first), &instance.mesh))
+    }
+
+    /// Returns the size in bytes. A tree that instances share counts once.
+    pub(super) fn bytes(&self) -> usize {
+        let trees: HashMap<_, _> =
+            self.all.iter().map(|instance| (Arc::as_ptr(&instance.triangles), instance.triangles.bytes())).collect();
+        self.bvh.bytes() + size_of_val(&self.leaves[..]) + size_of_val(&self.all[..]) + trees.values().sum::<usize>()
+    }
+}
+
+impl Prefetch for Instances {
+    #[inline(always)]
+    fn prefetch(&self, leaf: usize) {
+        simd::prefetch(&self.leaves[leaf]);
+    }
+}
+
+/// Returns the tree over the triangles of a mesh, as in its file.
+fn tree_of<E: Send>(
+    mesh: &Mesh,
+    report: &(dyn Fn(usize) -> Result<(), E> + Sync),
+) -> Result<Tree<TriangleN<F32x8>>, E> {
+    let mut builder = TreeBuilder::default();
+    for index in 0..mesh.triangle_count() {
+        builder.push(PrimitiveId { object: 0, index }, Triangle::unchecked(mesh.file_corners(index)));
+    }
+    builder.build(0, report)
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;
