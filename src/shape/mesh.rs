@@ -17,7 +17,7 @@ use std::sync::{Arc, OnceLock};
 
 /// A triangle mesh, with the normals, colours and textures of its file.
 ///
-/// The triangles are those of the file, or else the mesh is an [instance](Self::instance), which shares them.
+/// The triangles are those of the file, or else the mesh is an instance, which shares them.
 #[derive(Clone, PartialEq)]
 pub struct Mesh {
     file: Arc<MeshFile>,
