@@ -18,13 +18,22 @@ use std::sync::{Arc, OnceLock};
 /// A triangle mesh, with the normals, colours and textures of its file.
 ///
 /// The triangles are those of the file, or else the mesh is an instance, which shares them.
-#[derive(Clone, PartialEq)]
+#[derive(Clone)]
 pub struct Mesh {
     file: Arc<MeshFile>,
     /// The smallest box around the mesh in the scene, computed when it is needed.
     bounds: OnceLock<Bounds>,
     /// The map from the coordinates of the file to the scene, if the mesh is an instance.
     map: Option<AffineMap>,
+}
+
+/// Compares what is drawn.
+///
+/// The bounds follow from it, and may be computed for one of two equal meshes only.
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Self) -> bool {
+        self.file == other.file && self.map == other.map
+    }
 }
 
 /// Shows only the number of triangles, of which there may be millions.
