@@ -227,6 +227,16 @@ pub fn resolution(mode: CellMode, size: Size, cell_aspect: f32) -> Result<Resolu
         .with_pixel_aspect(cell_aspect * across as f32 / down as f32) // 1 for half blocks in cells of aspect 2
 }
 
+/// Describes the terminal cell that shows a pixel, and the pixel's position in the cell.
+pub fn cell_of_pixel([x, y]: [u32; 2], mode: CellMode) -> String {
+    let (across, down) = mode.pixels_per_cell();
+    let place = match (across, down) {
+        (1, 2) => ["upper half", "lower half"][(y % 2) as usize].to_owned(),
+        _ => format!("part ({}, {}) of it", x % across, y % down),
+    };
+    format!("cell ({}, {}), {place}", x / across, y / down)
+}
+
 /// Returns the cells of a picture, painted by a new [`Painter`].
 ///
 /// # Panics
@@ -359,8 +369,8 @@ impl Painter {
                 tint::fill(grid, picture, pixels_per_cell, &mut self.inks);
             }
             Fill::Geometry(fill) => {
-                let unknown = || Geometry::of_one_surface(picture.width, picture.height);
-                let geometry = geometry.filter(|geometry| geometry.fits(picture.width, picture.height));
+                let unknown = || Geometry::of_one_surface(picture.width(), picture.height());
+                let geometry = geometry.filter(|geometry| geometry.fits(picture.width(), picture.height()));
                 let geometry = geometry.map_or_else(|| Cow::Owned(unknown()), Cow::Borrowed);
                 let background = if self.light_background { Background::Light } else { Background::Dark };
                 let last_frame = is_view.then_some(&mut self.last_frame);
@@ -375,13 +385,13 @@ fn size_in_cells(picture: &Picture, (across, down): (u32, u32)) -> Size {
     let cells = |pixels: u32, per_cell| {
         u16::try_from(pixels.div_ceil(per_cell)).expect("a grid has at most 65,535 columns and rows")
     };
-    Size::new(cells(picture.width, across), cells(picture.height, down))
+    Size::new(cells(picture.width(), across), cells(picture.height(), down))
 }
 
 /// Returns the negative of a picture: each channel is inverted, so that light becomes dark.
 fn negative(picture: &Picture) -> Picture {
     let inverted = |pixel: &Srgb8| Srgb8::new(255 - pixel.r, 255 - pixel.g, 255 - pixel.b);
-    Picture { pixels: picture.pixels.iter().map(inverted).collect(), ..*picture }
+    picture.map_colors(inverted)
 }
 
 #[cfg(all(test, unit_tests))]

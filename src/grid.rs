@@ -16,6 +16,8 @@ use std::sync::Arc;
 
 mod attributes;
 mod packed;
+#[cfg(feature = "serde")]
+mod serialized;
 
 pub use attributes::Attributes;
 pub(crate) use packed::{PackedCell, PackedInk};

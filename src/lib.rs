@@ -63,22 +63,22 @@
 //!
 //! | features | additions | crates |
 //! |---|---|--:|
-//! | (none) | | 4 |
-//! | `ron` | scene files and camera paths, and the plain files beside them | 4 |
-//! | `parallel` | tracing, toning and building trees on all threads of the current rayon pool; the same bits | 10 |
-//! | `ron`, `parallel` | both: the minimum for tracing a scene file on all cores | 10 |
-//! | `mesh` | OBJ, STL, PLY and glTF files with their textures; includes `ron` | 23 |
-//! | `png` | PNG files | 14 |
-//! | `gif` | films as GIF | 7 |
-//! | `cast` | films as asciicast | 9 |
-//! | `ratatui` | ratatui's buffers laid over cells, on `ratatui-core` alone | 33 |
-//! | `underline-color` | the colours of their underlines; turn it on with that of all other ratatui backends | 33 |
-//! | `backend` | the encoder as a backend of ratatui; includes `ratatui` | 33 |
-//! | `scrolling-regions` | the same beside ratatui's feature of this name; includes `backend` | 33 |
-//! | `serde` | cameras, colours, sizes, maps and samplings in the formats of serde, checked when they are read | 11 |
-//! | `live` | the live view, on Linux and macOS; includes all of the above but `gif` and the last four | 92 |
-//! | `serve` | the server of the live view over SSH, for the program; includes `live`; needs Rust 1.89 | 199 |
-//! | `cli` | the program `termtrace`, by default | 108 |
+//! | (none) | | 5 |
+//! | `ron` | scene files and camera paths, and the plain files beside them | 5 |
+//! | `parallel` | tracing, toning and building trees on all threads of the current rayon pool; the same bits | 11 |
+//! | `ron`, `parallel` | both: the minimum for tracing a scene file on all cores | 11 |
+//! | `mesh` | OBJ, STL, PLY and glTF files with their textures; includes `ron` | 24 |
+//! | `png` | PNG files | 15 |
+//! | `gif` | films as GIF | 8 |
+//! | `cast` | films as asciicast | 10 |
+//! | `ratatui` | ratatui's buffers laid over cells, on `ratatui-core` alone | 34 |
+//! | `underline-color` | the colours of their underlines; turn it on with that of all other ratatui backends | 34 |
+//! | `backend` | the encoder as a backend of ratatui; includes `ratatui` | 34 |
+//! | `scrolling-regions` | the same beside ratatui's feature of this name; includes `backend` | 34 |
+//! | `serde` | cameras, colours, sizes, maps and samplings in the formats of serde, checked when they are read | 12 |
+//! | `live` | the live view, on Linux and macOS; includes all of the above but `gif` and the last four | 93 |
+//! | `serve` | the server of the live view over SSH, for the program; includes `live`; needs Rust 1.89 | 200 |
+//! | `cli` | the program `termtrace`, by default | 109 |
 //!
 //! A program that uses only the library turns the default features off:
 //! `termtrace = { version = "0.1", default-features = false, features = ["ron", "parallel"] }`.
@@ -86,10 +86,11 @@
 //! # The route
 //!
 //! One file per stage, in the order in which the data travels. A stage that outgrows its file has a folder of the same
-//! name.
+//! name. The stages down to `explain`, which trace light, are the crate `termtrace-core` in the folder `core`: both
+//! crates compile at the same time, and a change of the live view compiles no tracer. This crate uses the modules of
+//! that one by the same paths as its own, and re-exports what is promised of them.
 //!
 //! Foundations for all stages:
-//! - `table`: an enum with a row of constants for each of its values
 //! - `color`: linear RGB, 8-bit sRGB, and the transfer function between them
 //! - `lanes`: formulas for one number or for eight lanes
 //! - `simd`: eight lanes in one register, on CPUs that have such registers
@@ -130,16 +131,17 @@
 //! - `tone`: exposure, tone curve, transfer function, 8 bits
 //! - `maps`: the shaded picture, or a map: depths, normals, objects, shadows
 //! - `describe`: the picture in words
+//! - `explain`: one pixel, and how its light is computed
+//! - `serialized`: plain values in the formats of serde
+//! - `table`: an enum with a row of constants for each of its values
 //! - `grid`: the cell grid
 //! - `cell`: picture -> grid, as half blocks or characters, in the terminal's colours
 //! - `capabilities`: the colours, glyphs and sizes that a terminal supports
-//! - `explain`: one pixel, and how its light is computed
 //! - `overlay`: any ratatui buffer laid over the grid, and the grid as such a buffer
 //! - `widget`: a scene in a ratatui program
 //! - `encode`: wanted grid, shown grid, pen -> bytes
 //! - `export`: grid or picture -> text, ANSI, SVG, HTML, PNG
 //! - `record`: frames over time -> asciicast, GIF
-//! - `serialized`: plain values in the formats of serde
 //! - `output_file`: bytes -> a file that is replaced atomically
 //!
 //! The live view:
@@ -307,47 +309,18 @@
 #[cfg(all(feature = "live", not(any(target_os = "linux", target_os = "macos"))))]
 compile_error!("the feature `live` of termtrace is for Linux and macOS: it needs POSIX termios, poll and signals");
 
+// The tracer is a crate of its own, whose modules are used by the same paths as those below.
+use termtrace_core::{
+    bounds, bvh, camera, camera_path, color, describe, explain, framebuffer, hit, lanes, light, maps, material, memory,
+    mesh_file, progress, rasterize, ray, render, scene, scene_text, shade, shape, simd, text, tone, written,
+};
+#[cfg(feature = "ron")]
+use termtrace_core::{named_file, scene_file};
+
 mod table;
-mod color;
-mod lanes;
-mod simd;
-mod ray;
-mod bounds;
-mod text;
-mod memory;
-mod progress;
-mod threads;
-mod checks;
-#[cfg(feature = "ron")]
-mod named_file;
-mod scene_text;
-mod mesh_file;
-#[cfg_attr(not(feature = "ron"), allow(dead_code, unused_imports, reason = "only files have written values"))]
-mod written;
-mod formula;
-mod bvh;
-mod shape;
-mod accel;
-mod material;
-mod light;
-mod camera;
-mod camera_path;
-#[cfg(feature = "ron")]
-mod scene_file;
-mod scene;
-mod hit;
-mod shade;
-mod framebuffer;
-mod render;
-#[cfg_attr(not(feature = "cli"), allow(dead_code, reason = "only the program compares both orders"))]
-mod rasterize;
-mod tone;
-mod maps;
-mod describe;
 mod grid;
 mod cell;
 mod capabilities;
-mod explain;
 #[cfg(feature = "ratatui")]
 mod overlay;
 #[cfg(feature = "ratatui")]
@@ -356,8 +329,6 @@ mod encode;
 pub mod export;
 #[cfg(any(feature = "cast", feature = "gif"))]
 mod record;
-#[cfg(feature = "serde")]
-mod serialized;
 #[cfg(feature = "live")]
 mod output_file;
 #[cfg(feature = "live")]

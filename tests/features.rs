@@ -28,7 +28,7 @@ fn crates(features: &str) -> usize {
     let mut tree = Command::new(cargo);
     tree.current_dir(env!("CARGO_MANIFEST_DIR")).args(["tree", "--locked", "--offline"]);
     tree.args(["--edges", "normal", "--prefix", "none", "--format", "{p}", "--target", "x86_64-unknown-linux-gnu"]);
-    tree.args(["--no-default-features", "--features", &features.replace('`', "")]);
+    tree.args(["--package", "termtrace", "--no-default-features", "--features", &features.replace('`', "")]);
     let output = tree.output().expect("cargo runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let packages = String::from_utf8(output.stdout).expect("names of packages are UTF-8");

@@ -34,13 +34,29 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Returns the library's files: all of `src` but the binary's and those compiled for tests only.
+/// Returns the folders of the library's source: the tracer's, and that of the crate around it.
+fn source_folders() -> [PathBuf; 2] {
+    ["core/src", "src"].map(|folder| root().join(folder))
+}
+
+/// Returns all Rust files of [`source_folders`], with their text.
+fn source_files() -> Vec<(PathBuf, String)> {
+    source_folders().iter().flat_map(|folder| rust_files(folder)).collect()
+}
+
+/// Returns a file's path below its folder of [`source_folders`].
+fn path_in_crate(path: &Path) -> &Path {
+    let [core, src] = source_folders();
+    path.strip_prefix(core).or_else(|_| path.strip_prefix(src)).expect("below a folder of source")
+}
+
+/// Returns the library's files: all source but the binary's and that compiled for tests only.
 fn library_files() -> Vec<(PathBuf, String)> {
     let binary = |path: &Path| {
-        let first = path.strip_prefix(root().join("src")).expect("below src").iter().next().expect("a name");
+        let first = path_in_crate(path).iter().next().expect("a name");
         ["main.rs", "cli.rs", "cli"].iter().any(|name| first == *name)
     };
-    let files: Vec<_> = rust_files(&root().join("src")).into_iter().filter(|(path, _)| !binary(path)).collect();
+    let files: Vec<_> = source_files().into_iter().filter(|(path, _)| !binary(path)).collect();
     let tests: Vec<_> = files.iter().flat_map(|(path, text)| test_files(path, text)).collect();
     files.into_iter().filter(|(path, _)| !tests.contains(path)).collect()
 }
@@ -58,24 +74,23 @@ fn test_files(path: &Path, text: &str) -> Vec<PathBuf> {
     names.map(|name| path.with_extension("").join(name).with_extension("rs")).collect()
 }
 
-/// The modules of `lib.rs` in their order.
+/// The modules of both `lib.rs` in their order: those of the tracer go first.
 fn route() -> Vec<String> {
-    let lib = fs::read_to_string(root().join("src/lib.rs")).expect("lib.rs is there");
-    let modules =
-        lib.lines().filter_map(|line| line.trim_start_matches("pub ").strip_prefix("mod ")?.strip_suffix(';'));
+    let libs = source_folders().map(|folder| fs::read_to_string(folder.join("lib.rs")).expect("lib.rs is there"));
+    let lines = libs.iter().flat_map(|lib| lib.lines());
+    let modules = lines.filter_map(|line| line.trim_start_matches("pub ").strip_prefix("mod ")?.strip_suffix(';'));
     modules.map(str::to_owned).collect()
 }
 
 /// The top-level module that a file belongs to: `src/shape/plane.rs` to `shape`.
 fn stage(path: &Path) -> String {
-    let inside = path.strip_prefix(root().join("src")).expect("below src");
-    let first = inside.iter().next().expect("a name").to_string_lossy();
+    let first = path_in_crate(path).iter().next().expect("a name").to_string_lossy();
     first.trim_end_matches(".rs").to_owned()
 }
 
 /// Returns whether a path such as `super::x` in this file starts at the crate's root.
 fn is_top_level(path: &Path) -> bool {
-    path.parent() == Some(&root().join("src"))
+    source_folders().iter().any(|folder| path.parent() == Some(folder))
 }
 
 /// The text without comments and without what is compiled for tests only.
@@ -202,6 +217,12 @@ fn the_root_holds_the_route_and_names_from_it() {
     assert_eq!(stages, route);
     let lib = fs::read_to_string(root().join("src/lib.rs")).expect("lib.rs is there");
     assert_eq!(strangers(&route, &code(&lib)), [""; 0], "lib.rs says more than its modules and the names it promises");
+    let core = fs::read_to_string(root().join("core/src/lib.rs")).expect("the tracer's lib.rs is there");
+    let is_module = |line: &&str| line.starts_with("mod ") || line.starts_with("pub mod ");
+    let core = code(&core);
+    let strangers: Vec<_> =
+        core.lines().filter(|line| !line.is_empty() && !line.starts_with('#') && !is_module(line)).collect();
+    assert_eq!(strangers, [""; 0], "the tracer's lib.rs says more than its modules");
 }
 
 /// Returns the items of `lib.rs` that are neither modules of the route nor names of one.
@@ -218,12 +239,16 @@ fn strangers(route: &BTreeSet<String>, lib: &str) -> Vec<String> {
             None => REEXPORTED_CRATES.contains(&path),
         })
     };
+    let is_tracer = |item: &str| item.starts_with("use termtrace_core::");
     let is_message = |item: &str| item.starts_with("compile_error!(");
     let is_attribute = |line: &&str| line.trim_start().starts_with("#[") || line.trim_start().starts_with("#![");
     let code: Vec<_> = lib.lines().filter(|line| !is_attribute(line)).collect();
     let code = code.join("\n");
     let items = code.split(';').map(str::trim).filter(|item| !item.is_empty());
-    items.filter(|item| !is_module(item) && !are_names(item) && !is_message(item)).map(str::to_owned).collect()
+    items
+        .filter(|item| !is_module(item) && !are_names(item) && !is_tracer(item) && !is_message(item))
+        .map(str::to_owned)
+        .collect()
 }
 
 /// The test above can fail.
@@ -341,7 +366,7 @@ fn exports(code: &str) -> (String, String) {
 
 #[test]
 fn between_parent_and_child_only_types_go_one_of_the_ways() {
-    let knots = knots(&rust_files(&root().join("src")));
+    let knots = knots(&source_files());
     assert!(knots.is_empty(), "{}", knots.join("\n"));
 }
 
@@ -438,15 +463,16 @@ fn the_operating_systems_terminal_has_one_owner() {
 const OF_A_SYSTEM: [&str; 7] =
     ["std::os::", "rustix::", "nix::", "signal_hook", "cfg(unix", "cfg(windows", "target_os"];
 
-/// Returns whether a file is compiled with `live` only, or with `serve`, which includes it.
+/// Returns whether a file is compiled with `live` only, or with a feature that implies it or is
+/// implied by it alone: `serve` and the tracer's `posix`.
 ///
 /// The attribute may be that of its module or of one around it.
 fn is_live_only(path: &Path) -> bool {
     let folder = path.parent().expect("a file is in a folder");
-    let is_top = folder == root().join("src");
+    let is_top = is_top_level(path);
     let parent = if is_top { folder.join("lib.rs") } else { folder.with_extension("rs") };
     let name = path.file_stem().and_then(OsStr::to_str).expect("names are UTF-8");
-    let declarations = [("live", "mod "), ("live", "pub mod "), ("serve", "mod ")]
+    let declarations = [("live", "mod "), ("live", "pub mod "), ("serve", "mod "), ("posix", "mod ")]
         .map(|(feature, start)| format!("\n#[cfg(feature = \"{feature}\")]\n{start}{name};\n"));
     let text = fs::read_to_string(&parent).expect("the parent is there");
     declarations.iter().any(|declaration| text.contains(declaration)) || !is_top && is_live_only(&parent)
@@ -462,9 +488,10 @@ fn only_the_live_view_is_tied_to_a_system() {
             assert!(!code.contains(word), "{} has {word}, and does not stand behind `live`", path.display());
         }
     }
-    let is_live_only = |file: &str| is_live_only(&root().join("src").join(file));
-    assert!(["app.rs", "terminal/signals.rs", "named_file/posix.rs"].into_iter().all(is_live_only));
-    assert!(!["scene.rs", "named_file.rs", "named_file/plain.rs"].into_iter().any(is_live_only));
+    let is_live_only = |file: &str| is_live_only(&root().join(file));
+    assert!(["src/app.rs", "src/terminal/signals.rs", "core/src/named_file/posix.rs"].into_iter().all(is_live_only));
+    let portable = ["src/grid.rs", "core/src/scene.rs", "core/src/named_file.rs", "core/src/named_file/plain.rs"];
+    assert!(!portable.into_iter().any(is_live_only));
 }
 
 /// The modules of a session that need no terminal, file or clock.
@@ -545,7 +572,7 @@ fn without_file_calls(code: &str) -> String {
 #[test]
 fn files_are_written_by_one_module() {
     let words = ["File::create", "fs::write", "create_new(", "create(true)", "truncate(true)", "fs::rename"];
-    let files = rust_files(&root().join("src"));
+    let files = source_files();
     let tests: Vec<_> = files.iter().flat_map(|(path, text)| test_files(path, text)).collect();
     for (path, text) in files.iter().filter(|(path, _)| !tests.contains(path)) {
         let code = code(text).replace("OutputFile::create", "");
@@ -561,7 +588,7 @@ fn files_are_written_by_one_module() {
 #[test]
 fn only_simd_has_unsafe_code() {
     let allowed = concat!("allow(unsafe", "_code)");
-    let folders = ["src", "tests", "benches", "examples"].map(|folder| root().join(folder));
+    let folders = ["core/src", "src", "tests", "benches", "examples"].map(|folder| root().join(folder));
     for (path, text) in folders.iter().filter(|folder| folder.exists()).flat_map(|folder| rust_files(folder)) {
         let is_simd = path.ends_with("src/simd.rs") || path.parent().is_some_and(|folder| folder.ends_with("src/simd"));
         assert_eq!(text.contains(allowed), is_simd, "{} and {allowed}", path.display());

@@ -14,7 +14,12 @@ fn read(name: &str) -> String {
 
 /// Returns the lines of a section of the manifest.
 fn section(header: &str) -> Vec<String> {
-    let manifest = read("Cargo.toml");
+    section_of("Cargo.toml", header)
+}
+
+/// Returns the lines of a section of a manifest.
+fn section_of(manifest: &str, header: &str) -> Vec<String> {
+    let manifest = read(manifest);
     let lines = manifest.lines().skip_while(|line| *line != header).skip(1);
     lines.take_while(|line| !line.starts_with('[')).map(str::to_owned).collect()
 }
@@ -96,6 +101,18 @@ fn named_features(text: &str, flag: &str) -> BTreeSet<String> {
     names.filter(|name| !name.is_empty()).map(str::to_owned).collect()
 }
 
+/// The two packages are published together: one depends on exactly this version of the other.
+#[test]
+fn both_packages_have_the_same_version() {
+    let core = section_of("core/Cargo.toml", "[package]");
+    for key in ["version", "edition", "rust-version", "license"] {
+        let line = format!("{key} = \"{}\"", value(key));
+        assert!(core.contains(&line), "core/Cargo.toml lacks {line}");
+    }
+    let dependency = format!("termtrace-core = {{ version = \"={}\", path = \"core\" }}", value("version"));
+    assert!(section("[dependencies]").contains(&dependency), "Cargo.toml lacks {dependency}");
+}
+
 #[test]
 fn workflows_and_documentation_name_features_that_exist() {
     let known = features();
@@ -118,8 +135,13 @@ const UNDOCUMENTED: [&str; 4] = ["default", "cli", "serve", "test-hooks"];
 /// A gated file that is packed would be dead weight; one that is left out without its gate would
 /// break `cargo test` in the package.
 #[test]
-fn the_package_leaves_out_the_files_of_gated_modules() {
-    let src = root().join("src");
+fn the_packages_leave_out_the_files_of_gated_modules() {
+    assert_gated_files_are_left_out("Cargo.toml", "src");
+    assert_gated_files_are_left_out("core/Cargo.toml", "core/src");
+}
+
+fn assert_gated_files_are_left_out(manifest: &str, src: &str) {
+    let src = root().join(src);
     let mut gated = BTreeSet::new();
     for path in paths(&src).into_iter().filter(|path| path.extension().is_some_and(|extension| extension == "rs")) {
         let text = fs::read_to_string(&path).expect("a source file can be read");
@@ -129,7 +151,7 @@ fn the_package_leaves_out_the_files_of_gated_modules() {
         }
     }
     assert!(gated.len() > 10, "{gated:?}");
-    let patterns = section("[package]")
+    let patterns = section_of(manifest, "[package]")
         .into_iter()
         .filter_map(|line| Some(line.trim().strip_prefix("\"!/src/")?.trim_end_matches("\",").to_owned()));
     let patterns: Vec<_> = patterns.collect();
@@ -138,7 +160,7 @@ fn the_package_leaves_out_the_files_of_gated_modules() {
         patterns.iter().any(|pattern| pattern.strip_prefix("**/").map_or(name == *pattern, |end| name.ends_with(end)))
     };
     let packed: Vec<_> = gated.iter().filter(|path| !is_left_out(path)).collect();
-    assert!(packed.is_empty(), "add to `include` of Cargo.toml: {packed:?}");
+    assert!(packed.is_empty(), "add to `include` of {manifest}: {packed:?}");
     let left_out: BTreeSet<_> = paths(&src).into_iter().filter(|path| path.is_file() && is_left_out(path)).collect();
     let ungated: Vec<_> = left_out.difference(&gated).collect();
     assert!(ungated.is_empty(), "put one of {GATES:?} before their `mod`: {ungated:?}");

@@ -181,7 +181,7 @@ impl Renderer {
     fn record_time(&mut self, frame: Frame) -> Frame {
         // Only frames with one sample per pixel that refine nothing are timed, because `is_small` predicts only those.
         if has_one_sample(frame.sampling) && !frame.refines {
-            let seconds = frame.cost.work.as_secs_f64() / frame.picture.pixels.len() as f64;
+            let seconds = frame.cost.work.as_secs_f64() / frame.picture.pixels().len() as f64;
             self.seconds_per_pixel = Some((frame.shot, seconds));
         }
         frame

@@ -116,7 +116,7 @@ fn fill(
 
 /// Returns the indices of a cell's pixels; beyond the picture's edge its last ones are repeated.
 fn pixels_of(picture: &Picture, column: usize, row: usize) -> [usize; ACROSS * DOWN] {
-    let (width, height) = (picture.width as usize, picture.height as usize);
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
     std::array::from_fn(|at| {
         let (x, y) = (ACROSS * column + at % ACROSS, DOWN * row + at / ACROSS);
         y.min(height - 1) * width + x.min(width - 1)
@@ -143,7 +143,7 @@ fn cell_content(
         }
     }
     let mut own = (0..pixels.len()).filter(|&at| facets[at].object == owner.object);
-    let light = own.clone().map(|at| luma(picture.pixels[pixels[at]])).sum::<f32>() / most as f32;
+    let light = own.clone().map(|at| luma(picture.pixels()[pixels[at]])).sum::<f32>() / most as f32;
     let first = own.next().unwrap_or(0);
     let rows = [first, own.next_back().unwrap_or(first)].map(|at| DOWN * row + at / ACROSS);
     let edge = strokes::edge(geometry, [column, row], before.and_then(|before| before.edge));
@@ -283,7 +283,7 @@ fn ink(
     let object = content.edge.map(|edge| edge.owner).filter(|&owner| is_of(owner)).unwrap_or(content.object);
     let (mut light, mut extent) = (LinearRgb::BLACK, content.extent);
     for &pixel in pixels.iter().filter(|&&pixel| geometry.pixel(pixel).object == object) {
-        light += LinearRgb::from_srgb8(picture.pixels[pixel]);
+        light += LinearRgb::from_srgb8(picture.pixels()[pixel]);
         extent = geometry.pixel(pixel).extent;
     }
     let brightness = match (background, extent) {

@@ -17,7 +17,7 @@ pub(super) const KIND: GlyphKind = GlyphKind {
 };
 
 fn fill(grid: &mut Grid, picture: &Picture) {
-    for (cell, pixel) in picture.pixels.iter().enumerate() {
+    for (cell, pixel) in picture.pixels().iter().enumerate() {
         grid.set_at(cell, &Cell::new(if pixel.g >= 128 { 'o' } else { ' ' }, Ink::Default, Ink::Default));
     }
 }

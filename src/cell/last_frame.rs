@@ -42,7 +42,7 @@ pub(super) struct KeptCell {
 impl LastFrame {
     /// Returns the remembered frame, if the view moves and the frame has the size of this picture.
     pub(super) fn before(&self, picture: &Picture) -> Option<&Remembered> {
-        let size = |picture: &Picture| (picture.width, picture.height);
+        let size = |picture: &Picture| (picture.width(), picture.height());
         self.frame.as_ref().filter(|frame| self.is_moving && size(&frame.picture) == size(picture))
     }
 
@@ -67,7 +67,7 @@ impl Remembered {
         cell: usize,
         pixels: &[usize],
     ) -> Option<&Cell> {
-        let is_same = pixels.iter().all(|&pixel| picture.pixels[pixel] == self.picture.pixels[pixel])
+        let is_same = pixels.iter().all(|&pixel| picture.pixels()[pixel] == self.picture.pixels()[pixel])
             && geometry.has_same_facets(&self.geometry, cell, pixels);
         is_same.then(|| &self.cells[cell].shown)
     }

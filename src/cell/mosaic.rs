@@ -82,10 +82,10 @@ impl Mosaic {
         let (left, top) = (u32::from(column) * across, u32::from(row) * down);
         let mut sums = Sums::default();
         for y in 0..down {
-            let line = (top + y).min(picture.height - 1) as usize * picture.width as usize;
+            let line = (top + y).min(picture.height() - 1) as usize * picture.width() as usize;
             let parts = y / self.part_pixels[1] * self.parts[0];
             for x in 0..across {
-                let pixel = picture.pixels[line + (left + x).min(picture.width - 1) as usize];
+                let pixel = picture.pixels()[line + (left + x).min(picture.width() - 1) as usize];
                 let part = (parts + x / self.part_pixels[0]) as usize;
                 add(&mut sums.parts[part], pixel);
                 add(&mut sums.rows[y as usize], pixel);

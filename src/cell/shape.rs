@@ -43,10 +43,10 @@ fn fill(grid: &mut Grid, picture: &Picture) {
 /// repeated.
 fn samples(picture: &Picture, column: u16, row: u16) -> Samples {
     let (left, top) = (usize::from(column) * SAMPLE_COLUMNS, usize::from(row) * SAMPLE_ROWS);
-    let (last_x, last_y) = (picture.width as usize - 1, picture.height as usize - 1);
+    let (last_x, last_y) = (picture.width() as usize - 1, picture.height() as usize - 1);
     std::array::from_fn(|at| {
         let (x, y) = ((left + at % SAMPLE_COLUMNS).min(last_x), (top + at / SAMPLE_COLUMNS).min(last_y));
-        lightness(picture.pixels[y * picture.width as usize + x])
+        lightness(picture.pixels()[y * picture.width() as usize + x])
     })
 }
 

@@ -10,10 +10,10 @@ const BLUE: Srgb8 = Srgb8::new(0, 0, 255);
 #[test]
 fn a_glyph_kind_for_tests_is_found_and_painted() {
     let glyphs = Glyphs::from_name("dots").expect("by its name");
-    let picture = Picture { width: 2, height: 1, pixels: vec![BLUE, BLACK] };
+    let picture = Picture::from_pixels(2, 1, vec![BLUE, BLACK]).expect("all pixels are there");
     let mode = CellMode { glyphs, colors: Colors::Truecolor };
     let resolution = resolution(mode, Size::new(2, 1), 2.0).expect("a small screen");
-    assert_eq!((resolution.width(), resolution.height()), (picture.width, picture.height));
+    assert_eq!((resolution.width(), resolution.height()), (picture.width(), picture.height()));
     let grid = grid_from_picture(mode, &picture);
     assert_eq!(grid.cell(0, 0), Cell::new('o', Ink::Rgb(BLUE), Ink::Rgb(BLACK)));
     assert_eq!(grid.cell(1, 0), Cell::new(' ', Ink::Default, Ink::Rgb(BLACK)));

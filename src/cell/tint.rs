@@ -14,7 +14,7 @@ pub(super) fn grey_by_brightest_channel(picture: &Picture) -> Picture {
         let brightest = pixel.r.max(pixel.g).max(pixel.b);
         Srgb8::new(brightest, brightest, brightest)
     };
-    Picture { pixels: picture.pixels.iter().map(grey).collect(), ..*picture }
+    picture.map_colors(grey)
 }
 
 /// Colours each cell's character by its pixels' mean light at full brightness, on black.
@@ -35,11 +35,11 @@ pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u3
 /// Returns the mean of a cell's pixels, taken in linear light.
 pub(super) fn cell_mean(picture: &Picture, (across, down): (u32, u32), column: u16, row: u16) -> Srgb8 {
     let (left, top) = (u32::from(column) * across, u32::from(row) * down);
-    let (right, bottom) = ((left + across).min(picture.width), (top + down).min(picture.height));
+    let (right, bottom) = ((left + across).min(picture.width()), (top + down).min(picture.height()));
     let mut light = LinearRgb::BLACK;
     for y in top..bottom {
         for x in left..right {
-            light += LinearRgb::from_srgb8(picture.pixels[y as usize * picture.width as usize + x as usize]);
+            light += LinearRgb::from_srgb8(picture.pixels()[y as usize * picture.width() as usize + x as usize]);
         }
     }
     Srgb8::from_linear(light * (1.0 / ((right - left) * (bottom - top)) as f32))

@@ -6,7 +6,8 @@ use super::picture::SizeArgs;
 use super::scene_args::SceneArgs;
 use clap::Args;
 use serde_json::{Value, json};
-use termtrace::internals::explain::{ShadedHit, cell_of_pixel};
+use termtrace::internals::cell::cell_of_pixel;
+use termtrace::internals::explain::ShadedHit;
 use termtrace::{CellMode, Explanation, explain};
 
 const MEANING: &str = "\

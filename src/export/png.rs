@@ -34,7 +34,7 @@ pub(super) const KIND: FormatRow = FormatRow {
 /// If the picture has no pixels, or more than a [`Resolution`] may have when it is scaled; and unless `pixel_aspect` is
 /// greater than 0 and finite.
 pub fn png(picture: &Picture, pixel_aspect: f32, scale: u32) -> Result<Vec<u8>, ExportError> {
-    let shown = Resolution::new(picture.width, picture.height)?.with_pixel_aspect(pixel_aspect)?;
+    let shown = Resolution::new(picture.width(), picture.height())?.with_pixel_aspect(pixel_aspect)?;
     let [width, height] = shown.size_in_square_pixels(scale).map(|side| u32::try_from(side).unwrap_or(u32::MAX));
     // The size is checked before anything is allocated, because an allocation for the largest scale panicked.
     let file = Resolution::new(width, height)?;
@@ -45,7 +45,7 @@ pub fn png(picture: &Picture, pixel_aspect: f32, scale: u32) -> Result<Vec<u8>, 
     // The sRGB chunk tells viewers the transfer function, which they would otherwise guess.
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let mut data = Vec::with_capacity(3 * file.pixel_count());
-    let pixels = shown.repeated(&picture.pixels, [width as usize, height as usize]);
+    let pixels = shown.repeated(picture.pixels(), [width as usize, height as usize]);
     data.extend(pixels.flat_map(|pixel| [pixel.r, pixel.g, pixel.b]));
     let written = encoder.write_header().and_then(|mut file| file.write_image_data(&data));
     written.map(|()| bytes).map_err(ExportError)

@@ -69,7 +69,8 @@ impl<W: Write> Gif<W> {
     /// If writing fails, or the picture has another size.
     pub fn frame(&mut self, picture: &Picture) -> io::Result<()> {
         let [width, height] = [self.resolution.width(), self.resolution.height()];
-        if (picture.width, picture.height, picture.pixels.len()) != (width, height, self.resolution.pixel_count()) {
+        if (picture.width(), picture.height(), picture.pixels().len()) != (width, height, self.resolution.pixel_count())
+        {
             return Err(invalid_input("all frames of a film have one size"));
         }
         let mut frame = self.quantised(picture);
@@ -87,9 +88,9 @@ impl<W: Write> Gif<W> {
     /// transparent.
     fn quantised(&mut self, picture: &Picture) -> gif::Frame<'static> {
         let stays = self.kept_pixels(picture);
-        let pixels = || picture.pixels.iter().copied().zip(&stays);
+        let pixels = || picture.pixels().iter().copied().zip(&stays);
         let palette = Palette::from_pixels(pixels().filter(|(_, stays)| !**stays).map(|(pixel, _)| pixel));
-        self.shown.resize(picture.pixels.len(), Srgb8::default());
+        self.shown.resize(picture.pixels().len(), Srgb8::default());
         let index = |((pixel, stays), shown): ((Srgb8, &bool), &mut Srgb8)| {
             if *stays {
                 return MAX_COLORS as u8;
@@ -108,13 +109,14 @@ impl<W: Write> Gif<W> {
 
     /// Returns whether each pixel keeps the colour that a viewer shows.
     fn kept_pixels(&mut self, picture: &Picture) -> Vec<bool> {
-        let mut kept = vec![false; picture.pixels.len()];
-        self.outdated.resize(picture.pixels.len(), 0);
+        let mut kept = vec![false; picture.pixels().len()];
+        self.outdated.resize(picture.pixels().len(), 0);
         // For the first frame `shown` is empty, so no pixel keeps its colour.
-        for (at, (&shown, &wanted)) in self.shown.iter().zip(&picture.pixels).enumerate() {
+        for (at, (&shown, &wanted)) in self.shown.iter().zip(picture.pixels()).enumerate() {
             // A pixel whose left and upper neighbours keep their colours may differ more from the wanted colour,
             // because single changed pixels cost the most bytes.
-            let is_between = at > 0 && kept[at - 1] && at.checked_sub(picture.width as usize).is_none_or(|up| kept[up]);
+            let is_between =
+                at > 0 && kept[at - 1] && at.checked_sub(picture.width() as usize).is_none_or(|up| kept[up]);
             let most = if is_between { MAX_DIFFERENCE_BETWEEN } else { MAX_DIFFERENCE };
             let pairs = [(shown.r, wanted.r), (shown.g, wanted.g), (shown.b, wanted.b)];
             let difference = pairs.into_iter().map(|(shown, wanted)| shown.abs_diff(wanted)).fold(0, u8::max);

@@ -11,8 +11,9 @@ use super::layers::{Canvas, Layer, LayerLevel};
 use super::theme::{self, Theme};
 use super::tracer_lines::draw_eye_ray;
 use crate::capabilities::CellMode;
+use crate::cell::cell_of_pixel;
 use crate::control::{Command, KeyMode};
-use crate::explain::{Explanation, cell_of_pixel, explain};
+use crate::explain::{Explanation, explain};
 use crate::framebuffer::Resolution;
 use crate::overlay;
 use crate::render::Sampling;
@@ -188,9 +189,10 @@ fn notes(frame: &Frame, [x, y]: [u32; 2], explanation: &Explanation) -> Vec<Stri
         Sampling::Split => return vec!["shown with one ray for 2x2 pixels of even light".to_owned()],
         Sampling::Each(samples) => format!("this is the first of {samples} rays"),
         Sampling::UpTo(samples) => format!("this is the first of up to {samples} rays"),
+        _ => return Vec::new(),
     };
-    let at = y as usize * frame.picture.width as usize + x as usize;
-    match frame.picture.pixels.get(at) {
+    let at = y as usize * frame.picture.width() as usize + x as usize;
+    match frame.picture.pixels().get(at) {
         Some(&shown) if shown != explanation.bytes => {
             vec![samples, format!("their mean is {} {} {}", shown.r, shown.g, shown.b)]
         }

@@ -41,8 +41,7 @@ impl Lights {
     /// If none is held, takes hold of the light whose index `first` returns. Lights at infinity cannot be held.
     pub(super) fn take_next(&mut self, first: impl FnOnce(&[Light]) -> Option<usize>) -> Option<usize> {
         let lights = self.all();
-        let after =
-            |held: usize| (held + 1..lights.len()).chain(0..=held).find(|&next| lights[next].position().is_some());
+        let after = |held| next_after(held, lights.len(), |light| lights[light].position().is_some());
         // The next light is the next one in the file, so that repeating the key visits every light.
         self.held = self.held.and_then(after).or_else(|| first(lights));
         self.held
@@ -74,6 +73,11 @@ impl Lights {
             self.move_count += 1;
         }
     }
+}
+
+/// Returns the first of `count` indices after `held`, cyclically, for which `can_be_held` is true.
+fn next_after(held: usize, count: usize, can_be_held: impl Fn(usize) -> bool) -> Option<usize> {
+    (held + 1..count).chain(0..=held).find(|&next| can_be_held(next))
 }
 
 #[cfg(all(test, unit_tests))]

@@ -71,7 +71,7 @@ impl OrdersPanel {
         let built = build.comparison.built_pixels(self.pace.tests());
         let width = frame.resolution().width() as usize;
         let (left, start) = (left.width() as usize, left.width() as usize + 1);
-        for (y, row) in picture.pixels.chunks_mut(width).take(right.height() as usize).enumerate() {
+        for (y, row) in picture.pixels_mut().chunks_mut(width).take(right.height() as usize).enumerate() {
             let of_row = built.saturating_sub(y * left).min(left);
             row[of_row..left].fill(EMPTY);
             if y == built / left && of_row < left {

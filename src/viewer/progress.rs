@@ -52,10 +52,8 @@ fn draw(progress: &Progress, theme: Theme, area: Rect, buffer: &mut Buffer) {
 ///
 /// A name that does not fit loses its beginning, because the end of a name says more.
 fn work_line(work: &Work, theme: Theme, width: usize) -> String {
-    let (verb, name) = match work {
-        Work::Reading(name) => ("reading", name),
-        Work::Parsing(name) => ("parsing", name),
-        Work::Building => return "building".to_owned(),
+    let (verb, Some(name)) = work.verb_and_file() else {
+        return work.verb_and_file().0.to_owned();
     };
     let room = width.saturating_sub(verb.len() + 1);
     let name = Path::new(name).file_name().map_or_else(|| name.into(), |name| name.to_string_lossy());

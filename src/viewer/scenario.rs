@@ -199,7 +199,7 @@ impl Driver {
         let [width, height] = [resolution.width(), resolution.height()];
         // The frame's number is part of the colour, so that drawing a new frame always sends bytes.
         let pixel = |at: u32| Srgb8::new(self.frames, at as u8, 7);
-        Picture { width, height, pixels: (0..width * height).map(pixel).collect() }
+        Picture::from_pixels(width, height, (0..width * height).map(pixel).collect()).expect("all pixels are there")
     }
 
     /// Carries out the viewer's actions until it waits. Returns the time until which it waits, if

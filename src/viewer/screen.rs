@@ -318,7 +318,7 @@ impl Screen {
         let Some(frame) = self.frame() else { return self.awaits_scene() };
         // After a resize the old frame would be cut off, or would leave a part of the window empty.
         let wanted = cell::resolution(self.painter.mode(), size, 1.0);
-        wanted.is_ok_and(|wanted| (frame.picture.width, frame.picture.height) == (wanted.width(), wanted.height()))
+        wanted.is_ok_and(|wanted| (frame.picture.width(), frame.picture.height()) == (wanted.width(), wanted.height()))
     }
 
     /// Appends the bytes that bring the terminal to the current content.

@@ -68,7 +68,8 @@ impl Status<'_> {
     fn text(&self, separator: &str, width: usize) -> String {
         let Self { name, cells, sampling, trace, figures, eye, rectangle } = self;
         let FrameStatistics { encode, frames_per_second, slow } = *figures;
-        let mut items = vec![(*name).to_owned(), format!("{}x{}", cells.columns, cells.rows), samples(*sampling)];
+        let mut items =
+            vec![(*name).to_owned(), format!("{}x{}", cells.columns, cells.rows), sampling.samples_per_pixel()];
         // The cause that limits the frame rate: a slow link, or else the time for tracing and encoding.
         items.push(match slow {
             Some(rate) => format!("slow link {}B/s", short(rate)),
@@ -89,17 +90,6 @@ impl Status<'_> {
 fn milliseconds(time: Duration) -> String {
     let time = 1e3 * time.as_secs_f64();
     if time < 1.0 { format!("{time:.1} ms") } else { format!("{time:.0} ms") }
-}
-
-/// Returns the samples per pixel as text, or their maximum: `1/4 sample`, `64 samples`.
-fn samples(sampling: Sampling) -> String {
-    match sampling {
-        // Coarse sampling traces one ray for 2x2 pixels.
-        Sampling::Coarse => "1/4 sample".to_owned(),
-        Sampling::Split => "1/4 to 1 sample".to_owned(),
-        Sampling::Each(samples) | Sampling::UpTo(samples) if samples.get() == 1 => "1 sample".to_owned(),
-        Sampling::Each(samples) | Sampling::UpTo(samples) => format!("{samples} samples"),
-    }
 }
 
 /// Formats a number in two or three digits and a letter: 812, 3.9k, 12M.

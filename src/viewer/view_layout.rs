@@ -151,24 +151,24 @@ fn side_by_side_sizes(whole: Resolution, panel_height: u32) -> [Resolution; 2] {
 }
 
 fn side_by_side(left: &Picture, right: &Picture, panel_height: u32) -> Picture {
-    let mut whole = if right.width == 0 {
-        left.clone()
+    let (width, mut pixels) = if right.width() == 0 {
+        (left.width(), left.pixels().to_vec())
     } else {
-        let rows = left.pixels.chunks(left.width as usize).zip(right.pixels.chunks(right.width as usize));
+        let rows = left.pixels().chunks(left.width() as usize).zip(right.pixels().chunks(right.width() as usize));
         let pixels = rows.flat_map(|(left, right)| [left, &[LINE], right].concat()).collect();
-        Picture { width: left.width + 1 + right.width, height: left.height, pixels }
+        (left.width() + 1 + right.width(), pixels)
     };
-    whole.height += panel_height;
-    whole.pixels.resize((whole.width * whole.height) as usize, BLACK);
-    whole
+    let height = left.height() + panel_height;
+    pixels.resize((width * height) as usize, BLACK);
+    Picture::from_pixels(width, height, pixels).expect("the pixels fill both sizes")
 }
 
 fn wiped(left: &Picture, right: &Picture, wipe: f32) -> Picture {
-    let width = left.width as usize;
+    let width = left.width() as usize;
     let line = ((wipe * width as f32) as usize).min(width.saturating_sub(1));
     let mut picture = right.clone();
     // `chunks` panics for 0, the width of an empty picture.
-    for (row, of_left) in picture.pixels.chunks_mut(width.max(1)).zip(left.pixels.chunks(width.max(1))) {
+    for (row, of_left) in picture.pixels_mut().chunks_mut(width.max(1)).zip(left.pixels().chunks(width.max(1))) {
         row[..line].copy_from_slice(&of_left[..line]);
         row[line] = LINE;
     }

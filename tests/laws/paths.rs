@@ -7,8 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The folders at the root whose contents comments name.
-const FOLDERS: [&str; 10] =
-    ["src", "tests", "benches", "examples", "fuzz", "docs", "scenes", "assets", ".ci", ".github"];
+const FOLDERS: [&str; 11] =
+    ["core", "src", "tests", "benches", "examples", "fuzz", "docs", "scenes", "assets", ".ci", ".github"];
 
 /// The endings of scripts and settings, whose comments start with `#`.
 const SCRIPTS: [&str; 3] = ["toml", "yml", "sh"];

@@ -6,9 +6,11 @@
 //! test`.
 
 mod listing;
+mod merge;
 mod signature;
 
 use listing::{Listing, listing};
+use merge::with_items_of;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -19,8 +21,9 @@ use std::{env, fs};
 /// An item that no task needs goes to `internals`, or is hidden.
 const MAX_ITEMS: usize = 200;
 
-/// The features that are on: what docs.rs shows.
-const FEATURES: [&str; 1] = ["backend"];
+/// The crates, and the features that are on: what docs.rs shows.
+const TERMTRACE: [&str; 2] = ["termtrace", "backend"];
+const CORE: [&str; 2] = ["termtrace-core", "ron,mesh,parallel,posix"];
 
 /// The format of rustdoc's JSON that the reader was written for.
 const FORMAT: u64 = 57;
@@ -29,17 +32,18 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Has rustdoc write the crate's items, and reads them.
-fn items() -> serde_json::Value {
+/// Has rustdoc write the items of a crate, and reads them.
+fn items([package, features]: [&str; 2]) -> serde_json::Value {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("it is in the folder of the build");
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut rustdoc = Command::new(cargo);
     rustdoc.current_dir(root()).env("RUSTDOC", root().join("tests/public_api/rustdoc"));
-    rustdoc.args(["rustdoc", "--quiet", "--locked", "--lib", "--features", &FEATURES.join(",")]);
+    rustdoc.args(["rustdoc", "--quiet", "--locked", "--lib", "--package", package, "--features", features]);
     rustdoc.arg("--target-dir").arg(target);
     rustdoc.args(["--", "-Z", "unstable-options", "--output-format", "json"]);
     assert!(rustdoc.status().expect("cargo runs").success(), "rustdoc fails");
-    let json = fs::read(target.join("doc/termtrace.json")).expect("rustdoc has written it");
+    let json =
+        fs::read(target.join(format!("doc/{}.json", package.replace('-', "_")))).expect("rustdoc has written it");
     serde_json::from_slice(&json).expect("it is JSON")
 }
 
@@ -60,7 +64,7 @@ fn only_in(one: &str, other: &str, sign: &str) -> String {
 
 #[test]
 fn the_surface_is_the_one_that_is_listed() {
-    let items = items();
+    let items = with_items_of(items(TERMTRACE), items(CORE), "termtrace_core");
     let Listing { text, count, unpromised } = listing(&items);
     let path: PathBuf = root().join("tests/public_api.txt");
     if env::var_os("BLESS").is_some() {

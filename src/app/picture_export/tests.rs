@@ -18,7 +18,7 @@ fn names_are_plain_words() {
 #[test]
 fn the_shown_picture_is_written_in_each_format() {
     let pixels = vec![crate::color::Srgb8::new(255, 255, 255); 4];
-    let picture = Picture { width: 2, height: 2, pixels };
+    let picture = Picture::from_pixels(2, 2, pixels).expect("all pixels are there");
     let capabilities = Capabilities {
         cell_mode: CellMode::HALF_BLOCK,
         cell_aspect: 2.0,

@@ -32,7 +32,7 @@ fn frame(refines: bool) -> Frame {
     Frame {
         scene: three_spheres(),
         shot: shot(Camera::new(pose, rectangle).expect("a pose"), Resolution::square(0, 0)),
-        picture: Picture { width: 0, height: 0, pixels: Vec::new() },
+        picture: Picture::from_pixels(0, 0, Vec::new()).expect("all pixels are there"),
         geometry: None,
         parts: Vec::new(),
         sampling: Sampling::BEST,

@@ -15,7 +15,8 @@ fn text(
         Srgb8::new(grey, grey, grey)
     };
     let [width, height] = [(ACROSS * columns) as u32, (DOWN * rows) as u32];
-    let picture = Picture { width, height, pixels: (0..columns * rows * ACROSS * DOWN).map(pixel).collect() };
+    let picture = Picture::from_pixels(width, height, (0..columns * rows * ACROSS * DOWN).map(pixel).collect())
+        .expect("all pixels are there");
     let mut grid = Grid::new(Size::new(columns as u16, rows as u16));
     fill(&mut grid, &picture, &geometry, (background, Colors::None), None);
     grid.rows().map(|row| row.map(|cell| cell.glyph.to_string()).collect()).collect()
@@ -96,7 +97,7 @@ fn small_objects_in_a_crowd_are_filled() {
 fn colours_are_the_hues_of_objects() {
     let geometry = Geometry::of_objects(2, 1, |_, _| 1);
     let pixels = vec![Srgb8::new(60, 20, 10); 16];
-    let picture = Picture { width: 4, height: 4, pixels };
+    let picture = Picture::from_pixels(4, 4, pixels).expect("all pixels are there");
     for (colors, background, expected) in [
         (Colors::Truecolor, Background::Dark, Ink::Rgb(Srgb8::new(255, 85, 42))),
         (Colors::Truecolor, Background::Light, Ink::Rgb(Srgb8::new(153, 51, 25))),

@@ -7,7 +7,7 @@ fn character(pixels: &str) -> String {
     let pixels = pixels.chars().map(|letter| Srgb8::new(grey(letter), grey(letter), grey(letter)));
     let [width, height] = [2, 4];
     let mut grid = Grid::new(crate::grid::Size::new(1, 1));
-    fill(&mut grid, &Picture { width, height, pixels: pixels.collect() });
+    fill(&mut grid, &Picture::from_pixels(width, height, pixels.collect()).expect("all pixels are there"));
     grid.cell(0, 0).glyph.to_string()
 }
 

@@ -118,7 +118,7 @@ impl Build {
         // colours.
         let mut light = Framebuffer::new(Resolution::square(1, 1));
         light.pixels_mut()[0] = light_along(&self.scene, &ray, Hit { t, object: object as u32, primitive });
-        tone(&light, &self.scene).pixels[0]
+        tone(&light, &self.scene).pixels()[0]
     }
 }
 

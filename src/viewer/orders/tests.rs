@@ -72,7 +72,7 @@ fn both_pictures_are_built_up_to_that_of_the_frame() {
             break;
         };
         let [width, height] = [SIZE[0], SIZE[1] - PANEL_HEIGHT].map(|side| side as usize);
-        let rows = || picture.pixels.chunks(width).zip(frame.picture.pixels.chunks(width)).take(height);
+        let rows = || picture.pixels().chunks(width).zip(frame.picture.pixels().chunks(width)).take(height);
         // In image order all pixels before the current one are complete.
         let built: Vec<_> = rows().flat_map(|(row, last)| row[..20].iter().zip(&last[..20])).collect();
         let count = built.iter().take_while(|(pixel, last)| pixel == last).count();
@@ -103,7 +103,7 @@ fn objects_that_later_ones_hide_have_their_own_colour() {
     build.draw(wall);
     let (red, middle) = (Srgb8::new(255, 0, 0), [9, 10]);
     let at = middle[1] as usize * SIZE[0] as usize + 21 + middle[0] as usize;
-    let last = frame.picture.pixels[at];
+    let last = frame.picture.pixels()[at];
     assert!(last.g < 20, "the ball: {last:?}");
     let shown = build.pixel(middle[0], middle[1], EMPTY, last);
     assert!(shown != red && shown.g > 100 && shown.r == shown.b, "the wall: {shown:?}");

@@ -12,7 +12,7 @@ fn panel(progress: &Progress, cell_mode: CellMode, columns: u16, rows: u16) -> V
 }
 
 fn parsing(name: &str, done: usize, total: usize) -> Progress {
-    Progress { work: Work::Parsing(name.to_owned()), done, total }
+    Progress::new(Work::Parsing(name.to_owned()), done, total)
 }
 
 #[test]
@@ -23,7 +23,7 @@ fn the_panel_says_what_is_done_and_how_far() {
     let rows = panel(&parsing("a\u{1b}b.ply", 100, 100), half, 80, 24);
     assert_eq!(rows[1], format!("│ {:42} │", "parsing a\u{fffd}b.ply"));
     assert_eq!(rows[2], format!("│ {} 100 % │", "█".repeat(36)));
-    let building = Progress { work: Work::Building, done: 999, total: 1000 };
+    let building = Progress::new(Work::Building, 999, 1000);
     let ascii = CellMode { glyphs: Glyphs::Ramp, ..half };
     assert_eq!(panel(&parsing("é.ply", 0, 1), ascii, 80, 24)[1], format!("| {:42} |", "parsing ?.ply"));
     let rows = panel(&building, ascii, 80, 24);

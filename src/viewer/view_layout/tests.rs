@@ -56,14 +56,15 @@ fn only_the_shaded_map_is_refined() {
 }
 
 fn flat(width: u32, band: u8) -> Picture {
-    Picture { width, height: 2, pixels: vec![Srgb8::new(band, band, band); 2 * width as usize] }
+    Picture::from_pixels(width, 2, vec![Srgb8::new(band, band, band); 2 * width as usize])
+        .expect("all pixels are there")
 }
 
 /// Returns the picture's rows as text: a digit for each pixel, its red channel, and a bar for the
 /// line.
 fn rows(picture: &Picture) -> Vec<String> {
     let text = |pixel: &Srgb8| if *pixel == LINE { '|' } else { char::from(b'0' + pixel.r) };
-    picture.pixels.chunks(picture.width as usize).map(|row| row.iter().map(text).collect()).collect()
+    picture.pixels().chunks(picture.width() as usize).map(|row| row.iter().map(text).collect()).collect()
 }
 
 #[test]
@@ -89,7 +90,7 @@ fn no_screen_is_too_narrow() {
             let seen = shown(Map::Shaded, Map::Depth, split);
             let parts: Vec<_> = seen.map_sizes(whole).iter().map(|(_, part)| flat(part.width(), 1)).collect();
             let combined = seen.combined(&parts, 0.5).expect("two");
-            assert_eq!((combined.width, combined.pixels.len()), (width, 2 * width as usize));
+            assert_eq!((combined.width(), combined.pixels().len()), (width, 2 * width as usize));
         }
     }
 }

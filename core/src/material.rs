@@ -1,0 +1,189 @@
+//! Materials: the reflectance of surfaces.
+//!
+//! All materials are diffuse (lecture, "Shading", assumption 3): they reflect equally in all directions, so a point has
+//! the same colour from every viewpoint.
+//!
+//! Each material is a file under `material/`. To add one, write that file with implementations of [`Reflecting`] and
+//! [`InSceneFile`], and add a line to the table `materials` here.
+
+use crate::checks::SceneFault;
+use crate::color::LinearRgb;
+use crate::lanes::Number;
+use crate::scene_text::SyntaxNode;
+use crate::written::{InSceneFile, NodeReader, Validator};
+
+mod checker;
+mod diffuse;
+#[cfg(all(test, unit_tests))]
+mod stripes;
+
+pub use checker::{Checker, WrittenChecker};
+pub use diffuse::Diffuse;
+#[cfg(all(test, unit_tests))]
+pub use stripes::Stripes;
+
+/// A diffuse material, plain or patterned. Reflectances are linear, each channel in 0..=1.
+// The enum `Material` is used instead of trait objects, as `reflectance` is generic over the lanes and inlined into the
+// kernels.
+pub trait Reflecting: InSceneFile + Copy {
+    /// The name of the material's pattern for messages, such as "its squares"; `None` for a plain
+    /// material.
+    ///
+    /// Only a surface that has surface coordinates can have a pattern.
+    const PATTERN: Option<&'static str> = None;
+
+    /// Returns the reflectances of red, green and blue at the surface coordinates `uv`.
+    ///
+    /// They are means over `footprint`, the extent of a sample in these coordinates. A footprint of 0 is a point.
+    fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3];
+
+    /// Returns an adjective for descriptions, such as "red". `name` returns the name of a colour.
+    fn described(&self, name: fn(LinearRgb) -> &'static str) -> String;
+
+    /// Returns the checked material, or `None` after a fault has been reported to `validator`.
+    fn check(written: &Self::Written, validator: &mut Validator<'_>) -> Option<Self>;
+}
+
+/// Defines [`Material`] and [`WrittenMaterial`] from the table of materials.
+macro_rules! materials {
+    ($($(#[$on:meta])* $material:ident, $of:literal;)*) => {
+        /// A material of an object.
+        ///
+        /// ```
+        /// use termtrace::{LinearRgb, Material};
+        ///
+        /// let floor = Material::checker(LinearRgb::grey(0.7), LinearRgb::grey(0.1), 0.5)?;
+        /// let error = Material::diffuse(LinearRgb::grey(1.5)).unwrap_err();
+        /// assert!(error.to_string().contains("1.5"));
+        /// # Ok::<(), Box<dyn std::error::Error>>(())
+        /// ```
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[non_exhaustive]
+        pub enum Material {
+            $(#[doc = $of] #[doc(hidden)] $(#[$on])* $material($material),)*
+            /// The colours and textures of a mesh's file.
+            ///
+            /// If the file has none, a diffuse light grey.
+            Own,
+        }
+
+        impl Material {
+            /// Returns [`Reflecting::reflectance`], or the default reflectance for
+            /// [`Own`](Self::Own).
+            #[doc(hidden)]
+            #[inline(always)]
+            pub fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3] {
+                match self {
+                    $($(#[$on])* Self::$material(material) => material.reflectance(uv, footprint),)*
+                    Self::Own => channels(Self::DEFAULT_REFLECTANCE),
+                }
+            }
+
+            /// Returns a patterned material's name with an article, and its pattern's name.
+            pub(crate) fn material_and_pattern_names(&self) -> Option<(&'static str, &'static str)> {
+                match self {
+                    $($(#[$on])* Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
+                    Self::Own => None,
+                }
+            }
+
+            /// Returns the adjective of [`Reflecting::described`]; `None` for [`Own`](Self::Own).
+            pub(crate) fn described(&self, name: fn(LinearRgb) -> &'static str) -> Option<String> {
+                match self {
+                    $($(#[$on])* Self::$material(material) => Some(material.described(name)),)*
+                    Self::Own => None,
+                }
+            }
+        }
+
+        $($(#[$on])* impl From<$material> for Material {
+            fn from(material: $material) -> Self {
+                Self::$material(material)
+            }
+        })*
+
+        /// A material as written in a scene file.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum WrittenMaterial {
+            $(#[doc = $of] $(#[$on])* $material(<$material as InSceneFile>::Written),)*
+        }
+
+        #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
+        impl WrittenMaterial {
+            /// The names of all materials in scene files.
+            pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $material::NAME,)*];
+
+            /// Reads the material called `name`; `None` for an unknown name or a missing field.
+            pub(crate) fn read(name: &str, reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
+                $($(#[$on])* if name == $material::NAME {
+                    return $material::read_node(reader, node).map(Self::$material);
+                })*
+                None
+            }
+
+            /// Returns the checked material, or `None` after a fault has been reported to
+            /// `validator`.
+            pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Material> {
+                match self {
+                    $($(#[$on])* Self::$material(written) => $material::check(written, validator).map(Material::from),)*
+                }
+            }
+
+            /// Returns a patterned material's name with an article, and its pattern's name.
+            pub(crate) fn material_and_pattern_names(&self) -> Option<(&'static str, &'static str)> {
+                match self {
+                    $($(#[$on])* Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
+                }
+            }
+        }
+    };
+}
+
+materials! {
+    Diffuse, "The same reflectance everywhere.";
+    Checker, "Squares of two reflectances in turn.";
+    #[cfg(all(test, unit_tests))]
+    Stripes, "Stripes of two reflectances in turn.";
+}
+
+/// Returns the material of an object without one: a diffuse light grey.
+impl Default for Material {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl Material {
+    /// The material of an object without one: a light grey.
+    #[doc(hidden)]
+    pub const DEFAULT: Self = Self::Diffuse(Diffuse::DEFAULT);
+
+    /// The reflectance of [`DEFAULT`](Self::DEFAULT).
+    // The reflectance of matt white paint. It is below 1, so that an object stays visible in front of a white one.
+    #[doc(hidden)]
+    pub const DEFAULT_REFLECTANCE: LinearRgb = LinearRgb::grey(0.8);
+
+    /// Returns a material with the same linear reflectance everywhere.
+    ///
+    /// # Errors
+    /// If a channel is not within 0 and 1.
+    pub fn diffuse(reflectance: LinearRgb) -> Result<Self, SceneFault> {
+        Diffuse::new(reflectance).map(Self::Diffuse)
+    }
+
+    /// Returns a material of squares with alternating linear reflectances and side `size`.
+    ///
+    /// Only a plane can have this material.
+    ///
+    /// # Errors
+    /// If a channel is not within 0 and 1, or the size not between 1e-9 and 1e9.
+    pub fn checker(a: LinearRgb, b: LinearRgb, size: f32) -> Result<Self, SceneFault> {
+        Checker::new(a, b, size).map(Self::Checker)
+    }
+}
+
+/// Returns the channels of a colour in all lanes.
+#[inline(always)]
+fn channels<N: Number>(LinearRgb { r, g, b }: LinearRgb) -> [N; 3] {
+    [N::splat(r), N::splat(g), N::splat(b)]
+}

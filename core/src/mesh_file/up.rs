@@ -1,0 +1,148 @@
+//! The axis of a mesh that points up.
+//!
+//! In OBJ and glTF files it is +y. STL and PLY do not define it: CAD programs and those for 3D printers write files
+//! with +z up, scanners mostly with +y up.
+
+use super::MeshFile;
+use crate::bounds::Bounds;
+use glam::{Mat3, Vec3};
+
+/// A signed coordinate axis of a mesh file, which points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum UpAxis {
+    /// +x
+    X,
+    /// +y
+    #[default]
+    Y,
+    /// +z
+    Z,
+    /// -x
+    NegX,
+    /// -y
+    NegY,
+    /// -z
+    NegZ,
+}
+
+impl UpAxis {
+    /// All axes, in the order in which the key that turns a mesh goes through them.
+    pub const ALL: [Self; 6] = [Self::Y, Self::Z, Self::X, Self::NegY, Self::NegZ, Self::NegX];
+
+    /// Returns the name of the axis, such as `z` or `-z`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+            Self::NegX => "-x",
+            Self::NegY => "-y",
+            Self::NegZ => "-z",
+        }
+    }
+
+    /// Returns the axis with the name `name`, such as `z` or `-z`.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|axis| axis.name() == name)
+    }
+
+    /// Returns the next axis; after the last, the first.
+    pub fn next(self) -> Self {
+        let at = Self::ALL.iter().position(|&axis| axis == self).unwrap_or(0);
+        Self::ALL[(at + 1) % Self::ALL.len()]
+    }
+
+    /// Returns the rotation that turns this axis to +y: degrees about x, y and z, as in a scene
+    /// file.
+    pub fn degrees(self) -> [i16; 3] {
+        match self {
+            Self::X => [0, 0, 90],
+            Self::Y => [0, 0, 0],
+            Self::Z => [-90, 0, 0],
+            Self::NegX => [0, 0, -90],
+            Self::NegY => [0, 0, 180],
+            Self::NegZ => [90, 0, 0],
+        }
+    }
+
+    /// Returns the rotation by [`degrees`](Self::degrees) as a matrix without rounding errors.
+    pub fn turn(self) -> Mat3 {
+        let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z];
+        let [x, y, z] = match self {
+            Self::X => [y, -x, z],
+            Self::Y => [x, y, z],
+            Self::Z => [x, -z, y],
+            Self::NegX => [-y, x, z],
+            Self::NegY => [-x, -y, z],
+            Self::NegZ => [x, z, -y],
+        };
+        Mat3::from_cols(x, y, z)
+    }
+}
+
+/// Number of slices, along an axis, in which [`symmetry`] counts the vertices.
+const SLICES: usize = 32;
+
+/// Weight of the symmetry in [`score`]. `CLEAR_DIFFERENCE` is the least advantage in score by which
+/// an axis replaces the usual one of the format.
+// Measured on 18 meshes (common-3d-test-models, pyvista), of which 13 have a known axis. With the usual axis of PLY, 12
+// of the 13 are guessed right (a car with an open bottom is not); with that of STL, eight, because these meshes are not
+// parts for printing, as the contents of most STL files are.
+const SYMMETRY_WEIGHT: f64 = 0.1;
+const CLEAR_DIFFERENCE: f64 = 0.05;
+
+/// Returns the axis that probably points up in a file of a format that states none: +y or +z.
+///
+/// The axis `usual` is returned unless the other one is clearly more likely.
+pub(crate) fn guessed(mesh: &MeshFile, usual: UpAxis) -> UpAxis {
+    let other = if usual == UpAxis::Z { UpAxis::Y } else { UpAxis::Z };
+    let index = |axis| if axis == UpAxis::Z { 2 } else { 1 };
+    let bounds = Bounds::of(mesh.positions().iter().copied());
+    if score(mesh, &bounds, index(other)) > score(mesh, &bounds, index(usual)) + CLEAR_DIFFERENCE {
+        other
+    } else {
+        usual
+    }
+}
+
+/// Returns a score that is higher the more likely axis number `axis` points up.
+///
+/// It assumes that a thing stands on flat faces at its lower end, and that its upper and lower halves differ.
+fn score(mesh: &MeshFile, bounds: &Bounds, axis: usize) -> f64 {
+    let extent = bounds.extent();
+    let (length, base) = (extent[axis], extent[(axis + 1) % 3] * extent[(axis + 2) % 3]);
+    // `!(a > b)` instead of `a <= b`, so that a mesh with a NaN extent counts as flat too.
+    if !(length > 0.0 && base > 0.0) {
+        return -1.0;
+    }
+    let margin = 0.02 * length;
+    let mut flat = [0.0_f64; 2];
+    for triangle in mesh.triangles() {
+        let [a, b, c] = triangle.map(|corner| mesh.positions()[corner as usize]);
+        let normal = (b - a).cross(c - a);
+        let middle = (a[axis] + b[axis] + c[axis]) / 3.0;
+        let area = normal.length();
+        if normal[axis] < -0.9 * area && middle < bounds.min[axis] + margin {
+            flat[0] += f64::from(0.5 * area);
+        } else if normal[axis] > 0.9 * area && middle > bounds.max[axis] - margin {
+            flat[1] += f64::from(0.5 * area);
+        }
+    }
+    (flat[0] - flat[1]) / f64::from(base) - SYMMETRY_WEIGHT * symmetry(mesh, bounds, axis)
+}
+
+/// Returns the similarity of the mesh's lower and upper halves along an axis, from -1 to 1.
+///
+/// It is 1 if mirrored slices have equally many vertices, and -1 if one slice of each mirrored pair has no vertices.
+fn symmetry(mesh: &MeshFile, bounds: &Bounds, axis: usize) -> f64 {
+    let mut counts = [0_i64; SLICES];
+    for position in mesh.positions() {
+        let share = (position[axis] - bounds.min[axis]) / bounds.extent()[axis];
+        counts[((share * SLICES as f32) as usize).min(SLICES - 1)] += 1;
+    }
+    let difference: i64 = counts.iter().zip(counts.iter().rev()).map(|(below, above)| (below - above).abs()).sum();
+    1.0 - difference as f64 / mesh.positions().len() as f64
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;
