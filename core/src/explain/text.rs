@@ -125,7 +125,11 @@ impl Explanation {
         lines.push(format!("tested: {}, {nodes}", count(self.tested.len(), "surface")));
         for (at, tested) in self.tested.iter().enumerate() {
             let mark = if at == 0 && tested.t.is_some() { '>' } else { ' ' };
-            lines.push(format!("{mark} {:<14} {}", tested.name.to_string(), root_values(tested)));
+            let line = |name: &str| format!("{mark} {name:<14} {}", root_values(tested));
+            let name = tested.name.to_string();
+            let full = line(&name);
+            // A face of one of thousands of objects has a long name.
+            lines.push(if full.len() <= MAX_LINE_WIDTH { full } else { line(name.trim_start_matches("face ")) });
         }
     }
 
