@@ -38,7 +38,7 @@ pub struct Capabilities {
 /// The cell aspect of an unknown terminal: monospace fonts have cells of about 1:2.
 pub const USUAL_CELL_ASPECT: f32 = 2.0;
 
-/// The range of plausible cell aspects. Values outside it are errors of a user or a program.
+/// The range of cell aspects that a user may state. Other values are refused or ignored.
 pub const CELL_ASPECT_RANGE: RangeInclusive<f32> = 0.1..=10.0;
 
 /// The user's choice of colours.

@@ -74,7 +74,8 @@ crate::table::table! {
         /// The printable ASCII character whose ink is distributed most like the light of a cell's
         /// eight pixels.
         Shape = shape::KIND;
-        /// ASCII characters that draw outlines, and fill each object with its full range of tones.
+        /// ASCII characters that draw outlines, and fill each object with tones that span the range
+        /// of the object's light.
         Ascii = ascii::KIND;
         /// One of ten ASCII characters, by the mean lightness of a cell's two pixels.
         Ramp = ramp::KIND;

@@ -10,7 +10,7 @@ mod camera_moves;
 mod motion;
 mod pointer;
 
-// Exported with `dragged` and `Gesture`, whose signatures contain it.
+// `Grip` is exported with `dragged` and `Gesture`, because their signatures contain it.
 pub use crate::camera::Grip;
 pub use camera_moves::{dragged, on_turntable, speed, wheeled};
 pub use command::{Command, Direction, Side, Toward};

@@ -116,7 +116,8 @@ pub struct Encoder {
     due: Option<Duration>,
     shortage: capped::Shortage,
     used_part: lossy::UsedPart,
-    /// Whether the last lossy frame used over 90 % of the bytes for a frame that makes cells exact.
+    /// Whether the last lossy frame took over 90 % of the bytes that a frame may take if it makes
+    /// cells exact.
     is_full: bool,
 }
 
@@ -479,7 +480,7 @@ struct Drawn {
     pen: Pen,
     cursor: Option<CellPosition>,
     due: Option<Duration>,
-    /// Whether the frame used over 90 % of the bytes for a frame that makes cells exact.
+    /// Whether the frame took over 90 % of the bytes that a frame may take if it makes cells exact.
     is_full: bool,
 }
 
@@ -533,8 +534,8 @@ impl Writing {
             Order::Color => {
                 by_color::order(wanted, changed, half_blocks, *pen, &mut self.by_color, &mut self.order);
                 self.strokes.choose(wanted, &self.order, half_blocks, *pen);
-                // Colours are shared in this order only. In raster order sharing costs more bytes than it saves,
-                // because a compressor then finds fewer repetitions.
+                // Spaces take the glyph colour of the next stroke in this order only. In raster order that costs more
+                // bytes than it saves, because a compressor then finds fewer repetitions.
                 self.strokes.share_next_fg();
             }
         }

@@ -213,7 +213,8 @@ impl Parser {
             // Only a byte that begins a sequence continues a late ESC. Any other byte is more likely a key typed later
             // than one pressed with Alt.
             State::Escape => matches!(byte, b'[' | b'O' | b']' | b'P' | b'_'),
-            // The first byte of a string tells a reply from typed letters, with which no reply begins.
+            // The first byte of a string tells a reply from most typed text: an OSC reply begins with a digit, a DCS
+            // reply with a byte from 0x20 to 0x3f, and an APC reply with `G`.
             State::Text(kind) if self.text.is_empty() => kind.begins_with(byte),
             State::Text(_) => byte >= 0x20 || byte == BEL || byte == ESC,
             State::TextEscape(_) => byte == b'\\',

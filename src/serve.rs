@@ -125,7 +125,8 @@ impl Settings {
             banner: None,
             link: None,
             metrics: None,
-            // `russh` has no such limit: 500 of 500 connections that sent nothing were still open after 20 seconds.
+            // `russh` does not limit the time for the login: 500 of 500 connections that sent nothing were still open
+            // after 20 seconds.
             login_time: Duration::from_secs(10),
             patience: Duration::from_secs(20),
             drain: Duration::from_secs(30),
@@ -133,7 +134,7 @@ impl Settings {
     }
 }
 
-/// Reads the public keys of a file as `sshd` does, without options before a key.
+/// Reads the public keys of a file as `sshd` does, but does not accept options before a key.
 ///
 /// # Errors
 /// If the file cannot be read, or a line is no public key.
@@ -316,7 +317,7 @@ fn ssh_config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
         maximum_packet_size: 4 * 1024,
         channel_buffer_size: 4,
         event_buffer_size: 2,
-        // As in OpenSSH.
+        // The default of OpenSSH (`MaxAuthTries`).
         max_auth_attempts: 6,
         // Not needed here: `ViewerSession` limits the time without a key, and `Socket` the time in which a client takes
         // no bytes.

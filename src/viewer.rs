@@ -128,7 +128,7 @@ pub(crate) enum Request {
     Copy(String),
     /// Write the shown picture into a file of this format.
     Export(crate::export::Format),
-    /// Write a large picture of the wanted view into a file.
+    /// Trace a large picture of the current view in the background, and write it into a file.
     ExportLarge,
     /// Cancel the large picture in progress.
     CancelLarge,
@@ -164,7 +164,7 @@ pub(crate) struct Viewer {
     playback: Playback,
     /// Which maps the picture shows, and how they are arranged.
     layout: ViewLayout,
-    /// Whether a second camera shows the first one from outside.
+    /// Whether a second camera shows the first one from outside, or vanishing points are shown.
     outside: Outside,
     pointer: PointerState,
     screen: Screen,
@@ -251,15 +251,16 @@ impl Viewer {
         bytes
     }
 
-    /// Sets the window's size. Call this too when the terminal may have moved or changed what it
-    /// shows.
+    /// Sets the window's size. Call this too when the terminal's contents may have been moved or
+    /// changed.
     ///
     /// # Errors
     /// If there is not enough memory for the window.
     pub(crate) fn resize(&mut self, window: Window) -> Result<(), OutOfMemory> {
         let before = *self.display.capabilities();
         self.display.set_window(window);
-        // A new font may have cells of another shape, which decides which half blocks join without gaps.
+        // A new font may change the aspect and the height of the cells, and the height decides which half blocks the
+        // cells may use.
         self.apply_changed_capabilities(&before)?;
         self.display.check_memory()?;
         self.forget_screen();

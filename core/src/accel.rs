@@ -193,7 +193,7 @@ macro_rules! accelerator {
                 }
             }
 
-            /// Returns the boxes of all bounded primitives.
+            /// Returns the boxes of all bounded primitives except those of instances.
             fn boxes(&self) -> impl Iterator<Item = &Bounds> {
                 let mut boxes: Vec<&[Bounds]> = Vec::new();
                 $($(#[$on])* { by_group! { tree in $group boxes.push(&self.$name.boxes); } })*

@@ -116,7 +116,8 @@ struct Slabs<N> {
     ///
     /// `far` is widened so that the ray leaves each slab later.
     // The inverse direction is negated, so that `origin - plane` can replace `plane - origin`: the CPU subtracts the
-    // plane straight from memory. Together with smaller leaves, this makes incoherent rays 1 to 5 % faster.
+    // plane straight from memory. Together with the ids stored apart from the leaves (see `accel::Tree`), this makes
+    // incoherent rays 1 to 5 % faster.
     near: [N; 3],
     far: [N; 3],
     is_backward: [bool; 3],

@@ -142,8 +142,8 @@ impl fmt::Display for CameraError {
             Self::Sides => "a side of the view rectangle must lie between 1e-6 and 1e6 focal lengths",
             Self::AspectRatio => "the aspect ratio must lie between 1e-6 and 1e6",
             Self::Shift => "the view rectangle can be shifted by at most 1000 of its heights",
-            // The part of each message before the semicolon fits into a note of 40 columns, which has no room for the
-            // rest.
+            // In the next two messages, the part before the semicolon fits into a note of 40 columns, which has no room
+            // for the rest.
             Self::Tilt => "the tilt can be at most 89 degrees; at 90 the view rectangle would contain the eye",
             Self::BehindEye => "the rectangle passes behind the eye; tilt it less, shift it less, or make it smaller",
         })
@@ -453,7 +453,7 @@ impl ViewRectangle {
     fn checked_in_front(self) -> Result<Self, CameraError> {
         let Self { width, height, shift, tilt } = self;
         let [(sin_right, cos_right), (sin_up, _)] = tilt.to_array().map(libm::sincosf);
-        // The change of depth, along -w, of a unit step along each side of the rectangle.
+        // The decrease of depth, along -w, per unit step along each side of the rectangle.
         let towards = Vec2::new(sin_right, sin_up * cos_right);
         let half = 0.5 * Vec2::new(width.unwrap_or(0.0), height);
         let least_depth = 1.0 - towards.dot(shift * height) - towards.abs().dot(half);
@@ -570,8 +570,8 @@ impl EyeRays {
     /// Returns the ray through a position in the picture, from (0, 0) at the lower left corner to
     /// (1, 1).
     ///
-    /// It goes through the lecture's q = q0 + w qu u + h qv v. The direction is q - eye, whose component along -w is 1,
-    /// so that t is the depth.
+    /// It goes through the lecture's q = q0 + w qu u + h qv v. The direction is q - eye. Its component along -w of
+    /// [`Camera::rectangle_basis`] is 1, so that t is the depth.
     // Normalizing the direction would cost a square root and a division per ray, and t would no longer be the depth.
     pub fn through(&self, qu: f32, qv: f32) -> Ray {
         Ray { origin: self.eye, direction: self.direction(qu, qv).into() }

@@ -78,8 +78,8 @@ impl CameraPath {
     /// Between two keyframes eye, target and up follow cubic Hermite curves. The velocity at a keyframe is the
     /// difference of its neighbours divided by that of their times (Catmull and Rom, "A class of local interpolating
     /// splines", 1974). A value that is equal in two consecutive keyframes stays exactly equal between them. The
-    /// logarithm of the view rectangle's height follows the same kind of curve. The rectangle's aspect ratio and shift
-    /// are those of the last keyframe before.
+    /// logarithm of the view rectangle's height follows the same kind of curve. The rectangle's aspect ratio, shift and
+    /// tilt are those of the last keyframe before.
     // Dividing by the times makes velocities continuous also for uneven times, and bounds the overshoot by the
     // distances between keyframes. The logarithm makes zooming even, and keeps every angle in range.
     #[doc(hidden)]

@@ -211,7 +211,7 @@ impl Oklab {
         [0.088_302_46, 0.281_718_85, 0.629_978_7],
     ];
 
-    /// The matrix from these cube roots to OKLab.
+    /// The matrix from the cube roots of the cones' responses to OKLab.
     pub const FROM_ROOTS: [[f32; 3]; 3] = [
         [0.210_454_26, 0.793_617_8, -0.004_072_047],
         [1.977_998_5, -2.428_592_2, 0.450_593_7],
@@ -263,8 +263,9 @@ struct Transfer {
     // anyway.
     bits_at_step: [u32; 256],
     /// The 8-bit code of the least light in each bucket.
-    // There are also buckets above 1 and below 0, so that light need not be clamped first. Without the clamp a frame of
-    // three spheres takes 16.9 instead of 18.5 ms (1,024 x 1,024 pixels, one thread).
+    // There are also buckets above 1, so that light need not be clamped to 1 first. Without that clamp a frame of three
+    // spheres takes 16.9 instead of 18.5 ms (1,024 x 1,024 pixels, one thread). The buckets below 0 are never read,
+    // because `srgb8` replaces negative light by 0.
     first_code: [u8; BUCKET_COUNT],
 }
 

@@ -245,7 +245,7 @@ impl Description<'_> {
         let mut lights: Vec<_> = self.scene.lights().iter().collect();
         let strength = |light: &Light| {
             let to_light = light.to_light(Vector::<f32>::splat(target));
-            // A light may be at the target itself.
+            // `MIN_POSITIVE` avoids a division by 0 for a light at the target itself.
             let distance_squared = to_light.dot(to_light).max(f32::MIN_POSITIVE);
             let [r, g, b] = light.irradiance(to_light, distance_squared, 1.0);
             LinearRgb::new(r, g, b).luminance()

@@ -109,8 +109,9 @@ impl Resolution {
         }
     }
 
-    /// Returns the pixels of a picture of this size, repeated to fill `across` columns and `down`
-    /// rows.
+    /// Returns the pixels of a picture of this size, scaled to `across` columns and `down` rows.
+    ///
+    /// Each pixel of the result is a copy of the nearest pixel of the picture.
     #[doc(hidden)]
     pub fn repeated<T: Copy>(self, pixels: &[T], [across, down]: [usize; 2]) -> impl Iterator<Item = T> {
         let (width, height) = (self.width as usize, self.height as usize);
@@ -124,7 +125,7 @@ impl Resolution {
         self.width as usize * self.height as usize
     }
 
-    /// Returns the size of a part of the picture, with at most `width` columns and `height` rows.
+    /// Returns the size of the picture cropped to at most `width` columns and `height` rows.
     #[doc(hidden)]
     pub fn part(self, width: u32, height: u32) -> Self {
         Self { width: width.min(self.width), height: height.min(self.height), ..self }

@@ -218,7 +218,7 @@ impl Kernel {
 }
 
 // The values of the const parameter `ANY`. It is a parameter, not a field, so that each traversal is compiled without
-// the other's branches: the one for any hit needs no sorting, no edge tests and no t.
+// the other's branches: the one for any hit needs no sorting, no culling by edge functions and no t.
 const CLOSEST: bool = false;
 const ANY: bool = true;
 

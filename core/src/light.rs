@@ -152,7 +152,7 @@ macro_rules! lights {
             /// The names of all lights in scene files.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $light::NAME,)*];
 
-            /// Reads the light called `name`; `None` if the name is unknown or a field is missing.
+            /// Reads the light called `name`; `None` if it is unknown or `node` has no fields.
             pub(crate) fn read(name: &str, reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
                 $($(#[$on])* if name == $light::NAME {
                     return $light::read_node(reader, node).map(Self::$name);

@@ -51,7 +51,7 @@ pub enum Map {
     ///
     /// Colours, distances and shadows have no influence.
     Lambert,
-    /// The depth t along the direction of view, as a grey of 1 / (1 + (t / d)^2).
+    /// The depth t along the normal of the view rectangle, as a grey of 1 / (1 + (t / d)^2).
     ///
     /// d is the distance from the eye to the target.
     Depth,
@@ -78,7 +78,7 @@ pub enum Map {
     Wire,
 }
 
-/// The colour of pixels without a hit, in all maps except `Cost` and `Contrast`.
+/// The colour of pixels without a hit, in all maps except `Shaded`, `Cost` and `Contrast`.
 // A dark blue, which can be told from all greys of the maps and from the black of an unlit object.
 const NO_HIT: Srgb8 = Srgb8::new(16, 20, 56);
 /// The colour of front sides, the sides to which the normal points.

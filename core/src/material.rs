@@ -61,9 +61,10 @@ macro_rules! materials {
         #[non_exhaustive]
         pub enum Material {
             $(#[doc = $of] #[doc(hidden)] $(#[$on])* $material($material),)*
-            /// The colours and textures of a mesh's file.
+            /// The colours and textures of a mesh's file, or the colours that the formulas of an
+            /// implicit surface give.
             ///
-            /// If the file has none, a diffuse light grey.
+            /// If the shape has none, a diffuse light grey.
             Own,
         }
 
@@ -113,7 +114,9 @@ macro_rules! materials {
             /// The names of all materials in scene files.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $material::NAME,)*];
 
-            /// Reads the material called `name`; `None` for an unknown name or a missing field.
+            /// Reads the material called `name`.
+            ///
+            /// Returns `None` if the name is unknown or `node` has no fields or values that can be read.
             pub(crate) fn read(name: &str, reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
                 $($(#[$on])* if name == $material::NAME {
                     return $material::read_node(reader, node).map(Self::$material);
@@ -173,7 +176,7 @@ impl Material {
 
     /// Returns a material of squares with alternating linear reflectances and side `size`.
     ///
-    /// Only a plane can have this material.
+    /// Only a surface with coordinates for patterns, such as a plane, can have this material.
     ///
     /// # Errors
     /// If a channel is not within 0 and 1, or the size not between 1e-9 and 1e9.

@@ -98,7 +98,8 @@ pub(crate) use up::guessed;
 use crate::color::LinearRgb;
 use glam::{DVec3, Mat3, Vec2, Vec3};
 
-/// The reflectance of a mesh without colours: warm clay, `#d98b5f`.
+/// Warm clay, `#d98b5f`: the reflectance of missing materials and textures, and of a mesh without
+/// colours in a scene made around it.
 // A light grey mesh hardly stands out from a grey floor.
 pub(crate) const CLAY: LinearRgb = LinearRgb::new(0.694, 0.258, 0.114);
 

@@ -1,7 +1,8 @@
 //! The scene: checked values, and the trees over its primitives, in which rays are traced.
 //!
-//! A [`Scene`] is always valid. Its units are world units, radians, linear light and unit vectors. Scenes are made only
-//! by [`Scene::load`], [`Scene::from_ron`] and [`Scene::builder`]. A [`Draft`] is checked but has no trees yet.
+//! A [`Scene`] is always valid. Its units are world units, radians, linear light and unit vectors. Except in tests and
+//! benchmarks, scenes are made only by [`Scene::load`], [`Scene::from_ron`], [`Scene::of_mesh`] and
+//! [`Scene::builder`]. A [`Draft`] is checked but has no trees yet.
 
 mod builder;
 #[cfg(feature = "ron")]
@@ -88,7 +89,7 @@ impl fmt::Debug for Scene {
 
 /// The checked values of a scene.
 ///
-/// Only the `with_` methods of [`Scene`] and [`Draft`] assign its fields.
+/// Only [`Scene::at_time`] and the `with_` methods of [`Scene`] and [`Draft`] assign its fields.
 ///
 /// Scenes share it by an `Arc`, because a renderer on another thread keeps its scene while the viewer changes lights
 /// and camera.
@@ -181,7 +182,9 @@ impl Scene {
         self.checked.mesh
     }
 
-    /// Returns a warning if no light falls on any object.
+    /// Returns a warning if there are no lights and no ambient light; black ones count as none.
+    ///
+    /// Returns `None` for a scene without objects whose background is not black.
     #[doc(hidden)]
     pub fn darkness_warning(&self) -> Option<&'static str> {
         let Checked { ambient, lights, objects, background, .. } = &*self.checked;
@@ -200,7 +203,7 @@ impl Scene {
         let mut shared = HashSet::new();
         let warning = |(at, object): (usize, &Object)| {
             let Shape::Mesh(mesh) = &object.shape else { return None };
-            // Of instances, only the first is examined.
+            // Of the instances that share a mesh file, only the first is examined.
             if mesh.is_instance() && !shared.insert(Arc::as_ptr(mesh.shared_file())) {
                 return None;
             }

@@ -105,7 +105,8 @@ pub struct WrittenObject {
     /// The placement, if the surface is scaled, rotated or moved.
     // The box keeps objects without it small: a scene may have 300,000.
     pub placement: Option<Box<WrittenPlacement>>,
-    /// The material and its span. By default light grey, or for a mesh the colours of its file.
+    /// The material and its span. By default the shape's own colours (those of a mesh's file or of
+    /// an implicit surface's formulas), else light grey.
     pub material: Option<Spanned<MaterialUse>>,
 }
 

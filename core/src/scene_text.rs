@@ -13,8 +13,9 @@
 //!   s and 1.4 GB instead of .15 s and 126 MB here. The tests use it as a reference (`tests/files/scene_syntax.rs`):
 //!   both readers must give the same trees.
 //! - `ron` 0.12.3 with serde fails at `background: Gradient(...)`, where a colour is allowed as well: it does not pass
-//!   the name `Gradient` to a type that is chosen by its contents. It rejects 6 of the 12 shipped scenes. It also stops
-//!   at the first fault, while 31 of the 79 faulty scenes of the tests have several.
+//!   the name `Gradient` to a type that is chosen by its contents. It rejected 6 of the 12 scenes that were
+//!   shipped when it was tried. It also stops at the first fault, while 31 of the 79 faulty scenes of the tests had
+//!   several.
 
 mod fault;
 #[cfg(feature = "ron")]

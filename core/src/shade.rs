@@ -255,7 +255,8 @@ impl Reflect<'_> {
     fn reflectances<N: Lanes>(&self, object: &Object, at: usize, own: u32) -> [N; 3] {
         let points = &self.points[at];
         match (&object.material, &object.shape) {
-            // The colours of a mesh differ by triangle and come from textures, so they are computed lane by lane.
+            // The colours of a mesh differ by triangle and come from textures, those of an implicit surface come from
+            // formulas, so both are computed lane by lane.
             (Material::Own, shape) => {
                 let mut channels = [F32x8::ZERO; 3];
                 for lane in set_bits(own) {

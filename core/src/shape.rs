@@ -230,7 +230,7 @@ impl<N: Number> Points<N> {
 }
 
 impl<N: Lanes> Points<N> {
-    /// Returns the points of all lanes, without shading normals.
+    /// Packs one point per lane into SoA layout, without the shading normals.
     ///
     /// Lanes without a point are unspecified.
     #[inline(always)]
@@ -336,8 +336,8 @@ pub struct SurfacePoint {
     pub clearance: f32,
     /// Coordinates on the surface for patterns.
     ///
-    /// On a plane in world units, in a triangle the barycentric weights of its second and third corner; zero if the
-    /// surface has none.
+    /// In a triangle, the barycentric weights of its second and third corner; on other flat surfaces, lengths in world
+    /// units; on all other surfaces, zero.
     pub uv: Vec2,
 }
 

@@ -51,7 +51,7 @@ pub trait InSceneFile {
     /// The full form for messages: "Sphere(center: ..., radius: ...)".
     const FORM: &'static str;
 
-    /// The names of the fields; those of objects are not among those of a surface.
+    /// The names of the fields; for a surface, without those of every object, such as `material`.
     const FIELDS: &'static [&'static str];
 
     /// Reads the value from its fields.

@@ -23,8 +23,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// An event of loading a scene. Events arrive in this order; exactly one of the last three ends the
-/// load.
+/// An event of loading a scene. Events arrive in this order; exactly one of the last three ends a
+/// load that is not cancelled.
 pub(super) enum LoadEvent<E> {
     /// Progress of reading or building.
     Progress(Progress),

@@ -68,7 +68,7 @@ impl Renderer {
         let (done, frames) = channel();
         let mut tracer = Tracer::default();
         let thread = thread::Builder::new().name("render".to_owned()).spawn(move || {
-            // The pool is not rayon's global one, which building a scene may occupy for seconds.
+            // The pool is not rayon's global one, which other work of the process may occupy for seconds.
             let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).use_current_thread().build();
             let pool = match pool {
                 Ok(pool) => pool,
@@ -163,7 +163,8 @@ impl Renderer {
 
     /// Returns whether a frame is predicted to take less than [`MAX_INLINE_TRACE_TIME`].
     ///
-    /// The prediction is the time per pixel of the last frame of the same scene and maps.
+    /// The prediction is the time per pixel of the last timed frame, times the number of pixels. Returns `false`
+    /// without such a frame, or if it had another scene or other maps.
     fn is_small(&self, job: &Job) -> bool {
         // A comparison of image order and object order takes longer than the prediction.
         if job.shot.orders {

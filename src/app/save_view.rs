@@ -18,7 +18,7 @@ pub(super) enum Proposal {
 }
 
 impl Proposal {
-    /// Proposes to write a view into `file`. Returns `None` if `file` is not a regular file.
+    /// Proposes to write a view into `file`. Returns `None` if that is a pipe, device or folder.
     pub(super) fn view(file: &Path, camera: Camera) -> Option<Self> {
         ProposedView::new(file, camera).map(Self::View)
     }

@@ -33,7 +33,8 @@ impl SessionRecording {
     pub(super) fn start(folder: &Path, stem: &str, size: Size, now: Duration) -> io::Result<Self> {
         let file = OutputFile::create_in(folder)?;
         file.remove_stale();
-        // Events are written at once, so that memory does not grow with the length of the session.
+        // Events are written as they occur, through a small buffer, so that memory does not grow with the length of the
+        // session.
         let mut file = BufWriter::new(file);
         write_header(&mut file, size)?;
         write_event(&mut file, 0.0, "o", BEGIN)?;

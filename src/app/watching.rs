@@ -73,7 +73,7 @@ impl Watching {
         let theirs = Arc::clone(&shared);
         let hear = move |event: notify::Result<Event>| {
             let mut shared = lock(&theirs);
-            // After an overflow of the event queue any file may have changed.
+            // After an error, events may be missing, so any file may have changed.
             let change = event.map_or(FileChange::Written, |event| shared.change_of(&event));
             if change > shared.change {
                 shared.change = change;
@@ -215,7 +215,8 @@ impl Shared {
         if event.need_rescan() {
             return FileChange::Written;
         }
-        // On systems with kqueue an event does not say what has changed in a folder.
+        // On systems with kqueue an event does not say what has changed in a folder, so every event counts as `Moved`
+        // and all files are compared.
         if cfg!(not(target_os = "linux")) {
             return FileChange::Moved;
         }

@@ -32,7 +32,7 @@ pub enum Source {
 pub struct Clues<'a> {
     /// Returns the value of an environment variable.
     pub variable: &'a dyn Fn(&str) -> Option<String>,
-    /// Whether the terminal kept a 24-bit colour, if it replied (DECRQSS of SGR).
+    /// Whether the terminal supports truecolor, by its replies; `None` if no reply tells.
     pub truecolor_reply: Option<bool>,
     /// Returns the colours of a terminal name according to terminfo, if known.
     ///
@@ -45,9 +45,9 @@ pub type GlyphChoice = Option<Glyphs>;
 
 /// Returns the colours to use.
 ///
-/// The first source with a value decides: the user's choice; `NO_COLOR`; `COLORTERM`; the terminal's reply; terminfo's
-/// truecolor flags; the name in `TERM`, if it implies truecolor; terminfo's number of colours; the name.
-/// `CLICOLOR_FORCE`, `FORCE_COLOR` and `--color=always` set a minimum.
+/// The first source with a value decides: the user's choice; `NO_COLOR` or `FORCE_COLOR=0`; `COLORTERM`; the terminal's
+/// replies; terminfo's truecolor flags; the name in `TERM`, if it implies truecolor; terminfo's number of colours; the
+/// name. `CLICOLOR_FORCE`, other values of `FORCE_COLOR` and `--color=always` set a minimum.
 // `COLORTERM` precedes the reply, because it is known before the first frame. The reply precedes terminfo, because many
 // terminals with truecolor use the entry `xterm-256color`.
 pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {
@@ -126,7 +126,7 @@ pub(super) fn colorterm(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     is_truecolor.then_some(Detected { value: Colors::Truecolor, source: Source::Variable("COLORTERM") })
 }
 
-/// Returns truecolor if the terminal replied that it kept the test colour.
+/// Returns truecolor if the terminal's replies show that it supports truecolor.
 // A terminal that did not keep the test colour may have any smaller number of colours, so other sources decide.
 fn replied_truecolor(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     let kept = clues.truecolor_reply?;

@@ -56,7 +56,8 @@ impl Hints {
         hints
     }
 
-    /// Returns hints in which the user has chosen exactly this mode, so that nothing is detected.
+    /// Returns hints in which the user has chosen the colours and glyphs of `mode`, so that neither
+    /// is detected.
     pub fn exactly(mode: CellMode) -> Self {
         Self { color: ColorChoice::Exactly(mode.colors), glyphs: Some(mode.glyphs), ..Self::default() }
     }

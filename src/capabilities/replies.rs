@@ -3,7 +3,7 @@
 use super::known_terminals::{attributes_imply_truecolor, name_implies_truecolor};
 use crate::color::{LinearRgb, Srgb8};
 
-/// The replies received so far. A field is `None` until the terminal has replied.
+/// The replies received so far. A field is `None` or false until the terminal has replied.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Replies {
     /// Whether the terminal kept [`TEST_COLOR`] as the background colour (DECRQSS of SGR).
@@ -85,7 +85,7 @@ impl Replies {
         self.is_known_for_truecolor |= attributes_imply_truecolor(attributes);
     }
 
-    /// Returns whether the terminal supports truecolor; `None` if no reply says so.
+    /// Returns whether the terminal supports truecolor; `None` if no reply tells.
     // The name takes precedence over the reported SGR attributes, in which some terminals with truecolor report the
     // nearest palette colour.
     pub fn supports_truecolor(&self) -> Option<bool> {

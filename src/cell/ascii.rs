@@ -69,7 +69,7 @@ struct CellContent {
     rows: [usize; 2],
     /// The fill of the same object in the frame before, while the view moves.
     kept_fill: Option<u8>,
-    /// The tone of the fill.
+    /// The fill character and its ink.
     tone: Tone,
     edge: Option<Edge>,
 }

@@ -27,7 +27,8 @@ static THRESHOLDS: LazyLock<[u8; TILE_PIXELS]> = LazyLock::new(|| {
 
 /// Returns the tile's pixels in the order in which they light up as a flat grey gets lighter.
 ///
-/// The next pixel is always the largest void: the dark pixel with the lowest density of lit pixels around it.
+/// After the initial pattern, the next pixel is always the largest void: the dark pixel with the lowest density of lit
+/// pixels around it.
 fn ranked_pixels() -> Vec<usize> {
     let mut lit = initial_pattern();
     let mut dark = lit.clone();

@@ -81,7 +81,7 @@ const FEW: Rules = Rules {
 /// The cost of a wrong hue, which exceeds all other costs.
 // Finite, so that a theme without any grey still has a best mix for a grey.
 const WRONG_HUE: f32 = 9.0;
-/// The cost of a mix that shows a clear colour as grey.
+/// The cost of a mix that shows a colour with a distinct hue as grey.
 const LOST_COLOR: f32 = 0.03;
 
 impl Mixes {
@@ -155,7 +155,8 @@ impl Mixes {
         best.1
     }
 
-    /// Returns the extra cost of a mix with a wrong hue, or that shows a clear colour as grey.
+    /// Returns the extra cost of a mix that has a wrong hue, or shows a colour with a distinct hue
+    /// as grey.
     fn penalty(&self, mix: &Mix, wanted: Oklab) -> f32 {
         let is_wrong = mix.colors.iter().any(|&at| self.is_wrong_hue(self.colors[usize::from(at)], wanted));
         let is_clear = wanted.l > 0.3 && chroma(wanted) > 0.045;

@@ -156,8 +156,8 @@ impl Mosaic {
         best
     }
 
-    /// Returns the cell in the two default colours, whose parts are ink where the dithered pixels
-    /// are light.
+    /// Returns the cell in the two default colours, with ink in the parts whose mean colour is
+    /// light after dithering.
     fn dithered(&self, sums: &Sums, column: u16, row: u16) -> Cell {
         let [across, down] = self.parts;
         let part_pixels = self.part_pixels[0] * self.part_pixels[1];

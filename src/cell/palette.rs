@@ -103,7 +103,7 @@ fn choice_index([r, g, b]: [usize; 3]) -> usize {
     (r * LEVELS[1] + g) * LEVELS[2] + b
 }
 
-/// Returns the number of a mix, counted from 1.
+/// Returns the number of a mix, counted from 1 instead of 0, as `chosen` stores it.
 fn one_based(number: usize) -> u16 {
     1 + number as u16 // 256 colours have fewer than 5,000 mixes
 }

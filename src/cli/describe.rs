@@ -40,7 +40,8 @@ pub(super) struct DescribeArgs {
 
 pub(super) fn run(args: &DescribeArgs) -> CommandResult {
     let (columns, rows) = args.size;
-    // Two by four pixels per cell, the resolution of the finest glyphs (`shape`), so that nothing visible is left out.
+    // Two by four pixels per cell, one for each part of the finest glyphs (octants, braille), so that nothing visible
+    // is left out.
     let [width, height] = [columns.saturating_mul(2), rows.saturating_mul(4)];
     check_pixel_count(width.into(), height.into())?;
     let resolution = Resolution::square(width, height);

@@ -90,7 +90,8 @@ impl FrameArgs {
         Screen::of_stdout(&self.cells).filter(|_| is_plain)
     }
 
-    /// Returns the format: from `--format`, or else from the extension of the file's name.
+    /// Returns the format: from `--format` or the extension of the file's name, or else ANSI on a
+    /// terminal and `DEFAULT` elsewhere.
     fn format(&self) -> Result<Format, Failure> {
         match (self.format, self.output().or(self.check.as_deref())) {
             (Some(format), _) => Ok(format),

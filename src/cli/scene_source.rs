@@ -50,8 +50,8 @@ impl SceneSource {
         path.map_or_else(default, |path| Self::from_path(path, stated))
     }
 
-    /// Returns whether the source is meant to be a mesh: by its name, or by the bytes of standard
-    /// input.
+    /// Returns whether the source is meant to be a mesh: by its name, or on standard input by
+    /// `--as` or the bytes.
     pub(super) fn is_mesh(&self) -> bool {
         match self {
             Self::File(path) => is_mesh(&path.to_string_lossy(), &[]),
@@ -103,7 +103,8 @@ fn not_loaded(path: &Path, error: Unfinished<LoadError>) -> Failure {
     if let Unfinished::Failed(LoadError::Scene(error)) = error {
         return Failure::Scene(error);
     }
-    // A suggestion is made only if no such file exists: an existing file has been read, and its contents are wrong.
+    // A suggestion is made only if no such file exists: an existing file is the one meant, even if it is wrong or
+    // cannot be read.
     let meant = if path.exists() { None } else { suggestions::scene_like(path).or_else(|| shipped_like(path)) };
     Failure::Usage(match meant {
         Some(meant) => format!("{error}; did you mean {}?", meant.display()),

@@ -202,8 +202,8 @@ macro_rules! commands {
     };
 }
 
-// Descriptions have at most 24 characters. As in other programs' help, each is an imperative or names the panel that
-// opens.
+// Descriptions have at most 24 characters. As in other programs' help, each is an imperative, such as `move left`, or
+// names the result, such as `next map`.
 commands! {
     [Command::Move(Direction::Forward)] "MoveForward", "move forward";
     [Command::Move(Direction::Back)] "MoveBack", "move back";
@@ -353,7 +353,7 @@ impl Command {
 
     /// Returns whether Shift with the key makes the command faster.
     pub fn has_faster(self) -> bool {
-        // The wipe and the zoom are left out, because their steps are already coarse.
+        // Shift does not make the wipe and the zoom faster, because their steps are already coarse.
         self.is_motion() || self.moves_light() || matches!(self, Self::Point(_))
     }
 

@@ -121,8 +121,8 @@ const DOWN: &[Key] = &[Key::named(KeyCode::Down), letter('j')];
 const HIGHER: &[Key] = &[letter('e'), Key::named(KeyCode::PageUp)];
 const LOWER: &[Key] = &[letter('c'), Key::named(KeyCode::PageDown)];
 
-/// The built-in bindings in the order of the help, except those of [`Format`]s, which are part of
-/// each format's row.
+/// The built-in bindings in the order of the help, except those of [`Format`]s, whose keys are in
+/// the table of export formats.
 // The left hand moves by WASD while the right hand turns by the arrows; hjkl replace the arrows on keyboards without
 // them. Explanation and light bind the arrows only, so that hjkl and WASD still move the eye. No binding needs Alt,
 // which window managers and multiplexers use themselves. What function keys do can also be done with other keys, more

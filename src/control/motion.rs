@@ -22,7 +22,9 @@ use std::time::Duration;
 /// ends the motion at once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// The keys that move the camera now, and those last pressed less than [`AGAIN_TIME`] ago.
+    /// The keys that move the camera.
+    ///
+    /// A key stays after its motion has ended, until the next press, which may come within [`AGAIN_TIME`].
     held: Vec<Held>,
     /// Whether Shift is held.
     fast: bool,
@@ -125,7 +127,7 @@ impl Motion {
     /// Handles a key event at time `now`. `meant` is the key's command, and whether Shift makes it
     /// faster.
     ///
-    /// If the terminal does not report releases, any press ends the previous motion.
+    /// If the terminal does not report releases, a press of any other key ends the motion.
     pub fn take_key(&mut self, key: &KeyEvent, meant: Option<(Command, bool)>, now: Duration) {
         // A release is matched by the physical key, not by the command, because the mode may have changed since the
         // press.

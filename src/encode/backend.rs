@@ -61,8 +61,8 @@ use std::time::Duration;
 ///
 /// The backend is itself a [`Write`], so `execute!(terminal.backend_mut(), EnterAlternateScreen)` works: the bytes are
 /// sent unchanged, after everything drawn before them. As they may do anything, the screen, the colours and the cursor
-/// are unknown afterwards, and nothing is drawn again by itself. That is right after `LeaveAlternateScreen`, where the
-/// screen is the shell's again. Bytes that change the contents of the screen have to be followed by
+/// are unknown afterwards, and the backend does not redraw on its own. After `LeaveAlternateScreen`, which brings back
+/// the shell's screen, this is correct. Bytes that change the contents of the screen have to be followed by
 /// [`Terminal::clear`](ratatui_core::terminal::Terminal::clear), as with any other backend. Bytes that leave a mode
 /// changed in which the terminal writes differently (origin mode, insert mode, no wrapping, a character set, a
 /// scrolling region) have to be followed by those that reset it before anything is drawn.
@@ -134,7 +134,7 @@ impl<W> EncoderBackend<W> {
         backend
     }
 
-    /// Sets the encoder, for instance one with another order.
+    /// Sets the encoder, for instance one that writes the cells in another order.
     ///
     /// ```
     /// use termtrace::{Encoder, EncoderBackend, Order};
@@ -194,8 +194,8 @@ impl<W> EncoderBackend<W> {
 
     /// Sets the function that returns the window's size in columns and rows.
     ///
-    /// A window of more than 16,777,216 cells is an error of the call that follows. A window that becomes smaller and
-    /// large again between two frames goes unnoticed, as with any backend.
+    /// While the window has more than 16,777,216 cells, methods such as `draw` and `clear` return an error. A window
+    /// that becomes smaller and large again between two frames goes unnoticed, as with any backend.
     pub fn sized_by(mut self, ask: impl Fn() -> io::Result<Size> + Send + Sync + 'static) -> Self {
         self.ask_size = Some(Box::new(ask));
         self
@@ -356,7 +356,8 @@ impl<W: Write> EncoderBackend<W> {
     }
 
     /// Returns the unsent bytes of an open frame, after which the pen has the default colours.
-    // They have to be sent before sequences such as scrolling, which fill blank rows with the pen's background.
+    // Sequences such as scrolling have to come after these bytes, because they fill blank rows with the pen's
+    // background, which must be the default one.
     fn unsent_bytes(&mut self) -> Vec<u8> {
         if self.is_frame_open || !self.encoder.knows_screen() { self.encode_frame(None) } else { Vec::new() }
     }

@@ -74,9 +74,9 @@ struct Pair {
     /// The indices in `Tour::colors` of the glyph's and the background's colour; both are equal
     /// for spaces.
     colors: [u32; 2],
-    /// The bytes that set each of them.
+    /// The number of bytes that set each of the two colours.
     lens: [u8; 2],
-    /// The bytes of an absolute move to the first cell.
+    /// The number of bytes of an absolute move to the first cell.
     move_len: u8,
     /// Whether the tour has written the pair's cells.
     visited: bool,
@@ -110,7 +110,8 @@ struct Place {
     /// The indices in `Tour::colors` of the pen's colours, for glyphs and for the background;
     /// `u32::MAX` for one that no cell of the picture has.
     pen: [u32; 2],
-    /// The bytes of the codes that the next sequence begins with, which end the attributes of text.
+    /// The number of bytes of the codes at the start of the next sequence that end the
+    /// attributes of text.
     code_len: u32,
     cursor: Option<CellPosition>,
 }
@@ -246,8 +247,9 @@ impl Place {
         best.min((cost + cheapest_len(self.cursor, pair.first, pair.move_len.into()) as u32, index))
     }
 
-    /// Returns the bytes of the cheaper change of pen for a pair, and its colours then: the pair's
-    /// as they are or, where allowed, exchanged.
+    /// Returns the number of bytes of the cheaper pen change for a pair, and the pen's new colours.
+    ///
+    /// These are the pair's colours as they are or, where allowed, exchanged.
     #[inline]
     fn pen_after(&self, pair: &Pair) -> (u32, [u32; 2]) {
         let ([pen_fg, pen_bg], [fg, bg]) = (self.pen, pair.colors);

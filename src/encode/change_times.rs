@@ -76,7 +76,7 @@ impl ChangeTimes {
     }
 }
 
-/// Returns the digest of a cluster.
+/// Returns the digest of a cell with a cluster, from its text and the digest of all else.
 fn digest_of(text: &str, of_colors: u32) -> u32 {
     let mut hasher = DefaultHasher::new();
     (text, of_colors).hash(&mut hasher);

@@ -49,7 +49,7 @@ impl Differences {
         }
         squares.clear();
         squares.resize(places.len(), [0; 2]);
-        // All halves in one list, so that the compiler makes vectors of them.
+        // All halves in one flat list, so that the compiler vectorises the loop.
         let halves = shown_halves.as_flattened().iter().zip(wanted_halves.as_flattened());
         for (square, (&shown, &wanted)) in squares.as_flattened_mut().iter_mut().zip(halves) {
             *square = squared_difference(shown, wanted);

@@ -155,7 +155,7 @@ impl SimdKernel for Compare<'_> {
     }
 }
 
-/// Number of colours with which each colour is compared, nearest in lightness on either side.
+/// Number of colours on either side, in order of lightness, with which each colour is compared.
 // In pictures, nearly all colours within the tolerance are among these. In noise many more are within it: without this
 // limit and two others, a frame of noise took 192 times ratatui's time; with them it takes 21 times.
 pub(super) const NEIGHBOURS: u32 = 24;
@@ -179,7 +179,7 @@ impl SimdKernel for CompareNeighbours<'_> {
             let srgb = Vector::splat(eight.srgb.of_lane(at % LANES));
             let next = at + 1;
             let mut mask = 0;
-            // The next colours are in four groups, of which the first may begin with others.
+            // The next `NEIGHBOURS` colours are in at most four groups. Earlier colours of the first are shifted out.
             for (place, eight) in self.list.eights[next / LANES..].iter().take(4).enumerate() {
                 mask |= limits.allow(oklab, srgb, eight) << (place * LANES);
             }
@@ -201,7 +201,8 @@ impl<N: Lanes> Limits<N> {
         Self { squared_distance: N::splat(distance * distance), square: N::splat(square as f32) }
     }
 
-    /// Returns the mask of the colours within the tolerance of others.
+    /// Compares eight colours with `others`, lane by lane; returns the mask of those within the
+    /// tolerance.
     #[inline(always)]
     fn allow(self, oklab: Vector<N>, srgb: Vector<N>, others: &EightColors) -> u32 {
         let (oklab, srgb) = (oklab - others.oklab.load(), srgb - others.srgb.load());

@@ -22,10 +22,10 @@ struct Scratch {
     small: SmallDifferences,
     /// The differences to write.
     written: Vec<WrittenDifference>,
-    /// The places of the other differences.
+    /// The indices in the grid of cells that are within the tolerance and wait to be made exact.
     waiting: Vec<u32>,
-    /// The places of the cells to write inexactly, with their wanted halves and those of the
-    /// palette.
+    /// The indices in the grid of the cells to write inexactly; their wanted halves are in
+    /// `unsnapped`, those of the palette in `snapped`.
     inexact: Vec<u32>,
     unsnapped: Vec<Halves>,
     snapped: Vec<Halves>,
@@ -131,7 +131,7 @@ impl Urgency {
     const APPEARS: Self = Self(u32::MAX);
 }
 
-/// The differences between the shown and the wanted grid.
+/// The plan of a lossy frame: the differences to write, and the tolerance of the others.
 pub(super) struct Plan<'a> {
     frame: LossyFrame<'a>,
     tolerance: Tolerance,

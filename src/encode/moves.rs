@@ -43,7 +43,7 @@ pub(super) fn cheapest_move(from: Option<CellPosition>, to: CellPosition) -> Mov
     if from == Some(to) {
         return Move::Down(0, Along::Stay);
     }
-    // From an unknown position, or upwards, only CUP is certain. Upwards, CUU would save at most a byte.
+    // From an unknown position, only CUP is certain. Upwards, CUU would save at most a byte.
     let absolute = Move::To(to);
     let Some(from) = from.filter(|from| from.row <= to.row) else { return absolute };
     let relative = Move::Down(to.row - from.row, cheapest_along(from.column, to.column));

@@ -4,7 +4,7 @@
 
 use crate::grid::PackedInk;
 
-/// A key, of which all bits count.
+/// A key, which is hashed by all of its bits.
 pub(super) trait Key: Copy + PartialEq {
     fn bits(self) -> u64;
 }

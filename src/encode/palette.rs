@@ -74,7 +74,8 @@ struct PossiblePair {
 }
 
 impl Reduction {
-    /// Lists palette colours within the tolerance of the cells' colours.
+    /// Chooses a palette, and lists for each cell the palette colours that replace its colours,
+    /// within the tolerance.
     ///
     /// With [`HalfBlocks::Either`] a pair of colours counts as the same pair in either order. The pen's colours are
     /// also candidates for the palette.
@@ -282,7 +283,7 @@ impl Sets for AnySets {
     }
 }
 
-/// Lists of numbers, in one.
+/// Lists of numbers, one after another in a single vector.
 #[derive(Default)]
 struct Lists {
     items: Vec<u32>,
@@ -342,7 +343,7 @@ impl Sets for Bands {
         bits(self.masks[set]).map(move |bit| set + bit - NEIGHBOURS as usize)
     }
 
-    // Two numbers are in the sets of each other.
+    // Neighbours are mutual, so the sets that contain `member` are those of its neighbours.
     fn subtract(&self, member: usize, weight: u32, sums: &mut [u32]) {
         let start = member.checked_sub(NEIGHBOURS as usize);
         let Some(window) = start.and_then(|start| sums.get_mut(start..start + 13 * 4)) else {

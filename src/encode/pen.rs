@@ -55,7 +55,7 @@ impl Pen {
     }
 
     /// Returns whether a space in reverse video, in the pen's colours, looks like the cell.
-    // The default glyph colour cannot be set as a background, so it cannot be reversed.
+    // The default glyph colour and the default background have the same value, but are different colours.
     fn can_show_reversed(&self, cell: PackedCell) -> bool {
         is_plain_space(cell)
             && self.fg == cell.bg
@@ -134,7 +134,7 @@ impl Pen {
         self.cost_of_colors(0, wanted, lens)
     }
 
-    /// Returns the bytes of a switch to the default background, or to other attributes.
+    /// Returns the number of bytes of a switch to the default background, or to other attributes.
     fn other_switch_cost(&self, wanted: &Self, lens: [usize; 2]) -> usize {
         if *wanted == Self::default() {
             return if self == wanted { 0 } else { SGR_RESET.len() };
@@ -157,7 +157,8 @@ impl Pen {
         [1 + ink_len(self.fg, fg), 1 + ink_len(self.bg, bg)]
     }
 
-    /// Returns the bytes of the codes that change the attributes, each with its separator.
+    /// Returns the number of bytes of the codes that change the attributes, each with its
+    /// separator.
     pub(super) fn attributes_len(&self, attributes: Attributes) -> usize {
         self.attribute_codes(attributes).map(|code| 1 + code.len()).sum()
     }
@@ -184,7 +185,7 @@ impl Pen {
     /// Switches to the pen `wanted`: appends a reset if that is the default pen, else sequences for
     /// the differences.
     ///
-    /// The colour of underlines is not included: it has a sequence of its own.
+    /// The colour of underlines is set by a sequence of its own.
     pub(super) fn switch_to(&mut self, wanted: Self, bytes: &mut Vec<u8>) {
         if *self != wanted && wanted == Self::default() {
             bytes.extend_from_slice(SGR_RESET);

@@ -126,7 +126,7 @@ impl Difference {
         [&self.expected, &self.found].map(|rows| rows.len() - self.same_after)
     }
 
-    /// Returns the indices of the differing rows, if both texts have equally many rows.
+    /// Returns the indices of the differing rows; both texts must have equally many rows.
     fn differing_rows(&self) -> impl Iterator<Item = usize> {
         let pairs = self.expected.iter().zip(&self.found).enumerate();
         pairs.filter(|(_, (a, b))| a != b).map(|(row, _)| row)

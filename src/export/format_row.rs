@@ -50,8 +50,8 @@ pub enum Contents {
         has_colors: bool,
         /// Whether the file shows default colours as light on black; else its viewer chooses them.
         is_on_black: bool,
-        /// Makes the file from a grid, the colours of its cells, their aspect (height / width), and
-        /// the name of the scene.
+        /// Makes the file from a grid, the colours that its cells may have, the aspect of the cells
+        /// (height / width), and the name of the scene.
         write: fn(&Grid, Colors, f32, &str) -> Vec<u8>,
     },
 }

@@ -57,7 +57,7 @@ impl From<ResolutionError> for ExportError {
     }
 }
 
-/// The reason why a picture cannot be written in a format: it has no pixels, or too many.
+/// The reason why a picture cannot be written in a format: its size, or the aspect of its pixels.
 #[derive(Debug)]
 pub struct ExportError(png::EncodingError);
 

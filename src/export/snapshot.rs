@@ -92,7 +92,7 @@ fn border(columns: usize) -> String {
     format!("+{}+\n", "-".repeat(columns))
 }
 
-/// The style of a cell: everything but its glyph.
+/// The style of a cell: everything but its glyph, and whether that is [`Glyph::Foreign`].
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 struct CellStyle {
     fg: Ink,

@@ -1,4 +1,4 @@
-//! Serialization of sizes and attributes by serde; deserialization checks their invariants.
+//! Serialization of sizes and attributes by serde; deserialization rejects unknown attributes.
 
 use super::{Attributes, Size};
 use serde::de::Error;

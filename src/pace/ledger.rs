@@ -156,7 +156,7 @@ impl Ledger {
         self.in_flight().map(|query| query.bytes as f64).sum::<f64>() + unqueried as f64
     }
 
-    /// Marks all queries as timed out.
+    /// Marks all queries as timed out, and forgets the oldest beyond [`MAX_TIMED_OUT_QUERIES`].
     pub(super) fn time_out_all(&mut self) {
         for query in &mut self.queries {
             (query.timed_out, query.late) = (true, true);

@@ -103,7 +103,7 @@ pub(super) struct ReplyTracker {
     pub(super) delivered: f64,
     /// Time of the first query since the estimates were dropped last.
     begun: Option<Duration>,
-    /// Whether the link was slow when the last limit was computed.
+    /// Whether the link was slow when the limit on a frame's bytes was last computed.
     slow: bool,
     pub(super) initial_window: InitialWindow,
 }
@@ -201,8 +201,8 @@ impl ReplyTracker {
         !self.slow || self.serial_replies == 0 || self.ledger.oldest().is_none()
     }
 
-    /// Subtracts bytes that are sent now from the budget of `initial_window`, if the rate is
-    /// unknown.
+    /// Subtracts bytes that are sent now from the budget of `initial_window`, if replies are
+    /// missing and the rate is unknown.
     pub(super) fn spend_initial_window(&mut self, bytes: usize, now: Duration) {
         if self.lacks_rate() {
             self.initial_window.spend(bytes, now);
@@ -293,7 +293,9 @@ impl ReplyTracker {
         }
     }
 
-    /// Forgets the queries in flight, because another program has had the terminal.
+    /// Forgets the queries in flight, and ends a recovery or resync.
+    ///
+    /// Called when another program has had the terminal, and at the end of a resync.
     pub(super) fn forget_queries(&mut self) {
         self.ledger.clear();
         self.awaits_second_reply = false;
@@ -465,7 +467,8 @@ impl ReplyTracker {
     ///
     /// The rate of a slow link is kept, because frames are sent at that rate meanwhile. Other estimates may stem from
     /// replies matched to wrong queries, and are dropped.
-    // Rejected: to drop only the query whose reply was lost. A late reply then counts twice, and a key waits for 1.8 s.
+    // Rejected: to drop only the query whose reply was lost. A reply that is merely late then counts twice, as lost and
+    // as the reply to another query, and a key waits for 1.8 s.
     fn resync(&mut self, now: Duration) {
         self.ledger.clear();
         self.alignment = Alignment::default();
@@ -474,10 +477,10 @@ impl ReplyTracker {
             self.rates.keep_limits();
             if self.serial_replies == 0 && self.delivered < MIN_DELIVERED_BYTES {
                 // If the first reply is lost, the reply to the first picture is matched to the first query. The round
-                // trip then seems longer by the picture's transmission: 50 KB/s were estimated as 137, each resync kept
-                // that, and from then on a key took up to 1.4 s. While the program waited for replies, the link was
-                // idle for at most half of the time since the first query, so its rate is at most twice that of the
-                // bytes that arrived.
+                // trip then seems longer by the picture's transmission: a link of 50 KB/s was estimated at 137 KB/s,
+                // each resync kept this estimate, and from then on a key took up to 1.4 s. While the program waited
+                // for replies, the link was idle for at most half of the time since the first query, so the link's rate
+                // is at most twice the bytes that arrived divided by this time.
                 let arrived = self.delivered / now.saturating_sub(self.begun.unwrap_or_default()).as_secs_f64();
                 self.rates.cap((2.0 * arrived).max(MIN_RESYNC_RATE));
             }

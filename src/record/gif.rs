@@ -13,9 +13,9 @@ use std::io::{self, Write};
 ///
 /// Viewers show the pixels of a GIF as squares. Pixels of a picture that are not square are repeated along their longer
 /// axis, so that the GIF has the right shape. Each frame has its own 127 colours; pixels that hardly change from one
-/// frame to the next keep theirs for seven frames, which saves half of the bytes. Delays are whole hundredths of a
-/// second; the rounding error is carried over to the next frame, so that the total time is right. (Viewers show delays
-/// of less than two hundredths much longer.)
+/// frame to the next keep theirs, but with a visible difference for less than seven frames, which saves half of the
+/// bytes. Delays are whole hundredths of a second; the rounding error is carried over to the next frame, so that the
+/// total time is right. (Viewers show delays of less than two hundredths much longer.)
 ///
 /// ```
 /// use termtrace::{Gif, Picture, Resolution, Srgb8};

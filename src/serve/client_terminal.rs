@@ -34,7 +34,7 @@ impl ClientTerminal {
         if value.len() > MAX_VALUE || !value.chars().all(is_usual) || value.starts_with('.') {
             return;
         }
-        // The request for a terminal sets `TERM`, and a client may send it a second time.
+        // The last value counts: the request for a terminal sets `TERM`, and the client may set the variable again.
         self.variables.retain(|(known, _)| *known != name);
         self.variables.push((name, value.to_owned()));
     }

@@ -54,7 +54,7 @@ pub(super) fn anonymized(address: IpAddr) -> String {
     }
 }
 
-/// The connections from one origin, and its allowance: the connections that it may open at once.
+/// The connections from one origin, and its allowance: the tokens left for new connections.
 #[derive(Clone, Copy, Debug)]
 struct OriginCounts {
     connected: usize,
@@ -151,8 +151,8 @@ impl ConnectionLimiter {
     /// Returns `origin`, or [`Origin::Others`] if it is new and there is no room for another one.
     fn remembered_or_others(&mut self, origin: Origin, now: Duration) -> Origin {
         if self.origins.len() >= MAX_REMEMBERED && !self.origins.contains_key(&origin) {
-            // After the time `refilled` the allowance of an origin is full again, so forgetting the origin changes
-            // nothing.
+            // An origin not seen for the duration `refilled` has its full allowance again, so forgetting the origin
+            // changes nothing.
             let refilled = REFILL_TIME * BURST as u32;
             self.origins.retain(|_, counts| counts.connected > 0 || counts.seen + refilled > now);
             if self.origins.len() >= MAX_REMEMBERED {
@@ -192,7 +192,7 @@ impl Places {
     /// Takes a place if one is free for this visitor; otherwise returns how many visitors are
     /// ahead.
     pub(super) fn take(&mut self, visitor: u64) -> Result<(), usize> {
-        // A linear search is enough, because the queue is limited to the number of places.
+        // A linear search is enough, because the length of the queue is limited.
         let ahead = self.waiting.iter().position(|&waiting| waiting == visitor).unwrap_or(0);
         if self.taken + ahead >= self.most {
             return Err(ahead);

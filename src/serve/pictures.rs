@@ -46,7 +46,7 @@ pub(super) fn is_shared(job: &Job) -> bool {
 
 fn is_of(frame: &Frame, job: &Job) -> bool {
     let Job { scene, shot, sampling, .. } = job;
-    // The numbers of the scene and its lights are not compared, because each viewer counts its own.
+    // The scene's serial number and the number of light moves are not compared, because each viewer counts its own.
     let (scene_number, lights) = (frame.shot.scene, frame.shot.lights);
     frame.sampling == *sampling
         && frame.shot == crate::viewer::Shot { scene: scene_number, lights, ..*shot }

@@ -24,10 +24,11 @@ const MAX_OUTPUT: usize = 64 * 1024;
 #[derive(Debug, Default)]
 pub(super) struct SessionBuffers {
     inbox: Mutex<Inbox>,
-    /// Notified when the session has taken the input.
+    /// Notified when the session has taken the input, and when the connection has ended.
     taken: Notify,
     outbox: Mutex<Outbox>,
-    /// Notified when there are bytes to send, or the connection or the session has ended.
+    /// Notified when there are bytes to send, when the connection or the session has ended, and by
+    /// [`wake_task`](Self::wake_task).
     filled: Notify,
     session: OnceLock<SessionId>,
     /// Notified when the client has logged in, and when the connection has ended.
@@ -143,7 +144,7 @@ impl SessionBuffers {
         }
         let mut outbox = locked(&self.outbox);
         if outbox.bytes.is_empty() {
-            // The common case: the viewer draws only after the last bytes have been sent.
+            // The common case, because the viewer draws only after all earlier bytes have been sent.
             outbox.bytes = bytes;
         } else {
             outbox.bytes.append(&mut bytes);

@@ -17,7 +17,9 @@ use std::sync::{Arc, Mutex, OnceLock};
 use std::time::Duration;
 use tokio::sync::watch;
 
-/// The commands that would write to the server's disk or stop the server. No key is bound to them.
+/// The commands that no key is bound to on the server.
+///
+/// They would write to the server's disk, read a mesh file again, or stop the server.
 const LEFT_OUT: [Command; 6] =
     [Command::Export, Command::ExportLarge, Command::Record, Command::KeepView, Command::TurnMesh, Command::Suspend];
 
@@ -34,8 +36,8 @@ pub(super) struct SharedState {
     places: Mutex<Places>,
     /// The queue that limits the bytes per second of all viewers together; `None` for no limit.
     pub(super) total_rate: Option<Mutex<TotalRate>>,
-    /// A signal without a value: notifies receivers when a place is freed or the server begins to
-    /// drain.
+    /// A signal without a value: notifies receivers when a place is freed, a visitor leaves the
+    /// queue, or the server begins to drain.
     pub(super) changes: watch::Sender<()>,
     drain_deadline: OnceLock<Duration>,
     keymap: Keymap,

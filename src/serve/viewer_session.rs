@@ -16,7 +16,7 @@ use std::time::Duration;
 const COUNTDOWN: Duration = Duration::from_secs(30);
 /// The longest time that a leaving viewer waits for the terminal's last replies.
 const LAST_REPLIES: Duration = Duration::from_secs(1);
-/// The shortest time without a frame for which a viewer's buffers are freed.
+/// The shortest expected wait for the next step for which a viewer's buffers are freed.
 const LONG_REST: Duration = Duration::from_secs(1);
 /// The largest number of steps of the viewer in one turn, such as tracing a frame and drawing it.
 // Most turns have two steps, a trace and a draw. The limit ends the turn of a viewer that never waits.
@@ -274,7 +274,7 @@ impl ViewerSession {
                         Some(frame) => self.viewer.take_frame(frame),
                         None => return AfterTurn::Turn(WorkKind::Refinement),
                     }
-                    // The first frame of a turn is drawn in this turn; after a second one, the turn ends.
+                    // The first frame traced in a turn is also drawn in this turn; a second one ends the turn undrawn.
                     if std::mem::replace(&mut traced, true) {
                         return AfterTurn::Turn(kind);
                     }
@@ -286,7 +286,7 @@ impl ViewerSession {
 
     /// Carries out the viewer's requests. Returns whether the user leaves.
     ///
-    /// Requests that would write to the server's disk do nothing; no key is bound to them.
+    /// Requests to write to the server's disk, to turn a mesh or to suspend do nothing; no key is bound to them.
     fn carry_out_requests(&mut self, out: &mut Vec<u8>) -> bool {
         let mut copied = None;
         while let Some(request) = self.viewer.next_request() {

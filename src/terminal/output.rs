@@ -66,7 +66,7 @@ impl Output {
     pub(super) fn write_pending(&mut self) -> io::Result<()> {
         while self.is_pending() {
             match self.write() {
-                // Trying again might loop for ever.
+                // A write of no bytes is an error, because trying again might loop for ever.
                 Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
                 Ok(count) => self.record_written(count),
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => {

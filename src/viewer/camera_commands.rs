@@ -30,7 +30,7 @@ impl Viewer {
 
     /// Switches between flight and orbit about the point in the middle of the picture.
     pub(super) fn change_mode(&mut self) {
-        // The point is computed from the shown frame, which may be older than the camera.
+        // The point is seen from the current camera, in the scene of the shown frame, which may be older.
         let in_the_middle = self.point_in_the_middle();
         self.eye.change_mode(in_the_middle);
         self.screen.set_movement_mode(self.eye.mode());
@@ -98,8 +98,9 @@ impl Viewer {
         self.change_rectangle("tilt", |camera| camera.tilted_rectangle(steps.into()));
     }
 
-    /// Changes the view rectangle of the first camera, and shows the changed `offset` or the error
-    /// in a note.
+    /// Changes the view rectangle of the first camera, and shows the result or the error in a note.
+    ///
+    /// The result is the rectangle's new `offset`, which is "shift" or "tilt".
     fn change_rectangle(&mut self, offset: &str, change: impl FnOnce(&Camera) -> Result<Camera, CameraError>) {
         let Some(camera) = self.first_camera() else { return };
         let camera = match change(&camera) {

@@ -229,7 +229,7 @@ impl Viewer {
     /// the view from outside, the explanation, the metadata, the comparison of orders or the vanishing points;
     /// otherwise cancels the large picture.
     fn close_topmost(&mut self) {
-        // The order is that of the layers on the screen, from the topmost.
+        // The help comes first, because it lies over everything else.
         if self.screen.close::<HelpPanel>().is_none()
             && !self.release_light()
             && !(self.second_camera().is_some() && self.end_outside())

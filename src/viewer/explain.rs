@@ -178,7 +178,7 @@ impl ExplainPanel {
 /// Returns lines on why the shaded picture's colour at pixel `[x, y]` differs from the explained
 /// ray's.
 ///
-/// Empty if the colours are equal, and for a frame with any other map.
+/// Empty for a frame with any other map, and if the colours are equal, unless rays may stand for 2x2 pixels each.
 fn notes(frame: &Frame, [x, y]: [u32; 2], explanation: &Explanation) -> Vec<String> {
     // Frames of maps have legends. A map's value is that of a single ray, so no mean is to be explained.
     if !frame.legends.is_empty() {

@@ -333,7 +333,7 @@ impl Eye {
         self.moved_until = self.moved_until.filter(|_| self.turntable || self.jump.is_some());
     }
 
-    /// Stops all motion: that by keys, and the turntable.
+    /// Stops all motion: by keys, by the turntable, and by a jump, which ends at its final view.
     pub(super) fn stop(&mut self, now: Duration) {
         self.release_keys(now);
         self.end_jump();

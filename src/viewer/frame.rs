@@ -108,7 +108,7 @@ impl Frame {
         let resolution = self.resolution();
         match *self.shot.layout.map_sizes(resolution) {
             [(_, left), (_, right)] if left.width() < resolution.width() => {
-                // Pixels under a panel count as those above it.
+                // A pixel in the rows that a panel covers counts as the lowest pixel of the map in its column.
                 let y = y.min(left.height().saturating_sub(1));
                 match x.checked_sub(left.width() + 1) {
                     Some(x) if x < right.width() => (right, [x, y]),

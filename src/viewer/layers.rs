@@ -92,7 +92,7 @@ impl Layers {
         self.stack.iter_mut().find_map(|layer| (layer.as_mut() as &mut dyn Any).downcast_mut())
     }
 
-    /// Returns the modes of the keymap that are in force on a screen of this size, topmost first.
+    /// Returns the modes of the keymap in force on a screen of this size, in order of precedence.
     ///
     /// `movement_mode`, the mode of the movement keys, comes after the modes of the layers.
     pub(super) fn active_modes(&self, screen: Rect, movement_mode: KeyMode) -> Vec<KeyMode> {
@@ -129,7 +129,7 @@ pub(super) struct Canvas<'a> {
     pub(super) grid: &'a mut Grid,
     pub(super) cell_mode: CellMode,
     pub(super) keymap: &'a Keymap,
-    /// The modes of the keymap that are in force, topmost first.
+    /// The modes of the keymap that are in force, in order of precedence.
     pub(super) modes: &'a [KeyMode],
     pub(super) frame: Option<&'a Frame>,
     /// The name of the scene.

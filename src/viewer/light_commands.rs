@@ -112,7 +112,7 @@ impl Viewer {
 
 /// Returns the index of the light that is nearest to the pointer on the screen.
 ///
-/// Lights behind the eye count as infinitely far from it, and lights at infinity are left out.
+/// Lights behind the eye count as infinitely far from the pointer, and lights at infinity are left out.
 fn nearest_light(lights: &[Light], camera: &Camera, pointer: Vec2, aspect_ratio: f32) -> Option<usize> {
     let away = |position: Vec3| {
         let place = camera.project(position, aspect_ratio);

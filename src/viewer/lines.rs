@@ -22,7 +22,7 @@ const MAX_DOTS: f32 = 4000.0;
 // The interval ends before 1, because a point that lies on a surface must not be hidden by that surface.
 const HIDING_INTERVAL: Interval = Interval { min: 0.0, max: 0.99 };
 
-/// The part of the screen that a picture covers, and the camera of that picture.
+/// Lines and letters to be drawn over a picture on the screen, as the picture's camera sees them.
 pub(super) struct Plot<'f> {
     camera: Camera,
     aspect_ratio: f32,

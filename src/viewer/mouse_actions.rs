@@ -56,7 +56,7 @@ impl Viewer {
             Gesture::Release => {}
             Gesture::DoubleClick if self.pointer.drag_target() == DragTarget::View => {
                 self.frame_object(self.pointer.object());
-                // Keeps the release that follows from counting as a click.
+                // Counts as a motion, so that the release of the button is not a click.
                 self.pointer.record_motion();
             }
             // If the first press took hold of the line, a light or the cursor, the second press of a double click acts

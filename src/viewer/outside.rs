@@ -216,7 +216,8 @@ fn camera_beside(scene: &Scene, camera: &Camera, aspect_ratio: f32) -> Camera {
     let way = seen.pose().eye - eye;
     let t = closest_hit(scene, &Ray { origin: eye, direction: way }).map_or(1.0, |hit| (0.9 * hit.t).min(1.0));
     let seen = seen.with_pose(Pose { eye: eye + t * way, ..seen.pose() }).unwrap_or(seen);
-    // The box of an oblique line is much larger than the line: without a zoom, half of the picture would show neither.
+    // The bounding box of an oblique line is much larger than the line: without the zoom, half of the picture would
+    // contain none of the points `shown`.
     let places = shown.into_iter().flatten().filter_map(|point| seen.project(point, aspect_ratio));
     let reach = places.map(|place| (2.0 * place - 1.0).abs().max_element()).fold(0.0, f32::max);
     if reach > 0.0 { seen.zoomed((reach / 0.95).min(1.0)) } else { seen }

@@ -57,7 +57,7 @@ fn work_line(work: &Work, theme: Theme, width: usize) -> String {
     };
     let room = width.saturating_sub(verb.len() + 1);
     let name = Path::new(name).file_name().map_or_else(|| name.into(), |name| name.to_string_lossy());
-    // A terminal whose progress bar is ASCII may lack all other characters too.
+    // A terminal whose progress bar is ASCII may lack all other characters too, so `?` replaces them in the name.
     let is_shown = |c: char| c.is_ascii() || !theme.bar()[0].is_ascii();
     let mut name: String = visible(&name).chars().map(|c| if is_shown(c) { c } else { '?' }).collect();
     while name.width() > room {

@@ -70,7 +70,7 @@ struct Content {
 }
 
 impl Content {
-    /// Returns the modes of the keymap that are in force on a screen of this size, topmost first.
+    /// Returns the modes of the keymap in force on a screen of this size, in order of precedence.
     fn active_modes(&self, size: Size) -> Vec<KeyMode> {
         self.layers.active_modes(theme::area(size), self.moving)
     }
@@ -231,7 +231,7 @@ impl Screen {
         }
     }
 
-    /// Returns the modes of the keymap that are in force on a screen of this size, topmost first.
+    /// Returns the modes of the keymap in force on a screen of this size, in order of precedence.
     pub(super) fn active_modes(&self, size: Size) -> Vec<KeyMode> {
         self.content.active_modes(size)
     }
@@ -281,9 +281,10 @@ impl Screen {
         }
     }
 
-    /// Forgets what the terminal shows: the next bytes draw all cells, using these `half_blocks`.
+    /// Forgets what the terminal shows, so that the next bytes draw all cells.
     ///
-    /// With `covers_a_part` (the picture covers only a part of the window) these bytes erase the window first.
+    /// `half_blocks` tells which half blocks these and later bytes may use. With `covers_a_part` (the picture covers
+    /// only a part of the window) the next bytes erase the window first.
     pub(super) fn forget_shown(&mut self, half_blocks: HalfBlocks, covers_a_part: bool) {
         self.encoder.forget();
         self.erases = covers_a_part;
@@ -405,7 +406,7 @@ impl FrameRate {
     fn count_frame(&mut self, moving: Option<Duration>) {
         let between = self.last.zip(moving).map(|(last, now)| now.saturating_sub(last));
         self.last = moving;
-        // An interval of zero would be infinitely many frames a second.
+        // An interval of zero starts the mean anew too, because it would be infinitely many frames a second.
         self.frames_per_second =
             between.filter(|&between| between < MAX_MOTION_GAP && between > Duration::ZERO).map(|between| {
                 let now = 1.0 / between.as_secs_f32();

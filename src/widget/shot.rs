@@ -102,7 +102,7 @@ impl Tracer {
             deliver(self.rendered(shot, &seen, true));
             return Ok(());
         };
-        // `ProgressiveRender` keeps no geometry, so pictures of such cells are traced twice.
+        // `ProgressiveRender` keeps no geometry, so for cells that show it the final picture is traced from scratch.
         if shot.options.cells.shows_geometry() {
             for (sampling, is_final) in [(Sampling::Each(NonZeroU32::MIN), false), (shot.options.sampling, true)] {
                 let seen = traced(&shot, sampling, token)?;

@@ -139,7 +139,7 @@ impl SceneState {
 
     /// Returns whether the pane shows the requested picture with all samples.
     ///
-    /// In the background, `wake` is called before this becomes true.
+    /// A picture traced in the background counts once a draw call has shown it; `wake` is called when one can be drawn.
     pub fn is_current(&self) -> bool {
         let (Some(shown), Some(requested)) = (&self.shown, &self.requested) else { return false };
         shown.is_final && shown.shot.has_same_picture_as(requested) && self.camera == requested.camera

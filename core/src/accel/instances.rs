@@ -14,7 +14,8 @@ use std::sync::Arc;
 
 /// The instances in a scene.
 ///
-/// Their primitives are numbered through after all others: those of an instance are the triangles of its mesh.
+/// The indices of their primitives follow those of all other primitives. An instance has one primitive for each
+/// triangle of its mesh.
 #[derive(Clone, Default, PartialEq)]
 pub(crate) struct Instances {
     /// The tree over the boxes of the instances.
@@ -94,7 +95,7 @@ impl Instances {
         files.values().map(|mesh| mesh.triangle_count() as usize).sum()
     }
 
-    /// Returns whether there are none.
+    /// Returns whether the scene has no instances.
     #[inline(always)]
     pub(crate) fn is_empty(&self) -> bool {
         self.all.is_empty()

@@ -154,7 +154,8 @@ impl Camera {
 
     /// Returns the camera at the distance from which a box fills 95 % of a picture.
     ///
-    /// The direction of view does not change, and the target becomes the box's centre.
+    /// The direction of view does not change. The target becomes the box's centre, or a point beside it if the view
+    /// rectangle is shifted.
     ///
     /// `aspect_ratio` is the picture's width divided by its height. A box of size 0 changes nothing.
     #[must_use]

@@ -128,7 +128,7 @@ impl Explanation {
             let line = |name: &str| format!("{mark} {name:<14} {}", root_values(tested));
             let name = tested.name.to_string();
             let full = line(&name);
-            // A face of one of thousands of objects has a long name.
+            // A face's name that is too long for the line is shown without the word `face`.
             lines.push(if full.len() <= MAX_LINE_WIDTH { full } else { line(name.trim_start_matches("face ")) });
         }
     }

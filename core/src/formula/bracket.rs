@@ -84,7 +84,7 @@ impl Brackets {
     }
 }
 
-/// The search for the first f32 of the other sign in the brackets of `lanes`.
+/// The search for the first f32 at which f has the other sign, in the brackets of `lanes`.
 pub(super) struct Narrowing<'a> {
     pub(super) values: PacketValues<'a>,
     pub(super) brackets: &'a mut Brackets,

@@ -14,7 +14,7 @@ const MAX_DEPTH: u32 = 6;
 impl Formula {
     /// Returns why the formula certainly has no surface inside a box; `None` if it may have one.
     pub(crate) fn lack_of_surface(&self, min: DVec3, max: DVec3) -> Option<&'static str> {
-        // A formula that depends on the time may have a zero at another time.
+        // This check is only for formulas that do not depend on the time: others may have a zero at another time.
         if !self.moves() && self.has_no_zero(min, max) {
             return Some("f has no zero inside the bounds: nothing is seen");
         }

@@ -119,7 +119,7 @@ impl Model {
         let beyond = 2.0 * (c1 * c2).abs() + c2 * c2 + error * (2.0 * (c1.abs() + c2.abs()) + error);
         let (linear, square) = (g1 * c2, g2 * c1 * c1);
         let rounding = 8.0 * EPSILON * (g.abs() + (g1 * c1).abs() + linear.abs() + square.abs());
-        // A bound that has underflowed to 0 no longer bounds anything.
+        // A bound that has underflowed no longer bounds anything, so it is replaced by infinity.
         let third = if third < f64::MIN_POSITIVE { f64::INFINITY } else { third };
         let remainder = third * spread * spread * spread;
         let taylor =

@@ -78,7 +78,8 @@ pub(super) struct SignForecast {
     pub(super) near: f64,
     /// A share shortly behind the first change of the sign; above 1 if none is known.
     pub(super) far: f64,
-    /// The error relative to the value at the start, or to the least value of a clear piece.
+    /// The error relative to the magnitude of the polynomial at the start of the piece or, if
+    /// `is_clear`, to a lower bound of that magnitude on the piece.
     pub(super) blur: f64,
 }
 
@@ -96,7 +97,9 @@ impl Outcome {
         self.is_clear >> lane & 1 == 1
     }
 
-    /// Returns whether the error is not small compared with the extent of the polynomial.
+    /// Returns whether the error in a lane is large compared with the extent of the polynomial.
+    ///
+    /// A lane whose sign is the same on the whole piece (`is_clear`) does not count as blurred.
     pub(super) fn is_blurred(&self, lane: usize) -> bool {
         (self.is_sharp | self.is_clear) >> lane & 1 == 0
     }
@@ -402,8 +405,8 @@ impl<N: Lanes> Models<N> {
         let steepest = (two * (middle - first)).min(last - first);
         let by_chord = (n(0.999) * (first - error) / -steepest).max(zero).min(one);
         let near = (first_zero(first - slack, slope, curvature) * n(1.0 - 1e-5) - n(1e-6)).min(one);
-        // Close to the surface the slack may exceed the value at the start; the zero that is found is then another one,
-        // and is not used.
+        // Close to the surface the slack may exceed the value at the start. `first_zero` then returns a point where the
+        // polynomial rises to the slack; that point is not used.
         let is_found = slack.lt(first) & zero.lt(near) & error.lt(at_share([c0, c1, c2], near));
         let near = N::select(is_found, near.max(by_chord), by_chord);
         let far = first_zero(first + slack, slope, curvature) * n(1.0 + 1e-5) + n(1e-6);
@@ -513,8 +516,8 @@ impl<N: Lanes> Models<N> {
         let value = exp(self.c[0]);
         // Below -87 `exp` returns 1.6e-38, and the true value is between 0 and that.
         let off = N::splat(EXP_RELATIVE_ERROR) * value + N::splat(1e-37);
-        // Up to s = 1, e^s is at most 1 + s + s^2, and the hull is not narrower than the Taylor model. Each lane
-        // chooses for itself, as in `squared`.
+        // Up to a spread s of 1, e^s is at most 1 + s + s^2, which gives `most` without another `exp`, and the hull is
+        // not narrower than the Taylor model. Each lane chooses for itself, as in `squared`.
         let spread = high - self.c[0];
         let (is_narrow, is_in_reach) = (spread.lt(one) & N::splat(-80.0).lt(self.c[0]), high.lt(N::splat(87.0)));
         let most = value * (one + spread + spread * spread) * N::splat(1.0 + 2.0 * EXP_RELATIVE_ERROR);

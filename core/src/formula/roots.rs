@@ -508,8 +508,7 @@ impl SignForecast {
         let is_clear = sign != 0.0 && first.min(middle).min(last) > error;
         // The polynomial falls at most as steeply as the steeper chord from the first coefficient to one of the others.
         let steepest = (2.0 * (middle - first)).min(last - first);
-        // 0.999 of the way to where the polynomial could first be 0, so that its sign there is certain in spite of
-        // rounding.
+        // 0.999 of the way to where f could first be 0, so that the sign of f there is certain in spite of rounding.
         let near = (0.999 * (first - error) / -steepest).clamp(0.0, 1.0);
         let far = first_below([first, middle, last], -error).unwrap_or(2.0);
         let blur = error / if is_clear { first.min(middle).min(last) } else { b[0].abs() };

@@ -290,7 +290,7 @@ impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Trees<'_, 'p, N, ANY>
     }
 }
 
-/// The visitor that tests a group against all primitives outside trees.
+/// The visitor that tests a group against unbounded primitives, and against trees of a single leaf.
 struct Unculled<'a, N: Lanes, const ANY: bool> {
     hits: &'a mut GroupHits<N, ANY>,
     rays: &'a Rays<N>,
@@ -334,7 +334,7 @@ struct InTree<'a, 'p, N: Lanes, S, const ANY: bool> {
     ray_stack: &'a mut RayStack,
 }
 
-/// The common origin of a packet's rays, computed at the packet's first leaf.
+/// The common origin of a packet's rays, computed at the packet's first leaf in a tree.
 // The origin is not computed before the first leaf, because packets that reach no leaf do not need it. This makes eye
 // rays 1 to 2 % faster where meshes cover half of the picture.
 enum CommonOriginCache<N: Lanes> {

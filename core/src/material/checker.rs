@@ -6,7 +6,7 @@ use crate::color::{LinearRgb, Srgb8};
 use crate::lanes::Number;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor, WrittenNumber};
 
-/// A pattern of squares with two alternating reflectances, in the coordinates of a plane.
+/// A pattern of squares with two alternating reflectances, in surface coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checker {
     /// The reflectance of the square that starts at the pattern's origin.

@@ -73,7 +73,7 @@ impl MeshBuilder {
         self.material_runs.last().and_then(|&(_, material)| material)
     }
 
-    /// Returns the mesh, without its triangles that lack a corner.
+    /// Returns the mesh, in which triangles that lack a corner are flattened to a point.
     ///
     /// `nothing` describes the contents of a file without triangles, for the message.
     pub(super) fn finish(mut self, nothing: &str, left_out: &mut LeftOut<'_>) -> Result<MeshFile, MeshFault> {

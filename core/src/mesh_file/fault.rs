@@ -20,7 +20,8 @@ enum Cause {
         offset: FaultOffset,
         message: String,
     },
-    /// A fault in a side file, which already has that file's name.
+    /// An error that already has its file's name: in a side file, or in the mesh file if it must
+    /// not be left out.
     Elsewhere(MeshError),
     /// Not a fault: the work was cancelled.
     Cancelled,

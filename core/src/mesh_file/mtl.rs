@@ -1,4 +1,6 @@
-//! MTL, the materials of OBJ files: `Kd` and `map_Kd`. All other lines are skipped.
+//! MTL, the materials of OBJ files: `newmtl`, `Kd` and `map_Kd`.
+//!
+//! Features such as transparency and normal maps are counted as not shown. All other lines are skipped.
 
 use super::fault::{MeshFault, shown_path};
 use super::side_files::{SideFiles, local_path};

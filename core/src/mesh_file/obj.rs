@@ -348,7 +348,8 @@ impl ObjReader<'_, '_> {
         Ok(())
     }
 
-    /// Reads an MTL file. The outer error is the message about a file that cannot be read.
+    /// Reads an MTL file. The outer error tells why the file cannot be read, the inner error is a
+    /// fault in its contents.
     fn read_library(&mut self, name: &str) -> Result<Result<(), MeshFault>, String> {
         let library = self.library.get_or_insert_default();
         let path = match local_path(Path::new(""), name) {
@@ -423,8 +424,8 @@ pub(super) fn is_statement(word: &[u8]) -> bool {
     [&b"v"[..], b"vn", b"vt", b"f", b"fo", b"usemtl", b"mtllib"].contains(&word) || is_skipped(word)
 }
 
-/// Returns whether a word is a keyword of OBJ that makes no triangles. Any other word is a fault:
-/// it is the first sign of a file that is not OBJ.
+/// Returns whether a word is a keyword of OBJ whose line is skipped, because it adds no triangles.
+/// A word that is not a keyword of OBJ is a fault: it is the first sign of a file that is not OBJ.
 fn is_skipped(word: &[u8]) -> bool {
     const WORDS: [&str; 38] = [
         "g",

@@ -70,7 +70,7 @@ impl MeshFile {
         Self::read_whole(path, Accepted::FilesAndPipes, reporter)
     }
 
-    /// Loads a mesh file if it is of an accepted kind.
+    /// Loads a mesh file, which may be a pipe only if `accepted` allows it.
     pub(crate) fn read_whole(
         path: &Path,
         accepted: Accepted,

@@ -35,7 +35,8 @@ pub(super) fn size_fits(bytes: &[u8]) -> bool {
 
 /// Reads a binary STL file.
 ///
-/// If the count in the header does not fit the size of the file, the facets that the file holds are read.
+/// A count in the header that does not fit the size of the file is a fault. If the fault is left out, the facets that
+/// the file holds are read.
 pub(super) fn read_binary(
     bytes: &[u8],
     left_out: &mut LeftOut<'_>,

@@ -48,7 +48,9 @@ fn is_null(data: &Metadata) -> bool {
     Path::new("/dev/null").metadata().is_ok_and(is_same)
 }
 
-/// Waits until the file has bytes to read or is at its end. A plain file is always ready.
+/// Waits until the file has bytes to read or is at its end, or fails after [`PIPE_TIMEOUT`].
+///
+/// A plain file is always ready.
 pub(super) fn wait_until_readable(file: &File) -> io::Result<()> {
     let deadline = Instant::now() + PIPE_TIMEOUT;
     loop {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::io::{self, ErrorKind};
 
-/// Returns an I/O error with a message of this module, which [`reason`] returns unchanged.
+/// Returns an I/O error with the given message, which [`reason`] returns unchanged.
 pub(super) fn refusal_error(kind: ErrorKind, message: String) -> io::Error {
     io::Error::new(kind, Refusal(message))
 }

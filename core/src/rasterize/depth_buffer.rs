@@ -11,7 +11,7 @@ pub struct DepthBuffer {
     /// The depths (the t of the eye rays) of eight pixels in a row; infinite where no object is.
     // Rows are padded to whole groups of eight; the values of the padding are unspecified.
     t: Vec<F32x8>,
-    /// The scene index of the nearest object of each pixel, stored as the bits of a float.
+    /// The number of the nearest object of each pixel, as passed to `draw`, as the bits of a float.
     objects: Vec<F32x8>,
 }
 

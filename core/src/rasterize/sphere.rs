@@ -53,8 +53,10 @@ impl SimdKernel for DrawSpheres<'_> {
     }
 }
 
-/// Returns the first and last columns and rows of the spheres' bounds, and the mask of spheres that
-/// may cover the middle of a pixel.
+/// Returns the bounds of spheres in pixels, and the mask of spheres that may cover the middle of a
+/// pixel.
+///
+/// The bounds are the first columns, the columns after the last, the first rows, and the rows after the last.
 ///
 /// In the plane of x and z, the lines through the eye that touch a sphere with the centre (x, z) have the slopes s with
 /// (x - s z)^2 = r^2 (1 + s^2).

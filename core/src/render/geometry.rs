@@ -111,8 +111,8 @@ impl Geometry {
         geometry
     }
 
-    /// Returns the geometry of `columns` by `rows` cells; `object` gives the object at a position
-    /// in cells.
+    /// Returns the geometry of `columns` by `rows` cells; `object` gives the number of the object
+    /// at a position in cells, or 0 for the background.
     ///
     /// For tests of outlines, whose edges have to be at exact positions.
     pub fn of_objects(columns: usize, rows: usize, object: impl Fn(f32, f32) -> u32) -> Self {

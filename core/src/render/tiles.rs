@@ -169,8 +169,8 @@ impl Tiles {
 }
 
 /// The indices of all pixels in a tile.
-// A table, like `PIXEL_COORDINATES` and `PIXELS_BY_ROW`, so that no loop over pixels computes positions from the bits
-// of an index.
+// A table, because `pixels_in_picture` copies it and `write_all` takes a slice; `PIXEL_COORDINATES` and `PIXELS_BY_ROW`
+// are tables, so that making eye rays and writing whole tiles do not compute positions from the bits of an index.
 pub(super) static ALL_PIXELS: [u8; PIXELS] = {
     let mut all = [0; PIXELS];
     let mut pixel = 0;

@@ -94,7 +94,7 @@ impl SceneBuilder {
     ///
     /// # Errors
     /// Unless each channel of the background and of the ambient light is within 0 and 1e12, and the exposure is greater
-    /// than 0 and at most 1e6; or if an object that is not a plane has a pattern.
+    /// than 0 and at most 1e6; or if an object has a pattern, and its shape has no surface coordinates.
     pub fn build(self) -> Result<Scene, SceneFault> {
         let Self { objects, rest } = self;
         for (at, Object { shape, material }) in objects.iter().enumerate() {

@@ -20,7 +20,7 @@ pub(super) fn leading_comment(file: &str) -> Option<String> {
 pub(super) fn displayed_caption(written: &str) -> Option<Arc<str>> {
     let mut paragraphs = vec![String::new()];
     let mut bytes = 0;
-    // A caption that is too long is cut between lines, so that no character is cut in two.
+    // A caption that is too long is truncated at a line break, so that no character is cut in two.
     let lines = written.lines().map(str::trim).take_while(|line| {
         bytes += line.len();
         bytes <= MAX_BYTES

@@ -131,9 +131,9 @@ impl Validator<'_> {
     }
 }
 
-/// The meshes that objects share.
+/// The sharing of meshes among objects: which meshes are shared, and the triangle count so far.
 struct Sharing<'f> {
-    /// The number of objects with each path.
+    /// The number of objects, copies included, with each mesh path.
     objects: HashMap<&'f str, usize>,
     /// The corners of each mesh that is shared; `None` for one that each object copies.
     hulls: HashMap<*const MeshFile, Option<Hull>>,
@@ -177,7 +177,7 @@ impl<'f> Sharing<'f> {
     }
 }
 
-/// A checked material and its form in the file.
+/// A checked material, with the material as written in the file.
 #[derive(Clone, Copy)]
 struct CheckedMaterial<'f> {
     written: &'f WrittenMaterial,

@@ -112,8 +112,10 @@ fn parses_as(text: &str, is_right: impl Fn(f64) -> bool) -> bool {
     text.parse().is_ok_and(is_right)
 }
 
-/// Returns the fields of the lens: an angle in degrees if it is read back with the same bits,
-/// otherwise f, w and h with f = 1. `None` for the default angle.
+/// Returns the fields of the lens; `None` for the default angle without a width.
+///
+/// A rectangle without a width has an angle in degrees. One with a width has an angle and an aspect ratio if both are
+/// short and are read back with the same bits, otherwise f, w and h with f = 1.
 fn lens_fields(rectangle: &ViewRectangle) -> Option<String> {
     let Some(width) = rectangle.width() else {
         let degrees = fov_degrees_text(rectangle).unwrap_or_else(|| approximate_degrees(rectangle).to_string());

@@ -290,7 +290,8 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    /// Returns a fault: a colon is missing after a field's name, or a closing bracket before it.
+    /// Returns a fault: a colon is missing after a field's name, or a closing bracket before the
+    /// name.
     fn no_colon_fault(&self, name: Name<'_>) -> Unfinished<Fault> {
         let word = quoted_word(name.text);
         match (&self.next, self.open.last()) {

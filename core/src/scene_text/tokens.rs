@@ -127,8 +127,8 @@ impl<'a> Tokens<'a> {
     }
 
     /// Reads a string in double quotes, which must end on its line.
-    // RON allows line ends in strings. But a scene's strings are names and colours, so at the end of the line a quote
-    // is missing, and reporting it there gives the right line.
+    // RON allows line ends in strings. But a scene's strings are mostly names, colours and formulas, so a line end
+    // means that the closing quote is missing. The fault is reported at the opening quote, and so on the right line.
     fn read_string(&mut self) -> Result<Token<'a>, Fault> {
         let start = self.at;
         let mut value = String::new();
@@ -274,7 +274,7 @@ fn parse_number(token: &str) -> Option<f64> {
     digits.replace('_', "").parse().ok()
 }
 
-/// Parses a number with a sign and one of the prefixes 0x, 0o and 0b.
+/// Parses a number with one of the prefixes 0x, 0o and 0b, after an optional sign.
 fn number_in_other_base(text: &str) -> Option<f64> {
     let digits = text.trim_start_matches(['+', '-']);
     let base = match digits.as_bytes()[1].to_ascii_lowercase() {

@@ -70,8 +70,8 @@ impl Cone {
             return ends([first, second]);
         }
         if a < 0.0 {
-            // The line is inside both halves of the double cone. The part in the half beyond the tip is the shorter
-            // one.
+            // The line is inside both halves of the double cone. The half beyond the tip is not part of the cone;
+            // between the ends, the part of the line in that half is the shorter one.
             let (before, after) = (ends(before), ends(after));
             return if length(&before) < length(&after) { after } else { before };
         }

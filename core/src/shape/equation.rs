@@ -24,7 +24,7 @@ pub enum Step {
     Value(&'static str, f64),
     /// A formula or words without a value.
     Text(&'static str),
-    /// The text of a formula f, as the author wrote it.
+    /// The formula f of an implicit surface, as written in the scene file.
     Formula(String),
     /// A list of values: a prefix, the separator between values, and the values.
     Values(&'static str, &'static str, Vec<f64>),

@@ -22,8 +22,9 @@ const MAX_CROSSINGS: usize = 4;
 /// The largest number of crossings that an explanation shows, preferably in front of the eye.
 const MAX_SHOWN: usize = 2;
 
-/// The size of the rounding errors of positions, relative to the size of the surface.
-// The error in f64 is below 1e-13 of the size for rays that start up to 1,000 sizes away.
+/// The least size from which a point's clearance is computed, relative to the surface's extent.
+// It makes the clearance at least 1.9e-12 of the extent. The error of positions in f64 is below 1e-13 of the extent for
+// rays that start up to 1,000 extents away.
 const RELATIVE_ERROR: f32 = 1e-6;
 
 /// A bounded surface whose crossings with a line follow from a formula in f64.
@@ -70,7 +71,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// The frame of a surface before [`framed`].
+    /// The frame of a surface whose bounds [`framed`] has not computed yet.
     pub(super) const NONE: Self = Self { bounds: Bounds { min: Vec3::ZERO, max: Vec3::ZERO }, map: None };
 
     /// Returns the bounds in the scene.
@@ -104,7 +105,7 @@ impl Frame {
     }
 }
 
-/// Returns a surface with its bounds, where the author has put it.
+/// Returns a surface with its bounds in the scene, computed from its reach and its map.
 pub(super) fn framed<S: Exact>(mut surface: S) -> S {
     let map = surface.frame().map.clone();
     let bounds = AffineMap::bounds(map.as_deref(), surface.center(), |direction| surface.reach(direction));

@@ -94,7 +94,7 @@ impl Implicit {
 
     /// Returns the part of `of_box` in which a line is within the bounds; empty if `min > max`.
     ///
-    /// `of_box` is the interval in which the line is in the scene's box around the bounds.
+    /// `of_box` is the interval in which the line is in the axis-aligned box around the bounds in the scene.
     fn within_bounds(&self, line: &Line, of_box: Interval) -> Interval {
         let of_box = if self.0.map.is_some() {
             let inside = line_in_box(line, &self.0.bounds);

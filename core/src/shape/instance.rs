@@ -96,7 +96,8 @@ impl Passage {
 
     /// Returns the interval in which a crossing in the coordinates of the file counts.
     ///
-    /// Its t is moved into the box, so that crossings beyond the box count where the box ends.
+    /// [`t`](Self::t) moves a crossing beyond the box to the end of the box, so there is no upper limit if the box ends
+    /// before `within` does.
     #[inline(always)]
     pub(crate) fn search(&self) -> Interval {
         let Interval { min, max } = self.within;

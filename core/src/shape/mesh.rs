@@ -17,7 +17,8 @@ use std::sync::{Arc, OnceLock};
 
 /// A triangle mesh, with the normals, colours and textures of its file.
 ///
-/// The triangles are those of the file, or else the mesh is an instance, which shares them.
+/// Its triangles are those of the file. If the mesh is an instance, it shares them with other meshes, and maps them to
+/// the scene.
 #[derive(Clone)]
 pub struct Mesh {
     file: Arc<MeshFile>,
@@ -139,7 +140,7 @@ impl Mesh {
         })
     }
 
-    // Apart from `facet`, which is short for meshes that are no instances.
+    // Not part of `facet`, so that the code of `facet` for meshes that are no instances stays short.
     #[cold]
     fn corners_in_scene(&self, corners: [Vec3; 3]) -> [Vec3; 3] {
         let Some(map) = &self.map else { return corners };

@@ -174,7 +174,7 @@ impl Shape {
     /// Returns the shape scaled, rotated and moved.
     ///
     /// # Errors
-    /// If it then reaches beyond ±1e9, or is too small for rays to be traced to it.
+    /// If it then reaches beyond ±1e9, or is no mesh and too small for rays to be traced to it.
     #[doc(hidden)]
     pub fn placed(self, placement: &Placement) -> Result<Self, SceneFault> {
         let is_mesh = matches!(self, Self::Mesh(_));
@@ -241,7 +241,7 @@ impl WrittenPlacement {
 
     /// Returns the placement of each copy, or `None` after a fault has been reported.
     pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Vec<Placement>> {
-        // All three are checked before a fault ends the function, so that the faults of each are reported.
+        // All fields are checked before a fault ends the function, so that the faults of each are reported.
         let scale = self.scale.map_or(Some(DVec3::ONE), |scale| checked(validator, scale, checks::factor));
         let degrees =
             self.rotate.map_or(Some(DVec3::ZERO), |angles| checked(validator, angles, checks::angle_in_degrees));

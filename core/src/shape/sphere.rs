@@ -16,7 +16,7 @@ use std::array::from_fn;
 
 /// The distance from a ray's origin to the center, in radii, from which on a Newton step refines
 /// the crossing.
-// At 200 radii the step reduces the crossing's distance from the surface from 6e-5 to 5e-5 radii.
+// For example, from 200 radii away, the step reduces the crossing's distance from the surface from 6e-5 to 5e-5 radii.
 const NEWTON_MIN_RADII: f32 = 8.0;
 
 /// The squared cosine between ray and normal below which the ray is grazing.

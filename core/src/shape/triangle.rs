@@ -220,7 +220,7 @@ fn doubled_signed_area<N: Number>(from: Vector<N>, to: Vector<N>) -> N {
 /// Returns an upper bound of the error of the weights in f32 (`culling.md`, 7).
 ///
 /// It is 24 s (s + r) units of 2^-24, plus the least normal number for underflow. s is the largest x or y, and r the
-/// largest z times `length`.
+/// largest z times `length`, the length of the ray's direction along its dominant axis.
 #[inline(always)]
 fn weight_error_bound<N: Number>([a, b, c]: [Vector<N>; 3], length: N) -> N {
     let across = a.x.abs().max(a.y.abs()).max(b.x.abs().max(b.y.abs())).max(c.x.abs().max(c.y.abs()));

@@ -84,7 +84,10 @@ fn edit_distance(written: &str, known: &str) -> usize {
     before[known.len()]
 }
 
-/// Formats a number with up to three significant digits, without trailing zeros.
+/// Formats a number with about three significant digits.
+///
+/// All digits before the point are kept, zeros at the end of the digits after it are left out, and a magnitude below
+/// 0.1 gets two digits and an exponent.
 pub fn number(value: f32) -> String {
     let digits = match value.abs() {
         v if v >= 100.0 => 0,

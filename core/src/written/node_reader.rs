@@ -115,7 +115,7 @@ impl<'f> NodeReader<'f> {
         read: impl FnOnce(&mut Self, &SyntaxNode<'_>) -> Option<T>,
     ) -> Option<T> {
         let Some(node) = fields.get(name) else {
-            // A field with a misspelt name or a faulty value has been reported already.
+            // A field with a misspelt name has been reported already.
             if !fields.is_given(name) {
                 let owner = fields.owner;
                 self.fault(fields.head, || format!("missing field \"{name}\"; {owner} needs one"));

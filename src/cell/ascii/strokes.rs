@@ -34,11 +34,12 @@ pub(super) struct Edge {
     pub(super) glyph: char,
     /// Whether the edge separates objects, and not just two surfaces of one.
     pub(super) is_border: bool,
-    /// Whether the edge runs down rather than across.
+    /// Whether the edge runs down more than half as far as across.
     pub(super) is_steep: bool,
-    /// Whether the edge crosses the cell, and does not just lie on a side of the cell.
+    /// Whether the edge is a border that crosses the cell, and not one that just lies on a side of
+    /// the cell.
     pub(super) is_inside: bool,
-    /// The nearest object in the cell: its index, plus 1.
+    /// The nearest object in the cell and just right of and below the cell: its index, plus 1.
     pub(super) owner: u32,
 }
 
@@ -198,7 +199,7 @@ const POINTS: usize = 128;
 struct Matcher {
     /// For each point, the weights of all characters.
     weights: [[f32; GLYPHS.len()]; POINTS],
-    /// For each character, its squared norm and its penalty.
+    /// For each character, the squared norm of its blurred ink, plus the penalty of all points.
     constants: [f32; GLYPHS.len()],
 }
 

@@ -12,9 +12,9 @@ use termtrace::{
 pub(super) enum Generated {
     /// Three spheres on a plane
     Three,
-    /// 10 larger spheres in the same cube
+    /// 10 spheres in a cube, larger than those of s1k
     S10,
-    /// 100 larger spheres in the same cube
+    /// 100 spheres in the same cube, larger than those of s1k
     S100,
     /// 1,000 spheres in a cube
     S1k,

@@ -172,7 +172,7 @@ impl Report<'_> {
         match (self.outcome, self.hints.safe_queries()) {
             (QueryOutcome::NoTerminal, _) | (_, SafeQueries::None) => "not queried",
             (_, SafeQueries::All) => "no reply",
-            // Only some queries are safe for such a terminal, so this one may not have been sent.
+            // A console, screen or tmux is sent only some of the queries, perhaps not the one about this capability.
             _ => "no reply, or not queried",
         }
     }

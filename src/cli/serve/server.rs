@@ -101,7 +101,7 @@ pub(in crate::cli) fn run(mut args: ServeArgs, given: &ArgMatches) -> CommandRes
     if let Some(path) = args.config.take() {
         let command = ServeArgs::augment_args(clap::Command::new("serve").no_binary_name(true));
         args = ServeArgs::from_arg_matches(&read_as_flags(path, &command)?).map_err(usage)?;
-        // Flags of the command line go before those of the file.
+        // Flags of the command line override the settings of the file.
         args.update_from_arg_matches(given).map_err(usage)?;
     }
     let settings = settings(&args)?;

@@ -21,7 +21,8 @@ pub(super) enum ScrollDirection {
 impl<W: Write> EncoderBackend<W> {
     /// Scrolls the rows of a region by `line_count` rows; blank rows are inserted at the other end.
     ///
-    /// Rows that leave the screen at its top enter the scrollback. Afterwards the cursor is at the top left.
+    /// Rows that leave the screen at its top enter the scrollback. Afterwards the cursor is at the top left, unless the
+    /// region is a single row that is only blanked.
     pub(super) fn scroll(&mut self, region: Range<u16>, line_count: u16, direction: ScrollDirection) -> io::Result<()> {
         let height = self.window.columns_rows.height;
         let end = region.end.min(height);

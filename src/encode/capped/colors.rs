@@ -119,7 +119,7 @@ impl SimdKernel for Lead<'_> {
     #[inline(always)]
     fn run<N: Lanes>(self) -> bool {
         let Self { fullest, bins, colors, radius, most } = self;
-        // A colour at the greatest distance may be farther away.
+        // Distances are capped at `FARTHEST`, so with a larger radius all colours count as near.
         let limit = N::splat(if 256.0 * radius < FARTHEST { 256.0 * radius } else { FARTHEST });
         for &bin in fullest {
             let mean = bins[usize::from(bin)].mean;
@@ -273,6 +273,8 @@ impl Palette {
         }
     }
 
+    /// Fills the palette, with no colour within `radius` of another.
+    ///
     /// Returns whether the palette has room for all bins that have no colour within the radius.
     fn leads_within(&mut self, most: usize, radius: f32) -> bool {
         let Self { colors, bins, fullest, .. } = self;

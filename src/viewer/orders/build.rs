@@ -25,7 +25,8 @@ pub(super) struct Build {
     steps: ObjectSteps,
     /// The number of the first primitive of each object.
     starts: Vec<u32>,
-    /// For each pixel whose object a later object hides: the number and colour of its primitive.
+    /// The pixels whose object a later object will hide, with the number and colour of the
+    /// primitive that they show until then.
     hidden: BTreeMap<[u32; 2], (u32, Srgb8)>,
     /// Whether all objects are drawn, so that the picture is that of the frame.
     is_complete: bool,
@@ -54,7 +55,9 @@ impl Build {
         })
     }
 
-    /// Returns the name of the objects that the build counts, most of which may be triangles.
+    /// Returns the word for the primitives that the build counts: "triangle" or "object".
+    ///
+    /// It is "triangle" if there are more than twice as many primitives as objects in the scene.
     pub(super) fn object_name(&self) -> &'static str {
         if self.comparison.object_tests.len() > 2 * self.starts.len() { "triangle" } else { "object" }
     }
@@ -122,8 +125,9 @@ impl Build {
     }
 }
 
-/// Returns the light that a hit sends back along the ray, as `shade` does, but without the mean
-/// over a pixel.
+/// Returns the light that a hit sends back along the ray.
+///
+/// Unlike in `shade`, a pattern is sampled at the hit, not averaged over the pixel.
 fn light_along(scene: &Scene, ray: &Ray, hit: Hit) -> LinearRgb {
     let surface = hit.surface(scene);
     let point = surface.at_crossing(ray, hit.t);

@@ -13,7 +13,9 @@ use unicode_width::UnicodeWidthStr;
 // The longer question, "at what pixels is this object visible?", has 38 characters.
 const MIN_QUESTION_COLUMNS: usize = 38;
 
-/// Least height of the screen in rows at which the step and the table of times are always shown.
+/// Least height of the screen in rows at which the table of times is shown before the build ends.
+///
+/// In wide text it is also the least height at which the step is shown.
 const MIN_PANEL_TEXT_ROWS: u16 = 20;
 
 /// The width of a number in the table, in columns.

@@ -52,7 +52,7 @@ pub(super) trait RowReader {
     }
 }
 
-/// Calls `read` for each row of an element, and `leave_out` with the numbers of faulty rows.
+/// Calls `read` for each row of an element, and `leave_out` with the index of each faulty row.
 pub(super) fn each_row<R: RowReader>(
     element: &Element<'_>,
     rows: &mut R,

@@ -13,7 +13,10 @@ impl Validator<'_> {
         self.camera_with(written, (Vec3::Y, "its up vector (0, 1, 0)"), rectangle)
     }
 
-    /// Checks a view, which takes parameters that it does not give from the scene's camera.
+    /// Checks a view.
+    ///
+    /// If the view gives no up vector, it takes that of the scene's camera; if it gives no intrinsic parameter at all,
+    /// it takes all of them from the scene's camera.
     ///
     /// If the camera has a fault and is `None`, the view is still checked.
     pub(super) fn view(&mut self, written: &WrittenCamera, camera: Option<&Camera>) -> Option<Camera> {
@@ -161,7 +164,8 @@ impl Validator<'_> {
         let f = focal_length.and_then(|f| self.length("focal length", f));
         let w = width.and_then(|w| self.length("width of the view rectangle", w));
         let h = height.and_then(|h| self.length("height of the view rectangle", h));
-        // The function ends only after all three are checked, so that the faults of all are reported.
+        // Focal length, width and height are all checked before a fault ends the function, so that all faults are
+        // reported.
         let (f, w, h) = (f?, w?, h?);
         for (side, written) in [(w, width), (h, height)] {
             if !checks::is_ratio(f64::from(side) / f64::from(f)) {
@@ -193,7 +197,7 @@ impl Validator<'_> {
     }
 }
 
-/// The spans of the parts of a written pose, at which faults are reported.
+/// The spans at which faults of a written pose are reported: the whole pose, target and up vector.
 #[derive(Clone, Copy)]
 pub(super) struct PoseSpans {
     pub(super) whole: Span,

@@ -4,7 +4,7 @@
 // Newton's method takes about six, and halving the interval about 60 near a double root.
 const MAX_STEPS: usize = 128;
 
-/// s^4 + squares s^2 + linear s + constant, which counts as 0 if it is at most `rounding`.
+/// s^4 + squares s^2 + linear s + constant; a value with a magnitude up to `rounding` counts as 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quartic {
     pub(super) squares: f64,

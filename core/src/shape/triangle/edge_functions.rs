@@ -52,11 +52,11 @@ fn range<N: Lanes>(weight: &Vector<F32x8>, lane: usize, common_origin: &CommonOr
 }
 
 impl<N: Lanes> TriangleN<N> {
-    /// Computes the edge functions and their error bounds, in units of 2^-24.
+    /// Computes the edge functions and their error bounds.
     ///
     /// s is the largest x or y (`across`), r the largest z or origin error (`along`), and w the largest ray offset. The
-    /// bound for a group is 96 (s + w r)(s + r) (`culling.md`, 12). The bound for all rays of a packet has the form of
-    /// `weight_error_bound`, with 25 instead of 24 (`culling.md`, 14).
+    /// bound for a group is 96 (s + w r)(s + r) units of 2^-24 (`culling.md`, 12). The bound for all rays of a packet
+    /// has the form of `weight_error_bound`, with 25 instead of 24 (`culling.md`, 14).
     #[inline(always)]
     pub(super) fn edge_functions(&self, common_origin: &CommonOrigin<N>) -> EdgeFunctions {
         let [a, b, c] = self.0;
