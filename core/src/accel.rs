@@ -71,7 +71,7 @@ impl PrimitiveIds<F32x8> {
     /// Returns the mask of the lanes whose primitive is part of the object with this index.
     #[inline(always)]
     pub(crate) fn mask_of_object<N: Lanes>(&self, object: u32) -> u32 {
-        N::load(&self.object).has_bits(object).bits()
+        N::load(&self.object).eq_bits(object).bits()
     }
 
     /// Gathers an id for each lane, as [`Lanes::gather`] does.
@@ -360,7 +360,7 @@ impl Accelerator {
     }
 
     /// Returns the smallest box around all bounded primitives, if there are any.
-    pub(crate) fn bounds(&self) -> Option<Bounds> {
+    pub(crate) fn finite_bounds(&self) -> Option<Bounds> {
         self.bounds
     }
 

@@ -291,7 +291,7 @@ impl Basis {
             return Err(CameraError::TooFar);
         }
         let w = unit_vector(eye - target).ok_or(CameraError::EyeIsTarget)?;
-        if up != DVec3::ZERO && !checks::is_long(pose.up) {
+        if up != DVec3::ZERO && !checks::is_long_enough(pose.up) {
             return Err(CameraError::UpTooShort);
         }
         let up = unit_vector(up).ok_or(CameraError::UpIsZero)?;
@@ -353,7 +353,7 @@ impl ViewRectangle {
         if !(focal_length > 0.0 && is_positive(width) && is_positive(height)) {
             return Err(CameraError::ViewRectangle);
         }
-        if ![width, height].into_iter().all(|side| checks::is_ratio(side.into())) {
+        if ![width, height].into_iter().all(|side| checks::is_ratio_within_range(side.into())) {
             return Err(CameraError::Sides);
         }
         Ok(Self { width: Some(width), height, shift: Vec2::ZERO, tilt: Vec2::ZERO })
@@ -406,7 +406,7 @@ impl ViewRectangle {
     /// If the aspect ratio is not between 1e-6 and 1e6, or the rectangle would pass behind the eye.
     #[doc(hidden)]
     pub fn with_aspect_ratio(self, aspect_ratio: f32) -> Result<Self, CameraError> {
-        if !checks::is_ratio(aspect_ratio.into()) {
+        if !checks::is_ratio_within_range(aspect_ratio.into()) {
             return Err(CameraError::AspectRatio);
         }
         let width = self.height * aspect_ratio;
@@ -526,7 +526,7 @@ impl ViewRectangle {
     /// Returns the point that the w axis pierces, on the plane at distance 1 along the normal.
     ///
     /// Its coordinates are along the sides of the rectangle; (0, 0) unless the rectangle is tilted.
-    fn pierced_point(&self) -> Vec2 {
+    fn view_axis_point(&self) -> Vec2 {
         let Vec2 { x: right, y: up } = self.tilt;
         -Vec2::new(libm::tanf(right) / libm::cosf(up), libm::tanf(up))
     }
@@ -543,7 +543,7 @@ impl ViewRectangle {
         };
         let distance = self.plane_distance();
         let shift = self.shift * (self.height / distance);
-        (width / distance, height / distance, self.pierced_point() + shift)
+        (width / distance, height / distance, self.view_axis_point() + shift)
     }
 }
 

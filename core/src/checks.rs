@@ -117,7 +117,7 @@ pub(crate) fn distance(from: &str, to: &str, length: f64) -> Result<f64, Message
 }
 
 /// Checks a scale factor along an axis, which may be negative, to mirror a mesh, but not 0.
-pub(crate) fn factor(value: f64) -> Result<f32, Message> {
+pub(crate) fn nonzero_factor(value: f64) -> Result<f32, Message> {
     if is_within(value.abs(), MIN_LENGTH, MAX_COORDINATE) {
         Ok(value as f32)
     } else {
@@ -127,9 +127,9 @@ pub(crate) fn factor(value: f64) -> Result<f32, Message> {
 
 /// Checks a number of copies.
 #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have copies"))]
-pub(crate) fn count(value: f64) -> Result<f32, Message> {
-    if value >= 1.0 && libm::trunc(value) == value {
-        Ok(value as f32)
+pub(crate) fn copy_count(copies: f64) -> Result<f32, Message> {
+    if copies >= 1.0 && libm::trunc(copies) == copies {
+        Ok(copies as f32)
     } else {
         Err("a number of copies must be a whole number from 1 on".into())
     }
@@ -142,7 +142,7 @@ pub(crate) fn angle_in_degrees(degrees: f64) -> Result<f32, Message> {
 }
 
 /// Checks an amount of light; `what` is its name for messages.
-pub(crate) fn amount(what: &str, value: f64) -> Result<f32, Message> {
+pub(crate) fn light_amount(what: &str, value: f64) -> Result<f32, Message> {
     if value < 0.0 {
         return Err(format!("{what} must not be negative").into());
     }
@@ -154,7 +154,7 @@ pub(crate) fn amount(what: &str, value: f64) -> Result<f32, Message> {
 
 /// Checks a channel of light.
 pub(crate) fn light(channel: f64) -> Result<f32, Message> {
-    amount("light", channel)
+    light_amount("light", channel)
 }
 
 /// Checks a channel of a reflectance, which is from 0 to 1.
@@ -199,12 +199,12 @@ pub(crate) fn corners(corners: [Vec3; 3]) -> Result<[Vec3; 3], Message> {
 }
 
 /// Returns whether the ratio of two lengths, such as an aspect ratio, is within its limits.
-pub(crate) fn is_ratio(value: f64) -> bool {
-    is_within(value, 1.0 / MAX_RATIO, MAX_RATIO)
+pub(crate) fn is_ratio_within_range(ratio: f64) -> bool {
+    is_within(ratio, 1.0 / MAX_RATIO, MAX_RATIO)
 }
 
 /// Returns whether an up vector is long enough to be squared twice in f32.
-pub(crate) fn is_long(vector: Vec3) -> bool {
+pub(crate) fn is_long_enough(vector: Vec3) -> bool {
     vector.abs().max_element() >= MIN_LENGTH as f32
 }
 

@@ -115,7 +115,7 @@ impl Description<'_> {
                 text,
                 "- object {}, {}: {}, {} of the picture, {}{}",
                 object + 1,
-                self.name_of(object, part),
+                self.describe_object(object, part),
                 position(part.covered_rect(resolution)),
                 percent(part.pixels, resolution.pixel_count()),
                 distance(part.nearest, part.farthest),
@@ -134,8 +134,8 @@ impl Description<'_> {
         text
     }
 
-    /// Returns the name of an object: its colour, kind and size.
-    fn name_of(&self, object: u32, part: &Coverage) -> String {
+    /// Describes an object by its colour, kind and size.
+    fn describe_object(&self, object: u32, part: &Coverage) -> String {
         self.scene.objects()[object as usize].shape.described(&self.color_of(object, part))
     }
 
@@ -180,7 +180,12 @@ impl Description<'_> {
         let mut text = "Not seen:\n".to_owned();
         for object in unseen {
             let why = self.reason_hidden(object, resolution);
-            let _ = writeln!(text, "- object {}, {}: {why}", object + 1, self.name_of(object, &Coverage::default()));
+            let _ = writeln!(
+                text,
+                "- object {}, {}: {why}",
+                object + 1,
+                self.describe_object(object, &Coverage::default())
+            );
         }
         text
     }
@@ -247,7 +252,7 @@ impl Description<'_> {
             let to_light = light.to_light(Vector::<f32>::splat(target));
             // `MIN_POSITIVE` avoids a division by 0 for a light at the target itself.
             let distance_squared = to_light.dot(to_light).max(f32::MIN_POSITIVE);
-            let [r, g, b] = light.irradiance(to_light, distance_squared, 1.0);
+            let [r, g, b] = light.irradiance_over_pi(to_light, distance_squared, 1.0);
             LinearRgb::new(r, g, b).luminance()
         };
         lights.sort_by(|a, b| strength(b).total_cmp(&strength(a)));

@@ -109,14 +109,14 @@ impl Resolution {
         }
     }
 
-    /// Returns the pixels of a picture of this size, scaled to `across` columns and `down` rows.
+    /// Returns the pixels of a picture of this size, scaled to this many `columns` and `rows`.
     ///
     /// Each pixel of the result is a copy of the nearest pixel of the picture.
     #[doc(hidden)]
-    pub fn repeated<T: Copy>(self, pixels: &[T], [across, down]: [usize; 2]) -> impl Iterator<Item = T> {
+    pub fn scaled_pixels<T: Copy>(self, pixels: &[T], [columns, rows]: [usize; 2]) -> impl Iterator<Item = T> {
         let (width, height) = (self.width as usize, self.height as usize);
-        let rows = (0..down).map(move |y| &pixels[y * height / down * width..][..width]);
-        rows.flat_map(move |row| (0..across).map(move |x| row[x * width / across]))
+        let lines = (0..rows).map(move |y| &pixels[y * height / rows * width..][..width]);
+        lines.flat_map(move |line| (0..columns).map(move |x| line[x * width / columns]))
     }
 
     /// Returns the number of pixels.

@@ -93,7 +93,7 @@ impl EightHits {
     /// Returns the mask of lanes whose hit is `primitive`.
     #[inline(always)]
     pub(crate) fn mask_of<N: Lanes>(&self, primitive: u32) -> u32 {
-        N::load(&self.primitives).has_bits(primitive).bits()
+        N::load(&self.primitives).eq_bits(primitive).bits()
     }
 
     /// Returns the hit primitives' lanes in their leaves: the lowest three bits of their indices.

@@ -138,7 +138,7 @@ pub trait Lanes: Number<Mask: LaneMask> {
 
     /// Compares the bits of each number with `bits`: for indices that are stored as the bits of
     /// floats.
-    fn has_bits(self, bits: u32) -> Self::Mask;
+    fn eq_bits(self, bits: u32) -> Self::Mask;
 
     /// Returns the smallest number of each of eight vectors, one per lane. Numbers must not be NaN.
     #[inline(always)]
@@ -389,7 +389,7 @@ impl Lanes for F32x8 {
     }
 
     #[inline(always)]
-    fn has_bits(self, bits: u32) -> Mask32x8 {
+    fn eq_bits(self, bits: u32) -> Mask32x8 {
         Mask32x8(self.0.map(|number| if number.to_bits() == bits { u32::MAX } else { 0 }))
     }
 }

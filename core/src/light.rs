@@ -34,9 +34,9 @@ pub trait LightSource: InSceneFile + Copy {
     /// `l` is the unit vector to the light, `distance_squared` the squared length of [`to_light`](Self::to_light),
     /// `cosine` is n.l.
     // The result includes the factor 1/pi of diffuse reflection, so that no later step needs pi.
-    fn irradiance<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3];
+    fn irradiance_over_pi<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3];
 
-    /// Returns the formula of the [irradiance](Self::irradiance), for explanations.
+    /// Returns the formula of the [irradiance over pi](Self::irradiance_over_pi), for explanations.
     ///
     /// V is the visibility, I the [`color`](Self::color) and D the distance.
     fn formula(&self) -> &'static str {
@@ -93,12 +93,14 @@ macro_rules! lights {
                 }
             }
 
-            /// Returns the irradiance at surface points, by [`LightSource::irradiance`].
+            /// Returns 1/pi times the irradiance at surface points.
+            ///
+            /// It is computed by [`LightSource::irradiance_over_pi`].
             #[doc(hidden)]
             #[inline(always)]
-            pub fn irradiance<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3] {
+            pub fn irradiance_over_pi<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3] {
                 match self {
-                    $($(#[$on])* Self::$name(light) => light.irradiance(l, distance_squared, cosine),)*
+                    $($(#[$on])* Self::$name(light) => light.irradiance_over_pi(l, distance_squared, cosine),)*
                 }
             }
 

@@ -60,7 +60,7 @@ pub fn read(
         if reporter.report(Progress { work, done: bytes.len(), total: size }).is_err() {
             return Err(ErrorKind::Interrupted.into());
         }
-        if read_chunk(&mut file, &mut bytes)? {
+        if read_and_check_end(&mut file, &mut bytes)? {
             return Ok(bytes);
         }
         // The size is checked before memory is reserved for it, because virtual files claim up to 2^63 bytes.
@@ -74,7 +74,7 @@ pub fn read(
 }
 
 /// Reads the next bytes, at most [`CHUNK_LEN`], and returns whether the file ended.
-fn read_chunk(file: &mut File, bytes: &mut Vec<u8>) -> io::Result<bool> {
+fn read_and_check_end(file: &mut File, bytes: &mut Vec<u8>) -> io::Result<bool> {
     wait_until_readable(file)?;
     match file.take(CHUNK_LEN).read_to_end(bytes) {
         Ok(count) => Ok(count == 0),

@@ -146,14 +146,14 @@ impl<'w> Reporter<'w> {
 
     /// Reports a warning. Returns false if there is no callback or warnings are errors, so that the
     /// caller returns an error.
-    pub fn warn(&self, warning: impl FnOnce() -> String) -> bool {
-        !self.is_strict && self.notice(warning)
+    pub fn warn_if_allowed(&self, warning: impl FnOnce() -> String) -> bool {
+        !self.is_strict && self.notify_if_possible(warning)
     }
 
     /// Reports a notice to the callback for warnings, and returns false if there is no callback.
     ///
     /// A notice is one line about contents of a file that are not shown.
-    pub fn notice(&self, notice: impl FnOnce() -> String) -> bool {
+    pub fn notify_if_possible(&self, notice: impl FnOnce() -> String) -> bool {
         if let Some(on_warning) = self.on_warning {
             on_warning(notice());
         }

@@ -293,7 +293,7 @@ impl Scene {
 
     /// Returns the smallest box around all bounded objects; `None` if there are none.
     pub fn bounds(&self) -> Option<Bounds> {
-        self.accelerator.bounds()
+        self.accelerator.finite_bounds()
     }
 
     /// Returns the size of the trees over the primitives of all objects, in bytes.

@@ -130,7 +130,7 @@ impl SceneFile {
             objects: reader.optional(&fields, "objects", NodeReader::objects).unwrap_or_default(),
             shadows: reader.optional(&fields, "shadows", NodeReader::boolean),
             exposure: reader.optional(&fields, "exposure", NodeReader::number),
-            tone_curve: reader.optional_word(&fields, "tone_curve", NodeReader::tone_curve),
+            tone_curve: reader.optional_keeping_none(&fields, "tone_curve", NodeReader::tone_curve),
             materials: Vec::new(),
             materials_complete: true,
         };

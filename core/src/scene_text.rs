@@ -53,7 +53,7 @@ impl Span {
     }
 
     /// Returns the empty range at an index.
-    pub fn at(offset: usize) -> Self {
+    pub fn empty_at(offset: usize) -> Self {
         Self::new(offset, offset)
     }
 }

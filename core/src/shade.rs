@@ -319,7 +319,8 @@ fn incident_light<N: Number>(light: &Light, position: Vector<N>, normal: Vector<
     let distance = distance_squared.sqrt();
     let l = Vector { x: to_light.x / distance, y: to_light.y / distance, z: to_light.z / distance };
     let cosine = normal.dot(l);
-    let light = light.irradiance(l, distance_squared, cosine).map(|channel| channel.min(N::splat(MAX_IRRADIANCE)));
+    let light =
+        light.irradiance_over_pi(l, distance_squared, cosine).map(|channel| channel.min(N::splat(MAX_IRRADIANCE)));
     // The comparison is also false for NaN, the cosine if the light is at the point itself.
     (N::splat(0.0).lt(cosine), IncidentLight { l, distance, cosine, light })
 }

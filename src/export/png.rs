@@ -45,7 +45,7 @@ pub fn png(picture: &Picture, pixel_aspect: f32, scale: u32) -> Result<Vec<u8>, 
     // The sRGB chunk tells viewers the transfer function, which they would otherwise guess.
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let mut data = Vec::with_capacity(3 * file.pixel_count());
-    let pixels = shown.repeated(picture.pixels(), [width as usize, height as usize]);
+    let pixels = shown.scaled_pixels(picture.pixels(), [width as usize, height as usize]);
     data.extend(pixels.flat_map(|pixel| [pixel.r, pixel.g, pixel.b]));
     let written = encoder.write_header().and_then(|mut file| file.write_image_data(&data));
     written.map(|()| bytes).map_err(ExportError)

@@ -77,7 +77,7 @@ impl<W: Write> Gif<W> {
         // The pixels are repeated to squares here, because viewers ignore a GIF's pixel aspect. Colours are chosen
         // before that step, because it adds pixels.
         let size = [self.size.0, self.size.1].map(usize::from);
-        frame.buffer = self.resolution.repeated(&frame.buffer, size).collect();
+        frame.buffer = self.resolution.scaled_pixels(&frame.buffer, size).collect();
         (frame.width, frame.height) = self.size;
         frame.delay = self.delay();
         self.frame += 1;

@@ -169,7 +169,7 @@ impl Camera {
         }
         // With a shifted view rectangle the picture's centre is not straight ahead, so the target is moved aside to
         // put the box into the centre.
-        let shift = centre - self.rectangle.pierced_point();
+        let shift = centre - self.rectangle.view_axis_point();
         let target = centre_of(bounds) - distance * (shift.x * u + shift.y * v);
         let eye = target + distance / self.rectangle.plane_distance() * self.basis.w;
         self.with_valid_pose(Pose { eye, target, ..self.pose })

@@ -94,7 +94,7 @@ impl Description<'_> {
             number: object + 1,
             kind: shape.kind(),
             color: self.color_of(object, &part),
-            name: self.name_of(object, &part),
+            name: self.describe_object(object, &part),
             seen: covered.map(seen).ok_or_else(|| self.reason_hidden(object, resolution)),
             in_front_of: numbers(self.survey.hidden_by(object)),
             behind: numbers(self.survey.hiding(object)),

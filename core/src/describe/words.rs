@@ -86,7 +86,7 @@ pub(super) fn position(rect: PictureRect) -> &'static str {
     /// Returns the place along one axis: 0 for left or top, 1 for the middle, 2 for right or
     /// bottom, 3 for the full extent.
     // Only the middle sixth of the picture counts as the middle, so that the side of an object is mentioned more often.
-    fn third_index(middle: f32, extent: f32) -> usize {
+    fn place_on_axis(middle: f32, extent: f32) -> usize {
         match middle {
             _ if extent > FULL_EXTENT => 3,
             m if m < 0.42 => 0,
@@ -101,7 +101,7 @@ pub(super) fn position(rect: PictureRect) -> &'static str {
         ["all along the left", "from top to bottom in the middle", "all along the right", "all over the picture"],
     ];
     let PictureRect { middle, extent } = rect;
-    POSITIONS[third_index(middle[1], extent[1])][third_index(middle[0], extent[0])]
+    POSITIONS[place_on_axis(middle[1], extent[1])][place_on_axis(middle[0], extent[0])]
 }
 
 #[cfg(all(test, unit_tests))]

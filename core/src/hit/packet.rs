@@ -125,7 +125,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     pub(super) fn write_hits(&self, hits: &mut Vec<EightHits>) {
         for group in 0..self.rays.len() {
             let primitive = self.primitive[group];
-            let hit_mask = (!primitive.has_bits(NO_PRIMITIVE)).bits();
+            let hit_mask = (!primitive.eq_bits(NO_PRIMITIVE)).bits();
             hits.push(EightHits { hit_mask, t: self.t[group].store(), primitives: primitive.store() });
         }
     }

@@ -37,7 +37,7 @@ impl<N: Number> Vector<N> {
 
     /// Returns the largest absolute coordinate.
     #[inline(always)]
-    pub fn largest(self) -> N {
+    pub fn max_abs_coordinate(self) -> N {
         self.x.abs().max(self.y.abs()).max(self.z.abs())
     }
 

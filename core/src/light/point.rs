@@ -84,7 +84,7 @@ impl LightSource for PointLight {
     }
 
     #[inline(always)]
-    fn irradiance<N: Number>(&self, _: Vector<N>, distance_squared: N, cosine: N) -> [N; 3] {
+    fn irradiance_over_pi<N: Number>(&self, _: Vector<N>, distance_squared: N, cosine: N) -> [N; 3] {
         // One factor for all channels needs one division instead of three.
         let weakening = match self.falloff {
             Falloff::InverseSquare => cosine / distance_squared,
@@ -154,7 +154,7 @@ impl InSceneFile for PointLight {
             position: reader.required(fields, "position", NodeReader::point),
             color: reader.optional(fields, "color", NodeReader::color),
             intensity: reader.optional(fields, "intensity", NodeReader::number),
-            falloff: reader.optional_word(fields, "falloff", read_falloff),
+            falloff: reader.optional_keeping_none(fields, "falloff", read_falloff),
         }
     }
 }

@@ -27,7 +27,7 @@ impl LightSource for Sun {
     }
 
     #[inline(always)]
-    fn irradiance<N: Number>(&self, _: Vector<N>, _: N, cosine: N) -> [N; 3] {
+    fn irradiance_over_pi<N: Number>(&self, _: Vector<N>, _: N, cosine: N) -> [N; 3] {
         [cosine; 3]
     }
 

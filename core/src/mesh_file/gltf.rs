@@ -86,7 +86,7 @@ fn read(
     side_files: &mut SideFiles<'_>,
     mut meter: Meter<'_>,
 ) -> Result<MeshFile, MeshFault> {
-    meter.step()?;
+    meter.report_indeterminate()?;
     let text = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
     // The JSON chunk of a GLB file is padded with spaces, but some programs take NUL.
     let text = &text[..text.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1)];

@@ -102,10 +102,10 @@ impl<'a> LeftOut<'a> {
         if let Some(Unfinished::Failed(error)) = first.map(|first| first.into_error(name, bytes)) {
             let others = counted([("more fault".into(), faults - 1), ("triangle".into(), triangles)]);
             let with = if others.is_empty() { String::new() } else { format!(", with {others}") };
-            reporter.notice(|| format!("{error} (ignored{with})"));
+            reporter.notify_if_possible(|| format!("{error} (ignored{with})"));
         }
         if !not_shown.is_empty() {
-            reporter.notice(|| visible(&format!("{name}: not shown: {}", counted(not_shown))));
+            reporter.notify_if_possible(|| visible(&format!("{name}: not shown: {}", counted(not_shown))));
         }
     }
 }

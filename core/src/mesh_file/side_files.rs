@@ -87,7 +87,8 @@ impl<'a> SideFiles<'a> {
             self.left_out.not_shown("fault of colours", 1);
             return true;
         }
-        let is_taken = self.reporter.warn(|| visible(&format!("{}: {message}", self.mesh.to_string_lossy())));
+        let is_taken =
+            self.reporter.warn_if_allowed(|| visible(&format!("{}: {message}", self.mesh.to_string_lossy())));
         if is_taken {
             self.warnings.insert(message.to_owned());
         }

@@ -37,7 +37,7 @@ impl<'a> Meter<'a> {
     /// # Errors
     /// [`Cancelled`], if the work is cancelled.
     #[cfg(feature = "mesh")]
-    pub(crate) fn step(&mut self) -> Result<(), Cancelled> {
+    pub(crate) fn report_indeterminate(&mut self) -> Result<(), Cancelled> {
         self.report(0, 0)
     }
 

@@ -60,12 +60,12 @@ impl<N: Lanes> CommonOrigin<N> {
         let off = max_distance(groups, N::splat(1.0), end);
         // If the ends of the rays are farther apart than 1/4096 of the direction's largest coordinate, the error bounds
         // would be too wide to cull anything. No statement of `culling.md` depends on the exact number 4096.
-        if !(off * N::splat(4096.0)).le(direction.largest()).all() {
+        if !(off * N::splat(4096.0)).le(direction.max_abs_coordinate()).all() {
             return None;
         }
         // In units of 2^-24, `origin_error` is twice the distance `off` plus twice the rounding error of `end`
         // (statement 9 of `culling.md`).
-        Self::with_origin(end, off * N::splat(33_554_432.0) + end.largest() * N::splat(2.0), groups)
+        Self::with_origin(end, off * N::splat(33_554_432.0) + end.max_abs_coordinate() * N::splat(2.0), groups)
     }
 
     #[inline(always)]
@@ -137,7 +137,7 @@ fn max_distance<N: Lanes>(groups: &[Rays<N>; LANES], t: N, point: Vector<N>) -> 
     for rays in groups {
         // In this order `max` skips NaN: a ray with a coordinate that is not finite hits nothing, and must not hide the
         // distance of another ray.
-        distance = (rays.origin + rays.direction * t - point).largest().max(distance);
+        distance = (rays.origin + rays.direction * t - point).max_abs_coordinate().max(distance);
     }
     N::splat(distance.reduce_max())
 }

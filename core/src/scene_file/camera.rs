@@ -117,7 +117,7 @@ impl NodeReader<'_> {
 
     /// Reports which of the three required fields of the focal form are missing.
     fn missing_of_focal_form(&mut self, fields: &Fields<'_>, names: &[&str]) {
-        let missing = names.iter().filter(|name| !fields.is_given(name));
+        let missing = names.iter().filter(|name| !fields.is_given_or_misspelt(name));
         let missing: Vec<_> = missing.map(|name| quoted(name)).collect();
         let given = names.iter().find_map(|name| fields.field(name));
         // Reports one fault for all missing fields, at the first given one.

@@ -108,5 +108,5 @@ fn check_no_nul(bytes: &[u8]) -> Result<(), Fault> {
 }
 
 fn fault_at(offset: usize, message: String) -> Fault {
-    Fault { message, span: Span::at(offset) }
+    Fault { message, span: Span::empty_at(offset) }
 }

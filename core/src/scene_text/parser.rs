@@ -23,7 +23,7 @@ pub(super) fn parse_or_cancel<'a>(text: &'a str, meter: Meter<'_>) -> Parsed<Syn
     let mut parser = Parser { text, tokens, next, span, previous_end: 0, open: Vec::new(), misaligned: None, meter };
     if parser.next == Token::End {
         let message = "there is nothing here but comments or white space".to_owned();
-        return Err(Fault { message, span: Span::at(text.len()) }.into());
+        return Err(Fault { message, span: Span::empty_at(text.len()) }.into());
     }
     let root = parser.parse_value()?;
     match parser.next {
@@ -326,7 +326,7 @@ impl<'a> Parser<'a, '_> {
             Token::Other(other) => self.fault_here(format!("expected `,` or `{right}`, found `{other}`")),
             _ => {
                 let message = format!("expected `,` or `{right}` before {}", self.describe_next());
-                Fault { message, span: Span::at(self.previous_end as usize) }.into()
+                Fault { message, span: Span::empty_at(self.previous_end as usize) }.into()
             }
         }
     }

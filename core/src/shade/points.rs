@@ -190,10 +190,10 @@ fn surfaces_in_tree<N: Lanes, S: SoaLeaf>(
     let first = first_primitive(lanes);
     let (leaf, ids) = tree.leaf(first);
     let (mut shapes, mut ids_found) = (leaf.gather(in_leaf), ids.gather(in_leaf));
-    let mut remaining = lanes & !leaves.has_bits(first / LANES as u32).bits();
+    let mut remaining = lanes & !leaves.eq_bits(first / LANES as u32).bits();
     while remaining != 0 {
         let primitive = first_primitive(remaining);
-        let ((leaf, ids), are_here) = (tree.leaf(primitive), leaves.has_bits(primitive / LANES as u32));
+        let ((leaf, ids), are_here) = (tree.leaf(primitive), leaves.eq_bits(primitive / LANES as u32));
         shapes = S::select(are_here, leaf.gather(in_leaf), shapes);
         ids_found = PrimitiveIds::select(are_here, ids.gather(in_leaf), ids_found);
         remaining &= !are_here.bits();

@@ -52,7 +52,8 @@ impl Exact for Capsule {
     fn crossings(&self, line: &Line) -> Crossings {
         let [origin, direction] = [line.origin, line.direction].map(|vector| self.axis.across(vector));
         let middle = Inside::ball(origin, direction, self.radius).and(self.axis.slab(line, [0; 2]));
-        let [from, to] = self.axis.ends().map(|end| Inside::ball(line.origin - end, line.direction, self.radius));
+        let [from, to] =
+            self.axis.end_offsets().map(|end| Inside::ball(line.origin - end, line.direction, self.radius));
         middle.around(from).around(to).crossings()
     }
 

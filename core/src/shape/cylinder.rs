@@ -56,7 +56,7 @@ impl Axis {
 
     /// Returns a line relative to the end `from`.
     pub(super) fn relative_to_start(&self, line: Line) -> Line {
-        Line { origin: line.origin - (self.middle + self.ends()[0]), ..line }
+        Line { origin: line.origin - (self.middle + self.end_offsets()[0]), ..line }
     }
 }
 

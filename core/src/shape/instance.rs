@@ -38,7 +38,7 @@ impl Hull {
             && objects.saturating_mul(file.triangles().len()) > MAX_COPIED_TRIANGLES
             // Rays must be traceable in the coordinates of the file.
             && checks::are_within_range(&[min, max])
-            && checks::is_long(max - min);
+            && checks::is_long_enough(max - min);
         is_shared.then(|| Self::of(file))
     }
 

@@ -42,7 +42,7 @@ impl Placement {
     pub fn new(scale: DVec3, degrees: DVec3, translation: DVec3) -> Result<Self, SceneFault> {
         let fault = |name, value: f64, message| SceneFault::new(format!("{name} is {value}"), message);
         for axis in 0..3 {
-            checks::factor(scale[axis]).map_err(|message| fault("scale", scale[axis], message))?;
+            checks::nonzero_factor(scale[axis]).map_err(|message| fault("scale", scale[axis], message))?;
             checks::angle_in_degrees(degrees[axis]).map_err(|message| fault("rotation", degrees[axis], message))?;
             let coordinate = translation[axis];
             checks::coordinate(coordinate).map_err(|message| fault("translation", coordinate, message))?;
@@ -181,7 +181,7 @@ impl Shape {
         let placed = self.placed_anywhere(placement).filter(|shape| match (shape, shape.bounds()) {
             (Self::Plane(plane), _) => checks::are_within_range(&[plane.point()]),
             (_, Some(Bounds { min, max })) => {
-                checks::are_within_range(&[min, max]) && (is_mesh || checks::is_long(max - min))
+                checks::are_within_range(&[min, max]) && (is_mesh || checks::is_long_enough(max - min))
             }
             (_, None) => true,
         });
@@ -242,7 +242,7 @@ impl WrittenPlacement {
     /// Returns the placement of each copy, or `None` after a fault has been reported.
     pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Vec<Placement>> {
         // All fields are checked before a fault ends the function, so that the faults of each are reported.
-        let scale = self.scale.map_or(Some(DVec3::ONE), |scale| checked(validator, scale, checks::factor));
+        let scale = self.scale.map_or(Some(DVec3::ONE), |scale| checked(validator, scale, checks::nonzero_factor));
         let degrees =
             self.rotate.map_or(Some(DVec3::ZERO), |angles| checked(validator, angles, checks::angle_in_degrees));
         let translation = self.translate.map_or(Some(DVec3::ZERO), |translation| validator.coordinates(translation));
@@ -256,7 +256,7 @@ impl WrittenPlacement {
 impl WrittenCopies {
     /// Returns the offset of each copy, in rows along x, or `None` after a fault.
     fn check(&self, validator: &mut Validator<'_>) -> Option<Vec<DVec3>> {
-        let count = checked(validator, self.count, checks::count);
+        let count = checked(validator, self.count, checks::copy_count);
         let (count, step) = (count?, validator.coordinates(self.step)?);
         if count.element_product() > MAX_COPIES {
             return validator.fault(self.count.span, || "an object can have up to 100,000 copies".to_owned());

@@ -147,7 +147,7 @@ impl<N: Number> AtCrossing<N> for Plane {
         let position = hit - normal * (hit - point).dot(normal);
         let from_point = position - point;
         let uv = [from_point.dot(Vector::splat(self.u)), from_point.dot(Vector::splat(self.v))];
-        Points::seen_by(rays, position, normal, position.largest() + point.largest(), uv)
+        Points::seen_by(rays, position, normal, position.max_abs_coordinate() + point.max_abs_coordinate(), uv)
     }
 }
 

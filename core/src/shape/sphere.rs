@@ -147,7 +147,7 @@ impl<N: Number> AtCrossing<N> for SphereN<N> {
         let outward = rays.origin + rays.direction * t - self.center;
         let outward = outward * (N::splat(1.0) / outward.dot(outward).sqrt());
         let position = self.center + outward * self.radius;
-        Points::seen_by(rays, position, outward, self.center.largest() + self.radius, [N::splat(0.0); 2])
+        Points::seen_by(rays, position, outward, self.center.max_abs_coordinate() + self.radius, [N::splat(0.0); 2])
     }
 }
 

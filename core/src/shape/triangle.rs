@@ -345,7 +345,7 @@ impl Triangle {
 fn front_normal<N: Number>(to_b: Vector<N>, to_c: Vector<N>) -> Vector<N> {
     // The edges are first scaled by their largest coordinate, because the squared length of the normal is a fourth
     // power of theirs, which underflows for edges below 1e-9.
-    let scale = N::splat(1.0) / to_b.largest().max(to_c.largest());
+    let scale = N::splat(1.0) / to_b.max_abs_coordinate().max(to_c.max_abs_coordinate());
     let normal = (to_b * scale).cross(to_c * scale);
     let factor = N::splat(1.0) / normal.dot(normal).sqrt();
     let is_direction = N::splat(0.0).lt(factor) & factor.le(N::splat(f32::MAX));
@@ -366,7 +366,7 @@ impl<N: Number> AtCrossing<N> for TriangleN<N> {
             None => [zero; 2],
         };
         let position = a + to_b * uv[0] + to_c * uv[1];
-        let largest = zero.max(a.largest()).max(b.largest()).max(c.largest());
+        let largest = zero.max(a.max_abs_coordinate()).max(b.max_abs_coordinate()).max(c.max_abs_coordinate());
         Points::seen_by(rays, position, front_normal(to_b, to_c), largest, uv)
     }
 }

@@ -36,8 +36,8 @@ pub(super) trait MaskOps: LaneMask {
     /// Returns the mask whose lane n is bit n of `bits`.
     fn from_bits(bits: u32) -> Self;
 
-    /// Compares the bits of each number with `bits`, as [`Lanes::has_bits`] does.
-    fn has_bits(numbers: __m256, bits: u32) -> Self;
+    /// Compares the bits of each number with `bits`, as [`Lanes::eq_bits`] does.
+    fn eq_bits(numbers: __m256, bits: u32) -> Self;
 }
 
 /// Eight numbers in a register.
@@ -72,11 +72,11 @@ pub(super) use avx;
 macro_rules! reduce_each {
     ($choose:ident, $eights:expr) => {{
         let [a, b, c, d, e, f, g, h] = *$eights;
-        let (ab, cd) = (neighbours(a, b), neighbours(c, d));
-        let (ef, gh) = (neighbours(e, f), neighbours(g, h));
-        let left = pairs(ab[0].$choose(ab[1]), cd[0].$choose(cd[1]));
-        let right = pairs(ef[0].$choose(ef[1]), gh[0].$choose(gh[1]));
-        let [first, last] = halves(left[0].$choose(left[1]), right[0].$choose(right[1]));
+        let (ab, cd) = (interleave_lanes(a, b), interleave_lanes(c, d));
+        let (ef, gh) = (interleave_lanes(e, f), interleave_lanes(g, h));
+        let left = interleave_pairs(ab[0].$choose(ab[1]), cd[0].$choose(cd[1]));
+        let right = interleave_pairs(ef[0].$choose(ef[1]), gh[0].$choose(gh[1]));
+        let [first, last] = interleave_halves(left[0].$choose(left[1]), right[0].$choose(right[1]));
         first.$choose(last)
     }};
 }
@@ -212,8 +212,8 @@ impl<M: MaskOps> Lanes for Register<M> {
     }
 
     #[inline(always)]
-    fn has_bits(self, bits: u32) -> M {
-        M::has_bits(self.0, bits)
+    fn eq_bits(self, bits: u32) -> M {
+        M::eq_bits(self.0, bits)
     }
 
     #[inline(always)]
@@ -230,13 +230,13 @@ impl<M: MaskOps> Lanes for Register<M> {
 /// Interleaves the numbers of two registers: the first two and then the last two of each 128-bit
 /// half.
 #[inline(always)]
-fn neighbours<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
+fn interleave_lanes<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     avx!([Register::of(_mm256_unpacklo_ps(a.0, b.0)), Register::of(_mm256_unpackhi_ps(a.0, b.0))])
 }
 
 /// Returns the first and the last pairs of numbers in each 128-bit half of two registers.
 #[inline(always)]
-fn pairs<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
+fn interleave_pairs<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     avx!([
         Register::of(_mm256_shuffle_ps::<0b01_00_01_00>(a.0, b.0)),
         Register::of(_mm256_shuffle_ps::<0b11_10_11_10>(a.0, b.0)),
@@ -245,7 +245,7 @@ fn pairs<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
 
 /// Returns the first halves and the last halves of two registers.
 #[inline(always)]
-fn halves<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
+fn interleave_halves<M: MaskOps>(a: Register<M>, b: Register<M>) -> [Register<M>; 2] {
     avx!([
         Register::of(_mm256_permute2f128_ps::<0x20>(a.0, b.0)),
         Register::of(_mm256_permute2f128_ps::<0x31>(a.0, b.0)),

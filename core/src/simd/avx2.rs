@@ -61,7 +61,7 @@ impl MaskOps for Mask256 {
     }
 
     #[inline(always)]
-    fn has_bits(numbers: __m256, bits: u32) -> Self {
+    fn eq_bits(numbers: __m256, bits: u32) -> Self {
         let bits = avx!(_mm256_set1_epi32(bits.cast_signed()));
         Self(avx!(_mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_castps_si256(numbers), bits))))
     }

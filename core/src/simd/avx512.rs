@@ -63,7 +63,7 @@ impl MaskOps for Bitmask {
     }
 
     #[inline(always)]
-    fn has_bits(numbers: __m256, bits: u32) -> Self {
+    fn eq_bits(numbers: __m256, bits: u32) -> Self {
         let bits = avx!(_mm256_set1_epi32(bits.cast_signed()));
         Self(avx!(_mm256_cmpeq_epi32_mask(_mm256_castps_si256(numbers), bits)))
     }

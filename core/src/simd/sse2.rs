@@ -213,7 +213,7 @@ impl Lanes for Registers {
     }
 
     #[inline(always)]
-    fn has_bits(self, bits: u32) -> Masks {
+    fn eq_bits(self, bits: u32) -> Masks {
         let bits = sse!(_mm_set1_epi32(bits.cast_signed()));
         let [first, last] = self.0;
         let has = |number| sse!(_mm_castsi128_ps(_mm_cmpeq_epi32(_mm_castps_si128(number), bits)));

@@ -27,7 +27,7 @@ impl SimdKernel for All<'_> {
             // The bits of a NaN differ between CPUs, which is harmless: no NaN reaches a picture.
             let bits = |number: f32| if number.is_nan() { f32::NAN.to_bits() } else { number.to_bits() };
             all.extend(all_numbers.map(|numbers| numbers.store().0.map(bits)));
-            let from_bits = [N::mask_from_bits(0b1010_0110), x.has_bits(a.0[3].to_bits())];
+            let from_bits = [N::mask_from_bits(0b1010_0110), x.eq_bits(a.0[3].to_bits())];
             all.extend(masks.into_iter().chain(from_bits).map(|mask| [mask.bits(); LANES]));
             let whole = [x, y, x.abs(), y.abs(), -x.abs(), x, y, x].map(|x| N::select(x.lt(N::splat(9.0)), x, y));
             let whole = whole.map(|x| N::select(x.eq(x), x, N::splat(0.5)));

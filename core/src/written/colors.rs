@@ -41,7 +41,7 @@ impl NodeReader<'_> {
                 }
             },
             Value::Number(_) => self.number(node).map(WrittenColor::Grey),
-            Value::Group(group) if is_color_word(group) => {
+            Value::Group(group) if is_unquoted_color_name(group) => {
                 let name = group.name.map_or("", |name| name.text);
                 self.fault(node.span, || format!("a colour is written in quotes: {}", quoted(name)));
                 None
@@ -73,7 +73,7 @@ impl FromStr for LinearRgb {
 }
 
 /// Returns whether a group is the name of a CSS colour without quotes.
-fn is_color_word(group: &Group<'_>) -> bool {
+fn is_unquoted_color_name(group: &Group<'_>) -> bool {
     group.body == Body::Nothing && group.name.is_some_and(|name| Srgb8::from_name(name.text).is_some())
 }
 

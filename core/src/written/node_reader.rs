@@ -40,7 +40,7 @@ impl<'n> Fields<'n> {
     }
 
     /// Returns whether the field is given, under its name or a misspelt one.
-    pub(crate) fn is_given(&self, name: &str) -> bool {
+    pub(crate) fn is_given_or_misspelt(&self, name: &str) -> bool {
         self.misspelt.contains(&name) || self.field(name).is_some()
     }
 }
@@ -116,7 +116,7 @@ impl<'f> NodeReader<'f> {
     ) -> Option<T> {
         let Some(node) = fields.get(name) else {
             // A field with a misspelt name has been reported already.
-            if !fields.is_given(name) {
+            if !fields.is_given_or_misspelt(name) {
                 let owner = fields.owner;
                 self.fault(fields.head, || format!("missing field \"{name}\"; {owner} needs one"));
             }
@@ -141,7 +141,7 @@ impl<'f> NodeReader<'f> {
     }
 
     /// Reads an optional field in which the word `None` is a value, not the absence of one.
-    pub(crate) fn optional_word<T>(
+    pub(crate) fn optional_keeping_none<T>(
         &mut self,
         fields: &Fields<'_>,
         name: &str,

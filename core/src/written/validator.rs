@@ -46,7 +46,7 @@ impl Validator<'_> {
 
     /// Checks an amount of light; `what` is its name for messages.
     pub(crate) fn amount(&mut self, what: &str, written: WrittenNumber) -> Option<f32> {
-        self.accept(written.span, checks::amount(what, written.value))
+        self.accept(written.span, checks::light_amount(what, written.value))
     }
 
     /// Checks a colour of light, whose channels may exceed 1.
@@ -96,7 +96,7 @@ pub struct Axis {
 
 impl Axis {
     /// Returns both ends, relative to the middle.
-    pub(crate) fn ends(&self) -> [DVec3; 2] {
+    pub(crate) fn end_offsets(&self) -> [DVec3; 2] {
         [self.direction * -self.half_length, self.direction * self.half_length]
     }
 }

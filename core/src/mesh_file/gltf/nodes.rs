@@ -23,7 +23,7 @@ pub(super) fn read<'a>(
     // are popped, and their triangles added, in the order of the file.
     let mut open: Vec<_> = roots(root)?.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
     while let Some(((number, node), parent)) = open.pop() {
-        meter.step()?;
+        meter.report_indeterminate()?;
         // Without this check a cycle of nodes would never end, and a child that is listed twice at every level would
         // double the work each time.
         if std::mem::replace(&mut is_visited[number], true) {

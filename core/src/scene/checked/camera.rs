@@ -115,7 +115,7 @@ impl Validator<'_> {
         // that it is written back unchanged.
         self.unit_vector("up vector", written)?;
         let up = self.point(written)?;
-        if !checks::is_long(up) {
+        if !checks::is_long_enough(up) {
             return self.camera_fault(written.span, CameraError::UpTooShort);
         }
         Some(up)
@@ -168,7 +168,7 @@ impl Validator<'_> {
         // reported.
         let (f, w, h) = (f?, w?, h?);
         for (side, written) in [(w, width), (h, height)] {
-            if !checks::is_ratio(f64::from(side) / f64::from(f)) {
+            if !checks::is_ratio_within_range(f64::from(side) / f64::from(f)) {
                 return self.camera_fault(written?.span, CameraError::Sides);
             }
         }
@@ -180,7 +180,7 @@ impl Validator<'_> {
         if value <= 0.0 {
             return self.fault(span, || "the aspect ratio must be greater than 0".to_owned());
         }
-        if !checks::is_ratio(value) {
+        if !checks::is_ratio_within_range(value) {
             return self.camera_fault(span, CameraError::AspectRatio);
         }
         Some(value as f32)
