@@ -62,7 +62,7 @@ fn polynomial(coefficients: &[f64], x: f64) -> f64 {
 
 /// Returns the sine or cosine of an angle up to [`LARGEST_ANGLE`].
 #[inline(always)]
-fn sin_or_cos_reduced(x: f64, is_cosine: bool) -> f64 {
+fn sin_or_cos_in_range(x: f64, is_cosine: bool) -> f64 {
     let shifted = x * FRAC_2_PI + TO_WHOLE;
     let quarters = shifted - TO_WHOLE;
     let r = x - quarters * QUARTER[0] - quarters * QUARTER[1] - quarters * QUARTER[2];
@@ -76,7 +76,7 @@ fn sin_or_cos_reduced(x: f64, is_cosine: bool) -> f64 {
 
 /// Returns e^x, for x up to [`LARGEST_EXPONENT`] in magnitude.
 #[inline(always)]
-fn exp_reduced(x: f64) -> f64 {
+fn exp_in_range(x: f64) -> f64 {
     let shifted = x * LOG2_E + TO_WHOLE;
     let power = shifted - TO_WHOLE;
     let r = x - power * LN_2[0] - power * LN_2[1];
@@ -85,22 +85,22 @@ fn exp_reduced(x: f64) -> f64 {
 }
 
 pub(super) fn sin(x: f64) -> f64 {
-    if x.abs() <= LARGEST_ANGLE { sin_or_cos_reduced(x, false) } else { libm::sin(x) }
+    if x.abs() <= LARGEST_ANGLE { sin_or_cos_in_range(x, false) } else { libm::sin(x) }
 }
 
 pub(super) fn cos(x: f64) -> f64 {
-    if x.abs() <= LARGEST_ANGLE { sin_or_cos_reduced(x, true) } else { libm::cos(x) }
+    if x.abs() <= LARGEST_ANGLE { sin_or_cos_in_range(x, true) } else { libm::cos(x) }
 }
 
 pub(super) fn exp(x: f64) -> f64 {
-    if x.abs() <= LARGEST_EXPONENT { exp_reduced(x) } else { libm::exp(x) }
+    if x.abs() <= LARGEST_EXPONENT { exp_in_range(x) } else { libm::exp(x) }
 }
 
 /// Computes the sine or cosine of each number.
 #[inline(always)]
 pub(super) fn sin_or_cos_of_each(x: &[f64; LANES], to: &mut [f64; LANES], is_cosine: bool) {
     for (to, &x) in to.iter_mut().zip(x) {
-        *to = sin_or_cos_reduced(x, is_cosine);
+        *to = sin_or_cos_in_range(x, is_cosine);
     }
     if !x.iter().all(|x| x.abs() <= LARGEST_ANGLE) {
         (0..LANES).for_each(|lane| to[lane] = if is_cosine { cos(x[lane]) } else { sin(x[lane]) });
@@ -111,7 +111,7 @@ pub(super) fn sin_or_cos_of_each(x: &[f64; LANES], to: &mut [f64; LANES], is_cos
 #[inline(always)]
 pub(super) fn exp_of_each(x: &[f64; LANES], to: &mut [f64; LANES]) {
     for (to, &x) in to.iter_mut().zip(x) {
-        *to = exp_reduced(x);
+        *to = exp_in_range(x);
     }
     if !x.iter().all(|x| x.abs() <= LARGEST_EXPONENT) {
         (0..LANES).for_each(|lane| to[lane] = exp(x[lane]));

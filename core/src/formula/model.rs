@@ -36,7 +36,7 @@ impl Model {
     pub(super) const ANYTHING: Self = Self { c: [0.0; 3], error: f64::INFINITY };
 
     /// Returns the model with `error`, raised a little because its own computation was rounded.
-    fn new(c: [f64; 3], error: f64) -> Self {
+    fn with_enlarged_error(c: [f64; 3], error: f64) -> Self {
         // No term of `error` is rounded more than 32 times, each time by half of EPSILON at most. Products that
         // underflow to 0 add less than MIN_POSITIVE.
         Self { c, error: error * (1.0 + 16.0 * EPSILON) + f64::MIN_POSITIVE }
@@ -52,7 +52,7 @@ impl Model {
         // Halved first, because the sum may overflow.
         let middle = 0.5 * low + 0.5 * high;
         let rounding = 4.0 * EPSILON * (low.abs() + high.abs());
-        Self::new([middle, 0.0, 0.0], 0.5 * high - 0.5 * low + rounding)
+        Self::with_enlarged_error([middle, 0.0, 0.0], 0.5 * high - 0.5 * low + rounding)
     }
 
     /// Returns the model of `origin + t * direction` for t in `from..=to`.
@@ -60,7 +60,7 @@ impl Model {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let (at_middle, slope) = (middle * direction, half * direction);
         let rounding = 4.0 * EPSILON * (origin.abs() + at_middle.abs() + (from.abs() + to.abs()) * direction.abs());
-        Self::new([origin + at_middle, slope, 0.0], rounding)
+        Self::with_enlarged_error([origin + at_middle, slope, 0.0], rounding)
     }
 
     /// Returns the model of a coordinate that may be any number in a range, for points in a box.
@@ -69,14 +69,14 @@ impl Model {
     }
 
     /// Returns the sum of the coefficients' magnitudes.
-    fn magnitude(&self) -> f64 {
+    fn coefficient_abs_sum(&self) -> f64 {
         self.c[0].abs() + self.c[1].abs() + self.c[2].abs()
     }
 
     /// Returns a lower and an upper bound of the quantity.
     pub(super) fn range(&self) -> [f64; 2] {
         let Self { c: [c0, c1, c2], error } = *self;
-        let slack = error + 4.0 * EPSILON * self.magnitude();
+        let slack = error + 4.0 * EPSILON * self.coefficient_abs_sum();
         [c0 - c1.abs() + c2.min(0.0) - slack, c0 + c1.abs() + c2.max(0.0) + slack]
     }
 
@@ -86,8 +86,8 @@ impl Model {
 
     fn plus(self, other: Self) -> Self {
         let ([a0, a1, a2], [b0, b1, b2]) = (self.c, other.c);
-        let rounding = EPSILON * (self.magnitude() + other.magnitude());
-        Self::new([a0 + b0, a1 + b1, a2 + b2], self.error + other.error + rounding)
+        let rounding = EPSILON * (self.coefficient_abs_sum() + other.coefficient_abs_sum());
+        Self::with_enlarged_error([a0 + b0, a1 + b1, a2 + b2], self.error + other.error + rounding)
     }
 
     fn minus(self, other: Self) -> Self {
@@ -97,15 +97,15 @@ impl Model {
     /// Returns the model of the product, whose terms of orders 3 and 4 go into the error.
     fn times(self, other: Self) -> Self {
         let ([a0, a1, a2], [b0, b1, b2]) = (self.c, other.c);
-        let (of_a, of_b) = (self.magnitude(), other.magnitude());
+        let (of_a, of_b) = (self.coefficient_abs_sum(), other.coefficient_abs_sum());
         let beyond = (a1 * b2).abs() + (a2 * b1).abs() + (a2 * b2).abs();
         let error = self.error * (of_b + other.error) + other.error * of_a + 4.0 * EPSILON * of_a * of_b;
-        Self::new([a0 * b0, a0 * b1 + a1 * b0, a0 * b2 + a1 * b1 + a2 * b0], beyond + error)
+        Self::with_enlarged_error([a0 * b0, a0 * b1 + a1 * b0, a0 * b2 + a1 * b1 + a2 * b0], beyond + error)
     }
 
     fn scaled(self, factor: f64) -> Self {
-        let error = self.error * factor.abs() + EPSILON * factor.abs() * self.magnitude();
-        Self::new(self.c.map(|c| c * factor), error)
+        let error = self.error * factor.abs() + EPSILON * factor.abs() * self.coefficient_abs_sum();
+        Self::with_enlarged_error(self.c.map(|c| c * factor), error)
     }
 
     /// Returns the model of a function g of the quantity.
@@ -122,8 +122,10 @@ impl Model {
         // A bound that has underflowed no longer bounds anything, so it is replaced by infinity.
         let third = if third < f64::MIN_POSITIVE { f64::INFINITY } else { third };
         let remainder = third * spread * spread * spread;
-        let taylor =
-            Self::new([g, g1 * c1, linear + square], g1.abs() * error + g2.abs() * beyond + remainder + rounding);
+        let taylor = Self::with_enlarged_error(
+            [g, g1 * c1, linear + square],
+            g1.abs() * error + g2.abs() * beyond + remainder + rounding,
+        );
         let hull = Self::hull(hull[0], hull[1]);
         if taylor.error <= hull.error || hull.error.is_nan() { taylor } else { hull }
     }
@@ -287,7 +289,7 @@ fn absolute(a: Model) -> Model {
         let slope = (high + low) / (high - low);
         let at_zero = -2.0 * low * high / (high - low);
         let rounding = 16.0 * EPSILON * (at_zero + high - low);
-        a.scaled(slope).plus(Model::new([0.5 * at_zero, 0.0, 0.0], 0.5 * at_zero + rounding))
+        a.scaled(slope).plus(Model::with_enlarged_error([0.5 * at_zero, 0.0, 0.0], 0.5 * at_zero + rounding))
     } else {
         Model::ANYTHING
     }

@@ -12,7 +12,7 @@ use std::f64::consts::FRAC_2_PI;
 /// Twice the largest relative rounding error of an f32 operation.
 const EPSILON: f32 = f32::EPSILON;
 
-/// The least error of a model that counts as blurred, relative to its polynomial's extent.
+/// The least error of a model that counts as large, relative to its polynomial's extent.
 const BLUR: f32 = 1.0 / 16.0;
 
 /// A bound of the absolute error of the polynomials for sine and cosine.
@@ -49,7 +49,7 @@ pub(super) struct PacketModels<'a> {
 
 /// The models of the whole formula on eight pieces, and which lanes may jump or have a certain
 /// sign.
-pub(super) struct Outcome {
+pub(super) struct SignForecasts {
     models: StoredModels,
     pub(super) may_jump: u32,
     pub(super) is_undefined: u32,
@@ -58,11 +58,11 @@ pub(super) struct Outcome {
     /// The lanes in which the sign is certain at the start of the piece.
     pub(super) is_certain: u32,
     /// The lanes in which the sign is certain, and the same on the whole piece.
-    pub(super) is_clear: u32,
+    pub(super) has_no_zero: u32,
     /// The lanes in which the sign at the start is negative, if it is certain.
     pub(super) is_negative: u32,
     /// The lanes in which the error is small compared with the extent of the polynomial.
-    pub(super) is_sharp: u32,
+    pub(super) has_small_error: u32,
 }
 
 /// The sign of a model at the start of a piece, and where the sign may change.
@@ -73,17 +73,17 @@ pub(super) struct SignForecast {
     /// The sign at the start, 1 or -1; 0 if it is uncertain.
     pub(super) sign: f64,
     /// Whether the sign is the same on the whole piece.
-    pub(super) is_clear: bool,
+    pub(super) has_no_zero: bool,
     /// The share of the piece up to which the sign is the same.
     pub(super) near: f64,
     /// A share shortly behind the first change of the sign; above 1 if none is known.
     pub(super) far: f64,
     /// The error relative to the magnitude of the polynomial at the start of the piece or, if
-    /// `is_clear`, to a lower bound of that magnitude on the piece.
+    /// `has_no_zero`, to a lower bound of that magnitude on the piece.
     pub(super) blur: f64,
 }
 
-impl Outcome {
+impl SignForecasts {
     #[cfg(all(test, unit_tests))]
     pub(super) fn model(&self, lane: usize) -> Model {
         model_of_lane(&self.models, lane)
@@ -93,32 +93,32 @@ impl Outcome {
         Continuity { may_jump: self.may_jump >> lane & 1 == 1, is_undefined: self.is_undefined >> lane & 1 == 1 }
     }
 
-    pub(super) fn is_clear(&self, lane: usize) -> bool {
-        self.is_clear >> lane & 1 == 1
+    pub(super) fn has_no_zero(&self, lane: usize) -> bool {
+        self.has_no_zero >> lane & 1 == 1
     }
 
     /// Returns whether the error in a lane is large compared with the extent of the polynomial.
     ///
-    /// A lane whose sign is the same on the whole piece (`is_clear`) does not count as blurred.
-    pub(super) fn is_blurred(&self, lane: usize) -> bool {
-        (self.is_sharp | self.is_clear) >> lane & 1 == 0
+    /// A lane whose sign is the same on the whole piece (`has_no_zero`) does not count.
+    pub(super) fn has_large_error(&self, lane: usize) -> bool {
+        (self.has_small_error | self.has_no_zero) >> lane & 1 == 0
     }
 
     /// Returns the sign at the start, 1 or -1; it is only valid in the lanes of `is_certain`.
-    pub(super) fn sign(&self, lane: usize) -> f64 {
+    pub(super) fn sign_at_start(&self, lane: usize) -> f64 {
         if self.is_negative >> lane & 1 == 1 { -1.0 } else { 1.0 }
     }
 
     pub(super) fn forecast(&self, lane: usize) -> SignForecast {
         let [near, far, blur] = self.shares.map(|share| f64::from(share.0[lane]));
-        let sign = if self.is_certain >> lane & 1 == 1 { self.sign(lane) } else { 0.0 };
+        let sign = if self.is_certain >> lane & 1 == 1 { self.sign_at_start(lane) } else { 0.0 };
         let c = [1, 2].map(|power: usize| f64::from(self.models[power].0[lane]));
-        SignForecast { c, sign, is_clear: self.is_clear(lane), near, far, blur }
+        SignForecast { c, sign, has_no_zero: self.has_no_zero(lane), near, far, blur }
     }
 }
 
 impl SimdKernel for PacketModels<'_> {
-    type Output = Outcome;
+    type Output = SignForecasts;
 
     #[inline(always)]
     fn run<N: Lanes>(self) -> Self::Output {
@@ -135,7 +135,8 @@ impl SimdKernel for PacketModels<'_> {
                 Operation::Unary(function, a) => {
                     evaluation.unary(function, Models::of_operation(known, a), tape.is_non_negative(usize::from(a)))
                 }
-                Operation::Binary(function, a, b) => match (function, tape.factor(a), tape.factor(b)) {
+                Operation::Binary(function, a, b) => match (function, tape.constant_as_f32(a), tape.constant_as_f32(b))
+                {
                     (Binary::Multiply, Some(factor), _) => Models::of_operation(known, b).scaled(N::splat(factor)),
                     (Binary::Multiply, _, Some(factor)) => Models::of_operation(known, a).scaled(N::splat(factor)),
                     (Binary::Add, Some(term), _) => Models::of_operation(known, b).shifted(N::splat(term)),
@@ -151,7 +152,7 @@ impl SimdKernel for PacketModels<'_> {
         }
         let last = scratch.last().copied().unwrap_or(Models::<N>::anything().store());
         let PacketEvaluation { may_jump, is_undefined, .. } = evaluation;
-        Models::<N>::load(&last).outcome(lanes, may_jump, is_undefined)
+        Models::<N>::load(&last).sign_forecasts(lanes, may_jump, is_undefined)
     }
 }
 
@@ -285,7 +286,7 @@ impl<N: Lanes> Models<N> {
     }
 
     #[inline(always)]
-    fn new(c: [N; 3], error: N) -> Self {
+    fn with_enlarged_error(c: [N; 3], error: N) -> Self {
         let room = N::splat(1.0 + 16.0 * EPSILON);
         Self { c, error: error * room + N::splat(16.0 * f32::MIN_POSITIVE) }
     }
@@ -307,7 +308,7 @@ impl<N: Lanes> Models<N> {
         let half = N::splat(0.5);
         let rounding = N::splat(4.0 * EPSILON) * (low.abs() + high.abs());
         let zero = N::splat(0.0);
-        Self::new([half * low + half * high, zero, zero], half * high - half * low + rounding)
+        Self::with_enlarged_error([half * low + half * high, zero, zero], half * high - half * low + rounding)
     }
 
     #[inline(always)]
@@ -317,14 +318,14 @@ impl<N: Lanes> Models<N> {
     }
 
     #[inline(always)]
-    fn magnitude(self) -> N {
+    fn coefficient_abs_sum(self) -> N {
         self.c[0].abs() + self.c[1].abs() + self.c[2].abs()
     }
 
     #[inline(always)]
     fn range(self) -> [N; 2] {
         let (Self { c: [c0, c1, c2], error }, zero) = (self, N::splat(0.0));
-        let slack = error + N::splat(4.0 * EPSILON) * self.magnitude();
+        let slack = error + N::splat(4.0 * EPSILON) * self.coefficient_abs_sum();
         [c0 - c1.abs() + c2.min(zero) - slack, c0 + c1.abs() + c2.max(zero) + slack]
     }
 
@@ -337,26 +338,26 @@ impl<N: Lanes> Models<N> {
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
         let ([a0, a1, a2], [b0, b1, b2]) = (self.c, other.c);
-        let rounding = N::splat(EPSILON) * (self.magnitude() + other.magnitude());
-        Self::new([a0 + b0, a1 + b1, a2 + b2], self.error + other.error + rounding)
+        let rounding = N::splat(EPSILON) * (self.coefficient_abs_sum() + other.coefficient_abs_sum());
+        Self::with_enlarged_error([a0 + b0, a1 + b1, a2 + b2], self.error + other.error + rounding)
     }
 
     #[inline(always)]
     fn times(self, other: Self) -> Self {
         let ([a0, a1, a2], [b0, b1, b2]) = (self.c, other.c);
-        let (of_a, of_b) = (self.magnitude(), other.magnitude());
+        let (of_a, of_b) = (self.coefficient_abs_sum(), other.coefficient_abs_sum());
         let beyond = (a1 * b2).abs() + (a2 * b1).abs() + (a2 * b2).abs();
         let rounding = N::splat(4.0 * EPSILON) * of_a * of_b;
         let error = self.error * (of_b + other.error) + other.error * of_a + rounding;
-        Self::new([a0 * b0, a0 * b1 + a1 * b0, a0 * b2 + a1 * b1 + a2 * b0], beyond + error)
+        Self::with_enlarged_error([a0 * b0, a0 * b1 + a1 * b0, a0 * b2 + a1 * b1 + a2 * b0], beyond + error)
     }
 
     /// Returns the product with a number; the error includes the rounding of the number.
     #[inline(always)]
     fn scaled(self, factor: N) -> Self {
         let ([c0, c1, c2], size) = (self.c, factor.abs());
-        let error = self.error * size + N::splat(2.0 * EPSILON) * size * self.magnitude();
-        Self::new([c0 * factor, c1 * factor, c2 * factor], error)
+        let error = self.error * size + N::splat(2.0 * EPSILON) * size * self.coefficient_abs_sum();
+        Self::with_enlarged_error([c0 * factor, c1 * factor, c2 * factor], error)
     }
 
     /// Returns the sum with a number; the error includes the rounding of the number.
@@ -364,7 +365,7 @@ impl<N: Lanes> Models<N> {
     fn shifted(self, term: N) -> Self {
         let [c0, c1, c2] = self.c;
         let rounding = N::splat(EPSILON) * (c0.abs() + term.abs());
-        Self::new([c0 + term, c1, c2], self.error + rounding)
+        Self::with_enlarged_error([c0 + term, c1, c2], self.error + rounding)
     }
 
     /// Returns what the models tell about the sign of the formula on their pieces.
@@ -372,10 +373,10 @@ impl<N: Lanes> Models<N> {
     /// Shares of the pieces are computed as zeros of polynomials, with a slack larger than the rounding errors of this
     /// computation.
     #[inline(always)]
-    fn outcome(self, lanes: u32, may_jump: u32, is_undefined: u32) -> Outcome {
+    fn sign_forecasts(self, lanes: u32, may_jump: u32, is_undefined: u32) -> SignForecasts {
         let (n, zero, one) = (N::splat, N::splat(0.0), N::splat(1.0));
         // All numbers are divided by the size of the polynomial, so that no square overflows or underflows.
-        let inverse = one / self.magnitude();
+        let inverse = one / self.coefficient_abs_sum();
         let error = self.error * inverse * n(1.0 + 4.0 * EPSILON) + n(8.0 * EPSILON);
         let [c0, c1, c2] = self.c;
         let is_negative = (c0 - c1 + c2).lt(zero);
@@ -384,20 +385,20 @@ impl<N: Lanes> Models<N> {
         // The coefficients in the Bernstein basis, between which the polynomial lies.
         let (first, middle, last) = (c0 - c1 + c2, c0 - c2, c0 + c1 + c2);
         let least = first.min(middle).min(last);
-        let is_clear = error.lt(least);
-        let (is_certain, is_sharp) = (error.lt(first), error.lt(n(BLUR) * (c1.abs() + c2.abs())));
-        let mut outcome = Outcome {
+        let has_no_zero = error.lt(least);
+        let (is_certain, has_small_error) = (error.lt(first), error.lt(n(BLUR) * (c1.abs() + c2.abs())));
+        let mut forecasts = SignForecasts {
             models: self.store(),
             may_jump,
             is_undefined,
-            shares: [F32x8::ZERO, F32x8::ZERO, (error / N::select(is_clear, least, first.abs())).store()],
+            shares: [F32x8::ZERO, F32x8::ZERO, (error / N::select(has_no_zero, least, first.abs())).store()],
             is_certain: is_certain.bits(),
-            is_clear: is_clear.bits() & !is_undefined,
+            has_no_zero: has_no_zero.bits() & !is_undefined,
             is_negative: is_negative.bits(),
-            is_sharp: is_sharp.bits(),
+            has_small_error: has_small_error.bits(),
         };
-        if outcome.is_clear & lanes == lanes {
-            return outcome;
+        if forecasts.has_no_zero & lanes == lanes {
+            return forecasts;
         }
         let (slack, two) = (error + n(16.0 * EPSILON), n(2.0));
         let (slope, curvature) = (two * c1 - n(4.0) * c2, n(4.0) * c2);
@@ -411,9 +412,9 @@ impl<N: Lanes> Models<N> {
         let near = N::select(is_found, near.max(by_chord), by_chord);
         let far = first_zero(first + slack, slope, curvature) * n(1.0 + 1e-5) + n(1e-6);
         let is_beyond = near.lt(far) & far.le(one) & at_share([c0, c1, c2], far).lt(-error);
-        outcome.is_clear |= (is_certain & one.le(near)).bits() & !is_undefined;
-        (outcome.shares[0], outcome.shares[1]) = (near.store(), N::select(is_beyond, far, two).store());
-        outcome
+        forecasts.has_no_zero |= (is_certain & one.le(near)).bits() & !is_undefined;
+        (forecasts.shares[0], forecasts.shares[1]) = (near.store(), N::select(is_beyond, far, two).store());
+        forecasts
     }
 
     /// Returns the Taylor polynomial of a function of the quantity, or the hull if it is narrower.
@@ -435,7 +436,7 @@ impl<N: Lanes> Models<N> {
         let third = N::select(third.lt(N::splat(f32::MIN_POSITIVE)), N::splat(f32::INFINITY), third);
         let remainder = third * spread * spread * spread;
         let error = g1.abs() * error + g2.abs() * beyond + remainder + rounding + of_values;
-        Self::new([g, g1 * c1, linear + square], error)
+        Self::with_enlarged_error([g, g1 * c1, linear + square], error)
     }
 
     /// Returns the models with the smaller errors.
@@ -447,12 +448,12 @@ impl<N: Lanes> Models<N> {
 
     #[inline(always)]
     fn squared(self) -> Self {
-        let (Self { c: [c0, c1, c2], error }, size) = (self, self.magnitude());
+        let (Self { c: [c0, c1, c2], error }, size) = (self, self.coefficient_abs_sum());
         let (two, four) = (N::splat(2.0), N::splat(4.0 * EPSILON));
         let beyond = (two * c1.abs() + c2.abs()) * c2.abs();
         let doubled = two * c0;
         let squares = [c0 * c0, doubled * c1, doubled * c2 + c1 * c1];
-        let taylor = Self::new(squares, beyond + error * (two * size + error) + four * size * size);
+        let taylor = Self::with_enlarged_error(squares, beyond + error * (two * size + error) + four * size * size);
         // With an error this small, the Taylor model is narrower than the hull. Each lane chooses for itself, so that
         // its bits do not depend on the others; only this shortcut depends on all lanes.
         let is_close = taylor.error.le(size * size * N::splat(0.25));
@@ -473,7 +474,7 @@ impl<N: Lanes> Models<N> {
         let (slope, at_zero) = ((high + low) / width, N::splat(-2.0) * low * high / width);
         let rounding = N::splat(16.0 * EPSILON) * (at_zero + width);
         let half = N::splat(0.5) * at_zero;
-        let chord = self.scaled(slope).plus(Self::new([half, zero, zero], half + rounding));
+        let chord = self.scaled(slope).plus(Self::with_enlarged_error([half, zero, zero], half + rounding));
         let chord = Self::select(width.lt(N::splat(f32::INFINITY)), chord, Self::anything());
         Self::select(zero.le(low), self, Self::select(high.le(zero), self.negate(), chord))
     }

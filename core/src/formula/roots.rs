@@ -14,7 +14,7 @@
 use super::Formula;
 use super::bracket::{Brackets, Narrowing, Root};
 use super::model::{Continuity, Model};
-use super::packet::{EightValues, Lines, Outcome, PacketModels, PacketValues, SignForecast, StoredModels};
+use super::packet::{EightValues, Lines, PacketModels, PacketValues, SignForecast, SignForecasts, StoredModels};
 use super::tape::Tape;
 use crate::lanes::{F32x8, LANES, Lanes, SimdKernel, set_bits};
 use crate::simd;
@@ -28,7 +28,8 @@ const MIN_PIECE: f64 = 1e-9;
 /// The length, relative to the range, up to which a piece with a sign change becomes a bracket.
 const BRACKET: f64 = 1.0 / 16_384.0;
 
-/// The length, relative to the range, below which models are computed in f64 if blurred in f32.
+/// The length, relative to the range, below which models with a large error in f32 are
+/// computed in f64.
 const SHORT: f64 = 1.0 / 1024.0;
 
 /// The error of a model, relative to the value of f, for which the lengths of pieces are chosen.
@@ -226,11 +227,11 @@ impl SimdKernel for Search<'_> {
                 break;
             }
             let packet = PacketModels { tape, lines, pieces: &pieces, lanes: *lanes, scratch: &mut scratch.packets };
-            let outcome = packet.run::<N>();
-            let [done, arrived] = walks.advance(&outcome, &pieces, *lanes, &mut brackets);
+            let forecasts = packet.run::<N>();
+            let [done, arrived] = walks.advance_frequent(&forecasts, &pieces, *lanes, &mut brackets);
             let rest = *lanes & !done;
             let ended =
-                arrived | advance_one_by_one(tape, (lines, &pieces), rest, &outcome, walks, &mut brackets, scratch);
+                arrived | advance_one_by_one(tape, (lines, &pieces), rest, &forecasts, walks, &mut brackets, scratch);
             found |= ended;
             *lanes &= !ended;
         }
@@ -249,7 +250,7 @@ fn advance_one_by_one(
     tape: &Tape,
     (lines, pieces): (&Lines, &[EightValues; 2]),
     lanes: u32,
-    outcome: &Outcome,
+    forecasts: &SignForecasts,
     walks: &mut Walks,
     brackets: &mut Brackets,
     scratch: &mut Scratch,
@@ -257,9 +258,9 @@ fn advance_one_by_one(
     let mut found = 0;
     for lane in set_bits(lanes) {
         let (mut walk, piece) = (walks.walk(lane), [pieces[0][lane], pieces[1][lane]]);
-        let (mut forecast, mut continuity) = (outcome.forecast(lane), outcome.continuity(lane));
+        let (mut forecast, mut continuity) = (forecasts.forecast(lane), forecasts.continuity(lane));
         // In f32, the model of a short piece may be little more than its rounding errors.
-        if outcome.is_blurred(lane) && walk.is_short(piece) {
+        if forecasts.has_large_error(lane) && walk.is_short_for_f32(piece) {
             let line = line_in_lane(lines, lane);
             let (o, d) = (line.origin.to_array(), line.direction.to_array());
             let coordinates = [0, 1, 2].map(|axis| Model::coordinate(o[axis], d[axis], piece));
@@ -321,38 +322,39 @@ impl Walks {
     ///
     /// Returns these lanes, and those of them whose first root is now in a bracket.
     #[inline(always)]
-    fn advance(
+    fn advance_frequent(
         &mut self,
-        outcome: &Outcome,
+        forecasts: &SignForecasts,
         pieces: &[EightValues; 2],
         lanes: u32,
         brackets: &mut Brackets,
     ) -> [u32; 2] {
-        let gaps = outcome.may_jump | outcome.is_undefined;
-        let blurred = !(outcome.is_sharp | outcome.is_clear);
-        let [nears, fars, blurs] = &outcome.shares;
+        let gaps = forecasts.may_jump | forecasts.is_undefined;
+        let has_large_error = !(forecasts.has_small_error | forecasts.has_no_zero);
+        let [nears, fars, blurs] = &forecasts.shares;
         let (mut done, mut arrived, mut starts, mut ends) =
             ([false; LANES], [false; LANES], [0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
             let is_in = |mask: u32| mask >> lane & 1 == 1;
             let (from, to) = (pieces[0][lane], pieces[1][lane]);
             let (width, stride, shortest) = (to - from, self.stride[lane], self.shortest[lane]);
-            let sign = if is_in(outcome.is_negative) { -1.0 } else { 1.0 };
+            let sign = if is_in(forecasts.is_negative) { -1.0 } else { 1.0 };
             let is_same = self.skipped[lane] == 0.0 && self.sign[lane] * sign >= 0.0;
-            let (is_certain, is_clear) = (is_in(outcome.is_certain), is_in(outcome.is_clear));
+            let (is_certain, has_no_zero) = (is_in(forecasts.is_certain), is_in(forecasts.has_no_zero));
             let (near, far) = (f64::from(nears.0[lane]), f64::from(fars.0[lane]));
             let (start, end) = (from + near * width, (from + far * width).min(to));
-            let has_end = !is_clear && far <= 1.0;
-            let is_long = is_clear || has_end || width > 1.5 * shortest;
+            let has_end = !has_no_zero && far <= 1.0;
+            let is_long = has_no_zero || has_end || width > 1.5 * shortest;
             let is_short = width < SHORT * self.range[lane];
             let is_frequent = if is_certain { is_same && is_long && !is_in(gaps) } else { width > 1.5 * stride };
-            let is_done = is_in(lanes) && is_frequent && !is_in(outcome.is_undefined) && !(is_in(blurred) && is_short);
+            let is_done =
+                is_in(lanes) && is_frequent && !is_in(forecasts.is_undefined) && !(is_in(has_large_error) && is_short);
             let factor = cube_root(TARGET / blurs.0[lane]);
             let passed = (factor.clamp(1.0, 4.0) * width).max(shortest);
             let halved = (factor.clamp(0.25, 0.75) * (to - start)).max(shortest);
             let closer = if has_end { (end - start).min(0.75 * width) } else { halved };
             let undecided = (factor.clamp(0.0625, 0.5) * width).max(stride);
-            let (next, reached) = if is_clear { (passed, to) } else { (closer, start) };
+            let (next, reached) = if has_no_zero { (passed, to) } else { (closer, start) };
             let length = if is_certain { next } else { undecided };
             let moves = is_done && is_certain;
             self.length[lane] = if is_done { length } else { self.length[lane] };
@@ -366,7 +368,7 @@ impl Walks {
         }
         let arrived = bits(arrived);
         for lane in set_bits(arrived) {
-            let (forecast, width) = (outcome.forecast(lane), pieces[1][lane] - pieces[0][lane]);
+            let (forecast, width) = (forecasts.forecast(lane), pieces[1][lane] - pieces[0][lane]);
             brackets.add(lane, forecast.root([starts[lane], ends[lane]], self.sign[lane], width));
         }
         [bits(done), arrived]
@@ -390,7 +392,7 @@ impl Walk {
         Self { t: from, length: range, sign, since: from, undecided, stride: shortest, skipped, shortest, range }
     }
 
-    fn is_short(&self, [from, to]: [f64; 2]) -> bool {
+    fn is_short_for_f32(&self, [from, to]: [f64; 2]) -> bool {
         to - from < SHORT * self.range
     }
 
@@ -405,26 +407,26 @@ impl Walk {
     ) -> StepOutcome {
         let (width, sign) = (to - from, forecast.sign);
         if continuity.is_undefined {
-            return self.move_past(to, 2.0 * width, 0.0);
+            return self.move_to(to, 2.0 * width, 0.0);
         }
         if sign == 0.0 {
-            return self.step_undecided(forecast, continuity, piece);
+            return self.shorten_or_skip(forecast, continuity, piece);
         }
         if self.skipped > 1.5 * self.shortest {
-            return self.retreat(from);
+            return self.return_to_skipped(from);
         }
         (self.undecided, self.stride) = (0.0, self.shortest);
         if self.sign != 0.0 && sign != self.sign && from - self.since <= MAX_STRETCH * self.range {
             return StepOutcome::Root(Root { low: self.since, high: from, sign: self.sign, guess: from, slope: 0.0 });
         }
         (self.sign, self.since) = (sign, from);
-        if forecast.is_clear {
+        if forecast.has_no_zero {
             self.since = to;
-            return self.move_past(to, forecast.factor(1.0, 4.0) * width, sign);
+            return self.move_to(to, forecast.length_factor(1.0, 4.0) * width, sign);
         }
         if continuity.may_jump {
             if width <= 1.5 * self.shortest {
-                return self.move_past(to, 2.0 * width, 0.0);
+                return self.move_to(to, 2.0 * width, 0.0);
             }
             self.length = 0.5 * width;
             return StepOutcome::NoRoot;
@@ -433,7 +435,7 @@ impl Walk {
     }
 
     /// Moves to `t`, where `sign` is certain, or unknown if it is 0.
-    fn move_past(&mut self, t: f64, length: f64, sign: f64) -> StepOutcome {
+    fn move_to(&mut self, t: f64, length: f64, sign: f64) -> StepOutcome {
         (self.t, self.length, self.sign) = (t, length.max(self.shortest), sign);
         (self.undecided, self.stride, self.skipped) = (0.0, self.shortest, 0.0);
         StepOutcome::NoRoot
@@ -442,18 +444,23 @@ impl Walk {
     /// Goes back to the start of the long piece passed last, and continues in shorter pieces.
     ///
     /// The sign was undecided in that piece and is certain at its end, so that roots may lie in it.
-    fn retreat(&mut self, from: f64) -> StepOutcome {
+    fn return_to_skipped(&mut self, from: f64) -> StepOutcome {
         self.stride = (0.125 * self.skipped).max(self.shortest);
         (self.t, self.length, self.skipped) = (from - self.skipped, self.stride, 0.0);
         StepOutcome::NoRoot
     }
 
     /// Shortens a piece at whose start the sign is uncertain, or passes it if it is short.
-    fn step_undecided(&mut self, forecast: &SignForecast, continuity: Continuity, [from, to]: [f64; 2]) -> StepOutcome {
+    fn shorten_or_skip(
+        &mut self,
+        forecast: &SignForecast,
+        continuity: Continuity,
+        [from, to]: [f64; 2],
+    ) -> StepOutcome {
         let width = to - from;
         // 1.5 instead of 1, because the rounding of its end may make a piece longer than `stride`.
         if width > 1.5 * self.stride {
-            self.length = (forecast.factor(0.0625, 0.5) * width).max(self.stride);
+            self.length = (forecast.length_factor(0.0625, 0.5) * width).max(self.stride);
             return StepOutcome::NoRoot;
         }
         self.undecided += 1.0;
@@ -491,9 +498,9 @@ impl Walk {
         if width <= 1.5 * self.shortest {
             // The shortest piece shows no change of the sign: f is taken to touch zero here and to keep its sign.
             self.since = from;
-            return self.move_past(to, 2.0 * width, self.sign);
+            return self.move_to(to, 2.0 * width, self.sign);
         }
-        (self.t, self.length) = (start, (forecast.factor(0.25, 0.75) * (to - start)).max(self.shortest));
+        (self.t, self.length) = (start, (forecast.length_factor(0.25, 0.75) * (to - start)).max(self.shortest));
         StepOutcome::NoRoot
     }
 }
@@ -505,20 +512,20 @@ impl SignForecast {
         let b = [c0 - c1 + c2, c0 - c2, c0 + c1 + c2];
         let sign = if b[0].abs() > error { b[0].signum() } else { 0.0 };
         let [first, middle, last] = b.map(|b| sign * b);
-        let is_clear = sign != 0.0 && first.min(middle).min(last) > error;
+        let has_no_zero = sign != 0.0 && first.min(middle).min(last) > error;
         // The polynomial falls at most as steeply as the steeper chord from the first coefficient to one of the others.
         let steepest = (2.0 * (middle - first)).min(last - first);
         // 0.999 of the way to where f could first be 0, so that the sign of f there is certain in spite of rounding.
         let near = (0.999 * (first - error) / -steepest).clamp(0.0, 1.0);
         let far = first_below([first, middle, last], -error).unwrap_or(2.0);
-        let blur = error / if is_clear { first.min(middle).min(last) } else { b[0].abs() };
-        Self { c: [c1, c2], sign, is_clear, near, far, blur }
+        let blur = error / if has_no_zero { first.min(middle).min(last) } else { b[0].abs() };
+        Self { c: [c1, c2], sign, has_no_zero, near, far, blur }
     }
 
     /// Returns the next piece's length relative to this piece's, limited to `least..=most`.
     ///
     /// It is a cube root, because the error grows with the cube of the length.
-    fn factor(&self, least: f64, most: f64) -> f64 {
+    fn length_factor(&self, least: f64, most: f64) -> f64 {
         cube_root(TARGET / self.blur as f32).max(least).min(most)
     }
 

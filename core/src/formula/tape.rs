@@ -69,7 +69,7 @@ impl Tape {
     }
 
     /// Returns the value of a constant operation, rounded to f32, if that is a normal number.
-    pub(super) fn factor(&self, index: Index) -> Option<f32> {
+    pub(super) fn constant_as_f32(&self, index: Index) -> Option<f32> {
         let Operation::Constant(bits) = self.operations[usize::from(index)] else { return None };
         Some(f64::from_bits(bits) as f32).filter(|rounded| rounded.is_normal())
     }

@@ -427,17 +427,18 @@ fn models_of_eight_pieces_enclose_all_values() {
         let ends = [0, 1].map(|end: usize| pieces.map(|piece: [f64; 2]| piece[end]));
         let tape = &formula.tape;
         let packet = PacketModels { tape, lines: &by_axis, pieces: &ends, lanes: ALL, scratch: &mut scratch };
-        let outcome = simd::dispatch(packet);
+        let forecasts = simd::dispatch(packet);
         let packet = PacketModels { tape, lines: &by_axis, pieces: &ends, lanes: ALL, scratch: &mut scratch };
         let of_arrays = simd::run_scalar(packet);
         for lane in 0..LANES {
-            let (model, [o, d], [from, to]) = (outcome.model(lane), lines[lane], pieces[lane]);
+            let (model, [o, d], [from, to]) = (forecasts.model(lane), lines[lane], pieces[lane]);
             let [c0, c1, c2] = model.c;
             let (bits, same) = (model_bits(&model), model_bits(&of_arrays.model(lane)));
-            let is_same = (bits, outcome.is_clear(lane)) == (same, of_arrays.is_clear(lane));
+            let is_same = (bits, forecasts.has_no_zero(lane)) == (same, of_arrays.has_no_zero(lane));
             assert!(is_same, "{text}: {model:?}, {:?}, seed {SEED:#x}", of_arrays.model(lane));
-            let (continuity, forecast) = (outcome.continuity(lane), outcome.forecast(lane));
-            let has_shares = forecast.sign != 0.0 && !forecast.is_clear && continuity == model::Continuity::default();
+            let (continuity, forecast) = (forecasts.continuity(lane), forecasts.forecast(lane));
+            let has_shares =
+                forecast.sign != 0.0 && !forecast.has_no_zero && continuity == model::Continuity::default();
             let signed = |t: f64, values: &mut Vec<f64>| forecast.sign * formula.tape.value(o + d * t, values);
             if has_shares && forecast.far <= 1.0 {
                 let far = signed(from + forecast.far * (to - from), &mut values);
@@ -459,7 +460,7 @@ fn models_of_eight_pieces_enclose_all_values() {
                 let slack = 1e-11 * (1.0 + value.abs() + c1.abs() + c2.abs());
                 let is_outside = distance > model.error + slack
                     || (value.is_nan() && model.error.is_finite() && !continuity.may_jump)
-                    || (outcome.is_clear(lane) && value * outcome.sign(lane) < 0.0);
+                    || (forecasts.has_no_zero(lane) && value * forecasts.sign_at_start(lane) < 0.0);
                 assert!(!is_outside, "{text} at {t} in {from}..{to}: {value}, {model:?}, {o} + t {d}, seed {SEED:#x}");
                 checked += 1;
             }
