@@ -63,13 +63,13 @@ impl MeshBuilder {
         if self.material_runs.last().is_some_and(|&(start, _)| start == from) {
             self.material_runs.pop();
         }
-        if self.last_material() != material {
+        if self.current_material() != material {
             self.material_runs.push((from, material));
         }
     }
 
     /// Returns the material of the triangles added from here on.
-    pub(super) fn last_material(&self) -> Option<u32> {
+    pub(super) fn current_material(&self) -> Option<u32> {
         self.material_runs.last().and_then(|&(_, material)| material)
     }
 
@@ -77,7 +77,7 @@ impl MeshBuilder {
     ///
     /// `nothing` describes the contents of a file without triangles, for the message.
     pub(super) fn finish(mut self, nothing: &str, left_out: &mut LeftOut<'_>) -> Result<MeshFile, MeshFault> {
-        if self.triangles.is_empty() || (left_out.has_faults() && !self.fill_gaps(left_out)) {
+        if self.triangles.is_empty() || (left_out.has_faults() && !self.flatten_incomplete_triangles(left_out)) {
             return Err(left_out.fault_of_nothing(format!("there are no triangles in this file: {nothing}")));
         }
         if self.triangles.iter().all(|&corners| is_flat(corners, &self.positions)) {
@@ -104,7 +104,7 @@ impl MeshBuilder {
     ///
     /// Triangles with such a corner are flattened to a point. Returns false if there is no other triangle.
     // No triangle is removed, because the attributes and material runs refer to triangles by their number.
-    fn fill_gaps(&mut self, left_out: &mut LeftOut<'_>) -> bool {
+    fn flatten_incomplete_triangles(&mut self, left_out: &mut LeftOut<'_>) -> bool {
         let is_whole = |triangle: &[u32; 3]| triangle.iter().all(|&i| self.positions[i as usize].is_finite());
         let Some(&[whole, ..]) = self.triangles.iter().find(|triangle| is_whole(triangle)) else { return false };
         for triangle in &mut self.triangles {

@@ -184,10 +184,10 @@ fn check_extensions(root: Json<'_>, left_out: &mut LeftOut<'_>) -> Result<(), Me
             left_out.not_shown(format!("extension ({})", clipped(name)), 1);
         }
     }
-    left_out.not_shown("animation", root.count("animations")?);
-    left_out.not_shown("camera", root.count("cameras")?);
+    left_out.not_shown("animation", root.list_len("animations")?);
+    left_out.not_shown("camera", root.list_len("cameras")?);
     if let Some(lights) = root.extension("KHR_lights_punctual")? {
-        left_out.not_shown("light", lights.count("lights")?);
+        left_out.not_shown("light", lights.list_len("lights")?);
     }
     Ok(())
 }

@@ -35,7 +35,7 @@ impl<'a> LeftOut<'a> {
 
     /// Leaves out a faulty line, face or facet.
     ///
-    /// The parts of a file are its lines, unless [`set_part_count`](Self::set_part_count) counts others.
+    /// The parts of a file are its lines, unless [`set_fault_limit_for`](Self::set_fault_limit_for) counts others.
     ///
     /// # Errors
     /// The fault, if the reporter takes no notices or the fault is not of a part; the first fault of the file, if too
@@ -67,9 +67,9 @@ impl<'a> LeftOut<'a> {
         self.error_of(fault).into()
     }
 
-    /// Sets the number of parts, of which one in a hundred may be faulty.
-    pub(super) fn set_part_count(&mut self, count: usize) {
-        self.limit = Some(count / 100);
+    /// Sets the limit of faulty parts: one in a hundred of `part_count`.
+    pub(super) fn set_fault_limit_for(&mut self, part_count: usize) {
+        self.limit = Some(part_count / 100);
     }
 
     /// Returns whether a fault was left out.

@@ -3,7 +3,7 @@
 //! Features such as transparency and normal maps are counted as not shown. All other lines are skipped.
 
 use super::fault::{MeshFault, shown_path};
-use super::side_files::{SideFiles, local_path};
+use super::side_files::{SideFiles, side_file_path};
 use super::text::TextCursor;
 use super::texture::{self, TexelBudget, Texture, TexturePlacement};
 use super::{CLAY, MeshMaterial};
@@ -28,7 +28,7 @@ pub(super) struct Library {
 
 impl Library {
     /// Returns the materials, and pairs of a material's index and the part of it that is not shown.
-    pub(super) fn into_materials(self) -> (Vec<MeshMaterial>, Vec<(u32, &'static str)>) {
+    pub(super) fn into_materials_and_unshown(self) -> (Vec<MeshMaterial>, Vec<(u32, &'static str)>) {
         (self.materials, self.not_shown)
     }
 
@@ -162,7 +162,7 @@ impl MtlReader<'_, '_> {
         let name = self.text.rest_of_line();
         let at = self.text.at() - name.len();
         let name = String::from_utf8_lossy(name);
-        let path = local_path(self.folder, &name).map_err(|message| MeshFault::in_text(at, message))?;
+        let path = side_file_path(self.folder, &name).map_err(|message| MeshFault::in_text(at, message))?;
         // Decoded textures are kept, because materials often share one, and decoding one takes longer than everything
         // else in the file.
         let texture = match self.library.textures.get(&path) {

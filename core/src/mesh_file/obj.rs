@@ -4,7 +4,7 @@
 use super::builder::{MeshBuilder, TriangleIndices, unit};
 use super::fault::{MeshFault, shown};
 use super::mtl::{self, Library};
-use super::side_files::{SideFiles, local_path};
+use super::side_files::{SideFiles, side_file_path};
 use super::text::TextCursor;
 use super::{MeshFile, polygon};
 use crate::color::{LinearRgb, linear_from_srgb};
@@ -32,12 +32,12 @@ pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, mut meter: Mete
         meter.advance_to(start)?;
         if let Err(fault) = reader.statement() {
             reader.side_files.left_out.leave_out(fault)?;
-            reader.leave_out(start);
+            reader.skip_faulty_line(start);
         }
     }
     reader.early_faces()?;
     let ObjReader { mut mesh, library, side_files, .. } = reader;
-    (mesh.materials, mesh.not_shown) = library.map(Library::into_materials).unwrap_or_default();
+    (mesh.materials, mesh.not_shown) = library.map(Library::into_materials_and_unshown).unwrap_or_default();
     mesh.finish("it has no faces (f)", &mut side_files.left_out)
 }
 
@@ -97,12 +97,12 @@ impl ObjReader<'_, '_> {
         self.side_files.left_out.not_shown(what, count);
     }
 
-    /// Skips the faulty line that begins at `start`.
+    /// Skips the faulty line that begins at `line_start`.
     ///
     /// A faulty vertex, normal or texture coordinate still takes up its number, so that the indices of later ones are
     /// right.
-    fn leave_out(&mut self, start: usize) {
-        self.text = self.text.cursor_at(start);
+    fn skip_faulty_line(&mut self, line_start: usize) {
+        self.text = self.text.cursor_at(line_start);
         match self.text.word() {
             // `MeshBuilder::finish` flattens the triangles at a position that is not finite.
             b"v" => self.mesh.positions.push(Vec3::NAN),
@@ -186,14 +186,14 @@ impl ObjReader<'_, '_> {
         let start = self.text.at();
         match self.face_corners() {
             Err(Corner::Early(_)) => {
-                self.early_faces.push((start as u32, self.mesh.last_material())); // a file has at most 2^31 bytes
+                self.early_faces.push((start as u32, self.mesh.current_material())); // a file has at most 2^31 bytes
                 self.text.skip_line();
                 return Ok(());
             }
             Err(Corner::Faulty(fault)) => return Err(fault),
             Ok(()) => self.text.skip_line(),
         }
-        self.triangles_of(at)
+        self.add_face(at)
     }
 
     /// Reads the faces that come before their vertices.
@@ -202,7 +202,7 @@ impl ObjReader<'_, '_> {
             self.text = self.text.cursor_at(start as usize);
             self.mesh.set_material(material);
             let read = match self.face_corners() {
-                Ok(()) => self.triangles_of(start as usize),
+                Ok(()) => self.add_face(start as usize),
                 Err(Corner::Early(fault) | Corner::Faulty(fault)) => Err(fault),
             };
             if let Err(fault) = read {
@@ -222,13 +222,13 @@ impl ObjReader<'_, '_> {
         Ok(())
     }
 
-    /// Adds the triangles of the face at byte `at`, whose corners have been read.
-    fn triangles_of(&mut self, at: usize) -> Result<(), MeshFault> {
+    /// Adds the triangles of the face at byte `face_at`, whose corners have been read.
+    fn add_face(&mut self, face_at: usize) -> Result<(), MeshFault> {
         let FaceCorners { positions, texture_coordinates, normals } = &mut self.corners;
         let count = positions.len();
         if count < 3 {
             let message = format!("a face has at least 3 corners; this one has {count}");
-            return Err(MeshFault::in_text(at, message));
+            return Err(MeshFault::in_text(face_at, message));
         }
         let mut is_uneven = false;
         for indices in [texture_coordinates, normals] {
@@ -239,13 +239,13 @@ impl ObjReader<'_, '_> {
         }
         if is_uneven {
             let message = "the corners of this face are not written alike: all v, all v/vt, all v//vn or all v/vt/vn";
-            self.side_files.left_out.leave_out(MeshFault::in_text(at, message))?;
+            self.side_files.left_out.leave_out(MeshFault::in_text(face_at, message))?;
         }
-        self.triangles()
+        self.add_triangles()
     }
 
     /// Adds the triangles of the current face.
-    fn triangles(&mut self) -> Result<(), MeshFault> {
+    fn add_triangles(&mut self) -> Result<(), MeshFault> {
         let has_colors = !self.mesh.colors.values().is_empty();
         // Vertices after the last coloured one have no colour yet, and each position needs one as soon as a triangle
         // uses it.
@@ -324,7 +324,7 @@ impl ObjReader<'_, '_> {
             && !is_no_material(name)
         {
             let name = shown(name);
-            if !self.side_files.warn(&format!("colours missing: material {name} is in no MTL file")) {
+            if !self.side_files.warn_if_allowed(&format!("colours missing: material {name} is in no MTL file")) {
                 let message = format!("material {name} is not in any MTL file named above this line");
                 return Err(self.side_files.left_out.never_left_out(MeshFault::in_text(at, message)));
             }
@@ -352,9 +352,9 @@ impl ObjReader<'_, '_> {
     /// fault in its contents.
     fn read_library(&mut self, name: &str) -> Result<Result<(), MeshFault>, String> {
         let library = self.library.get_or_insert_default();
-        let path = match local_path(Path::new(""), name) {
+        let path = match side_file_path(Path::new(""), name) {
             Ok(path) => path,
-            Err(message) if self.side_files.warn(&format!("materials missing: {message}")) => {
+            Err(message) if self.side_files.warn_if_allowed(&format!("materials missing: {message}")) => {
                 library.record_missing(PathBuf::from(name));
                 return Ok(Ok(()));
             }

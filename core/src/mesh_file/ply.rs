@@ -8,7 +8,7 @@ mod vertices;
 
 use super::builder::MeshBuilder;
 use super::fault::MeshFault;
-use super::side_files::{SideFiles, local_path};
+use super::side_files::{SideFiles, side_file_path};
 use super::texture::{TexelBudget, TexturePlacement, decode};
 use super::{CLAY, MeshFile, MeshMaterial};
 use crate::color::LinearRgb;
@@ -23,7 +23,7 @@ pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, meter: Meter<'_
     let header = Header::read(bytes, &mut side_files.left_out)?;
     let rows = header.elements.iter().map(|element| element.count as usize).sum::<usize>();
     // The header may claim more rows than the file has bytes.
-    side_files.left_out.set_part_count(rows.min(bytes.len()));
+    side_files.left_out.set_fault_limit_for(rows.min(bytes.len()));
     match header.encoding {
         Encoding::Ascii => read_body(&header, AsciiRows::new(bytes, header.end, meter), side_files),
         Encoding::LittleEndian => read_body(&header, BinaryRows::<false>::new(bytes, header.end, meter), side_files),
@@ -73,14 +73,14 @@ fn materials(header: &Header<'_>, side_files: &mut SideFiles<'_>) -> Result<Vec<
     let mut materials = Vec::new();
     for &name in &header.textures {
         let name = String::from_utf8_lossy(name);
-        let read = local_path(Path::new(""), &name).and_then(|path| side_files.read_colors(&path, "texture"));
+        let read = side_file_path(Path::new(""), &name).and_then(|path| side_files.read_colors(&path, "texture"));
         let decoded = read.and_then(|bytes| bytes.map(|bytes| decode(&bytes, &mut budget)).transpose());
         let (reflectance, texture) = match decoded {
             Ok(Some(texture)) => (LinearRgb::grey(1.0), Some(TexturePlacement::plain(Arc::new(texture)))),
             Ok(None) => (CLAY, None),
             Err(message) => {
                 let message = format!("the texture {name} is missing: {message}");
-                if !side_files.warn(&message) {
+                if !side_files.warn_if_allowed(&message) {
                     return Err(MeshFault::of_file(message));
                 }
                 (CLAY, None)

@@ -13,7 +13,7 @@ const MAX_EAR_CLIPPED_CORNERS: usize = 64;
 pub(super) fn triangulated(corners: &[u32], positions: &[Vec3]) -> impl Iterator<Item = [usize; 3]> + use<> {
     // A triangle is always convex, and large polygons always become fans: no outline is computed for either.
     let may_be_concave = (4..=MAX_EAR_CLIPPED_CORNERS).contains(&corners.len());
-    let outline = if may_be_concave { projected(corners, positions) } else { None };
+    let outline = if may_be_concave { dominant_plane_outline(corners, positions) } else { None };
     let mut ears = Vec::new();
     let mut fan: Vec<usize> = Vec::new();
     if let Some(outline) = outline.filter(|outline| !is_convex(outline)) {
@@ -27,7 +27,7 @@ pub(super) fn triangulated(corners: &[u32], positions: &[Vec3]) -> impl Iterator
 
 /// Returns the corners projected to the coordinate plane where the polygon's area is largest, as a
 /// counterclockwise outline; `None` if a corner has no position.
-fn projected(corners: &[u32], positions: &[Vec3]) -> Option<Vec<DVec2>> {
+fn dominant_plane_outline(corners: &[u32], positions: &[Vec3]) -> Option<Vec<DVec2>> {
     let points: Vec<DVec3> =
         corners.iter().map(|&i| positions.get(i as usize).map(|p| p.as_dvec3())).collect::<Option<_>>()?;
     let next = |i: usize| points[(i + 1) % points.len()];

@@ -69,7 +69,7 @@ impl<'a> SideFiles<'a> {
             let beside = (self.open)(name);
             opened = if beside.is_ok() { beside } else { opened };
         }
-        if is_missing(&opened) && self.warn(&format!("{what} missing: {}", path.to_string_lossy())) {
+        if is_missing(&opened) && self.warn_if_allowed(&format!("{what} missing: {}", path.to_string_lossy())) {
             return Ok(None);
         }
         self.counted_bytes(path, opened).map(Some)
@@ -78,7 +78,7 @@ impl<'a> SideFiles<'a> {
     /// Warns of colours that are not shown, once with each message.
     ///
     /// Returns false if the caller should return an error.
-    pub(super) fn warn(&mut self, message: &str) -> bool {
+    pub(super) fn warn_if_allowed(&mut self, message: &str) -> bool {
         // Many materials of a library may name the same texture, which gives the same message.
         if self.warnings.contains(message) {
             return true;
@@ -103,7 +103,7 @@ impl<'a> SideFiles<'a> {
         if let Unfinished::Failed(error) = &fault {
             let is_in_mesh = Path::new(error.name()) == self.mesh;
             let message = if is_in_mesh { error.message().to_owned() } else { error.to_string() };
-            if self.warn(&format!("colours missing: {message}")) {
+            if self.warn_if_allowed(&format!("colours missing: {message}")) {
                 return Ok(());
             }
         }
@@ -123,28 +123,28 @@ impl<'a> SideFiles<'a> {
 
 /// Returns the path of a side file relative to the mesh, or the message of an error.
 ///
-/// `written` is the path as written in a file that lies in `folder`. `\` is a separator too, as on Windows. Of an
+/// `reference` is the path as written in a file that lies in `folder`. `\` is a separator too, as on Windows. Of an
 /// absolute path the last part is taken. URLs, and texts that are no file names, are refused.
-pub(super) fn local_path(folder: &Path, written: &str) -> Result<PathBuf, String> {
-    let written = written.strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or(written);
-    let say = |what: &str| Err(format!("{} {what}", shown_path(written)));
-    if written.len() > MAX_PATH_BYTES {
+pub(super) fn side_file_path(folder: &Path, reference: &str) -> Result<PathBuf, String> {
+    let reference = reference.strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or(reference);
+    let say = |what: &str| Err(format!("{} {what}", shown_path(reference)));
+    if reference.len() > MAX_PATH_BYTES {
         return say("is longer than a path may be");
     }
     // URLs are refused: a picture must not depend on the network, and a mesh must not reveal who views it.
-    if written.contains("://") || written.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("data:")) {
+    if reference.contains("://") || reference.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("data:")) {
         return say("is a URL; only files beside this one are read");
     }
-    let mut path = PathBuf::from(written.replace('\\', "/"));
+    let mut path = PathBuf::from(reference.replace('\\', "/"));
     // Absolute paths would let a downloaded mesh read any file. `C:` begins one if the file was written on Windows. An
     // absolute path names a file of the author's computer, which mostly lies beside the mesh here.
-    let has_drive = written.as_bytes().get(1) == Some(&b':');
+    let has_drive = reference.as_bytes().get(1) == Some(&b':');
     if has_drive || path.components().any(|part| matches!(part, Component::RootDir | Component::Prefix(_))) {
         let last = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         path = PathBuf::from(last.rsplit(':').next().unwrap_or_default());
     }
     // The file name of `.` and `a/..` is `None`: they are folders.
-    if written.contains('\0') || path.file_name().is_none() {
+    if reference.contains('\0') || path.file_name().is_none() {
         return say("is not a file name");
     }
     // Without `./` each file has one spelling: files that were already read are looked up by their path.

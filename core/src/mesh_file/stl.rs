@@ -47,7 +47,7 @@ pub(super) fn read_binary(
         MeshFault::at_byte(bytes.len(), message)
     })?;
     let facets = bytes[HEADER..].chunks_exact(FACET);
-    left_out.set_part_count(facets.len());
+    left_out.set_fault_limit_for(facets.len());
     if size != bytes.len() as u64 {
         let (triangles, found) = ((size - HEADER as u64) / FACET as u64, bytes.len());
         let message = format!(
@@ -153,7 +153,7 @@ pub(super) fn read_text(bytes: &[u8], left_out: &mut LeftOut<'_>, mut meter: Met
         meter.advance_to(start)?;
         if let Err(fault) = reader.statement() {
             left_out.leave_out(fault)?;
-            reader.leave_out(start);
+            reader.skip_faulty_line(start);
         }
     }
     if reader.open.is_some() {
@@ -176,7 +176,7 @@ impl TextReader<'_> {
         match word.to_ascii_lowercase().as_slice() {
             b"vertex" if self.open.is_some() => return self.vertex(),
             b"outer" if self.open.is_none() => self.open = Some(self.mesh.positions.len() as u32), // below 2^31 bytes
-            b"endloop" if self.open.is_some() => self.end_loop(at)?,
+            b"endloop" if self.open.is_some() => self.triangulate_loop(at)?,
             // The order of these lines is not checked: some writers leave some out, and only vertices and loops matter.
             b"solid" | b"facet" | b"endfacet" | b"endsolid" | b"color" if self.open.is_none() => {}
             _ if self.open.is_some() => {
@@ -191,9 +191,9 @@ impl TextReader<'_> {
         Ok(())
     }
 
-    /// Skips the faulty line that begins at `start`.
-    fn leave_out(&mut self, start: usize) {
-        self.text = self.text.cursor_at(start);
+    /// Skips the faulty line that begins at `line_start`.
+    fn skip_faulty_line(&mut self, line_start: usize) {
+        self.text = self.text.cursor_at(line_start);
         let is_vertex = self.text.word().eq_ignore_ascii_case(b"vertex");
         self.text.skip_line();
         if is_vertex && self.open.is_some() {
@@ -211,7 +211,7 @@ impl TextReader<'_> {
 
     /// Adds the triangles of a loop. The format allows only triangles, but some programs write
     /// larger polygons.
-    fn end_loop(&mut self, offset: usize) -> Result<(), MeshFault> {
+    fn triangulate_loop(&mut self, offset: usize) -> Result<(), MeshFault> {
         let corners: Vec<u32> = (self.open.take().unwrap_or_default()..self.mesh.positions.len() as u32).collect();
         if corners.len() < 3 {
             self.mesh.positions.truncate(self.mesh.positions.len() - corners.len());

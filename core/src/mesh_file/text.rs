@@ -44,7 +44,7 @@ impl<'a> TextCursor<'a> {
         loop {
             match self.peek() {
                 Some(b' ' | b'\t') => self.at += 1,
-                Some(b'\\') => match line_end(&self.bytes[self.at + 1..]) {
+                Some(b'\\') => match line_ending_len(&self.bytes[self.at + 1..]) {
                     0 => return,
                     end => self.at += 1 + end,
                 },
@@ -67,7 +67,7 @@ impl<'a> TextCursor<'a> {
     /// Moves to the start of the next line.
     pub(super) fn skip_line(&mut self) {
         self.rest_of_line();
-        self.at += line_end(&self.bytes[self.at..]);
+        self.at += line_ending_len(&self.bytes[self.at..]);
     }
 
     /// Moves past blank lines and comments to the next statement. Returns whether there is one.
@@ -114,7 +114,7 @@ impl<'a> TextCursor<'a> {
         match self.bytes.get(offset) {
             None | Some(b' ' | b'\t' | b'\n' | b'\r') => true,
             // A backslash that is not before a line end is part of the word, as in a Windows path.
-            Some(b'\\') => line_end(&self.bytes[offset + 1..]) > 0,
+            Some(b'\\') => line_ending_len(&self.bytes[offset + 1..]) > 0,
             _ => false,
         }
     }
@@ -238,8 +238,8 @@ impl<'a> TextCursor<'a> {
     }
 }
 
-/// Returns the length of the line end at the start of the bytes; 0 if there is none.
-fn line_end(bytes: &[u8]) -> usize {
+/// Returns the length of the line ending at the start of the bytes; 0 if there is none.
+fn line_ending_len(bytes: &[u8]) -> usize {
     match bytes {
         [b'\r', b'\n', ..] => 2,
         [b'\n' | b'\r', ..] => 1,

@@ -4,7 +4,7 @@ use super::json::Json;
 use crate::mesh_file::MAX_TRIANGLES;
 use crate::mesh_file::fault::{MeshFault, shown_path};
 use crate::mesh_file::left_out::LeftOut;
-use crate::mesh_file::side_files::{SideFiles, local_path};
+use crate::mesh_file::side_files::{SideFiles, side_file_path};
 use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use std::collections::HashMap;
@@ -150,7 +150,7 @@ impl<'a, 'b> Buffers<'a, 'b> {
         if let Some(data) = text.strip_prefix("data:") {
             return data_of(data).map(|bytes| Some(Bytes::Read(bytes.into()))).map_err(|message| uri.fault(message));
         }
-        let path = local_path(Path::new(""), &percent_decoded(text)).map_err(|message| uri.fault(message))?;
+        let path = side_file_path(Path::new(""), &percent_decoded(text)).map_err(|message| uri.fault(message))?;
         // Several buffers and images may name the same file, under different indices.
         if let Some(bytes) = self.files.get(&path) {
             return Ok(Some(Bytes::Read(Rc::clone(bytes))));
@@ -200,7 +200,7 @@ fn percent_decoded(uri: &str) -> String {
 }
 
 /// Returns the name of an image for messages: its file, or "the picture" if it is in the mesh file.
-pub(super) fn described(uri: Option<&str>) -> String {
+pub(super) fn shown_image_name(uri: Option<&str>) -> String {
     match uri.filter(|uri| !uri.starts_with("data:")) {
         Some(uri) => shown_path(uri),
         None => "the picture".to_owned(),

@@ -115,7 +115,7 @@ impl<'a> Json<'a> {
     }
 
     /// Returns the number of items of the list in the field `name`; 0 if the field is missing.
-    pub(super) fn count(self, name: &'static str) -> Result<usize, MeshFault> {
+    pub(super) fn list_len(self, name: &'static str) -> Result<usize, MeshFault> {
         self.field(name)?.map_or(Ok(0), |list| list.items().map(<[Value]>::len))
     }
 

@@ -1,6 +1,6 @@
 //! The materials of a glTF file: base colours and their textures.
 
-use super::buffers::{Buffers, described};
+use super::buffers::{Buffers, shown_image_name};
 use super::json::Json;
 use crate::color::LinearRgb;
 use crate::mesh_file::fault::MeshFault;
@@ -123,7 +123,7 @@ impl<'a> MaterialReader<'_, 'a, '_> {
             },
             None => texture::decode(self.buffers.view(image.required("bufferView")?)?.bytes(), &mut self.budget),
         };
-        let name = described(uri.map(Json::string).transpose()?);
+        let name = shown_image_name(uri.map(Json::string).transpose()?);
         let texture = Arc::new(decoded.map_err(|what| image.fault(format!("{name} {what}")))?);
         self.textures.insert(index, Arc::clone(&texture));
         Ok(Some(texture))

@@ -16,7 +16,7 @@ pub(super) fn read<'a>(
     buffers: &mut Buffers<'a, '_>,
     meter: &mut Meter<'_>,
 ) -> Result<MeshFile, MeshFault> {
-    let mut is_visited = vec![false; root.count("nodes")?];
+    let mut is_visited = vec![false; root.list_len("nodes")?];
     let globals = Globals::of(root)?;
     let mut primitives = Primitives::new(buffers)?;
     // An explicit stack, because a file may nest its nodes a million deep. Nodes are pushed in reverse, so that they
@@ -50,7 +50,7 @@ fn roots(root: Json<'_>) -> Result<Vec<IndexedNode<'_>>, MeshFault> {
     if let Some(scene) = scene {
         return nodes_in(scene, "nodes", root);
     }
-    let mut is_child = vec![false; root.count("nodes")?];
+    let mut is_child = vec![false; root.list_len("nodes")?];
     for node in root.list("nodes")? {
         for (child, _) in nodes_in(node, "children", root)? {
             is_child[child] = true;

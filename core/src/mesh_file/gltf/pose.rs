@@ -14,7 +14,7 @@ pub(super) struct Globals(Vec<DMat4>);
 
 impl Globals {
     pub(super) fn of(root: Json<'_>) -> Result<Self, MeshFault> {
-        let count = if root.count("skins")? > 0 { root.count("nodes")? } else { 0 };
+        let count = if root.list_len("skins")? > 0 { root.list_len("nodes")? } else { 0 };
         let mut globals = vec![DMat4::IDENTITY; count];
         if count == 0 {
             return Ok(Self(globals));

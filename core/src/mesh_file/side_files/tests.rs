@@ -2,7 +2,7 @@ use super::*;
 
 #[test]
 fn only_relative_paths_are_local() {
-    let local = |written| local_path(Path::new("a"), written);
+    let local = |reference| side_file_path(Path::new("a"), reference);
     assert_eq!(local("./b.mtl"), local("b.mtl"));
     assert_eq!(local("b.mtl"), Ok(PathBuf::from("a/b.mtl")));
     assert_eq!(local(r"..\textures\b c.png"), Ok(PathBuf::from("a/../textures/b c.png")));
