@@ -135,7 +135,7 @@ impl SceneFile {
             materials_complete: true,
         };
         if let Some(materials) = fields.get("materials") {
-            scene.materials_complete = reader.materials(materials, &mut scene.materials);
+            scene.materials_complete = reader.collect_all_named_materials(materials, &mut scene.materials);
         }
         scene
     }

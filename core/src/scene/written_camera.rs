@@ -30,7 +30,7 @@ impl Camera {
         if up != Vec3::Y {
             fields.push(format!("up: {}", vector_text(up)));
         }
-        fields.extend(lens_fields(&rectangle));
+        fields.extend(non_default_lens_fields(&rectangle));
         let shift = rectangle.shift();
         if shift != Vec2::ZERO {
             fields.push(format!("shift: ({}, {})", number_text(shift.x), number_text(shift.y)));
@@ -69,16 +69,17 @@ impl Camera {
         let (pose, rectangle) = (self.pose(), self.rectangle());
         let pixel = 1e-3 * f64::from(rectangle.height()) * f64::from(pose.eye.distance(pose.target));
         let digits = -libm::floor(libm::log10(0.1 * pixel));
-        let point = |v: Vec3| Vec3::from_array(v.to_array().map(|x| rounded(x.into(), digits) as f32));
-        let up = Vec3::from_array(pose.up.to_array().map(|x| rounded(x.into(), 4.0) as f32));
+        let point = |v: Vec3| Vec3::from_array(v.to_array().map(|x| rounded_to_decimals(x.into(), digits) as f32));
+        let up = Vec3::from_array(pose.up.to_array().map(|x| rounded_to_decimals(x.into(), 4.0) as f32));
         let camera = self.with_pose(Pose { eye: point(pose.eye), target: point(pose.target), up }).unwrap_or(*self);
-        let numbers = |v: Vec2, scale: f64| v.to_array().map(|x| rounded(scale * f64::from(x), 3.0) / scale);
+        let numbers =
+            |v: Vec2, scale: f64| v.to_array().map(|x| rounded_to_decimals(scale * f64::from(x), 3.0) / scale);
         let [shift, tilt] = [numbers(rectangle.shift(), 1.0), numbers(rectangle.tilt(), 1_f64.to_degrees())]
             .map(|[x, y]| Vec2::new(x as f32, y as f32));
         let rectangle = rectangle.with_shift(shift).and_then(|shifted| shifted.with_tilt(tilt)).unwrap_or(rectangle);
         let camera = camera.with_rectangle(rectangle);
         // The angle of a rectangle with a width is not rounded, because its author has chosen the exact shape.
-        let angle = rounded(approximate_degrees(&rectangle), 2.0);
+        let angle = rounded_to_decimals(approximate_degrees(&rectangle), 2.0);
         match rectangle.with_vertical_fov(radians(angle)) {
             Ok(rounded) if rectangle.width().is_none() => camera.with_rectangle(rounded),
             _ => camera,
@@ -87,10 +88,10 @@ impl Camera {
 }
 
 /// Returns `x` rounded to this number of decimals.
-fn rounded(x: f64, digits: f64) -> f64 {
+fn rounded_to_decimals(x: f64, decimals: f64) -> f64 {
     // The scale is a power of ten with an exponent of 0 or more, because 0.1 is not exact in binary. Adding 0 turns -0
     // into 0.
-    let scale = libm::pow(10.0, digits.clamp(0.0, 20.0));
+    let scale = libm::pow(10.0, decimals.clamp(0.0, 20.0));
     (x * scale).round() / scale + 0.0
 }
 
@@ -116,7 +117,7 @@ fn parses_as(text: &str, is_right: impl Fn(f64) -> bool) -> bool {
 ///
 /// A rectangle without a width has an angle in degrees. One with a width has an angle and an aspect ratio if both are
 /// short and are read back with the same bits, otherwise f, w and h with f = 1.
-fn lens_fields(rectangle: &ViewRectangle) -> Option<String> {
+fn non_default_lens_fields(rectangle: &ViewRectangle) -> Option<String> {
     let Some(width) = rectangle.width() else {
         let degrees = fov_degrees_text(rectangle).unwrap_or_else(|| approximate_degrees(rectangle).to_string());
         return (degrees != DEFAULT_FOV_DEGREES.to_string()).then(|| format!("vertical_fov: {degrees}"));

@@ -59,7 +59,7 @@ fn insertion_into_list(text: &str, list: &SyntaxNode<'_>, view: &str) -> Option<
         Some(item) => indent_of(text, item.span.start as usize).to_owned(),
         None => format!("{}    ", indent_of(text, close)),
     };
-    let missing = last.filter(|&end| !text[skip_blanks(text, end)..].starts_with(','));
+    let missing = last.filter(|&end| !text[skip_trivia(text, end)..].starts_with(','));
     // The comma is inserted directly after the value, as a comment may follow on its line.
     let comma = missing.map(|end| (end, ",".to_owned()));
     Some(comma.into_iter().chain([(before, format!("{}{indent}{view},", line_end(text)))]).collect())
@@ -69,7 +69,7 @@ fn insertion_into_list(text: &str, list: &SyntaxNode<'_>, view: &str) -> Option<
 /// field on its line.
 fn insertion_after(text: &str, field: &Field<'_>, view: &str) -> Vec<Addition> {
     let end = field.value.span.end as usize;
-    let comma = Some(skip_blanks(text, end)).filter(|&at| text[at..].starts_with(','));
+    let comma = Some(skip_trivia(text, end)).filter(|&at| text[at..].starts_with(','));
     let next = comma.map_or(end, |at| at + 1);
     let line = text[next..].lines().next().unwrap_or_default();
     if !(line.trim().is_empty() || line.trim_start().starts_with("//")) || !text[next..].contains('\n') {
@@ -140,7 +140,7 @@ fn line_end(text: &str) -> &'static str {
 /// Returns the index of the first byte from `offset` on outside white space and comments.
 ///
 /// The text has been parsed, so every comment ends.
-fn skip_blanks(text: &str, mut offset: usize) -> usize {
+fn skip_trivia(text: &str, mut offset: usize) -> usize {
     loop {
         let rest = &text[offset..];
         let blanks = rest.len() - rest.trim_start().len();

@@ -48,7 +48,7 @@ pub enum WrittenLens {
 
 impl WrittenCamera {
     /// Returns whether no intrinsic parameter is given.
-    pub fn is_without_lens(&self) -> bool {
+    pub fn has_no_intrinsics(&self) -> bool {
         let nothing = WrittenLens::FieldOfView { vertical_fov: None, aspect_ratio: None };
         self.lens == nothing && self.shift.is_none() && self.tilt.is_none()
     }

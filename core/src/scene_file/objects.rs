@@ -33,7 +33,11 @@ impl NodeReader<'_> {
     /// Reads the entries of the field `materials`.
     ///
     /// Returns `false` if a name may be missing because its entry has a fault.
-    pub(super) fn materials(&mut self, node: &SyntaxNode<'_>, materials: &mut Vec<NamedMaterial>) -> bool {
+    pub(super) fn collect_all_named_materials(
+        &mut self,
+        node: &SyntaxNode<'_>,
+        named: &mut Vec<NamedMaterial>,
+    ) -> bool {
         let Value::Map(entries) = &node.value else {
             // `materials: []` and `()` mean no materials, as an empty map does.
             let is_empty = values(node).is_some_and(<[_]>::is_empty);
@@ -51,7 +55,7 @@ impl NodeReader<'_> {
             // The material is read even if its name is a duplicate, so that its faults are found.
             let material = self.material(value);
             match self.material_name(key) {
-                Some(name) if names.insert(name) => materials.push(NamedMaterial { name: name.into(), material }),
+                Some(name) if names.insert(name) => named.push(NamedMaterial { name: name.into(), material }),
                 Some(name) => self.fault(key.span, || format!("duplicate material {}", quoted(name))),
                 None => complete = false,
             }

@@ -35,7 +35,7 @@ impl<'a> Tokens<'a> {
 
     /// Returns the next token and its range.
     pub(super) fn next(&mut self) -> Result<(Token<'a>, Span), Fault> {
-        self.skip_space()?;
+        self.skip_trivia()?;
         let start = self.at;
         let token = self.read_token()?;
         Ok((token, Span::new(start, self.at)))
@@ -48,7 +48,7 @@ impl<'a> Tokens<'a> {
             self.at += BYTE_ORDER_MARK.len_utf8();
         }
         loop {
-            self.skip_space()?;
+            self.skip_trivia()?;
             let rest = self.rest();
             if !rest.starts_with("#![") {
                 return Ok(());
@@ -172,7 +172,7 @@ impl<'a> Tokens<'a> {
     }
 
     /// Skips white space and comments.
-    fn skip_space(&mut self) -> Result<(), Fault> {
+    fn skip_trivia(&mut self) -> Result<(), Fault> {
         loop {
             self.take_while(is_space);
             let rest = self.rest();

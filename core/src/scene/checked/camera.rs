@@ -21,7 +21,7 @@ impl Validator<'_> {
     /// If the camera has a fault and is `None`, the view is still checked.
     pub(super) fn view(&mut self, written: &WrittenCamera, camera: Option<&Camera>) -> Option<Camera> {
         let rectangle = match camera {
-            Some(camera) if written.is_without_lens() => Some(camera.rectangle()),
+            Some(camera) if written.has_no_intrinsics() => Some(camera.rectangle()),
             _ => self.rectangle_of(written),
         };
         let up = camera.map_or(Vec3::Y, |camera| camera.pose().up);
