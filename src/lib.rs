@@ -261,7 +261,7 @@
 //! - **lane**: one of the eight numbers of a SIMD register; **mask**: one bit per lane.
 //! - **active mask**: the lanes whose result is used. **hit mask**: the lanes whose ray hits.
 //! - **packet**: up to 64 rays that are traced together; **single ray**: one ray against eight boxes at once.
-//! - **common-origin packet**: a packet whose rays share an origin, such as eye rays, which allows cheaper culling.
+//! - **projection center**: the eye or light in which all rays of a packet meet, which allows cheaper culling.
 //! - **culling**: excluding a box or primitive for a whole group of rays by one conservative test.
 //! - **error bound**: a bound on the rounding error of a computed value, by which conservative tests are widened.
 //! - **edge function**: the sign of a ray's side of a triangle's edge.

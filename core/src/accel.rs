@@ -338,7 +338,8 @@ impl Accelerator {
             }
         }
         // Primitives are counted over all trees, as the user sees one progress for the scene.
-        let (done, total) = (AtomicUsize::new(0), lists.boxes().count() + Instances::triangle_count(&lists.instances));
+        let (done, total) =
+            (AtomicUsize::new(0), lists.boxes().count() + Instances::distinct_triangle_count(&lists.instances));
         let report_more = |more| {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
             report(Progress { work: Work::Building, done, total })

@@ -174,7 +174,7 @@ fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit) -> ShadedHit {
 /// Returns the contribution of a light at a surface point.
 // The shadow ray is traced singly, with an observer, because packets do not return which surface blocks a ray.
 fn light_contribution(scene: &Scene, light: &Light, point: &SurfacePoint) -> LightContribution {
-    let incidence = shade::incidence_on_either_side(light, point);
+    let incidence = shade::incidence_with_signed_cosine(light, point);
     let ray = shade::shadow_ray(light, point);
     let blocker = (scene.shadows() && 0.0 < incidence.cosine)
         .then(|| hit::any_hit_observed(scene, &ray, light.blocking_interval(), &mut TestRecorder::default()))

@@ -316,7 +316,7 @@ fn trace_partial(
             Some(_) => colors::share_grey(sample.lit_by.count_ones(), scene.lights().len().min(32) as u32),
             None => NO_HIT,
         }),
-        Map::Cost => of_surfaces(&|sample| colors::heat(cost::test_count(scene, sample))),
+        Map::Cost => of_surfaces(&|sample| colors::heat(cost::eye_and_shadow_tests(scene, sample))),
         Map::Facing => of_surfaces(&|sample| facing_color(scene, sample)),
         Map::Wire => of_surfaces(&|sample| wire::color(scene, camera, resolution, sample).unwrap_or(NO_HIT)),
         Map::Contrast => contrast::trace(executor, scene, camera, resolution, sampling),

@@ -28,7 +28,7 @@ mod plane;
 mod sphere;
 mod triangle;
 
-pub use comparison::{Comparison, ObjectSteps, OrderTimes, random_spheres, spheres_in_a_cube};
+pub use comparison::{Comparison, ObjectSteps, OrderTimes, random_centers_and_scales, spheres_in_a_cube};
 pub use depth_buffer::DepthBuffer;
 
 /// Draws all objects of a scene, one after the other, on the calling thread.
@@ -79,10 +79,10 @@ impl Rasterizer {
                     self.draw_spheres();
                 }
             }
-            Primitive::Triangle(triangle) => self.add_triangle(triangle.corners(), object),
-            Primitive::Facet(facet) => self.add_triangle(facet.triangle().corners(), object),
+            Primitive::Triangle(triangle) => self.queue_triangle(triangle.corners(), object),
+            Primitive::Facet(facet) => self.queue_triangle(facet.triangle().corners(), object),
             Primitive::Plane(plane) => self.draw_plane(plane, object),
-            formula => self.draw_formula(formula, object),
+            primitive => self.draw_by_eye_rays(primitive, object),
         }
     }
 
@@ -104,7 +104,7 @@ impl Rasterizer {
     }
 
     #[inline]
-    fn add_triangle(&mut self, corners: [Vec3; 3], object: u32) {
+    fn queue_triangle(&mut self, corners: [Vec3; 3], object: u32) {
         self.triangles.push((corners, object));
         if self.triangles.len() == LANES {
             self.draw_triangles();
@@ -135,15 +135,15 @@ impl Rasterizer {
 
     /// Draws any surface but a sphere, triangle or plane, by the eye rays of the pixels in its
     /// rectangle.
-    fn draw_formula(&mut self, surface: &Primitive<'_>, object: u32) {
-        let Some(rectangle) = self.projection.of_bounds(surface.bounds()) else { return };
-        self.tests += rectangle.tests();
+    fn draw_by_eye_rays(&mut self, primitive: &Primitive<'_>, object: u32) {
+        let Some(rectangle) = self.projection.of_bounds(primitive.bounds()) else { return };
+        self.tests += rectangle.primitive_and_pixel_tests();
         for y in rectangle.rows() {
             for x in rectangle.columns() {
                 let probe = Probe::new(self.projection.ray(x, y));
                 // Crossings behind the nearest surface drawn so far at this pixel are not searched for.
                 let within = Interval { max: self.buffer.t(x, y).min(f32::MAX), ..Interval::IN_FRONT };
-                if let Some(t) = surface.closest_crossing(&probe, within) {
+                if let Some(t) = primitive.closest_crossing(&probe, within) {
                     self.buffer.draw([x, y], t, object);
                 }
             }

@@ -4,9 +4,9 @@ use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Mask, Number, Vector};
 use glam::{DVec3, Vec3};
 use std::array::from_fn;
 
-mod common_origin;
+mod projection_center;
 
-pub use common_origin::CommonOrigin;
+pub use projection_center::ProjectionCenter;
 
 /// The half line `origin + t * direction`.
 ///
@@ -286,8 +286,8 @@ impl Interval {
     pub const IN_FRONT: Self = Self { min: 0.0, max: f32::MAX };
 
     /// Clamps `t` to the interval, or returns `None` if the interval is empty. NaN stays NaN.
-    pub fn nearest(self, t: f32) -> Option<f32> {
-        (self.min <= self.max).then_some(nearest_in(self.min, self.max, t))
+    pub fn clamp(self, t: f32) -> Option<f32> {
+        (self.min <= self.max).then_some(clamp_keeping_nan(self.min, self.max, t))
     }
 
     /// Returns whether `t` lies inside; false for NaN and infinity.
@@ -298,6 +298,6 @@ impl Interval {
 
 /// Clamps `t` to `min..=max`. NaN stays NaN, unlike with `Number::max` and `Number::min`.
 #[inline(always)]
-pub fn nearest_in<N: Number>(min: N, max: N, t: N) -> N {
+pub fn clamp_keeping_nan<N: Number>(min: N, max: N, t: N) -> N {
     N::select(t.lt(min), min, N::select(max.lt(t), max, t))
 }

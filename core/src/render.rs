@@ -35,7 +35,7 @@ mod builder;
 
 pub use adaptive::ProgressiveRender;
 pub use builder::Render;
-pub use count::{Counts, count};
+pub use count::{Counts, count_rays_and_hits};
 pub(crate) use gbuffer::trace_g_buffer_partial;
 pub use gbuffer::{GBufferSample, PixelValues, TraceDepth, trace_g_buffer};
 pub use geometry::Geometry;

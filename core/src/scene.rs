@@ -218,7 +218,9 @@ impl Scene {
     #[doc(hidden)]
     pub fn invisible_formula_warnings(&self) -> Vec<String> {
         let warning = |(at, object): (usize, &Object)| match &object.shape {
-            Shape::Implicit(implicit) => implicit.warning().map(|warning| format!("object {at}: {warning}")),
+            Shape::Implicit(implicit) => {
+                implicit.invisibility_warning().map(|warning| format!("object {at}: {warning}"))
+            }
             _ => None,
         };
         (1..).zip(self.objects()).filter_map(warning).collect()

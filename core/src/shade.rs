@@ -195,7 +195,7 @@ fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32)
 ///
 /// `direction_steps` are the differences in direction to the neighbouring eye rays, to the right and upwards.
 /// Footprints are computed from them.
-pub fn reflect(
+pub fn reflected_light(
     scene: &Scene,
     rays: &[EightRays],
     direction_steps: [Vec3; 2],
@@ -208,7 +208,7 @@ pub fn reflect(
     simd::dispatch(Reflect { scene, rays, direction_steps, hits, points, arriving, lights });
 }
 
-/// The SIMD kernel of [`reflect`].
+/// The SIMD kernel of [`reflected_light`].
 struct Reflect<'w> {
     scene: &'w Scene,
     rays: &'w [EightRays],
@@ -292,11 +292,11 @@ pub struct Incidence {
 
 /// Returns the incidence of a light at a point, or `None` if the surface faces away.
 pub fn incidence(light: &Light, point: &SurfacePoint) -> Option<Incidence> {
-    Some(incidence_on_either_side(light, point)).filter(|incidence| 0.0 < incidence.cosine)
+    Some(incidence_with_signed_cosine(light, point)).filter(|incidence| 0.0 < incidence.cosine)
 }
 
 /// Returns the incidence of a light at a point, also if the surface faces away.
-pub fn incidence_on_either_side(light: &Light, point: &SurfacePoint) -> Incidence {
+pub fn incidence_with_signed_cosine(light: &Light, point: &SurfacePoint) -> Incidence {
     let (position, normal) = (Vector::<f32>::splat(point.position), Vector::splat(point.shading_normal));
     let (_, IncidentLight { l, distance, cosine, light: [r, g, b] }) = incident_light(light, position, normal);
     let distance = if light.position().is_some() { distance } else { f32::INFINITY };

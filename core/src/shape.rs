@@ -10,7 +10,7 @@
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
 use crate::lanes::{F32x8, LANES, Lanes, Number, Vector, set_bits};
-use crate::ray::{CommonOrigin, EightRays, Interval, Probe, Ray, Rays};
+use crate::ray::{EightRays, Interval, Probe, ProjectionCenter, Ray, Rays};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -52,7 +52,7 @@ pub use ellipsoid::Ellipsoid;
 pub use equation::{Equation, Step};
 pub use implicit::Implicit;
 #[cfg(feature = "ron")]
-pub(crate) use instance::Hull;
+pub(crate) use instance::CornerCells;
 pub(crate) use instance::Passage;
 pub use mesh::{Facet, Mesh, WrittenMesh};
 pub use placement::{Placement, WrittenPlacement};
@@ -152,22 +152,22 @@ pub trait Crossable<N: Number> {
     /// The crossings are those of [`closest_crossing`](Surface::closest_crossing); `None` only if no lane hits.
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)>;
 
-    /// Computes [`first_crossing`](Self::first_crossing), with or without crossings beyond `max`.
+    /// Computes [`first_crossing`](Self::first_crossing), with or without crossings beyond a limit.
     ///
-    /// By default, crossings beyond `max` are returned.
+    /// The limit is the second number. By default, crossings beyond it are returned.
     #[inline(always)]
-    fn first_crossing_until(&self, rays: &Rays<N>, [min, _]: [N; 2]) -> Option<(N::Mask, N)> {
+    fn first_crossing_with_hint(&self, rays: &Rays<N>, [min, _max_hint]: [N; 2]) -> Option<(N::Mask, N)> {
         self.first_crossing(rays, min)
     }
 
-    /// Computes [`first_crossing_until`](Self::first_crossing_until) for a packet.
+    /// Computes [`first_crossing_with_hint`](Self::first_crossing_with_hint) for a packet.
     ///
     /// Its rays share an error bound.
     ///
     /// The error bound is [`EdgeFunctions::packet_error_bound`], or infinity if the packet has none.
     #[inline(always)]
-    fn first_crossing_with_bound(&self, rays: &Rays<N>, range: [N; 2], _error_bound: N) -> Option<(N::Mask, N)> {
-        self.first_crossing_until(rays, range)
+    fn first_crossing_in_packet(&self, rays: &Rays<N>, range: [N; 2], _packet_error_bound: N) -> Option<(N::Mask, N)> {
+        self.first_crossing_with_hint(rays, range)
     }
 
     /// Returns the minima and maxima of the smallest boxes around the surfaces.
@@ -311,7 +311,7 @@ pub trait SoaLeaf: Clone {
     /// Returns edge functions for culling groups of rays; `None` if they cost more than the exact
     /// test.
     #[inline(always)]
-    fn edge_functions<N: Lanes>(&self, _: &CommonOrigin<N>) -> Option<EdgeFunctions> {
+    fn edge_functions<N: Lanes>(&self, _: &ProjectionCenter<N>) -> Option<EdgeFunctions> {
         None
     }
 }

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use termtrace::internals::hit::Kernel;
 use termtrace::internals::rasterize::rasterize;
-use termtrace::internals::render::{Counts, count};
+use termtrace::internals::render::{Counts, count_rays_and_hits};
 use termtrace::internals::text::visible;
 use termtrace::{Resolution, Scene, render, tone};
 
@@ -237,7 +237,7 @@ struct TracedRound {
 impl TracedRound {
     fn measured(kernel: Kernel, scene: &Scene, resolution: Resolution, samples: NonZeroU32) -> Self {
         let start = Instant::now();
-        let counts = count(kernel, scene, scene.camera(), resolution, samples);
+        let counts = count_rays_and_hits(kernel, scene, scene.camera(), resolution, samples);
         let trace = start.elapsed();
         let start = Instant::now();
         let light = render(scene, scene.camera(), resolution, samples);

@@ -29,7 +29,7 @@ pub fn dragged(camera: &Camera, mode: KeyMode, grip: Grip, by: Vec2, aspect_rati
 /// The point stays at its position in the picture. In orbit mode the target moves towards the point as well, and
 /// `size`, the scene's size in world units, limits the distance from eye to target.
 pub fn wheeled(camera: &Camera, mode: KeyMode, point: Vec3, notches: f32, size: f32) -> Camera {
-    if mode == KeyMode::Orbit { camera.wheeled_around(point, notches, size) } else { camera.wheeled(point, notches) }
+    if mode == KeyMode::Orbit { camera.scaled_about(point, notches, size) } else { camera.wheeled(point, notches) }
 }
 
 /// Angular speed of the turntable in radians per second: one turn in 20 s.

@@ -88,7 +88,7 @@ impl Viewer {
     /// Moves the held light away from the eye by notches of the mouse wheel; negative notches move
     /// it nearer.
     pub(super) fn wheel_light(&mut self, notches: f32) {
-        self.move_light(|camera, from| camera.point_wheeled(from, notches));
+        self.move_light(|camera, from| camera.point_pushed_away(from, notches));
     }
 
     /// Moves the held light back to its position in the scene file.

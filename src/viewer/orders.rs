@@ -50,14 +50,14 @@ impl OrdersPanel {
     /// step if there is one.
     pub(super) fn advance(&mut self, now: Duration) -> (bool, Option<Duration>) {
         let Some(build) = &mut self.build else { return (false, None) };
-        let progress = self.pace.advance(build.comparison.total_tests(), now);
+        let progress = self.pace.advance(build.comparison.max_total_tests(), now);
         build.draw(self.pace.tests());
         progress
     }
 
     /// Returns the pictures as built so far; `None` if the frame's own picture is to be shown.
     pub(super) fn picture(&self, frame: &Frame) -> Option<Picture> {
-        let build = self.build.as_ref().filter(|build| self.pace.tests() < build.comparison.total_tests())?;
+        let build = self.build.as_ref().filter(|build| self.pace.tests() < build.comparison.max_total_tests())?;
         let [(_, left), (_, right)] = *frame.shot.layout.map_sizes(frame.resolution()) else { return None };
         // After a resize, the build is still that of the last frame until the next one is traced.
         if left.width() == 0
@@ -87,7 +87,7 @@ impl OrdersPanel {
     /// Changes the pace, and draws the objects anew if the build starts again.
     pub(super) fn change_pace(&mut self, change: fn(&mut BuildPace)) {
         let Some(build) = &mut self.build else { return };
-        self.pace.set_total(build.comparison.total_tests());
+        self.pace.set_total(build.comparison.max_total_tests());
         let before = self.pace.tests();
         change(&mut self.pace);
         // A build only adds to its picture, so that it has to start again to go back.

@@ -23,12 +23,12 @@ impl SceneState {
         self.move_camera(self.camera().panned(Vec2::new(-right / aspect_ratio, up), aspect_ratio));
     }
 
-    /// Multiplies the distance from the eye to the target by `factor`: below 1 moves nearer.
+    /// Multiplies the distance from eye to target by `distance_factor`: below 1 moves nearer.
     ///
     /// The distance stays within 0.001 and 10,000 times that of the camera [set](Self::set_camera) last, or of the last
     /// [`frame`](Self::frame).
-    pub fn nearer(&mut self, factor: f32) {
-        self.move_camera(self.camera().nearer_within(factor, self.scale()));
+    pub fn nearer(&mut self, distance_factor: f32) {
+        self.move_camera(self.camera().nearer_within(distance_factor, self.scale()));
     }
 
     /// Moves the camera so that all bounded objects of the scene fill the pane, without turning it.
@@ -74,7 +74,7 @@ impl SceneState {
     /// picture.
     pub fn scroll(&mut self, scene: &Scene, at: Position, notches: f32) -> bool {
         let Some(point) = self.point_at(scene, at) else { return false };
-        self.move_camera(self.camera().wheeled_around(point, notches, self.scale()));
+        self.move_camera(self.camera().scaled_about(point, notches, self.scale()));
         true
     }
 

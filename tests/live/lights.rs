@@ -44,9 +44,9 @@ fn arrows_move_the_light_that_g_takes() {
     let start = load(BALL).lights()[0].position().expect("a point light");
     wait_for_light(&mut session, start);
     session.send(b"g\x1b[5~\x1b");
-    wait_for_light(&mut session, load(BALL).camera().point_wheeled(start, 1.0));
+    wait_for_light(&mut session, load(BALL).camera().point_pushed_away(start, 1.0));
     session.send(b"g\x1b[6~\x1b[6~\x1b");
-    wait_for_light(&mut session, load(BALL).camera().point_wheeled(start, -1.0));
+    wait_for_light(&mut session, load(BALL).camera().point_pushed_away(start, -1.0));
     assert_eq!(camera(&mut session), None, "the eye stays where it is");
 }
 
@@ -59,9 +59,9 @@ fn a_drag_moves_the_light_and_the_wheel_its_distance() {
     session.send(format!("{}\x1b", drag(0, [30, 2], [20, 5])).as_bytes());
     wait_for_light(&mut session, dragged(Vec2::new(-0.25, 0.25)));
     session.send(format!("gr{}\x1b", report(64, [5, 5], 'M')).as_bytes());
-    wait_for_light(&mut session, load(BALL).camera().point_wheeled(start, 1.0));
+    wait_for_light(&mut session, load(BALL).camera().point_pushed_away(start, 1.0));
     session.send(format!("gr{}\x1b", report(65, [5, 5], 'M')).as_bytes());
-    wait_for_light(&mut session, load(BALL).camera().point_wheeled(start, -1.0));
+    wait_for_light(&mut session, load(BALL).camera().point_pushed_away(start, -1.0));
     assert_eq!(camera(&mut session), None, "the eye stays where it is");
 }
 

@@ -69,7 +69,7 @@ fn no_picture_builds_a_tree() {
         let light = render::render(scene, camera, resolution, Sampling::BEST);
         tone(&light, scene);
         ProgressiveRender::new(camera, resolution);
-        render::count(Kernel::Auto, scene, camera, resolution, NonZeroU32::MIN);
+        render::count_rays_and_hits(Kernel::Auto, scene, camera, resolution, NonZeroU32::MIN);
         render::trace_pixel(scene, camera, resolution, [20, 12]);
         for map in Map::ALL {
             maps::picture(map, scene, camera, resolution, Sampling::BEST);

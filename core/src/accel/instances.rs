@@ -90,8 +90,8 @@ impl Instances {
     }
 
     /// Returns the number of triangles in the trees of the meshes that instances in `list` share.
-    pub(super) fn triangle_count(list: &[(u32, Arc<Mesh>)]) -> usize {
-        let files: HashMap<_, _> = list.iter().map(|(_, mesh)| (Arc::as_ptr(mesh.shared_file()), mesh)).collect();
+    pub(super) fn distinct_triangle_count(instances: &[(u32, Arc<Mesh>)]) -> usize {
+        let files: HashMap<_, _> = instances.iter().map(|(_, mesh)| (Arc::as_ptr(mesh.shared_file()), mesh)).collect();
         files.values().map(|mesh| mesh.triangle_count() as usize).sum()
     }
 

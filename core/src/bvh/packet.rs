@@ -3,7 +3,7 @@
 //! A packet keeps the ranges of its rays' origins and inverse directions, and computes with these intervals as
 //! [`Bounds::crossed`](crate::bounds::Bounds::crossed) does with one ray (Boulos, Wald and Shirley, Geometric and
 //! Arithmetic Culling Methods for Entire Ray Packets, 2006). No ray enters a box before the start of the packet's
-//! interval, or leaves it after the end (`culling.md`, 5). The rays of a packet need no common origin: shadow rays
+//! interval, or leaves it after the end (`culling.md`, 5). The rays of a packet need no projection center: shadow rays
 //! start at surface points, as in single-ray traversal.
 
 use super::{Bvh, Child, PacketStack, Prefetch, StackEntry, push_all_but_last, push_all_but_nearest};
@@ -245,10 +245,10 @@ pub trait Visitor<N>: Prefetch {
     fn t_min(&self) -> f32;
 
     /// Returns the largest upper end of the rays' intervals in each group, one group per lane.
-    fn t_max(&self) -> N;
+    fn group_t_max(&self) -> N;
 
     /// Returns an upper bound of the upper ends of all rays' intervals.
-    fn max_t_max(&self) -> f32;
+    fn packet_t_max(&self) -> f32;
 
     /// Tests the primitives of a leaf.
     fn visit_leaf(&mut self, leaf: usize);
@@ -284,7 +284,7 @@ impl Bvh {
         let mut next = Some(StackEntry { child: root, slot: u32::MAX, start: visitor.t_min() });
         while let Some(StackEntry { child, slot, start }) = next.take().or_else(|| waiting.pop()) {
             // Since this child was pushed, all rays may have found hits nearer than its box.
-            if start > visitor.max_t_max() {
+            if start > visitor.packet_t_max() {
                 continue;
             }
             if let Some(leaf) = child.as_leaf() {
@@ -297,14 +297,14 @@ impl Bvh {
             if !is_root {
                 // The ranges of a group are narrower than those of the packet: many boxes that the packet may hit are
                 // hit by none of its groups.
-                let [starts, ends] = packet.crossed_by_groups(self.box_at(slot), [min, visitor.t_max()]);
+                let [starts, ends] = packet.crossed_by_groups(self.box_at(slot), [min, visitor.group_t_max()]);
                 groups = starts.le(ends).bits();
                 if groups == 0 {
                     continue;
                 }
             }
             let node = &self.nodes[child.0 as usize];
-            let [starts, ends] = packet.crossed(node.boxes(), [min, N::splat(visitor.max_t_max())]);
+            let [starts, ends] = packet.crossed(node.boxes(), [min, N::splat(visitor.packet_t_max())]);
             let hit_mask = starts.le(ends).bits();
             // Loads the box a second time: kept in registers during the test of the node, it made shadow rays 5 %
             // slower.

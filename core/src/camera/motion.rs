@@ -82,25 +82,25 @@ impl Camera {
         self.shifted(by)
     }
 
-    /// Returns the camera with the distance from the eye to the target multiplied by `factor`.
+    /// Returns the camera with the distance from eye to target multiplied by `distance_factor`.
     ///
     /// The target and the direction of view do not change. A single call changes the distance by a factor from 0.001 to
     /// 10,000, and the distance stays above 1e-15.
     #[must_use]
-    pub fn nearer(&self, factor: f32) -> Self {
+    pub fn nearer(&self, distance_factor: f32) -> Self {
         // Clamped, because squares of smaller or larger distances are out of the range of f32.
-        self.nearer_within(factor, self.target_distance().clamp(1e-12, 1e12))
+        self.nearer_within(distance_factor, self.target_distance().clamp(1e-12, 1e12))
     }
 
-    /// Returns the camera with the sides of its view rectangle multiplied by `factor`.
+    /// Returns the camera with the sides of its view rectangle multiplied by `rectangle_factor`.
     ///
     /// A factor below 1 zooms in. The vertical field of view stays between 1 and 150 degrees.
     #[must_use]
-    pub fn zoomed(&self, factor: f32) -> Self {
+    pub fn zoomed(&self, rectangle_factor: f32) -> Self {
         let rectangle = self.rectangle;
         let [least, most] = FOV_RANGE.map(|angle| 2.0 * libm::tanf(0.5 * angle));
         let height = rectangle.height();
-        let wanted = (factor * height).clamp(least.min(height), most.max(height));
+        let wanted = (rectangle_factor * height).clamp(least.min(height), most.max(height));
         rectangle.scaled(wanted / height).map_or(*self, |rectangle| self.with_rectangle(rectangle))
     }
 
@@ -175,18 +175,18 @@ impl Camera {
         self.with_valid_pose(Pose { eye, target, ..self.pose })
     }
 
-    /// Returns the camera as [`nearer`](Self::nearer) does, within the limits of a scene of `size`.
+    /// Returns the camera as [`nearer`](Self::nearer) does, within the limits of a scene's size.
     ///
     /// The distance stays between [`MIN_TARGET_DISTANCE`] and [`MAX_TARGET_DISTANCE`] times the size. If it is outside
     /// these limits, it only changes towards them.
     #[doc(hidden)]
-    pub fn nearer_within(&self, factor: f32, size: f32) -> Self {
+    pub fn nearer_within(&self, distance_factor: f32, scene_size: f32) -> Self {
         let target = self.pose.target;
         let distance = self.target_distance();
         // Far from the origin the spacing of f32 limits the distance. 1e-5 is 84 times the relative spacing.
-        let nearest = (MIN_TARGET_DISTANCE * size).max(1e-5 * target.abs().max_element()).min(distance);
-        let wanted = (factor * distance).clamp(nearest, (MAX_TARGET_DISTANCE * size).max(distance));
-        if factor == 1.0 || wanted == distance {
+        let nearest = (MIN_TARGET_DISTANCE * scene_size).max(1e-5 * target.abs().max_element()).min(distance);
+        let wanted = (distance_factor * distance).clamp(nearest, (MAX_TARGET_DISTANCE * scene_size).max(distance));
+        if distance_factor == 1.0 || wanted == distance {
             return *self;
         }
         self.with_valid_pose(Pose { eye: target + wanted * self.basis.w, ..self.pose })

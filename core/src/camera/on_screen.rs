@@ -80,11 +80,11 @@ impl Camera {
     /// Returns the camera with eye and target scaled about a point by notches of the wheel.
     ///
     /// The point keeps its position in the picture. The distance from eye to target stays within the limits of
-    /// [`nearer_within`](Self::nearer_within) for a scene of `size`.
+    /// [`nearer_within`](Self::nearer_within) for a scene of `scene_size`.
     #[doc(hidden)]
-    pub fn wheeled_around(&self, point: Vec3, notches: f32, size: f32) -> Self {
+    pub fn scaled_about(&self, point: Vec3, notches: f32, scene_size: f32) -> Self {
         let Pose { eye, target, up } = self.pose;
-        let after = self.nearer_within(libm::powf(WHEEL_NOTCH_FACTOR, notches), size);
+        let after = self.nearer_within(libm::powf(WHEEL_NOTCH_FACTOR, notches), scene_size);
         let factor = after.target_distance() / self.target_distance();
         let moved = point + factor * (target - point);
         self.with_valid_pose(Pose { eye: moved + factor * (eye - target), target: moved, up })
@@ -103,7 +103,7 @@ impl Camera {
     ///
     /// The point keeps its position in the picture.
     #[doc(hidden)]
-    pub fn point_wheeled(&self, point: Vec3, notches: f32) -> Vec3 {
+    pub fn point_pushed_away(&self, point: Vec3, notches: f32) -> Vec3 {
         let eye = self.pose.eye;
         eye + libm::powf(WHEEL_NOTCH_FACTOR, -notches) * (point - eye)
     }

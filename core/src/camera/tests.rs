@@ -30,7 +30,7 @@ fn a_point_is_where_its_ray_is() {
         assert!(camera.project(dragged, 1.6).expect("in front").abs_diff_eq(Vec2::new(0.4, 0.6), 1e-5));
         assert!(
             camera
-                .point_wheeled(ray.at(4.0), 2.0)
+                .point_pushed_away(ray.at(4.0), 2.0)
                 .abs_diff_eq(ray.at(4.0 / (WHEEL_NOTCH_FACTOR * WHEEL_NOTCH_FACTOR)), 1e-4)
         );
         let behind = camera.point_dragged(ray.at(-1.0), Vec2::new(0.1, 0.0), 1.6);
@@ -163,7 +163,7 @@ fn the_wheel_comes_nearer_to_a_point_which_stays_where_it_is() {
     let start = camera(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO);
     for point in [Vec3::new(1.0, 0.5, 1.0), Vec3::new(-1.0, 0.0, -20.0)] {
         for notches in [1.0, -1.0, 7.0] {
-            let nearer = [start.wheeled_around(point, notches, 1.0), start.wheeled(point, notches)];
+            let nearer = [start.scaled_about(point, notches, 1.0), start.wheeled(point, notches)];
             let share = libm::powf(WHEEL_NOTCH_FACTOR, notches);
             for (after, target) in nearer.into_iter().zip([5.0 * share, 5.0]) {
                 assert!(
@@ -176,7 +176,7 @@ fn the_wheel_comes_nearer_to_a_point_which_stays_where_it_is() {
             }
         }
     }
-    let near = (0..500).fold(start, |camera, _| camera.wheeled_around(Vec3::ZERO, 1.0, 1.0));
+    let near = (0..500).fold(start, |camera, _| camera.scaled_about(Vec3::ZERO, 1.0, 1.0));
     assert!(near.pose().eye.z > 0.0, "never through the target");
 }
 
@@ -198,7 +198,7 @@ fn any_mouse_motion_leaves_a_valid_camera() {
                 0 if orbits => camera.dragged_around(by, 1.6),
                 0 => camera.dragged_view(by, 1.6),
                 1 => camera.panned(by, 1.6),
-                2 if orbits => camera.wheeled_around(point, 10.0 * number(), size),
+                2 if orbits => camera.scaled_about(point, 10.0 * number(), size),
                 2 => camera.wheeled(point, 10.0 * number()),
                 _ => camera.zoomed(1.0 + 0.5 * number()),
             };

@@ -106,7 +106,7 @@ impl<N: Lanes, const ANY: bool, W: Observer> Search<'_, N, ANY, W> {
             }
         }
         let Some((t, triangle)) = visitor.found else { return };
-        let (t, primitive) = (passage.t(t), instance.first + triangle);
+        let (t, primitive) = (passage.clamp_to_box(t), instance.first + triangle);
         let is_first = |other: u32| self.accel.id(primitive) < self.accel.id(other);
         if t < self.within.max || t == self.within.max && self.primitive.is_none_or(is_first) {
             self.primitive = Some(primitive);
@@ -146,7 +146,7 @@ impl<N: Lanes, const ANY: bool, W: Observer> LeafVisitor for InMesh<'_, N, ANY, 
     #[inline(always)]
     fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32> {
         let shapes = self.tree.leaves[leaf].one_per_lane::<N>();
-        let crossing = shapes.first_crossing_until(self.rays, [self.within.min, self.within.max].map(N::splat));
+        let crossing = shapes.first_crossing_with_hint(self.rays, [self.within.min, self.within.max].map(N::splat));
         if W::ENABLED {
             self.report_tests(leaf, crossing);
         }
@@ -169,7 +169,7 @@ impl<N: Lanes, const ANY: bool, W: Observer> InMesh<'_, N, ANY, W> {
     fn report_tests(&mut self, leaf: usize, crossing: Option<(N::Mask, N)>) {
         let (crosses, t) = crossing.map_or((0, F32x8::ZERO), |(crosses, t)| (crosses.bits(), t.store()));
         for (lane, id) in self.tree.primitives(leaf).enumerate() {
-            let crossing = (crosses >> lane & 1 == 1).then(|| self.passage.t(t.0[lane]));
+            let crossing = (crosses >> lane & 1 == 1).then(|| self.passage.clamp_to_box(t.0[lane]));
             let test = PrimitiveTest::from_crossing(self.instance.id(id.index), crossing);
             self.observer.primitive_tested(test);
         }

@@ -39,12 +39,12 @@ pub(super) fn trace(
         });
     let mut cost = light.cost;
     cost += objects.cost;
-    TracedMap::new(outlined(&light.picture, &objects.pixels), cost)
+    TracedMap::new(bilevel_with_outlines(&light.picture, &objects.pixels), cost)
 }
 
 /// Returns the picture in black and white, with lines between pixels whose elements of `objects`
 /// differ.
-fn outlined(picture: &Picture, objects: &[u32]) -> Picture {
+fn bilevel_with_outlines(picture: &Picture, objects: &[u32]) -> Picture {
     let width = picture.width() as usize;
     let is_white: Vec<_> =
         picture.pixels().iter().map(|&pixel| LinearRgb::from_srgb8(pixel).luminance() >= WHITE_THRESHOLD).collect();

@@ -23,7 +23,7 @@ impl Observer for Count {
 }
 
 /// Returns the number of tests of a pixel's eye ray and shadow rays.
-pub(super) fn test_count(scene: &Scene, sample: &GBufferSample) -> u32 {
+pub(super) fn eye_and_shadow_tests(scene: &Scene, sample: &GBufferSample) -> u32 {
     let mut count = Count::default();
     closest_hit_observed(scene, &sample.ray, &mut count);
     if let Some(surface) = sample.surface(scene).filter(|_| scene.shadows()) {

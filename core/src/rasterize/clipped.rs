@@ -53,5 +53,5 @@ fn fill(projection: &Projection, corners: [DVec3; 3], object: u32, buffer: &mut 
         }
     }
     // Minus 1, because `DrawTriangles` has already counted the test of the triangle itself.
-    rectangle.tests() - 1
+    rectangle.primitive_and_pixel_tests() - 1
 }

@@ -99,7 +99,7 @@ impl Comparison {
     }
 
     /// Returns the total number of tests of the order that needs more of them.
-    pub fn total_tests(&self) -> u64 {
+    pub fn max_total_tests(&self) -> u64 {
         let last = |tests: &[u64]| tests.last().copied().unwrap_or(0);
         last(&self.image_tests).max(last(&self.object_tests))
     }
@@ -170,11 +170,11 @@ pub fn spheres_in_a_cube(number: u32, otherwise: &Camera) -> Scene {
     let object = |(center, factor): (Vec3, f32)| Object::new(Sphere::unchecked(center, radius * factor), grey);
     let camera = Camera::look_at(Vec3::new(0.0, 1.2, 5.0), Vec3::new(0.0, 0.4, 0.0));
     let camera = camera.and_then(|camera| camera.with_fov_degrees(40.0)).unwrap_or(*otherwise);
-    Scene::new(camera, random_spheres(number).map(object).collect())
+    Scene::new(camera, random_centers_and_scales(number).map(object).collect())
 }
 
 /// Returns random centres in a cube of side 2.4, and random factors of radii from 0.5 to 1.5.
-pub fn random_spheres(number: u32) -> impl Iterator<Item = (Vec3, f32)> {
+pub fn random_centers_and_scales(number: u32) -> impl Iterator<Item = (Vec3, f32)> {
     // The seed is fixed, so that results of different days and programs are about the same scene.
     let mut random = Xorshift(0x9E37_79B9_7F4A_7C15);
     (0..number).map(move |_| {

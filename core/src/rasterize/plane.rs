@@ -31,6 +31,6 @@ impl SimdKernel for DrawPlane<'_> {
                 buffer.draw_group(buffer.group(group, y), mask, t, object);
             }
         }
-        rectangle.tests()
+        rectangle.primitive_and_pixel_tests()
     }
 }

@@ -49,7 +49,7 @@ impl Rectangle {
     /// Returns the number of tests of a primitive with this rectangle: one plus the number of
     /// pixels.
     #[inline(always)]
-    pub(super) fn tests(self) -> u64 {
+    pub(super) fn primitive_and_pixel_tests(self) -> u64 {
         let [columns, rows] = [self.x, self.y].map(|[first, end]| u64::from(end.saturating_sub(first)));
         1 + columns * rows
     }

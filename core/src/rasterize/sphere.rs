@@ -45,7 +45,7 @@ impl SimdKernel for DrawSpheres<'_> {
                 x: [rectangles[0].0[lane] as u32, rectangles[1].0[lane] as u32],
                 y: [rectangles[2].0[lane] as u32, rectangles[3].0[lane] as u32],
             };
-            tests += rectangle.tests() - 1;
+            tests += rectangle.primitive_and_pixel_tests() - 1;
             let (sphere, object) = &spheres[lane];
             draw::<N>(projection, rectangle, sphere, *object, buffer);
         }

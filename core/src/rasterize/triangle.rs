@@ -156,6 +156,6 @@ impl SetUp {
                 }
             }
         }
-        rectangle.tests() - 1
+        rectangle.primitive_and_pixel_tests() - 1
     }
 }

@@ -119,9 +119,9 @@ impl ProgressiveRender {
         let parts = self.tiles.split(framebuffer.pixels_mut());
         for ((first, accumulators), mut part) in self.first.iter().zip(&self.accumulators).zip(parts) {
             if !accumulators.is_empty() {
-                self.tiles.write_all(&ALL_PIXELS, |pixel| accumulators[pixel].mean(), &mut part);
+                self.tiles.fill_traced_pixels(&ALL_PIXELS, |pixel| accumulators[pixel].mean(), &mut part);
             } else if !first.is_empty() {
-                self.tiles.write_all(&ALL_PIXELS, |pixel| first[pixel].light, &mut part);
+                self.tiles.fill_traced_pixels(&ALL_PIXELS, |pixel| first[pixel].light, &mut part);
             }
         }
         framebuffer

@@ -122,13 +122,13 @@ impl<'a> Render<'a> {
     /// [`Cancelled`], if the token is cancelled or the callback returns `Break` before the last report.
     pub fn run(self) -> Result<Framebuffer, Cancelled> {
         match self.threads {
-            Some(count) => threads::in_pool_of(count, || self.trace()),
-            None => self.trace(),
+            Some(count) => threads::in_pool_of(count, || self.run_in_current_pool()),
+            None => self.run_in_current_pool(),
         }
     }
 
     /// Renders on the threads of the current rayon pool.
-    fn trace(self) -> Result<Framebuffer, Cancelled> {
+    fn run_in_current_pool(self) -> Result<Framebuffer, Cancelled> {
         let Self { scene, camera, resolution, sampling, threads: _, token, callback } = self;
         let render = |executor: Executor<'_>| {
             executor.unless_cancelled(render_partial(executor, scene, &camera, resolution, sampling).framebuffer)

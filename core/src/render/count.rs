@@ -46,14 +46,20 @@ impl Add for Counts {
 ///
 /// Takes at most [`Sampling::MAX_SAMPLES`] samples per pixel. If the scene has shadows, also traces a ray from each hit
 /// to each light, even if the surface faces away from it. Runs on the threads of the current rayon pool.
-pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolution, samples: NonZeroU32) -> Counts {
+pub fn count_rays_and_hits(
+    kernel: Kernel,
+    scene: &Scene,
+    camera: &Camera,
+    resolution: Resolution,
+    samples: NonZeroU32,
+) -> Counts {
     let tiles = Tiles::new(camera, resolution, 1);
     let last_stage = if scene.shadows() { Stage::Points } else { Stage::Hits };
     let job = RenderJob { kernel, ..RenderJob::new(scene, &tiles, last_stage) };
     let batches = SampleBatches::of(0..samples.min(Sampling::MAX_SAMPLES).get());
     let mut counts = vec![Counts::default(); tiles.count()];
     Executor::Pool.trace(&job, counts.iter_mut().collect(), |tile, counts| {
-        tile.trace(&batches, |buffers, _, _| *counts = *counts + count_batch(kernel, scene, buffers));
+        tile.trace(&batches, |buffers, _, _| *counts = *counts + count_batch_and_shadows(kernel, scene, buffers));
     });
     // The sum is taken in the order of the tiles and not in the order in which they finish, because a sum of floats
     // depends on the order.
@@ -61,7 +67,7 @@ pub fn count(kernel: Kernel, scene: &Scene, camera: &Camera, resolution: Resolut
 }
 
 /// Counts a batch's rays and hits, and traces and counts its shadow rays.
-fn count_batch(kernel: Kernel, scene: &Scene, buffers: &mut Buffers) -> Counts {
+fn count_batch_and_shadows(kernel: Kernel, scene: &Scene, buffers: &mut Buffers) -> Counts {
     let Buffers { rays, hits, points, shadows: ShadowRays { rays: shadow_rays, blocked, .. }, .. } = buffers;
     let mut counts = Counts { rays: shade::count(rays), ..Counts::default() };
     for hits in hits.iter() {

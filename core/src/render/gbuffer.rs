@@ -84,8 +84,8 @@ pub(crate) fn trace_g_buffer_partial<T: Copy + Default + Send>(
     depth: TraceDepth,
     see: impl Fn(&GBufferSample) -> T + Sync,
 ) -> PixelValues<T> {
-    let scale = if sampling == Sampling::Coarse { 2 } else { 1 };
-    let tiles = Tiles::new(camera, resolution, scale);
+    let pixel_side = if sampling == Sampling::Coarse { 2 } else { 1 };
+    let tiles = Tiles::new(camera, resolution, pixel_side);
     let last_stage = if depth == TraceDepth::Lights { Stage::Arriving } else { Stage::Hits };
     let batches = SampleBatches::of(0..1);
     let mut pixels = vec![T::default(); resolution.pixel_count()];
@@ -97,7 +97,7 @@ pub(crate) fn trace_g_buffer_partial<T: Copy + Default + Send>(
                         let lit_by = arriving.get(group).map_or(0, |arriving| arriving.lit_by[lane]);
                         let sample =
                             GBufferSample { ray: rays[group].ray(lane), hit: hits[group].hit(scene, lane), lit_by };
-                        tiles.write(pixel, see(&sample), &mut part);
+                        tiles.fill_traced_pixel(pixel, see(&sample), &mut part);
                     }
                 }
             });

@@ -246,10 +246,10 @@ pub fn render_with_geometry(
     resolution: Resolution,
     sampling: Sampling,
 ) -> (Rendered, Geometry) {
-    let scale = if sampling == Sampling::Coarse { 2 } else { 1 };
+    let pixel_side = if sampling == Sampling::Coarse { 2 } else { 1 };
     if let Sampling::Coarse | Sampling::Each(NonZeroU32::MIN) | Sampling::UpTo(NonZeroU32::MIN) = sampling {
         // The single ray of a pixel gives both its light and its facet.
-        let tiles = Tiles::new(camera, resolution, scale);
+        let tiles = Tiles::new(camera, resolution, pixel_side);
         let (pixels, mut cost) = trace_facets(executor, scene, &tiles, Stage::Reflected);
         let mut framebuffer = Framebuffer::new(resolution);
         framebuffer.pixels_mut().iter_mut().zip(&pixels).for_each(|(light, &(traced, _))| *light = traced);
@@ -300,7 +300,7 @@ fn trace_facets(
                     .lights
                     .get(ray / LANES)
                     .map_or(LinearRgb::BLACK, |lights| LinearRgb::BLACK + shade::lane_light(lights, ray % LANES));
-                tiles.write(pixel, (light, facet(scene, buffers, ray)), &mut part);
+                tiles.fill_traced_pixel(pixel, (light, facet(scene, buffers, ray)), &mut part);
             }
         });
     });
@@ -327,7 +327,7 @@ fn with_fine_facets(
     let facets = pixels.into_iter().map(|(_, facet)| facet).collect();
     let mut geometry = Geometry::new(resolution, facets, 0.012 * camera.pose().eye.distance(camera.pose().target));
     // Coarse pictures, with one ray for two by two pixels, are made by machines that are too slow for fine facets.
-    if coarse.scale > 1 {
+    if coarse.pixel_side > 1 {
         return (geometry, Cost::default());
     }
     let crossed = geometry.crossed_pixels();

@@ -73,7 +73,7 @@ pub fn trace_pixel(scene: &Scene, camera: &Camera, resolution: Resolution, [x, y
     let [arriving, light] = [&buffers.arriving[0].light, &buffers.lights[0]].map(|lights| shade::lane_light(lights, 0));
     // Reflects a light of 1 to get the reflectance, which the last step does not return separately.
     buffers.arriving[0].light = [F32x8([1.0; LANES]); 3];
-    buffers.reflect(&job, &batch);
+    buffers.compute_reflected_light(&job, &batch);
     PixelTrace {
         q: tiles.picture_position([x as f32, y as f32], sample_position(0).into()).into(),
         ray: buffers.rays[0].ray(0),

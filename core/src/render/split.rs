@@ -49,7 +49,7 @@ pub(super) fn render(executor: Executor<'_>, scene: &Scene, camera: &Camera, res
         tile.trace(&batches, |buffers, _, _| {
             for (ray, &pixel) in buffers.pixels.iter().enumerate() {
                 let light = LinearRgb::BLACK + shade::lane_light(&buffers.lights[ray / LANES], ray % LANES);
-                tiles.write(pixel, light, &mut part);
+                tiles.fill_traced_pixel(pixel, light, &mut part);
             }
         });
     });

@@ -89,15 +89,27 @@ impl Buffers {
             traced += shade::arriving_light(scene, points, shadows, arriving);
         }
         if last_stage >= Stage::Reflected {
-            self.reflect(job, batch);
+            self.compute_reflected_light(job, batch);
         }
         traced
     }
 
     /// Computes the reflected light from the arriving light.
-    pub(super) fn reflect(&mut self, &RenderJob { scene, tiles, .. }: &RenderJob<'_>, batch: &SampleBatch) {
+    pub(super) fn compute_reflected_light(
+        &mut self,
+        &RenderJob { scene, tiles, .. }: &RenderJob<'_>,
+        batch: &SampleBatch,
+    ) {
         let Self { rays, hits, points, arriving, lights, .. } = self;
-        shade::reflect(scene, rays, tiles.direction_steps(batch.samples.start), hits, points, arriving, lights);
+        shade::reflected_light(
+            scene,
+            rays,
+            tiles.sample_direction_steps(batch.samples.start),
+            hits,
+            points,
+            arriving,
+            lights,
+        );
     }
 
     /// Returns the reflected light of all rays as one array per channel.

@@ -20,7 +20,11 @@ pub(super) fn render(executor: Executor<'_>, scene: &Scene, tiles: &Tiles, sampl
     let cost = executor.trace(&RenderJob::new(scene, tiles, Stage::Reflected), parts, |tile, mut part| {
         let mut sums = [[F32x8::ZERO; 3]; PIXELS / LANES];
         tile.trace(&batches, |buffers, batch, pixels| add_lights(&mut sums, buffers, batch, pixels));
-        tiles.write_all(&tile.buffers.active, |at| shade::lane_light(&sums[at / LANES], at % LANES) * share, &mut part);
+        tiles.fill_traced_pixels(
+            &tile.buffers.active,
+            |at| shade::lane_light(&sums[at / LANES], at % LANES) * share,
+            &mut part,
+        );
     });
     Rendered { framebuffer, cost }
 }

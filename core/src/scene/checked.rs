@@ -14,7 +14,7 @@ use crate::mesh_file::MeshFile;
 use crate::progress::Reporter;
 use crate::scene_file::{MaterialUse, NamedMaterial, SceneFile, WrittenBackground, WrittenObject, WrittenToneCurve};
 use crate::scene_text::{Faults, quoted};
-use crate::shape::{Hull, Mesh, Meshes, Placement, Shape, WrittenMesh, WrittenShape, without_coordinates};
+use crate::shape::{CornerCells, Mesh, Meshes, Placement, Shape, WrittenMesh, WrittenShape, without_coordinates};
 use crate::text::{closest, listed};
 use crate::written::{Spanned, Validator};
 use std::collections::HashMap;
@@ -79,7 +79,7 @@ impl Validator<'_> {
             let checked = material.as_ref().map(|written| CheckedMaterial { written, material: written.check(self) });
             materials.insert(&**name, checked);
         }
-        let (mut objects, mut sharing) = (Vec::new(), Sharing::of(file));
+        let (mut objects, mut sharing) = (Vec::new(), MeshSharing::of(file));
         for written in file.objects.iter().take_while(|_| !reporter.is_cancelled()) {
             let (shape, material) = (written.shape.check(self, meshes), self.material_of(written, file, &materials));
             let placements = written.placement.as_ref().map(|placement| placement.check(self));
@@ -132,11 +132,11 @@ impl Validator<'_> {
 }
 
 /// The sharing of meshes among objects: which meshes are shared, and the triangle count so far.
-struct Sharing<'f> {
+struct MeshSharing<'f> {
     /// The number of objects, copies included, with each mesh path.
     objects: HashMap<&'f str, usize>,
     /// The corners of each mesh that is shared; `None` for one that each object copies.
-    hulls: HashMap<*const MeshFile, Option<Hull>>,
+    corner_cells: HashMap<*const MeshFile, Option<CornerCells>>,
     /// The number of triangles so far, those of each copy and instance counted.
     triangles: usize,
 }
@@ -145,7 +145,7 @@ struct Sharing<'f> {
 // Traversal numbers them with 32 bits, of which other primitives need a part.
 const MAX_TRIANGLES: usize = 2_000_000_000;
 
-impl<'f> Sharing<'f> {
+impl<'f> MeshSharing<'f> {
     fn of(file: &'f SceneFile) -> Self {
         let mut objects = HashMap::new();
         for WrittenObject { shape, placement, .. } in &file.objects {
@@ -155,7 +155,7 @@ impl<'f> Sharing<'f> {
                 *count = count.saturating_add(copies);
             }
         }
-        Self { objects, hulls: HashMap::new(), triangles: 0 }
+        Self { objects, corner_cells: HashMap::new(), triangles: 0 }
     }
 
     /// Returns a shape of an object scaled, rotated and moved.
@@ -169,9 +169,9 @@ impl<'f> Sharing<'f> {
             return Err("a scene may have up to 2,000,000,000 triangles, those of each copy counted".into());
         }
         let (file, count) = (mesh.shared_file(), self.objects.get(&*path.value).copied().unwrap_or(1));
-        let hull = self.hulls.entry(Arc::as_ptr(file));
-        match hull.or_insert_with(|| Hull::of_shared(file, count)) {
-            Some(hull) => Mesh::instance(file, hull, placement).map(Shape::from).ok_or(checks::MESH_TOO_FAR.into()),
+        let cells = self.corner_cells.entry(Arc::as_ptr(file));
+        match cells.or_insert_with(|| CornerCells::of_shared(file, count)) {
+            Some(cells) => Mesh::instance(file, cells, placement).map(Shape::from).ok_or(checks::MESH_TOO_FAR.into()),
             None => shape.clone().placed(placement).map_err(of_fault),
         }
     }

@@ -216,7 +216,7 @@ fn parse_draft(
 impl CameraPath {
     /// Parses a camera path from text in RON.
     ///
-    /// A keyframe without `up` or a field of view takes it from `camera`. `name` is used in messages only.
+    /// A keyframe without `up` or a field of view takes it from `default_camera`. `name` is used in messages only.
     ///
     /// ```
     /// use termtrace::{CameraPath, Scene};
@@ -234,9 +234,11 @@ impl CameraPath {
     /// # Errors
     /// As [`Scene::from_ron`], and for times that do not increase.
     #[doc(hidden)]
-    pub fn from_ron(name: &str, text: &str, camera: &Camera) -> Result<Self, SceneError> {
+    pub fn from_ron(name: &str, text: &str, default_camera: &Camera) -> Result<Self, SceneError> {
         let smallest = "camera path is (keyframes: [(time: 0, eye: (0, 0, 5), target: (0, 0, 0))])";
-        read(name, text, smallest, |root, faults| checked::path::check(&PathFile::read(root, faults), camera, faults))
+        read(name, text, smallest, |root, faults| {
+            checked::path::check(&PathFile::read(root, faults), default_camera, faults)
+        })
     }
 
     /// Parses a camera path from a file's bytes, which should be UTF-8 text.
@@ -244,13 +246,13 @@ impl CameraPath {
     /// # Errors
     /// As [`CameraPath::from_ron`], and for bytes that are not text.
     #[doc(hidden)]
-    pub fn from_bytes(name: &str, bytes: &[u8], camera: &Camera) -> Result<Self, SceneError> {
-        Self::from_ron(name, text_from(name, bytes)?, camera)
+    pub fn from_bytes(name: &str, bytes: &[u8], default_camera: &Camera) -> Result<Self, SceneError> {
+        Self::from_ron(name, text_from(name, bytes)?, default_camera)
     }
 
     /// Loads a camera path file.
     ///
-    /// A keyframe without `up` or a field of view takes it from `camera`.
+    /// A keyframe without `up` or a field of view takes it from `default_camera`.
     ///
     /// ```standalone_crate
     /// use std::path::Path;
@@ -265,9 +267,9 @@ impl CameraPath {
     ///
     /// # Errors
     /// If the file cannot be read, is not UTF-8 text, or has faults.
-    pub fn load(path: &Path, camera: &Camera) -> Result<Self, LoadError> {
+    pub fn load(path: &Path, default_camera: &Camera) -> Result<Self, LoadError> {
         let bytes = read_bytes(path, |_| MAX_TEXT_BYTES, &Reporter::silent())?;
-        Ok(Self::from_bytes(&path.to_string_lossy(), &bytes, camera)?)
+        Ok(Self::from_bytes(&path.to_string_lossy(), &bytes, default_camera)?)
     }
 }
 

@@ -208,8 +208,11 @@ fn interpolate_normals(scene: &Scene, points: &mut EightPoints) {
     for lane in set_bits(points.hit_mask) {
         let PrimitiveId { object, index } = points.ids.id(lane);
         if let Primitive::Facet(facet) = scene.objects()[object as usize].shape.primitive(index)
-            && let Some((position, normal)) =
-                facet.smooth(points.position.of_lane(lane), points.geometric_normal.of_lane(lane), points.uv(lane))
+            && let Some((position, normal)) = facet.smooth_position_and_normal(
+                points.position.of_lane(lane),
+                points.geometric_normal.of_lane(lane),
+                points.uv(lane),
+            )
         {
             points.position.put(lane, position);
             points.shading_normal.put(lane, normal);

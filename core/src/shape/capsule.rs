@@ -82,7 +82,7 @@ impl Described for Capsule {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        self.outward(self.frame.point(point) - self.axis.middle).length() < self.radius
+        self.outward(self.frame.scene_to_shape(point) - self.axis.middle).length() < self.radius
     }
 }
 

@@ -152,7 +152,7 @@ impl Described for Cone {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let from_middle = self.frame.point(point) - self.axis.middle;
+        let from_middle = self.frame.scene_to_shape(point) - self.axis.middle;
         let along = from_middle.dot(self.axis.direction);
         let radius = 0.5 * (self.radii[0] + self.radii[1]) + self.slope() * along;
         !self.open && along.abs() < self.axis.half_length && self.axis.across(from_middle).length() < radius

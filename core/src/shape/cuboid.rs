@@ -94,7 +94,7 @@ impl Described for Cuboid {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let point = self.frame.point(point);
+        let point = self.frame.scene_to_shape(point);
         point.cmpgt(self.min).all() && point.cmplt(self.max).all()
     }
 }

@@ -114,7 +114,7 @@ impl Described for Cylinder {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let from_middle = self.frame.point(point) - self.axis.middle;
+        let from_middle = self.frame.scene_to_shape(point) - self.axis.middle;
         let is_between = from_middle.dot(self.axis.direction).abs() < self.axis.half_length;
         !self.open && is_between && self.axis.across(from_middle).length() < self.radius
     }

@@ -27,7 +27,7 @@ pub trait Described {
 
     /// Returns the centre and radius if the outline is a circle from every direction, as a sphere's
     /// is.
-    fn circle(&self) -> Option<(Vec3, f32)> {
+    fn silhouette_sphere(&self) -> Option<(Vec3, f32)> {
         None
     }
 }
@@ -93,10 +93,10 @@ macro_rules! described {
 
             /// Returns the centre and radius if the outline is a circle from every direction, as a
             /// sphere's is.
-            pub fn circle(&self) -> Option<(Vec3, f32)> {
+            pub fn silhouette_sphere(&self) -> Option<(Vec3, f32)> {
                 match self {
-                    $($(#[$on])* Self::$surface(surface) => surface.circle(),)*
-                    Self::Facet(facet) => facet.triangle().circle(),
+                    $($(#[$on])* Self::$surface(surface) => surface.silhouette_sphere(),)*
+                    Self::Facet(facet) => facet.triangle().silhouette_sphere(),
                 }
             }
         }

@@ -75,7 +75,7 @@ impl Described for Ellipsoid {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        ((self.frame.point(point) - self.center) / self.radii).length() < 1.0
+        ((self.frame.scene_to_shape(point) - self.center) / self.radii).length() < 1.0
     }
 }
 

@@ -12,7 +12,7 @@ use super::{Points, Shape, Surface, SurfacePoint, flat_footprint};
 use crate::bounds::Bounds;
 use crate::formula::Line;
 use crate::lanes::{Number, Vector};
-use crate::ray::{Interval, Probe, Ray, nearest_in};
+use crate::ray::{Interval, Probe, Ray, clamp_keeping_nan};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
@@ -86,8 +86,8 @@ impl Frame {
     }
 
     /// Returns a point of the scene in the coordinates of the shape.
-    pub(super) fn point(&self, point: Vec3) -> DVec3 {
-        self.shape_point(point.as_dvec3())
+    pub(super) fn scene_to_shape(&self, scene_point: Vec3) -> DVec3 {
+        self.shape_point(scene_point.as_dvec3())
     }
 
     #[inline]
@@ -292,7 +292,7 @@ impl<S: Exact> Surface for S {
         }
         let found = crossings(self, &probe.ray);
         let in_box = found.iter().filter(|crossing| crossing.t.is_finite());
-        in_box.map(|crossing| nearest_in(min, max, crossing.t as f32)).find(|&t| within.contains(t))
+        in_box.map(|crossing| clamp_keeping_nan(min, max, crossing.t as f32)).find(|&t| within.contains(t))
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {

@@ -43,7 +43,7 @@ struct Definition {
     /// The ball that cuts the surface, if the bounds are not a box.
     ball: Option<Ball>,
     /// The reason why nothing of the surface is visible, if that is certain.
-    warning: Option<&'static str>,
+    invisibility_warning: Option<&'static str>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,10 +54,10 @@ struct Ball {
 
 impl Implicit {
     fn new(text: &str, formula: Formula, colors: Option<[Formula; 3]>, bounds: Bounds, ball: Option<Ball>) -> Self {
-        let warning = formula.lack_of_surface(bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        let invisibility_warning = formula.lack_of_surface(bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let text = visible(&text.split_whitespace().collect::<Vec<_>>().join(" "));
         let (map, bounds_in_scene) = (None, bounds);
-        Self(Arc::new(Definition { formula, colors, text, bounds, map, bounds_in_scene, ball, warning }))
+        Self(Arc::new(Definition { formula, colors, text, bounds, map, bounds_in_scene, ball, invisibility_warning }))
     }
 
     /// Returns whether the surface or its colours depend on the time.
@@ -88,8 +88,8 @@ impl Implicit {
     }
 
     /// Returns the reason why nothing of the surface is visible, if that is certain.
-    pub(crate) fn warning(&self) -> Option<&'static str> {
-        self.0.warning
+    pub(crate) fn invisibility_warning(&self) -> Option<&'static str> {
+        self.0.invisibility_warning
     }
 
     /// Returns the part of `of_box` in which a line is within the bounds; empty if `min > max`.

@@ -7,7 +7,7 @@ use super::placement::AffineMap;
 use crate::bounds::Bounds;
 use crate::checks;
 use crate::mesh_file::MeshFile;
-use crate::ray::{Interval, nearest_in};
+use crate::ray::{Interval, clamp_keeping_nan};
 use glam::{DVec3, Vec3};
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ const CELLS: f32 = 8.0;
 
 /// The corners of a mesh, sorted into cells: the outermost ones in any direction are found fast.
 // Without cells, the boxes around 10,000 instances of 75,000 triangles would take two billion products.
-pub(crate) struct Hull {
+pub(crate) struct CornerCells {
     cells: Vec<Cell>,
 }
 
@@ -30,7 +30,7 @@ struct Cell {
     corners: Vec<Vec3>,
 }
 
-impl Hull {
+impl CornerCells {
     /// Sorts the corners of a mesh if `objects` objects should share its triangles.
     pub(crate) fn of_shared(file: &MeshFile, objects: usize) -> Option<Self> {
         let Bounds { min, max } = Bounds::of(file.positions().iter().copied());
@@ -96,8 +96,8 @@ impl Passage {
 
     /// Returns the interval in which a crossing in the coordinates of the file counts.
     ///
-    /// [`t`](Self::t) moves a crossing beyond the box to the end of the box, so there is no upper limit if the box ends
-    /// before `within` does.
+    /// [`clamp_to_box`](Self::clamp_to_box) moves a crossing beyond the box to the end of the box, so there is no upper
+    /// limit if the box ends before `within` does.
     #[inline(always)]
     pub(crate) fn search(&self) -> Interval {
         let Interval { min, max } = self.within;
@@ -107,8 +107,8 @@ impl Passage {
     /// Returns the t of a crossing in the scene: the nearest one in the box.
     // As for all surfaces, the boxes of the tree then never hide a hit (`culling.md`, 2).
     #[inline(always)]
-    pub(crate) fn t(&self, crossing: f32) -> f32 {
-        nearest_in(self.inside[0], self.inside[1], crossing)
+    pub(crate) fn clamp_to_box(&self, t: f32) -> f32 {
+        clamp_keeping_nan(self.inside[0], self.inside[1], t)
     }
 }
 

@@ -1,6 +1,6 @@
 //! A mesh: triangles that share their corners.
 
-use super::instance::{Hull, Passage};
+use super::instance::{CornerCells, Passage};
 use super::placement::{AffineMap, Place, Placement};
 use super::{CheckedShape, Meshes, Shape, Surface, SurfacePoint, Triangle};
 use crate::bounds::Bounds;
@@ -101,9 +101,9 @@ impl Mesh {
 
     /// Returns the instance of a mesh with this placement; `None` if it reaches too far.
     #[cfg(feature = "ron")]
-    pub(crate) fn instance(file: &Arc<MeshFile>, hull: &Hull, placement: &Placement) -> Option<Self> {
+    pub(crate) fn instance(file: &Arc<MeshFile>, corners: &CornerCells, placement: &Placement) -> Option<Self> {
         let map = Some(placement.map());
-        let bounds = hull.bounds(map.as_ref());
+        let bounds = corners.bounds(map.as_ref());
         checks::are_within_range(&[bounds.min, bounds.max]).then(|| Self {
             file: Arc::clone(file),
             bounds: OnceLock::from(bounds),
@@ -136,7 +136,7 @@ impl Mesh {
     pub(crate) fn bounds(&self) -> &Bounds {
         self.bounds.get_or_init(|| match &self.map {
             None => Bounds::of(self.file.positions().iter().copied()),
-            map => Hull::of(&self.file).bounds(map.as_ref()),
+            map => CornerCells::of(&self.file).bounds(map.as_ref()),
         })
     }
 
@@ -207,12 +207,12 @@ impl Surface for Facet<'_> {
         let passage = Passage::new([min, max], within)?;
         let triangle = Triangle::unchecked(self.mesh.file_corners(self.index));
         let t = triangle.closest_crossing(&Probe::new(map.shape_ray(&probe.ray)), passage.search())?;
-        Some(passage.t(t))
+        Some(passage.clamp_to_box(t))
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
         let point = self.flat_point(ray, t);
-        match self.smooth(point.position, point.geometric_normal, point.uv) {
+        match self.smooth_position_and_normal(point.position, point.geometric_normal, point.uv) {
             Some((position, shading_normal)) => SurfacePoint { position, shading_normal, ..point },
             None => point,
         }
@@ -258,7 +258,7 @@ impl Facet<'_> {
     ///
     /// `None` if the corners have no normals. `geometric_normal` must be on the visible side. The shading normal is
     /// turned to that side, because files order corners either way.
-    pub fn smooth(&self, position: Vec3, geometric_normal: Vec3, uv: Vec2) -> Option<(Vec3, Vec3)> {
+    pub fn smooth_position_and_normal(&self, position: Vec3, geometric_normal: Vec3, uv: Vec2) -> Option<(Vec3, Vec3)> {
         let normals = self.mesh.file.normals_of(self.index as usize)?;
         let normals = if self.mesh.map.is_some() { self.normals_in_scene(normals) } else { normals };
         // Where opposite corner normals cancel out, the geometric normal is used.

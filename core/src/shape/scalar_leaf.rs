@@ -100,13 +100,13 @@ impl<S: Surface + Clone + Send + Sync> SoaLeaf for ScalarLeaf<S> {
 impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
     #[inline(always)]
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
-        self.first_crossing_until(rays, [min, N::splat(f32::MAX)])
+        self.first_crossing_with_hint(rays, [min, N::splat(f32::MAX)])
     }
 
     // Without inlining, each load and store would be a call; these calls took most of the time of rays that miss the
     // box.
     #[inline(always)]
-    fn first_crossing_until(&self, rays: &Rays<N>, [min, max]: [N; 2]) -> Option<(N::Mask, N)> {
+    fn first_crossing_with_hint(&self, rays: &Rays<N>, [min, max]: [N; 2]) -> Option<(N::Mask, N)> {
         let [enters, leaves] = crossed(Crossable::<N>::boxes(self), rays);
         let active = enters.max(min).le(leaves.min(max)).bits();
         if active == 0 {

@@ -8,7 +8,7 @@ use super::{
 use crate::bounds::{Bounds, crossed};
 use crate::checks::{self, SceneFault};
 use crate::lanes::{F32x8, Lanes, Mask, Number, Vector};
-use crate::ray::{Interval, Probe, Ray, Rays, nearest_in};
+use crate::ray::{Interval, Probe, Ray, Rays, clamp_keeping_nan};
 use crate::text::number;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
 use glam::{DVec3, Vec3};
@@ -130,7 +130,7 @@ impl<N: Number> Crossable<N> for SphereN<N> {
         // The Newton step is skipped if no lane needs it.
         let t = if is_far.any() { N::select(is_far, self.newton_step(t, f, rays), t) } else { t };
         let [start, end] = crossed(self.boxes(), rays);
-        let t = nearest_in(start, end, t);
+        let t = clamp_keeping_nan(start, end, t);
         Some((crosses & start.le(end) & min.le(t), t))
     }
 
@@ -237,7 +237,7 @@ impl Described for Sphere {
         self.center.distance(point) < self.radius
     }
 
-    fn circle(&self) -> Option<(Vec3, f32)> {
+    fn silhouette_sphere(&self) -> Option<(Vec3, f32)> {
         Some((self.center, self.radius))
     }
 }

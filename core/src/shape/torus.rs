@@ -134,7 +134,7 @@ impl Described for Torus {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let (height, distance) = self.height_and_distance(self.frame.point(point) - self.center);
+        let (height, distance) = self.height_and_distance(self.frame.scene_to_shape(point) - self.center);
         let from_ring = distance - self.radius;
         from_ring * from_ring + height * height < self.tube_radius * self.tube_radius
     }

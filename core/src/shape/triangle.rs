@@ -12,7 +12,7 @@ use super::{
 use crate::bounds::{Bounds, crossed};
 use crate::checks::{self, SceneFault};
 use crate::lanes::{F32x8, Lanes, Mask, Number, Vector};
-use crate::ray::{CommonOrigin, Interval, Probe, Ray, Rays, nearest_in, sheared_in_f64};
+use crate::ray::{Interval, Probe, ProjectionCenter, Ray, Rays, clamp_keeping_nan, sheared_in_f64};
 use crate::scene_text::{Span, SyntaxNode};
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
 use glam::{DVec3, Vec3};
@@ -48,7 +48,7 @@ pub struct TriangleN<N>([Vector<N>; 3]);
 ///
 /// Rays that miss thus need no division.
 #[derive(Clone, Copy)]
-struct Crossing<N> {
+struct UnnormalizedCrossing<N> {
     /// The unnormalized barycentric weights of the corners; all have one sign.
     weights: Vector<N>,
     sum: N,
@@ -56,9 +56,10 @@ struct Crossing<N> {
     t: N,
 }
 
-impl<N: Number> Crossing<N> {
+impl<N: Number> UnnormalizedCrossing<N> {
     #[inline(always)]
-    fn from_weights([a, b, c]: [Vector<N>; 3], weights: Vector<N>) -> Self {
+    fn from_weights(sheared_corners: [Vector<N>; 3], weights: Vector<N>) -> Self {
+        let [a, b, c] = sheared_corners;
         let sum = weights.x + weights.y + weights.z;
         Self { weights, sum, t: weights.dot(Vector { x: a.z, y: b.z, z: c.z }) }
     }
@@ -75,7 +76,7 @@ impl<N: Number> TriangleN<N> {
     // With the signs of f32 alone, one of a million rays hit a triangle of the dragon that it misses by 1.4e-6 of the
     // triangle's size.
     #[inline(always)]
-    fn crossing(&self, rays: &Rays<N>) -> Option<(N::Mask, Crossing<N>)> {
+    fn crossing(&self, rays: &Rays<N>) -> Option<(N::Mask, UnnormalizedCrossing<N>)> {
         let corners = self.sheared_corners(rays);
         self.crossing_from_weights(corners, weights(corners), rays)
     }
@@ -85,16 +86,16 @@ impl<N: Number> TriangleN<N> {
     // If `error_bound` is enough to decide all lanes, the rays' own bounds, a third of the work of a test, are not
     // computed: the bunny takes 0.95 times as long.
     #[inline(always)]
-    fn crossing_with_bound(&self, rays: &Rays<N>, error_bound: N) -> Option<(N::Mask, Crossing<N>)> {
+    fn crossing_with_bound(&self, rays: &Rays<N>, error_bound: N) -> Option<(N::Mask, UnnormalizedCrossing<N>)> {
         let corners = self.sheared_corners(rays);
         let weights = weights(corners);
-        let [agree, differ] = certain_signs(weights, error_bound);
+        let [agree, differ] = certain_hits_and_misses(weights, error_bound);
         // If `error_bound` leaves a sign uncertain in any lane, each ray's own bound is computed, in all lanes: a
         // branch cannot be taken by one lane alone.
         if !(agree | differ).all() {
             return self.crossing_from_weights(corners, weights, rays);
         }
-        agree.any().then(|| (agree, Crossing::from_weights(corners, weights)))
+        agree.any().then(|| (agree, UnnormalizedCrossing::from_weights(corners, weights)))
     }
 
     /// Returns the corners in the rays' sheared coordinates.
@@ -111,14 +112,14 @@ impl<N: Number> TriangleN<N> {
         corners: [Vector<N>; 3],
         weights: Vector<N>,
         rays: &Rays<N>,
-    ) -> Option<(N::Mask, Crossing<N>)> {
-        let [agree, differ] = certain_signs(weights, weight_error_bound(corners, rays.shear.length));
+    ) -> Option<(N::Mask, UnnormalizedCrossing<N>)> {
+        let [agree, differ] = certain_hits_and_misses(weights, weight_error_bound(corners, rays.shear.length));
         // Unused lanes have infinite corners, and must not count as uncertain.
         let is_uncertain = !(agree | differ) & self.0[0].x.le(N::splat(f32::MAX));
         if !(agree | is_uncertain).any() {
             return None;
         }
-        let crossing = Crossing::from_weights(corners, weights);
+        let crossing = UnnormalizedCrossing::from_weights(corners, weights);
         if is_uncertain.any() {
             Some(self.resolve_in_f64(agree, is_uncertain, crossing, rays))
         } else {
@@ -126,28 +127,28 @@ impl<N: Number> TriangleN<N> {
         }
     }
 
-    /// Divides the crossing, clamps its t to the triangle's box, and rejects t below `min`.
+    /// Divides the crossing, clamps its t to the triangle's box, and rejects t below `min_t`.
     ///
     /// Returns the result of [`first_crossing`](Crossable::first_crossing).
     #[inline(always)]
-    fn clamped_crossing(
+    fn normalized_clamped_crossing(
         &self,
-        min: N,
+        min_t: N,
         rays: &Rays<N>,
-        (crosses, crossing): (N::Mask, Crossing<N>),
+        (crosses, crossing): (N::Mask, UnnormalizedCrossing<N>),
     ) -> Option<(N::Mask, N)> {
         // The test divides here for the first time; most tests end before.
         let t = crossing.t / crossing.sum;
-        // Crossings before `min` are rejected before the box test, because a shadow ray always crosses the plane of the
-        // triangle that it starts on: pictures with shadows are 1.3 to 1.9 % faster.
-        let crosses = crosses & min.le(t);
+        // Crossings before `min_t` are rejected before the box test, because a shadow ray always crosses the plane of
+        // the triangle that it starts on: pictures with shadows are 1.3 to 1.9 % faster.
+        let crosses = crosses & min_t.le(t);
         if !crosses.any() {
             return None;
         }
         // The clamp makes hits independent of the tree (`culling.md`, 2).
         let [start, end] = crossed(self.boxes(), rays);
-        let t = nearest_in(start, end, t);
-        Some((crosses & start.le(end) & min.le(t), t))
+        let t = clamp_keeping_nan(start, end, t);
+        Some((crosses & start.le(end) & min_t.le(t), t))
     }
 
     /// Replaces the results of uncertain lanes by those of [`crossing_in_f64`]; `agree` is the mask
@@ -157,9 +158,9 @@ impl<N: Number> TriangleN<N> {
         &self,
         agree: N::Mask,
         is_uncertain: N::Mask,
-        Crossing { weights, sum, t }: Crossing<N>,
+        UnnormalizedCrossing { weights, sum, t }: UnnormalizedCrossing<N>,
         rays: &Rays<N>,
-    ) -> (N::Mask, Crossing<N>) {
+    ) -> (N::Mask, UnnormalizedCrossing<N>) {
         let (zero, one) = (N::splat(0.0), N::splat(1.0));
         let ([a, b, c], o, d) = (self.0, rays.origin, rays.direction);
         // `crossing_in_f64` returns at once for lanes that are certain.
@@ -167,8 +168,11 @@ impl<N: Number> TriangleN<N> {
         let numbers = [is_active, a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, o.x, o.y, o.z, d.x, d.y, d.z];
         let [crosses, x, y, z, exact_t] = N::map_lanes(numbers, crossing_in_f64);
         let weights = Vector::select(is_uncertain, Vector { x, y, z }, weights);
-        let crossing =
-            Crossing { weights, sum: N::select(is_uncertain, one, sum), t: N::select(is_uncertain, exact_t, t) };
+        let crossing = UnnormalizedCrossing {
+            weights,
+            sum: N::select(is_uncertain, one, sum),
+            t: N::select(is_uncertain, exact_t, t),
+        };
         (agree | (is_uncertain & zero.lt(crosses)), crossing)
     }
 }
@@ -233,7 +237,7 @@ fn weight_error_bound<N: Number>([a, b, c]: [Vector<N>; 3], length: N) -> N {
 ///
 /// Only weights beyond the error bound have a certain sign.
 #[inline(always)]
-fn certain_signs<N: Number>(Vector { x, y, z }: Vector<N>, error_bound: N) -> [N::Mask; 2] {
+fn certain_hits_and_misses<N: Number>(Vector { x, y, z }: Vector<N>, error_bound: N) -> [N::Mask; 2] {
     // Both masks follow from the minimum and the maximum. Sign bits alone could not be compared with the error bound.
     let (least, greatest) = (x.min(y.min(z)), x.max(y.max(z)));
     let agree = error_bound.lt(least) | greatest.lt(-error_bound);
@@ -243,12 +247,12 @@ fn certain_signs<N: Number>(Vector { x, y, z }: Vector<N>, error_bound: N) -> [N
 impl<N: Number> Crossable<N> for TriangleN<N> {
     #[inline(always)]
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
-        self.clamped_crossing(min, rays, self.crossing(rays)?)
+        self.normalized_clamped_crossing(min, rays, self.crossing(rays)?)
     }
 
     #[inline(always)]
-    fn first_crossing_with_bound(&self, rays: &Rays<N>, [min, _]: [N; 2], error_bound: N) -> Option<(N::Mask, N)> {
-        self.clamped_crossing(min, rays, self.crossing_with_bound(rays, error_bound)?)
+    fn first_crossing_in_packet(&self, rays: &Rays<N>, [min, _]: [N; 2], error_bound: N) -> Option<(N::Mask, N)> {
+        self.normalized_clamped_crossing(min, rays, self.crossing_with_bound(rays, error_bound)?)
     }
 
     #[inline(always)]
@@ -267,8 +271,8 @@ impl SoaLeaf for TriangleN<F32x8> {
     const HAVE_EDGE_FUNCTIONS: bool = true;
 
     #[inline(always)]
-    fn edge_functions<N: Lanes>(&self, common_origin: &CommonOrigin<N>) -> Option<EdgeFunctions> {
-        Some(self.one_per_lane::<N>().edge_functions(common_origin))
+    fn edge_functions<N: Lanes>(&self, projection_center: &ProjectionCenter<N>) -> Option<EdgeFunctions> {
+        Some(self.one_per_lane::<N>().edge_functions(projection_center))
     }
 
     fn of(shapes: &[Triangle]) -> Self {
@@ -360,7 +364,7 @@ impl<N: Number> AtCrossing<N> for TriangleN<N> {
         let zero = N::splat(0.0);
         // The crossing is computed again for its weights, as hits store only t and the primitive.
         let uv = match self.crossing(rays) {
-            Some((crosses, Crossing { weights, sum, .. })) => {
+            Some((crosses, UnnormalizedCrossing { weights, sum, .. })) => {
                 [N::select(crosses, weights.y / sum, zero), N::select(crosses, weights.z / sum, zero)]
             }
             None => [zero; 2],

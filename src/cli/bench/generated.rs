@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use glam::Vec3;
-use termtrace::internals::rasterize::random_spheres;
+use termtrace::internals::rasterize::random_centers_and_scales;
 use termtrace::{
     Camera, CameraError, LinearRgb, Material, Object, Plane, PointLight, Pose, Scene, Shape, Sphere, ViewRectangle,
 };
@@ -60,5 +60,5 @@ fn camera() -> Result<Camera, CameraError> {
 /// times `radius`.
 fn spheres(count: u32, radius: f32) -> Vec<Shape> {
     let sphere = |(center, factor)| Sphere::new(center, radius * factor).expect("a sphere").into();
-    random_spheres(count).map(sphere).collect()
+    random_centers_and_scales(count).map(sphere).collect()
 }

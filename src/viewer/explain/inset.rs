@@ -56,7 +56,7 @@ impl Inset {
         let rays = camera.eye_rays(explanation.resolution.aspect_ratio());
         let near = VIEW_RECTANGLE_DISTANCE * t;
         // Only spheres are drawn, because their outline is the same circle from every side.
-        let sphere = shaded.and_then(|shaded| shaded.hit.surface(scene).circle());
+        let sphere = shaded.and_then(|shaded| shaded.hit.surface(scene).silhouette_sphere());
         let sphere = sphere.map(|(center, radius)| (from_side(center), radius));
         let lights = shaded.map_or(Vec::new(), |shaded| {
             // For a light at infinity, the line to it is drawn as long as the ray, in the light's direction.

@@ -39,7 +39,7 @@ fn half_width(columns: u16) -> usize {
 /// "object" or "triangle".
 pub(super) fn lines(comparison: &Comparison, name: &str, tests: u64, columns: u16, rows: u16) -> Vec<String> {
     let half = half_width(columns);
-    let is_built = tests >= comparison.total_tests();
+    let is_built = tests >= comparison.max_total_tests();
     let (pixels, objects) = (comparison.image_tests.len(), comparison.object_tests.len());
     let built = comparison.built_pixels(tests);
     let drawn = comparison.object_tests.partition_point(|&until| until <= tests);

@@ -13,11 +13,11 @@ const MAX_SECONDS: f64 = 1e6;
 
 /// Returns the path, or `None` after all faults have been added to `faults`.
 ///
-/// Parameters that a keyframe does not give are those of `camera`.
-pub(in crate::scene) fn check(file: &PathFile, camera: &Camera, faults: &mut Faults) -> Option<CameraPath> {
+/// Parameters that a keyframe does not give are those of `default_camera`.
+pub(in crate::scene) fn check(file: &PathFile, default_camera: &Camera, faults: &mut Faults) -> Option<CameraPath> {
     let mut validator = Validator { faults };
     let (written, span) = file.keyframes.as_ref()?;
-    let cameras: Vec<_> = written.iter().map(|keyframe| validator.keyframe(keyframe, camera)).collect();
+    let cameras: Vec<_> = written.iter().map(|keyframe| validator.keyframe(keyframe, default_camera)).collect();
     validator.check_times(written);
     if !validator.faults.is_empty() {
         return None;
@@ -28,17 +28,19 @@ pub(in crate::scene) fn check(file: &PathFile, camera: &Camera, faults: &mut Fau
 }
 
 impl Validator<'_> {
-    fn keyframe(&mut self, written: &WrittenKeyframe, camera: &Camera) -> Option<Keyframe> {
+    fn keyframe(&mut self, written: &WrittenKeyframe, default_camera: &Camera) -> Option<Keyframe> {
         let time = written.time.and_then(|time| self.time(time));
         let eye = written.eye.and_then(|eye| self.point(eye));
         let target = written.target.and_then(|target| self.point(target));
         let up = match written.up {
             Some(up) => self.up_vector(up),
-            None => Some(camera.pose().up),
+            None => Some(default_camera.pose().up),
         };
         let rectangle = match written.vertical_fov {
-            Some(degrees) => self.rectangle_from_degrees(degrees, |fov| camera.rectangle().with_vertical_fov(fov)),
-            None => Some(camera.rectangle()),
+            Some(degrees) => {
+                self.rectangle_from_degrees(degrees, |fov| default_camera.rectangle().with_vertical_fov(fov))
+            }
+            None => Some(default_camera.rectangle()),
         };
         let pose = Pose { eye: eye?, target: target?, up: up? };
         let spans = PoseSpans {
@@ -49,7 +51,7 @@ impl Validator<'_> {
         };
         // If the angle has a fault, the pose is checked with the camera's angle, so that its faults are reported as
         // well.
-        let camera = self.camera_of(pose, rectangle.unwrap_or(camera.rectangle()), spans)?;
+        let camera = self.camera_of(pose, rectangle.unwrap_or(default_camera.rectangle()), spans)?;
         rectangle.and(Some(Keyframe { time: time?, camera }))
     }
 

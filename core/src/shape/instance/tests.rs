@@ -1,4 +1,4 @@
-use super::Hull;
+use super::CornerCells;
 use crate::bounds::Bounds;
 use crate::mesh_file::MeshFile;
 use glam::Vec3;
@@ -9,11 +9,11 @@ fn the_reach_of_a_hull_is_that_of_all_corners() {
     let corner = |at: u32| Vec3::new((at * 37 % 101) as f32, (at * 53 % 97) as f32 * 0.01, (at * 29 % 89) as f32 - 1e3);
     let corners: Vec<_> = (0..500).map(corner).collect();
     let file = MeshFile::new(corners.clone(), vec![[0, 1, 2]]).expect("a mesh");
-    let hull = Hull::of(&file);
-    assert_eq!(hull.bounds(None), Bounds::of(corners.iter().copied()));
+    let cells = CornerCells::of(&file);
+    assert_eq!(cells.bounds(None), Bounds::of(corners.iter().copied()));
     for at in 0..200 {
         let direction = (corner(at * 3) - corner(at * 7 + 1)).as_dvec3();
         let all = corners.iter().map(|corner| corner.as_dvec3().dot(direction)).fold(f64::MIN, f64::max);
-        assert_eq!(hull.reach(direction), all);
+        assert_eq!(cells.reach(direction), all);
     }
 }

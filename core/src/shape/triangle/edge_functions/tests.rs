@@ -1,6 +1,6 @@
 use super::super::Triangle;
 use crate::lanes::{F32x8, LANES, LaneMask, Number};
-use crate::ray::{CommonOrigin, EightRays, Ray, Rays};
+use crate::ray::{EightRays, ProjectionCenter, Ray, Rays};
 use crate::shape::triangle::{TriangleN, weight_error_bound};
 use crate::shape::{Crossable, SoaLeaf};
 use glam::Vec3;
@@ -67,8 +67,8 @@ fn random_case(seed: u64) -> (Vec<Triangle>, [EightRays; LANES]) {
     (triangles, rays)
 }
 
-/// Returns whether the rays of a random case reach the common origin at t = 1, as shadow rays reach
-/// a light.
+/// Returns whether the rays of a random case reach the projection center at t = 1, as shadow
+/// rays reach a light.
 fn is_backward(seed: u64) -> bool {
     seed % 2 == 1
 }
@@ -76,7 +76,7 @@ fn is_backward(seed: u64) -> bool {
 /// Tests rays with a packet's error bound. Returns the bits of t, or of -1 for rays that miss.
 fn t_bits(shape: &TriangleN<F32x8>, rays: &Rays<F32x8>, packet_error_bound: f32) -> Option<[u32; LANES]> {
     let crossing =
-        shape.first_crossing_with_bound(rays, [F32x8::ZERO, F32x8::splat(f32::MAX)], F32x8::splat(packet_error_bound));
+        shape.first_crossing_in_packet(rays, [F32x8::ZERO, F32x8::splat(f32::MAX)], F32x8::splat(packet_error_bound));
     crossing.map(|(crosses, t)| F32x8::select(crosses, t, F32x8::splat(-1.0)).0.map(f32::to_bits))
 }
 
@@ -98,9 +98,9 @@ fn unusual_lengths_are_not_decided_by_the_packet_bound() {
         let mut rays = [[one; LANES]; LANES];
         rays[3][5] = other;
         let groups: [Rays<F32x8>; LANES] = from_fn(|group| Rays::load(&EightRays::of(&rays[group]), true));
-        let common_origin = CommonOrigin::of(&groups).expect("all rays start in one point");
+        let projection_center = ProjectionCenter::find(&groups).expect("all rays start in one point");
         let shapes = TriangleN::<F32x8>::of(&[across, along, close].map(Triangle::unchecked));
-        let edges = shapes.edge_functions(&common_origin);
+        let edges = shapes.edge_functions(&projection_center);
         for lane in 0..3 {
             let (shape, packet_error_bound) = (shapes.splat::<F32x8>(lane), edges.packet_error_bound.0[lane]);
             for rays in &groups {
@@ -121,9 +121,9 @@ fn the_packet_bound_is_at_least_the_bound_of_each_ray() {
     for seed in 0..6_000 {
         let (triangles, rays) = random_case(seed);
         let groups: [Rays<F32x8>; LANES] = from_fn(|group| Rays::load(&rays[group], true));
-        let Some(common_origin) = CommonOrigin::of(&groups) else { continue };
+        let Some(projection_center) = ProjectionCenter::find(&groups) else { continue };
         let shapes = TriangleN::<F32x8>::of(&triangles);
-        let edges = shapes.edge_functions(&common_origin);
+        let edges = shapes.edge_functions(&projection_center);
         for lane in 0..LANES {
             let (shape, packet_error_bound) = (shapes.splat::<F32x8>(lane), edges.packet_error_bound.0[lane]);
             for (group, rays) in groups.iter().enumerate() {
@@ -153,11 +153,11 @@ fn culled_groups_do_not_cross_the_triangle() {
         let (triangles, rays) = random_case(seed);
         let groups: [Rays<F32x8>; LANES] = from_fn(|group| Rays::load(&rays[group], true));
         let shapes = TriangleN::<F32x8>::of(&triangles);
-        let Some(common_origin) = CommonOrigin::of(&groups) else { continue };
-        let edges = shapes.edge_functions(&common_origin);
+        let Some(projection_center) = ProjectionCenter::find(&groups) else { continue };
+        let edges = shapes.edge_functions(&projection_center);
         packets[usize::from(is_backward(seed))] += 1;
         for lane in 0..LANES {
-            let culled_groups = edges.culled_groups(lane, &common_origin);
+            let culled_groups = edges.culled_groups(lane, &projection_center);
             for (group, rays) in groups.iter().enumerate() {
                 let crossing = shapes.splat::<F32x8>(lane).first_crossing(rays, F32x8::splat(f32::MIN));
                 let crosses = crossing.map_or(0, |(crosses, _)| crosses.bits());

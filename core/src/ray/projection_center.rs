@@ -1,15 +1,15 @@
-//! Packets whose rays share an origin.
+//! Packets whose rays all meet in one point.
 
 use super::{DominantAxis, Rays, Shear};
 use crate::lanes::{LANES, Lanes, Mask, Vector};
 
-/// The common origin of a packet: the eye, or a light.
+/// The projection center of a packet: the eye, or a light.
 ///
-/// Seen from the common origin, each ray is a point of an image plane, its *offset*, and culling compares offsets.
+/// Seen from the projection center, each ray is a point of an image plane, its *offset*, and culling compares offsets.
 ///
 /// The numbered statements on error bounds are in `culling.md`.
 #[derive(Clone, Copy, Debug)]
-pub struct CommonOrigin<N: Lanes> {
+pub struct ProjectionCenter<N: Lanes> {
     origin: Vector<N>,
     /// An upper bound of the distance of a ray's line from `origin` along any axis, times 2^24
     /// (statement 9 of `culling.md`).
@@ -25,7 +25,7 @@ pub struct CommonOrigin<N: Lanes> {
     pub half_extents: [N; 2],
     /// The largest absolute x or y of the offset of a ray, at most 1.
     pub max_offset: N,
-    /// The range of the rays' origins along z, relative to the common origin.
+    /// The range of the rays' origins along z, relative to the projection center.
     ///
     /// Infinite unless all rays have the dominant axis `axis`, and lengths along it within `SAFE_LENGTHS`.
     pub depth_range: [N; 2],
@@ -40,24 +40,24 @@ pub struct CommonOrigin<N: Lanes> {
 // Without the limits, a packet with directions of length 2^120 was culled wrongly.
 const SAFE_LENGTHS: [f32; 2] = [1.0 / 4_294_967_296.0, 4_294_967_296.0];
 
-impl<N: Lanes> CommonOrigin<N> {
-    /// Finds the common origin of eye rays or shadow rays.
+impl<N: Lanes> ProjectionCenter<N> {
+    /// Finds the projection center of eye rays or shadow rays.
     ///
-    /// Eye rays start at the common origin (the eye); shadow rays reach it (the light) at t = 1, up to rounding.
+    /// Eye rays start at the projection center (the eye); shadow rays reach it (the light) at t = 1, up to rounding.
     /// Returns `None` for other rays, and if an offset exceeds 1.
     #[inline(always)]
-    pub fn of(groups: &[Rays<N>; LANES]) -> Option<Self> {
+    pub fn find(groups: &[Rays<N>; LANES]) -> Option<Self> {
         let zero = N::splat(0.0);
         // Offsets are measured from a ray near the middle of the tile, so that they and all bounds are small.
         let middle = &groups[LANES / 2];
         let start = middle.origin.splat_lane(0);
         // Eye rays start at the same point, bit for bit: `origin_error` is zero, and their ends need no comparison.
-        if max_distance(groups, zero, start).le(zero).all() {
+        if max_axis_distance(groups, zero, start).le(zero).all() {
             return Self::with_origin(start, zero, groups);
         }
         let direction = middle.direction.splat_lane(0);
         let end = middle.origin.splat_lane(0) + direction;
-        let off = max_distance(groups, N::splat(1.0), end);
+        let off = max_axis_distance(groups, N::splat(1.0), end);
         // If the ends of the rays are farther apart than 1/4096 of the direction's largest coordinate, the error bounds
         // would be too wide to cull anything. No statement of `culling.md` depends on the exact number 4096.
         if !(off * N::splat(4096.0)).le(direction.max_abs_coordinate()).all() {
@@ -121,10 +121,10 @@ impl<N: Lanes> CommonOrigin<N> {
 
     /// Transforms a point to coordinates in which the ray with `slope` runs along z.
     ///
-    /// The coordinates are relative to the common origin. For their errors see statement 10 of `culling.md`; the
+    /// The coordinates are relative to the projection center. For their errors see statement 10 of `culling.md`; the
     /// rounding of `slope` adds none, as offsets are relative to the rounded slope.
     #[inline(always)]
-    pub fn apply(&self, point: Vector<N>) -> Vector<N> {
+    pub fn to_shear_space(&self, point: Vector<N>) -> Vector<N> {
         let Vector { x, y, z } = self.axis.rotate_to_z(point - self.origin);
         Vector { x: x - self.slope[0] * z, y: y - self.slope[1] * z, z }
     }
@@ -132,7 +132,7 @@ impl<N: Lanes> CommonOrigin<N> {
 
 /// Returns the largest distance of the rays at `t` from `point`, along any axis.
 #[inline(always)]
-fn max_distance<N: Lanes>(groups: &[Rays<N>; LANES], t: N, point: Vector<N>) -> N {
+fn max_axis_distance<N: Lanes>(groups: &[Rays<N>; LANES], t: N, point: Vector<N>) -> N {
     let mut distance = N::splat(0.0);
     for rays in groups {
         // In this order `max` skips NaN: a ray with a coordinate that is not finite hits nothing, and must not hide the
