@@ -30,8 +30,8 @@ use std::num::NonZeroU32;
 /// }
 /// ```
 ///
-/// A scene whose formulas depend on the time is shown at the scene's own time: 0, or `seconds` after
-/// `scene.at_time(seconds)`. A pane is not traced again while it gets copies of one scene.
+/// A scene whose formulas depend on the time is shown at the scene's own time, which is 0 after loading. A pane is not
+/// traced again while it gets copies of one scene.
 ///
 /// # Panics
 /// Drawing resumes a panic of the [background](SceneState::in_background) thread.

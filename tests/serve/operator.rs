@@ -39,6 +39,16 @@ fn an_address_for_everyone_needs_public() {
 }
 
 #[test]
+fn counts_are_for_the_servers_own_machine() {
+    let output = termtrace(&["three_spheres", "--metrics", "192.0.2.1:9100", "--host-key", "/nonexistent/key"]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    let expected =
+        "other machines could read the counts at this address; use one of this machine, such as 127.0.0.1:9100";
+    assert!(message.contains(expected), "{message}");
+}
+
+#[test]
 fn a_file_has_settings_and_flags_go_before_it() {
     let settings = r#"(listen: "127.0.0.1:0", max_viewers: 1, link: "https://example.org/of-the-file", fps: 20)"#;
     let (_folder, path) = folder_with("serve.ron", settings);

@@ -142,7 +142,9 @@ fn settings(args: &ServeArgs) -> Result<Settings, Failure> {
     settings.max_frames = args.fps.unwrap_or(settings.max_frames);
     if let Some(address) = args.metrics.filter(|address| !address.ip().is_loopback()) {
         return Err(Failure::Usage(format!(
-            "--metrics {address}: other machines could read the counts at this address"
+            "--metrics {address}: other machines could read the counts at this address; use one of this machine, such \
+             as 127.0.0.1:{}",
+            address.port()
         )));
     }
     settings.metrics = args.metrics;
