@@ -182,12 +182,12 @@ impl CellMode {
     }
 
     /// Returns whether the glyphs show [`Geometry`], which is then traced with the picture.
-    pub(crate) const fn shows_geometry(self) -> bool {
+    pub(crate) const fn needs_geometry(self) -> bool {
         matches!(self.glyphs.row().fill, Fill::Geometry(_))
     }
 
     /// Traces the picture of a map, and the geometry if the glyphs show it.
-    pub(crate) fn trace(
+    pub(crate) fn trace_for_glyphs(
         self,
         map: Map,
         executor: Executor<'_>,
@@ -196,13 +196,13 @@ impl CellMode {
         resolution: Resolution,
         sampling: Sampling,
     ) -> Result<TracedMap, Cancelled> {
-        let trace = if self.shows_geometry() { maps::trace_with_geometry } else { maps::trace };
+        let trace = if self.needs_geometry() { maps::trace_with_geometry } else { maps::trace };
         trace(map, executor, scene, camera, resolution, sampling)
     }
 
     /// Returns the default sampling of a frame: at most 17 rays per cell on average.
     #[doc(hidden)]
-    pub const fn sampling(self) -> Sampling {
+    pub const fn default_sampling(self) -> Sampling {
         // With one ray for 2 by 2 pixels, and four where these differ, quadrants and eighths have a PSNR of 30.60 dB,
         // instead of 30.72 dB with all 32 rays.
         let (across, down) = self.pixels_per_cell();
@@ -211,8 +211,8 @@ impl CellMode {
 
     /// Returns the mode without colours that has the same number of pixels per cell.
     #[doc(hidden)]
-    pub fn plain(self) -> Self {
-        Self { glyphs: self.glyphs.row().plain.unwrap_or(self.glyphs), colors: Colors::None }
+    pub fn without_colors(self) -> Self {
+        Self { glyphs: self.glyphs.row().colorless_glyphs.unwrap_or(self.glyphs), colors: Colors::None }
     }
 }
 
@@ -329,7 +329,7 @@ impl Painter {
         resolution: Resolution,
         sampling: impl Into<Sampling>,
     ) -> Grid {
-        let traced = self.mode.trace(map, Executor::Pool, scene, camera, resolution, sampling.into());
+        let traced = self.mode.trace_for_glyphs(map, Executor::Pool, scene, camera, resolution, sampling.into());
         self.grid_of(&traced.expect("only a token cancels, and the pool has none"))
     }
 
@@ -367,7 +367,7 @@ impl Painter {
             Fill::Lightness(fill) if !has_colors => fill(grid, negative().as_ref().unwrap_or(picture)),
             Fill::Lightness(fill) => {
                 fill(grid, &tint::grey_by_brightest_channel(picture));
-                tint::fill(grid, picture, pixels_per_cell, &mut self.inks);
+                tint::color_glyphs(grid, picture, pixels_per_cell, &mut self.inks);
             }
             Fill::Geometry(fill) => {
                 let unknown = || Geometry::of_one_surface(picture.width(), picture.height());

@@ -21,7 +21,7 @@ pub use ansi::ansi;
 pub use ansi::ansi_or_text;
 pub use difference::{Difference, compare};
 #[doc(hidden)]
-pub use format_row::{Contents, GoldenDifference};
+pub use format_row::{FileEncoder, GoldenDifference};
 pub use html::html;
 #[cfg(feature = "png")]
 pub use png::{ExportError, png};
@@ -114,14 +114,14 @@ impl Format {
 
     /// Returns the function that makes a file of the format, from a grid or from a picture.
     #[doc(hidden)]
-    pub const fn contents(self) -> Contents {
-        self.row().contents
+    pub const fn file_encoder(self) -> FileEncoder {
+        self.row().file_encoder
     }
 
     /// Returns whether the format contains pixels instead of cells.
     #[doc(hidden)]
     pub const fn has_pixels(self) -> bool {
-        matches!(self.contents(), Contents::Pixels(_))
+        matches!(self.file_encoder(), FileEncoder::Pixels(_))
     }
 
     /// Returns a readable report of how a file differs from the golden file.

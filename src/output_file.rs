@@ -89,7 +89,7 @@ impl OutputFile {
     ///
     /// # Errors
     /// As for [`create_new`](Self::create_new).
-    pub fn create_secret(path: &Path) -> io::Result<Self> {
+    pub fn create_new_private(path: &Path) -> io::Result<Self> {
         Self::create_new_by(path, Temporary::new_private_file)
     }
 

@@ -519,7 +519,7 @@ impl Viewer {
         let (outside, layout) = (self.second_camera(), self.shown_layout());
         let (scene, resolution) = (self.scenes.count(), self.display.resolution());
         let (lights, orders) = (lights.move_count(), self.screen.get::<OrdersPanel>().is_some());
-        let geometry = self.display.capabilities().cell_mode.shows_geometry();
+        let geometry = self.display.capabilities().cell_mode.needs_geometry();
         let time = self.playback.time();
         Some(Shot { scene, lights, time, camera, outside, resolution, layout, orders, geometry })
     }

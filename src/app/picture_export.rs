@@ -2,7 +2,7 @@
 
 use crate::capabilities::{Capabilities, CellMode, Colors};
 use crate::cell::{self, Painter};
-use crate::export::{Contents, Format};
+use crate::export::{FileEncoder, Format};
 use crate::grid::{Grid, Size};
 use crate::output_file::OutputFile;
 use crate::render::Geometry;
@@ -31,14 +31,18 @@ pub(super) fn contents(
     capabilities: &Capabilities,
 ) -> io::Result<Vec<u8>> {
     let Capabilities { cell_mode, cell_aspect, light_background, .. } = *capabilities;
-    match format.contents() {
-        Contents::Pixels(write) => {
+    match format.file_encoder() {
+        FileEncoder::Pixels(write) => {
             let one = cell::resolution(cell_mode, Size::new(1, 1), cell_aspect).map_err(io::Error::other)?;
             write(picture, one.pixel_aspect(), PNG_SCALE)
         }
-        Contents::Cells { has_colors, is_on_black, write } => {
+        FileEncoder::Cells { has_colors, is_on_black, write } => {
             // Truecolor even if the terminal has 16 colours, because the file may be viewed elsewhere.
-            let mode = if has_colors { CellMode { colors: Colors::Truecolor, ..cell_mode } } else { cell_mode.plain() };
+            let mode = if has_colors {
+                CellMode { colors: Colors::Truecolor, ..cell_mode }
+            } else {
+                cell_mode.without_colors()
+            };
             let mut grid = Grid::new(Size::new(0, 0));
             let light_background = light_background && !is_on_black;
             Painter::new(mode).with_light_background(light_background).paint(picture, geometry, &mut grid);

@@ -55,7 +55,7 @@ pub fn colors(choice: ColorChoice, clues: &Clues<'_>) -> Detected<Colors> {
         ColorChoice::Never => return Detected { value: Colors::None, source: Source::User },
         ColorChoice::Exactly(value) => return Detected { value, source: Source::User },
         ColorChoice::Always => Some(Detected { value: Colors::SIXTEEN, source: Source::User }),
-        ColorChoice::Auto => match requested_by_variable(clues) {
+        ColorChoice::Auto => match refused_or_forced(clues) {
             Some(refused) if refused.value == Colors::None => return refused,
             forced => forced,
         },
@@ -90,7 +90,7 @@ fn non_empty_variable(clues: &Clues<'_>, name: &str) -> Option<String> {
 }
 
 /// Returns the colours that the user's environment variables request; a forced level is a minimum.
-pub(super) fn requested_by_variable(clues: &Clues<'_>) -> Option<Detected<Colors>> {
+pub(super) fn refused_or_forced(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     refused_by_variable(clues).or_else(|| forced_by_variable(clues))
 }
 

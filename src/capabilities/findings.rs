@@ -1,6 +1,6 @@
 //! The properties of a terminal, combined from all sources: user, environment, window and replies.
 
-use super::detection::{colorterm, is_utf8, locale, requested_by_variable};
+use super::detection::{colorterm, is_utf8, locale, refused_or_forced};
 use super::{CELL_ASPECT_RANGE, USUAL_CELL_ASPECT, colors, glyphs};
 use super::{Capabilities, CellMode, Clues, ColorChoice, Colors, Detected, GlyphChoice, Glyphs, Replies, Source};
 use crate::grid::{CellShape, HalfBlocks};
@@ -88,7 +88,7 @@ impl Hints {
     ///
     /// The candidates are `NO_COLOR`, `CLICOLOR_FORCE` and `FORCE_COLOR`.
     pub fn color_variable(&self) -> Option<&'static str> {
-        match self.with_clues(None, requested_by_variable)?.source {
+        match self.with_clues(None, refused_or_forced)?.source {
             Source::Variable(name) => Some(name),
             _ => None,
         }

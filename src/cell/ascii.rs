@@ -22,7 +22,7 @@ pub(super) const KIND: GlyphKind = GlyphKind {
     title: "characters with outlines",
     pixels_per_cell: (ACROSS as u32, DOWN as u32),
     has_blocks: false,
-    plain: None,
+    colorless_glyphs: None,
     fill: Fill::Geometry(fill),
 };
 
@@ -83,7 +83,7 @@ fn fill(
     last_frame: Option<&mut LastFrame>,
 ) {
     let (columns, rows) = (usize::from(grid.size().columns), usize::from(grid.size().rows));
-    let before = last_frame.as_ref().and_then(|last_frame| last_frame.before(picture));
+    let before = last_frame.as_ref().and_then(|last_frame| last_frame.previous_in_motion(picture));
     let content = |cell: usize| {
         cell_content(picture, geometry, [cell % columns, cell / columns], before.map(|it| &it.cells[cell]))
     };

@@ -12,7 +12,7 @@ pub(super) const KIND: GlyphKind = GlyphKind {
     title: "dots",
     pixels_per_cell: (1, 1),
     has_blocks: false,
-    plain: None,
+    colorless_glyphs: None,
     fill: Fill::Lightness(fill),
 };
 

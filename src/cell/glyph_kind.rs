@@ -18,7 +18,7 @@ pub(super) struct GlyphKind {
     /// The kind to use instead on terminals without colours; `None` if this kind needs no colours.
     ///
     /// Both kinds must have the same number of pixels per cell.
-    pub(super) plain: Option<Glyphs>,
+    pub(super) colorless_glyphs: Option<Glyphs>,
     pub(super) fill: Fill,
 }
 

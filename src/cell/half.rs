@@ -15,7 +15,7 @@ pub(super) const KIND: GlyphKind = GlyphKind {
     pixels_per_cell: (1, 2),
     has_blocks: true,
     // Without colours a half is only on or off, so the ten characters of the ramp show more of a picture.
-    plain: Some(Glyphs::Ramp),
+    colorless_glyphs: Some(Glyphs::Ramp),
     fill: Fill::Colored(fill),
 };
 

@@ -21,7 +21,7 @@ impl InkConverter {
             Colors::None => Self::Monochrome,
             Colors::Indexed16(values) => Self::Indexed(Palette::from_colors(&values), 0),
             // Black is index 16, in the cube, because a theme may change index 0.
-            Colors::Indexed256 => Self::Indexed(Palette::cube(), 16),
+            Colors::Indexed256 => Self::Indexed(Palette::cube_and_greys(), 16),
             Colors::Truecolor => Self::Truecolor,
         }
     }

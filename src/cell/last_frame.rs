@@ -41,7 +41,7 @@ pub(super) struct KeptCell {
 
 impl LastFrame {
     /// Returns the remembered frame, if the view moves and the frame has the size of this picture.
-    pub(super) fn before(&self, picture: &Picture) -> Option<&Remembered> {
+    pub(super) fn previous_in_motion(&self, picture: &Picture) -> Option<&Remembered> {
         let size = |picture: &Picture| (picture.width(), picture.height());
         self.frame.as_ref().filter(|frame| self.is_moving && size(&frame.picture) == size(picture))
     }

@@ -101,7 +101,7 @@ impl Mixes {
                 if lightness >= square(rules.max_lightness) {
                     break;
                 }
-                let chroma = chroma_difference(colors[lighter], colors[darker]);
+                let chroma = squared_chroma_difference(colors[lighter], colors[darker]);
                 if chroma < square(rules.max_chroma) {
                     let contrast = rules.lightness_contrast * lightness + rules.chroma_contrast * chroma;
                     mixes.extend(rules.quarters.iter().map(|&lighter_quarters| {
@@ -140,7 +140,8 @@ impl Mixes {
         let mut improves = |number: usize| {
             let mix = &self.sorted[number];
             let lightness = square(mix.mean.l - wanted.l);
-            let mut cost = lightness + self.rules.chroma_error * chroma_difference(mix.mean, wanted) + mix.contrast;
+            let mut cost =
+                lightness + self.rules.chroma_error * squared_chroma_difference(mix.mean, wanted) + mix.contrast;
             if cost < best.0 {
                 cost += self.penalty(mix, wanted);
             }
@@ -181,7 +182,7 @@ fn chroma(color: Oklab) -> f32 {
 }
 
 /// Returns the square of the difference of two colours without their lightness.
-fn chroma_difference(one: Oklab, other: Oklab) -> f32 {
+fn squared_chroma_difference(one: Oklab, other: Oklab) -> f32 {
     square(one.a - other.a) + square(one.b - other.b)
 }
 

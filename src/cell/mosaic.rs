@@ -35,7 +35,7 @@ type Sum = [u32; 3];
 
 /// The sums over a cell's parts, rows and columns of pixels.
 #[derive(Default)]
-struct Sums {
+struct CellColorSums {
     parts: [Sum; 8],
     rows: [Sum; 8],
     columns: [Sum; 4],
@@ -67,7 +67,7 @@ impl Mosaic {
     pub(super) fn fill(&self, grid: &mut Grid, picture: &Picture, inks: &mut InkConverter) {
         for row in 0..grid.size().rows {
             for column in 0..grid.size().columns {
-                let sums = self.sums(picture, column, row);
+                let sums = self.cell_color_sums(picture, column, row);
                 *grid.cell_mut(column, row) = match inks {
                     InkConverter::Monochrome => self.dithered(&sums, column, row),
                     _ => self.colored(&sums, column, row, inks),
@@ -77,10 +77,10 @@ impl Mosaic {
     }
 
     /// Returns the sums of a cell; beyond the picture's edge its last pixels are repeated.
-    fn sums(&self, picture: &Picture, column: u16, row: u16) -> Sums {
+    fn cell_color_sums(&self, picture: &Picture, column: u16, row: u16) -> CellColorSums {
         let (across, down) = self.pixels_per_cell();
         let (left, top) = (u32::from(column) * across, u32::from(row) * down);
-        let mut sums = Sums::default();
+        let mut sums = CellColorSums::default();
         for y in 0..down {
             let line = (top + y).min(picture.height() - 1) as usize * picture.width() as usize;
             let parts = y / self.part_pixels[1] * self.parts[0];
@@ -97,7 +97,7 @@ impl Mosaic {
 
     /// Returns the cell in the two best colours: a space if they hardly differ.
     // A full block is never used, because fonts leave hairlines between full blocks.
-    fn colored(&self, sums: &Sums, column: u16, row: u16, inks: &mut InkConverter) -> Cell {
+    fn colored(&self, sums: &CellColorSums, column: u16, row: u16, inks: &mut InkConverter) -> Cell {
         let (x, y) = (usize::from(column), 2 * usize::from(row));
         let (across, down) = self.pixels_per_cell();
         let (total, pixels) = (sums.rows.into_iter().fold([0; 3], plus), across * down);
@@ -124,7 +124,7 @@ impl Mosaic {
     /// Returns the ink with the least squared error; the first of several equal ones.
     // Only masks without the upper left part are tried, because a mask and its complement show the same picture. Of the
     // two half blocks this leaves the lower one, as in `half`.
-    fn best(&self, sums: &Sums, total: Sum, pixels: u32) -> InkChoice {
+    fn best(&self, sums: &CellColorSums, total: Sum, pixels: u32) -> InkChoice {
         let mut best = InkChoice { shape: Shape::Parts(0), sum: [0; 3], count: 0, gain: 0.0 };
         let mut consider = |shape, sum: Sum, count: u32| {
             let [r, g, b] = std::array::from_fn(|i| (pixels * sum[i]) as f32 - (count * total[i]) as f32);
@@ -158,7 +158,7 @@ impl Mosaic {
 
     /// Returns the cell in the two default colours, with ink in the parts whose mean colour is
     /// light after dithering.
-    fn dithered(&self, sums: &Sums, column: u16, row: u16) -> Cell {
+    fn dithered(&self, sums: &CellColorSums, column: u16, row: u16) -> Cell {
         let [across, down] = self.parts;
         let part_pixels = self.part_pixels[0] * self.part_pixels[1];
         let is_light = |&part: &u32| {

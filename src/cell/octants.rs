@@ -12,7 +12,7 @@ pub(super) const KIND: GlyphKind = GlyphKind {
     title: "octants",
     pixels_per_cell: MOSAIC.pixels_per_cell(),
     has_blocks: true,
-    plain: None,
+    colorless_glyphs: None,
     fill: Fill::Colored(fill),
 };
 

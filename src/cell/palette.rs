@@ -31,7 +31,7 @@ struct Choices {
 
 impl Palette {
     /// Returns the palette of the 240 colours that themes leave alone.
-    pub(super) fn cube() -> Self {
+    pub(super) fn cube_and_greys() -> Self {
         Self { colors: (16..=255).map(xterm_color).collect(), first_index: 16, choices: None }
     }
 

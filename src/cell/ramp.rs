@@ -15,7 +15,7 @@ pub(super) const KIND: GlyphKind = GlyphKind {
     title: "characters by lightness",
     pixels_per_cell: (1, 2),
     has_blocks: false,
-    plain: None,
+    colorless_glyphs: None,
     fill: Fill::Lightness(fill),
 };
 

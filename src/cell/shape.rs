@@ -20,7 +20,7 @@ pub(super) const KIND: GlyphKind = GlyphKind {
     title: "characters by shape",
     pixels_per_cell: (SAMPLE_COLUMNS as u32, SAMPLE_ROWS as u32),
     has_blocks: false,
-    plain: None,
+    colorless_glyphs: None,
     fill: Fill::Lightness(fill),
 };
 

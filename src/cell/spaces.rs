@@ -15,7 +15,7 @@ pub(super) const KIND: GlyphKind = GlyphKind {
     title: "coloured spaces",
     pixels_per_cell: (1, 2),
     has_blocks: false,
-    plain: Some(Glyphs::Ramp),
+    colorless_glyphs: Some(Glyphs::Ramp),
     fill: Fill::Colored(fill),
 };
 

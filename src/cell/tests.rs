@@ -17,7 +17,7 @@ fn a_glyph_kind_for_tests_is_found_and_painted() {
     let grid = grid_from_picture(mode, &picture);
     assert_eq!(grid.cell(0, 0), Cell::new('o', Ink::Rgb(BLUE), Ink::Rgb(BLACK)));
     assert_eq!(grid.cell(1, 0), Cell::new(' ', Ink::Default, Ink::Rgb(BLACK)));
-    let on_light = Painter::new(mode.plain()).with_light_background(true).grid(&picture);
+    let on_light = Painter::new(mode.without_colors()).with_light_background(true).grid(&picture);
     assert_eq!(on_light.cells().map(|cell| cell.glyph.to_string()).collect::<String>(), "oo");
 }
 
@@ -27,7 +27,7 @@ fn glyph_kinds_have_unique_names_and_plain_kinds_of_equal_pixel_counts() {
     for &glyphs in Glyphs::ALL {
         assert!(names.insert(glyphs.name()), "{glyphs:?}");
         let mode = CellMode { glyphs, colors: Colors::Truecolor };
-        assert_eq!(mode.plain().pixels_per_cell(), mode.pixels_per_cell(), "{glyphs:?}");
-        assert_eq!(mode.plain().plain(), mode.plain(), "{glyphs:?}");
+        assert_eq!(mode.without_colors().pixels_per_cell(), mode.pixels_per_cell(), "{glyphs:?}");
+        assert_eq!(mode.without_colors().without_colors(), mode.without_colors(), "{glyphs:?}");
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn grey_by_brightest_channel(picture: &Picture) -> Picture {
 }
 
 /// Colours each cell's character by its pixels' mean light at full brightness, on black.
-pub(super) fn fill(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u32), inks: &mut InkConverter) {
+pub(super) fn color_glyphs(grid: &mut Grid, picture: &Picture, pixels_per_cell: (u32, u32), inks: &mut InkConverter) {
     for row in 0..grid.size().rows {
         for column in 0..grid.size().columns {
             let color = scaled_to_brightness(cell_mean(picture, pixels_per_cell, column, row), 255);

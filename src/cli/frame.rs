@@ -17,7 +17,7 @@ use screen::Screen;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use termtrace::export::Format;
-use termtrace::internals::export::Contents;
+use termtrace::internals::export::FileEncoder;
 use termtrace::internals::maps;
 use termtrace::internals::text::{any_of, listed};
 use termtrace::{CellMode, Colors};
@@ -108,10 +108,10 @@ impl FrameArgs {
     /// Returns the cell mode of the frame. A picture file has as many pixels per cell as half
     /// blocks.
     fn cell_mode(&self, format: Format) -> CellMode {
-        match format.contents() {
-            Contents::Pixels(_) => CellMode::HALF_BLOCK,
-            Contents::Cells { has_colors: true, .. } => self.cells.mode_for_file(Colors::Truecolor),
-            Contents::Cells { has_colors: false, .. } => self.cells.mode_for_file(Colors::None),
+        match format.file_encoder() {
+            FileEncoder::Pixels(_) => CellMode::HALF_BLOCK,
+            FileEncoder::Cells { has_colors: true, .. } => self.cells.mode_for_file(Colors::Truecolor),
+            FileEncoder::Cells { has_colors: false, .. } => self.cells.mode_for_file(Colors::None),
         }
     }
 
@@ -121,8 +121,8 @@ impl FrameArgs {
         let wrong = |why: String| Err(Failure::Usage(why));
         self.map.check_samples(self.picture.given_samples())?;
         let name = format.name();
-        match format.contents() {
-            Contents::Pixels(_) if self.cells.is_given() => {
+        match format.file_encoder() {
+            FileEncoder::Pixels(_) if self.cells.is_given() => {
                 let of_cells = formats().into_iter().filter(|format| !format.has_pixels());
                 let names = any_of(&of_cells.map(Format::name).collect::<Vec<_>>());
                 let name = name.to_uppercase();
@@ -130,15 +130,15 @@ impl FrameArgs {
                     "--color, --glyphs and --background are for cells ({names}); a {name} consists of pixels"
                 ))
             }
-            Contents::Pixels(_) if self.output().is_none() && self.check.is_none() && io::stdout().is_terminal() => {
+            FileEncoder::Pixels(_) if self.output().is_none() && self.check.is_none() && io::stdout().is_terminal() => {
                 wrong(format!("a {} would garble the terminal; name a file with -o, or pipe it", name.to_uppercase()))
             }
-            Contents::Cells { .. } if self.picture.has_scale() => {
+            FileEncoder::Cells { .. } if self.picture.has_scale() => {
                 let of_pixels = formats().into_iter().filter(|format| format.has_pixels());
                 let names: Vec<_> = of_pixels.map(|format| format.name().to_uppercase()).collect();
                 wrong(format!("--scale is for {}; frames of cells take their size from --size", listed(&names)))
             }
-            Contents::Cells { has_colors: false, .. } if self.cells.wants_color() => {
+            FileEncoder::Cells { has_colors: false, .. } if self.cells.wants_color() => {
                 wrong(format!("{name} has no colours; use --format ansi"))
             }
             _ => Ok(()),
@@ -162,13 +162,13 @@ impl FrameArgs {
         let map = self.map.map();
         warn_of_invisibility(map, &scene);
         // Only tracing runs in the pool of `--threads`; the file is encoded on one thread.
-        match format.contents() {
-            Contents::Pixels(write) => {
+        match format.file_encoder() {
+            FileEncoder::Pixels(write) => {
                 let trace = || maps::picture(map, &scene, scene.camera(), resolution, samples);
                 write(&self.scene.on_threads(trace)?, resolution.pixel_aspect(), self.picture.scale())
                     .map_err(|error| Failure::runtime(format.name().to_uppercase(), error))
             }
-            Contents::Cells { write, .. } => {
+            FileEncoder::Cells { write, .. } => {
                 let trace = || self.cells.painter(mode).trace(map, &scene, scene.camera(), resolution, samples);
                 let grid = self.scene.on_threads(trace)?;
                 let (aspect, name) = (self.picture.cell_aspect(), self.scene.name());

@@ -37,7 +37,7 @@ impl FrameKind {
 
     fn default_samples(self, mode: CellMode) -> Sampling {
         match self {
-            Self::Cells => mode.sampling(),
+            Self::Cells => mode.default_sampling(),
             Self::Picture | Self::Gif => Sampling::BEST,
         }
     }

@@ -61,7 +61,7 @@ pub(super) fn order(
 
 /// Returns the glyph and background colours of a picture cell, equal for a space; `None` for text.
 fn picture_inks(cell: PackedCell) -> Option<[PackedInk; 2]> {
-    let inks = match cell.code() {
+    let inks = match cell.glyph_and_attributes() {
         LOWER_HALF | UPPER_HALF => [cell.fg, cell.bg],
         SPACE => [cell.bg; 2],
         _ => return None,

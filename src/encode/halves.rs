@@ -36,7 +36,7 @@ pub(super) fn squared_differences(a: Halves, b: Halves) -> [u32; 2] {
 #[inline]
 pub(super) fn picture_halves(cell: PackedCell) -> Option<Halves> {
     let PackedCell { fg, bg, .. } = cell;
-    let (halves, is_picture) = match cell.code() {
+    let (halves, is_picture) = match cell.glyph_and_attributes() {
         SPACE => ([bg, bg], fg == PackedInk::DEFAULT),
         LOWER_HALF => ([bg, fg], fg.is_rgb()),
         UPPER_HALF => ([fg, bg], fg.is_rgb()),

@@ -276,14 +276,14 @@ fn is_basic(ink: PackedInk) -> bool {
 
 /// Returns whether two cells look the same in every terminal.
 pub(super) fn look_alike(a: PackedCell, b: PackedCell) -> bool {
-    (a.bg, a.code()) == (b.bg, b.code())
+    (a.bg, a.glyph_and_attributes()) == (b.bg, b.glyph_and_attributes())
         && (a.fg == b.fg || is_plain_space(a))
         && (a.underline == b.underline || !is_underlined(a))
 }
 
 /// Returns whether a cell is a space without attributes, so that only its background is visible.
 pub(super) fn is_plain_space(cell: PackedCell) -> bool {
-    cell.code() == u32::from(' ')
+    cell.glyph_and_attributes() == u32::from(' ')
 }
 
 /// Returns whether the underline of a cell is visible.

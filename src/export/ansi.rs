@@ -1,7 +1,7 @@
 //! Export of a grid as ANSI text: its characters with escape sequences for their colours.
 
 use super::difference;
-use super::format_row::{Contents, FormatRow};
+use super::format_row::{FileEncoder, FormatRow};
 use super::text::text;
 use crate::capabilities::Colors;
 use crate::encode::Pen;
@@ -14,7 +14,7 @@ pub(super) const KIND: FormatRow = FormatRow {
     key: 'a',
     command: "WriteAnsi",
     title: "ANSI text in colour",
-    contents: Contents::Cells {
+    file_encoder: FileEncoder::Cells {
         has_colors: true,
         is_on_black: false,
         write: |grid, colors, _, _| ansi_or_text(grid, colors),

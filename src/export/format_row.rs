@@ -17,7 +17,7 @@ pub(super) struct FormatRow {
     pub(super) key: char,
     pub(super) command: &'static str,
     pub(super) title: &'static str,
-    pub(super) contents: Contents,
+    pub(super) file_encoder: FileEncoder,
     /// Returns a report of how the second file differs from the first, which is the golden file.
     pub(super) difference: fn(&[u8], &[u8]) -> GoldenDifference,
 }
@@ -37,10 +37,10 @@ impl From<String> for GoldenDifference {
     }
 }
 
-/// The input of a format, pixels or cells, with the function that makes a file of it.
+/// The function that makes a file of a format, from pixels or from cells.
 #[derive(Clone, Copy)]
 // Function pointers instead of a trait, because rows are constants and a format has a single function.
-pub enum Contents {
+pub enum FileEncoder {
     /// Makes the file from a picture, its pixel aspect (height / width), and the side of a pixel in
     /// the file.
     Pixels(fn(&Picture, f32, u32) -> io::Result<Vec<u8>>),

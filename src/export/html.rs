@@ -1,7 +1,7 @@
 //! Export of a grid as an HTML page.
 
 use super::difference;
-use super::format_row::{Contents, FormatRow};
+use super::format_row::{FileEncoder, FormatRow};
 use super::paint::{escaped, svg_paths, text_runs};
 use crate::grid::{Grid, Size};
 use std::fmt::Write;
@@ -13,7 +13,7 @@ pub(super) const KIND: FormatRow = FormatRow {
     key: 'h',
     command: "WriteHtml",
     title: "HTML page",
-    contents: Contents::Cells {
+    file_encoder: FileEncoder::Cells {
         has_colors: true,
         is_on_black: true,
         write: |grid, _, aspect, name| page(grid, aspect, name).into_bytes(),

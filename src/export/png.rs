@@ -1,6 +1,6 @@
 //! Export of a picture as PNG.
 
-use super::format_row::{Contents, FormatRow, GoldenDifference};
+use super::format_row::{FileEncoder, FormatRow, GoldenDifference};
 use crate::color::Srgb8;
 use crate::framebuffer::{Resolution, ResolutionError};
 use crate::tone::Picture;
@@ -13,7 +13,7 @@ pub(super) const KIND: FormatRow = FormatRow {
     key: 'p',
     command: "WritePng",
     title: "PNG picture",
-    contents: Contents::Pixels(|picture, aspect, scale| png(picture, aspect, scale).map_err(io::Error::other)),
+    file_encoder: FileEncoder::Pixels(|picture, aspect, scale| png(picture, aspect, scale).map_err(io::Error::other)),
     difference,
 };
 

@@ -1,7 +1,7 @@
 //! Export of a grid as SVG.
 
 use super::difference;
-use super::format_row::{Contents, FormatRow};
+use super::format_row::{FileEncoder, FormatRow};
 use super::paint::{DEFAULT_TEXT, hex, svg_paths, text_runs};
 use crate::grid::{Grid, Size};
 use std::fmt::Write;
@@ -13,7 +13,7 @@ pub(super) const KIND: FormatRow = FormatRow {
     key: 's',
     command: "WriteSvg",
     title: "SVG drawing",
-    contents: Contents::Cells {
+    file_encoder: FileEncoder::Cells {
         has_colors: true,
         is_on_black: true,
         write: |grid, _, aspect, _| svg(grid, aspect).into_bytes(),

@@ -3,7 +3,7 @@
 //! It shows that a file and a row of the table suffice to add a format.
 
 use super::difference;
-use super::format_row::{Contents, FormatRow};
+use super::format_row::{FileEncoder, FormatRow};
 use crate::grid::Grid;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -15,7 +15,7 @@ pub(super) const KIND: FormatRow = FormatRow {
     key: 'x',
     command: "WriteTally",
     title: "tally",
-    contents: Contents::Cells {
+    file_encoder: FileEncoder::Cells {
         has_colors: false,
         is_on_black: false,
         write: |grid, _, _, _| tally(grid).into_bytes(),

@@ -9,7 +9,7 @@ fn a_format_for_tests_is_found_and_written() {
     let format = Format::from_name("tally").expect("by its name");
     assert_eq!(Format::from_extension("tal"), Some(format));
     let grid = Grid::new(Size::new(3, 2));
-    let Contents::Cells { has_colors: false, write, .. } = format.contents() else { panic!("{format:?}") };
+    let FileEncoder::Cells { has_colors: false, write, .. } = format.file_encoder() else { panic!("{format:?}") };
     let file = write(&grid, Colors::None, USUAL_CELL_ASPECT, "ball");
     assert_eq!(String::from_utf8_lossy(&file), "  6\n");
     assert!(format.difference(b"  5\n", &file).text.ends_with("- 1 |  5|\n+ 1 |  6|\n       ^\n"));

@@ -1,7 +1,7 @@
 //! Export of a grid as plain text.
 
 use super::difference;
-use super::format_row::{Contents, FormatRow};
+use super::format_row::{FileEncoder, FormatRow};
 use crate::grid::Grid;
 
 pub(super) const KIND: FormatRow = FormatRow {
@@ -11,7 +11,11 @@ pub(super) const KIND: FormatRow = FormatRow {
     key: 't',
     command: "WriteText",
     title: "plain text",
-    contents: Contents::Cells { has_colors: false, is_on_black: false, write: |grid, _, _, _| text(grid).into_bytes() },
+    file_encoder: FileEncoder::Cells {
+        has_colors: false,
+        is_on_black: false,
+        write: |grid, _, _, _| text(grid).into_bytes(),
+    },
     difference: difference::by_rows,
 };
 

@@ -67,7 +67,7 @@ pub(crate) struct PackedCell {
     /// The glyph and the attributes.
     // From the highest bit: a flag for clusters, nine attributes, and in 22 bits the character, the index of the
     // cluster, or a number beyond all characters.
-    code: u32,
+    glyph_and_attributes: u32,
     pub(crate) fg: PackedInk,
     pub(crate) bg: PackedInk,
     pub(crate) underline: PackedInk,
@@ -80,7 +80,7 @@ impl PartialEq for PackedCell {
     fn eq(&self, other: &Self) -> bool {
         let halves = |cell: &Self| {
             let pair = |a: u32, b: u32| u64::from(a) << 32 | u64::from(b);
-            [pair(cell.code, cell.fg.0), pair(cell.bg.0, cell.underline.0)]
+            [pair(cell.glyph_and_attributes, cell.fg.0), pair(cell.bg.0, cell.underline.0)]
         };
         let ([a, b], [other_a, other_b]) = (halves(self), halves(other));
         (a ^ other_a) | (b ^ other_b) == 0
@@ -100,57 +100,57 @@ const FOREIGN: u32 = COVERED + 1;
 
 impl PackedCell {
     pub(crate) const BLANK: Self = Self::new(' ', PackedInk::DEFAULT, PackedInk::DEFAULT);
-    pub(crate) const FOREIGN: Self = Self { code: FOREIGN, ..Self::BLANK };
+    pub(crate) const FOREIGN: Self = Self { glyph_and_attributes: FOREIGN, ..Self::BLANK };
 
     /// Returns a cell with a character in these colours, without attributes.
     pub(crate) const fn new(character: char, fg: PackedInk, bg: PackedInk) -> Self {
-        Self { code: character as u32, fg, bg, underline: PackedInk::DEFAULT }
+        Self { glyph_and_attributes: character as u32, fg, bg, underline: PackedInk::DEFAULT }
     }
 
     /// Returns the glyph and the attributes in one number.
     ///
     /// Without attributes it is the code point of the character.
     #[inline]
-    pub(crate) const fn code(self) -> u32 {
-        self.code
+    pub(crate) const fn glyph_and_attributes(self) -> u32 {
+        self.glyph_and_attributes
     }
 
     /// Returns whether the glyph is this character.
     #[inline]
     pub(crate) const fn has_char(self, character: char) -> bool {
-        self.code & (GLYPH_MASK | CLUSTER) == character as u32
+        self.glyph_and_attributes & (GLYPH_MASK | CLUSTER) == character as u32
     }
 
     /// Returns the character; `None` for other glyphs.
     #[inline]
     pub(crate) fn character(self) -> Option<char> {
-        if self.is_cluster() { None } else { char::from_u32(self.code & GLYPH_MASK) }
+        if self.is_cluster() { None } else { char::from_u32(self.glyph_and_attributes & GLYPH_MASK) }
     }
 
     #[inline]
     pub(crate) const fn is_cluster(self) -> bool {
-        self.code & CLUSTER != 0
+        self.glyph_and_attributes & CLUSTER != 0
     }
 
     #[inline]
     pub(crate) const fn is_covered(self) -> bool {
-        self.code & (GLYPH_MASK | CLUSTER) == COVERED
+        self.glyph_and_attributes & (GLYPH_MASK | CLUSTER) == COVERED
     }
 
     #[inline]
     pub(crate) const fn is_foreign(self) -> bool {
-        self.code & (GLYPH_MASK | CLUSTER) == FOREIGN
+        self.glyph_and_attributes & (GLYPH_MASK | CLUSTER) == FOREIGN
     }
 
     #[inline]
     pub(crate) const fn attributes(self) -> Attributes {
-        Attributes::from_bits_truncate((self.code >> GLYPH_BITS) as u16)
+        Attributes::from_bits_truncate((self.glyph_and_attributes >> GLYPH_BITS) as u16)
     }
 
     /// Returns a 32-bit hash of the cell, which does not depend on the text of a cluster.
     #[inline]
     pub(crate) const fn digest(self) -> u32 {
-        let code = if self.is_cluster() { self.code & !GLYPH_MASK } else { self.code };
+        let code = if self.is_cluster() { self.glyph_and_attributes & !GLYPH_MASK } else { self.glyph_and_attributes };
         // Multiplicative hashing (Knuth 1973). Each step is a bijection, so two cells that differ in one field have
         // different hashes.
         let mixed = code.wrapping_mul(0x9e37_79b1);
@@ -162,12 +162,12 @@ impl PackedCell {
     /// Returns the cell with the glyph of `other`.
     pub(crate) const fn with_glyph_of(self, other: Self) -> Self {
         let glyph = GLYPH_MASK | CLUSTER;
-        Self { code: self.code & !glyph | other.code & glyph, ..self }
+        Self { glyph_and_attributes: self.glyph_and_attributes & !glyph | other.glyph_and_attributes & glyph, ..self }
     }
 
     /// Returns the cell with a blank instead of its glyph.
     pub(super) const fn blanked(self) -> Self {
-        Self { code: self.code & !(GLYPH_MASK | CLUSTER) | ' ' as u32, ..self }
+        Self { glyph_and_attributes: self.glyph_and_attributes & !(GLYPH_MASK | CLUSTER) | ' ' as u32, ..self }
     }
 }
 
@@ -205,14 +205,15 @@ impl Clusters {
     pub(super) fn drop_unused(&mut self, cells: &mut [PackedCell]) {
         let all = std::mem::take(&mut self.0);
         for cell in cells.iter_mut().filter(|cell| cell.is_cluster()) {
-            cell.code = self.add(all[(cell.code & GLYPH_MASK) as usize].clone()) | cell.code & !(GLYPH_MASK | CLUSTER);
+            cell.glyph_and_attributes = self.add(all[(cell.glyph_and_attributes & GLYPH_MASK) as usize].clone())
+                | cell.glyph_and_attributes & !(GLYPH_MASK | CLUSTER);
         }
     }
 
     /// Returns the text of a cell's cluster; `None` for other glyphs.
     #[inline]
     pub(super) fn text(&self, cell: PackedCell) -> Option<&Arc<str>> {
-        if cell.is_cluster() { self.0.get((cell.code & GLYPH_MASK) as usize) } else { None }
+        if cell.is_cluster() { self.0.get((cell.glyph_and_attributes & GLYPH_MASK) as usize) } else { None }
     }
 
     /// Packs a cell.
@@ -226,7 +227,7 @@ impl Clusters {
         };
         let attributes = u32::from(cell.attributes.bits()) << GLYPH_BITS;
         let [fg, bg, underline] = [cell.fg, cell.bg, cell.underline].map(PackedInk::new);
-        PackedCell { code: glyph | attributes, fg, bg, underline }
+        PackedCell { glyph_and_attributes: glyph | attributes, fg, bg, underline }
     }
 
     /// Adds a cluster, and returns its code.

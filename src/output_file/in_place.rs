@@ -15,7 +15,7 @@ pub(super) fn write(path: &Path, contents: &[u8]) -> io::Result<()> {
     // The lock is released when the file is closed. It is not a `flock`, because `flock FILE termtrace frame ... -o
     // FILE` would wait for itself. An error is ignored, because some file systems have no locks.
     let _ = retry_on_intr(|| fcntl_lock(&file, FlockOperation::LockExclusive));
-    let old = OldContents::read(&file, contents.len())?;
+    let old = OldContents::read_start(&file, contents.len())?;
     overwrite(&file, contents).map_err(|error| match old.restore(&file) {
         Ok(()) => error,
         Err(_) => io::Error::new(error.kind(), format!("its old contents are lost in part: {error}")),
@@ -43,7 +43,7 @@ struct OldContents {
 }
 
 impl OldContents {
-    fn read(file: &File, max_len: usize) -> io::Result<Self> {
+    fn read_start(file: &File, max_len: usize) -> io::Result<Self> {
         let mut start = Vec::new();
         let read = file.take(max_len as u64).read_to_end(&mut start);
         Ok(Self { start: read.map(|_| start), length: file.metadata()?.len() })

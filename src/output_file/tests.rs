@@ -265,10 +265,10 @@ fn writing_in_place_replaces_all_old_bytes() {
 fn a_secret_is_its_owners_alone() {
     let folder = Folder::new();
     let path = folder.path("secret");
-    let mut file = OutputFile::create_secret(&path).expect("it can be begun");
+    let mut file = OutputFile::create_new_private(&path).expect("it can be begun");
     file.write_all(b"x").expect("it can be written");
     file.finish().expect("it can be finished");
     assert_eq!(fs::metadata(&path).expect("it is there").permissions().mode() & 0o777, 0o600);
-    let again = OutputFile::create_secret(&path).map(drop).expect_err("the name is used");
+    let again = OutputFile::create_new_private(&path).map(drop).expect_err("the name is used");
     assert_eq!((again.kind(), folder.read("secret")), (io::ErrorKind::AlreadyExists, b"x".to_vec()));
 }

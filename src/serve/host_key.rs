@@ -42,7 +42,7 @@ fn make(path: &Path) -> io::Result<PrivateKey> {
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         fs::create_dir_all(folder)?;
     }
-    let mut file = OutputFile::create_secret(path)?;
+    let mut file = OutputFile::create_new_private(path)?;
     file.write_all(key.to_openssh(LineEnding::LF).map_err(io::Error::other)?.as_bytes())?;
     match file.finish() {
         // Another process has meanwhile written a key to this file; that key is read.

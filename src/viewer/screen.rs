@@ -249,7 +249,7 @@ impl Screen {
     pub(super) fn set_in_motion(&mut self, is_in_motion: bool) {
         // When a motion ends, the picture is drawn once more: at rest its glyphs do not depend on those of the frame
         // before.
-        if self.is_in_motion && !is_in_motion && self.painter.mode().shows_geometry() {
+        if self.is_in_motion && !is_in_motion && self.painter.mode().needs_geometry() {
             self.content.mark_changed();
         }
         self.is_in_motion = is_in_motion;

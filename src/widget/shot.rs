@@ -103,7 +103,7 @@ impl Tracer {
             return Ok(());
         };
         // `ProgressiveRender` keeps no geometry, so for cells that show it the final picture is traced from scratch.
-        if shot.options.cells.shows_geometry() {
+        if shot.options.cells.needs_geometry() {
             for (sampling, is_final) in [(Sampling::Each(NonZeroU32::MIN), false), (shot.options.sampling, true)] {
                 let seen = traced(&shot, sampling, token)?;
                 deliver(self.rendered(shot.clone(), &seen, is_final));
@@ -132,5 +132,5 @@ impl Tracer {
 /// Traces the map that a shot shows, with this sampling.
 fn traced(shot: &Shot, sampling: Sampling, token: &Cancellation) -> Result<TracedMap, Cancelled> {
     let Shot { scene, camera, resolution, options, .. } = shot;
-    options.cells.trace(options.map, Executor::Cancellable(token), scene, camera, *resolution, sampling)
+    options.cells.trace_for_glyphs(options.map, Executor::Cancellable(token), scene, camera, *resolution, sampling)
 }

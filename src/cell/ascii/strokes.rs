@@ -60,8 +60,8 @@ pub(super) fn edge(geometry: &Geometry, [column, row]: [usize; 2], kept: Option<
         glyph: MATCHER.nearest(&strokes, kept),
         is_border: in_cell(&strokes.border).any(|row| row != 0),
         is_steep: 2 * upright > level,
-        is_inside: window.has_two_objects(),
-        owner: window.nearest_object(),
+        is_inside: window.cell_has_two_objects(),
+        owner: window.nearest_object_at_cell(),
     })
 }
 
@@ -89,13 +89,13 @@ impl<'g> Window<'g> {
     /// Returns the index, plus 1, of the nearest object in the cell and just right of and below it.
     // The cell also shows the edges to its right and lower neighbours, even where the nearer object of such an edge is
     // in the neighbour.
-    fn nearest_object(&self) -> u32 {
+    fn nearest_object_at_cell(&self) -> u32 {
         let rows = self.0[MARGIN..].iter().take(SAMPLES[1] + 1);
         let facets = rows.flat_map(|row| &row[MARGIN..=MARGIN + SAMPLES[0]]).copied();
         facets.min_by(|a, b| a.depth.total_cmp(&b.depth)).map_or(0, |facet| facet.object)
     }
 
-    fn has_two_objects(&self) -> bool {
+    fn cell_has_two_objects(&self) -> bool {
         let first = self.0[MARGIN][MARGIN].object;
         self.cell().any(|facet| facet.object != first)
     }

@@ -41,7 +41,8 @@ fn greys_are_mixed_from_greys() {
 fn the_best_mix_has_the_least_cost_of_all() {
     for (mixes, ..) in palettes() {
         let cost = |mix: &Mix, wanted: Oklab| {
-            let error = square(mix.mean.l - wanted.l) + mixes.rules.chroma_error * chroma_difference(mix.mean, wanted);
+            let error =
+                square(mix.mean.l - wanted.l) + mixes.rules.chroma_error * squared_chroma_difference(mix.mean, wanted);
             error + mix.contrast + mixes.penalty(mix, wanted)
         };
         for color in (0..=255).map(xterm_color).map(|color| Srgb8::new(color.b ^ 0x25, color.r ^ 0x5a, color.g ^ 0x0b))

@@ -6,7 +6,7 @@ fn the_colours_of_a_palette_are_flat() {
     let Colors::Indexed16(sixteen) = Colors::SIXTEEN else { unreachable!() };
     let cube: Vec<_> = (16..=255).map(xterm_color).collect();
     for (mut palette, colors, first) in
-        [(Palette::cube(), &cube[..], 16), (Palette::from_colors(&sixteen), &sixteen[..], 0)]
+        [(Palette::cube_and_greys(), &cube[..], 16), (Palette::from_colors(&sixteen), &sixteen[..], 0)]
     {
         for &color in colors {
             for (x, y) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
