@@ -243,7 +243,7 @@ impl Encoder {
     fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let Some(caps) = lossy::QualityCaps::for_quality(allowance.quality) else { return self.draw(wanted, bytes) };
         let in_motion = self.change_times.record(wanted, allowance.now);
-        let known = self.take_state(wanted.size(), bytes);
+        let known = self.take_or_reset_state(wanted.size(), bytes);
         FRAME.with_borrow_mut(|frame| {
             frame.differences.find(&known.shown, wanted);
             // At rest, the cells get their final colours, those with the largest errors first: coarser colours
@@ -251,7 +251,7 @@ impl Encoder {
             let is_capped = in_motion && frame.differences.appearing <= capped::MAX_APPEARING;
             let cap = allowance.max_bytes.filter(|&max_bytes| is_capped && max_bytes >= capped::LEAST_BYTES);
             match cap {
-                Some(max_bytes) if self.shortage.is_known() => {
+                Some(max_bytes) if self.shortage.is_present() => {
                     self.draw_capped(wanted, known, (max_bytes, allowance.now), frame, bytes)
                 }
                 _ => self.draw_lossy(wanted, known, (allowance, caps, in_motion, cap), frame, bytes),
@@ -295,7 +295,7 @@ impl Encoder {
                 cursor
             }
             Err(Exceeds { bytes: taken, max_bytes }) => {
-                self.shortage.begin(taken, max_bytes);
+                self.shortage.set_first_rate(taken, max_bytes);
                 self.draw_capped(wanted, known, (max_bytes, allowance.now), frame, bytes)
             }
         }
@@ -335,7 +335,7 @@ impl Encoder {
                 // All inexact cells are made exact together, when the last of them is due. When each was sent at its
                 // own time, a dozen frames of a few scattered cells followed each movement: 1.40 full frames of bytes
                 // (orbit, 80x24) instead of 1.14.
-                let refines = self.change_times.exact_at(plan.inexact_cells(writes));
+                let refines = self.change_times.all_exact_at(plan.inexact_cells(writes));
                 let due = if is_cut { Some(allowance.now) } else { refines };
                 return Ok(Drawn { pen, cursor, due, is_full: is_full(taken) });
             }
@@ -370,7 +370,7 @@ impl Encoder {
         let mut cursor = None;
         if differences.has_text(&known.shown, wanted) {
             drawn.clone_from(&known.shown);
-            capped::put_text(wanted, differences, drawn);
+            capped::put_text_and_unknown(wanted, differences, drawn);
             cursor = self.write(drawn, &mut known.shown, &mut known.pen, bytes);
         }
         let (picture, pen) = (bytes.len(), known.pen);
@@ -404,7 +404,7 @@ impl Encoder {
 
     /// Takes the known state of the terminal. If it is unknown, or of another size, appends a reset
     /// of the colours and returns a state with unknown cells.
-    fn take_state(&mut self, size: Size, bytes: &mut Vec<u8>) -> TerminalState {
+    fn take_or_reset_state(&mut self, size: Size, bytes: &mut Vec<u8>) -> TerminalState {
         self.known.take().filter(|known| known.shown.size() == size).unwrap_or_else(|| {
             let mut pen = Pen::default();
             if !self.colorless {
@@ -419,7 +419,7 @@ impl Encoder {
     ///
     /// Returns the cursor's position after the frame, or `None` if it depends on the terminal.
     fn draw(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) -> Option<CellPosition> {
-        let mut known = self.take_state(wanted.size(), bytes);
+        let mut known = self.take_or_reset_state(wanted.size(), bytes);
         let cursor = self.write(wanted, &mut known.shown, &mut known.pen, bytes);
         self.known = Some(known);
         self.due = None;

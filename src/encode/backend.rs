@@ -235,7 +235,7 @@ impl<W> EncoderBackend<W> {
     /// exactly the drawn cells.
     pub fn due(&self) -> Option<Duration> {
         let limits = self.limits.as_ref()?;
-        self.encoder.due().map(|due| limits.due(due))
+        self.encoder.due().map(|due| limits.due_within_rate(due))
     }
 
     /// Returns the writer.
@@ -275,7 +275,7 @@ impl<W> EncoderBackend<W> {
     }
 
     /// Sets the wanted position of the cursor, clamped to the screen.
-    fn put_cursor(&mut self, to: Position) {
+    fn set_wanted_position(&mut self, to: Position) {
         self.position = self.clamped_to_screen(to);
         self.cursor.position = Some(self.position);
     }
@@ -293,7 +293,7 @@ impl<W> EncoderBackend<W> {
     }
 
     /// Opens a frame: changes of the cursor are sent with it.
-    fn begin_frame(&mut self) {
+    fn open_frame(&mut self) {
         self.is_frame_open = true;
     }
 
@@ -406,7 +406,7 @@ impl<W: Write> EncoderBackend<W> {
             // The shown position is forgotten, because other output may have moved the cursor.
             self.shown_cursor.position = None;
         }
-        self.put_cursor(position);
+        self.set_wanted_position(position);
         self.send_cursor()
     }
 
@@ -415,7 +415,7 @@ impl<W: Write> EncoderBackend<W> {
     /// Rows that leave the screen at the top enter the scrollback.
     fn feed_lines(&mut self, lines: u16) -> io::Result<()> {
         let Position { x, y } = self.known_or_queried_position()?;
-        self.put_cursor(Position::new(x, y));
+        self.set_wanted_position(Position::new(x, y));
         let mut bytes = self.unsent_bytes();
         self.shown_cursor.switch_to(self.cursor, &mut bytes);
         let height = self.window.columns_rows.height;
@@ -423,7 +423,7 @@ impl<W: Write> EncoderBackend<W> {
         bytes.extend(std::iter::repeat_n(b'\n', lines.into()));
         self.encoder.scroll_up(0..height, scrolled);
         self.wanted.scroll_up(0..height, scrolled);
-        self.put_cursor(Position::new(x, y.saturating_add(lines)));
+        self.set_wanted_position(Position::new(x, y.saturating_add(lines)));
         self.shown_cursor.position = self.cursor.position;
         self.send(&bytes)
     }

@@ -12,7 +12,7 @@
 use super::halves::{LOWER_HALF, SPACE, UPPER_HALF};
 use super::moves::{CellPosition, Move, cheapest_len};
 use super::numbering::Numbering;
-use super::pen::{Pen, rgb_len};
+use super::pen::{Pen, rgb_parameters_len};
 use super::strokes::cursor_after;
 use crate::grid::{Attributes, Grid, HalfBlocks, PackedCell, PackedInk};
 use std::ops::Range;
@@ -197,7 +197,7 @@ impl<'a> Tour<'a> {
     fn visit_pair(&mut self, index: u32, wanted: &Grid, order: &mut Vec<CellPosition>) {
         let pair = &mut self.pairs[index as usize];
         pair.visited = true;
-        let (_, pen) = self.place.pen_after(pair);
+        let (_, pen) = self.place.cheaper_pen_change(pair);
         self.near = [if pair.colors[0] == pair.colors[1] { self.near[0] } else { Some(pen[0]) }, Some(pen[1])];
         let colors = pair.colors;
         let positions = &self.positions[pair.positions.start as usize..pair.positions.end as usize];
@@ -240,7 +240,7 @@ impl Place {
     #[inline]
     fn cheaper(&self, best: (u32, u32), index: u32, pair: &Pair, colors: &[Color]) -> (u32, u32) {
         let unvisited = pair.colors.map(|color| colors[color as usize].unvisited);
-        let cost = self.pen_after(pair).0 + unvisited[0].min(unvisited[1]).min(8);
+        let cost = self.cheaper_pen_change(pair).0 + unvisited[0].min(unvisited[1]).min(8);
         if cost > best.0 {
             return best;
         }
@@ -251,7 +251,7 @@ impl Place {
     ///
     /// These are the pair's colours as they are or, where allowed, exchanged.
     #[inline]
-    fn pen_after(&self, pair: &Pair) -> (u32, [u32; 2]) {
+    fn cheaper_pen_change(&self, pair: &Pair) -> (u32, [u32; 2]) {
         let ([pen_fg, pen_bg], [fg, bg]) = (self.pen, pair.colors);
         let [fg_len, bg_len] = pair.lens.map(u32::from);
         let needed = |len: u32, is_set: bool| if is_set { 0 } else { len };
@@ -284,7 +284,7 @@ impl Scratch {
             if pair == self.pairs.len() {
                 self.pairs.push(Pair {
                     colors: [fg, bg].map(|ink| self.inks.add(ink) as u32),
-                    lens: [fg, bg].map(|ink| rgb_len(ink.channels()) as u8),
+                    lens: [fg, bg].map(|ink| rgb_parameters_len(ink.channels()) as u8),
                     move_len: Move::To(position).len() as u8,
                     visited: false,
                     first: position,

@@ -73,25 +73,26 @@ pub(super) struct Shortage {
 
 impl Shortage {
     /// Returns whether frames of the allowed quality exceed the limit at present.
-    pub(super) fn is_known(self) -> bool {
+    pub(super) fn is_present(self) -> bool {
         self.rate.is_some()
     }
 
     /// Sets the first rate, after a frame of the allowed quality took `bytes` instead of
     /// `max_bytes`.
-    pub(super) fn begin(&mut self, bytes: usize, max_bytes: usize) {
+    pub(super) fn set_first_rate(&mut self, bytes: usize, max_bytes: usize) {
         let share = bytes as f32 / max_bytes as f32;
         self.rate = Some(2.0 * share * share);
     }
 
-    /// Adapts the rate after a frame whose chosen cells would take `share` times the limit.
+    /// Adapts the rate after a frame whose chosen cells would take `share_of_limit` times the
+    /// limit.
     ///
     /// Returns whether the rate was far off, so that the frame should be chosen again.
-    fn learn(&mut self, rate: ExchangeRate, share: f32) -> bool {
-        // The square root damps the change: with `share` itself the rate swings from frame to frame.
-        let next = rate * share.sqrt().clamp(0.1, 3.0);
+    fn adapt_rate(&mut self, rate: ExchangeRate, share_of_limit: f32) -> bool {
+        // The square root damps the change: with the share itself the rate swings from frame to frame.
+        let next = rate * share_of_limit.sqrt().clamp(0.1, 3.0);
         self.rate = (next >= LEAST_RATE).then_some(next);
-        !(0.6..=1.6).contains(&share) && self.rate.is_some()
+        !(0.6..=1.6).contains(&share_of_limit) && self.rate.is_some()
     }
 }
 
@@ -147,9 +148,9 @@ pub(super) fn draw(
     SCRATCH.with_borrow_mut(|scratch| {
         for left in (0..MAX_TRIES).rev() {
             let rate = shortage.rate.unwrap_or(LEAST_RATE);
-            let bytes = scratch.choose_and_write(&mut frame, rate, &mut shortage.radius, &mut write);
+            let bytes = scratch.choose_and_write_fitting(&mut frame, rate, &mut shortage.radius, &mut write);
             if frame.max_bytes < LEAST_BYTES
-                || !shortage.learn(rate, bytes as f32 / frame.max_bytes as f32)
+                || !shortage.adapt_rate(rate, bytes as f32 / frame.max_bytes as f32)
                 || left == 0
             {
                 break;
@@ -163,7 +164,7 @@ impl Scratch {
     /// Chooses the cells at an exchange rate, and writes those that fit.
     ///
     /// Returns the number of bytes that all chosen cells would take.
-    fn choose_and_write(
+    fn choose_and_write_fitting(
         &mut self,
         frame: &mut CappedFrame<'_>,
         rate: ExchangeRate,
@@ -188,7 +189,7 @@ impl Scratch {
             }
             self.restore(frame.shown);
             if ranks > 1 {
-                ranks = self.pairs.ranks_within(ranks, frame.max_bytes as f32 / bytes as f32).max(1);
+                ranks = self.pairs.ranks_within_bytes(ranks, frame.max_bytes as f32 / bytes as f32).max(1);
             } else {
                 // Not even the cells of one pair fit: the first of them in reading order are written.
                 most_cells = (self.cells.len() * frame.max_bytes / bytes).min(self.cells.len() - 1);
@@ -228,8 +229,9 @@ impl Scratch {
 // their exact colours would take more bytes than a frame of the allowed quality, so the exchange rate is not used.
 pub(super) const MAX_APPEARING: usize = 64;
 
-/// Draws the wanted text into `grid`, and the wanted picture where the terminal shows text.
-pub(super) fn put_text(wanted: &Grid, differences: &Differences, grid: &mut Grid) {
+/// Draws the wanted text into `grid`, and the wanted picture where the terminal shows text
+/// or unknown contents.
+pub(super) fn put_text_and_unknown(wanted: &Grid, differences: &Differences, grid: &mut Grid) {
     differences.copy_text(wanted, grid);
     for (&place, _) in differences.places.iter().zip(&differences.squares).filter(|&(_, &squares)| is_unknown(squares))
     {

@@ -60,18 +60,18 @@ impl ChangeTimes {
 
     /// Returns whether the cell at index `cell_index` is to be made exact now.
     pub(super) fn has_waited(&self, cell_index: usize) -> bool {
-        self.age(cell_index) >= EXACT_AFTER.as_millis() as u32
+        self.age_in_millis(cell_index) >= EXACT_AFTER.as_millis() as u32
     }
 
     /// Returns the time at which the last of some cells is to be made exact.
-    pub(super) fn exact_at(&self, cells: impl Iterator<Item = usize>) -> Option<Duration> {
-        let age = cells.map(|cell_index| self.age(cell_index)).min()?;
+    pub(super) fn all_exact_at(&self, cells: impl Iterator<Item = usize>) -> Option<Duration> {
+        let age = cells.map(|cell_index| self.age_in_millis(cell_index)).min()?;
         let now = Duration::from_millis(self.now.as_millis() as u64);
         Some(now.saturating_sub(Duration::from_millis(age.into())).saturating_add(EXACT_AFTER))
     }
 
     /// Returns the time since the last change of the cell at index `cell_index`, in milliseconds.
-    fn age(&self, cell_index: usize) -> u32 {
+    fn age_in_millis(&self, cell_index: usize) -> u32 {
         (self.now.as_millis() as u32).wrapping_sub(self.cells[cell_index].since)
     }
 }

@@ -67,9 +67,9 @@ impl ColorList {
 
     /// Compares each colour with the next ones: lists a mask for each colour, bit 0 for the next
     /// colour.
-    pub(super) fn compare_neighbours(&self, tolerance: Tolerance, masks: &mut Vec<u32>) {
+    pub(super) fn compare_with_following(&self, tolerance: Tolerance, masks: &mut Vec<u32>) {
         masks.clear();
-        dispatch(CompareNeighbours { list: self, tolerance, masks });
+        dispatch(CompareWithFollowing { list: self, tolerance, masks });
     }
 }
 
@@ -161,13 +161,13 @@ impl SimdKernel for Compare<'_> {
 pub(super) const NEIGHBOURS: u32 = 24;
 
 /// Compares each colour of a list with the next [`NEIGHBOURS`].
-struct CompareNeighbours<'a> {
+struct CompareWithFollowing<'a> {
     list: &'a ColorList,
     tolerance: Tolerance,
     masks: &'a mut Vec<u32>,
 }
 
-impl SimdKernel for CompareNeighbours<'_> {
+impl SimdKernel for CompareWithFollowing<'_> {
     type Output = ();
 
     #[inline(always)]

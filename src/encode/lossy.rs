@@ -153,7 +153,7 @@ impl<'a> Plan<'a> {
         let tolerance = Tolerance { distance: frame.caps.distance - DISTANCE_ERROR, square: 0 };
         let mut plan = Self { tolerance, frame, scratch, is_sorted: false };
         plan.tolerance.square = plan.max_square();
-        plan.compare_small();
+        plan.compare_small_in_oklab();
         plan.list_written();
         plan
     }
@@ -188,7 +188,7 @@ impl<'a> Plan<'a> {
     }
 
     /// Compares the colours of all differences that are small enough to be tolerated in sRGB.
-    fn compare_small(&mut self) {
+    fn compare_small_in_oklab(&mut self) {
         let Differences { wanted, shown, squares, .. } = self.frame.differences;
         let small = &mut self.scratch.small;
         small.shown.clear();

@@ -19,12 +19,12 @@ pub(super) enum Move {
     /// Moves to a cell by its column and row (CUP).
     To(CellPosition),
     /// Moves down by a number of rows (an LF each), then along the row.
-    Down(u16, Along),
+    Down(u16, AlongRow),
 }
 
 /// A move along a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Along {
+pub(super) enum AlongRow {
     /// Stays in the column.
     Stay,
     /// Moves right by a number of columns (CUF).
@@ -41,12 +41,12 @@ pub(super) enum Along {
 /// beyond the last column.
 pub(super) fn cheapest_move(from: Option<CellPosition>, to: CellPosition) -> Move {
     if from == Some(to) {
-        return Move::Down(0, Along::Stay);
+        return Move::Down(0, AlongRow::Stay);
     }
     // From an unknown position, only CUP is certain. Upwards, CUU would save at most a byte.
     let absolute = Move::To(to);
     let Some(from) = from.filter(|from| from.row <= to.row) else { return absolute };
-    let relative = Move::Down(to.row - from.row, cheapest_along(from.column, to.column));
+    let relative = Move::Down(to.row - from.row, cheapest_along_row(from.column, to.column));
     if relative.len() <= absolute.len() { relative } else { absolute }
 }
 
@@ -59,21 +59,21 @@ pub(super) fn cheapest_len(from: Option<CellPosition>, to: CellPosition, absolut
     if rows >= absolute {
         return absolute;
     }
-    absolute.min(rows + cheapest_along(from.column, to.column).len())
+    absolute.min(rows + cheapest_along_row(from.column, to.column).len())
 }
 
 #[inline]
-fn cheapest_along(from: u16, to: u16) -> Along {
+fn cheapest_along_row(from: u16, to: u16) -> AlongRow {
     if to == from {
-        Along::Stay
+        AlongRow::Stay
     } else if to > from {
-        Along::Right(to - from)
+        AlongRow::Right(to - from)
     } else if to == 0 {
-        Along::Start
-    } else if usize::from(from - to) <= Along::Column(to).len() {
-        Along::Left(from - to)
+        AlongRow::Start
+    } else if usize::from(from - to) <= AlongRow::Column(to).len() {
+        AlongRow::Left(from - to)
     } else {
-        Along::Column(to)
+        AlongRow::Column(to)
     }
 }
 
@@ -110,7 +110,7 @@ impl Move {
     }
 }
 
-impl Along {
+impl AlongRow {
     #[inline]
     fn len(self) -> usize {
         match self {

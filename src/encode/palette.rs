@@ -90,7 +90,7 @@ impl Reduction {
         self.list_colors(cells, pen);
         // OKLab distance is at least the difference in lightness, so only neighbours in an order by lightness are
         // compared.
-        self.colors.compare_neighbours(tolerance, &mut self.near.after);
+        self.colors.compare_with_following(tolerance, &mut self.near.after);
         self.choose_colors();
         self.list_possible_pairs(half_blocks);
         self.choose_pairs(cells.len());
@@ -150,7 +150,7 @@ impl Reduction {
         let Self { near, inks, halves, choices, cover, .. } = self;
         choices.clear();
         choices.resize(inks.len(), Choices::default());
-        near.weigh(halves, &mut cover.gains);
+        near.fill_masks_and_weigh(halves, &mut cover.gains);
         cover.choose(near, halves, |color, half, _| {
             let choices = &mut choices[half];
             if usize::from(choices.len) < MAX_CHOICES {
@@ -319,7 +319,7 @@ struct Bands {
 
 impl Bands {
     /// Fills in the masks of all neighbours, and lists the weight of each set.
-    fn weigh(&mut self, weights: &[u32], sums: &mut Vec<u32>) {
+    fn fill_masks_and_weigh(&mut self, weights: &[u32], sums: &mut Vec<u32>) {
         let Self { after, masks } = self;
         masks.clear();
         masks.extend(after.iter().map(|&mask| (u64::from(mask) << 1 | 1) << NEIGHBOURS));
@@ -402,7 +402,7 @@ impl Cover {
         // In reverse, so that the buckets are in ascending order.
         (0..self.gains.len()).rev().for_each(|set| self.push(set));
         for promised in (1..=most).rev() {
-            self.empty_bucket(promised);
+            self.collect_bucket(promised);
             for at in 0..self.bucket.len() {
                 let set = self.bucket[at] as usize;
                 if self.gains[set] < promised {
@@ -425,8 +425,8 @@ impl Cover {
         self.next[set] = std::mem::replace(&mut self.heads[self.gains[set] as usize], set as u32);
     }
 
-    /// Moves a bucket's sets to `self.bucket`, in ascending order.
-    fn empty_bucket(&mut self, gain: u32) {
+    /// Collects a bucket's sets in `self.bucket`, in ascending order.
+    fn collect_bucket(&mut self, gain: u32) {
         self.bucket.clear();
         let mut set = self.heads[gain as usize];
         while set != NONE {

@@ -44,11 +44,11 @@ impl Pen {
     /// Returns the cheapest pen for any cell, with or without reverse video.
     // Separate from `pen_for`, so that only the test of the common case is inlined.
     fn pen_for_any(&self, cell: PackedCell) -> Self {
-        if self.can_show_reversed(cell) { self.pen_for_space(cell) } else { self.plain_pen_for(cell) }
+        if self.can_show_reversed(cell) { self.cheaper_pen_for_space(cell) } else { self.plain_pen_for(cell) }
     }
 
     /// Returns the cheaper of two pens for a space: plain, or in reverse video.
-    fn pen_for_space(&self, cell: PackedCell) -> Self {
+    fn cheaper_pen_for_space(&self, cell: PackedCell) -> Self {
         let plain = self.plain_pen_for(cell);
         let exchanged = Self { attributes: Attributes::REVERSED, ..*self };
         if self.switch_cost(&exchanged) < self.switch_cost(&plain) { exchanged } else { plain }
@@ -98,7 +98,7 @@ impl Pen {
         let (lost, gained) = (self.attributes.difference(attributes), attributes.difference(self.attributes));
         let comes_before = |first, second| gained.contains(first) && self.attributes.contains(second);
         !Attributes::REVERSED.contains(lost)
-            || (gained.contains(Attributes::BOLD) && is_basic(self.fg))
+            || (gained.contains(Attributes::BOLD) && has_short_form(self.fg))
             || comes_before(Attributes::BOLD, Attributes::DIM)
             || comes_before(Attributes::SLOW_BLINK, Attributes::RAPID_BLINK)
     }
@@ -129,13 +129,13 @@ impl Pen {
     pub(super) fn switch_cost_with_lens(&self, wanted: &Self, lens: [usize; 2]) -> usize {
         // The background is compared first: it is never the default in a picture, whose pens have no attributes.
         if wanted.bg == PackedInk::DEFAULT || self.attributes != wanted.attributes {
-            return self.other_switch_cost(wanted, lens);
+            return self.general_switch_cost(wanted, lens);
         }
         self.cost_of_colors(0, wanted, lens)
     }
 
     /// Returns the number of bytes of a switch to the default background, or to other attributes.
-    fn other_switch_cost(&self, wanted: &Self, lens: [usize; 2]) -> usize {
+    fn general_switch_cost(&self, wanted: &Self, lens: [usize; 2]) -> usize {
         if *wanted == Self::default() {
             return if self == wanted { 0 } else { SGR_RESET.len() };
         }
@@ -151,7 +151,7 @@ impl Pen {
     #[inline]
     pub(super) fn ink_lens(&self) -> [usize; 2] {
         if self.fg.is_rgb() && self.bg.is_rgb() {
-            return [self.fg, self.bg].map(|ink| rgb_len(ink.channels()));
+            return [self.fg, self.bg].map(|ink| rgb_parameters_len(ink.channels()));
         }
         let [fg, bg] = self.ink_forms(InkForm::Short);
         [1 + ink_len(self.fg, fg), 1 + ink_len(self.bg, bg)]
@@ -270,7 +270,7 @@ enum InkForm {
 }
 
 /// Returns whether a colour is one of the first eight indexed colours, which have a short form.
-fn is_basic(ink: PackedInk) -> bool {
+fn has_short_form(ink: PackedInk) -> bool {
     matches!(ink.ink(), Ink::Indexed(..8))
 }
 
@@ -329,7 +329,7 @@ fn lead_in(is_open: bool, bytes: &mut Vec<u8>) {
 fn write_ink(ink: PackedInk, tens: u8, form: InkForm, bytes: &mut Vec<u8>) {
     match ink.ink() {
         Ink::Default => bytes.extend_from_slice(&[tens, b'9']),
-        Ink::Indexed(index) if is_basic(ink) && form == InkForm::Short => {
+        Ink::Indexed(index) if has_short_form(ink) && form == InkForm::Short => {
             bytes.extend_from_slice(&[tens, b'0' + index]);
         }
         Ink::Indexed(index) => {
@@ -348,15 +348,15 @@ fn write_ink(ink: PackedInk, tens: u8, form: InkForm, bytes: &mut Vec<u8>) {
 fn ink_len(ink: PackedInk, form: InkForm) -> usize {
     match ink.ink() {
         Ink::Default => 2,
-        Ink::Indexed(_) if is_basic(ink) && form == InkForm::Short => 2,
+        Ink::Indexed(_) if has_short_form(ink) && form == InkForm::Short => 2,
         Ink::Indexed(index) => 5 + digit_count(index.into()),
-        Ink::Rgb(_) => rgb_len(ink.channels()) - 1,
+        Ink::Rgb(_) => rgb_parameters_len(ink.channels()) - 1,
     }
 }
 
 /// Returns the number of bytes that set a colour in truecolor, with its separator.
 #[inline]
-pub(super) fn rgb_len(channels: [u8; 3]) -> usize {
+pub(super) fn rgb_parameters_len(channels: [u8; 3]) -> usize {
     8 + channels.into_iter().map(channel_digit_count).sum::<usize>()
 }
 
@@ -364,7 +364,7 @@ pub(super) fn rgb_len(channels: [u8; 3]) -> usize {
 fn ink_parameter_count(ink: PackedInk, form: InkForm) -> usize {
     match ink.ink() {
         Ink::Default => 1,
-        Ink::Indexed(_) if is_basic(ink) && form == InkForm::Short => 1,
+        Ink::Indexed(_) if has_short_form(ink) && form == InkForm::Short => 1,
         Ink::Indexed(_) => 3,
         Ink::Rgb(_) => 5,
     }

@@ -23,9 +23,9 @@ impl<W: Write> Backend for EncoderBackend<W> {
             }
             let end = x + self.draw_cell(Position::new(x, y), cell);
             covered = Rect::new(x + 1, y, end - x - 1, 1);
-            self.put_cursor(Position::new(end, y));
+            self.set_wanted_position(Position::new(end, y));
         }
-        self.begin_frame();
+        self.open_frame();
         Ok(())
     }
 
@@ -66,7 +66,7 @@ impl<W: Write> Backend for EncoderBackend<W> {
             self.forget_screen_and_cursor();
         }
         // Clearing writes blanks over the region, after which the cursor has to return to its position.
-        self.put_cursor(Position::new(x, y));
+        self.set_wanted_position(Position::new(x, y));
         let columns = usize::from(self.window.columns_rows.width);
         let (line, next_line) = (usize::from(y) * columns, (usize::from(y) + 1) * columns);
         let at = line + usize::from(x);

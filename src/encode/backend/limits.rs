@@ -43,7 +43,7 @@ impl Limits {
 
     /// Returns the earliest time at which cells that are due at `due` may be sent within the rate.
     // A frame is not sent before half of `MAX_AHEAD` is unused again, so that it has room for more than a few cells.
-    pub(super) fn due(&self, due: Duration) -> Duration {
+    pub(super) fn due_within_rate(&self, due: Duration) -> Duration {
         due.max(self.free_at.saturating_sub(MAX_AHEAD / 2))
     }
 }

@@ -14,7 +14,7 @@ use std::cmp::Reverse;
 /// Largest number of colours; half as many are used if the byte limit leaves few cells to write.
 // With 127 colours at every rate, a slowly moving picture never came nearer than 38 dB. With 255 at every rate, a fast
 // one loses 0.5 dB, as more colours mean more changes of the pen. A colour's number takes eight bits in the distances
-// of `FindNearest` and in the keys of pairs.
+// of `FindTwoNearest` and in the keys of pairs.
 pub(super) const MAX_COLORS: usize = 255;
 
 /// The number of slots of the hash table of bins, a power of two.
@@ -58,7 +58,7 @@ impl Block {
 
     /// Returns 256 times the squared distances from a colour, at most [`FARTHEST`].
     #[inline(always)]
-    fn distances<N: Lanes>(&self, color: Vector<N>) -> N {
+    fn scaled_squared_distances<N: Lanes>(&self, color: Vector<N>) -> N {
         let difference = self.channels.load::<N>() - color;
         difference.dot(difference).min(N::splat(FARTHEST))
     }
@@ -69,27 +69,27 @@ const FARTHEST: f32 = (1 << 24) as f32 - 256.0;
 
 /// Returns 16 times the channels of a colour in all lanes.
 #[inline(always)]
-fn splat<N: Lanes>([r, g, b]: [i32; 3]) -> Vector<N> {
+fn splat_scaled<N: Lanes>([r, g, b]: [i32; 3]) -> Vector<N> {
     Vector { x: N::splat((16 * r) as f32), y: N::splat((16 * g) as f32), z: N::splat((16 * b) as f32) }
 }
 
 /// Finds the two nearest colours of each bin.
-struct FindNearest<'a> {
+struct FindTwoNearest<'a> {
     blocks: &'a [Block],
     bins: &'a mut [Bin],
 }
 
-impl SimdKernel for FindNearest<'_> {
+impl SimdKernel for FindTwoNearest<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<N: Lanes>(self) {
         let farthest = N::splat(FARTHEST);
         for bin in self.bins {
-            let color = splat::<N>(bin.mean);
+            let color = splat_scaled::<N>(bin.mean);
             let (mut first, mut second) = (farthest, farthest);
             for block in self.blocks {
-                let distance = block.distances(color) + N::load(&block.index);
+                let distance = block.scaled_squared_distances(color) + N::load(&block.index);
                 second = second.min(first.max(distance));
                 first = first.min(distance);
             }
@@ -105,7 +105,7 @@ impl SimdKernel for FindNearest<'_> {
 /// Makes colours of the means of bins, the fullest first, unless one is within the radius.
 ///
 /// Returns whether the palette has room for all of them.
-struct Lead<'a> {
+struct ChooseLeaders<'a> {
     fullest: &'a [u16],
     bins: &'a [Bin],
     colors: &'a mut Colors,
@@ -113,7 +113,7 @@ struct Lead<'a> {
     most: usize,
 }
 
-impl SimdKernel for Lead<'_> {
+impl SimdKernel for ChooseLeaders<'_> {
     type Output = bool;
 
     #[inline(always)]
@@ -123,10 +123,10 @@ impl SimdKernel for Lead<'_> {
         let limit = N::splat(if 256.0 * radius < FARTHEST { 256.0 * radius } else { FARTHEST });
         for &bin in fullest {
             let mean = bins[usize::from(bin)].mean;
-            let color = splat::<N>(mean);
+            let color = splat_scaled::<N>(mean);
             let mut is_near = false;
             for block in &colors.blocks {
-                is_near = block.distances(color).le(limit).any();
+                is_near = block.scaled_squared_distances(color).le(limit).any();
                 if is_near {
                     break;
                 }
@@ -189,12 +189,12 @@ impl Palette {
     /// return.
     pub(super) fn choose(&mut self, active: &mut [ActiveCell], rate: ExchangeRate, radius: &mut f32) {
         self.fill_bins(active, rate);
-        self.lead(rate, radius);
+        self.choose_leaders(rate, radius);
         for _ in 0..2 {
-            self.find_nearest();
-            self.improve(rate);
+            self.find_two_nearest();
+            self.prune_and_recenter(rate);
         }
-        self.find_nearest();
+        self.find_two_nearest();
         for (cell, bins) in active.iter_mut().zip(self.bin_of_half.chunks_exact(2)) {
             cell.nearest = [0, 1].map(|half| self.bins[usize::from(bins[half])].nearest);
         }
@@ -259,7 +259,7 @@ impl Palette {
     }
 
     /// Fills the palette with means of bins, the fullest first, none within the radius of another.
-    fn lead(&mut self, rate: ExchangeRate, radius: &mut f32) {
+    fn choose_leaders(&mut self, rate: ExchangeRate, radius: &mut f32) {
         self.fullest.clear();
         self.fullest.extend(0..self.bins.len() as u16);
         self.fullest.sort_unstable_by_key(|&bin| (Reverse(self.bins[usize::from(bin)].count), bin));
@@ -268,7 +268,7 @@ impl Palette {
         // frame's, keeps the tries few.
         *radius = rate.max(*radius / 4.0);
         // With a fixed radius the fullest bins would fill the palette, and whole regions would have no colour.
-        while !self.leads_within(most, *radius) {
+        while !self.choose_leaders_within(most, *radius) {
             *radius *= 2.0;
         }
     }
@@ -276,19 +276,19 @@ impl Palette {
     /// Fills the palette, with no colour within `radius` of another.
     ///
     /// Returns whether the palette has room for all bins that have no colour within the radius.
-    fn leads_within(&mut self, most: usize, radius: f32) -> bool {
+    fn choose_leaders_within(&mut self, most: usize, radius: f32) -> bool {
         let Self { colors, bins, fullest, .. } = self;
         colors.clear();
-        dispatch(Lead { fullest, bins, colors, radius, most })
+        dispatch(ChooseLeaders { fullest, bins, colors, radius, most })
     }
 
-    fn find_nearest(&mut self) {
-        dispatch(FindNearest { blocks: &self.colors.blocks, bins: &mut self.bins });
+    fn find_two_nearest(&mut self) {
+        dispatch(FindTwoNearest { blocks: &self.colors.blocks, bins: &mut self.bins });
     }
 
     /// Drops the colours without which the error grows the least, and moves the others to the mean
     /// of their halves.
-    fn improve(&mut self, rate: ExchangeRate) {
+    fn prune_and_recenter(&mut self, rate: ExchangeRate) {
         let mut shares = [Share::default(); MAX_COLORS];
         for bin in &self.bins {
             let mean = bin.mean.map(|channel| channel as f32);

@@ -98,14 +98,14 @@ impl Pairs {
         self.open.len()
     }
 
-    /// Returns how many of the best pairs take `share` of the bytes of the best `ranks` pairs.
+    /// Returns how many of the best pairs take a share of the bytes of the best `ranks` pairs.
     ///
     /// The number is less than `ranks`.
-    pub(super) fn ranks_within(&self, ranks: usize, share: f32) -> usize {
+    pub(super) fn ranks_within_bytes(&self, ranks: usize, share_of_bytes: f32) -> usize {
         let bytes = |open: &[OpenPair]| open.iter().map(|open| open.bytes).sum::<f32>();
         // The bytes of the pairs are estimates. With one per cent less, the frame made of the pairs found here hardly
         // ever exceeds its limit again.
-        let mut left = 0.99 * share * bytes(&self.open[..ranks]);
+        let mut left = 0.99 * share_of_bytes * bytes(&self.open[..ranks]);
         let fits = |open: &&OpenPair| {
             left -= open.bytes;
             left >= 0.0

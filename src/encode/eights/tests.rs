@@ -30,7 +30,7 @@ fn a_color_is_compared_with_the_next_ones() {
     for len in [1, 7, 8, 9, 24, 25, 40] {
         let grey = |at: u8| Srgb8::new(100 + at / 2, 100, 100);
         let mut masks = Vec::new();
-        list((0..len).map(grey)).compare_neighbours(Tolerance { distance: 1.0, square: 9 }, &mut masks);
+        list((0..len).map(grey)).compare_with_following(Tolerance { distance: 1.0, square: 9 }, &mut masks);
         for (at, mask) in masks.into_iter().enumerate() {
             let is_near = |next: &usize| grey(*next as u8).r.abs_diff(grey(at as u8).r) <= 3;
             let near = (at + 1..usize::from(len)).take_while(is_near).take(24);
