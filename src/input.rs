@@ -54,7 +54,7 @@ use csi::Meaning;
 use paste::Paste;
 pub use paste::{MAX_PASTE_BYTES, MAX_PASTE_WAITS};
 pub use reply::Reply;
-use state::{State, Text};
+use state::{ControlString, State};
 use token::{Token, Tokeniser};
 
 /// Limit on the bytes of an OSC, DCS or APC string. A longer string is dropped as a whole.
@@ -173,7 +173,7 @@ impl Parser {
                 out.push(key::escape_key().into());
                 self.reset();
             }
-            State::Escape | State::Ss3 | State::Csi | State::Text(_) | State::TextEscape(_) => {
+            State::Escape | State::Ss3 | State::Csi | State::ControlString(_) | State::ControlStringEscape(_) => {
                 self.late = Some(MAX_LATE_BYTES);
             }
             // A paste ends only after several timeouts in a row, whereas a sequence ends at the first.
@@ -194,8 +194,8 @@ impl Parser {
             State::Csi => self.take_csi(byte, out),
             State::LinuxFunction => self.take_linux_function(byte, out),
             State::OldMouse => self.take_old_mouse(byte, out),
-            State::Text(kind) => self.take_text(kind, byte, out),
-            State::TextEscape(kind) => self.take_text_escape(kind, byte, out),
+            State::ControlString(kind) => self.take_control_string(kind, byte, out),
+            State::ControlStringEscape(kind) => self.take_control_string_escape(kind, byte, out),
             State::Paste if self.paste.append_and_check_end(byte) => self.finish_paste(out),
             State::Paste => {}
         }
@@ -215,9 +215,9 @@ impl Parser {
             State::Escape => matches!(byte, b'[' | b'O' | b']' | b'P' | b'_'),
             // The first byte of a string tells a reply from most typed text: an OSC reply begins with a digit, a DCS
             // reply with a byte from 0x20 to 0x3f, and an APC reply with `G`.
-            State::Text(kind) if self.text.is_empty() => kind.begins_with(byte),
-            State::Text(_) => byte >= 0x20 || byte == BEL || byte == ESC,
-            State::TextEscape(_) => byte == b'\\',
+            State::ControlString(kind) if self.text.is_empty() => kind.may_begin_with(byte),
+            State::ControlString(_) => byte >= 0x20 || byte == BEL || byte == ESC,
+            State::ControlStringEscape(_) => byte == b'\\',
             _ => byte >= 0x20,
         }
     }
@@ -269,7 +269,7 @@ impl Parser {
             self.state = State::Escape;
             return;
         }
-        let tokens = self.tokeniser.tokens_after(byte, &[]);
+        let tokens = self.tokeniser.advance(byte, &[]);
         // A character of several bytes goes on after its leading byte, and after a continuation byte for which the
         // tokeniser has returned no token.
         let unfinished = match byte {
@@ -297,11 +297,11 @@ impl Parser {
                 self.state = State::Csi;
             }
             b'O' => self.state = State::Ss3,
-            b']' => self.state = State::Text(Text::Osc),
-            b'P' => self.state = State::Text(Text::Dcs),
-            b'_' => self.state = State::Text(Text::Apc),
+            b']' => self.state = State::ControlString(ControlString::Osc),
+            b'P' => self.state = State::ControlString(ControlString::Dcs),
+            b'_' => self.state = State::ControlString(ControlString::Apc),
             // These strings are never replies, but their contents must not be parsed as keys.
-            b'X' | b'^' => self.state = State::Text(Text::Other),
+            b'X' | b'^' => self.state = State::ControlString(ControlString::Other),
             _ => {
                 self.release_escape(out);
                 self.alt = true;
@@ -329,7 +329,7 @@ impl Parser {
             self.keep_byte(byte, MAX_SEQUENCE_BYTES);
         }
         let mut meaning = None;
-        for token in self.tokeniser.tokens_after(byte, &self.text) {
+        for token in self.tokeniser.advance(byte, &self.text) {
             match token {
                 Token::Csi(csi) => meaning = Some(csi),
                 other => self.report_plain(&other, false, out),
@@ -361,14 +361,14 @@ impl Parser {
         }
     }
 
-    fn take_text(&mut self, kind: Text, byte: u8, out: &mut Vec<Input>) {
+    fn take_control_string(&mut self, kind: ControlString, byte: u8, out: &mut Vec<Input>) {
         match byte {
             ESC => {
                 self.late = None;
-                self.state = State::TextEscape(kind);
+                self.state = State::ControlStringEscape(kind);
             }
             // BEL ends an OSC string in xterm, and in most terminals if the query ended with it too.
-            BEL if kind == Text::Osc => self.finish_text(kind, out),
+            BEL if kind == ControlString::Osc => self.finish_text(kind, out),
             CAN | SUB => self.drop_and_parse(byte, out),
             // Control characters do not occur in strings from terminals, and are ignored.
             0..0x20 => {}
@@ -376,7 +376,7 @@ impl Parser {
         }
     }
 
-    fn take_text_escape(&mut self, kind: Text, byte: u8, out: &mut Vec<Input>) {
+    fn take_control_string_escape(&mut self, kind: ControlString, byte: u8, out: &mut Vec<Input>) {
         if byte == b'\\' {
             return self.finish_text(kind, out);
         }
@@ -387,15 +387,15 @@ impl Parser {
         self.take_after_escape(byte, out);
     }
 
-    fn finish_text(&mut self, kind: Text, out: &mut Vec<Input>) {
+    fn finish_text(&mut self, kind: ControlString, out: &mut Vec<Input>) {
         let text = std::mem::take(&mut self.text);
         let meaning = match kind {
             // A truncated reply is not reported: a colour without its last digits is another colour.
             _ if self.overflow => Meaning::Nothing,
-            Text::Osc => Meaning::Reply(Reply::Osc(text)),
-            Text::Dcs => Meaning::Reply(Reply::Dcs(text)),
-            Text::Apc => Meaning::Reply(Reply::Apc(text)),
-            Text::Other => Meaning::Nothing,
+            ControlString::Osc => Meaning::Reply(Reply::Osc(text)),
+            ControlString::Dcs => Meaning::Reply(Reply::Dcs(text)),
+            ControlString::Apc => Meaning::Reply(Reply::Apc(text)),
+            ControlString::Other => Meaning::Nothing,
         };
         self.finish_sequence(meaning, out);
     }

@@ -38,9 +38,9 @@
 //! link.send(&mut frame, ms(0));
 //! assert!(frame.ends_with(b"\x1b[c"), "a query ends it");
 //! // Until its reply comes there is room for no other frame.
-//! assert!(link.free_at(ms(1)) > ms(100));
+//! assert!(link.next_send_at(ms(1)) > ms(100));
 //! link.receive_attributes(ms(3));
-//! assert!(link.free_at(ms(4)) <= ms(4));
+//! assert!(link.next_send_at(ms(4)) <= ms(4));
 //! ```
 
 use std::time::Duration;
@@ -140,8 +140,8 @@ impl Link {
     ///
     /// Returns whether the reply answers a query in flight; a duplicate, a late reply or a reply to another program's
     /// query does not.
-    pub fn receive_mode(&mut self, mode: u16, now: Duration) -> bool {
-        self.replies.receive_mode(mode, now)
+    pub fn match_mode_reply(&mut self, mode: u16, now: Duration) -> bool {
+        self.replies.match_mode_reply(mode, now)
     }
 
     /// Forgets the queries in flight, because another program has had the terminal.
@@ -159,30 +159,30 @@ impl Link {
     }
 
     /// Returns the number of frames per second that are sent on a slow link.
-    fn frames_per_second(&self) -> f64 {
+    fn slow_link_frame_rate(&self) -> f64 {
         SLOW_LINK_FRAME_RATE.min(1.0 / self.min_frame_interval().as_secs_f64())
     }
 
     /// Returns the greatest number of bytes of a frame on a slow link of this rate.
     fn max_frame_bytes(&self, rate: Rate) -> f64 {
-        rate.bytes_per_second / self.frames_per_second()
+        rate.bytes_per_second / self.slow_link_frame_rate()
     }
 
     /// Returns the time at which the next bytes may be sent, if no reply arrives before.
-    pub fn free_at(&self, now: Duration) -> Duration {
+    pub fn next_send_at(&self, now: Duration) -> Duration {
         // A query without a frame measures the link's round trip, so it is not sent while other bytes may be queued.
         let free_at = if self.replies.is_probe_due(now) { self.drained_at } else { self.free_at };
-        free_at.max(self.next_frame_allowed_at(now))
+        free_at.max(self.replies_allow_frame_at(now))
     }
 
     /// Returns the time from which the state of the replies allows another frame, if no reply
     /// arrives before.
-    fn next_frame_allowed_at(&self, now: Duration) -> Duration {
+    fn replies_allow_frame_at(&self, now: Duration) -> Duration {
         match self.replies.state {
-            State::Resyncing { .. } if self.replies.lacks_rate() => self.replies.initial_window.opens_at(true),
+            State::Resyncing { .. } if self.replies.uses_initial_window() => self.replies.initial_window.opens_at(true),
             State::Unqueried | State::Silent | State::Resyncing { .. } => Duration::ZERO,
             State::Recovering { until } => {
-                let opens_at = if self.replies.lacks_rate() {
+                let opens_at = if self.replies.uses_initial_window() {
                     self.replies.initial_window.opens_at(self.replies.last_reply.is_some())
                 } else {
                     Duration::ZERO
@@ -201,7 +201,7 @@ impl Link {
             times_out_at
         } else if self.replies.ledger.bytes_in_flight() <= self.congestion_window() {
             Duration::ZERO
-        } else if self.has_room_beside_largest() {
+        } else if self.has_room_without_largest() {
             self.replies.idle_at()
         } else {
             times_out_at
@@ -214,7 +214,7 @@ impl Link {
         self.replies.check_timeouts(now);
         let initial = self
             .replies
-            .lacks_rate()
+            .uses_initial_window()
             .then(|| Limit { rate: None, max_bytes: self.replies.initial_window.next_frame_max_bytes() });
         self.slow_limit(screen).or(initial)
     }
@@ -224,7 +224,7 @@ impl Link {
     ///
     /// A frame that was sent before the rate fell may be too large. The next frame need not wait for the reply to that
     /// one.
-    fn has_room_beside_largest(&self) -> bool {
+    fn has_room_without_largest(&self) -> bool {
         let Some(rate) = self.replies.rates.best().filter(|_| self.is_slow()) else { return false };
         let largest = self.replies.ledger.in_flight().map(|query| query.bytes as f64).fold(0.0, f64::max);
         self.replies.ledger.bytes_in_flight() - largest + self.utilisation * self.max_frame_bytes(rate)
@@ -245,8 +245,8 @@ impl Link {
         let is_sure = limit < smooth || measured.is_some_and(|rate| rate.is_limit);
         let slow = rate < smooth && is_sure || rate < 2.0 * smooth && self.is_slow();
         self.replies.set_slow(slow);
-        let floor = self.replies.frame_floor.bytes().min((limit / self.frames_per_second()) as usize);
-        let max_bytes = MIN_FRAME_BYTES.max(floor).max((rate / self.frames_per_second()) as usize);
+        let floor = self.replies.frame_floor.guaranteed_bytes().min((limit / self.slow_link_frame_rate()) as usize);
+        let max_bytes = MIN_FRAME_BYTES.max(floor).max((rate / self.slow_link_frame_rate()) as usize);
         slow.then_some(Limit { rate: Some(rate), max_bytes })
     }
 
@@ -266,7 +266,7 @@ impl Link {
         self.replies.spend_initial_window(frame.len(), now);
         self.utilisation =
             self.replies.rates.best().map_or(0.0, |rate| frame.len() as f64 / self.max_frame_bytes(rate));
-        self.record_sent(frame.len(), now);
+        self.advance_send_times(frame.len(), now);
     }
 
     /// Returns the bytes of a query without a frame if such a query is due; otherwise no bytes.
@@ -277,7 +277,7 @@ impl Link {
         let mut bytes = Vec::new();
         if self.replies.is_probe_due(now) {
             self.replies.append_probe(&mut bytes, now);
-            self.record_sent(bytes.len(), now);
+            self.advance_send_times(bytes.len(), now);
         }
         bytes
     }
@@ -304,7 +304,7 @@ impl Link {
 
     /// Advances `free_at` and `drained_at` by the time that bytes sent now take at the sending
     /// rate.
-    fn record_sent(&mut self, bytes: usize, now: Duration) {
+    fn advance_send_times(&mut self, bytes: usize, now: Duration) {
         let measured = self.replies.rates.best().filter(|rate| rate.is_limit || self.is_slow());
         // During a resync no reply corrects an estimate that is too high, so only half of the usual share is sent.
         let share = if matches!(self.replies.state, State::Resyncing { .. }) { PACING_GAIN / 2.0 } else { PACING_GAIN };

@@ -459,7 +459,12 @@ impl Viewer {
             Action::Refine => self.begin_refinement(),
             // An incomplete escape sequence needs a wake-up of its own, because its other bytes may never arrive.
             Action::Wait(until) => Step::Wait(
-                until.into_iter().chain(self.receiver.escape_due(now)).chain(fades_at).chain(builds_at).min(),
+                until
+                    .into_iter()
+                    .chain(self.receiver.sequence_times_out_at(now))
+                    .chain(fades_at)
+                    .chain(builds_at)
+                    .min(),
             ),
         }
     }
@@ -473,7 +478,7 @@ impl Viewer {
             begun: self.pacing.begun_at(),
             moved_until: self.eye.moved_until().or(self.playback.moved_until()),
             min_frame_interval: self.pacing.min_frame_interval(),
-            link_free_at: self.pacing.free_at(self.now),
+            next_send_at: self.pacing.next_send_at(self.now),
             is_changed: self.screen.is_changed(size),
             improvable_at: self.screen.improvable_at(size),
         }

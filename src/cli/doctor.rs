@@ -39,7 +39,7 @@ const QUERY_TIMEOUT: Duration = Duration::from_secs(2);
 pub(super) fn run(given: &ArgMatches) -> CommandResult {
     let settings = Settings::gather(given)?;
     let hints = settings.args.terminal.detection_hints();
-    let mut questions = InitialQueries::all(&hints);
+    let mut questions = InitialQueries::all_safe(&hints);
     let mut cell = CellShape::default();
     let is_terminal = io::stdout().is_terminal();
     let outcome = match hints.safe_queries() {
@@ -128,7 +128,7 @@ fn take_replies(
     }
     for input in receiver.receive(bytes, now) {
         if let Input::Reply(reply) = input {
-            questions.take(&reply);
+            questions.take_and_check_end(&reply);
         }
     }
     Ok(())

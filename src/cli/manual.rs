@@ -77,7 +77,7 @@ fn keys_section() -> String {
     for mode in KeyMode::ALL {
         let _ = write!(text, "\n\n{}:", mode.name());
         for binding in keymap.of(mode).filter(|binding| !binding.keys.is_empty()) {
-            let _ = write!(text, "\n  {:<16}  {}", binding.label(), binding.command.description());
+            let _ = write!(text, "\n  {:<16}  {}", binding.key_names(), binding.command.description());
         }
     }
     text

@@ -61,7 +61,7 @@ impl Key {
             Some(letter) => Self { ctrl: true, ..Self::from_bare_name(&letter.to_ascii_lowercase())? },
             None => Self::from_bare_name(name)?,
         };
-        key.is_plain().then_some(key)
+        key.is_unambiguous().then_some(key)
     }
 
     fn from_bare_name(name: &str) -> Option<Self> {
@@ -85,7 +85,7 @@ impl Key {
     ///
     /// Without the kitty keyboard protocol, terminals send the same byte for Ctrl-I and Tab, and some send the same
     /// sequence for an arrow with and without Ctrl.
-    pub fn is_plain(self) -> bool {
+    pub fn is_unambiguous(self) -> bool {
         match self.code {
             // Ctrl with H, I, J or M sends the same byte as Backspace, Tab or Enter.
             KeyCode::Char(c) if self.ctrl => c.is_ascii_lowercase() && !matches!(c, 'h' | 'i' | 'j' | 'm'),

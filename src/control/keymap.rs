@@ -81,7 +81,7 @@ pub struct Binding {
 
 impl Binding {
     /// Returns the names of the keys, separated by blanks, for the help.
-    pub fn label(&self) -> String {
+    pub fn key_names(&self) -> String {
         self.keys.iter().map(Key::to_string).collect::<Vec<_>>().join(" ")
     }
 }

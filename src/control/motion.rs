@@ -179,7 +179,7 @@ impl Motion {
     /// After six halvings, the motion ends.
     ///
     /// Does nothing while a key is held.
-    pub fn shorten_taps(&mut self, now: Duration, is_free: impl Fn(&Self) -> bool) {
+    pub fn halve_taps_until(&mut self, now: Duration, is_free: impl Fn(&Self) -> bool) {
         if self.held.iter().any(|held| held.full_until > now) {
             return;
         }

@@ -19,16 +19,16 @@ pub(super) enum State {
     /// After `ESC [ M`: three bytes of an X10 mouse report follow.
     OldMouse,
     /// Inside a string.
-    Text(Text),
+    ControlString(ControlString),
     /// After an `ESC` inside a string; a `\` then ends the string.
-    TextEscape(Text),
+    ControlStringEscape(ControlString),
     /// Inside a bracketed paste.
     Paste,
 }
 
 /// A kind of control string that a terminal may send.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Text {
+pub(super) enum ControlString {
     /// Operating system command, `ESC ]`: colours, titles.
     Osc,
     /// Device control string, `ESC P`: settings, terminfo, the terminal's name.
@@ -39,9 +39,9 @@ pub(super) enum Text {
     Other,
 }
 
-impl Text {
+impl ControlString {
     /// Returns whether the contents of a reply of this kind may begin with `byte`.
-    pub(super) fn begins_with(self, byte: u8) -> bool {
+    pub(super) fn may_begin_with(self, byte: u8) -> bool {
         match self {
             Self::Osc => byte.is_ascii_digit(),
             Self::Dcs => (0x20..=0x3f).contains(&byte),

@@ -29,15 +29,15 @@ impl Tokeniser {
     /// Puts the tokeniser into the state after `ESC [`.
     pub(super) fn begin_csi(&mut self) {
         // The caller has not passed the ESC to `vte`, because its meaning depends on the next byte, here `[`.
-        self.0.advance(&mut Tokens { tokens: Vec::new(), text: &[] }, b"\x1b[");
+        self.0.advance(&mut Tokens { tokens: Vec::new(), csi_bytes: &[] }, b"\x1b[");
     }
 
-    /// Returns the tokens that `byte` completes.
+    /// Advances the parser by `byte`, and returns the tokens that it completes.
     ///
-    /// There are two if the byte also shows that the bytes before it are an invalid character. `text` contains the
+    /// There are two if the byte also shows that the bytes before it are an invalid character. `csi_bytes` contains the
     /// bytes since `ESC [`, including this one.
-    pub(super) fn tokens_after(&mut self, byte: u8, text: &[u8]) -> Vec<Token> {
-        let mut performer = Tokens { tokens: Vec::new(), text };
+    pub(super) fn advance(&mut self, byte: u8, csi_bytes: &[u8]) -> Vec<Token> {
+        let mut performer = Tokens { tokens: Vec::new(), csi_bytes };
         self.0.advance(&mut performer, &[byte]);
         performer.tokens
     }
@@ -46,7 +46,7 @@ impl Tokeniser {
 /// Collects the tokens that `vte` reports.
 struct Tokens<'a> {
     tokens: Vec<Token>,
-    text: &'a [u8],
+    csi_bytes: &'a [u8],
 }
 
 impl Perform for Tokens<'_> {
@@ -59,7 +59,7 @@ impl Perform for Tokens<'_> {
     }
 
     fn csi_dispatch(&mut self, params: &Params, marks: &[u8], ignored: bool, last: char) {
-        let meaning = csi::meaning(params, marks, ignored, last, self.text);
+        let meaning = csi::meaning(params, marks, ignored, last, self.csi_bytes);
         self.tokens.push(Token::Csi(meaning));
     }
 }

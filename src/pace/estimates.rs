@@ -85,7 +85,7 @@ impl RoundTrip {
 
     /// Returns whether a round trip is too short for the link, so that the reply must belong to
     /// another query.
-    pub(super) fn is_implausible(&self, round_trip: Duration) -> bool {
+    pub(super) fn is_too_short(&self, round_trip: Duration) -> bool {
         round_trip + JITTER < self.shortest().mul_f64(0.9)
     }
 
@@ -153,13 +153,13 @@ pub(super) struct FrameFloor {
 
 impl FrameFloor {
     /// Returns the number of bytes that a frame may always have.
-    pub(super) fn bytes(&self) -> usize {
+    pub(super) fn guaranteed_bytes(&self) -> usize {
         MIN_FRAME_BYTES << self.doublings
     }
 
     /// Records the service time of a frame of this many bytes.
     pub(super) fn record(&mut self, bytes: usize, service: Duration, now: Duration) {
-        let floor = self.bytes();
+        let floor = self.guaranteed_bytes();
         // Only a frame of about this size tells whether a larger one would take longer.
         if !(floor / 2..2 * floor).contains(&bytes) {
             return;
@@ -216,7 +216,7 @@ impl Rates {
 
     /// Drops the samples that are only lower bounds, unless all are, because mismatched replies may
     /// have caused them.
-    pub(super) fn keep_limits(&mut self) {
+    pub(super) fn drop_lower_bounds(&mut self) {
         if self.rates.iter().any(|(_, rate)| rate.is_limit) {
             self.rates.retain(|(_, rate)| rate.is_limit);
         }

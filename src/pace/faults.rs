@@ -121,7 +121,7 @@ impl World {
             for (_, reply) in come {
                 match reply {
                     Reply::Attributes => self.link.receive_attributes(now),
-                    Reply::Mode(mode) => drop(self.link.receive_mode(mode, now)),
+                    Reply::Mode(mode) => drop(self.link.match_mode_reply(mode, now)),
                 }
                 if self.link.replies.round_trip.is_known() {
                     self.first_reply.get_or_insert(now);
@@ -132,7 +132,7 @@ impl World {
     }
 
     fn send(&mut self) {
-        if self.now < self.link.free_at(self.now).max(self.begun + self.link.min_frame_interval()) {
+        if self.now < self.link.next_send_at(self.now).max(self.begun + self.link.min_frame_interval()) {
             return;
         }
         self.begun = self.now;
@@ -318,13 +318,13 @@ fn a_lost_reply_is_known_as_soon_as_the_next_one_comes() {
         link.send(&mut b"frame".to_vec(), ms(at));
     }
     assert_eq!(link.replies.ledger.in_flight().count(), 3);
-    assert!(link.receive_mode(202, ms(12)));
+    assert!(link.match_mode_reply(202, ms(12)));
     assert_eq!(link.replies.ledger.in_flight().count(), 1);
     // A reply that is late, a duplicate, one to no query, and one of an existing mode.
     for mode in [201, 202, 700, 2026] {
-        assert!(!link.receive_mode(mode, ms(13)));
+        assert!(!link.match_mode_reply(mode, ms(13)));
     }
-    assert!(link.receive_mode(203, ms(22)));
+    assert!(link.match_mode_reply(203, ms(22)));
     assert_eq!((link.replies.ledger.in_flight().count(), link.replies.state), (0, State::Steady));
 }
 
@@ -336,9 +336,9 @@ fn a_lost_query_without_a_frame_is_sent_again() {
     assert_ne!(link.probe(ms(0)), b"");
     link.send(&mut b"frame".to_vec(), ms(0));
     assert_eq!(link.probe(ms(1)), b"");
-    assert!(link.receive_mode(202, ms(2)), "the reply to the frame");
+    assert!(link.match_mode_reply(202, ms(2)), "the reply to the frame");
     assert_ne!(link.probe(ms(3)), b"");
-    assert!(link.receive_mode(203, ms(4)));
+    assert!(link.match_mode_reply(203, ms(4)));
     assert_eq!(link.probe(ms(5)), b"", "that one was answered");
 }
 

@@ -146,7 +146,7 @@ impl Ledger {
     }
 
     /// Returns the time at which the newest unanswered query was sent; `None` if there is none.
-    pub(super) fn last_sent(&self) -> Option<Duration> {
+    pub(super) fn newest_sent_at(&self) -> Option<Duration> {
         self.queries.back().map(|query| query.sent)
     }
 

@@ -204,7 +204,7 @@ impl ReplyTracker {
     /// Subtracts bytes that are sent now from the budget of `initial_window`, if replies are
     /// missing and the rate is unknown.
     pub(super) fn spend_initial_window(&mut self, bytes: usize, now: Duration) {
-        if self.lacks_rate() {
+        if self.uses_initial_window() {
             self.initial_window.spend(bytes, now);
         }
     }
@@ -215,7 +215,7 @@ impl ReplyTracker {
 
     /// Returns whether replies are missing and the rate is unknown, so that [`InitialWindow`]
     /// limits the next frame.
-    pub(super) fn lacks_rate(&self) -> bool {
+    pub(super) fn uses_initial_window(&self) -> bool {
         matches!(self.state, State::Recovering { .. } | State::Resyncing { .. }) && !self.knows_rate()
     }
 
@@ -354,7 +354,7 @@ impl ReplyTracker {
     ///
     /// Returns whether the reply answers a query in flight; a duplicate, a late reply or a reply to another program's
     /// query does not.
-    pub(super) fn receive_mode(&mut self, mode: u16, now: Duration) -> bool {
+    pub(super) fn match_mode_reply(&mut self, mode: u16, now: Duration) -> bool {
         if self.tag_support == TagSupport::Unknown {
             self.tag_support = TagSupport::Possible;
         }
@@ -384,7 +384,7 @@ impl ReplyTracker {
     ///
     /// Such a reply belongs to another query, or the route has become shorter.
     fn is_reply_too_early(&self, query_sent: Duration, now: Duration) -> bool {
-        self.round_trip.is_implausible(now.saturating_sub(query_sent))
+        self.round_trip.is_too_short(now.saturating_sub(query_sent))
     }
 
     /// Returns whether a reply, which may be late, answers the query after the first picture rather
@@ -393,7 +393,7 @@ impl ReplyTracker {
     /// A local terminal replies to the last query at once; the reply to the first picture may take long on a slow link.
     fn is_reply_to_first_frame(&self, now: Duration) -> bool {
         let comes_at_once = |sent: Duration| now <= sent + self.round_trip.shortest() + IMMEDIATE_REPLY_TOLERANCE;
-        let is_lasts = self.is_local() && self.ledger.last_sent().is_some_and(comes_at_once);
+        let is_lasts = self.is_local() && self.ledger.newest_sent_at().is_some_and(comes_at_once);
         self.rates.best().is_none() && !is_lasts
     }
 
@@ -474,7 +474,7 @@ impl ReplyTracker {
         self.alignment = Alignment::default();
         self.frame_floor = FrameFloor::default();
         if self.slow {
-            self.rates.keep_limits();
+            self.rates.drop_lower_bounds();
             if self.serial_replies == 0 && self.delivered < MIN_DELIVERED_BYTES {
                 // If the first reply is lost, the reply to the first picture is matched to the first query. The round
                 // trip then seems longer by the picture's transmission: a link of 50 KB/s was estimated at 137 KB/s,

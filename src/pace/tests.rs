@@ -119,7 +119,7 @@ impl World {
     }
 
     fn send(&mut self) {
-        if self.now < self.link.free_at(self.now).max(self.begun + self.link.min_frame_interval()) {
+        if self.now < self.link.next_send_at(self.now).max(self.begun + self.link.min_frame_interval()) {
             return;
         }
         self.begun = self.now;

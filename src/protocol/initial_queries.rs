@@ -25,7 +25,7 @@ impl InitialQueries {
     }
 
     /// Returns all queries that the terminal is known to tolerate.
-    pub fn all(hints: &Hints) -> Self {
+    pub fn all_safe(hints: &Hints) -> Self {
         Self::batch(hints.safe_queries(), [hints.allows_color(), true, true])
     }
 
@@ -83,7 +83,7 @@ impl InitialQueries {
     }
 
     /// Records a reply, and returns whether it ends the batch. Later replies are ignored.
-    pub fn take(&mut self, reply: &Reply) -> bool {
+    pub fn take_and_check_end(&mut self, reply: &Reply) -> bool {
         // A reply after that of the fence belongs to a later query, or is forged.
         if !self.open {
             return false;

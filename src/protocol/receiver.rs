@@ -38,7 +38,7 @@ impl Receiver {
         if !bytes.is_empty() {
             self.last_event = now;
             self.parser.feed(bytes, &mut inputs);
-        } else if self.escape_due(now).is_some_and(|due| due <= now) {
+        } else if self.sequence_times_out_at(now).is_some_and(|due| due <= now) {
             self.last_event = now;
             self.parser.time_out(&mut inputs);
         }
@@ -51,7 +51,7 @@ impl Receiver {
     }
 
     /// Returns the time at which to call [`receive`](Self::receive) if no bytes arrive before.
-    pub fn escape_due(&self, now: Duration) -> Option<Duration> {
+    pub fn sequence_times_out_at(&self, now: Duration) -> Option<Duration> {
         let starts_sequence = self.keys_are_sequences || self.reply_time_left(now).is_some();
         let timeout = if starts_sequence { SEQUENCE_TIMEOUT } else { ESCAPE_TIMEOUT };
         self.parser.is_waiting().then_some(self.last_event + timeout)

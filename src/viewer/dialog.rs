@@ -106,13 +106,13 @@ impl Dialog {
             Self::SaveToFile(name) | Self::NewScene(name) => Some(visible(name)),
             Self::Save => return vec![self.keys(keymap)],
         };
-        let answers: Vec<_> = self.answers(keymap).map(|row| (row.label(), row.command.description())).collect();
+        let answers: Vec<_> = self.answers(keymap).map(|row| (row.key_names(), row.command.description())).collect();
         let width = answers.iter().map(|(label, _)| label.width()).max().unwrap_or(0);
         name.into_iter().chain(answers.iter().map(|(label, does)| format!("{label:width$}  {does}"))).collect()
     }
 
     fn keys(&self, keymap: &Keymap) -> String {
-        self.answers(keymap).map(Binding::label).collect::<Vec<_>>().join(" ")
+        self.answers(keymap).map(Binding::key_names).collect::<Vec<_>>().join(" ")
     }
 
     /// Returns the question as one line for small screens: a word and the keys that answer it, with

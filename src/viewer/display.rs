@@ -67,7 +67,7 @@ impl Display {
     ///
     /// All replies take effect together, with the last one. Returns whether `reply` was the last.
     pub(super) fn take_reply(&mut self, reply: &Reply) -> bool {
-        let was_last = self.queries.take(reply);
+        let was_last = self.queries.take_and_check_end(reply);
         if was_last {
             self.conclude_capabilities();
         }

@@ -96,7 +96,9 @@ impl Viewer {
             Reply::DeviceAttributes(_) if !self.display.queries().is_open() => self.pacing.take_reply(self.now),
             // The initial queries were sent before any frame. So a reply to a frame's query shows that the reply to
             // their last query is lost.
-            &Reply::Mode { mode, .. } if self.pacing.take_mode(mode, self.now) => drop(self.display.close_queries()),
+            &Reply::Mode { mode, .. } if self.pacing.match_mode_reply(mode, self.now) => {
+                drop(self.display.close_queries())
+            }
             reply => drop(self.display.take_reply(reply)),
         }
         self.apply_changed_capabilities(&capabilities)?;

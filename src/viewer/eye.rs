@@ -306,7 +306,7 @@ impl Eye {
         self.turntable &= key.kind == KeyEventKind::Release || !meant.is_some_and(|(command, _)| command.is_motion());
         self.motion.take_key(key, meant, now);
         if let (Some(scene), Some(view), false) = (&self.scene, &self.view, self.passes_surfaces) {
-            self.motion.shorten_taps(now, |motion| passes_no_surface(motion, view, scene, now));
+            self.motion.halve_taps_until(now, |motion| passes_no_surface(motion, view, scene, now));
         }
         self.start_motion(now);
     }

@@ -79,8 +79,8 @@ impl Pacing {
     }
 
     /// Returns the time from which more bytes may be sent, if no reply arrives before.
-    pub(super) fn free_at(&self, now: Duration) -> Duration {
-        self.link.free_at(now)
+    pub(super) fn next_send_at(&self, now: Duration) -> Duration {
+        self.link.next_send_at(now)
     }
 
     /// Returns the limits on the bytes of a frame sent now, or `None` if there are none.
@@ -107,8 +107,8 @@ impl Pacing {
 
     /// Records a reply to DECRQM, the query of a mode, and returns whether it answers a frame's
     /// query.
-    pub(super) fn take_mode(&mut self, mode: u16, now: Duration) -> bool {
-        self.link.receive_mode(mode, now)
+    pub(super) fn match_mode_reply(&mut self, mode: u16, now: Duration) -> bool {
+        self.link.match_mode_reply(mode, now)
     }
 
     /// Forgets the outstanding queries, because another program has had the terminal.

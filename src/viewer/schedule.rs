@@ -51,7 +51,7 @@ pub(super) struct Facts {
     /// Least time between two frames.
     pub(super) min_frame_interval: Duration,
     /// Time from which more bytes may be sent on the link.
-    pub(super) link_free_at: Duration,
+    pub(super) next_send_at: Duration,
     /// Whether the content of the screen has changed since it was drawn last.
     pub(super) is_changed: bool,
     /// Time from which a frame may replace approximate colours on the screen by exact ones; `None`
@@ -120,7 +120,7 @@ impl Facts {
         // after 330 ms instead of 291 ms in the median.
         let lasts = self.picture != PictureState::Stale && self.busy.tracing != Some(Tracing::NewView);
         let at = if self.is_changed { Some(Duration::ZERO) } else { self.improvable_at.filter(|_| lasts) };
-        at.map(|at| at.max(self.link_free_at))
+        at.map(|at| at.max(self.next_send_at))
     }
 
     /// Returns the earliest time for the next frame, or for the next step of the motion.
@@ -137,7 +137,7 @@ impl Facts {
         } else {
             next(self.moved_until).max(next(self.begun))
         };
-        at.max(self.link_free_at)
+        at.max(self.next_send_at)
     }
 
     /// Returns the time until which there is nothing to do, for the driver's timer.

@@ -18,7 +18,7 @@ pub(crate) fn run(mut terminal: File) {
     let (start, mut parser, mut begun) = (Instant::now(), Parser::new(), Duration::ZERO);
     let mut eye = [0, 0];
     loop {
-        let next = link.free_at(start.elapsed()).max(begun + link.min_frame_interval());
+        let next = link.next_send_at(start.elapsed()).max(begun + link.min_frame_interval());
         let left = next.saturating_sub(start.elapsed());
         if left.is_zero() {
             begun = start.elapsed();

@@ -16,7 +16,7 @@ fn has(queries: &InitialQueries, part: &[u8]) -> bool {
 #[test]
 fn a_batch_ends_with_its_fence_and_holds_one() {
     for term in ["xterm", "tmux-256color", "screen", "linux"] {
-        let queries = InitialQueries::all(&hints(term, ""));
+        let queries = InitialQueries::all_safe(&hints(term, ""));
         assert!(queries.bytes().ends_with(FENCE) && queries.is_open(), "{term}");
         assert_eq!(queries.bytes().windows(3).filter(|bytes| *bytes == FENCE).count(), 1, "{term}");
     }
@@ -33,10 +33,10 @@ fn each_terminal_gets_the_queries_that_it_understands() {
         ("linux", [true, false, false, false, false, false, false, false]),
         ("dumb", [false; 8]),
     ] {
-        let queries = InitialQueries::all(&hints(term, ""));
+        let queries = InitialQueries::all_safe(&hints(term, ""));
         assert_eq!(parts.map(|part| has(&queries, part)), expected, "{term}");
     }
-    assert!(InitialQueries::all(&hints("dumb", "")).bytes().is_empty());
+    assert!(InitialQueries::all_safe(&hints("dumb", "")).bytes().is_empty());
 }
 
 #[test]
@@ -49,7 +49,7 @@ fn known_facts_are_not_queried() {
 
 #[test]
 fn replies_count_up_to_the_fence() {
-    let mut queries = InitialQueries::all(&hints("xterm", ""));
+    let mut queries = InitialQueries::all_safe(&hints("xterm", ""));
     let replies = [
         Reply::CursorPosition { row: 1, column: 2 },
         Reply::Mode { mode: 2026, state: 2 },
@@ -60,16 +60,16 @@ fn replies_count_up_to_the_fence() {
         Reply::Status(0),
     ];
     for reply in &replies {
-        assert!(!queries.take(reply), "{reply:?}");
+        assert!(!queries.take_and_check_end(reply), "{reply:?}");
     }
-    assert!(queries.take(&Reply::DeviceAttributes(vec![62])));
+    assert!(queries.take_and_check_end(&Reply::DeviceAttributes(vec![62])));
     let replies = queries.replies().clone();
     assert_eq!((replies.block_width, replies.synchronized_output), (Some(1), Some(true)));
     assert_eq!((replies.kitty_keyboard, replies.cell_pixels), (Some(true), Some((10, 20))));
     assert_eq!((replies.truecolor, replies.light_background()), (Some(true), Some(true)));
     // Replies that arrive after the reply to the fence are forged or for another program, and are ignored.
-    assert!(!queries.take(&Reply::CursorPosition { row: 1, column: 3 }));
-    assert!(!queries.take(&Reply::DeviceAttributes(vec![62])));
+    assert!(!queries.take_and_check_end(&Reply::CursorPosition { row: 1, column: 3 }));
+    assert!(!queries.take_and_check_end(&Reply::DeviceAttributes(vec![62])));
     assert_eq!(queries.replies(), &replies);
 }
 
@@ -78,7 +78,7 @@ fn replies_count_up_to_the_fence() {
 fn a_terminal_is_known_by_its_name_or_type() {
     let truecolor = |replies: &[Reply]| {
         let mut queries = InitialQueries::needed(&hints("xterm-256color", ""));
-        assert!(!replies.iter().any(|reply| queries.take(reply)));
+        assert!(!replies.iter().any(|reply| queries.take_and_check_end(reply)));
         queries.replies().supports_truecolor()
     };
     let refusal = Reply::Dcs(b"1$r48;5;16m".to_vec());
@@ -93,8 +93,8 @@ fn a_terminal_is_known_by_its_name_or_type() {
 
 #[test]
 fn a_batch_with_a_lost_fence_is_closed_once() {
-    let mut queries = InitialQueries::all(&hints("xterm", ""));
-    queries.take(&Reply::Mode { mode: 2026, state: 2 });
+    let mut queries = InitialQueries::all_safe(&hints("xterm", ""));
+    queries.take_and_check_end(&Reply::Mode { mode: 2026, state: 2 });
     assert!(queries.close() && !queries.close() && !queries.is_open());
     assert_eq!(queries.replies().synchronized_output, Some(true));
 }
@@ -108,8 +108,8 @@ fn tags_are_tried_where_modes_are_queried() {
 
 #[test]
 fn replies_without_queries_are_ignored() {
-    let mut queries = InitialQueries::all(&hints("dumb", ""));
-    assert!(!queries.take(&Reply::DeviceAttributes(vec![62])));
-    assert!(!queries.take(&Reply::CursorPosition { row: 1, column: 3 }));
+    let mut queries = InitialQueries::all_safe(&hints("dumb", ""));
+    assert!(!queries.take_and_check_end(&Reply::DeviceAttributes(vec![62])));
+    assert!(!queries.take_and_check_end(&Reply::CursorPosition { row: 1, column: 3 }));
     assert_eq!(queries.replies(), &Replies::default());
 }

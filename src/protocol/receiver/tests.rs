@@ -28,12 +28,12 @@ fn replies_forgotten_at_a_restore_do_not_count_later() {
 #[test]
 fn a_lone_escape_is_the_key_after_its_timeout() {
     let mut receiver = Receiver::default();
-    assert_eq!(receiver.escape_due(Duration::ZERO), None);
+    assert_eq!(receiver.sequence_times_out_at(Duration::ZERO), None);
     assert_eq!(receiver.receive(ESCAPE, Duration::ZERO), []);
-    let due = receiver.escape_due(Duration::ZERO).expect("it waits");
+    let due = receiver.sequence_times_out_at(Duration::ZERO).expect("it waits");
     assert_eq!(receiver.receive(&[], due.mul_f32(0.9)), []);
     assert_eq!(receiver.receive(&[], due), escape());
-    assert_eq!(receiver.escape_due(due), None);
+    assert_eq!(receiver.sequence_times_out_at(due), None);
 }
 
 #[test]
@@ -43,6 +43,6 @@ fn a_lone_escape_times_out_later_where_a_reply_may_follow() {
     kitty.set_keys_are_sequences(true);
     for receiver in [&mut asked, &mut kitty] {
         receiver.receive(ESCAPE, Duration::ZERO);
-        assert_eq!(receiver.escape_due(Duration::ZERO), Some(SEQUENCE_TIMEOUT));
+        assert_eq!(receiver.sequence_times_out_at(Duration::ZERO), Some(SEQUENCE_TIMEOUT));
     }
 }

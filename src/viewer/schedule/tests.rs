@@ -14,7 +14,7 @@ const AT_REST: Facts = Facts {
     begun: Some(Duration::from_secs(1)),
     moved_until: None,
     min_frame_interval: FRAME,
-    link_free_at: Duration::from_secs(2),
+    next_send_at: Duration::from_secs(2),
     is_changed: false,
     improvable_at: None,
 };
@@ -46,7 +46,7 @@ fn frames_keep_their_distance() {
     assert_eq!(decide(&stale, NOW), Action::Wait(Some(NOW + FRAME)));
     let moving = Facts { moved_until: Some(NOW), ..AT_REST };
     assert_eq!(decide(&moving, NOW), Action::Wait(Some(NOW + FRAME)));
-    let slow = Facts { link_free_at: LATER, ..stale };
+    let slow = Facts { next_send_at: LATER, ..stale };
     assert_eq!(decide(&slow, NOW), Action::Wait(Some(LATER)));
     assert_eq!(decide(&Facts { is_changed: true, ..slow }, NOW), Action::Wait(Some(LATER)));
 }
@@ -100,12 +100,12 @@ prop_compose! {
         picture in picture(),
         [holds_first_back, is_changed, moves] in any::<[bool; 3]>(),
         begun in option::of(time()),
-        link_free_at in time(),
+        next_send_at in time(),
         improvable_at in option::of(time()),
     ) -> Facts {
         let (moved_until, min_frame_interval) = (moves.then_some(NOW), FRAME);
         Facts {
-            busy, picture, holds_first_back, begun, moved_until, min_frame_interval, link_free_at, is_changed,
+            busy, picture, holds_first_back, begun, moved_until, min_frame_interval, next_send_at, is_changed,
             improvable_at,
         }
     }
