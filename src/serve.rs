@@ -266,7 +266,7 @@ impl Server {
 ///
 /// # Errors
 /// As for [`Server::start`].
-pub fn run(
+pub fn run_until_drained(
     scenes: Vec<HostedScene>,
     settings: Settings,
     signals: &mut Signals,
@@ -363,7 +363,7 @@ async fn accept_all(state: Arc<SharedState>, config: Arc<Config>, listener: toki
                     // Closing the connection costs the least; a message to the client would need the whole handshake.
                     Err(refusal) => {
                         metrics.refuse(refusal);
-                        log(&format!("refused {}: {}", limits::anonymized(address.ip()), refusal_text(refusal)));
+                        log(&format!("refused {}: {}", limits::anonymized(address.ip()), refusal_log_text(refusal)));
                     }
                 }
             }
@@ -376,7 +376,7 @@ async fn accept_all(state: Arc<SharedState>, config: Arc<Config>, listener: toki
     }
 }
 
-fn refusal_text(refusal: Refusal) -> &'static str {
+fn refusal_log_text(refusal: Refusal) -> &'static str {
     match refusal {
         Refusal::Busy => "too many connections",
         Refusal::Address => "too many connections from this address",

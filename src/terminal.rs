@@ -33,13 +33,13 @@ mod signals;
 
 #[cfg(feature = "test-hooks")]
 pub use fault_injection::inject_faults;
-pub(crate) use fault_injection::{report_idle, report_phase, report_phase_in_thread, take_worker_panic};
+pub(crate) use fault_injection::{report_phase, report_phase_in_thread, take_worker_panic, try_report_idle};
 use modes::Modes;
 pub use output::stderr_accepts_message;
 use output::{Output, timespec};
 pub use panics::{hold_panic_messages, take_panic_messages};
 pub use signals::{
-    Signals, StopTarget, Waker, before_death, die_of, fail_large_writes, without_signals, yield_to_other_threads,
+    Signals, StopTarget, Waker, before_death, die_of, fail_large_writes, lower_thread_priority, without_signals,
 };
 
 /// A terminal in raw mode with the alternate screen: its input, output, modes and window size.
@@ -71,7 +71,7 @@ impl Terminal {
     /// its original state.
     pub fn take(signals: &Signals) -> io::Result<Self> {
         let output = Output::open()?;
-        let mut terminal = Self { keys: keys_file()?, output, modes: Modes::default() };
+        let mut terminal = Self { keys: open_key_input()?, output, modes: Modes::default() };
         terminal.take_again(signals)?;
         Ok(terminal)
     }
@@ -81,7 +81,7 @@ impl Terminal {
     /// # Errors
     /// If the terminal cannot be set up. Dropping `self` undoes the steps that succeeded.
     pub fn take_again(&mut self, signals: &Signals) -> io::Result<()> {
-        self.modes.switch_on_all(&self.keys, &mut self.output, signals)
+        self.modes.switch_on_universal(&self.keys, &mut self.output, signals)
     }
 
     /// Returns the window's current size, in cells and, where the terminal reports them, in pixels.
@@ -217,7 +217,7 @@ impl Drop for Terminal {
 
 /// Opens the source of keys: standard input if it is a terminal, otherwise the controlling
 /// terminal.
-fn keys_file() -> io::Result<File> {
+fn open_key_input() -> io::Result<File> {
     if io::stdin().is_terminal() {
         return Ok(File::from(io::stdin().as_fd().try_clone_to_owned()?));
     }

@@ -79,7 +79,7 @@ impl LargePicture {
         let of_thread = Arc::clone(&shared);
         let for_progress = Mutex::new(waker.try_clone()?);
         let thread = thread::Builder::new().name("large picture".to_owned()).spawn(move || {
-            terminal::yield_to_other_threads();
+            terminal::lower_thread_priority();
             // `ended` resumes a panic of this thread in the event loop, so that the terminal is restored before the
             // message is printed.
             let work = AssertUnwindSafe(|| of_thread.write(&picture_job, &for_progress));
@@ -146,7 +146,7 @@ impl Shared {
         let (mut part, parts) = (0, shot.layout.map_sizes(shot.resolution).len());
         let mut frame = frame_of(&picture_job.job, |map, resolution, camera| {
             let report = |share: f32| {
-                self.wait_while_paused();
+                self.throttle_while_paused();
                 self.set_progress((part as f32 + share) / parts as f32, waker);
                 ControlFlow::Continue(())
             };
@@ -156,7 +156,7 @@ impl Shared {
                 let render = render.threads(picture_job.thread_count()).cancelled_by(&self.token).on_progress(report);
                 TracedMap::new(tone(&render.run()?, scene), Cost::default())
             } else {
-                self.wait_while_paused();
+                self.throttle_while_paused();
                 // `maps::trace` reports no progress, so the thread can pause only before this call.
                 let executor = Executor::Cancellable(&self.token);
                 maps::trace(map, executor, scene, camera, resolution, picture_job.job.sampling)?
@@ -174,7 +174,7 @@ impl Shared {
     /// last pause.
     // During an endless motion the live view traces without a break, and a picture that waited for it to stop would
     // never be finished.
-    fn wait_while_paused(&self) {
+    fn throttle_while_paused(&self) {
         let pause = self.pause.lock().unwrap_or_else(PoisonError::into_inner);
         let worked = pause.ended.map_or(Duration::ZERO, |ended| ended.elapsed());
         let waited = self.resumed.wait_timeout_while(pause, worked, |pause| pause.is_on);

@@ -19,6 +19,7 @@ use crate::terminal::{self, Signals, StopTarget, Terminal};
 use crate::text::Notice;
 use crate::viewer::{Activity, DriverState, FIRST_FRAME_MOTION, Request, Step, Tracing, Viewer};
 use std::io;
+use std::ops::ControlFlow;
 use std::panic::resume_unwind;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -116,19 +117,19 @@ impl Live {
             // earlier change is noticed nevertheless, because each file is compared with its state when it was read.
             if self.viewer.has_shown()
                 && !self.terminal.is_sending()
-                && let Some(problem) = scenes.watch()?
+                && let Some(problem) = scenes.watch_current_scene()?
             {
                 self.viewer.show_note(format!("changes to the scene's files will not be noticed: {problem}"));
                 continue;
             }
-            renderer.panic_if_asked();
+            renderer.inject_worker_panic();
             if let Some(large_picture) = &self.large_picture {
                 // Only frames of a new view pause the large picture. At rest, one refinement follows another, and a
                 // large picture that paused for them would wait until the last one.
                 large_picture.set_paused(renderer.tracing() == Some(Tracing::NewView));
             }
             self.wait(until, renderer, signals)?;
-            let leaves = self.carry_out_requests(scenes, signals)?;
+            let leaves = self.carry_out_requests(scenes, signals)?.is_break();
             self.follow_large_picture();
             if let Some(signal) = signals.deadly() {
                 return Ok(Ending::Signal(signal));
@@ -187,7 +188,7 @@ impl Live {
     fn wait(&mut self, until: Option<Duration>, renderer: &Renderer, signals: &mut Signals) -> io::Result<()> {
         let mut timeout = until.map(|until| until.saturating_sub(self.clock.now()));
         if timeout.is_none() && renderer.tracing().is_none() && !self.terminal.is_sending() {
-            timeout = terminal::report_idle()?;
+            timeout = terminal::try_report_idle()?;
         }
         let woken = self.terminal.wait(signals.wake_pipe(), timeout)?;
         if woken.wake {
@@ -211,15 +212,15 @@ impl Live {
         Ok(self.viewer.receive(bytes, self.clock.now())?)
     }
 
-    /// Carries out the viewer's requests. Returns whether the user leaves.
+    /// Carries out the viewer's requests; breaks if the user leaves.
     fn carry_out_requests<E: Send + 'static>(
         &mut self,
         scenes: &mut Scenes<E>,
         signals: &mut Signals,
-    ) -> io::Result<bool> {
+    ) -> io::Result<ControlFlow<()>> {
         while let Some(request) = self.viewer.next_request() {
             match request {
-                Request::Leave => return Ok(true),
+                Request::Leave => return Ok(ControlFlow::Break(())),
                 Request::Suspend => self.suspend(Some(StopTarget::Group), signals)?,
                 Request::SwitchScene(steps) => {
                     let (of, count) = (scenes.switch(steps)?, self.names.len());
@@ -255,7 +256,7 @@ impl Live {
                 }
             }
         }
-        Ok(false)
+        Ok(ControlFlow::Continue(()))
     }
 
     /// Returns the name of the shown scene.

@@ -170,7 +170,7 @@ impl<E: Send + 'static> Worker<E> {
                     is_handed_over.store(self.start_another().is_ok(), Ordering::Relaxed);
                 }
             };
-            request.process(&self.waker, &hand_over_queue, || pool.get_or_insert_with(|| self.pool()).as_ref());
+            request.process(&self.waker, &hand_over_queue, || pool.get_or_insert_with(|| self.build_pool()).as_ref());
             if is_handed_over.into_inner() {
                 return;
             }
@@ -186,7 +186,7 @@ impl<E: Send + 'static> Worker<E> {
     /// be started.
     ///
     /// (`None` would mean rayon's global pool, which panics if its threads cannot be started.)
-    fn pool(&self) -> Option<ThreadPool> {
+    fn build_pool(&self) -> Option<ThreadPool> {
         let pool = ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0)).build();
         pool.or_else(|_| ThreadPoolBuilder::new().num_threads(1).use_current_thread().build()).ok()
     }
@@ -257,7 +257,7 @@ fn load<'p, E: Send>(
     let needed = Mutex::new(Vec::new());
     let on_dependency = |file: &Path| {
         let file = Dependency::in_current_state(file);
-        if file.is_other() {
+        if file.is_special_file() {
             hand_over_queue();
         }
         if let Ok(mut needed) = needed.lock() {

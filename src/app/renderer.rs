@@ -126,7 +126,7 @@ impl Renderer {
     }
 
     /// Makes a tracing thread panic, if a test has asked for it.
-    pub(super) fn panic_if_asked(&mut self) {
+    pub(super) fn inject_worker_panic(&mut self) {
         if terminal::take_worker_panic() {
             let work = PendingJob { refines: false, token: Cancellation::default() };
             self.submit(work, |_| {
@@ -292,7 +292,7 @@ impl Tracer {
     /// on the pool, and `token` may cancel them. A refinement starts anew if no picture is kept, or if the kept one is
     /// another viewer's.
     #[cfg(feature = "serve")]
-    pub(crate) fn trace_for_any(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
+    pub(crate) fn trace_for_any_viewer(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
         if job.refines || !has_one_sample(job.sampling) {
             return self.trace(job, token);
         }

@@ -54,7 +54,7 @@ impl Proposal {
     /// Writes the file and returns a note for the user: that it was written, or why not.
     pub(super) fn carry_out(&self) -> String {
         match self {
-            Self::View(view) => match view.add_to_file() {
+            Self::View(view) => match view.save_as_numbered_view() {
                 Ok(number) => format!("saved as view {number} in {}", visible(&self.file_name())),
                 Err(error) => format!("scene file left unchanged: {error}"),
             },
@@ -84,7 +84,9 @@ impl ProposedView {
     /// Returns a proposal to write a view into `file`, or `None` if that is a pipe, device or
     /// folder.
     pub(super) fn new(file: &Path, camera: Camera) -> Option<Self> {
-        Some(Dependency::in_current_state(file)).filter(|file| !file.is_other()).map(|file| Self { file, camera })
+        Some(Dependency::in_current_state(file))
+            .filter(|file| !file.is_special_file())
+            .map(|file| Self { file, camera })
     }
 
     /// Adds the view to the file and returns the view's number.
@@ -94,7 +96,7 @@ impl ProposedView {
     /// # Errors
     /// If the file cannot be written, is not a scene file, or has changed since the user was asked; it is then left as
     /// it was.
-    fn add_to_file(&self) -> io::Result<usize> {
+    fn save_as_numbered_view(&self) -> io::Result<usize> {
         let path = self.file.path();
         let text = fs::read_to_string(path)?;
         let written = with_view(&text, &self.camera).ok_or_else(|| io::Error::other("this is not a scene file"))?;

@@ -127,7 +127,7 @@ impl<E: Send + 'static> Scenes<E> {
     /// scene again.
     ///
     /// Returns the reason why changes will not be noticed, unless it was returned before.
-    pub(super) fn watch(&mut self) -> io::Result<Option<String>> {
+    pub(super) fn watch_current_scene(&mut self) -> io::Result<Option<String>> {
         let Some(files) = self.unwatched.take().filter(|files| !files.is_empty()) else { return Ok(None) };
         let problem = match self.started_watching() {
             Ok(watching) => {

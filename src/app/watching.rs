@@ -132,7 +132,7 @@ impl Watching {
         for _ in 0..MAX_RESOLUTIONS {
             let paths = self.resolve_paths();
             self.share_paths(&paths);
-            fresh.extend(self.watch_folders(&paths));
+            fresh.extend(self.update_watched_folders(&paths));
             // If a link was replaced before its folder was watched, the paths have changed, and their folders are
             // watched in another round.
             if self.resolve_paths() == paths {
@@ -158,15 +158,15 @@ impl Watching {
 
     /// Watches the folders of these paths and no others. Returns those that were not watched
     /// before.
-    fn watch_folders(&mut self, paths: &[ResolvedPath]) -> Vec<PathBuf> {
-        let mut searched_folders: HashSet<_> =
-            paths.iter().flat_map(ResolvedPath::searched_folders).map(Path::to_owned).collect();
+    fn update_watched_folders(&mut self, paths: &[ResolvedPath]) -> Vec<PathBuf> {
+        let mut containing_folders: HashSet<_> =
+            paths.iter().flat_map(ResolvedPath::containing_folders).map(Path::to_owned).collect();
         if cfg!(not(target_os = "linux")) {
             // kqueue reports only changes of names for a folder; for contents the file itself must be watched.
-            searched_folders.extend(paths.iter().map(ResolvedPath::end).map(Path::to_owned));
+            containing_folders.extend(paths.iter().map(ResolvedPath::end).map(Path::to_owned));
         }
-        let outer_folders = paths.iter().flat_map(ResolvedPath::outer_folders).map(Path::to_owned);
-        let folders: HashSet<_> = searched_folders.iter().cloned().chain(outer_folders).collect();
+        let intermediate_folders = paths.iter().flat_map(ResolvedPath::intermediate_folders).map(Path::to_owned);
+        let folders: HashSet<_> = containing_folders.iter().cloned().chain(intermediate_folders).collect();
         let watcher = &mut self.watcher;
         self.folders.retain(|folder, _| {
             let is_wanted = folders.contains(folder);
@@ -181,7 +181,7 @@ impl Watching {
         for folder in folders {
             match self.watch_folder(&folder) {
                 Ok(true) => fresh.push(folder),
-                Err(error) if searched_folders.contains(&folder) => self.problem = Some(reason(&error)),
+                Err(error) if containing_folders.contains(&folder) => self.problem = Some(reason(&error)),
                 // An outer folder without read permission is not reported, because it hardly ever changes.
                 _ => {}
             }
@@ -242,7 +242,7 @@ fn file_change(kind: EventKind, path: &Path) -> FileChange {
             FileChange::Written
         }
         // A new file counts only when its writer closes it, which is an event of its own.
-        EventKind::Create(_) if is_about_to_be_written(path) => FileChange::Nothing,
+        EventKind::Create(_) if is_new_plain_file(path) => FileChange::Nothing,
         // The path now leads to a folder, link or other thing, or permissions have changed and the file may be
         // readable.
         EventKind::Create(_) | EventKind::Modify(ModifyKind::Name(_) | ModifyKind::Metadata(_)) => FileChange::Moved,
@@ -252,7 +252,7 @@ fn file_change(kind: EventKind, path: &Path) -> FileChange {
 
 /// Returns whether a path that was just created is a new file, and no folder, symbolic link or hard
 /// link.
-fn is_about_to_be_written(path: &Path) -> bool {
+fn is_new_plain_file(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|data| data.is_file() && data.nlink() == 1)
 }
 

@@ -36,7 +36,7 @@ impl Pictures {
 }
 
 /// Returns whether other viewers will probably ask for the picture of this job.
-pub(super) fn is_shared(job: &Job) -> bool {
+pub(super) fn is_worth_sharing(job: &Job) -> bool {
     let Job { scene, shot, .. } = job;
     // The pictures of a moving scene are not shared, because each of its times is a separate copy of the scene.
     shot.camera == *scene.camera()

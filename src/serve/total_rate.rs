@@ -28,7 +28,7 @@ impl TotalRate {
     }
 
     /// Puts a part of this size at the end of the queue, and returns how long it has to wait.
-    pub(super) fn enqueue(&mut self, bytes: usize, now: Duration) -> Duration {
+    pub(super) fn reserve_wait(&mut self, bytes: usize, now: Duration) -> Duration {
         let start = self.free_at.max(now);
         self.free_at = start + Duration::from_secs_f64(bytes as f64 / self.bytes_per_second);
         start.saturating_sub(now + EARLY)
@@ -43,12 +43,12 @@ mod tests {
     fn parts_follow_each_other_at_the_rate() {
         let mut rate = TotalRate::new(100_000);
         let now = Duration::from_secs(5);
-        assert_eq!(rate.enqueue(1000, now), Duration::ZERO);
+        assert_eq!(rate.reserve_wait(1000, now), Duration::ZERO);
         // The first part takes 10 ms, so the second one waits 10 ms less `EARLY`.
-        assert_eq!(rate.enqueue(500, now), Duration::from_millis(8));
-        assert_eq!(rate.enqueue(1000, now), Duration::from_millis(13));
+        assert_eq!(rate.reserve_wait(500, now), Duration::from_millis(8));
+        assert_eq!(rate.reserve_wait(1000, now), Duration::from_millis(13));
         // The time of a pause is not credited: the second part waits again.
-        assert_eq!(rate.enqueue(1000, 2 * now), Duration::ZERO);
-        assert_eq!(rate.enqueue(1000, 2 * now), Duration::from_millis(8));
+        assert_eq!(rate.reserve_wait(1000, 2 * now), Duration::ZERO);
+        assert_eq!(rate.reserve_wait(1000, 2 * now), Duration::from_millis(8));
     }
 }

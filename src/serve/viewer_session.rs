@@ -9,6 +9,7 @@ use crate::memory::OutOfMemory;
 use crate::protocol::{FENCE, TerminalMode, TerminalModes};
 use crate::viewer::{DriverState, Frame, Job, Options, Request, Step, Viewer};
 use base64::Engine;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -175,7 +176,7 @@ impl ViewerSession {
         if self.apply_input(input, now, out).is_err() {
             return self.leave(LeaveReason::OutOfMemory, now, out);
         }
-        if self.carry_out_requests(out) {
+        if self.carry_out_requests(out).is_break() {
             return self.leave(LeaveReason::Quit, now, out);
         }
         let (end, reason) = self.next_end();
@@ -284,14 +285,14 @@ impl ViewerSession {
         AfterTurn::Turn(kind)
     }
 
-    /// Carries out the viewer's requests. Returns whether the user leaves.
+    /// Carries out the viewer's requests; breaks if the user leaves.
     ///
     /// Requests to write to the server's disk, to turn a mesh or to suspend do nothing; no key is bound to them.
-    fn carry_out_requests(&mut self, out: &mut Vec<u8>) -> bool {
+    fn carry_out_requests(&mut self, out: &mut Vec<u8>) -> ControlFlow<()> {
         let mut copied = None;
         while let Some(request) = self.viewer.next_request() {
             match request {
-                Request::Leave => return true,
+                Request::Leave => return ControlFlow::Break(()),
                 Request::SwitchScene(steps) => {
                     let count = self.scenes.len();
                     let index = (self.shown + steps.rem_euclid(count.cast_signed()).cast_unsigned()) % count;
@@ -314,7 +315,7 @@ impl ViewerSession {
             let encoded = base64::engine::general_purpose::STANDARD.encode(text);
             out.extend_from_slice(format!("\x1b]52;c;{encoded}\x1b\\").as_bytes());
         }
-        false
+        ControlFlow::Continue(())
     }
 
     /// Returns the number of frames drawn since the last call.

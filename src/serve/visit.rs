@@ -137,7 +137,7 @@ impl Visit {
         let SharedState { total_rate, pool, .. } = &*self.state;
         for message in bytes.chunks(if total_rate.is_some() { TotalRate::MAX_PART } else { MAX_MESSAGE }) {
             if let Some(rate) = total_rate {
-                let wait = locked(rate).enqueue(message.len(), pool.now());
+                let wait = locked(rate).reserve_wait(message.len(), pool.now());
                 if !wait.is_zero() {
                     sleep(wait).await;
                 }

@@ -4,7 +4,7 @@
 //! take as long as tracing it. Each thread is a rayon pool of its own, so that parallel functions stay on that thread.
 
 use super::metrics::Metrics;
-use super::pictures::{Pictures, is_shared};
+use super::pictures::{Pictures, is_worth_sharing};
 use super::run_queue::{AfterTurn, RunQueue, SessionId, WorkKind};
 use super::session_buffers::{SessionBuffers, locked};
 use super::viewer_session::{PendingInput, ViewerSession};
@@ -89,7 +89,7 @@ impl WorkerPool {
         state.sessions.insert(id, Arc::new(PooledSession { session: Mutex::new(session), buffers }));
         state.queue.add(id);
         self.metrics.visits.add(1);
-        self.wake_a_thread(&mut state);
+        self.wake_or_preempt(&mut state);
         id
     }
 
@@ -97,7 +97,7 @@ impl WorkerPool {
     pub(super) fn wake(&self, id: SessionId) {
         let mut state = locked(&self.state);
         state.queue.wake(id);
-        self.wake_a_thread(&mut state);
+        self.wake_or_preempt(&mut state);
     }
 
     /// Tells all sessions the time at which the server ends.
@@ -123,7 +123,7 @@ impl WorkerPool {
     }
 
     /// Wakes a resting thread; if there is none, interrupts the refinements.
-    fn wake_a_thread(&self, state: &mut PoolState) {
+    fn wake_or_preempt(&self, state: &mut PoolState) {
         if state.resting > 0 {
             self.ready.notify_one();
         } else {
@@ -229,14 +229,14 @@ impl WorkerPool {
     ///
     /// The picture may have been traced for another viewer.
     fn picture(&self, job: &Job, token: &Cancellation, tracer: &mut Tracer) -> Option<Frame> {
-        let is_shared = is_shared(job);
-        if is_shared && let Some(kept) = locked(&self.pictures).get(job) {
+        let is_worth_sharing = is_worth_sharing(job);
+        if is_worth_sharing && let Some(kept) = locked(&self.pictures).get(job) {
             self.metrics.shared.add(1);
             return Some(Frame { shot: job.shot, refines: job.refines, ..Frame::clone(&kept) });
         }
-        let frame = tracer.trace_for_any(job, token).ok()?;
+        let frame = tracer.trace_for_any_viewer(job, token).ok()?;
         self.metrics.traced.add(1);
-        if is_shared {
+        if is_worth_sharing {
             locked(&self.pictures).keep(Arc::new(frame.clone()));
         }
         Some(frame)

@@ -13,7 +13,7 @@ use std::time::Duration;
 static TEST: OnceLock<Mutex<UnixStream>> = OnceLock::new();
 /// Whether the next job of a worker thread must panic, because the test has asked for it.
 static WORKER: AtomicBool = AtomicBool::new(false);
-/// Delay before [`report_idle`] is retried while another thread is reporting its phase.
+/// Delay before [`try_report_idle`] is retried while another thread is reporting its phase.
 const IDLE_RETRY: Duration = Duration::from_millis(2);
 /// Number of bytes that the event loop has read from the terminal.
 static READ: AtomicU64 = AtomicU64::new(0);
@@ -63,7 +63,7 @@ fn report(test: Option<MutexGuard<'_, UnixStream>>, phase: &str) -> io::Result<(
 ///
 /// A test then knows without waiting that nothing more will happen. Returns the delay after which to call again if
 /// another thread is reporting.
-pub(crate) fn report_idle() -> io::Result<Option<Duration>> {
+pub(crate) fn try_report_idle() -> io::Result<Option<Duration>> {
     let Some(test) = connection() else { return Ok(None) };
     let Ok(test) = test.try_lock() else { return Ok(Some(IDLE_RETRY)) };
     report(Some(test), &format!("rest {}", READ.load(Ordering::SeqCst)))?;

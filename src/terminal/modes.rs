@@ -30,7 +30,12 @@ impl Modes {
     /// screen.
     ///
     /// Each mode is recorded before it is switched on, so that a failure half-way is undone as well.
-    pub(super) fn switch_on_all(&mut self, keys: &File, output: &mut Output, signals: &Signals) -> io::Result<()> {
+    pub(super) fn switch_on_universal(
+        &mut self,
+        keys: &File,
+        output: &mut Output,
+        signals: &Signals,
+    ) -> io::Result<()> {
         wait_for_foreground(keys, signals)?;
         let before = termios::tcgetattr(keys)?;
         let mut raw = before.clone();

@@ -104,7 +104,7 @@ impl Output {
     pub(super) fn drop_frame(&mut self) {
         let boundary = next_boundary(&self.pending, self.written);
         let rest = self.pending.split_off(boundary);
-        self.pending.extend(sequences(&rest).filter(|sequence| !belongs_to_frame(sequence)).flatten());
+        self.pending.extend(escape_sequences(&rest).filter(|sequence| !belongs_to_frame(sequence)).flatten());
         self.record_written(0);
     }
 
@@ -134,7 +134,7 @@ fn next_boundary(bytes: &[u8], index: usize) -> usize {
 }
 
 /// Returns the escape sequences in `bytes`, whose start must not lie inside a sequence.
-fn sequences(mut bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+fn escape_sequences(mut bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     std::iter::from_fn(move || {
         let start = bytes.iter().position(|&byte| byte == ESCAPE)?;
         let (sequence, rest) = bytes[start..].split_at(sequence_len(&bytes[start..])?);

@@ -32,8 +32,8 @@ pub struct Signals {
     deadly: Arc<AtomicUsize>,
     resized: Arc<AtomicBool>,
     continued: Arc<AtomicBool>,
-    /// One item per SIGTSTP received; `None` if SIGTSTP is ignored.
-    stops: Option<Receiver<()>>,
+    /// `None` if SIGTSTP is ignored.
+    stops: Option<Receiver<StopRequest>>,
 }
 
 /// Signals that conventionally ask a program to end, for which handlers are installed.
@@ -80,6 +80,9 @@ const UNBLOCKED: &[Signal] = &[
 // program.
 const GROUP_SIGNAL_TIMEOUT: Duration = Duration::from_millis(100);
 
+/// A SIGTSTP that the process received.
+struct StopRequest;
+
 /// The processes that [`Signals::stop`] stops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StopTarget {
@@ -116,7 +119,7 @@ impl Signals {
             Ok(flag)
         };
         let (resized, continued) = (flag(SIGWINCH)?, flag(SIGCONT)?);
-        let stops = accept_blocked(ignored, Arc::clone(&deadly), Waker(write.try_clone()?))?;
+        let stops = spawn_signal_acceptor(ignored, Arc::clone(&deadly), Waker(write.try_clone()?))?;
         let stops = (!contains_signal(ignored, SIGTSTP)).then_some(stops);
         Ok(Self { read, write, deadly, resized, continued, stops })
     }
@@ -248,14 +251,18 @@ pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> 
     catch_deadly(&CAUGHT_BEFORE_DEATH, ignored, &deadly, &write)
 }
 
-/// Blocks the uncaught signals in all threads and accepts them on one.
+/// Blocks the uncaught signals in all threads and starts a thread that accepts them.
 ///
-/// SIGTSTP is sent to the returned channel; any other signal asks the program to end.
+/// Each SIGTSTP is sent to the returned channel; any other signal asks the program to end.
 ///
 /// SIGTSTP is blocked rather than caught, because only its default action stops a process as its shell expects. In an
 /// orphaned process group (a terminal that runs the program without a shell), which cannot be continued, that action
 /// does nothing, whereas SIGSTOP would hang the process for ever.
-fn accept_blocked(ignored: u64, deadly: Arc<AtomicUsize>, mut waker: Waker) -> io::Result<Receiver<()>> {
+fn spawn_signal_acceptor(
+    ignored: u64,
+    deadly: Arc<AtomicUsize>,
+    mut waker: Waker,
+) -> io::Result<Receiver<StopRequest>> {
     let signals = signals_to_block();
     signals.thread_block()?;
     let mut pending = PendingSignals::for_signals(&signals)?;
@@ -267,7 +274,7 @@ fn accept_blocked(ignored: u64, deadly: Arc<AtomicUsize>, mut waker: Waker) -> i
                 continue;
             }
             if signal == SIGTSTP {
-                if stopped.send(()).is_err() {
+                if stopped.send(StopRequest).is_err() {
                     break;
                 }
             } else {
@@ -341,7 +348,7 @@ pub fn without_signals<T>(work: impl FnOnce() -> T) -> T {
 
 /// Lowers the priority of this thread, and of threads that it starts, below that of all others.
 // Only Linux has priorities of threads: elsewhere the whole process would be slower. A failure does no harm.
-pub fn yield_to_other_threads() {
+pub fn lower_thread_priority() {
     #[cfg(target_os = "linux")]
     let _ = rustix::process::setpriority_process(None, 10);
 }

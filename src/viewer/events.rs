@@ -97,7 +97,7 @@ impl Viewer {
             // The initial queries were sent before any frame. So a reply to a frame's query shows that the reply to
             // their last query is lost.
             &Reply::Mode { mode, .. } if self.pacing.match_mode_reply(mode, self.now) => {
-                drop(self.display.close_queries())
+                self.display.close_queries();
             }
             reply => drop(self.display.take_reply(reply)),
         }

@@ -8,7 +8,7 @@ fn a_picture_goes_on_beside_an_endless_motion() {
     let pauses: Vec<_> = (0..3)
         .map(|_| {
             let start = Instant::now();
-            shared.wait_while_paused();
+            shared.throttle_while_paused();
             start.elapsed()
         })
         .collect();

@@ -28,7 +28,7 @@ enum State {
     /// A folder, pipe or device.
     ///
     /// Its times are not compared, because reading a pipe or device changes them.
-    Other(Identity),
+    Special(Identity),
 }
 
 /// Device and inode number, which identify a file or folder.
@@ -43,7 +43,7 @@ impl State {
                 modified: (data.mtime(), data.mtime_nsec()),
                 length: data.len(),
             },
-            Ok(data) => Self::Other(identity(&data)),
+            Ok(data) => Self::Special(identity(&data)),
             Err(_) => Self::Missing,
         }
     }
@@ -65,8 +65,8 @@ impl Dependency {
 
     /// Returns whether the path led to a pipe, device or folder, so that reading it may block for
     /// ever.
-    pub(in crate::app) fn is_other(&self) -> bool {
-        matches!(self.state, State::Other(_))
+    pub(in crate::app) fn is_special_file(&self) -> bool {
+        matches!(self.state, State::Special(_))
     }
 
     /// Returns whether the path now leads to another file, or to the same file with another state.

@@ -41,7 +41,7 @@ impl ResolvedPath {
         let mut links = 0;
         while let Some(name) = left.pop() {
             let Name::In(name) = name else {
-                name.apply_to(&mut folder);
+                name.apply_root_or_parent(&mut folder);
                 continue;
             };
             let path = folder.join(name);
@@ -74,7 +74,7 @@ impl ResolvedPath {
 
     /// Returns the folders that contain the file and the links, which must be watched to notice
     /// changes.
-    pub(super) fn searched_folders(&self) -> impl Iterator<Item = &Path> {
+    pub(super) fn containing_folders(&self) -> impl Iterator<Item = &Path> {
         let links = self.steps.iter().filter(|step| step.is_link).map(|step| &*step.path);
         links.chain([&*self.end]).filter_map(Path::parent).filter(|folder| !is_virtual(folder))
     }
@@ -85,7 +85,7 @@ impl ResolvedPath {
     /// While the file is missing, the parents of the folders are watched too, because the removal of a folder is not
     /// reported while it is the current folder of a process. Folders directly below the root, which are permanent and
     /// busy, are watched only while the file is missing.
-    pub(super) fn outer_folders(&self) -> impl Iterator<Item = &Path> {
+    pub(super) fn intermediate_folders(&self) -> impl Iterator<Item = &Path> {
         let folders = self.steps.iter().filter(|step| !step.is_link).map(|step| &*step.path);
         // A path with two components, such as `/home`, belongs to the system.
         let own = folders.clone().filter(|folder| folder.components().count() > 2);
@@ -108,7 +108,7 @@ enum Name {
 }
 
 impl Name {
-    fn apply_to(&self, folder: &mut PathBuf) {
+    fn apply_root_or_parent(&self, folder: &mut PathBuf) {
         match self {
             Self::Root => *folder = PathBuf::from("/"),
             // Links before `..` are already resolved, as the system does it: if `a` is a link, `a/..` is the parent of

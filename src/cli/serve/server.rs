@@ -114,7 +114,7 @@ pub(in crate::cli) fn run(mut args: ServeArgs, given: &ArgMatches) -> CommandRes
         // The server also runs if the reader of its output has gone.
         let _ = write_stdout(line.as_bytes());
     };
-    let ended = serve::run(scenes, settings, &mut signals, &log, started);
+    let ended = serve::run_until_drained(scenes, settings, &mut signals, &log, started);
     if let Some(signal) = ended.map_err(|error| Failure::Runtime(reason(&error)))? {
         die_of(signal);
     }

@@ -47,7 +47,7 @@ impl Harness {
         let mut trace = |job: &Job, may_interrupt: bool| {
             assert!(job.refines || !may_interrupt, "the frame of a new view is lost if it is interrupted");
             *traced += 1;
-            tracer.trace_for_any(job, &Cancellation::default()).ok()
+            tracer.trace_for_any_viewer(job, &Cancellation::default()).ok()
         };
         session.take_turn(&input, (false, kind), &|| now.get(), &mut trace, bytes)
     }
