@@ -138,7 +138,7 @@ impl BenchArgs {
                 let samples = NonZeroU32::new(self.samples).unwrap_or(NonZeroU32::MIN);
                 Round::Traced(TracedRound::measured(self.kernel.kernel(), scene, resolution, samples))
             }
-            Algorithm::Rasterize => Round::Drawn(DrawnRound::measured(scene, resolution)),
+            Algorithm::Rasterize => Round::Rasterized(RasterizedRound::measured(scene, resolution)),
         }
     }
 
@@ -184,14 +184,14 @@ fn build_seconds_and_bytes(scene: &Scene) -> (f64, usize) {
 /// The results of one round of the benchmark.
 enum Round {
     Traced(TracedRound),
-    Drawn(DrawnRound),
+    Rasterized(RasterizedRound),
 }
 
 impl Round {
     fn as_json(&self) -> Value {
         match self {
             Self::Traced(round) => round.as_json(),
-            Self::Drawn(DrawnRound { hits, depths, time }) => {
+            Self::Rasterized(RasterizedRound { hits, depths, time }) => {
                 json!({ "hits": hits, "depths": depths, "draw_seconds": time.as_secs_f64() })
             }
         }
@@ -200,7 +200,7 @@ impl Round {
     fn table_line(&self, number: u32) -> String {
         match self {
             Self::Traced(round) => round.table_line(number),
-            Self::Drawn(DrawnRound { hits, depths, time }) => {
+            Self::Rasterized(RasterizedRound { hits, depths, time }) => {
                 format!("round {number}: {hits} hits, depths {depths:.3}, {:.6} s\n", time.as_secs_f64())
             }
         }
@@ -209,13 +209,13 @@ impl Round {
 
 /// The results of one round of drawing with a depth buffer: the number of pixels that show an
 /// object, the sum of their depths, and the time.
-struct DrawnRound {
+struct RasterizedRound {
     hits: u64,
     depths: f64,
     time: Duration,
 }
 
-impl DrawnRound {
+impl RasterizedRound {
     fn measured(scene: &Scene, resolution: Resolution) -> Self {
         let start = Instant::now();
         let buffer = rasterize(scene, scene.camera(), resolution);

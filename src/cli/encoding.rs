@@ -64,18 +64,18 @@ enum QualityArg {
 impl EncodingArgs {
     /// Returns whether any of the encoding flags is given.
     pub(super) fn is_given(&self) -> bool {
-        self.order().is_some() || self.loss.quality.is_some() || self.loss.max_rate.is_some()
+        self.cell_order().is_some() || self.loss.quality.is_some() || self.loss.max_rate.is_some()
     }
 
     /// Returns the order of cells, if `--order` or `--compressed-link` is given.
-    pub(super) fn order(&self) -> Option<encode::Order> {
-        self.order.order()
+    pub(super) fn cell_order(&self) -> Option<encode::Order> {
+        self.order.cell_order()
     }
 }
 
 impl OrderArgs {
     /// Returns the order of cells, if `--order` or `--compressed-link` is given.
-    pub(super) fn order(&self) -> Option<encode::Order> {
+    pub(super) fn cell_order(&self) -> Option<encode::Order> {
         match self.order {
             Some(OrderArg::Raster) => Some(encode::Order::Raster),
             Some(OrderArg::Color) => Some(encode::Order::Color),

@@ -22,7 +22,7 @@ fn scenes_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let cannot_read = |error: std::io::Error| Failure::runtime(folder.display(), reason(&error));
     let files = std::fs::read_dir(folder).map_err(cannot_read)?;
     let paths = files.filter_map(|file| Some(file.ok()?.path()));
-    let mut scenes: Vec<_> = paths.filter(|path| names_scene(path) && path.is_file()).collect();
+    let mut scenes: Vec<_> = paths.filter(|path| is_unhidden_scene(path) && path.is_file()).collect();
     if scenes.is_empty() {
         let folder = folder.display();
         return Err(Failure::Usage(format!(
@@ -35,6 +35,6 @@ fn scenes_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
 }
 
 /// Returns whether a path has the extension of a scene or mesh and is not hidden (`.name`).
-fn names_scene(path: &Path) -> bool {
+fn is_unhidden_scene(path: &Path) -> bool {
     path.file_name().and_then(|name| name.to_str()).is_some_and(|name| !name.starts_with('.') && is_scene(name))
 }

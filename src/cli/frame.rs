@@ -85,7 +85,7 @@ fn format_parser() -> impl TypedValueParser<Value = Format> {
 
 impl FrameArgs {
     /// Returns the terminal to print on, unless `--format`, `--output` or `--check` is given.
-    fn screen(&self) -> Option<Screen> {
+    fn target_screen(&self) -> Option<Screen> {
         let is_plain = self.format.is_none() && self.output.is_none() && self.check.is_none();
         Screen::of_stdout(&self.cells).filter(|_| is_plain)
     }
@@ -96,7 +96,7 @@ impl FrameArgs {
         match (self.format, self.output().or(self.check.as_deref())) {
             (Some(format), _) => Ok(format),
             (None, Some(path)) => format_by_ending(path),
-            (None, None) => Ok(self.screen().map_or(DEFAULT, |_| Format::Ansi)),
+            (None, None) => Ok(self.target_screen().map_or(DEFAULT, |_| Format::Ansi)),
         }
     }
 
@@ -148,7 +148,7 @@ impl FrameArgs {
     /// Traces the frame and returns its bytes in `format`.
     fn contents(&self, format: Format) -> Result<Vec<u8>, Failure> {
         let scene = self.scene.load_scene()?;
-        let screen = self.screen();
+        let screen = self.target_screen();
         let mode = screen.map_or_else(|| self.cell_mode(format), |screen| screen.mode);
         let kind = if self.check.is_some() { FrameKind::Cells } else { FrameKind::for_format(format) };
         let cells = screen.map(|screen| (screen.cells, screen.cell_aspect));

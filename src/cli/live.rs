@@ -4,7 +4,7 @@
 use super::completions::{command_near, no_command};
 use super::encoding::OrderArgs;
 use super::folder;
-use super::outcome::{CommandResult, Failure, exit_after_panic, reason, usage, write_stdout};
+use super::outcome::{CommandResult, Failure, reason, report_panic_and_exit, usage, write_stdout};
 use super::scene_args::CameraArgs;
 use super::scene_source::{SceneSource, warn_of_invisibility};
 use super::settings::{SettingArgs, Settings, keys};
@@ -85,7 +85,7 @@ impl ViewArgs {
     /// this command line's flags.
     fn options(&self, settings: &SettingArgs, keymap: Keymap, opening: Opening) -> Options {
         let mut options = Options::new(settings.terminal.detection_hints());
-        options.order = self.order.order();
+        options.order = self.order.cell_order();
         options.quality = settings.loss.given_quality();
         options.max_rate = settings.loss.given_max_rate();
         options.max_frames = settings.fps;
@@ -124,7 +124,7 @@ pub(super) fn run(args: &LiveArgs, given: &ArgMatches) -> CommandResult {
 /// pipe must not depend on config.ron.
 fn print_frame(args: &LiveArgs) -> CommandResult {
     let settings = &args.view.settings;
-    settings.check_samples()?;
+    settings.check_samples_for_map()?;
     let scenes = folder::expanded(&args.scenes)?;
     if let [first, more @ ..] = &scenes[..]
         && !more.is_empty()
@@ -160,9 +160,9 @@ pub(super) fn open_view(
     sources: impl FnOnce() -> Result<Vec<Source<Failure>>, Failure>,
 ) -> CommandResult {
     #[cfg(feature = "test-hooks")]
-    inject_faults();
+    connect_fault_injector();
     let settings = Settings::gather(given)?.args;
-    settings.check_samples()?;
+    settings.check_samples_for_map()?;
     let keymap = keys::keymap(given.get_flag("no_config"))?;
     let (sources, mut options) = (sources()?, args.options(&settings, keymap, opening));
     options.threads = threads.map(usize::from);
@@ -180,7 +180,7 @@ pub(super) fn open_view(
             app::Error::Scene(failure) => failure,
             error => Failure::Runtime(error.to_string()),
         })?,
-        Err(_) => exit_after_panic(),
+        Err(_) => report_panic_and_exit(),
     };
     if let Ending::Signal(signal) = ending {
         // The program ends by the signal itself, because the shell must see the signal and not an exit code.
@@ -222,7 +222,7 @@ pub(super) fn live_source(scene: SceneSource, camera_args: &CameraArgs) -> Sourc
 
 /// Connects to the test that started the program, so that the test can inject faults.
 #[cfg(feature = "test-hooks")]
-fn inject_faults() {
+fn connect_fault_injector() {
     let path = std::env::var_os("TERMTRACE_TEST_SOCKET");
     if let Some(Ok(test)) = path.map(std::os::unix::net::UnixStream::connect) {
         termtrace::internals::terminal::inject_faults(test);

@@ -53,7 +53,7 @@ pub(super) fn run(args: &NewArgs, given: &ArgMatches) -> CommandResult {
     };
     if let Some(path) = &args.file {
         refuse_mesh(path)?;
-        write(path, &text)?;
+        write_new(path, &text)?;
     }
     if is_live {
         let scene = args.file.clone().map_or(SceneSource::Formula(text), SceneSource::File);
@@ -90,7 +90,7 @@ fn refuse_mesh(path: &Path) -> CommandResult {
     Err(Failure::Usage(format!("{path}: this name is one of a mesh; a scene is a text file such as {name}")))
 }
 
-fn write(path: &Path, text: &str) -> CommandResult {
+fn write_new(path: &Path, text: &str) -> CommandResult {
     let written = OutputFile::create_new(path).and_then(|mut file| {
         file.remove_stale();
         file.write_all(text.as_bytes())?;

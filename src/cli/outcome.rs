@@ -113,7 +113,7 @@ pub(super) fn reason(error: &io::Error) -> String {
 
 /// Prints the panic messages held back while the terminal was in use, and exits with 101, the code
 /// of a panic.
-pub(super) fn exit_after_panic() -> ! {
+pub(super) fn report_panic_and_exit() -> ! {
     // Several threads may have panicked; the first message is the cause.
     let messages = termtrace::internals::terminal::take_panic_messages();
     for message in messages {

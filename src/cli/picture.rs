@@ -81,15 +81,19 @@ pub(super) struct PictureArgs {
 
 impl SizeArgs {
     pub(super) fn resolution(&self, mode: CellMode) -> Result<Resolution, Failure> {
-        self.resolution_in((80, 24), self.cell_aspect, mode)
+        self.resolution_with_default((80, 24), self.cell_aspect, mode)
     }
 
-    /// Returns the resolution that the flags give, which by default fills the `screen`.
-    ///
-    /// The `screen` is given in columns and rows.
-    fn resolution_in(&self, screen: (u32, u32), cell_aspect: f32, mode: CellMode) -> Result<Resolution, Failure> {
+    /// Returns the resolution that the flags give, or else that of `default_size`, in columns and
+    /// rows.
+    fn resolution_with_default(
+        &self,
+        default_size: (u32, u32),
+        cell_aspect: f32,
+        mode: CellMode,
+    ) -> Result<Resolution, Failure> {
         let (across, down) = mode.pixels_per_cell();
-        let (columns, rows) = self.size.unwrap_or(screen);
+        let (columns, rows) = self.size.unwrap_or(default_size);
         let (width, height) = self.pixels.unwrap_or((columns.saturating_mul(across), rows.saturating_mul(down)));
         // The numbers of columns and rows of a `Grid` are u16.
         let limit = u32::from(u16::MAX);
@@ -115,7 +119,7 @@ impl PictureArgs {
         if let Some((cells, aspect)) = screen {
             let given = self.size.cell_aspect;
             let aspect = if given == USUAL_CELL_ASPECT { aspect } else { given };
-            return self.size.resolution_in(cells, aspect, mode);
+            return self.size.resolution_with_default(cells, aspect, mode);
         }
         let is_default = self.size.size.is_none() && self.size.pixels.is_none() && self.scale.is_none();
         // The default resolution of a picture file has square pixels, whatever the shape of a cell.

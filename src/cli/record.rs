@@ -223,7 +223,7 @@ impl RecordArgs {
                 };
                 // Players draw both half blocks without a seam, so the encoder may choose between them.
                 let encoder = Encoder::new()
-                    .with_order(self.encoding.order().unwrap_or(Order::Color))
+                    .with_order(self.encoding.cell_order().unwrap_or(Order::Color))
                     .with_half_blocks(HalfBlocks::Either);
                 // Buffered, because `Cast` writes a frame in many small pieces.
                 let cast = Cast::begin(BufWriter::new(out), film.cells(), encoder, film.fps)?;
@@ -253,7 +253,7 @@ impl Sink {
     /// Traces and writes frame number `frame`, counted from 0.
     fn write_frame(&mut self, film: &Film, map: Map, frame: usize, outputs: &mut Outputs) -> io::Result<()> {
         let &Film { resolution, samples, .. } = film;
-        let (scene, camera) = (&film.scene_at(frame), &film.cameras[frame]);
+        let (scene, camera) = (&film.scene_at_frame_time(frame), &film.cameras[frame]);
         let picture = || maps::picture(map, scene, camera, resolution, samples);
         match self {
             Self::Cast(painter, cast) => cast.frame(painter.trace(map, scene, camera, resolution, samples)),
@@ -280,7 +280,7 @@ fn finish(out: BufWriter<Output>) -> io::Result<()> {
 
 impl Film {
     /// Returns the scene at the time of frame number `frame`, counted from 0.
-    fn scene_at(&self, frame: usize) -> Scene {
+    fn scene_at_frame_time(&self, frame: usize) -> Scene {
         self.scene.clone().at_time(self.start + frame as f64 / f64::from(self.fps))
     }
 

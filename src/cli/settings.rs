@@ -96,7 +96,7 @@ pub(super) struct SettingArgs {
 
 impl SettingArgs {
     /// Refuses more than one sample per pixel for a map whose values cannot be averaged.
-    pub(super) fn check_samples(&self) -> CommandResult {
+    pub(super) fn check_samples_for_map(&self) -> CommandResult {
         self.map.check_samples(self.samples)
     }
 
@@ -125,7 +125,7 @@ pub(super) fn read_as_flags(path: PathBuf, command: &Command) -> Result<ArgMatch
     let setting = |entry: &Entry| command.get_arguments().find(|setting| setting.get_id() == entry.name.as_str());
     let entries = entries::read(&file, command).map_err(Scene)?;
     // The settings become command line arguments, so that clap checks them as it checks flags.
-    let words = entries.iter().filter_map(|entry| Some(values::word(setting(entry)?, &entry.text)));
+    let words = entries.iter().filter_map(|entry| Some(values::flag_with_value(setting(entry)?, &entry.text)));
     command.clone().try_get_matches_from(words).map_err(usage)
 }
 
@@ -209,7 +209,7 @@ impl Settings {
                     .map_err(|wrong| Failure::Usage(format!("{name}=\"{}\": {wrong}", held.value)))?;
             }
             if !matches!(held.source, SettingSource::Default) {
-                words.push(values::word(setting, &held.value));
+                words.push(values::flag_with_value(setting, &held.value));
             }
         }
         let args = command.try_get_matches_from(words).and_then(|found| SettingArgs::from_arg_matches(&found));

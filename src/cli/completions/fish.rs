@@ -1,6 +1,6 @@
 //! The completions of fish.
 
-use super::values::{Files, SCENE_ENDINGS, Values, Word, commands, options, takes_value, text};
+use super::values::{Files, SCENE_ENDINGS, Values, Word, commands, first_line, options, takes_value};
 use clap::{Arg, Command};
 use std::fmt::Write;
 
@@ -55,7 +55,7 @@ fn option_flags(arg: &Arg, program: &Command) -> String {
     // The value of an option with an optional value follows a `=`, never in the next word.
     let required = if takes_value(arg) && !arg.is_require_equals_set() { " -r" } else { "" };
     let no_files = if takes_value(arg) && !value.contains(" -F") { " -f" } else { "" };
-    format!("{short}{long}{required}{no_files}{value} -d {}", quoted(&text(arg.get_help())))
+    format!("{short}{long}{required}{no_files}{value} -d {}", quoted(&first_line(arg.get_help())))
 }
 
 fn value_flags(values: &Values) -> String {

@@ -31,7 +31,9 @@ impl Values {
     pub(super) fn for_arg(arg: &Arg, program: &Command) -> Self {
         let (mut words, mut files) = (Vec::new(), Files::None);
         let possible = arg.get_possible_values();
-        words.extend(possible.iter().map(|value| (value.get_name().to_owned(), text(PossibleValue::get_help(value)))));
+        words.extend(
+            possible.iter().map(|value| (value.get_name().to_owned(), first_line(PossibleValue::get_help(value)))),
+        );
         let name = arg.get_value_names().and_then(<[_]>::first).map(ToString::to_string).unwrap_or_default();
         for part in name.split('|').filter(|_| possible.is_empty()) {
             match part {
@@ -59,7 +61,7 @@ impl Values {
 
 /// Returns the names of the program's commands with their descriptions.
 pub(super) fn commands(program: &Command) -> Vec<Word> {
-    program.get_subcommands().map(|command| (command.get_name().to_owned(), text(command.get_about()))).collect()
+    program.get_subcommands().map(|command| (command.get_name().to_owned(), first_line(command.get_about()))).collect()
 }
 
 /// Returns the options of a command, in the order of its help.
@@ -83,6 +85,6 @@ pub(super) fn spellings(arg: &Arg) -> Vec<String> {
 }
 
 /// Returns the first line of a help text.
-pub(super) fn text(help: Option<&StyledStr>) -> String {
+pub(super) fn first_line(help: Option<&StyledStr>) -> String {
     help.map(ToString::to_string).unwrap_or_default().lines().next().unwrap_or_default().to_owned()
 }

@@ -2,7 +2,7 @@
 //!
 //! The script is not made by `clap_complete`, whose scripts complete nothing after a scene in the place of a command.
 
-use super::values::{Files, SCENE_ENDINGS, Values, Word, commands, options, spellings, takes_value, text};
+use super::values::{Files, SCENE_ENDINGS, Values, Word, commands, first_line, options, spellings, takes_value};
 use clap::{Arg, Command};
 use std::fmt::Write;
 
@@ -83,7 +83,7 @@ fn argument_specs(command: &Command, program: &Command) -> Vec<String> {
 /// Returns an option as a spec of zsh's `_arguments`: its spellings, description and value.
 fn option_spec(arg: &Arg, program: &Command) -> String {
     let names = spellings(arg);
-    let help = text(arg.get_help()).replace('\\', "\\\\").replace('[', "\\[").replace(']', "\\]");
+    let help = first_line(arg.get_help()).replace('\\', "\\\\").replace('[', "\\[").replace(']', "\\]");
     let value = value_spec(arg, program);
     // For `_arguments`, the value of `--name=` or `-n+` may be the next word, that of `--name=-` may not.
     let named = |name: &str| match (takes_value(arg), name.starts_with("--"), arg.is_require_equals_set()) {

@@ -90,7 +90,7 @@ impl Report<'_> {
             self.queries(),
             self.overridable_row("colours", "color", findings.colors, colors),
             self.locale(),
-            self.overridable_row("cells", self.glyph_setting(), findings.glyphs, |cells| {
+            self.overridable_row("cells", self.setting_deciding_glyphs(), findings.glyphs, |cells| {
                 cells.title().to_owned() + &self.block_width()
             }),
             self.overridable_row("cell, height/width", "cell_aspect", findings.cell_aspect, |aspect| {
@@ -121,7 +121,7 @@ impl Report<'_> {
 
     /// Returns the setting that decides the glyphs: `glyphs` if it is set, otherwise `color`,
     /// because without colours other glyphs are used.
-    fn glyph_setting(&self) -> &'static str {
+    fn setting_deciding_glyphs(&self) -> &'static str {
         if self.hints.glyphs.is_some() { "glyphs" } else { "color" }
     }
 

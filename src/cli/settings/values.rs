@@ -11,14 +11,14 @@ pub(super) fn flag(setting: &Arg) -> String {
 
 /// Returns the setting and its value as one command line argument, `--flag=value`. After `=` a
 /// value may begin with a hyphen.
-pub(super) fn word(setting: &Arg, text: &str) -> String {
-    format!("{}={text}", flag(setting))
+pub(super) fn flag_with_value(setting: &Arg, value: &str) -> String {
+    format!("{}={value}", flag(setting))
 }
 
 /// Checks a value with the parser of the setting's flag. The error is the parser's message, without
 /// clap's usage lines.
 pub(super) fn check(command: &Command, setting: &Arg, text: &str) -> Result<(), String> {
-    let Err(error) = command.clone().try_get_matches_from([word(setting, text)]) else { return Ok(()) };
+    let Err(error) = command.clone().try_get_matches_from([flag_with_value(setting, text)]) else { return Ok(()) };
     // `source` is the error of the flag's own parser; clap adds usage lines about a command line to it.
     if let Some(wrong) = std::error::Error::source(&error) {
         return Err(wrong.to_string());
