@@ -88,7 +88,7 @@ use metadata::Metadata;
 use note::Note;
 pub use options::Options;
 use orders::OrdersPanel;
-use outside::Outside;
+use outside::OutsideView;
 use pacing::Pacing;
 use playback::Playback;
 use pointer::PointerState;
@@ -165,7 +165,7 @@ pub(crate) struct Viewer {
     /// Which maps the picture shows, and how they are arranged.
     layout: ViewLayout,
     /// Whether a second camera shows the first one from outside, or vanishing points are shown.
-    outside: Outside,
+    outside_view: OutsideView,
     pointer: PointerState,
     screen: Screen,
     /// Whether captions are shown.
@@ -177,7 +177,7 @@ pub(crate) struct Viewer {
     /// The time of the viewer's clock, which the last call passed.
     now: Duration,
     /// The time of the last key or movement of the mouse; 0 before the first.
-    last_event: Duration,
+    last_input_time: Duration,
 }
 
 impl Viewer {
@@ -195,13 +195,13 @@ impl Viewer {
             eye: Eye::new(options.key_speed, options.reduced_motion),
             playback: Playback::default(),
             layout: ViewLayout::single(options.map),
-            outside: Outside::Off,
+            outside_view: OutsideView::Off,
             pointer: PointerState::default(),
             requests: VecDeque::new(),
             names: Vec::new(),
             captions: options.tour.is_some(),
             now: Duration::ZERO,
-            last_event: Duration::ZERO,
+            last_input_time: Duration::ZERO,
             display,
             screen,
             options: Options { welcome: None, ..options.clone() },
@@ -230,7 +230,7 @@ impl Viewer {
         let Some(text) = self.options.few_colors.take() else { return };
         if self.options.hints.suspects_truecolor(colors) {
             let note = match self.screen.close::<Note>() {
-                Some(welcome) => welcome.below(text),
+                Some(welcome) => welcome.with_line_above(text),
                 None => Note::new(text),
             };
             self.screen.open(note);
@@ -261,14 +261,14 @@ impl Viewer {
         self.display.set_window(window);
         // A new font may change the aspect and the height of the cells, and the height decides which half blocks the
         // cells may use.
-        self.apply_changed_capabilities(&before)?;
+        self.update_screen_capabilities(&before)?;
         self.display.check_memory()?;
         self.forget_screen();
         Ok(())
     }
 
     /// Passes the terminal's capabilities to the screen if they differ from `before`.
-    fn apply_changed_capabilities(&mut self, before: &Capabilities) -> Result<(), OutOfMemory> {
+    fn update_screen_capabilities(&mut self, before: &Capabilities) -> Result<(), OutOfMemory> {
         if self.display.capabilities() != before {
             self.screen.set_capabilities(self.display.capabilities());
             self.display.check_memory()?;
@@ -280,7 +280,7 @@ impl Viewer {
     ///
     /// Everything is drawn anew, and the part outside the picture is cleared.
     pub(crate) fn forget_screen(&mut self) {
-        let (size, window) = (self.display.size(), self.display.window_size());
+        let (size, window) = (self.display.picture_size(), self.display.window_size());
         // The window is erased only if the picture leaves a part of it free: otherwise the next frame covers all of it,
         // and erasing first would flash.
         self.screen.forget_shown(self.display.capabilities().half_blocks, size != window);
@@ -319,7 +319,7 @@ impl Viewer {
 
     fn open_scene(&mut self, scene: Scene, index: usize, orbits: bool) {
         // The cameras of the view from outside belong to the previous scene.
-        self.end_outside();
+        self.end_outside_view();
         let (before, shown) = (self.scenes.shown(), scene.clone());
         for warning in scene.darkness_warning().map(str::to_owned).into_iter().chain(scene.invisible_formula_warnings())
         {
@@ -347,17 +347,17 @@ impl Viewer {
             }
         }
         // A reloaded scene goes on from its current time.
-        self.playback.start(shown.depends_on_time() && !self.options.reduced_motion, self.now);
+        self.playback.resume_unless_paused(shown.depends_on_time() && !self.options.reduced_motion, self.now);
         self.screen.set_name(self.names.get(index).map_or("", String::as_str));
         // The eye needs the scene even if the view is kept, because a reloaded file may contain other views.
         self.eye.set_scene(&shown.at_time(self.playback.time().as_secs_f64()));
     }
 
-    fn set_outside(&mut self, outside: Outside) {
+    fn set_outside_view(&mut self, outside_view: OutsideView) {
         // The second eye may pass through walls: from behind one it still sees the lines of the first camera.
-        self.eye.set_passes_surfaces(matches!(outside, Outside::MovesSecond { .. }));
-        let has_changed = self.outside != outside;
-        self.outside = outside;
+        self.eye.set_passes_surfaces(matches!(outside_view, OutsideView::MovesSecond { .. }));
+        let has_changed = self.outside_view != outside_view;
+        self.outside_view = outside_view;
         if has_changed {
             self.show_caption_again();
         }
@@ -393,25 +393,25 @@ impl Viewer {
     /// number `index`, if it has one.
     fn caption(&self, scene: &Scene, index: usize) -> Option<Caption> {
         let place = self.options.tour.map(|count| (index + 1, count));
-        let text = self.outside.caption().map_or_else(|| scene.caption().cloned(), |text| Some(text.into()));
-        Some(Caption::new(text?, place, self.outside.keys()))
+        let text = self.outside_view.caption().map_or_else(|| scene.caption().cloned(), |text| Some(text.into()));
+        Some(Caption::new(text?, place, self.outside_view.keys()))
     }
 
     /// Shows the caption of the scene, unless captions are hidden.
     fn show_caption_again(&mut self) {
-        let shown = self.scene().zip(self.scenes.shown()).filter(|_| self.captions);
+        let shown = self.scene_at_current_time().zip(self.scenes.shown()).filter(|_| self.captions);
         let caption = shown.and_then(|(scene, index)| self.caption(&scene, index));
         self.screen.set(caption);
     }
 
     /// Shows the caption of the scene or its next page. After the last page, hides the caption.
-    fn turn_caption(&mut self) {
+    fn cycle_caption(&mut self) {
         let shown = self.screen.close::<Caption>();
         let was_shown = shown.is_some();
         let next = if let Some(caption) = shown {
-            caption.next(theme::area(self.size()))
+            caption.next(theme::area(self.picture_size()))
         } else {
-            let shown = self.scene().zip(self.scenes.shown());
+            let shown = self.scene_at_current_time().zip(self.scenes.shown());
             let caption = shown.and_then(|(scene, index)| self.caption(&scene, index));
             if caption.is_none() {
                 self.show_note("this scene has no caption: no comment at the start of its file");
@@ -431,9 +431,9 @@ impl Viewer {
     pub(crate) fn take_frame(&mut self, frame: Frame) {
         self.pacing.record_frame(&frame);
         // Only frames in motion count for the frame rate: refinements at rest would raise it.
-        let moving = self.is_in_motion().then_some(self.now);
+        let moving = self.is_picture_moving().then_some(self.now);
         self.screen.take_frame(frame, moving);
-        self.note_lost();
+        self.update_lost_notice();
     }
 
     /// Returns the driver's next action.
@@ -441,13 +441,13 @@ impl Viewer {
         self.set_now(now);
         self.playback.advance(now);
         // Gives the eye the scene at its current time, because a moving surface stops the eye where the surface is now.
-        if let Some(scene) = self.scene().filter(|_| self.playback.moved_until().is_some()) {
+        if let Some(scene) = self.scene_at_current_time().filter(|_| self.playback.advanced_to().is_some()) {
             self.eye.set_scene(&scene);
         }
         // Moves the eye to its place at `now` first, because `decide` compares the picture with the eye's current view.
         self.eye.advance(now);
         self.screen.set_movement_mode(self.eye.mode());
-        self.screen.set_in_motion(self.is_in_motion());
+        self.screen.set_picture_moving(self.is_picture_moving());
         self.mark_light();
         self.note_few_colors();
         let fades_at = self.screen.close_faded_note(now);
@@ -470,13 +470,13 @@ impl Viewer {
     }
 
     fn facts(&self, busy: DriverState) -> Facts {
-        let size = self.display.size();
+        let size = self.display.picture_size();
         Facts {
             busy,
             picture: self.picture_state(),
             holds_first_back: !self.screen.has_shown() && self.pacing.refines_within(FIRST_REFINEMENT),
             begun: self.pacing.begun_at(),
-            moved_until: self.eye.moved_until().or(self.playback.moved_until()),
+            advanced_to: self.eye.advanced_to().or(self.playback.advanced_to()),
             min_frame_interval: self.pacing.min_frame_interval(),
             next_send_at: self.pacing.next_send_at(self.now),
             is_changed: self.screen.is_changed(size),
@@ -498,22 +498,22 @@ impl Viewer {
     ///
     /// The step sends a query first, which measures the link's round trip without a frame's bytes.
     fn begin_new_view(&mut self) -> Step {
-        let Some((scene, shot)) = self.scene().zip(self.wanted_shot()) else { return Step::Wait(None) };
+        let Some((scene, shot)) = self.scene_at_current_time().zip(self.wanted_shot()) else { return Step::Wait(None) };
         let probe = self.pacing.probe(self.now);
         self.receiver.sent(&probe, self.now);
-        let sampling = self.pacing.begin_frame(shot, self.is_in_motion(), self.now);
+        let sampling = self.pacing.begin_frame(shot, self.is_picture_moving(), self.now);
         Step::Trace(probe, Job { scene, shot, sampling: self.layout.sampling(sampling), refines: false })
     }
 
     /// Returns the step that traces the next refinement of the last frame.
     fn begin_refinement(&self) -> Step {
-        let wanted = self.scene().zip(self.wanted_shot()).zip(self.next_refinement());
+        let wanted = self.scene_at_current_time().zip(self.wanted_shot()).zip(self.next_refinement());
         let Some(((scene, shot), sampling)) = wanted else { return Step::Wait(None) };
         Step::Trace(Vec::new(), Job { scene, shot, sampling, refines: true })
     }
 
     /// Returns the shown scene at its current time, with its lights as moved by the user.
-    fn scene(&self) -> Option<Scene> {
+    fn scene_at_current_time(&self) -> Option<Scene> {
         let seconds = self.playback.time().as_secs_f64();
         self.scenes.lights().map(|lights| lights.scene().clone().at_time(seconds))
     }
@@ -540,25 +540,27 @@ impl Viewer {
 
     /// Returns whether the view is being changed by keys, the turntable, a drag or the time, so
     /// that the next frame will differ.
-    fn is_in_motion(&self) -> bool {
-        self.eye.is_moving() || self.pointer.holds() || self.playback.moved_until().is_some()
+    fn is_picture_moving(&self) -> bool {
+        self.eye.is_moving() || self.pointer.holds() || self.playback.advanced_to().is_some()
     }
 
     /// Appends the bytes that bring the screen up to date.
     ///
-    /// Call [`end_frame`](Self::end_frame) with these bytes afterwards.
+    /// Call [`add_frame_queries`](Self::add_frame_queries) with these bytes afterwards.
     pub(crate) fn draw(&mut self, now: Duration, bytes: &mut Vec<u8>) {
         self.set_now(now);
-        let size = self.display.size();
+        let size = self.display.picture_size();
         let limit = self.pacing.limit(Screen::usual_bytes(size), now);
         self.screen.draw(size, &self.options.keymap, limit, now, bytes);
     }
 
-    /// Appends the query that ends a frame; does nothing if `bytes` is empty.
+    /// Adds the queries that measure the link before and after a frame's bytes.
+    ///
+    /// Adds none if `bytes` is empty.
     ///
     /// `now` is the time after [`draw`](Self::draw), so that making the cells and bytes is not counted as part of the
     /// round trip.
-    pub(crate) fn end_frame(&mut self, bytes: &mut Vec<u8>, now: Duration) {
+    pub(crate) fn add_frame_queries(&mut self, bytes: &mut Vec<u8>, now: Duration) {
         self.screen.record_encode_time(now.saturating_sub(self.now));
         if bytes.is_empty() {
             return;
@@ -581,8 +583,8 @@ impl Viewer {
     }
 
     /// Returns the terminal modes to switch on in addition to those that every terminal supports.
-    pub(crate) fn modes(&self) -> impl Iterator<Item = TerminalMode> {
-        self.display.modes()
+    pub(crate) fn optional_modes(&self) -> impl Iterator<Item = TerminalMode> {
+        self.display.optional_modes()
     }
 
     /// Returns whether a frame has been drawn since the start.
@@ -601,14 +603,14 @@ impl Viewer {
     }
 
     /// Records the time of a key or of a movement of the mouse.
-    fn record_event(&mut self, now: Duration) {
-        self.last_event = now;
+    fn record_input_time(&mut self, now: Duration) {
+        self.last_input_time = now;
     }
 
     /// Returns the time of the last key or movement of the mouse; 0 before the first.
     #[cfg(feature = "serve")]
-    pub(crate) fn last_event(&self) -> Duration {
-        self.last_event
+    pub(crate) fn last_input_time(&self) -> Duration {
+        self.last_input_time
     }
 
     /// Frees the memory that is only needed while frames are drawn.
@@ -642,8 +644,8 @@ impl Viewer {
         self.display.resolution()
     }
 
-    fn size(&self) -> Size {
-        self.display.size()
+    fn picture_size(&self) -> Size {
+        self.display.picture_size()
     }
 
     fn keymap(&self) -> &Keymap {

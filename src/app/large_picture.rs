@@ -165,7 +165,7 @@ impl Shared {
             Ok::<_, Cancelled>(picture)
         });
         if let Ok(frame) = &mut frame {
-            frame.wipe(picture_job.wipe);
+            frame.wipe_to(picture_job.wipe);
         }
         frame.ok().map(|frame| frame.picture)
     }

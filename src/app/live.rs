@@ -143,7 +143,7 @@ impl Live {
             }
             // Repeated in each turn of the loop, because the wanted modes depend on the terminal's replies; a mode that
             // is on already costs nothing.
-            for mode in self.viewer.modes() {
+            for mode in self.viewer.optional_modes() {
                 self.terminal.switch_on(mode)?;
             }
             while let Some(frame) = renderer.take_finished() {
@@ -163,10 +163,10 @@ impl Live {
                     self.bytes.clear();
                     let now = self.clock.now();
                     self.viewer.draw(now, &mut self.bytes);
-                    // The recording does not get the queries that `end_frame` adds, because a player's terminal would
-                    // answer them.
+                    // The recording does not get the queries that `add_frame_queries` adds, because a player's terminal
+                    // would answer them.
                     self.record_frame(now);
-                    self.viewer.end_frame(&mut self.bytes, self.clock.now());
+                    self.viewer.add_frame_queries(&mut self.bytes, self.clock.now());
                     self.terminal.send(&self.bytes)?;
                 }
                 Step::Trace(probe, job) => {
@@ -413,6 +413,6 @@ impl Live {
         // The queries are sent again, because replies to the earlier ones may be lost.
         self.terminal.send(&self.viewer.queries(self.clock.now()))?;
         self.viewer.resize(self.terminal.window()?)?;
-        Ok(self.viewer.receive_typed(typed, self.clock.now())?)
+        Ok(self.viewer.receive_type_ahead(typed, self.clock.now())?)
     }
 }

@@ -201,7 +201,7 @@ impl ViewerSession {
         // wait included, a busy server took each link for a slow one, and frames shrank to 540 bytes at 200 viewers.
         let at = if input.bytes.is_empty() { now } else { input.at.max(self.latest).min(now) };
         self.viewer.receive(&input.bytes, at)?;
-        for mode in self.viewer.modes() {
+        for mode in self.viewer.optional_modes() {
             self.modes.switch_on(mode, out);
         }
         Ok(())
@@ -210,7 +210,7 @@ impl ViewerSession {
     /// Returns the time at which the visit ends if no key is pressed, and the reason.
     fn next_end(&self) -> (Duration, LeaveReason) {
         // Before the first key press, the idle time counts from the beginning of the visit.
-        let idle = (self.viewer.last_event().max(self.began) + self.limits.idle, LeaveReason::Idle);
+        let idle = (self.viewer.last_input_time().max(self.began) + self.limits.idle, LeaveReason::Idle);
         let ends = [(self.limits.ends, LeaveReason::TimeOver), idle];
         let drained = self.drain_deadline.map(|at| (at, LeaveReason::Drained));
         drained.into_iter().chain(ends).min_by_key(|&(at, _)| at).expect("there are two")
@@ -257,7 +257,7 @@ impl ViewerSession {
                 Step::Draw => {
                     let mut bytes = Vec::new();
                     self.viewer.draw(clock(), &mut bytes);
-                    self.viewer.end_frame(&mut bytes, clock());
+                    self.viewer.add_frame_queries(&mut bytes, clock());
                     sending |= !bytes.is_empty();
                     self.drawn += u64::from(!bytes.is_empty());
                     out.append(&mut bytes);

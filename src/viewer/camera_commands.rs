@@ -15,12 +15,12 @@ pub(super) const ZOOM_FACTOR: f32 = 1.1;
 
 impl Viewer {
     /// Shows a notice if the user has moved the eye so that nothing of the scene is visible.
-    pub(super) fn note_lost(&mut self) {
+    pub(super) fn update_lost_notice(&mut self) {
         // No notice for the view that the scene's author has chosen.
         let frame = self.screen.frame().filter(|_| self.eye.moved_camera().is_some());
         let aspect_ratio = self.first_map_resolution().aspect_ratio();
         let hiding = frame.and_then(|frame| Hiding::find(&frame.scene, frame.camera(), aspect_ratio));
-        let modes = self.screen.active_modes(self.size());
+        let modes = self.screen.active_modes(self.picture_size());
         let key = |(command, does): (Command, &str)| Some(format!("{} {does}", self.keymap().key_of(&modes, command)?));
         let keys: Vec<_> =
             [(Command::Reset, "first view"), (Command::FrameAll, "frame all")].into_iter().filter_map(key).collect();
@@ -41,7 +41,7 @@ impl Viewer {
     ///
     /// Empty if no key is bound to `command`.
     pub(super) fn hint(&self, command: Command, does: &str) -> String {
-        let key = self.keymap().key_of(&self.screen.active_modes(self.size()), command);
+        let key = self.keymap().key_of(&self.screen.active_modes(self.picture_size()), command);
         key.map_or_else(String::new, |key| format!("; {key} {does}"))
     }
 

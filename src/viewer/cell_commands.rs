@@ -6,7 +6,7 @@ use crate::capabilities::Glyphs;
 impl Viewer {
     /// Switches to the next kind of cells that the terminal's locale can encode.
     pub(super) fn change_glyphs(&mut self) {
-        let (before, size) = (*self.display.capabilities(), self.size());
+        let (before, size) = (*self.display.capabilities(), self.picture_size());
         let shown = before.cell_mode.glyphs;
         let at = Glyphs::ALL.iter().position(|&glyphs| glyphs == shown).unwrap_or(0);
         // The shown kind itself comes last, so that it stays if the terminal can encode no other.
@@ -20,7 +20,7 @@ impl Viewer {
             return;
         }
         self.screen.set_capabilities(self.display.capabilities());
-        if self.size() != size {
+        if self.picture_size() != size {
             self.forget_screen();
         }
         self.show_note(format!("{} (--glyphs {next})", next.title()));

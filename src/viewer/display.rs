@@ -48,12 +48,12 @@ impl Display {
     }
 
     /// Returns the part of the window that the picture covers, from its upper left corner.
-    pub(super) fn size(&self) -> Size {
+    pub(super) fn picture_size(&self) -> Size {
         extent::covered_size(self.window.size, self.capabilities.cell_mode)
     }
 
     pub(super) fn resolution(&self) -> Resolution {
-        cell::resolution(self.capabilities.cell_mode, self.size(), self.capabilities.cell_aspect)
+        cell::resolution(self.capabilities.cell_mode, self.picture_size(), self.capabilities.cell_aspect)
             .expect("the size is bounded, and the aspect was checked when it was found")
     }
 
@@ -66,7 +66,7 @@ impl Display {
     /// Records a reply to the initial queries.
     ///
     /// All replies take effect together, with the last one. Returns whether `reply` was the last.
-    pub(super) fn take_reply(&mut self, reply: &Reply) -> bool {
+    pub(super) fn record_initial_reply(&mut self, reply: &Reply) -> bool {
         let was_last = self.queries.take_and_check_end(reply);
         if was_last {
             self.conclude_capabilities();
@@ -93,16 +93,16 @@ impl Display {
     /// # Errors
     /// If there is not enough.
     pub(super) fn check_memory(&self) -> Result<(), OutOfMemory> {
-        extent::check_memory(self.size(), self.capabilities.cell_mode)
+        extent::check_memory(self.picture_size(), self.capabilities.cell_mode)
     }
 
     /// Returns whether the terminal supports the kitty keyboard protocol.
-    pub(super) fn knows_keyboard(&self) -> bool {
+    pub(super) fn supports_kitty_keyboard(&self) -> bool {
         !self.queries.is_open() && self.queries.replies().kitty_keyboard == Some(true)
     }
 
     /// Returns a cell's size in pixels, if the terminal reports mouse positions in pixels.
-    pub(super) fn mouse_pixels(&self) -> Option<(u16, u16)> {
+    pub(super) fn pixel_mouse_cell_size(&self) -> Option<(u16, u16)> {
         let replies = self.queries.replies();
         let knows = !self.queries.is_open() && replies.pixel_mouse == Some(true);
         let is_cell = |&(width, height): &(u16, u16)| width > 0 && height > 0;
@@ -112,9 +112,9 @@ impl Display {
     }
 
     /// Returns the terminal modes to switch on in addition to those that every terminal supports.
-    pub(super) fn modes(&self) -> impl Iterator<Item = TerminalMode> {
-        let keyboard = self.knows_keyboard().then_some(TerminalMode::Keyboard);
+    pub(super) fn optional_modes(&self) -> impl Iterator<Item = TerminalMode> {
+        let keyboard = self.supports_kitty_keyboard().then_some(TerminalMode::Keyboard);
         // These modes are set only if the replies report support, because other terminals might print the sequences.
-        keyboard.into_iter().chain(self.mouse_pixels().map(|_| TerminalMode::MousePixels))
+        keyboard.into_iter().chain(self.pixel_mouse_cell_size().map(|_| TerminalMode::MousePixels))
     }
 }

@@ -50,12 +50,12 @@ impl ErrorPanel {
         lines
     }
 
-    /// Returns the panel's area, above the lowest `below` rows of the screen.
-    fn area(&self, screen: Rect, below: u16) -> Rect {
+    /// Returns the panel's area, above the lowest `rows_below` rows of the screen.
+    fn area(&self, screen: Rect, rows_below: u16) -> Rect {
         let lines = self.lines(text_columns(screen.width)).len() as u16;
         // On a low screen the panel takes at most a third of the rows, and the picture keeps the rest.
         let height = lines.min(MAX_ERROR_ROWS).min(screen.height / 3);
-        Rect { y: (screen.bottom() - height).saturating_sub(below), height, ..screen }
+        Rect { y: (screen.bottom() - height).saturating_sub(rows_below), height, ..screen }
     }
 
     fn paint(&self, theme: Theme, area: Rect, buffer: &mut Buffer) {

@@ -50,7 +50,7 @@ impl Viewer {
     ///
     /// # Errors
     /// As for [`receive`](Self::receive).
-    pub(crate) fn receive_typed(&mut self, mut typed: Vec<Input>, now: Duration) -> Result<(), OutOfMemory> {
+    pub(crate) fn receive_type_ahead(&mut self, mut typed: Vec<Input>, now: Duration) -> Result<(), OutOfMemory> {
         // The other program may have reset the keyboard flags, so keys are read in the legacy encoding until the reply
         // to the new query.
         self.receiver.set_keys_are_sequences(false);
@@ -63,7 +63,7 @@ impl Viewer {
         self.set_now(now);
         for (at, input) in inputs.iter().enumerate() {
             if matches!(input, Input::Event(Event::Key(_) | Event::Mouse(_))) {
-                self.record_event(now);
+                self.record_input_time(now);
             }
             match input {
                 input if mouse_actions::is_superseded(input, inputs.get(at + 1)) => {}
@@ -90,7 +90,7 @@ impl Viewer {
         if let &Reply::KeyboardFlags(flags) = reply {
             self.take_keyboard_flags(flags);
         }
-        let (size, capabilities) = (self.size(), *self.display.capabilities());
+        let (size, capabilities) = (self.picture_size(), *self.display.capabilities());
         match reply {
             // Terminals reply in order, so once the initial queries are answered this is a reply to a frame's query.
             Reply::DeviceAttributes(_) if !self.display.queries().is_open() => self.pacing.take_reply(self.now),
@@ -99,12 +99,12 @@ impl Viewer {
             &Reply::Mode { mode, .. } if self.pacing.match_mode_reply(mode, self.now) => {
                 self.display.close_queries();
             }
-            reply => drop(self.display.take_reply(reply)),
+            reply => drop(self.display.record_initial_reply(reply)),
         }
-        self.apply_changed_capabilities(&capabilities)?;
+        self.update_screen_capabilities(&capabilities)?;
         // The picture's size in cells may have changed, because its limit is in pixels and the pixels per cell depend
         // on the glyphs.
-        if self.size() != size {
+        if self.picture_size() != size {
             self.forget_screen();
         }
         Ok(())
@@ -112,7 +112,7 @@ impl Viewer {
 
     /// Handles a reply with the flags of the kitty keyboard protocol.
     fn take_keyboard_flags(&mut self, flags: u16) {
-        let reports_releases = self.display.knows_keyboard() && flags & KEYBOARD == KEYBOARD;
+        let reports_releases = self.display.supports_kitty_keyboard() && flags & KEYBOARD == KEYBOARD;
         self.eye.set_reports_releases(reports_releases, self.now);
         self.receiver.set_keys_are_sequences(reports_releases);
     }
@@ -124,7 +124,7 @@ impl Viewer {
             self.screen.close::<Note>();
             self.screen.close::<Warnings>();
         }
-        let meant = self.keymap().command(&self.screen.active_modes(self.size()), key);
+        let meant = self.keymap().command(&self.screen.active_modes(self.picture_size()), key);
         // The help takes all keys without Ctrl. It takes no releases, because their keys may have been pressed before
         // it was opened.
         let is_ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
@@ -196,7 +196,7 @@ impl Viewer {
             Command::ScrollUp => self.turn_explanation(-1),
             Command::ScrollDown => self.turn_explanation(1),
             Command::Redraw => self.forget_screen(),
-            Command::Caption => self.turn_caption(),
+            Command::Caption => self.cycle_caption(),
             Command::NextGlyphs => self.change_glyphs(),
             Command::TurnMesh => self.turn_mesh(),
             Command::Front | Command::FromRight | Command::FromAbove => self.look_from(command),
@@ -234,11 +234,11 @@ impl Viewer {
         // The help comes first, because it lies over everything else.
         if self.screen.close::<HelpPanel>().is_none()
             && !self.release_light()
-            && !(self.second_camera().is_some() && self.end_outside())
+            && !(self.second_camera().is_some() && self.end_outside_view())
             && self.screen.close::<ExplainPanel>().is_none()
             && self.screen.close::<Metadata>().is_none()
             && !self.close_orders()
-            && !self.end_outside()
+            && !self.end_outside_view()
         {
             self.cancel_large_picture();
         }

@@ -57,7 +57,7 @@ impl Layer for ExplainPanel {
         // A refinement leaves the explained ray as it is and changes only the pixel's colour, which becomes the mean of
         // more rays.
         if frame.refines && old == new {
-            self.notes = notes(frame, self.pixel, &self.explanation);
+            self.notes = color_difference_notes(frame, self.pixel, &self.explanation);
             return;
         }
         let [x, y] = self.pixel;
@@ -106,7 +106,7 @@ impl ExplainPanel {
             pixel,
             resolution: frame.resolution(),
             inset,
-            notes: notes(frame, pixel, &explanation),
+            notes: color_difference_notes(frame, pixel, &explanation),
             explanation,
             page,
         }
@@ -179,7 +179,7 @@ impl ExplainPanel {
 /// ray's.
 ///
 /// Empty for a frame with any other map, and if the colours are equal, unless rays may stand for 2x2 pixels each.
-fn notes(frame: &Frame, [x, y]: [u32; 2], explanation: &Explanation) -> Vec<String> {
+fn color_difference_notes(frame: &Frame, [x, y]: [u32; 2], explanation: &Explanation) -> Vec<String> {
     // Frames of maps have legends. A map's value is that of a single ray, so no mean is to be explained.
     if !frame.legends.is_empty() {
         return Vec::new();

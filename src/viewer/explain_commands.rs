@@ -13,7 +13,7 @@ impl Viewer {
     /// Starts or ends the explanation of a pixel.
     pub(super) fn toggle_explaining(&mut self) {
         self.screen.toggle_explaining();
-        if !theme::has_room(theme::area(self.size())) && self.screen.get::<ExplainPanel>().is_some() {
+        if !theme::has_room(theme::area(self.picture_size())) && self.screen.get::<ExplainPanel>().is_some() {
             self.show_note(theme::needs_room("explain"));
         }
     }

@@ -26,7 +26,7 @@ pub(super) struct Eye {
     /// Whether the turntable is on.
     turntable: bool,
     /// The time up to which the motion has been carried out; `None` at rest.
-    moved_until: Option<Duration>,
+    advanced_to: Option<Duration>,
     /// Whether motion is reduced: each press is one step at once, and nothing moves by itself.
     reduced_motion: bool,
     /// The shown scene, whose surfaces stop the eye.
@@ -128,24 +128,24 @@ impl Eye {
     }
 
     /// Returns the time up to which the motion has been carried out; `None` at rest.
-    pub(super) fn moved_until(&self) -> Option<Duration> {
-        self.moved_until
+    pub(super) fn advanced_to(&self) -> Option<Duration> {
+        self.advanced_to
     }
 
     /// Returns whether anything moves the eye: keys, the turntable or a jump.
     pub(super) fn is_moving(&self) -> bool {
-        self.moved_until.is_some()
+        self.advanced_to.is_some()
     }
 
     /// Carries out the motion up to `now`.
     pub(super) fn advance(&mut self, now: Duration) {
-        let Some(since) = self.moved_until else { return };
+        let Some(since) = self.advanced_to else { return };
         let jump = self.jump.take();
         self.jump = jump.filter(|jump| !jump.has_ended(now));
         // Whether the eye moves is determined before `Motion::step`, because a motion that ends within this step has
         // moved the eye as well.
         let moves = self.turntable || self.motion.is_moving(now) || self.jump.is_some();
-        self.moved_until = moves.then_some(now);
+        self.advanced_to = moves.then_some(now);
         let Some(view) = &mut self.view else { return };
         if let Some(jump) = jump {
             view.camera = jump.camera(now);
@@ -212,7 +212,7 @@ impl Eye {
             // leaves.
             let start = now.saturating_sub(FIRST_FRAME_MOTION);
             self.jump = Some(Jump::new(view.camera, to, start));
-            self.moved_until = Some(start);
+            self.advanced_to = Some(start);
         }
         true
     }
@@ -240,7 +240,7 @@ impl Eye {
     /// `now`.
     fn start_motion(&mut self, now: Duration) {
         let moves = self.turntable || self.motion.is_moving(now) || self.jump.is_some();
-        self.moved_until = moves.then(|| self.moved_until.unwrap_or(now.saturating_sub(FIRST_FRAME_MOTION)));
+        self.advanced_to = moves.then(|| self.advanced_to.unwrap_or(now.saturating_sub(FIRST_FRAME_MOTION)));
     }
 
     /// Moves the camera to view `number`, from 1: the one saved by the user, or the one in the
@@ -306,7 +306,7 @@ impl Eye {
         self.turntable &= key.kind == KeyEventKind::Release || !meant.is_some_and(|(command, _)| command.is_motion());
         self.motion.take_key(key, meant, now);
         if let (Some(scene), Some(view), false) = (&self.scene, &self.view, self.passes_surfaces) {
-            self.motion.halve_taps_until(now, |motion| passes_no_surface(motion, view, scene, now));
+            self.motion.halve_taps_until(now, |motion| remaining_motion_is_clear(motion, view, scene, now));
         }
         self.start_motion(now);
     }
@@ -330,7 +330,7 @@ impl Eye {
     pub(super) fn release_keys(&mut self, now: Duration) {
         self.advance(now);
         self.motion.stop();
-        self.moved_until = self.moved_until.filter(|_| self.turntable || self.jump.is_some());
+        self.advanced_to = self.advanced_to.filter(|_| self.turntable || self.jump.is_some());
     }
 
     /// Stops all motion: by keys, by the turntable, and by a jump, which ends at its final view.
@@ -338,7 +338,7 @@ impl Eye {
         self.release_keys(now);
         self.end_jump();
         self.turntable = false;
-        self.moved_until = None;
+        self.advanced_to = None;
     }
 
     /// Sets whether the terminal reports key releases. Held keys are released if it no longer does.
@@ -362,7 +362,7 @@ impl Eye {
 }
 
 /// Returns whether the rest of the motion by taps neither passes a surface nor ends close to one.
-fn passes_no_surface(motion: &Motion, view: &ViewState, scene: &Scene, now: Duration) -> bool {
+fn remaining_motion_is_clear(motion: &Motion, view: &ViewState, scene: &Scene, now: Duration) -> bool {
     let end = motion.step(&view.camera, view.speed, now.saturating_sub(FIRST_FRAME_MOTION), now + AGAIN_TIME);
     let (origin, end) = (view.camera.pose().eye, end.pose().eye);
     let within = Interval { min: 0.0, max: SURFACE_MARGIN };

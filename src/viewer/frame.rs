@@ -120,7 +120,7 @@ impl Frame {
     }
 
     /// Moves the line between two maps of a wipe, if there is one, to this share of the width.
-    pub(crate) fn wipe(&mut self, share: f32) {
+    pub(crate) fn wipe_to(&mut self, share: f32) {
         // The picture is combined from the kept maps again, and nothing is traced.
         if let Some(picture) = self.shot.layout.combined(&self.parts, share) {
             self.picture = picture;

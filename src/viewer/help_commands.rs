@@ -10,7 +10,7 @@ use crossterm::event::{KeyEvent, KeyEventKind};
 impl Viewer {
     /// Opens the help, if there is room.
     pub(super) fn open_help(&mut self) {
-        if theme::has_room(theme::area(self.size())) {
+        if theme::has_room(theme::area(self.picture_size())) {
             let states = self.states();
             self.screen.open(HelpPanel::new(states));
         } else {
@@ -26,7 +26,7 @@ impl Viewer {
         if key.kind == KeyEventKind::Repeat && matches!(effect, HelpKey::Close | HelpKey::Turn | HelpKey::Clear) {
             effect = HelpKey::Nothing;
         }
-        self.screen.take_help_key(effect, &self.options.keymap, self.display.size());
+        self.screen.take_help_key(effect, &self.options.keymap, self.display.picture_size());
         true
     }
 

@@ -26,7 +26,7 @@ impl Viewer {
         let pointer = self.pointer.at().unwrap_or(Vec2::splat(0.5));
         let nearest = |lights: &[Light]| nearest_light(lights, &camera?, pointer, aspect_ratio);
         let taken = self.scenes.lights_mut().and_then(|lights| {
-            let light = lights.take_next(nearest)?;
+            let light = lights.cycle_held(nearest)?;
             Some((light, lights.all().len(), lights.held_position()))
         });
         let Some((light, count, at)) = taken else {

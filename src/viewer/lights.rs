@@ -39,7 +39,7 @@ impl Lights {
     /// Takes hold of the next light after the held one and returns its index.
     ///
     /// If none is held, takes hold of the light whose index `first` returns. Lights at infinity cannot be held.
-    pub(super) fn take_next(&mut self, first: impl FnOnce(&[Light]) -> Option<usize>) -> Option<usize> {
+    pub(super) fn cycle_held(&mut self, first: impl FnOnce(&[Light]) -> Option<usize>) -> Option<usize> {
         let lights = self.all();
         let after = |held| next_after(held, lights.len(), |light| lights[light].position().is_some());
         // The next light is the next one in the file, so that repeating the key visits every light.

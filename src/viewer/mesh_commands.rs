@@ -16,7 +16,7 @@ const ABOVE: Vec3 = Vec3::new(0.0, 0.9998, 0.02);
 impl Viewer {
     /// Turns the mesh so that the next axis of its file points up.
     pub(super) fn turn_mesh(&mut self) {
-        match self.scene().and_then(|scene| scene.mesh()) {
+        match self.scene_at_current_time().and_then(|scene| scene.mesh()) {
             Some(mesh) => self.requests.push_back(super::Request::TurnMesh(mesh.up)),
             None => self.show_note("only a mesh that is opened by itself can be turned"),
         }
@@ -59,7 +59,7 @@ impl Viewer {
 
     /// Opens the panel of facts about the shown scene; `name` is the scene's name in the panel.
     pub(crate) fn show_metadata(&mut self, name: String) {
-        if let Some(scene) = self.scene() {
+        if let Some(scene) = self.scene_at_current_time() {
             self.screen.open(Metadata::for_scene(&scene, name));
         }
     }
@@ -84,7 +84,7 @@ impl Viewer {
         if self.eye.mode() == KeyMode::Orbit
             && let Some((_, point)) = self.hit_at(at)
         {
-            self.eye.jump(self.now, |camera| centred_on(camera, point));
+            self.eye.jump(self.now, |camera| panned_to_target(camera, point));
         }
     }
 
@@ -106,9 +106,9 @@ impl Viewer {
     }
 }
 
-/// Returns the camera shifted sideways so that `point` becomes the target, at an unchanged depth.
-fn centred_on(camera: &Camera, point: Vec3) -> Camera {
+/// Returns the camera shifted sideways so that `target` becomes its target, at an unchanged depth.
+fn panned_to_target(camera: &Camera, target: Vec3) -> Camera {
     let (pose, w) = (camera.pose(), camera.basis().w);
-    let depth = (pose.eye - point).dot(w);
-    camera.with_pose(Pose { eye: point + depth * w, target: point, ..pose }).unwrap_or(*camera)
+    let depth = (pose.eye - target).dot(w);
+    camera.with_pose(Pose { eye: target + depth * w, target, ..pose }).unwrap_or(*camera)
 }

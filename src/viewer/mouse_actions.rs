@@ -31,8 +31,8 @@ pub(super) fn is_superseded(input: &Input, next: Option<&Input>) -> bool {
 impl Viewer {
     /// Carries out a mouse event. An open question is answered by keys only.
     pub(super) fn take_mouse(&mut self, event: MouseEvent) {
-        let at = self.screen_position(event);
-        let modes = self.screen.active_modes(self.size());
+        let at = self.screen_shares(event);
+        let modes = self.screen.active_modes(self.picture_size());
         let Some(gesture) = self.pointer.take(event, at, self.now).filter(|_| modes.contains(&self.eye.mode())) else {
             return;
         };
@@ -68,9 +68,9 @@ impl Viewer {
 
     /// Returns the event's position as shares of the screen's width and height, from the upper
     /// left.
-    fn screen_position(&self, event: MouseEvent) -> Vec2 {
-        let (width, height) = self.display.mouse_pixels().unwrap_or((1, 1));
-        let size = self.size();
+    fn screen_shares(&self, event: MouseEvent) -> Vec2 {
+        let (width, height) = self.display.pixel_mouse_cell_size().unwrap_or((1, 1));
+        let size = self.picture_size();
         let screen = Vec2::new(f32::from(width) * f32::from(size.columns), f32::from(height) * f32::from(size.rows));
         // The position within the cell or pixel is unknown, so its middle is used.
         let at = Vec2::new(f32::from(event.column), f32::from(event.row)) + 0.5;
@@ -79,7 +79,7 @@ impl Viewer {
 
     /// Returns what a drag that starts at this position with this grip moves.
     fn drag_target_at(&self, at: Vec2, grip: Grip, modes: &[KeyMode]) -> DragTarget {
-        let beside = (at.x - self.screen.wipe()).abs() * f32::from(self.size().columns);
+        let beside = (at.x - self.screen.wipe()).abs() * f32::from(self.picture_size().columns);
         // The line comes first, because it is the smallest target and no other way of dragging reaches it. A pan always
         // moves the view, so that the view can be shifted whatever is under the pointer.
         match grip {
@@ -114,7 +114,7 @@ impl Viewer {
             self.wheel_light(notches);
             return;
         }
-        let Some(point) = self.scene_point_at(at) else { return };
+        let Some(point) = self.zoom_point_at(at) else { return };
         let mode = self.eye.mode();
         let wheel = |camera: &_, size| control::wheeled(camera, mode, point, notches, size);
         self.eye.change(self.now, wheel);
@@ -135,7 +135,7 @@ impl Viewer {
     /// without a frame.
     ///
     /// If nothing is hit there, returns a point as far away as the target.
-    fn scene_point_at(&self, at: Vec2) -> Option<Vec3> {
+    fn zoom_point_at(&self, at: Vec2) -> Option<Vec3> {
         let (frame, pose) = (self.screen.frame()?, self.eye.camera()?.pose());
         let ray = self.eye_ray_at(at)?;
         // Without a hit, the ray ends at the t at which the ray towards the target reaches the target.

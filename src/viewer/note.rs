@@ -33,7 +33,7 @@ impl Note {
     }
 
     /// Returns the note with another line above it.
-    pub(super) fn below(self, text: String) -> Self {
+    pub(super) fn with_line_above(self, text: String) -> Self {
         Self { above: Some(text), ..self }
     }
 
@@ -58,7 +58,7 @@ impl Layer for Note {
     fn draw(&mut self, canvas: &mut Canvas<'_>) {
         for (below, text) in (0..).zip([Some(&self.text), self.above.as_ref()].into_iter().flatten()) {
             let row = canvas.row_from_bottom(below);
-            let text = shortened(text, usize::from(row.width.saturating_sub(2)));
+            let text = drop_clauses_to_fit(text, usize::from(row.width.saturating_sub(2)));
             let area = Rect { width: (text.width() as u16 + 2).min(row.width), ..row };
             let area = extended(area, legend::shown_legends(canvas).into_iter().map(|(_, area)| area));
             canvas.lay(area, |theme, area, buffer| legend::draw(&text, theme, area, buffer));
@@ -77,7 +77,7 @@ fn extended(area: Rect, legends: impl Iterator<Item = Rect>) -> Rect {
 /// Returns the text, shortened to `width` columns by leaving out parts between semicolons.
 ///
 /// The second part is left out first, then the third, and so on; the first one stays.
-fn shortened(text: &str, width: usize) -> String {
+fn drop_clauses_to_fit(text: &str, width: usize) -> String {
     let mut parts: Vec<_> = text.split("; ").collect();
     while parts.len() > 1 && parts.join("; ").width() > width {
         parts.remove(1);

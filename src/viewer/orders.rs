@@ -151,11 +151,11 @@ impl Viewer {
         if self.close_orders() {
             return;
         }
-        if !theme::has_room(theme::area(self.size())) {
+        if !theme::has_room(theme::area(self.picture_size())) {
             return self.show_note(theme::needs_room("the comparison of both orders"));
         }
         // The view from outside and the object order both take the right half of the picture.
-        self.end_outside();
+        self.end_outside_view();
         // The panel takes the place of the caption, which returns after it.
         self.screen.close::<Caption>();
         self.screen.open(OrdersPanel::new(self.options.reduced_motion));

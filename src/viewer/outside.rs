@@ -18,7 +18,7 @@ use crate::scene::Scene;
 ///
 /// A variant with a camera holds the one that the keys do not move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) enum Outside {
+pub(super) enum OutsideView {
     /// The ordinary view.
     #[default]
     Off,
@@ -30,7 +30,7 @@ pub(super) enum Outside {
     Vanishing,
 }
 
-impl Outside {
+impl OutsideView {
     /// Returns the caption that replaces the scene's; `None` for the ordinary view.
     pub(super) fn caption(&self) -> Option<&'static str> {
         match self {
@@ -78,39 +78,41 @@ impl Viewer {
     /// In the first two, a second camera shows the first one from outside, and keys move the second or the first
     /// camera. Then come the ordinary view with the horizon and vanishing points, and the ordinary view alone.
     pub(super) fn show_next_outside_view(&mut self) {
-        if !theme::has_room(theme::area(self.size())) {
+        if !theme::has_room(theme::area(self.picture_size())) {
             return self.show_note(theme::needs_room("the view from outside"));
         }
         self.close_orders();
         let Some(camera) = self.eye.camera() else { return };
-        let (next, text) = match self.outside {
-            Outside::Off => {
+        let (next, text) = match self.outside_view {
+            OutsideView::Off => {
                 self.screen.open(TracerMarks);
-                (Outside::MovesSecond { first: camera }, "keys move the second eye")
+                (OutsideView::MovesSecond { first: camera }, "keys move the second eye")
             }
-            Outside::MovesSecond { .. } => (Outside::MovesFirst { second: camera }, "keys move the first camera"),
-            Outside::MovesFirst { .. } => {
-                self.end_outside();
+            OutsideView::MovesSecond { .. } => {
+                (OutsideView::MovesFirst { second: camera }, "keys move the first camera")
+            }
+            OutsideView::MovesFirst { .. } => {
+                self.end_outside_view();
                 self.screen.open(VanishingPoints);
-                (Outside::Vanishing, "horizon and vanishing points")
+                (OutsideView::Vanishing, "horizon and vanishing points")
             }
-            Outside::Vanishing => {
-                self.end_outside();
-                (Outside::Off, "ordinary view")
+            OutsideView::Vanishing => {
+                self.end_outside_view();
+                (OutsideView::Off, "ordinary view")
             }
         };
-        let moved = match (self.outside, next) {
-            (Outside::MovesSecond { first }, _) => first,
-            (_, Outside::MovesSecond { .. }) => self.beside(camera),
+        let moved = match (self.outside_view, next) {
+            (OutsideView::MovesSecond { first }, _) => first,
+            (_, OutsideView::MovesSecond { .. }) => self.beside(camera),
             _ => camera,
         };
         self.eye.change(self.now, |_, _| moved);
-        self.set_outside(next);
-        if let Outside::MovesSecond { .. } = next {
+        self.set_outside_view(next);
+        if let OutsideView::MovesSecond { .. } = next {
             self.explain_middle_pixel();
         }
         let explains =
-            self.outside.caption().filter(|_| !self.captions).map(|_| self.hint(Command::Caption, "explains"));
+            self.outside_view.caption().filter(|_| !self.captions).map(|_| self.hint(Command::Caption, "explains"));
         let explains = explains.unwrap_or_default();
         let hint = self.hint(Command::Outside, "next");
         self.show_note(format!("{text}{explains}{hint}"));
@@ -125,7 +127,7 @@ impl Viewer {
     /// Moves the eye back to the scene's own camera, or a second eye to its place beside the first.
     pub(super) fn reset_eye(&mut self) {
         // At the scene's own camera, the second camera would be where the first one is, and would not see it.
-        if let Outside::MovesSecond { first } = self.outside {
+        if let OutsideView::MovesSecond { first } = self.outside_view {
             let moved = self.beside(first);
             self.eye.change(self.now, |_, _| moved);
         } else {
@@ -147,31 +149,31 @@ impl Viewer {
     /// Ends the view from outside or with vanishing points. Returns whether there was one.
     ///
     /// The eye is then at the first camera.
-    pub(super) fn end_outside(&mut self) -> bool {
-        if let Outside::MovesSecond { first } = self.outside {
+    pub(super) fn end_outside_view(&mut self) -> bool {
+        if let OutsideView::MovesSecond { first } = self.outside_view {
             self.eye.change(self.now, |_, _| first);
         }
-        let was_on = self.outside != Outside::Off;
+        let was_on = self.outside_view != OutsideView::Off;
         if was_on {
             self.screen.close::<TracerMarks>();
             self.screen.close::<ExplainPanel>();
             self.screen.close::<VanishingPoints>();
         }
-        self.set_outside(Outside::Off);
+        self.set_outside_view(OutsideView::Off);
         was_on
     }
 
     /// Returns the first camera: that of the left picture if a second one is shown beside it.
     pub(super) fn first_camera(&self) -> Option<Camera> {
-        match self.outside {
-            Outside::MovesSecond { first } => Some(first),
+        match self.outside_view {
+            OutsideView::MovesSecond { first } => Some(first),
             _ => self.eye.camera(),
         }
     }
 
     /// Replaces the first camera, whichever camera the keys move.
     pub(super) fn change_first_camera(&mut self, camera: Camera) {
-        if let Outside::MovesSecond { first } = &mut self.outside {
+        if let OutsideView::MovesSecond { first } = &mut self.outside_view {
             *first = camera;
         } else {
             self.eye.change(self.now, |_, _| camera);
@@ -180,10 +182,10 @@ impl Viewer {
 
     /// Returns the second camera, which shows the first one from outside, if there is one.
     pub(super) fn second_camera(&self) -> Option<Camera> {
-        match self.outside {
-            Outside::MovesSecond { .. } => self.eye.camera(),
-            Outside::MovesFirst { second } => Some(second),
-            Outside::Off | Outside::Vanishing => None,
+        match self.outside_view {
+            OutsideView::MovesSecond { .. } => self.eye.camera(),
+            OutsideView::MovesFirst { second } => Some(second),
+            OutsideView::Off | OutsideView::Vanishing => None,
         }
     }
 
@@ -191,7 +193,7 @@ impl Viewer {
     pub(super) fn shown_layout(&self) -> ViewLayout {
         if self.screen.get::<OrdersPanel>().is_some() {
             let (_, pixels) = self.display.capabilities().cell_mode.pixels_per_cell();
-            return self.layout.twice(pixels * u32::from(panel_rows(theme::area(self.size()))));
+            return self.layout.twice(pixels * u32::from(panel_rows(theme::area(self.picture_size()))));
         }
         if self.second_camera().is_some() { self.layout.twice(0) } else { self.layout }
     }

@@ -12,7 +12,7 @@ const MAX_STEP: Duration = Duration::from_secs(1);
 pub(super) struct Playback {
     time: Duration,
     /// The time of the viewer's clock up to which the scene has moved; `None` while it is still.
-    moved_until: Option<Duration>,
+    advanced_to: Option<Duration>,
     /// Whether the user has paused the scene.
     is_paused: bool,
 }
@@ -25,27 +25,27 @@ impl Playback {
 
     /// Returns the time of the viewer's clock up to which the scene has moved; `None` while it
     /// stands still.
-    pub(super) fn moved_until(&self) -> Option<Duration> {
-        self.moved_until
+    pub(super) fn advanced_to(&self) -> Option<Duration> {
+        self.advanced_to
     }
 
     /// Advances the time of the scene to `now`, if the scene plays.
     pub(super) fn advance(&mut self, now: Duration) {
-        if let Some(since) = self.moved_until {
+        if let Some(since) = self.advanced_to {
             self.time += now.saturating_sub(since).min(MAX_STEP);
-            self.moved_until = Some(now);
+            self.advanced_to = Some(now);
         }
     }
 
     /// Starts the scene's motion at `now`, if the scene can move and the user has not paused it.
-    pub(super) fn start(&mut self, can_move: bool, now: Duration) {
-        self.moved_until = (can_move && !self.is_paused).then_some(now);
+    pub(super) fn resume_unless_paused(&mut self, can_move: bool, now: Duration) {
+        self.advanced_to = (can_move && !self.is_paused).then_some(now);
     }
 
     fn toggle(&mut self, now: Duration) {
         self.advance(now);
         self.is_paused = !self.is_paused;
-        self.start(true, now);
+        self.resume_unless_paused(true, now);
     }
 }
 

@@ -78,7 +78,7 @@ impl Viewer {
     /// Returns the job that traces the large picture of the wanted view, and the position of the
     /// line between the two maps of a wipe, as a share of the width.
     pub(crate) fn large_picture(&self) -> Option<(Job, f32)> {
-        let (scene, shot) = self.scene().zip(self.wanted_shot())?;
+        let (scene, shot) = self.scene_at_current_time().zip(self.wanted_shot())?;
         let resolution = large_resolution(shot.resolution);
         // The file has pixels, so it needs neither the geometry that glyphs show nor the comparison that a panel
         // explains.
@@ -100,7 +100,7 @@ impl Viewer {
     /// Returns the text of a scene file with the shown mesh, whose file is `name`, the current
     /// lights and `camera`. `None` if the shown scene has its own file.
     pub(crate) fn scene_around_mesh(&self, name: &str, camera: &Camera) -> Option<String> {
-        self.scene()?.around_mesh_to_ron(name, camera)
+        self.scene_at_current_time()?.around_mesh_to_ron(name, camera)
     }
 
     /// Closes the open question and carries out the answer `meant`. Returns whether a question was

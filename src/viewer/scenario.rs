@@ -129,7 +129,7 @@ impl Driver {
                 self.viewer.receiver().forget();
                 let queries = self.viewer.queries(self.now);
                 self.send(&queries);
-                self.viewer.receive_typed(Vec::new(), self.now).expect("nothing is learnt");
+                self.viewer.receive_type_ahead(Vec::new(), self.now).expect("nothing is learnt");
             }
             _ => match next() % 3 {
                 0 => self.viewer.show_error(Notice {
@@ -147,7 +147,7 @@ impl Driver {
         self.viewer.receive(bytes, self.now).expect("this takes little memory");
         // Requests are dropped: how a driver carries them out is tested with `app`.
         while self.viewer.next_request().is_some() {}
-        for mode in self.viewer.modes() {
+        for mode in self.viewer.optional_modes() {
             self.modes.switch_on(mode, &mut self.sent);
         }
     }
@@ -235,8 +235,8 @@ impl Driver {
     fn draw(&mut self) {
         let mut bytes = Vec::new();
         self.viewer.draw(self.now, &mut bytes);
-        self.viewer.end_frame(&mut bytes, self.now);
-        let cells = self.viewer.size().cell_count();
+        self.viewer.add_frame_queries(&mut bytes, self.now);
+        let cells = self.viewer.picture_size().cell_count();
         assert!(
             bytes.len() <= MAX_FRAME_BYTES[0] * cells + MAX_FRAME_BYTES[1],
             "{} bytes for {cells} cells",
@@ -275,7 +275,7 @@ impl Driver {
     fn check_modes_end(mut self) {
         let mut off = Vec::new();
         self.modes.switch_all_off(&mut off);
-        for mode in self.viewer.modes() {
+        for mode in self.viewer.optional_modes() {
             let (mut modes, mut bytes) = (TerminalModes::default(), Vec::new());
             modes.switch_on(mode, &mut Vec::new());
             modes.switch_all_off(&mut bytes);

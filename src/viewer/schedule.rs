@@ -47,7 +47,7 @@ pub(super) struct Facts {
     /// Time at which the last frame of a new view was begun.
     pub(super) begun: Option<Duration>,
     /// Time up to which the eye has moved; `None` at rest.
-    pub(super) moved_until: Option<Duration>,
+    pub(super) advanced_to: Option<Duration>,
     /// Least time between two frames.
     pub(super) min_frame_interval: Duration,
     /// Time from which more bytes may be sent on the link.
@@ -105,7 +105,7 @@ impl Facts {
     ///
     /// Drawing the picture twice would take longer than drawing the final one at once.
     fn holds_back_first_picture(&self) -> bool {
-        self.holds_first_back && self.picture == PictureState::Refinable && self.moved_until.is_none()
+        self.holds_first_back && self.picture == PictureState::Refinable && self.advanced_to.is_none()
     }
 
     /// Returns the earliest time to draw if no event occurs before.
@@ -130,12 +130,12 @@ impl Facts {
         }
         let next = |since: Option<Duration>| since.map_or(Duration::ZERO, |since| since + self.min_frame_interval);
         // If the view has changed, its frame is due a frame time after the last one was begun. If the eye is moving and
-        // its view has not changed yet, the next step also waits until a frame time after `moved_until`; at once, the
+        // its view has not changed yet, the next step also waits until a frame time after `advanced_to`; at once, the
         // driver would loop without a pause.
         let at = if self.picture == PictureState::Stale {
             next(self.begun)
         } else {
-            next(self.moved_until).max(next(self.begun))
+            next(self.advanced_to).max(next(self.begun))
         };
         at.max(self.next_send_at)
     }
@@ -146,7 +146,7 @@ impl Facts {
     /// all are sent.
     fn wake_at(&self, draw_at: Option<Duration>, frame_at: Duration) -> Option<Duration> {
         let DriverState { sending, tracing } = self.busy;
-        let moves = self.picture == PictureState::Stale || self.moved_until.is_some();
+        let moves = self.picture == PictureState::Stale || self.advanced_to.is_some();
         let can_refine = self.picture == PictureState::Refinable;
         // While a frame of a new view is traced no timer is needed, because its end wakes the driver.
         let lacks_frame = moves && tracing != Some(Tracing::NewView) || tracing.is_none() && can_refine;

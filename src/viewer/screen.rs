@@ -47,7 +47,7 @@ pub(super) struct Screen {
     order: Option<Order>,
     quality: Option<Quality>,
     /// Whether the view moves, so that cells keep their glyphs where they can.
-    is_in_motion: bool,
+    is_picture_moving: bool,
     /// Whether the next frame's bytes erase the whole window first.
     erases: bool,
     /// Time at which the last frame was drawn.
@@ -93,7 +93,7 @@ impl Screen {
             grid: Grid::new(Size::new(0, 0)),
             order,
             quality,
-            is_in_motion: false,
+            is_picture_moving: false,
             erases: false,
             drawn: None,
             rate: FrameRate::default(),
@@ -124,7 +124,7 @@ impl Screen {
     pub(super) fn take_frame(&mut self, mut frame: Frame, moving: Option<Duration>) {
         let content = &mut *self.content;
         // The user may have moved the line between two maps while the frame was traced.
-        frame.wipe(content.wipe);
+        frame.wipe_to(content.wipe);
         content.layers.take_frame(&frame);
         content.frame = Some(frame);
         self.rate.count_frame(moving);
@@ -135,7 +135,7 @@ impl Screen {
         let content = &mut *self.content;
         content.wipe = share.clamp(0.0, 1.0);
         if let Some(frame) = &mut content.frame {
-            frame.wipe(content.wipe);
+            frame.wipe_to(content.wipe);
         }
     }
 
@@ -246,13 +246,13 @@ impl Screen {
     }
 
     /// Sets whether the view moves.
-    pub(super) fn set_in_motion(&mut self, is_in_motion: bool) {
+    pub(super) fn set_picture_moving(&mut self, is_picture_moving: bool) {
         // When a motion ends, the picture is drawn once more: at rest its glyphs do not depend on those of the frame
         // before.
-        if self.is_in_motion && !is_in_motion && self.painter.mode().needs_geometry() {
+        if self.is_picture_moving && !is_picture_moving && self.painter.mode().needs_geometry() {
             self.content.mark_changed();
         }
-        self.is_in_motion = is_in_motion;
+        self.is_picture_moving = is_picture_moving;
     }
 
     /// Sets the name of the scene.
@@ -344,7 +344,7 @@ impl Screen {
             Some(frame) => {
                 let built = content.layers.get::<OrdersPanel>().and_then(|orders| orders.picture(frame));
                 let picture = built.as_ref().unwrap_or(&frame.picture);
-                self.painter.paint_view(picture, frame.geometry.as_deref(), self.is_in_motion, grid);
+                self.painter.paint_view(picture, frame.geometry.as_deref(), self.is_picture_moving, grid);
             }
             None => grid.clear(size),
         }

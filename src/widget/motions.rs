@@ -12,7 +12,7 @@ impl SceneState {
     ///
     /// See [`Camera::orbited`](crate::camera::Camera::orbited).
     pub fn orbit(&mut self, right: f32, up: f32) {
-        self.move_camera(self.camera().orbited(right, up));
+        self.set_camera_only(self.camera().orbited(right, up));
     }
 
     /// Moves eye and target to the right and upwards.
@@ -20,7 +20,7 @@ impl SceneState {
     /// Distances are shares of the height of the view rectangle at the target's distance.
     pub fn pan(&mut self, right: f32, up: f32) {
         let aspect_ratio = self.aspect_ratio();
-        self.move_camera(self.camera().panned(Vec2::new(-right / aspect_ratio, up), aspect_ratio));
+        self.set_camera_only(self.camera().panned(Vec2::new(-right / aspect_ratio, up), aspect_ratio));
     }
 
     /// Multiplies the distance from eye to target by `distance_factor`: below 1 moves nearer.
@@ -28,7 +28,7 @@ impl SceneState {
     /// The distance stays within 0.001 and 10,000 times that of the camera [set](Self::set_camera) last, or of the last
     /// [`frame`](Self::frame).
     pub fn nearer(&mut self, distance_factor: f32) {
-        self.move_camera(self.camera().nearer_within(distance_factor, self.scale()));
+        self.set_camera_only(self.camera().nearer_within(distance_factor, self.initial_target_distance()));
     }
 
     /// Moves the camera so that all bounded objects of the scene fill the pane, without turning it.
@@ -57,7 +57,7 @@ impl SceneState {
         let delta = |from: u16, to: u16| f32::from(to) - f32::from(from);
         let by = Vec2::new(delta(from.x, to.x), delta(from.y, to.y)) / size;
         let aspect_ratio = self.aspect_ratio();
-        self.move_camera(match grip {
+        self.set_camera_only(match grip {
             Grip::Turn => self.camera().dragged_around(by, aspect_ratio),
             Grip::Pan => self.camera().panned(by, aspect_ratio),
         });
@@ -73,14 +73,14 @@ impl SceneState {
     /// Negative notches move away. The point keeps its place in the picture. Returns whether the position is inside the
     /// picture.
     pub fn scroll(&mut self, scene: &Scene, at: Position, notches: f32) -> bool {
-        let Some(point) = self.point_at(scene, at) else { return false };
-        self.move_camera(self.camera().scaled_about(point, notches, self.scale()));
+        let Some(point) = self.zoom_point_at(scene, at) else { return false };
+        self.set_camera_only(self.camera().scaled_about(point, notches, self.initial_target_distance()));
         true
     }
 
     /// Returns the surface point seen in a cell, or a point at the target's distance if there is
     /// none.
-    fn point_at(&self, scene: &Scene, position: Position) -> Option<Vec3> {
+    fn zoom_point_at(&self, scene: &Scene, position: Position) -> Option<Vec3> {
         let ray = self.ray_through(position)?;
         // Eye rays have a component of 1 along -w, so t is the depth, as the target's distance is.
         Some(ray.at(closest_hit(scene, &ray).map_or(self.camera().target_distance(), |hit| hit.t)))

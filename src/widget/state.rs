@@ -45,7 +45,7 @@ pub struct SceneState {
     camera: Camera,
     /// The distance from the eye to the target when the camera was set. Later distances are limited
     /// relative to it.
-    scale: f32,
+    initial_target_distance: f32,
     /// The kind of the current drag and the last position of the pointer.
     drag_state: Option<(Grip, Position)>,
     /// The area of the last draw call.
@@ -70,7 +70,7 @@ impl SceneState {
     pub fn new(camera: &Camera) -> Self {
         Self {
             camera: *camera,
-            scale: camera.target_distance(),
+            initial_target_distance: camera.target_distance(),
             drag_state: None,
             area: Rect::ZERO,
             requested: None,
@@ -114,17 +114,18 @@ impl SceneState {
     /// Sets the camera of the next draw call.
     pub fn set_camera(&mut self, camera: &Camera) {
         self.camera = *camera;
-        self.scale = camera.target_distance();
+        self.initial_target_distance = camera.target_distance();
     }
 
-    /// Replaces the camera, but keeps [`scale`](Self::scale).
-    pub(super) fn move_camera(&mut self, to: Camera) {
+    /// Replaces the camera, but keeps
+    /// [`initial_target_distance`](Self::initial_target_distance).
+    pub(super) fn set_camera_only(&mut self, to: Camera) {
         self.camera = to;
     }
 
     /// Returns the distance from the eye to the target when the camera was set.
-    pub(super) fn scale(&self) -> f32 {
-        self.scale
+    pub(super) fn initial_target_distance(&self) -> f32 {
+        self.initial_target_distance
     }
 
     /// Returns the kind of the current drag and the last position of the pointer.
@@ -229,7 +230,7 @@ impl SceneState {
 
     /// Writes a mark into the shown picture, by which tests notice whether the picture is replaced.
     #[cfg(test)]
-    pub(super) fn mark(&mut self, mark: &'static str) {
+    pub(super) fn mark_shown_picture(&mut self, mark: &'static str) {
         if let Some(shown) = &mut self.shown {
             shown.cells[(0, 0)].set_symbol(mark);
         }

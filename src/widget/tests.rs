@@ -137,7 +137,7 @@ fn a_shown_picture_is_not_traced_again() {
     let brighter = scene.clone().with_exposure(2.0).expect("an exposure");
     drawn(&view, AREA, &mut state);
     let mut is_kept = |scene: &Scene, view: &SceneView<'_>, area, turn: f32| {
-        state.mark("!");
+        state.mark_shown_picture("!");
         state.orbit(turn, 0.0);
         let buffer = drawn(&view.clone().of(scene), area, &mut state);
         buffer[(0, 0)].symbol() == "!"
@@ -380,7 +380,10 @@ fn keys_move_the_camera() {
     for factor in [0.5, 2.0] {
         (0..200).for_each(|_| state.nearer(factor));
         let distance = state.camera().target_distance();
-        assert!(distance > 0.9e-3 * state.scale() && distance < 1.1e4 * state.scale(), "{distance}");
+        assert!(
+            distance > 0.9e-3 * state.initial_target_distance() && distance < 1.1e4 * state.initial_target_distance(),
+            "{distance}"
+        );
     }
 }
 

@@ -12,7 +12,7 @@ const AT_REST: Facts = Facts {
     picture: PictureState::Finished,
     holds_first_back: false,
     begun: Some(Duration::from_secs(1)),
-    moved_until: None,
+    advanced_to: None,
     min_frame_interval: FRAME,
     next_send_at: Duration::from_secs(2),
     is_changed: false,
@@ -44,7 +44,7 @@ fn the_newest_picture_wins() {
 fn frames_keep_their_distance() {
     let stale = Facts { picture: PictureState::Stale, begun: Some(NOW), ..AT_REST };
     assert_eq!(decide(&stale, NOW), Action::Wait(Some(NOW + FRAME)));
-    let moving = Facts { moved_until: Some(NOW), ..AT_REST };
+    let moving = Facts { advanced_to: Some(NOW), ..AT_REST };
     assert_eq!(decide(&moving, NOW), Action::Wait(Some(NOW + FRAME)));
     let slow = Facts { next_send_at: LATER, ..stale };
     assert_eq!(decide(&slow, NOW), Action::Wait(Some(LATER)));
@@ -103,9 +103,9 @@ prop_compose! {
         next_send_at in time(),
         improvable_at in option::of(time()),
     ) -> Facts {
-        let (moved_until, min_frame_interval) = (moves.then_some(NOW), FRAME);
+        let (advanced_to, min_frame_interval) = (moves.then_some(NOW), FRAME);
         Facts {
-            busy, picture, holds_first_back, begun, moved_until, min_frame_interval, next_send_at, is_changed,
+            busy, picture, holds_first_back, begun, advanced_to, min_frame_interval, next_send_at, is_changed,
             improvable_at,
         }
     }
@@ -134,7 +134,7 @@ proptest! {
     #[test]
     fn no_work_is_forgotten(facts in facts()) {
         let is_idle = facts.busy == DriverState::default();
-        let has_work = facts.is_changed || facts.picture != PictureState::Finished || facts.moved_until.is_some();
+        let has_work = facts.is_changed || facts.picture != PictureState::Finished || facts.advanced_to.is_some();
         if is_idle && has_work {
             prop_assert_ne!(decide(&facts, NOW), Action::Wait(None));
         }
