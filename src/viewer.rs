@@ -87,7 +87,7 @@ pub(crate) use frame::{Frame, Job, Shot};
 use metadata::Metadata;
 use note::Note;
 pub use options::Options;
-use orders::OrdersPanel;
+use orders::RenderOrdersPanel;
 use outside::OutsideView;
 use pacing::Pacing;
 use playback::Playback;
@@ -335,7 +335,7 @@ impl Viewer {
             self.screen.open(Metadata::for_scene(&scene, name));
         }
         // The panel that compares image order and object order takes the place of the caption.
-        let has_caption = self.captions && self.screen.get::<OrdersPanel>().is_none();
+        let has_caption = self.captions && self.screen.get::<RenderOrdersPanel>().is_none();
         let caption = has_caption.then(|| self.caption(&scene, index)).flatten();
         self.screen.set(caption);
         if let Some(view) = self.scenes.show(scene, index, orbits) {
@@ -474,7 +474,7 @@ impl Viewer {
         Facts {
             busy,
             picture: self.picture_state(),
-            holds_first_back: !self.screen.has_shown() && self.pacing.refines_within(FIRST_REFINEMENT),
+            holds_first_back: !self.screen.has_shown() && self.pacing.finishes_refining_within(FIRST_REFINEMENT),
             begun: self.pacing.begun_at(),
             advanced_to: self.eye.advanced_to().or(self.playback.advanced_to()),
             min_frame_interval: self.pacing.min_frame_interval(),
@@ -523,7 +523,7 @@ impl Viewer {
         let (lights, camera) = (self.scenes.lights()?, self.first_camera()?);
         let (outside, layout) = (self.second_camera(), self.shown_layout());
         let (scene, resolution) = (self.scenes.count(), self.display.resolution());
-        let (lights, orders) = (lights.move_count(), self.screen.get::<OrdersPanel>().is_some());
+        let (lights, orders) = (lights.move_count(), self.screen.get::<RenderOrdersPanel>().is_some());
         let geometry = self.display.capabilities().cell_mode.needs_geometry();
         let time = self.playback.time();
         Some(Shot { scene, lights, time, camera, outside, resolution, layout, orders, geometry })
@@ -533,7 +533,7 @@ impl Viewer {
     /// refined.
     fn next_refinement(&self) -> Option<Sampling> {
         // Refining a sketch would take time from building the scene.
-        let frame = self.screen.frame().filter(|_| !self.screen.awaits_scene())?;
+        let frame = self.screen.frame().filter(|_| !self.screen.is_loading_scene())?;
         let next = self.layout.sampling(self.pacing.next_refinement(frame.sampling)?);
         (next != frame.sampling).then_some(next)
     }

@@ -287,7 +287,7 @@ impl Live {
 
     /// Starts to trace a large picture of the current view in the background, for a PNG file.
     fn start_large_picture(&mut self, signals: &Signals) -> io::Result<()> {
-        let Some((job, wipe)) = self.viewer.large_picture() else { return Ok(()) };
+        let Some((job, wipe)) = self.viewer.large_picture_job() else { return Ok(()) };
         let ((folder, stem), waker) = (self.export_place()?, signals.waker()?);
         let picture_job = LargePictureJob { job, wipe, folder, stem, threads: self.threads };
         self.large_picture = Some(terminal::without_signals(|| LargePicture::start(picture_job, waker))?);

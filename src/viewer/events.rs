@@ -203,7 +203,7 @@ impl Viewer {
             Command::Wireframe => self.layout.toggle_wire(),
             Command::Outside => self.show_next_outside_view(),
             Command::Orders => self.toggle_orders(),
-            Command::BuildPause => self.change_pace(BuildPace::pause),
+            Command::BuildPause => self.change_pace(BuildPace::pause_or_step),
             Command::BuildFaster => self.change_pace(BuildPace::faster),
             Command::BuildSlower => self.change_pace(BuildPace::slower),
             Command::BuildAgain => self.change_pace(BuildPace::restart),

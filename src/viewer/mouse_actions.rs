@@ -52,7 +52,7 @@ impl Viewer {
                 }
                 self.drag(from, to, grip);
             }
-            Gesture::Release if self.pointer.is_click() => self.centre_on(at),
+            Gesture::Release if self.pointer.is_click_on_object() => self.centre_on(at),
             Gesture::Release => {}
             Gesture::DoubleClick if self.pointer.drag_target() == DragTarget::View => {
                 self.frame_object(self.pointer.object());

@@ -12,7 +12,7 @@ use super::theme;
 use crate::color::Srgb8;
 use crate::control::KeyMode;
 use crate::tone::Picture;
-use build::Build;
+use build::ObjectOrderBuild;
 pub(super) use pace::BuildPace;
 use ratatui_core::layout::Rect;
 use ratatui_core::text::Line;
@@ -32,13 +32,13 @@ const EMPTY: Srgb8 = Srgb8::new(40, 42, 48);
 const CURRENT_PIXEL_COLOR: Srgb8 = Srgb8::new(255, 208, 64);
 
 /// The panel that compares image order with object order, and builds their pictures step by step.
-pub(super) struct OrdersPanel {
+pub(super) struct RenderOrdersPanel {
     pace: BuildPace,
     /// The pictures of the shown frame as built so far; `None` until the frame is traced.
-    build: Option<Build>,
+    build: Option<ObjectOrderBuild>,
 }
 
-impl OrdersPanel {
+impl RenderOrdersPanel {
     /// Returns the panel before the first frame.
     ///
     /// With `reduced_motion` the pictures are complete until the user builds them step by step.
@@ -56,7 +56,7 @@ impl OrdersPanel {
     }
 
     /// Returns the pictures as built so far; `None` if the frame's own picture is to be shown.
-    pub(super) fn picture(&self, frame: &Frame) -> Option<Picture> {
+    pub(super) fn partial_picture(&self, frame: &Frame) -> Option<Picture> {
         let build = self.build.as_ref().filter(|build| self.pace.tests() < build.comparison.max_total_tests())?;
         let [(_, left), (_, right)] = *frame.shot.layout.map_sizes(frame.resolution()) else { return None };
         // After a resize, the build is still that of the last frame until the next one is traced.
@@ -78,7 +78,7 @@ impl OrdersPanel {
                 row[of_row] = CURRENT_PIXEL_COLOR;
             }
             for (x, pixel) in row[start..].iter_mut().enumerate() {
-                *pixel = build.pixel(x as u32, y as u32, EMPTY, *pixel);
+                *pixel = build.pixel_color(x as u32, y as u32, EMPTY, *pixel);
             }
         }
         Some(picture)
@@ -105,7 +105,7 @@ pub(super) fn panel_rows(screen: Rect) -> u16 {
     if theme::has_room(screen) { words::height(screen.width, screen.height) + 1 } else { 0 }
 }
 
-impl Layer for OrdersPanel {
+impl Layer for RenderOrdersPanel {
     fn level(&self) -> LayerLevel {
         LayerLevel::Side
     }
@@ -117,7 +117,7 @@ impl Layer for OrdersPanel {
     /// Begins to build the pictures of a new view. A refinement leaves the build as it is.
     fn take_frame(&mut self, frame: &Frame) {
         if !frame.refines || self.build.is_none() {
-            self.build = Build::new(frame);
+            self.build = ObjectOrderBuild::new(frame);
             self.pace.start();
         }
     }
@@ -158,12 +158,12 @@ impl Viewer {
         self.end_outside_view();
         // The panel takes the place of the caption, which returns after it.
         self.screen.close::<Caption>();
-        self.screen.open(OrdersPanel::new(self.options.reduced_motion));
+        self.screen.open(RenderOrdersPanel::new(self.options.reduced_motion));
     }
 
     /// Ends the comparison of image order with object order. Returns whether it was open.
     pub(super) fn close_orders(&mut self) -> bool {
-        let is_open = self.screen.close::<OrdersPanel>().is_some();
+        let is_open = self.screen.close::<RenderOrdersPanel>().is_some();
         if is_open {
             self.show_caption_again();
         }
@@ -172,7 +172,7 @@ impl Viewer {
 
     /// Changes the pace at which image order and object order build their pictures.
     pub(super) fn change_pace(&mut self, change: fn(&mut BuildPace)) {
-        if let Some(panel) = self.screen.get_mut::<OrdersPanel>() {
+        if let Some(panel) = self.screen.get_mut::<RenderOrdersPanel>() {
             panel.change_pace(change);
         }
     }

@@ -3,7 +3,7 @@
 
 use super::Viewer;
 use super::explain::ExplainPanel;
-use super::orders::{OrdersPanel, panel_rows};
+use super::orders::{RenderOrdersPanel, panel_rows};
 use super::theme;
 use super::tracer_lines::{TracerMarks, VanishingPoints};
 use super::view_layout::ViewLayout;
@@ -191,7 +191,7 @@ impl Viewer {
 
     /// Returns the layout: the map twice for two cameras or for image order beside object order.
     pub(super) fn shown_layout(&self) -> ViewLayout {
-        if self.screen.get::<OrdersPanel>().is_some() {
+        if self.screen.get::<RenderOrdersPanel>().is_some() {
             let (_, pixels) = self.display.capabilities().cell_mode.pixels_per_cell();
             return self.layout.twice(pixels * u32::from(panel_rows(theme::area(self.picture_size()))));
         }

@@ -50,7 +50,7 @@ impl Pacing {
         // On a slow link a frame begins when a reply arrives, and the link is idle while the frame is traced, so the
         // frame gets few samples. Of a link of 50 KB/s, frames used 81 to 84 % with as many samples as time allows, and
         // 84.5 to 85.2 % with one per pixel.
-        self.quality.for_new_view(before.is_some_and(|before| before.in_motion) && !self.link.is_slow())
+        self.quality.first_sampling(before.is_some_and(|before| before.in_motion) && !self.link.is_slow())
     }
 
     /// Returns the sampling of the next refinement of a picture with this sampling, or `None` if it
@@ -61,15 +61,15 @@ impl Pacing {
 
     /// Returns whether the refinements of the last picture are expected to take at most `time` in
     /// total.
-    pub(super) fn refines_within(&self, time: Duration) -> bool {
-        self.quality.refines_within(time)
+    pub(super) fn finishes_refining_within(&self, time: Duration) -> bool {
+        self.quality.finishes_refining_within(time)
     }
 
     /// Records a finished frame.
     pub(super) fn record_frame(&mut self, frame: &Frame) {
         // A refinement reuses the samples of the frame before, so its time says little about that of a new picture.
         if !frame.refines {
-            self.quality.record_time(frame.sampling, frame.trace, self.link.min_frame_interval());
+            self.quality.adapt_level(frame.sampling, frame.trace, self.link.min_frame_interval());
         }
     }
 

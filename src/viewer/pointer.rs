@@ -46,7 +46,7 @@ impl PointerState {
     }
 
     /// Returns whether the button was pressed on an object, and the pointer has not moved since.
-    pub(super) fn is_click(&self) -> bool {
+    pub(super) fn is_click_on_object(&self) -> bool {
         !self.has_moved && self.object.is_some()
     }
 

@@ -74,10 +74,10 @@ impl QualityControl {
 
     /// Returns the sampling of the first picture of a new view.
     ///
-    /// After a rest, when the view is not `in_motion`, it has at most one sample per pixel.
-    pub(super) fn for_new_view(&self, in_motion: bool) -> Sampling {
+    /// After a rest, not `after_motion`, it has at most one sample per pixel.
+    pub(super) fn first_sampling(&self, after_motion: bool) -> Sampling {
         // The user waits for the first frame after a rest, which is refined anyway if the view then stays.
-        let level = if in_motion { self.level } else { self.level.min(ONE_SAMPLE_LEVEL) };
+        let level = if after_motion { self.level } else { self.level.min(ONE_SAMPLE_LEVEL) };
         self.forced.unwrap_or(LEVELS[level])
     }
 
@@ -94,21 +94,21 @@ impl QualityControl {
 
     /// Returns whether the refinements of the last picture are expected to take at most `time` in
     /// total.
-    pub(super) fn refines_within(&self, time: Duration) -> bool {
+    pub(super) fn finishes_refining_within(&self, time: Duration) -> bool {
         self.last.is_some_and(|last| self.predicted_time(last, MAX_MOTION_LEVEL) <= time.as_secs_f64())
     }
 
-    /// Records the time that tracing a picture of a new view took, and updates the sampling level
-    /// of the next pictures.
+    /// Adapts the sampling level of the next pictures to the time that tracing a picture of a new
+    /// view took.
     ///
-    /// `frame` is the time between two frames, of which tracing may take [`TRACING_SHARE`].
-    pub(super) fn record_time(&mut self, sampling: Sampling, time: Duration, frame: Duration) {
+    /// Of `frame_interval`, the time between two frames, tracing may take [`TRACING_SHARE`].
+    pub(super) fn adapt_level(&mut self, sampling: Sampling, trace_time: Duration, frame_interval: Duration) {
         let Some(level) = LEVELS.iter().position(|&level| level == sampling).filter(|&level| level <= MAX_MOTION_LEVEL)
         else {
             return;
         };
-        let most = TRACING_SHARE * frame.as_secs_f64();
-        let at_last = (level, time.as_secs_f64());
+        let most = TRACING_SHARE * frame_interval.as_secs_f64();
+        let at_last = (level, trace_time.as_secs_f64());
         self.update_cost_ratio(at_last);
         let finest = |limit: f64| {
             (0..=MAX_MOTION_LEVEL).rev().find(|&level| self.predicted_time(at_last, level) <= limit).unwrap_or(0)

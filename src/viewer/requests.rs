@@ -47,7 +47,7 @@ impl Viewer {
         if self.options.exports.is_none() {
             return;
         }
-        if self.screen.awaits_scene() {
+        if self.screen.is_loading_scene() {
             self.show_note("the scene is still loading");
         } else if self.screen.get::<Activity>().is_some_and(|activity| activity.picture.is_some()) {
             self.show_note("a large picture is being made; Esc cancels it");
@@ -77,7 +77,7 @@ impl Viewer {
 
     /// Returns the job that traces the large picture of the wanted view, and the position of the
     /// line between the two maps of a wipe, as a share of the width.
-    pub(crate) fn large_picture(&self) -> Option<(Job, f32)> {
+    pub(crate) fn large_picture_job(&self) -> Option<(Job, f32)> {
         let (scene, shot) = self.scene_at_current_time().zip(self.wanted_shot())?;
         let resolution = large_resolution(shot.resolution);
         // The file has pixels, so it needs neither the geometry that glyphs show nor the comparison that a panel

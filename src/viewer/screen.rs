@@ -6,7 +6,7 @@ use super::help::{HelpKey, HelpPanel};
 use super::layers::{Canvas, FrameStatistics, Layer, Layers};
 use super::legend::Legends;
 use super::note::Note;
-use super::orders::OrdersPanel;
+use super::orders::RenderOrdersPanel;
 use super::progress::ProgressPanel;
 use super::status::StatusLine;
 use super::theme;
@@ -44,7 +44,7 @@ pub(super) struct Screen {
     // The grid is kept between frames, because allocating it takes longer than filling it: with the grid and the buffer
     // of bytes kept, a key press at 200x60 causes 210 page faults instead of 571.
     grid: Grid,
-    order: Option<Order>,
+    cell_order: Option<Order>,
     quality: Option<Quality>,
     /// Whether the view moves, so that cells keep their glyphs where they can.
     is_picture_moving: bool,
@@ -77,11 +77,11 @@ impl Content {
 }
 
 impl Screen {
-    pub(super) fn new(capabilities: &Capabilities, order: Option<Order>, quality: Option<Quality>) -> Self {
+    pub(super) fn new(capabilities: &Capabilities, cell_order: Option<Order>, quality: Option<Quality>) -> Self {
         let mut layers = Layers::default();
         layers.open(Legends);
         Self {
-            content: Tracked::new(Content {
+            content: Tracked::new_changed(Content {
                 frame: None,
                 wipe: INITIAL_WIPE,
                 moving: KeyMode::Fly,
@@ -91,7 +91,7 @@ impl Screen {
             painter: painter(capabilities),
             encoder: encoder(Encoder::new(), capabilities),
             grid: Grid::new(Size::new(0, 0)),
-            order,
+            cell_order,
             quality,
             is_picture_moving: false,
             erases: false,
@@ -184,7 +184,7 @@ impl Screen {
     ///
     /// Returns the time of the next step, if there is one.
     pub(super) fn advance_orders(&mut self, now: Duration) -> Option<Duration> {
-        let (has_changed, next) = self.content.quietly().layers.get_mut::<OrdersPanel>()?.advance(now);
+        let (has_changed, next) = self.content.quietly().layers.get_mut::<RenderOrdersPanel>()?.advance(now);
         if has_changed {
             self.content.mark_changed();
         }
@@ -307,7 +307,7 @@ impl Screen {
     }
 
     /// Returns whether a scene is still being loaded, so that at best a sketch of it is shown.
-    pub(super) fn awaits_scene(&self) -> bool {
+    pub(super) fn is_loading_scene(&self) -> bool {
         self.get::<ProgressPanel>().is_some()
     }
 
@@ -316,7 +316,7 @@ impl Screen {
     ///
     /// Before the first frame, the panels about loading are drawn on black.
     fn can_show(&self, size: Size) -> bool {
-        let Some(frame) = self.frame() else { return self.awaits_scene() };
+        let Some(frame) = self.frame() else { return self.is_loading_scene() };
         // After a resize the old frame would be cut off, or would leave a part of the window empty.
         let wanted = cell::resolution(self.painter.mode(), size, 1.0);
         wanted.is_ok_and(|wanted| (frame.picture.width(), frame.picture.height()) == (wanted.width(), wanted.height()))
@@ -342,7 +342,7 @@ impl Screen {
         let grid = &mut self.grid;
         match &content.frame {
             Some(frame) => {
-                let built = content.layers.get::<OrdersPanel>().and_then(|orders| orders.picture(frame));
+                let built = content.layers.get::<RenderOrdersPanel>().and_then(|orders| orders.partial_picture(frame));
                 let picture = built.as_ref().unwrap_or(&frame.picture);
                 self.painter.paint_view(picture, frame.geometry.as_deref(), self.is_picture_moving, grid);
             }
@@ -367,7 +367,7 @@ impl Screen {
         // Order by colour saves bytes but takes 0.5 ms longer, more than a fast link saves by fewer bytes.
         let (usual, order) =
             if limit.is_some() { (Quality::Equal, Order::Color) } else { (Quality::Exact, Order::Raster) };
-        self.encoder.set_order(self.order.unwrap_or(order));
+        self.encoder.set_order(self.cell_order.unwrap_or(order));
         if std::mem::take(&mut self.erases) {
             bytes.extend_from_slice(if cell_mode.colors == Colors::None { ERASE } else { RESET_ERASE });
         }

@@ -52,13 +52,13 @@ impl Layer for TracerMarks {
             plot.line([eye, end], color);
             plot.letter(end, name, color);
         }
-        add_letters(&mut plot, frame);
+        add_eye_and_lights(&mut plot, frame);
         plot.draw(canvas);
     }
 }
 
 /// Adds the letters of the eye and the lights.
-fn add_letters(plot: &mut Plot<'_>, frame: &Frame) {
+fn add_eye_and_lights(plot: &mut Plot<'_>, frame: &Frame) {
     plot.letter(frame.camera().pose().eye, "o", WHITE);
     for light in frame.scene.lights().iter().filter_map(Light::position) {
         plot.letter(light, "*", YELLOW);
@@ -121,7 +121,7 @@ pub(super) fn draw_eye_ray(canvas: &mut Canvas<'_>, frame: &Frame, explanation: 
     plot.line([ray.origin, ray.at(hit.map_or(2.0 * distance, |shaded| shaded.hit.t))], WHITE);
     plot.letter(ray.at(near), "q", CYAN);
     // Adds these letters again, because the rays end at them and would cover them.
-    add_letters(&mut plot, frame);
+    add_eye_and_lights(&mut plot, frame);
     if let Some(hit) = hit {
         plot.letter(hit.point.position, "p", WHITE);
     }

@@ -12,7 +12,7 @@ pub(super) struct Tracked<T> {
 
 impl<T> Tracked<T> {
     /// Returns a value that counts as changed.
-    pub(super) fn new(value: T) -> Self {
+    pub(super) fn new_changed(value: T) -> Self {
         Self { value, is_changed: true }
     }
 

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A picture to which objects are added one after the other.
-pub(super) struct Build {
+pub(super) struct ObjectOrderBuild {
     scene: Scene,
     camera: Camera,
     resolution: Resolution,
@@ -32,7 +32,7 @@ pub(super) struct Build {
     is_complete: bool,
 }
 
-impl Build {
+impl ObjectOrderBuild {
     /// Returns the object-order picture of a frame, the right one of two, without any object yet.
     pub(super) fn new(frame: &Frame) -> Option<Self> {
         let [_, (_, resolution)] = *frame.shot.layout.map_sizes(frame.resolution()) else { return None };
@@ -85,38 +85,39 @@ impl Build {
         while (self.steps.drawn() as usize) < wanted && self.steps.draw_next(&self.scene) {}
         for (x, y) in (0..self.resolution.height()).flat_map(|y| (0..self.resolution.width()).map(move |x| (x, y))) {
             let Some((number, t)) = self.steps.nearest(x, y) else { continue };
-            let last = self.comparison.nearest.at(x, y).map(|(last, _)| self.object(last));
-            if last == Some(self.object(number)) {
+            let last = self.comparison.nearest.at(x, y).map(|(last, _)| self.object_of_primitive(last));
+            if last == Some(self.object_of_primitive(number)) {
                 self.hidden.remove(&[x, y]);
             } else if self.hidden.get(&[x, y]).is_none_or(|(known, _)| *known != number) {
-                self.hidden.insert([x, y], (number, self.color(x, y, number, t)));
+                self.hidden.insert([x, y], (number, self.primitive_color(x, y, number, t)));
             }
         }
     }
 
-    /// Returns a pixel's colour: `empty` without an object, `last` if its object stays visible.
-    pub(super) fn pixel(&self, x: u32, y: u32, empty: Srgb8, last: Srgb8) -> Srgb8 {
+    /// Returns a pixel's colour: `empty` without an object, `final_color` if its object stays
+    /// visible.
+    pub(super) fn pixel_color(&self, x: u32, y: u32, empty: Srgb8, final_color: Srgb8) -> Srgb8 {
         if self.is_complete {
-            return last;
+            return final_color;
         }
         match (self.steps.nearest(x, y), self.hidden.get(&[x, y])) {
             (None, _) => empty,
             (_, Some((_, color))) => *color,
-            (Some(_), None) => last,
+            (Some(_), None) => final_color,
         }
     }
 
     /// Returns the object of a primitive, by its number.
-    fn object(&self, number: u32) -> usize {
-        self.starts.partition_point(|&start| start <= number).saturating_sub(1)
+    fn object_of_primitive(&self, primitive_number: u32) -> usize {
+        self.starts.partition_point(|&start| start <= primitive_number).saturating_sub(1)
     }
 
     /// Returns the colour that a primitive has at a pixel where later ones hide it.
-    fn color(&self, x: u32, y: u32, number: u32, t: f32) -> Srgb8 {
-        let object = self.object(number);
+    fn primitive_color(&self, x: u32, y: u32, primitive_number: u32, t: f32) -> Srgb8 {
+        let object = self.object_of_primitive(primitive_number);
         let [width, height] = [self.resolution.width() as f32, self.resolution.height() as f32];
         let ray = self.rays.through((x as f32 + 0.5) / width, (height - (y as f32 + 0.5)) / height);
-        let primitive = number - self.starts[object];
+        let primitive = primitive_number - self.starts[object];
         // A picture of one pixel is toned by the scene's curve, so that hidden and visible objects have the same
         // colours.
         let mut light = Framebuffer::new(Resolution::square(1, 1));

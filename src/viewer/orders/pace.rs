@@ -93,7 +93,7 @@ impl BuildPace {
     /// Pauses or resumes the build, or builds one step if the build proceeds by key presses.
     ///
     /// After the end the build starts again.
-    pub(in crate::viewer) fn pause(&mut self) {
+    pub(in crate::viewer) fn pause_or_step(&mut self) {
         let is_at_end = self.tests() >= self.total;
         if is_at_end {
             self.tests = 0.0;

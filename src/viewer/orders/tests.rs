@@ -61,13 +61,13 @@ fn seconds(seconds: f64) -> Duration {
 #[test]
 fn both_pictures_are_built_up_to_that_of_the_frame() {
     let frame = frame();
-    let mut panel = OrdersPanel::new(false);
+    let mut panel = RenderOrdersPanel::new(false);
     panel.take_frame(&frame);
     let (mut pixels, mut objects) = (0, Vec::new());
     let mut now = Duration::ZERO;
     loop {
         let (_, next) = panel.advance(now);
-        let Some(picture) = panel.picture(&frame) else {
+        let Some(picture) = panel.partial_picture(&frame) else {
             assert_eq!(next, None, "no timer after the end");
             break;
         };
@@ -98,28 +98,28 @@ fn both_pictures_are_built_up_to_that_of_the_frame() {
 #[test]
 fn objects_that_later_ones_hide_have_their_own_colour() {
     let frame = frame();
-    let mut build = Build::new(&frame).expect("both orders");
+    let mut build = ObjectOrderBuild::new(&frame).expect("both orders");
     let [wall, _] = build.comparison.object_tests[..] else { panic!("two objects") };
     build.draw(wall);
     let (red, middle) = (Srgb8::new(255, 0, 0), [9, 10]);
     let at = middle[1] as usize * SIZE[0] as usize + 21 + middle[0] as usize;
     let last = frame.picture.pixels()[at];
     assert!(last.g < 20, "the ball: {last:?}");
-    let shown = build.pixel(middle[0], middle[1], EMPTY, last);
+    let shown = build.pixel_color(middle[0], middle[1], EMPTY, last);
     assert!(shown != red && shown.g > 100 && shown.r == shown.b, "the wall: {shown:?}");
 }
 
 #[test]
 fn keys_change_the_pace() {
     let frame = frame();
-    let mut panel = OrdersPanel::new(false);
+    let mut panel = RenderOrdersPanel::new(false);
     panel.take_frame(&frame);
     panel.advance(Duration::ZERO);
     assert!(panel.advance(seconds(2.0)).0);
     let after_two = panel.pace.tests();
-    panel.change_pace(BuildPace::pause);
+    panel.change_pace(BuildPace::pause_or_step);
     assert_eq!(panel.advance(seconds(3.0)), (false, None), "no timer while it pauses");
-    panel.change_pace(BuildPace::pause);
+    panel.change_pace(BuildPace::pause_or_step);
     panel.change_pace(BuildPace::faster);
     panel.advance(seconds(4.0));
     panel.advance(seconds(5.0));
@@ -135,14 +135,14 @@ fn keys_change_the_pace() {
 #[test]
 fn with_reduced_motion_nothing_moves_by_itself() {
     let frame = frame();
-    let mut panel = OrdersPanel::new(true);
+    let mut panel = RenderOrdersPanel::new(true);
     panel.take_frame(&frame);
     assert_eq!(panel.advance(Duration::ZERO), (false, None));
-    assert!(panel.picture(&frame).is_none(), "complete");
+    assert!(panel.partial_picture(&frame).is_none(), "complete");
     for press in 1..=16 {
-        panel.change_pace(BuildPace::pause);
+        panel.change_pace(BuildPace::pause_or_step);
         assert_eq!(panel.advance(seconds(f64::from(press))), (false, None));
-        assert_eq!(panel.picture(&frame).is_none(), press == 16, "press {press}");
+        assert_eq!(panel.partial_picture(&frame).is_none(), press == 16, "press {press}");
     }
 }
 

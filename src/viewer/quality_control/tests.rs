@@ -12,9 +12,9 @@ fn ms(milliseconds: f64) -> Duration {
 /// `time` returns the milliseconds that the frame with this number takes at this level.
 fn simulate_motion(control: &mut QualityControl, frames: u32, mut time: impl FnMut(u32, usize) -> f64) -> Vec<usize> {
     let levels = (0..frames).map(|frame| {
-        let sampling = control.for_new_view(frame > 0);
+        let sampling = control.first_sampling(frame > 0);
         let level = LEVELS.iter().position(|&level| level == sampling).expect("it is one of them");
-        control.record_time(sampling, ms(time(frame, level)), FRAME);
+        control.adapt_level(sampling, ms(time(frame, level)), FRAME);
         level
     });
     levels.collect()
@@ -49,12 +49,12 @@ fn as_many_samples_as_fit_the_time() {
 #[test]
 fn the_first_frame_after_a_rest_is_no_finer_than_one_sample() {
     let mut control = QualityControl::new(None);
-    assert_eq!(control.for_new_view(false), LEVELS[1], "nothing is known");
+    assert_eq!(control.first_sampling(false), LEVELS[1], "nothing is known");
     simulate_motion(&mut control, 100, |_, level| frame_time_by_level(0.5)(level));
-    assert_eq!((control.for_new_view(false), control.for_new_view(true)), (LEVELS[1], LEVELS[3]));
+    assert_eq!((control.first_sampling(false), control.first_sampling(true)), (LEVELS[1], LEVELS[3]));
     // On a slow machine even one sample per pixel is too much.
     simulate_motion(&mut control, 100, |_, level| frame_time_by_level(50.0)(level));
-    assert_eq!((control.for_new_view(false), control.for_new_view(true)), (LEVELS[0], LEVELS[0]));
+    assert_eq!((control.first_sampling(false), control.first_sampling(true)), (LEVELS[0], LEVELS[0]));
 }
 
 #[test]
@@ -120,11 +120,11 @@ fn the_cost_ratio_of_a_level_is_learnt() {
 fn the_time_of_a_frame_is_what_counts() {
     let mut control = QualityControl::new(None);
     for _ in 0..100 {
-        let sampling = control.for_new_view(true);
+        let sampling = control.first_sampling(true);
         let level = LEVELS.iter().position(|&level| level == sampling).expect("it is one of them");
-        control.record_time(sampling, ms(frame_time_by_level(10.0)(level)), 6 * FRAME);
+        control.adapt_level(sampling, ms(frame_time_by_level(10.0)(level)), 6 * FRAME);
     }
-    assert_eq!(control.for_new_view(true), LEVELS[3]);
+    assert_eq!(control.first_sampling(true), LEVELS[3]);
 }
 
 /// At rest a picture of any level is refined to the final level in at most two steps.
@@ -144,9 +144,9 @@ fn a_forced_level_is_the_only_one() {
     for sampling in [Sampling::BEST, Sampling::Each(NonZeroU32::MIN), Sampling::Each(NonZeroU32::new(9).expect("9"))] {
         let mut control = QualityControl::new(Some(sampling));
         for _ in 0..20 {
-            control.record_time(sampling, ms(500.0), FRAME);
+            control.adapt_level(sampling, ms(500.0), FRAME);
         }
-        assert_eq!([control.for_new_view(false), control.for_new_view(true)], [sampling; 2]);
+        assert_eq!([control.first_sampling(false), control.first_sampling(true)], [sampling; 2]);
         assert_eq!(control.next_refinement(sampling), None);
     }
 }
