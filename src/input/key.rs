@@ -321,7 +321,7 @@ fn keypad_key(code: u16) -> Option<KeyCode> {
 
 /// Returns the key with a functional key code of the kitty protocol, except those of the keypad.
 ///
-/// It is a lock, function (F13 and up), media or modifier key, or PrintScreen, Pause or Menu.
+/// It is a lock, function (F13 and up), media or modifier key, or `PrintScreen`, Pause or Menu.
 fn functional_key(code: u16) -> Option<KeyCode> {
     const LOCKS: [KeyCode; 6] =
         [KeyCode::CapsLock, KeyCode::ScrollLock, KeyCode::NumLock, KeyCode::PrintScreen, KeyCode::Pause, KeyCode::Menu];

@@ -44,7 +44,9 @@ fn silent_connections_leave_room_for_others() {
         (limiter.logging_in, limiter.enter(v4(200), Duration::ZERO).unwrap_err()),
         (MAX_LOGGING_IN, Refusal::Busy)
     );
-    silent.into_iter().for_each(|entry| limiter.leave(entry));
+    for entry in silent {
+        limiter.leave(entry);
+    }
     assert!(limiter.enter(v4(200), Duration::ZERO).is_ok());
 }
 

@@ -42,18 +42,18 @@ impl Harness {
         Self { session, tracer: Tracer::default(), now: Cell::new(SECOND), traced: 0, bytes }
     }
 
-    fn turn_for(&mut self, kind: WorkKind, input: PendingInput) -> AfterTurn {
+    fn turn_for(&mut self, kind: WorkKind, input: &PendingInput) -> AfterTurn {
         let Self { session, tracer, now, traced, bytes } = self;
         let mut trace = |job: &Job, may_interrupt: bool| {
             assert!(job.refines || !may_interrupt, "the frame of a new view is lost if it is interrupted");
             *traced += 1;
             tracer.trace_for_any_viewer(job, &Cancellation::default()).ok()
         };
-        session.take_turn(&input, (false, kind), &|| now.get(), &mut trace, bytes)
+        session.take_turn(input, (false, kind), &|| now.get(), &mut trace, bytes)
     }
 
     fn turn(&mut self, input: &[u8]) -> AfterTurn {
-        self.turn_for(WorkKind::Refinement, PendingInput { bytes: input.to_vec(), ..PendingInput::default() })
+        self.turn_for(WorkKind::Refinement, &PendingInput { bytes: input.to_vec(), ..PendingInput::default() })
     }
 
     /// Gives the session turns and replies to all queries until it sleeps, and returns its wake-up
@@ -142,12 +142,12 @@ fn a_refinement_waits_for_its_kind() {
             AfterTurn::Sleep(Some(until)) => harness.now.set(until),
             _ => {}
         }
-        next = harness.turn_for(WorkKind::Picture, PendingInput::default());
+        next = harness.turn_for(WorkKind::Picture, &PendingInput::default());
     }
     assert_eq!(next, AfterTurn::Turn(WorkKind::Refinement));
     assert!(harness.traced > before);
     let before = harness.traced;
-    harness.turn_for(WorkKind::Refinement, PendingInput::default());
+    harness.turn_for(WorkKind::Refinement, &PendingInput::default());
     assert!(harness.traced > before);
 }
 
@@ -207,8 +207,8 @@ fn what_a_network_sends_breaks_nothing() {
                 let (columns, rows) = (random(60) as u32, random(20) as u32);
                 crate::serve::client_terminal::window([columns, rows, 0, 0])
             });
-            let mut next =
-                harness.turn_for(WorkKind::Refinement, PendingInput { bytes: part, window, ..PendingInput::default() });
+            let mut next = harness
+                .turn_for(WorkKind::Refinement, &PendingInput { bytes: part, window, ..PendingInput::default() });
             harness.now.set(harness.now.get() + Duration::from_millis(random(40) as u64));
             for _ in 0..40 {
                 if !matches!(next, AfterTurn::Turn(_)) {
@@ -235,7 +235,7 @@ fn a_reply_counts_from_its_arrival() {
     let bytes_if_replies_arrive_after = |time: Duration| {
         let mut harness = Harness::new(LIMITS);
         let window = Some(crate::serve::client_terminal::window([80, 24, 0, 0]));
-        harness.turn_for(WorkKind::Refinement, PendingInput { window, ..PendingInput::default() });
+        harness.turn_for(WorkKind::Refinement, &PendingInput { window, ..PendingInput::default() });
         harness.rest();
         harness.turn(b"t");
         let mut sum = 0;
@@ -246,7 +246,7 @@ fn a_reply_counts_from_its_arrival() {
             let at = harness.now.get() + time;
             harness.now.set(harness.now.get() + Duration::from_millis(300));
             let bytes = b"\x1b[?62c".repeat(queries);
-            harness.turn_for(WorkKind::Refinement, PendingInput { bytes, at, ..PendingInput::default() });
+            harness.turn_for(WorkKind::Refinement, &PendingInput { bytes, at, ..PendingInput::default() });
         }
         sum
     };
