@@ -44,7 +44,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--reduced-motion', '--reduced-motion', [CompletionResultType]::ParameterName, 'Each key press moves one step at once; nothing moves by itself [default: false]')
             [CompletionResult]::new('--hint', '--hint', [CompletionResultType]::ParameterName, 'Show which keys to press, in the lowest row, until the first key press [default: true]')
             [CompletionResult]::new('--order', '--order', [CompletionResultType]::ParameterName, 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]')
-            [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, instead of a warning')
+            [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, as check does')
             [CompletionResult]::new('--compressed-link', '--compressed-link', [CompletionResultType]::ParameterName, 'The link compresses, as ssh -C does: send cells row by row (--order raster)')
             [CompletionResult]::new('--quiet', '--quiet', [CompletionResultType]::ParameterName, 'Do not print the camera on exit')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
@@ -147,7 +147,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--check', '--check', [CompletionResultType]::ParameterName, 'Compare with the frame in a file, and print a diff')
             [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
-            [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, instead of a warning')
+            [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, as check does')
             [CompletionResult]::new('--bless', '--bless', [CompletionResultType]::ParameterName, 'With --check: write the golden frame instead of comparing')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
@@ -180,7 +180,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--output', '--output', [CompletionResultType]::ParameterName, 'FILE.cast (asciicast), FILE.gif, or FILE-%04d.png')
             [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
-            [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, instead of a warning')
+            [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, as check does')
             [CompletionResult]::new('--compressed-link', '--compressed-link', [CompletionResultType]::ParameterName, 'The link compresses, as ssh -C does: send cells row by row (--order raster)')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
@@ -202,7 +202,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--cell-aspect', '--cell-aspect', [CompletionResultType]::ParameterName, 'A cell''s height over its width')
             [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
-            [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, instead of a warning')
+            [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, as check does')
             [CompletionResult]::new('--json', '--json', [CompletionResultType]::ParameterName, 'Print JSON')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
@@ -219,7 +219,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--threads', '--threads', [CompletionResultType]::ParameterName, 'Number of threads that trace [default: one per core]')
             [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
-            [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, instead of a warning')
+            [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, as check does')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
         }
@@ -237,7 +237,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--size', '--size', [CompletionResultType]::ParameterName, 'The size of the screen, in cells')
             [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
-            [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, instead of a warning')
+            [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, as check does')
             [CompletionResult]::new('--json', '--json', [CompletionResultType]::ParameterName, 'Print JSON')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break

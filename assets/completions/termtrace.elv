@@ -41,7 +41,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --reduced-motion 'Each key press moves one step at once; nothing moves by itself [default: false]'
             cand --hint 'Show which keys to press, in the lowest row, until the first key press [default: true]'
             cand --order 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]'
-            cand --strict 'Refuse a mesh whose materials or textures are missing, instead of a warning'
+            cand --strict 'Refuse a mesh whose materials or textures are missing, as check does'
             cand --compressed-link 'The link compresses, as ssh -C does: send cells row by row (--order raster)'
             cand --quiet 'Do not print the camera on exit'
             cand --no-config 'Ignore config.ron and keys.ron'
@@ -140,7 +140,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --check 'Compare with the frame in a file, and print a diff'
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
-            cand --strict 'Refuse a mesh whose materials or textures are missing, instead of a warning'
+            cand --strict 'Refuse a mesh whose materials or textures are missing, as check does'
             cand --bless 'With --check: write the golden frame instead of comparing'
             cand --no-config 'no-config'
         }
@@ -172,7 +172,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --output 'FILE.cast (asciicast), FILE.gif, or FILE-%04d.png'
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
-            cand --strict 'Refuse a mesh whose materials or textures are missing, instead of a warning'
+            cand --strict 'Refuse a mesh whose materials or textures are missing, as check does'
             cand --compressed-link 'The link compresses, as ssh -C does: send cells row by row (--order raster)'
             cand --no-config 'no-config'
         }
@@ -193,7 +193,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --cell-aspect 'A cell''s height over its width'
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
-            cand --strict 'Refuse a mesh whose materials or textures are missing, instead of a warning'
+            cand --strict 'Refuse a mesh whose materials or textures are missing, as check does'
             cand --json 'Print JSON'
             cand --no-config 'no-config'
         }
@@ -209,7 +209,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --threads 'Number of threads that trace [default: one per core]'
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
-            cand --strict 'Refuse a mesh whose materials or textures are missing, instead of a warning'
+            cand --strict 'Refuse a mesh whose materials or textures are missing, as check does'
             cand --no-config 'no-config'
         }
         &'termtrace;describe'= {
@@ -226,7 +226,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --size 'The size of the screen, in cells'
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
-            cand --strict 'Refuse a mesh whose materials or textures are missing, instead of a warning'
+            cand --strict 'Refuse a mesh whose materials or textures are missing, as check does'
             cand --json 'Print JSON'
             cand --no-config 'no-config'
         }

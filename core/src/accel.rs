@@ -445,7 +445,7 @@ impl<S> Tree<S> {
 
     /// Returns the index of the primitive in a lane of a leaf.
     #[inline(always)]
-    pub(crate) fn primitive(&self, leaf: usize, lane: usize) -> u32 {
+    pub(crate) fn primitive_index(&self, leaf: usize, lane: usize) -> u32 {
         self.first + (leaf * LANES + lane) as u32
     }
 

@@ -90,7 +90,7 @@ pub(super) struct CameraArgs {
     #[arg(long = "as", value_name = "FORMAT", value_parser = mesh_format_parser())]
     #[arg(help_heading = "Mesh", hide_short_help = true)]
     pub(super) mesh_format: Option<&'static str>,
-    /// Refuse a mesh whose materials or textures are missing, instead of a warning
+    /// Refuse a mesh whose materials or textures are missing, as check does
     #[arg(long, help_heading = "Mesh", hide_short_help = true)]
     pub(super) strict: bool,
     /// Number of threads that trace [default: one per core]

@@ -245,15 +245,15 @@ trait Sets {
 #[derive(Default)]
 struct AnySets {
     members: Lists,
-    /// The sets with each number.
+    /// For each number, the indices of the sets that contain it.
     sets_with: Lists,
 }
 
 impl AnySets {
-    /// Lists the sets with each number below `count`.
+    /// Lists the sets that contain each number below `count`.
     fn index(&mut self, count: usize) {
         let Self { members, sets_with } = self;
-        // `ends` first has the number of sets with each number, then the start of each list, which moves to the end
+        // `ends` first has the number of sets that contain each number, then the start of each list, which moves to the end
         // with each added set.
         sets_with.ends.clear();
         sets_with.ends.resize(count + 1, 0);

@@ -233,7 +233,11 @@ impl<N: Lanes, const ANY: bool> GroupHits<N, ANY> {
         let Some(leaf) = tree.leaves.first() else { return };
         for lane in 0..tree.single_leaf_count {
             let shape = leaf.splat(lane);
-            self.record_closest(tree.primitive(0, lane), shape.first_crossing_with_hint(rays, [min, self.t]), accel);
+            self.record_closest(
+                tree.primitive_index(0, lane),
+                shape.first_crossing_with_hint(rays, [min, self.t]),
+                accel,
+            );
         }
     }
 
@@ -422,7 +426,7 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, 
             self.rays.test_primitive(
                 group,
                 &shapes.splat(lane),
-                self.tree.primitive(leaf, lane),
+                self.tree.primitive_index(leaf, lane),
                 N::splat(error_bounds.0[lane]),
             );
         }

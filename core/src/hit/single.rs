@@ -133,7 +133,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
         }
         let t = t.store();
         for lane in set_bits(hit_mask) {
-            self.record_if_closest(t.0[lane], tree.primitive(leaf, lane));
+            self.record_if_closest(t.0[lane], tree.primitive_index(leaf, lane));
         }
     }
 

@@ -100,7 +100,7 @@ fn an_end_that_nears_wins() {
     let mut harness = Harness::new(VisitLimits { ends: 50 * SECOND, ..LIMITS });
     assert_eq!(harness.rest(), Some(20 * SECOND));
     let input = PendingInput { drain_deadline: Some(10 * SECOND), ..PendingInput::default() };
-    harness.turn_for(WorkKind::Picture, input);
+    harness.turn_for(WorkKind::Picture, &input);
     assert_eq!(harness.rest(), Some(2 * SECOND));
     harness.now.set(10 * SECOND);
     assert_eq!((harness.turn(&[]), harness.sent().contains("the server restarts")), (AfterTurn::End, true));
@@ -135,7 +135,7 @@ fn a_refinement_waits_for_its_kind() {
     let before = harness.traced;
     // The key `]` zooms by a step: the frame of the new view is traced, but its refinement has to wait.
     let key = PendingInput { bytes: b"]".to_vec(), ..PendingInput::default() };
-    let mut next = harness.turn_for(WorkKind::Picture, key);
+    let mut next = harness.turn_for(WorkKind::Picture, &key);
     for _ in 0..20 {
         match next {
             AfterTurn::Turn(WorkKind::Refinement) => break,

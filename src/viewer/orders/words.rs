@@ -10,7 +10,7 @@ use std::time::Duration;
 use unicode_width::UnicodeWidthStr;
 
 /// Least width in columns of each half of the text at which the lecture's questions are shown.
-// The longer question, "at what pixels is this object visible?", has 38 characters.
+// The two questions stand side by side. The longer one, "at what pixels is this object visible?", has 38 characters.
 const MIN_QUESTION_COLUMNS: usize = 38;
 
 /// Least height of the screen in rows at which the table of times is shown before the build ends.
