@@ -253,8 +253,8 @@ impl AnySets {
     /// Lists the sets that contain each number below `count`.
     fn index(&mut self, count: usize) {
         let Self { members, sets_with } = self;
-        // `ends` first has the number of sets that contain each number, then the start of each list, which moves to the end
-        // with each added set.
+        // `ends` first has the number of sets that contain each number, then the start of each list, which moves to the
+        // end with each added set.
         sets_with.ends.clear();
         sets_with.ends.resize(count + 1, 0);
         for &member in &members.items {

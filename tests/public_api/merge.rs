@@ -97,7 +97,7 @@ fn renumber_ids(value: &mut Value, item: &dyn Fn(u64) -> u64) {
     match value {
         Value::Number(number) => *value = json!(number.as_u64().map(item)),
         Value::Array(values) => {
-            values.iter_mut().filter(|value| value.is_number()).for_each(|value| renumber_ids(value, item))
+            values.iter_mut().filter(|value| value.is_number()).for_each(|value| renumber_ids(value, item));
         }
         _ => {}
     }
