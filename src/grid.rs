@@ -111,7 +111,7 @@ impl HalfBlocks {
 /// The size of a terminal's window, and the shape of its cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// The size in cells.
+    /// The window's size in cells.
     pub size: Size,
     /// The shape of a cell, as far as the window's size in pixels determines it.
     pub cell: CellShape,

@@ -485,7 +485,7 @@ impl Viewer {
     }
 
     fn picture_state(&self) -> PictureState {
-        if self.wanted_shot().is_some_and(|wanted| !self.pacing.has_begun(&wanted)) {
+        if self.current_shot().is_some_and(|wanted| !self.pacing.has_begun(&wanted)) {
             PictureState::Stale
         } else if self.next_refinement().is_some() {
             PictureState::Refinable
@@ -498,7 +498,9 @@ impl Viewer {
     ///
     /// The step sends a query first, which measures the link's round trip without a frame's bytes.
     fn begin_new_view(&mut self) -> Step {
-        let Some((scene, shot)) = self.scene_at_current_time().zip(self.wanted_shot()) else { return Step::Wait(None) };
+        let Some((scene, shot)) = self.scene_at_current_time().zip(self.current_shot()) else {
+            return Step::Wait(None);
+        };
         let probe = self.pacing.probe(self.now);
         self.receiver.sent(&probe, self.now);
         let sampling = self.pacing.begin_frame(shot, self.is_picture_moving(), self.now);
@@ -507,7 +509,7 @@ impl Viewer {
 
     /// Returns the step that traces the next refinement of the last frame.
     fn begin_refinement(&self) -> Step {
-        let wanted = self.scene_at_current_time().zip(self.wanted_shot()).zip(self.next_refinement());
+        let wanted = self.scene_at_current_time().zip(self.current_shot()).zip(self.next_refinement());
         let Some(((scene, shot), sampling)) = wanted else { return Step::Wait(None) };
         Step::Trace(Vec::new(), Job { scene, shot, sampling, refines: true })
     }
@@ -519,7 +521,7 @@ impl Viewer {
     }
 
     /// Returns the shot that the picture is to show, or `None` without a scene.
-    fn wanted_shot(&self) -> Option<Shot> {
+    fn current_shot(&self) -> Option<Shot> {
         let (lights, camera) = (self.scenes.lights()?, self.first_camera()?);
         let (outside, layout) = (self.second_camera(), self.shown_layout());
         let (scene, resolution) = (self.scenes.count(), self.display.resolution());

@@ -424,8 +424,8 @@ teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is describe" -a '(__termtrace_scenes)'
 complete -c termtrace -n "__termtrace_is bench" -l scene -r -f -a "three\t'Three spheres on a plane'
-s10\t'10 larger spheres in the same cube'
-s100\t'100 larger spheres in the same cube'
+s10\t'10 spheres in a cube, larger than those of s1k'
+s100\t'100 spheres in the same cube, larger than those of s1k'
 s1k\t'1,000 spheres in a cube'
 s10k\t'10,000 smaller spheres in the same cube'
 s100k\t'100,000 smaller spheres in the same cube'" -d 'A generated scene instead of a file'

@@ -227,7 +227,7 @@ impl Bvh {
     ///
     /// The ray is repeated in all lanes. `within.min` is at least 0 (`culling.md`, 4).
     #[inline(always)]
-    pub fn visit<N: Lanes>(
+    pub fn visit_by_single_ray<N: Lanes>(
         &self,
         from: Child,
         rays: &Rays<N>,

@@ -146,7 +146,7 @@ impl<'w> Reporter<'w> {
 
     /// Reports a warning. Returns false if there is no callback or warnings are errors, so that the
     /// caller returns an error.
-    pub fn warn_if_allowed(&self, warning: impl FnOnce() -> String) -> bool {
+    pub fn warn_instead_of_error(&self, warning: impl FnOnce() -> String) -> bool {
         !self.is_strict && self.notify_if_possible(warning)
     }
 

@@ -104,7 +104,7 @@ impl CameraArgs {
     pub(super) fn load_scene(&self, source: &SceneSource) -> Result<Scene, Failure> {
         let on_warning = |warning: String| warn(warning);
         let reporter = Reporter::silent().with_warnings(&on_warning);
-        let draft = self.load_with_own_camera(source, self.mesh_up, &reporter)?;
+        let draft = self.load_without_camera_flags(source, self.mesh_up, &reporter)?;
         if let Some(mesh) = draft.mesh().filter(|mesh| mesh.is_guess && mesh.up != UpAxis::Y) {
             let (up, format) = (mesh.up.name(), mesh.format);
             warn(format!(
@@ -126,12 +126,12 @@ impl CameraArgs {
         up: Option<UpAxis>,
         reporter: &Reporter<'_>,
     ) -> Result<Draft, Failure> {
-        let draft = self.load_with_own_camera(source, up.or(self.mesh_up), reporter)?;
+        let draft = self.load_without_camera_flags(source, up.or(self.mesh_up), reporter)?;
         let camera = self.camera(draft.camera()).map_err(usage)?;
         Ok(draft.with_camera(camera))
     }
 
-    fn load_with_own_camera(
+    fn load_without_camera_flags(
         &self,
         source: &SceneSource,
         up: Option<UpAxis>,

@@ -17,7 +17,7 @@
 //! gains another tenth of the quality in forty times the time.
 
 use super::differences::Differences;
-use super::halves::{Halves, half_block_cell};
+use super::halves::{Halves, half_block_cell_with_glyph_of};
 use super::moves::CellPosition;
 use crate::grid::{Grid, HalfBlocks, PackedCell, PackedInk};
 use colors::Palette;
@@ -203,7 +203,7 @@ impl Scratch {
         self.replaced.clear();
         self.changed.clear();
         for cell in &self.cells {
-            let new = half_block_cell(cell.halves, frame.wanted.packed()[cell.at]);
+            let new = half_block_cell_with_glyph_of(cell.halves, frame.wanted.packed()[cell.at]);
             let old = frame.shown.packed()[cell.at];
             if old != new {
                 frame.shown.set_packed(cell.at, new);

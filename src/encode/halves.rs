@@ -52,7 +52,7 @@ pub(super) const UPPER_HALF: u32 = '▀' as u32;
 
 /// Returns a cell that shows these halves, with the half block of `wanted`.
 #[inline]
-pub(super) fn half_block_cell([upper, lower]: Halves, wanted: PackedCell) -> PackedCell {
+pub(super) fn half_block_cell_with_glyph_of([upper, lower]: Halves, wanted: PackedCell) -> PackedCell {
     if upper == lower {
         PackedCell::new(' ', PackedInk::DEFAULT, upper)
     } else if wanted.has_char('▀') {

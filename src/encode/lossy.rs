@@ -11,7 +11,7 @@ use super::Quality;
 use super::change_times::ChangeTimes;
 use super::differences::Differences;
 use super::eights::ColorList;
-use super::halves::{Halves, Tolerance, half_block_cell, squared_differences};
+use super::halves::{Halves, Tolerance, half_block_cell_with_glyph_of, squared_differences};
 use super::palette::Reduction;
 use crate::grid::{Grid, HalfBlocks, PackedInk};
 use std::cell::RefCell;
@@ -277,7 +277,7 @@ impl<'a> Plan<'a> {
         for at in written[..writes].iter().map(|written| written.at()) {
             let (place, halves) = (differences.places[at], differences.wanted[at]);
             if change_times.has_waited(place as usize) {
-                grid.set_packed(place as usize, half_block_cell(halves, wanted.packed()[place as usize]));
+                grid.set_packed(place as usize, half_block_cell_with_glyph_of(halves, wanted.packed()[place as usize]));
             } else {
                 inexact.push(place);
                 unsnapped.push(halves);
@@ -285,7 +285,7 @@ impl<'a> Plan<'a> {
         }
         self.snap(writes, used);
         for (&place, &halves) in self.scratch.inexact.iter().zip(&self.scratch.snapped) {
-            grid.set_packed(place as usize, half_block_cell(halves, wanted.packed()[place as usize]));
+            grid.set_packed(place as usize, half_block_cell_with_glyph_of(halves, wanted.packed()[place as usize]));
         }
     }
 

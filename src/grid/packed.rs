@@ -90,7 +90,7 @@ impl PartialEq for PackedCell {
 impl Eq for PackedCell {}
 
 /// The number of bits of a glyph.
-// The nine attributes and the flag for clusters take the other ten bits. A character needs 21.
+// The nine attributes and the flag for clusters take the other ten of the 32 bits. A character needs 21 of these 22.
 const GLYPH_BITS: u32 = 22;
 const GLYPH_MASK: u32 = (1 << GLYPH_BITS) - 1;
 const CLUSTER: u32 = 1 << 31;

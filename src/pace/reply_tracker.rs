@@ -22,10 +22,11 @@ const SLOW_RTO_MARGIN: Duration = Duration::from_millis(300);
 // With this timeout the effect of a key that is pressed at once is visible within 500 ms. With a shorter one, more
 // would be sent to a terminal that is still busy starting.
 const FIRST_RTO: Duration = Duration::from_millis(400);
-/// Time after a timeout until a terminal that has not replied is considered silent: two more
+/// Time after a timeout until a terminal that has replied before is considered silent: two more
 /// timeouts.
 const SILENCE_TIMEOUT: Duration = Duration::from_millis(300);
-/// Time after a timeout on a slow link until a terminal that has not replied is considered silent.
+/// Time after a timeout until a terminal on a slow link that has replied before is considered
+/// silent.
 // Longer than on a fast link: if the terminal merely pauses, the frames that are sent to it would occupy a slow link
 // for seconds.
 const SLOW_SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
@@ -33,8 +34,8 @@ const SLOW_SILENCE_TIMEOUT: Duration = Duration::from_secs(1);
 ///
 /// The terminal is then considered silent a second after the first frame: [`FIRST_RTO`] plus this time.
 const FIRST_SILENCE_TIMEOUT: Duration = Duration::from_millis(600);
-/// Time after a timeout until a terminal that has not replied is considered silent, at unknown
-/// rate.
+/// Time after a timeout until a terminal that has replied before is considered silent, while the
+/// rate is unknown.
 ///
 /// Until then small frames show the effect of keys (see [`InitialWindow`]).
 // The first picture, of 15 KB, may still be on its way through a link of 2 KB/s, in which full frames would queue for

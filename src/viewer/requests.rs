@@ -78,7 +78,7 @@ impl Viewer {
     /// Returns the job that traces the large picture of the wanted view, and the position of the
     /// line between the two maps of a wipe, as a share of the width.
     pub(crate) fn large_picture_job(&self) -> Option<(Job, f32)> {
-        let (scene, shot) = self.scene_at_current_time().zip(self.wanted_shot())?;
+        let (scene, shot) = self.scene_at_current_time().zip(self.current_shot())?;
         let resolution = large_resolution(shot.resolution);
         // The file has pixels, so it needs neither the geometry that glyphs show nor the comparison that a panel
         // explains.

@@ -42,7 +42,7 @@ enum Split {
 }
 
 impl ViewLayout {
-    /// Returns the layout with a single map.
+    /// Creates a layout of one view, which shows `map`.
     pub(super) fn single(map: Map) -> Self {
         Self { map, right: None }
     }

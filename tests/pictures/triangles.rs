@@ -513,7 +513,7 @@ fn a_tree_is_never_too_deep_for_its_stack() {
     let ray = Ray { origin: Vec3::ZERO, direction: Vec3::new(1.0, 1.0, 0.0) };
     let mut count = Count(&leaves, 0);
     let rays = Rays::<F32x8>::load(&EightRays::of(&[ray]), false);
-    bvh.visit(bvh.root().unwrap(), &rays, Interval::IN_FRONT, &mut RayStack::default(), &mut count);
+    bvh.visit_by_single_ray(bvh.root().unwrap(), &rays, Interval::IN_FRONT, &mut RayStack::default(), &mut count);
     assert_eq!(count.1, boxes.len(), "the ray meets them all");
 }
 

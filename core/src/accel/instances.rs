@@ -43,7 +43,7 @@ pub(crate) struct Instance {
     pub(crate) mesh: Arc<Mesh>,
     /// The tree over the triangles of the mesh, in the coordinates of its file.
     pub(crate) triangles: Arc<Tree<TriangleN<F32x8>>>,
-    /// The index of the first primitive.
+    /// The index of this instance's first primitive in the scene.
     pub(crate) first: u32,
 }
 

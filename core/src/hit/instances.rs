@@ -40,7 +40,7 @@ impl<N: Lanes, const ANY: bool, W: Observer> SimdKernel for SearchOn<'_, N, ANY,
         let mut visitor = InInstances { stack: stack.take_inner(), search };
         match bvh.root() {
             // As in `single::Search`, all leaves are tested for intervals with negative t, which are rare.
-            Some(root) if within.min >= 0.0 => bvh.visit(root, rays, within, stack, &mut visitor),
+            Some(root) if within.min >= 0.0 => bvh.visit_by_single_ray(root, rays, within, stack, &mut visitor),
             _ => {
                 let leaves = 0..visitor.search.instances.leaves.len();
                 let _ = leaves.into_iter().try_for_each(|leaf| visitor.visit(leaf).map_continue(|_| ()));
@@ -100,7 +100,7 @@ impl<N: Lanes, const ANY: bool, W: Observer> Search<'_, N, ANY, W> {
         let observer = &mut *self.observer;
         let mut visitor = InMesh::<N, ANY, W> { rays: &rays, tree, within, found: None, instance, passage, observer };
         match tree.bvh.root() {
-            Some(root) if within.min >= 0.0 => tree.bvh.visit(root, &rays, within, stack, &mut visitor),
+            Some(root) if within.min >= 0.0 => tree.bvh.visit_by_single_ray(root, &rays, within, stack, &mut visitor),
             _ => {
                 let _ = (0..tree.leaves.len()).try_for_each(|leaf| visitor.visit(leaf).map_continue(|_| ()));
             }

@@ -21,7 +21,7 @@ pub trait Observer {
 pub struct PrimitiveTest {
     /// The index of the object in [`Scene::objects`](crate::scene::Scene::objects).
     pub object: u32,
-    /// The index of the [primitive](crate::shape::Shape::primitive) in the object's shape.
+    /// The index of the tested [primitive](crate::shape::Shape::primitive) in the object's shape.
     pub primitive: u32,
     /// The ray's first crossing of the primitive within the interval; it may lie beyond the closest
     /// hit.

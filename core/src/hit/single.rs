@@ -201,7 +201,7 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> SimdKernel for Search<'
         let (rays, within) = (ray.rays.splat_lane(ray.lane), ray.within);
         let mut there = InTree { ray, rays: &rays, tree };
         if within.min >= 0.0 {
-            tree.bvh.visit(from, &rays, within, stack, &mut there);
+            tree.bvh.visit_by_single_ray(from, &rays, within, stack, &mut there);
         } else {
             // Traversal assumes t >= 0. Intervals with negative t are too rare for a traversal of their own: every
             // leaf is tested instead.

@@ -324,7 +324,7 @@ impl ObjReader<'_, '_> {
             && !is_no_material(name)
         {
             let name = shown(name);
-            if !self.side_files.warn_if_allowed(&format!("colours missing: material {name} is in no MTL file")) {
+            if !self.side_files.warn_instead_of_error(&format!("colours missing: material {name} is in no MTL file")) {
                 let message = format!("material {name} is not in any MTL file named above this line");
                 return Err(self.side_files.left_out.never_left_out(MeshFault::in_text(at, message)));
             }
@@ -354,7 +354,7 @@ impl ObjReader<'_, '_> {
         let library = self.library.get_or_insert_default();
         let path = match side_file_path(Path::new(""), name) {
             Ok(path) => path,
-            Err(message) if self.side_files.warn_if_allowed(&format!("materials missing: {message}")) => {
+            Err(message) if self.side_files.warn_instead_of_error(&format!("materials missing: {message}")) => {
                 library.record_missing(PathBuf::from(name));
                 return Ok(Ok(()));
             }

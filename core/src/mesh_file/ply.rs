@@ -80,7 +80,7 @@ fn materials(header: &Header<'_>, side_files: &mut SideFiles<'_>) -> Result<Vec<
             Ok(None) => (CLAY, None),
             Err(message) => {
                 let message = format!("the texture {name} is missing: {message}");
-                if !side_files.warn_if_allowed(&message) {
+                if !side_files.warn_instead_of_error(&message) {
                     return Err(MeshFault::of_file(message));
                 }
                 (CLAY, None)

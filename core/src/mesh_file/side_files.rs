@@ -69,7 +69,7 @@ impl<'a> SideFiles<'a> {
             let beside = (self.open)(name);
             opened = if beside.is_ok() { beside } else { opened };
         }
-        if is_missing(&opened) && self.warn_if_allowed(&format!("{what} missing: {}", path.to_string_lossy())) {
+        if is_missing(&opened) && self.warn_instead_of_error(&format!("{what} missing: {}", path.to_string_lossy())) {
             return Ok(None);
         }
         self.counted_bytes(path, opened).map(Some)
@@ -78,7 +78,7 @@ impl<'a> SideFiles<'a> {
     /// Warns of colours that are not shown, once with each message.
     ///
     /// Returns false if the caller should return an error.
-    pub(super) fn warn_if_allowed(&mut self, message: &str) -> bool {
+    pub(super) fn warn_instead_of_error(&mut self, message: &str) -> bool {
         // Many materials of a library may name the same texture, which gives the same message.
         if self.warnings.contains(message) {
             return true;
@@ -88,7 +88,7 @@ impl<'a> SideFiles<'a> {
             return true;
         }
         let is_taken =
-            self.reporter.warn_if_allowed(|| visible(&format!("{}: {message}", self.mesh.to_string_lossy())));
+            self.reporter.warn_instead_of_error(|| visible(&format!("{}: {message}", self.mesh.to_string_lossy())));
         if is_taken {
             self.warnings.insert(message.to_owned());
         }
@@ -103,7 +103,7 @@ impl<'a> SideFiles<'a> {
         if let Unfinished::Failed(error) = &fault {
             let is_in_mesh = Path::new(error.name()) == self.mesh;
             let message = if is_in_mesh { error.message().to_owned() } else { error.to_string() };
-            if self.warn_if_allowed(&format!("colours missing: {message}")) {
+            if self.warn_instead_of_error(&format!("colours missing: {message}")) {
                 return Ok(());
             }
         }
