@@ -504,7 +504,7 @@ struct FrameMemory {
 struct Writing {
     changed: Vec<CellPosition>,
     order: Vec<CellPosition>,
-    by_color: by_color::Scratch,
+    by_color: by_color::OrderScratch,
     strokes: Strokes,
 }
 

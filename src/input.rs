@@ -54,8 +54,8 @@ use csi::Meaning;
 use paste::Paste;
 pub use paste::{MAX_PASTE_BYTES, MAX_PASTE_WAITS};
 pub use reply::Reply;
-use state::{ControlString, State};
-use token::{Token, Tokeniser};
+use state::{ControlString, ParserState};
+use token::{InputToken, Tokeniser};
 
 /// Limit on the bytes of an OSC, DCS or APC string. A longer string is dropped as a whole.
 // Longer strings are not truncated, because a truncated reply could have another meaning. The longest reply in use has
@@ -98,7 +98,7 @@ impl From<KeyEvent> for Input {
 #[derive(Default)]
 pub struct Parser {
     tokeniser: Tokeniser,
-    state: State,
+    state: ParserState,
     /// Whether an additional ESC precedes the current sequence.
     ///
     /// The additional ESC means Alt if the sequence is a key; otherwise it is reported as the Escape key.
@@ -155,7 +155,7 @@ impl Parser {
     /// The caller then waits a short time (some 50 ms) for more bytes, and calls [`Parser::time_out`] if none
     /// arrive.
     pub fn is_waiting(&self) -> bool {
-        self.state != State::Ground && self.late.is_none()
+        self.state != ParserState::Ground && self.late.is_none()
     }
 
     /// Reports a timeout: a lone `ESC` becomes the Escape key, and an incomplete sequence is
@@ -169,16 +169,20 @@ impl Parser {
         }
         self.release_escape(out);
         match self.state {
-            State::Escape if self.key_encoding == KeyEncoding::Legacy => {
+            ParserState::Escape if self.key_encoding == KeyEncoding::Legacy => {
                 out.push(key::escape_key().into());
                 self.reset();
             }
-            State::Escape | State::Ss3 | State::Csi | State::ControlString(_) | State::ControlStringEscape(_) => {
+            ParserState::Escape
+            | ParserState::Ss3
+            | ParserState::Csi
+            | ParserState::ControlString(_)
+            | ParserState::ControlStringEscape(_) => {
                 self.late = Some(MAX_LATE_BYTES);
             }
             // A paste ends only after several timeouts in a row, whereas a sequence ends at the first.
-            State::Paste if self.paste.survives_timeout() => {}
-            State::Paste => self.finish_paste(out),
+            ParserState::Paste if self.paste.survives_timeout() => {}
+            ParserState::Paste => self.finish_paste(out),
             _ => self.reset(),
         }
     }
@@ -188,16 +192,16 @@ impl Parser {
             self.reset();
         }
         match self.state {
-            State::Ground | State::Character => self.take_plain(byte, out),
-            State::Escape => self.take_after_escape(byte, out),
-            State::Ss3 => self.take_ss3(byte, out),
-            State::Csi => self.take_csi(byte, out),
-            State::LinuxFunction => self.take_linux_function(byte, out),
-            State::OldMouse => self.take_old_mouse(byte, out),
-            State::ControlString(kind) => self.take_control_string(kind, byte, out),
-            State::ControlStringEscape(kind) => self.take_control_string_escape(kind, byte, out),
-            State::Paste if self.paste.append_and_check_end(byte) => self.finish_paste(out),
-            State::Paste => {}
+            ParserState::Ground | ParserState::Character => self.take_plain(byte, out),
+            ParserState::Escape => self.take_after_escape(byte, out),
+            ParserState::Ss3 => self.take_ss3(byte, out),
+            ParserState::Csi => self.take_csi(byte, out),
+            ParserState::LinuxFunction => self.take_linux_function(byte, out),
+            ParserState::OldMouse => self.take_old_mouse(byte, out),
+            ParserState::ControlString(kind) => self.take_control_string(kind, byte, out),
+            ParserState::ControlStringEscape(kind) => self.take_control_string_escape(kind, byte, out),
+            ParserState::Paste if self.paste.append_and_check_end(byte) => self.finish_paste(out),
+            ParserState::Paste => {}
         }
     }
 
@@ -212,12 +216,12 @@ impl Parser {
         match self.state {
             // Only a byte that begins a sequence continues a late ESC. Any other byte is more likely a key typed later
             // than one pressed with Alt.
-            State::Escape => matches!(byte, b'[' | b'O' | b']' | b'P' | b'_'),
+            ParserState::Escape => matches!(byte, b'[' | b'O' | b']' | b'P' | b'_'),
             // The first byte of a string tells a reply from most typed text: an OSC reply begins with a digit, a DCS
             // reply with a byte from 0x20 to 0x3f, and an APC reply with `G`.
-            State::ControlString(kind) if self.text.is_empty() => kind.may_begin_with(byte),
-            State::ControlString(_) => byte >= 0x20 || byte == BEL || byte == ESC,
-            State::ControlStringEscape(_) => byte == b'\\',
+            ParserState::ControlString(kind) if self.text.is_empty() => kind.may_begin_with(byte),
+            ParserState::ControlString(_) => byte >= 0x20 || byte == BEL || byte == ESC,
+            ParserState::ControlStringEscape(_) => byte == b'\\',
             _ => byte >= 0x20,
         }
     }
@@ -230,7 +234,7 @@ impl Parser {
 
     /// Returns to the ground state after a complete sequence.
     fn forget_sequence(&mut self) {
-        self.state = State::Ground;
+        self.state = ParserState::Ground;
         self.escaped = false;
         self.alt = false;
         self.overflow = false;
@@ -266,7 +270,7 @@ impl Parser {
         if byte == ESC {
             // Drops an incomplete UTF-8 character before the ESC.
             self.reset();
-            self.state = State::Escape;
+            self.state = ParserState::Escape;
             return;
         }
         let tokens = self.tokeniser.advance(byte, &[]);
@@ -277,7 +281,7 @@ impl Parser {
             0x80..=0xbf => tokens.is_empty(),
             _ => false,
         };
-        self.state = if unfinished { State::Character } else { State::Ground };
+        self.state = if unfinished { ParserState::Character } else { ParserState::Ground };
         for token in tokens {
             let alt = std::mem::take(&mut self.alt);
             self.report_plain(&token, alt, out);
@@ -294,14 +298,14 @@ impl Parser {
             }
             b'[' => {
                 self.tokeniser.begin_csi();
-                self.state = State::Csi;
+                self.state = ParserState::Csi;
             }
-            b'O' => self.state = State::Ss3,
-            b']' => self.state = State::ControlString(ControlString::Osc),
-            b'P' => self.state = State::ControlString(ControlString::Dcs),
-            b'_' => self.state = State::ControlString(ControlString::Apc),
+            b'O' => self.state = ParserState::Ss3,
+            b']' => self.state = ParserState::ControlString(ControlString::Osc),
+            b'P' => self.state = ParserState::ControlString(ControlString::Dcs),
+            b'_' => self.state = ParserState::ControlString(ControlString::Apc),
             // These strings are never replies, but their contents must not be parsed as keys.
-            b'X' | b'^' => self.state = State::ControlString(ControlString::Other),
+            b'X' | b'^' => self.state = ParserState::ControlString(ControlString::Other),
             _ => {
                 self.release_escape(out);
                 self.alt = true;
@@ -331,7 +335,7 @@ impl Parser {
         let mut meaning = None;
         for token in self.tokeniser.advance(byte, &self.text) {
             match token {
-                Token::Csi(csi) => meaning = Some(csi),
+                InputToken::Csi(csi) => meaning = Some(csi),
                 other => self.report_plain(&other, false, out),
             }
         }
@@ -365,7 +369,7 @@ impl Parser {
         match byte {
             ESC => {
                 self.late = None;
-                self.state = State::ControlStringEscape(kind);
+                self.state = ParserState::ControlStringEscape(kind);
             }
             // BEL ends an OSC string in xterm, and in most terminals if the query ended with it too.
             BEL if kind == ControlString::Osc => self.finish_text(kind, out),
@@ -383,7 +387,7 @@ impl Parser {
         // An ESC without `\` aborts the string and starts another sequence.
         self.release_escape(out);
         self.reset();
-        self.state = State::Escape;
+        self.state = ParserState::Escape;
         self.take_after_escape(byte, out);
     }
 
@@ -429,17 +433,17 @@ impl Parser {
             Meaning::Reply(reply) => out.push(Input::Reply(reply)),
             // A mouse report that was completed after a timeout is dropped: its click may be seconds old.
             Meaning::Event(event) if !late => out.push(Input::Event(event)),
-            Meaning::PasteStart => self.state = State::Paste,
-            Meaning::OldMouse => self.state = State::OldMouse,
+            Meaning::PasteStart => self.state = ParserState::Paste,
+            Meaning::OldMouse => self.state = ParserState::OldMouse,
             Meaning::LinuxFunction => {
                 self.escaped = escaped;
-                self.state = State::LinuxFunction;
+                self.state = ParserState::LinuxFunction;
             }
             Meaning::Event(_) | Meaning::Key(_) | Meaning::Nothing => {}
         }
     }
 
-    fn report_plain(&self, token: &Token, alt: bool, out: &mut Vec<Input>) {
+    fn report_plain(&self, token: &InputToken, alt: bool, out: &mut Vec<Input>) {
         let Some(mut key) = plain_key(token) else { return };
         if alt {
             key.modifiers |= KeyModifiers::ALT;
@@ -454,10 +458,10 @@ impl Parser {
 }
 
 /// Returns the key of a character or control character; `None` if no key types it.
-fn plain_key(token: &Token) -> Option<KeyEvent> {
+fn plain_key(token: &InputToken) -> Option<KeyEvent> {
     match *token {
-        Token::Print(c) => key::from_char(c),
-        Token::Control(byte) => key::from_control(byte),
-        Token::Csi(_) => None,
+        InputToken::Print(c) => key::from_char(c),
+        InputToken::Control(byte) => key::from_control(byte),
+        InputToken::Csi(_) => None,
     }
 }

@@ -52,7 +52,7 @@ mod ledger;
 mod reply_tracker;
 
 use estimates::Rate;
-use reply_tracker::{ReplyTracker, State};
+use reply_tracker::{ReplyState, ReplyTracker};
 
 /// A link is slow if it transmits fewer than this many screens per second.
 // Below about 16 pictures a second, motion is seen as a sequence of pictures.
@@ -179,9 +179,11 @@ impl Link {
     /// arrives before.
     fn replies_allow_frame_at(&self, now: Duration) -> Duration {
         match self.replies.state {
-            State::Resyncing { .. } if self.replies.uses_initial_window() => self.replies.initial_window.opens_at(true),
-            State::Unqueried | State::Silent | State::Resyncing { .. } => Duration::ZERO,
-            State::Recovering { until } => {
+            ReplyState::Resyncing { .. } if self.replies.uses_initial_window() => {
+                self.replies.initial_window.opens_at(true)
+            }
+            ReplyState::Unqueried | ReplyState::Silent | ReplyState::Resyncing { .. } => Duration::ZERO,
+            ReplyState::Recovering { until } => {
                 let opens_at = if self.replies.uses_initial_window() {
                     self.replies.initial_window.opens_at(self.replies.last_reply.is_some())
                 } else {
@@ -189,7 +191,7 @@ impl Link {
                 };
                 opens_at.max(self.replies.times_out_at().unwrap_or_default()).min(until)
             }
-            State::Unanswered | State::Steady => self.window_opens_at(now),
+            ReplyState::Unanswered | ReplyState::Steady => self.window_opens_at(now),
         }
     }
 
@@ -260,7 +262,7 @@ impl Link {
         self.replies.check_timeouts(now);
         if self.replies.frame_ends_with_query() {
             self.replies.append_query(frame, true, now);
-        } else if self.replies.state == State::Steady {
+        } else if self.replies.state == ReplyState::Steady {
             self.replies.ledger.record_unqueried(frame.len(), now);
         }
         self.replies.spend_initial_window(frame.len(), now);
@@ -307,7 +309,8 @@ impl Link {
     fn advance_send_times(&mut self, bytes: usize, now: Duration) {
         let measured = self.replies.rates.best().filter(|rate| rate.is_limit || self.is_slow());
         // During a resync no reply corrects an estimate that is too high, so only half of the usual share is sent.
-        let share = if matches!(self.replies.state, State::Resyncing { .. }) { PACING_GAIN / 2.0 } else { PACING_GAIN };
+        let share =
+            if matches!(self.replies.state, ReplyState::Resyncing { .. }) { PACING_GAIN / 2.0 } else { PACING_GAIN };
         let measured = measured.map_or(f64::INFINITY, |rate| share * rate.bytes_per_second);
         let rate = measured.min(self.max_rate.unwrap_or(f64::INFINITY));
         let takes = Duration::try_from_secs_f64(bytes as f64 / rate).unwrap_or(FALLBACK_TRANSMISSION_TIME);

@@ -385,7 +385,7 @@ fn refusal_log_text(refusal: Refusal) -> &'static str {
 }
 
 /// Serves one connection, and closes it if the client does not log in or request anything in time.
-async fn connect(state: Arc<SharedState>, config: Arc<Config>, stream: TcpStream, entry: limits::Entry) {
+async fn connect(state: Arc<SharedState>, config: Arc<Config>, stream: TcpStream, entry: limits::Admission) {
     let (login_time, idle) = (state.settings.login_time, state.settings.idle);
     let socket = Socket::new(stream, state.settings.patience);
     let (closer, buffers) = (socket.closer(), Arc::new(SessionBuffers::default()));

@@ -142,7 +142,7 @@ pub(crate) enum Request {
 
 /// The driver's next action.
 #[allow(clippy::large_enum_variant, reason = "a step is taken where it is returned, and never stored")]
-pub(crate) enum Step {
+pub(crate) enum ViewerStep {
     /// Send the bytes that [`Viewer::draw`] appends.
     Draw,
     /// Send these bytes, if any; then trace this frame and pass it to [`Viewer::take_frame`].
@@ -437,7 +437,7 @@ impl Viewer {
     }
 
     /// Returns the driver's next action.
-    pub(crate) fn next_step(&mut self, busy: DriverState, now: Duration) -> Step {
+    pub(crate) fn next_step(&mut self, busy: DriverState, now: Duration) -> ViewerStep {
         self.set_now(now);
         self.playback.advance(now);
         // Gives the eye the scene at its current time, because a moving surface stops the eye where the surface is now.
@@ -453,12 +453,12 @@ impl Viewer {
         let fades_at = self.screen.close_faded_note(now);
         let builds_at = self.screen.advance_orders(now);
         match decide(&self.facts(busy), now) {
-            Action::CancelRefinement => Step::CancelRefinement,
-            Action::Draw => Step::Draw,
+            Action::CancelRefinement => ViewerStep::CancelRefinement,
+            Action::Draw => ViewerStep::Draw,
             Action::Trace => self.begin_new_view(),
             Action::Refine => self.begin_refinement(),
             // An incomplete escape sequence needs a wake-up of its own, because its other bytes may never arrive.
-            Action::Wait(until) => Step::Wait(
+            Action::Wait(until) => ViewerStep::Wait(
                 until
                     .into_iter()
                     .chain(self.receiver.sequence_times_out_at(now))
@@ -497,21 +497,21 @@ impl Viewer {
     /// Begins a frame of a shot that no frame has been begun for; returns the step that traces it.
     ///
     /// The step sends a query first, which measures the link's round trip without a frame's bytes.
-    fn begin_new_view(&mut self) -> Step {
+    fn begin_new_view(&mut self) -> ViewerStep {
         let Some((scene, shot)) = self.scene_at_current_time().zip(self.current_shot()) else {
-            return Step::Wait(None);
+            return ViewerStep::Wait(None);
         };
         let probe = self.pacing.probe(self.now);
         self.receiver.sent(&probe, self.now);
         let sampling = self.pacing.begin_frame(shot, self.is_picture_moving(), self.now);
-        Step::Trace(probe, Job { scene, shot, sampling: self.layout.sampling(sampling), refines: false })
+        ViewerStep::Trace(probe, Job { scene, shot, sampling: self.layout.sampling(sampling), refines: false })
     }
 
     /// Returns the step that traces the next refinement of the last frame.
-    fn begin_refinement(&self) -> Step {
+    fn begin_refinement(&self) -> ViewerStep {
         let wanted = self.scene_at_current_time().zip(self.current_shot()).zip(self.next_refinement());
-        let Some(((scene, shot), sampling)) = wanted else { return Step::Wait(None) };
-        Step::Trace(Vec::new(), Job { scene, shot, sampling, refines: true })
+        let Some(((scene, shot), sampling)) = wanted else { return ViewerStep::Wait(None) };
+        ViewerStep::Trace(Vec::new(), Job { scene, shot, sampling, refines: true })
     }
 
     /// Returns the shown scene at its current time, with its lights as moved by the user.

@@ -145,7 +145,7 @@ macro_rules! accelerator {
             ///
             /// Instances are last, if there are any.
             #[inline(always)]
-            pub(crate) fn visit<'a>(&'a self, visitor: &mut impl Visitor<'a>) {
+            pub(crate) fn visit<'a>(&'a self, visitor: &mut impl ListVisitor<'a>) {
                 $($(#[$on])* { by_group! { list in $group visitor.visit_list(&self.$name); } })*
                 $($(#[$on])* { by_group! { tree in $group visitor.visit_tree(&self.$name); } })*
                 visitor.visit_tree(&self.scalars);
@@ -226,7 +226,7 @@ macro_rules! accelerator {
 surfaces_in_parts! { accelerator }
 
 /// A visitor of all lists and trees.
-pub(crate) trait Visitor<'a> {
+pub(crate) trait ListVisitor<'a> {
     /// Visits the unbounded primitives of one kind.
     fn visit_list<S: Endless>(&mut self, list: &'a List<S>);
 
@@ -368,7 +368,7 @@ impl Accelerator {
     /// Returns the size of the trees and lists in bytes.
     pub(crate) fn bytes(&self) -> usize {
         struct Sum(usize);
-        impl<'a> Visitor<'a> for Sum {
+        impl<'a> ListVisitor<'a> for Sum {
             fn visit_list<S: Endless>(&mut self, list: &'a List<S>) {
                 self.0 += size_of_val(&list.primitives[..]);
             }
@@ -392,7 +392,7 @@ impl Accelerator {
     #[inline(always)]
     pub(crate) fn id(&self, primitive: u32) -> PrimitiveId {
         struct Find(u32, PrimitiveId);
-        impl<'a> Visitor<'a> for Find {
+        impl<'a> ListVisitor<'a> for Find {
             #[inline(always)]
             fn visit_list<S: Endless>(&mut self, list: &'a List<S>) {
                 if list.contains(self.0) {

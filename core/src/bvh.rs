@@ -18,7 +18,7 @@ mod build;
 mod packet;
 
 pub use build::MIN_TASK_ITEMS;
-pub use packet::{GROUPS, Packet, Visitor};
+pub use packet::{GROUPS, Packet, PacketVisitor};
 
 /// A bounding volume hierarchy over boxes, which are identified by their indices.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,7 +5,7 @@
 
 mod text;
 
-pub use crate::shape::{Equation, Step};
+pub use crate::shape::{Equation, EquationStep};
 pub use text::{MAX_LINE_WIDTH, SurfaceName};
 
 use crate::camera::Camera;

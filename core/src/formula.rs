@@ -15,7 +15,7 @@ mod point;
 mod roots;
 mod tape;
 
-pub(crate) use parse::{Fault, is_free_name};
+pub(crate) use parse::{FormulaFault, is_free_name};
 pub(crate) use roots::{Line, Searches, Solver};
 
 use std::sync::Arc;
@@ -35,7 +35,7 @@ impl Formula {
     ///
     /// # Errors
     /// The first fault, with its range of bytes in `text`.
-    pub(crate) fn parse(text: &str, params: &[(String, f64)]) -> Result<Self, Fault> {
+    pub(crate) fn parse(text: &str, params: &[(String, f64)]) -> Result<Self, FormulaFault> {
         let tape = parse::parse(text, params)?;
         if tape.moves() {
             return Ok(Self { tape: tape.at_time(0.0), moving: Some(Arc::new(tape)) });

@@ -31,7 +31,7 @@ mod document;
 pub(crate) use document::read_or_cancel;
 #[cfg(feature = "ron")]
 pub use document::{read, text_from};
-pub use fault::{Fault, Faults, Report, SceneError, line_and_column};
+pub use fault::{Fault, FaultReport, Faults, SceneError, line_and_column};
 pub use fault::{clipped, quoted};
 #[cfg(feature = "ron")]
 pub use parser::parse;

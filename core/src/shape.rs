@@ -49,7 +49,7 @@ pub use cylinder::Cylinder;
 pub use described::Described;
 pub use disk::Disk;
 pub use ellipsoid::Ellipsoid;
-pub use equation::{Equation, Step};
+pub use equation::{Equation, EquationStep};
 pub use implicit::Implicit;
 #[cfg(feature = "ron")]
 pub(crate) use instance::CornerCells;

@@ -30,14 +30,14 @@ type Written = io::Result<Option<String>>;
 
 /// A large picture in progress. Dropping it cancels it, and leaves no file.
 pub(super) struct LargePicture {
-    shared: Arc<Shared>,
+    shared: Arc<SharedPicture>,
     ended: Receiver<Result<Written, Box<dyn Any + Send>>>,
     thread: Option<JoinHandle<()>>,
 }
 
 /// The state that the live view's loop shares with the thread that traces the picture.
 #[derive(Default)]
-struct Shared {
+struct SharedPicture {
     token: Cancellation,
     /// The percentage of the picture that is done.
     percent: AtomicU32,
@@ -74,7 +74,7 @@ impl LargePicture {
     /// If there is not enough memory, or no thread can be started.
     pub(super) fn start(picture_job: LargePictureJob, mut waker: Waker) -> io::Result<Self> {
         memory::check(BYTES_PER_PIXEL * picture_job.job.shot.resolution.pixel_count())?;
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(SharedPicture::default());
         let (done, ended) = channel();
         let of_thread = Arc::clone(&shared);
         let for_progress = Mutex::new(waker.try_clone()?);
@@ -129,7 +129,7 @@ impl Drop for LargePicture {
     }
 }
 
-impl Shared {
+impl SharedPicture {
     fn write(&self, picture_job: &LargePictureJob, waker: &Mutex<Waker>) -> Written {
         let Some(picture) = self.traced(picture_job, waker) else { return Ok(None) };
         let file = png(&picture, 1.0, 1).map_err(io::Error::other)?;

@@ -17,7 +17,7 @@ use crate::camera::Camera;
 use crate::export::Format;
 use crate::terminal::{self, Signals, StopTarget, Terminal};
 use crate::text::Notice;
-use crate::viewer::{Activity, DriverState, FIRST_FRAME_MOTION, Request, Step, Tracing, Viewer};
+use crate::viewer::{Activity, DriverState, FIRST_FRAME_MOTION, Request, Tracing, Viewer, ViewerStep};
 use std::io;
 use std::ops::ControlFlow;
 use std::panic::resume_unwind;
@@ -157,9 +157,9 @@ impl Live {
         loop {
             let busy = DriverState { sending: self.terminal.is_sending(), tracing: renderer.tracing() };
             match self.viewer.next_step(busy, self.clock.now()) {
-                Step::Wait(until) => return Ok(until),
-                Step::CancelRefinement => renderer.cancel_refinements(),
-                Step::Draw => {
+                ViewerStep::Wait(until) => return Ok(until),
+                ViewerStep::CancelRefinement => renderer.cancel_refinements(),
+                ViewerStep::Draw => {
                     self.bytes.clear();
                     let now = self.clock.now();
                     self.viewer.draw(now, &mut self.bytes);
@@ -169,7 +169,7 @@ impl Live {
                     self.viewer.add_frame_queries(&mut self.bytes, self.clock.now());
                     self.terminal.send(&self.bytes)?;
                 }
-                Step::Trace(probe, job) => {
+                ViewerStep::Trace(probe, job) => {
                     self.terminal.send(&probe)?;
                     if job.refines {
                         terminal::report_phase("refinement")?;

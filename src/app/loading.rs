@@ -116,7 +116,7 @@ impl<E: Send + 'static> Loader<E> {
     /// ended.
     pub(super) fn start(threads: Option<usize>, waker: Waker) -> io::Result<Self> {
         let (requests, queue) = channel();
-        Worker { queue: Arc::new(Mutex::new(queue)), threads, waker: Arc::new(Mutex::new(waker)) }.start()?;
+        LoadWorker { queue: Arc::new(Mutex::new(queue)), threads, waker: Arc::new(Mutex::new(waker)) }.start()?;
         Ok(Self { requests })
     }
 
@@ -138,7 +138,7 @@ struct LoadRequest<E> {
 }
 
 /// The state of the loading thread.
-struct Worker<E> {
+struct LoadWorker<E> {
     /// The requests, shared with earlier loading threads, which wait on pipes and take no more.
     queue: Arc<Mutex<Receiver<LoadRequest<E>>>>,
     threads: Option<usize>,
@@ -146,7 +146,7 @@ struct Worker<E> {
     waker: Arc<Mutex<Waker>>,
 }
 
-impl<E: Send + 'static> Worker<E> {
+impl<E: Send + 'static> LoadWorker<E> {
     fn start(self) -> io::Result<()> {
         let thread = thread::Builder::new().name("load".to_owned());
         terminal::without_signals(|| thread.spawn(|| self.load_all())).map(drop)

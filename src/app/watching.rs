@@ -29,12 +29,12 @@ pub(super) struct Watching {
     folders: HashMap<PathBuf, Identity>,
     /// The reason why a folder could not be watched, if there is one.
     problem: Option<String>,
-    shared: Arc<Mutex<Shared>>,
+    shared: Arc<Mutex<SharedChanges>>,
 }
 
 /// The state that the event loop shares with the watching thread, which sets `change`.
 #[derive(Default)]
-struct Shared {
+struct SharedChanges {
     /// The folders and symbolic links on the paths to the scene's files.
     ///
     /// If one of them changes, a path may lead to another file.
@@ -69,7 +69,7 @@ impl Watching {
     /// Starts the watching thread, without any folder to watch.
     pub(super) fn start(mut waker: Waker) -> Result<Self, String> {
         terminal::report_phase("watching").map_err(|error| error.to_string())?;
-        let shared = Arc::<Mutex<Shared>>::default();
+        let shared = Arc::<Mutex<SharedChanges>>::default();
         let theirs = Arc::clone(&shared);
         let hear = move |event: notify::Result<Event>| {
             let mut shared = lock(&theirs);
@@ -206,11 +206,11 @@ impl Watching {
     }
 }
 
-fn lock(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
+fn lock(shared: &Mutex<SharedChanges>) -> MutexGuard<'_, SharedChanges> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Shared {
+impl SharedChanges {
     fn change_of(&self, event: &Event) -> FileChange {
         if event.need_rescan() {
             return FileChange::Written;

@@ -44,7 +44,7 @@ struct CellColorSums {
 /// A choice of the ink of a cell: its glyph, and the sum and number of the pixels inside.
 #[derive(Clone, Copy)]
 struct InkChoice {
-    shape: Shape,
+    shape: Coverage,
     sum: Sum,
     count: u32,
     /// The reduction of the squared error by a second colour, times the number of pixels.
@@ -52,7 +52,7 @@ struct InkChoice {
 }
 
 #[derive(Clone, Copy)]
-enum Shape {
+enum Coverage {
     Parts(usize),
     Eighths(char),
 }
@@ -115,8 +115,8 @@ impl Mosaic {
         let (fg, bg) = (inks.ink_at(fg, x, y + 1), inks.ink_at(bg, x, y));
         let glyph = match shape {
             _ if fg == bg => return Cell::new(' ', Ink::Default, bg),
-            Shape::Parts(mask) => (self.glyph)(mask as u8),
-            Shape::Eighths(glyph) => glyph,
+            Coverage::Parts(mask) => (self.glyph)(mask as u8),
+            Coverage::Eighths(glyph) => glyph,
         };
         Cell::new(glyph, fg, bg)
     }
@@ -125,7 +125,7 @@ impl Mosaic {
     // Only masks without the upper left part are tried, because a mask and its complement show the same picture. Of the
     // two half blocks this leaves the lower one, as in `half`.
     fn best(&self, sums: &CellColorSums, total: Sum, pixels: u32) -> InkChoice {
-        let mut best = InkChoice { shape: Shape::Parts(0), sum: [0; 3], count: 0, gain: 0.0 };
+        let mut best = InkChoice { shape: Coverage::Parts(0), sum: [0; 3], count: 0, gain: 0.0 };
         let mut consider = |shape, sum: Sum, count: u32| {
             let [r, g, b] = std::array::from_fn(|i| (pixels * sum[i]) as f32 - (count * total[i]) as f32);
             let gain = (r * r + g * g + b * b) / (count * (pixels - count)) as f32;
@@ -139,19 +139,19 @@ impl Mosaic {
             // The sum for a mask is that of the mask without its lowest part, plus that part.
             let rest = half & (half - 1);
             inside[half] = plus(inside[rest], sums.parts[half.trailing_zeros() as usize + 1]);
-            consider(Shape::Parts(half << 1), inside[half], half.count_ones() * part_pixels);
+            consider(Coverage::Parts(half << 1), inside[half], half.count_ones() * part_pixels);
         }
         if self.has_eighths {
             let mut lower = [0; 3];
             for ((glyph, row), rows) in ('▁'..='▇').zip(sums.rows.into_iter().rev()).zip(1..) {
                 lower = plus(lower, row);
-                consider(Shape::Eighths(glyph), lower, 4 * rows);
+                consider(Coverage::Eighths(glyph), lower, 4 * rows);
             }
             // Four columns of pixels can show only quarters from the left: `▎` and `▊`. The left half is already one of
             // the masks.
             let [left, .., right] = sums.columns;
-            consider(Shape::Eighths('▎'), left, 8);
-            consider(Shape::Eighths('▊'), minus(total, right), 24);
+            consider(Coverage::Eighths('▎'), left, 8);
+            consider(Coverage::Eighths('▊'), minus(total, right), 24);
         }
         best
     }

@@ -8,7 +8,7 @@ use super::json;
 use super::outcome::{CommandResult, Failure, reason, write_stdout};
 use super::settings::{NoConfig, Settings, TerminalArgs};
 use clap::{ArgMatches, Args};
-use report::{QueryOutcome, Report};
+use report::{DoctorReport, QueryOutcome};
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 use termtrace::internals::capabilities::{CellShape, Findings, SafeQueries};
@@ -54,7 +54,7 @@ pub(super) fn run(given: &ArgMatches) -> CommandResult {
     };
     let findings = Findings::new(&hints, cell, questions.replies());
     let report =
-        Report { settings: &settings, hints: &hints, findings: &findings, replies: questions.replies(), outcome };
+        DoctorReport { settings: &settings, hints: &hints, findings: &findings, replies: questions.replies(), outcome };
     if given.get_flag("json") {
         return json::print(&report::as_json(&report));
     }

@@ -17,7 +17,7 @@ use super::outcome::{CommandResult, Failure, usage};
 use super::picture::{parse_cell_aspect, parse_samples};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use entries::Entry;
+use entries::SettingEntry;
 use files::UserFile;
 use std::path::PathBuf;
 use termtrace::Sampling;
@@ -122,7 +122,8 @@ pub(super) fn read_as_flags(path: PathBuf, command: &Command) -> Result<ArgMatch
         termtrace::LoadError::Scene(error) => Scene(error),
         error => usage(error),
     })?;
-    let setting = |entry: &Entry| command.get_arguments().find(|setting| setting.get_id() == entry.name.as_str());
+    let setting =
+        |entry: &SettingEntry| command.get_arguments().find(|setting| setting.get_id() == entry.name.as_str());
     let entries = entries::read(&file, command).map_err(Scene)?;
     // The settings become command line arguments, so that clap checks them as it checks flags.
     let words = entries.iter().filter_map(|entry| Some(values::flag_with_value(setting(entry)?, &entry.text)));
@@ -250,7 +251,7 @@ fn value_from_environment(setting: &Arg) -> Option<GivenValue> {
     Some(("auto".to_owned(), SettingSource::Variable(name.to_owned())))
 }
 
-fn value_from_file(setting: &Arg, entries: &[Entry], file: &UserFile) -> Option<GivenValue> {
+fn value_from_file(setting: &Arg, entries: &[SettingEntry], file: &UserFile) -> Option<GivenValue> {
     let entry = entries.iter().find(|entry| setting.get_id() == entry.name.as_str())?;
     Some((entry.text.clone(), SettingSource::File(file.path.clone(), entry.line)))
 }

@@ -76,9 +76,9 @@ impl Keymap {
 
     /// Reports entries that have no effect, and a keymap in which no key but [`ALWAYS_QUITS`]
     /// quits.
-    fn check(&self, entries: &[Entry], faults: &mut Faults) {
+    fn check(&self, entries: &[KeymapEntry], faults: &mut Faults) {
         for (i, entry) in entries.iter().enumerate() {
-            let Entry { mode, key, .. } = *entry;
+            let KeymapEntry { mode, key, .. } = *entry;
             if entries[..i].iter().any(|before| (before.mode, before.key) == (mode, key)) {
                 faults.add(entry.span, || format!("{} is bound twice in {}", quoted_key(key), mode.name()));
             } else if key == ALWAYS_QUITS && entry.command != Some(Command::Quit) {
@@ -89,7 +89,7 @@ impl Keymap {
         }
         if !self.can_be_left() {
             let built_in = Self::default();
-            let takes_it = |entry: &&Entry| {
+            let takes_it = |entry: &&KeymapEntry| {
                 built_in.of(KeyMode::Always).any(|row| row.command == Command::Quit && row.keys.contains(&entry.key))
             };
             // Reported at the last entry that rebinds a built-in key of `Quit`, or at the start of the file if no entry
@@ -102,11 +102,11 @@ impl Keymap {
 
     /// Reports an entry of `always` that a binding of a higher mode hides, unless the file itself
     /// contains that binding and so intends it.
-    fn check_is_reached(&self, entry: &Entry, entries: &[Entry], faults: &mut Faults) {
-        let Entry { mode: KeyMode::Always, key, command: Some(command), span } = *entry else { return };
+    fn check_is_reached(&self, entry: &KeymapEntry, entries: &[KeymapEntry], faults: &mut Faults) {
+        let KeymapEntry { mode: KeyMode::Always, key, command: Some(command), span } = *entry else { return };
         // Explanation, light and dialogs are not checked: they hide keys on purpose while they are open.
         for above in [KeyMode::Fly, KeyMode::Orbit] {
-            let hides = |other: &Entry| other.mode == above && [key, key.without_shift()].contains(&other.key);
+            let hides = |other: &KeymapEntry| other.mode == above && [key, key.without_shift()].contains(&other.key);
             let meant = self.command(&[above, KeyMode::Always], &key.pressed()).map(|(meant, _)| meant);
             if let Some(meant) = meant.filter(|&meant| meant != command && !entries.iter().any(hides)) {
                 let (key, above, meant) = (quoted_key(key), above.name(), meant.name());
@@ -127,7 +127,7 @@ impl Keymap {
 }
 
 /// An entry of the file: a key in a mode, and its command, or `None` to unbind it.
-struct Entry {
+struct KeymapEntry {
     mode: KeyMode,
     key: Key,
     /// Position of the key in the file.
@@ -146,7 +146,7 @@ fn keys_as_ron(keys: &[Key]) -> String {
 }
 
 /// Reads the entries of `(mode: { key: command, ... }, ...)`.
-fn entries(root: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<Entry> {
+fn entries(root: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<KeymapEntry> {
     const FORM: &str = "modes with their keys, as in (fly: { \"8\": MoveForward })";
     let Some(fields) = root.fields() else {
         faults.add(root.head(), || format!("expected {FORM}"));
@@ -171,7 +171,7 @@ fn entries(root: &SyntaxNode<'_>, faults: &mut Faults) -> Vec<Entry> {
                             command => command,
                         },
                     };
-                    entries.extend(keys.into_iter().map(|(key, span)| Entry { mode, key, span, command }));
+                    entries.extend(keys.into_iter().map(|(key, span)| KeymapEntry { mode, key, span, command }));
                 }
             }
             (Some(_), _) => faults.add(value.head(), || format!("expected {FORM}")),

@@ -19,7 +19,7 @@ use std::ops::Range;
 
 /// The working memory of [`order`].
 #[derive(Default)]
-pub(super) struct Scratch {
+pub(super) struct OrderScratch {
     /// The cells of the picture, in reading order, with the colours of glyph and background.
     picture: Vec<(CellPosition, [PackedInk; 2])>,
     /// The index of the pair of each cell in `picture`.
@@ -39,7 +39,7 @@ pub(super) fn order(
     changed: &[CellPosition],
     half_blocks: HalfBlocks,
     pen: Pen,
-    scratch: &mut Scratch,
+    scratch: &mut OrderScratch,
     order: &mut Vec<CellPosition>,
 ) {
     order.clear();
@@ -88,7 +88,7 @@ struct Pair {
 
 /// A greedy tour over the pairs of colours.
 struct Tour<'a> {
-    place: Place,
+    place: PlacedCell,
     /// The colours whose pairs are tried next: those of the pen, if the picture has them.
     near: [Option<u32>; 2],
     /// The number of neighbours whose costs may still be computed.
@@ -105,7 +105,7 @@ struct Tour<'a> {
 
 /// The place where a tour has arrived: its pen, which has no attributes, and its cursor.
 #[derive(Clone, Copy)]
-struct Place {
+struct PlacedCell {
     half_blocks: HalfBlocks,
     /// The indices in `Tour::colors` of the pen's colours, for glyphs and for the background;
     /// `u32::MAX` for one that no cell of the picture has.
@@ -149,11 +149,11 @@ const MAX_NEIGHBOURS_PER_COLOR: usize = 64;
 const MEAN_LOOKUPS_PER_PAIR: usize = 8;
 
 impl<'a> Tour<'a> {
-    fn new(half_blocks: HalfBlocks, pen: Pen, cursor: Option<CellPosition>, scratch: &'a mut Scratch) -> Self {
-        let Scratch { inks, positions, pairs, colors, links, .. } = scratch;
+    fn new(half_blocks: HalfBlocks, pen: Pen, cursor: Option<CellPosition>, scratch: &'a mut OrderScratch) -> Self {
+        let OrderScratch { inks, positions, pairs, colors, links, .. } = scratch;
         let color_of = |ink: PackedInk| inks.get(ink).map(|color| color as u32);
         let plain = pen.after_attributes(Attributes::empty());
-        let place = Place {
+        let place = PlacedCell {
             half_blocks,
             pen: [plain.fg, plain.bg].map(|ink| color_of(ink).unwrap_or(u32::MAX)),
             code_len: pen.attributes_len(Attributes::empty()) as u32,
@@ -210,7 +210,7 @@ impl<'a> Tour<'a> {
             _ => order.extend_from_slice(positions),
         }
         let cursor = positions.last().and_then(|last| cursor_after(wanted, *last));
-        self.place = Place { pen, code_len: 0, cursor, ..self.place };
+        self.place = PlacedCell { pen, code_len: 0, cursor, ..self.place };
     }
 
     /// Removes a pair from the list of a colour, which has this place in the pair.
@@ -231,7 +231,7 @@ impl<'a> Tour<'a> {
     }
 }
 
-impl Place {
+impl PlacedCell {
     /// Returns the cheaper pair, with its cost in bytes: the `best` one so far or another.
     ///
     /// The cost of continuing the tour with a pair consists of the change of pen and the move to the pair's first cell.
@@ -269,7 +269,7 @@ impl Place {
     }
 }
 
-impl Scratch {
+impl OrderScratch {
     /// Lists the pairs of the picture's cells and their colours.
     fn list_pairs(&mut self, half_blocks: HalfBlocks) {
         let count = self.picture.len();

@@ -20,8 +20,8 @@ use super::differences::Differences;
 use super::halves::{Halves, half_block_cell_with_glyph_of};
 use super::moves::CellPosition;
 use crate::grid::{Grid, HalfBlocks, PackedCell, PackedInk};
-use colors::Palette;
-use pairs::{Colors, Pairs};
+use colors::FramePalette;
+use pairs::{PairColors, Pairs};
 use std::cell::RefCell;
 
 mod colors;
@@ -110,9 +110,9 @@ pub(super) struct CappedFrame<'a> {
 
 /// The working memory of a frame, which all encoders of a thread share.
 #[derive(Default)]
-struct Scratch {
+struct CappedScratch {
     active: Vec<ActiveCell>,
-    palette: Palette,
+    palette: FramePalette,
     pairs: Pairs,
     /// The cells to write.
     cells: Vec<WrittenCell>,
@@ -122,7 +122,7 @@ struct Scratch {
 }
 
 thread_local! {
-    static SCRATCH: RefCell<Scratch> = RefCell::default();
+    static SCRATCH: RefCell<CappedScratch> = RefCell::default();
 }
 
 /// A cell to write.
@@ -160,7 +160,7 @@ pub(super) fn draw(
     });
 }
 
-impl Scratch {
+impl CappedScratch {
     /// Chooses the cells at an exchange rate, and writes those that fit.
     ///
     /// Returns the number of bytes that all chosen cells would take.
@@ -174,7 +174,7 @@ impl Scratch {
         let Self { active, palette, pairs, .. } = self;
         find_active(frame.differences, rate, active);
         palette.choose(active, rate, radius);
-        let colors = Colors { palette, rate, half_blocks: frame.half_blocks };
+        let colors = PairColors { palette, rate, half_blocks: frame.half_blocks };
         pairs.choose(active, &colors, frame.wanted.size().columns.into());
         let (mut ranks, mut most_cells) = (pairs.ranks(), usize::MAX);
         let mut all = None;

@@ -18,7 +18,7 @@ use std::cell::RefCell;
 
 /// The working memory of a frame, which all encoders of a thread share.
 #[derive(Default)]
-struct Scratch {
+struct LossyScratch {
     small: SmallDifferences,
     /// The differences to write.
     written: Vec<WrittenDifference>,
@@ -62,7 +62,7 @@ impl WrittenDifference {
 }
 
 thread_local! {
-    static SCRATCH: RefCell<Scratch> = RefCell::default();
+    static SCRATCH: RefCell<LossyScratch> = RefCell::default();
 }
 
 /// The share of the full tolerance that the last frames could use, from 0.05 to 1.
@@ -135,7 +135,7 @@ impl Urgency {
 pub(super) struct Plan<'a> {
     frame: LossyFrame<'a>,
     tolerance: Tolerance,
-    scratch: &'a mut Scratch,
+    scratch: &'a mut LossyScratch,
     /// Whether the differences to write are in order, the most urgent first.
     is_sorted: bool,
 }
@@ -149,7 +149,7 @@ pub(super) fn with_plan<T>(frame: LossyFrame<'_>, draw: impl FnOnce(&mut Plan<'_
 const DISTANCE_ERROR: f32 = 4e-6;
 
 impl<'a> Plan<'a> {
-    fn new(frame: LossyFrame<'a>, scratch: &'a mut Scratch) -> Self {
+    fn new(frame: LossyFrame<'a>, scratch: &'a mut LossyScratch) -> Self {
         let tolerance = Tolerance { distance: frame.caps.distance - DISTANCE_ERROR, square: 0 };
         let mut plan = Self { tolerance, frame, scratch, is_sorted: false };
         plan.tolerance.square = plan.max_square();
@@ -206,7 +206,7 @@ impl<'a> Plan<'a> {
     /// Lists the differences to write, and their urgency.
     fn list_written(&mut self) {
         let Differences { places, squares, .. } = self.frame.differences;
-        let Scratch { small, written, waiting, .. } = &mut *self.scratch;
+        let LossyScratch { small, written, waiting, .. } = &mut *self.scratch;
         written.clear();
         waiting.clear();
         let mut pairs_of_bits = small.near.iter().flat_map(|mask| [0, 2, 4, 6].map(|place| mask >> place & 3));
@@ -237,7 +237,7 @@ impl<'a> Plan<'a> {
     /// Returns the places of the picture cells that are not exact after the last
     /// [`draw`](Self::draw) of `writes` differences.
     pub(super) fn inexact_cells(&self, writes: usize) -> impl Iterator<Item = usize> {
-        let Scratch { written, waiting, inexact, unsnapped, snapped, .. } = &*self.scratch;
+        let LossyScratch { written, waiting, inexact, unsnapped, snapped, .. } = &*self.scratch;
         let places = &self.frame.differences.places;
         let unwritten = written[writes..].iter().map(|written| places[written.at()]);
         let snapped = inexact.iter().zip(unsnapped.iter().zip(snapped));
@@ -271,7 +271,7 @@ impl<'a> Plan<'a> {
         }
         let LossyFrame { wanted, differences, change_times, .. } = self.frame;
         differences.copy_text(wanted, grid);
-        let Scratch { written, inexact, unsnapped, .. } = &mut *self.scratch;
+        let LossyScratch { written, inexact, unsnapped, .. } = &mut *self.scratch;
         inexact.clear();
         unsnapped.clear();
         for at in written[..writes].iter().map(|written| written.at()) {
@@ -298,7 +298,7 @@ impl<'a> Plan<'a> {
         let is_whole = writes >= self.min_writes(true);
         let max_squares = if is_whole { self.square_budget() - left as f64 } else { f64::INFINITY };
         let LossyFrame { pen, half_blocks, .. } = self.frame;
-        let Scratch { unsnapped, snapped, reduction, .. } = &mut *self.scratch;
+        let LossyScratch { unsnapped, snapped, reduction, .. } = &mut *self.scratch;
         let mut tolerance = self.tolerance;
         let full = f64::from(tolerance.square);
         if is_whole {

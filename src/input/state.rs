@@ -2,7 +2,7 @@
 
 /// The state of the parser, named as in the VT500 parser of Paul Williams.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum State {
+pub(super) enum ParserState {
     /// Between characters: nothing is incomplete.
     #[default]
     Ground,

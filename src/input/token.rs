@@ -12,7 +12,7 @@ use super::csi::{self, Meaning};
 
 /// A token completed by a byte.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Token {
+pub(super) enum InputToken {
     /// A character; U+FFFD for invalid bytes.
     Print(char),
     /// A control character.
@@ -29,37 +29,37 @@ impl Tokeniser {
     /// Puts the tokeniser into the state after `ESC [`.
     pub(super) fn begin_csi(&mut self) {
         // The caller has not passed the ESC to `vte`, because its meaning depends on the next byte, here `[`.
-        self.0.advance(&mut Tokens { tokens: Vec::new(), csi_bytes: &[] }, b"\x1b[");
+        self.0.advance(&mut InputTokens { tokens: Vec::new(), csi_bytes: &[] }, b"\x1b[");
     }
 
     /// Advances the parser by `byte`, and returns the tokens that it completes.
     ///
     /// There are two if the byte also shows that the bytes before it are an invalid character. `csi_bytes` contains the
     /// bytes since `ESC [`, including this one.
-    pub(super) fn advance(&mut self, byte: u8, csi_bytes: &[u8]) -> Vec<Token> {
-        let mut performer = Tokens { tokens: Vec::new(), csi_bytes };
+    pub(super) fn advance(&mut self, byte: u8, csi_bytes: &[u8]) -> Vec<InputToken> {
+        let mut performer = InputTokens { tokens: Vec::new(), csi_bytes };
         self.0.advance(&mut performer, &[byte]);
         performer.tokens
     }
 }
 
 /// Collects the tokens that `vte` reports.
-struct Tokens<'a> {
-    tokens: Vec<Token>,
+struct InputTokens<'a> {
+    tokens: Vec<InputToken>,
     csi_bytes: &'a [u8],
 }
 
-impl Perform for Tokens<'_> {
+impl Perform for InputTokens<'_> {
     fn print(&mut self, c: char) {
-        self.tokens.push(Token::Print(c));
+        self.tokens.push(InputToken::Print(c));
     }
 
     fn execute(&mut self, byte: u8) {
-        self.tokens.push(Token::Control(byte));
+        self.tokens.push(InputToken::Control(byte));
     }
 
     fn csi_dispatch(&mut self, params: &Params, marks: &[u8], ignored: bool, last: char) {
         let meaning = csi::meaning(params, marks, ignored, last, self.csi_bytes);
-        self.tokens.push(Token::Csi(meaning));
+        self.tokens.push(InputToken::Csi(meaning));
     }
 }

@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 
 /// A fault of one reply, or of that reply and later ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Fault {
+enum ReplyFault {
     Lost,
     Doubled,
     /// A reply to a query that was never sent arrives instead.
@@ -24,19 +24,19 @@ enum Fault {
     Stopped,
 }
 
-const FAULTS: [Fault; 12] = [
-    Fault::Lost,
-    Fault::Doubled,
-    Fault::Foreign,
-    Fault::Late(ms(100)),
-    Fault::Late(ms(300)),
-    Fault::Late(ms(2_000)),
-    Fault::Late(ms(20_000)),
-    Fault::HeldBack(ms(300)),
-    Fault::HeldBack(ms(20_000)),
-    Fault::EachThird,
-    Fault::EachThirdLate(ms(400)),
-    Fault::Stopped,
+const FAULTS: [ReplyFault; 12] = [
+    ReplyFault::Lost,
+    ReplyFault::Doubled,
+    ReplyFault::Foreign,
+    ReplyFault::Late(ms(100)),
+    ReplyFault::Late(ms(300)),
+    ReplyFault::Late(ms(2_000)),
+    ReplyFault::Late(ms(20_000)),
+    ReplyFault::HeldBack(ms(300)),
+    ReplyFault::HeldBack(ms(20_000)),
+    ReplyFault::EachThird,
+    ReplyFault::EachThirdLate(ms(400)),
+    ReplyFault::Stopped,
 ];
 
 /// A reply to DA1, or to DECRQM with the number of the mode.
@@ -54,7 +54,7 @@ struct World {
     /// Bytes per second that the link transmits.
     rate: f64,
     round_trip: Duration,
-    fault: Fault,
+    fault: ReplyFault,
     /// Number of the first faulty reply, counted from 1.
     at: usize,
     /// Number of replies that the terminal has sent so far.
@@ -68,7 +68,7 @@ struct World {
     frames: Vec<(Duration, usize, Duration)>,
     /// The replies on their way, with their times of arrival.
     due: Vec<(Duration, Reply)>,
-    /// Time before which no reply of the terminal arrives, as [`Fault::HeldBack`] sets it.
+    /// Time before which no reply of the terminal arrives, as [`ReplyFault::HeldBack`] sets it.
     held_until: Duration,
     /// Time at which the first round trip was known.
     first_reply: Option<Duration>,
@@ -83,7 +83,7 @@ struct World {
 const SCREEN: usize = 80 * 24 * 8;
 
 impl World {
-    fn new(tags: bool, fault: Fault, at: usize) -> Self {
+    fn new(tags: bool, fault: ReplyFault, at: usize) -> Self {
         Self {
             link: Link::new(None, None, true),
             tags,
@@ -168,15 +168,15 @@ impl World {
         let third = self.replies >= self.at && (self.replies - self.at).is_multiple_of(3);
         let mut due = vec![(at, reply)];
         match self.fault {
-            Fault::EachThird if third => due.clear(),
-            Fault::EachThirdLate(late) if third => due[0].0 += late,
-            Fault::Stopped if self.replies >= self.at => due.clear(),
+            ReplyFault::EachThird if third => due.clear(),
+            ReplyFault::EachThirdLate(late) if third => due[0].0 += late,
+            ReplyFault::Stopped if self.replies >= self.at => due.clear(),
             _ if self.replies != self.at => {}
-            Fault::Lost => due.clear(),
-            Fault::Doubled => due.push((at, reply)),
-            Fault::Foreign => due[0].1 = Reply::Mode(7),
-            Fault::Late(late) => due[0].0 += late,
-            Fault::HeldBack(late) => self.held_until = at + late,
+            ReplyFault::Lost => due.clear(),
+            ReplyFault::Doubled => due.push((at, reply)),
+            ReplyFault::Foreign => due[0].1 = Reply::Mode(7),
+            ReplyFault::Late(late) => due[0].0 += late,
+            ReplyFault::HeldBack(late) => self.held_until = at + late,
             _ => {}
         }
         self.due.extend(due.into_iter().map(|(at, reply)| (at.max(self.held_until), reply)));
@@ -204,7 +204,7 @@ impl World {
 ///
 /// # Panics
 /// If a returned time is longer than `limit`.
-fn check_each_fault(limit: Duration, mut worst: impl FnMut(bool, Fault, usize) -> Duration) {
+fn check_each_fault(limit: Duration, mut worst: impl FnMut(bool, ReplyFault, usize) -> Duration) {
     let mut late = Vec::new();
     for tags in [true, false] {
         for fault in FAULTS {
@@ -252,7 +252,7 @@ fn a_near_terminal_that_loses_replies_is_not_taken_for_a_slow_link() {
 #[test]
 fn little_is_sent_between_the_first_picture_and_the_first_reply() {
     for tags in [true, false] {
-        let mut world = World::new(tags, Fault::Stopped, 1);
+        let mut world = World::new(tags, ReplyFault::Stopped, 1);
         world.simulate(ms(1_000));
         let sent: usize = world.frames[1..].iter().map(|frame| frame.1).sum();
         assert!(world.frames.len() > 1 && sent <= 2_000, "{sent} bytes");
@@ -264,7 +264,7 @@ fn little_is_sent_between_the_first_picture_and_the_first_reply() {
 #[test]
 fn the_first_picture_of_a_slow_link_is_waited_for() {
     for tags in [true, false] {
-        let mut world = World::new(tags, Fault::Doubled, 1_000_000).with_slow_link();
+        let mut world = World::new(tags, ReplyFault::Doubled, 1_000_000).with_slow_link();
         world.simulate(ms(500));
         let sent: usize = world.frames[1..].iter().map(|frame| frame.1).sum();
         assert!(sent <= 2_000, "{sent} bytes");
@@ -276,8 +276,8 @@ fn the_first_picture_of_a_slow_link_is_waited_for() {
 /// Returns whether a fault of one of the first replies makes the rate of a slow link unmeasurable.
 ///
 /// From that reply on, all replies are missing or more than a second late.
-fn hides_rate(fault: Fault) -> bool {
-    matches!(fault, Fault::HeldBack(late) if late > ms(1_000)) || fault == Fault::Stopped
+fn hides_rate(fault: ReplyFault) -> bool {
+    matches!(fault, ReplyFault::HeldBack(late) if late > ms(1_000)) || fault == ReplyFault::Stopped
 }
 
 /// Without faults the effect of a key is visible after 310 ms, or 400 ms at worst; a fault may cost
@@ -300,12 +300,12 @@ fn no_key_waits_much_longer_on_a_slow_link() {
 fn a_terminal_that_replies_again_gets_all_frames_again() {
     for tags in [true, false] {
         for late in [300, 5_000] {
-            let mut world = World::new(tags, Fault::HeldBack(ms(late)), 30);
+            let mut world = World::new(tags, ReplyFault::HeldBack(ms(late)), 30);
             world.simulate(ms(late + 3_000));
             let since = world.now.saturating_sub(ms(1_000));
             let frames = world.frames.iter().filter(|frame| frame.0 >= since).count();
             assert!(frames >= 55, "tags {tags}, held {late} ms: {frames} frames a second");
-            assert_eq!(world.link.replies.state, State::Steady);
+            assert_eq!(world.link.replies.state, ReplyState::Steady);
         }
     }
 }
@@ -325,7 +325,7 @@ fn a_lost_reply_is_known_as_soon_as_the_next_one_comes() {
         assert!(!link.match_mode_reply(mode, ms(13)));
     }
     assert!(link.match_mode_reply(203, ms(22)));
-    assert_eq!((link.replies.ledger.in_flight().count(), link.replies.state), (0, State::Steady));
+    assert_eq!((link.replies.ledger.in_flight().count(), link.replies.state), (0, ReplyState::Steady));
 }
 
 /// A query without a frame whose reply was lost is sent again at once, and not after a second.
@@ -345,7 +345,7 @@ fn a_lost_query_without_a_frame_is_sent_again() {
 /// If another terminal takes the place of the first, as after a detach, queries go back to DA1.
 #[test]
 fn a_terminal_that_no_longer_repeats_numbers_is_asked_without() {
-    let mut world = World::new(true, Fault::HeldBack(ms(3_000)), 30);
+    let mut world = World::new(true, ReplyFault::HeldBack(ms(3_000)), 30);
     world.simulate(ms(2_000));
     world.tags = false;
     world.simulate(ms(8_000));
@@ -358,12 +358,12 @@ fn a_terminal_that_no_longer_repeats_numbers_is_asked_without() {
 /// estimated rate is right.
 #[test]
 fn after_a_loss_one_query_is_in_flight_on_a_slow_link() {
-    let mut world = World::new(false, Fault::EachThird, 5).with_slow_link();
+    let mut world = World::new(false, ReplyFault::EachThird, 5).with_slow_link();
     world.simulate(ms(4_000));
     for _ in 0..6_000 {
         world.simulate(ms(1));
         let replies = &world.link.replies;
-        assert!(replies.state != State::Steady || replies.ledger.in_flight().count() <= 1, "at {:?}", world.now);
+        assert!(replies.state != ReplyState::Steady || replies.ledger.in_flight().count() <= 1, "at {:?}", world.now);
     }
     let rate = world.link.replies.rates.best().map(|rate| rate.bytes_per_second);
     assert!(rate.is_some_and(|rate| (20_000.0..=55_000.0).contains(&rate)), "{rate:?} of 50 KB/s");
@@ -374,7 +374,7 @@ fn after_a_loss_one_query_is_in_flight_on_a_slow_link() {
 #[test]
 fn a_near_terminal_that_draws_slowly_gets_large_frames() {
     for (tags, draws) in [(true, 80), (false, 80), (true, 150), (false, 150), (true, 300)] {
-        let mut world = World { draws: ms(draws), ..World::new(tags, Fault::Doubled, usize::MAX) };
+        let mut world = World { draws: ms(draws), ..World::new(tags, ReplyFault::Doubled, usize::MAX) };
         world.simulate(ms(20_000));
         let since = world.now.saturating_sub(ms(5_000));
         let sent: usize = world.frames.iter().filter(|frame| frame.0 >= since).map(|frame| frame.1).sum();
@@ -387,7 +387,7 @@ fn a_near_terminal_that_draws_slowly_gets_large_frames() {
 #[test]
 fn a_near_link_that_is_slow_gets_small_frames() {
     for (tags, rate) in [(true, 3_000.0), (false, 3_000.0), (true, 11_500.0), (false, 11_500.0)] {
-        let mut world = World { rate, ..World::new(tags, Fault::Doubled, usize::MAX) };
+        let mut world = World { rate, ..World::new(tags, ReplyFault::Doubled, usize::MAX) };
         world.simulate(ms(30_000));
         let worst = world.worst_key_delay(ms(15_000), ms(30_000));
         assert!(worst < ms(250), "tags {tags}, {rate} bytes per second: {worst:?}");

@@ -82,7 +82,7 @@ const MIN_DELIVERED_BYTES: f64 = 60_000.0;
 
 /// The queries in flight, and what the replies so far show about the terminal and the link.
 pub(super) struct ReplyTracker {
-    pub(super) state: State,
+    pub(super) state: ReplyState,
     pub(super) ledger: Ledger,
     alignment: Alignment,
     pub(super) tag_support: TagSupport,
@@ -111,7 +111,7 @@ pub(super) struct ReplyTracker {
 
 /// Whether the terminal replies in time, and how its replies are matched to queries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum State {
+pub(super) enum ReplyState {
     /// No queries are sent, because the terminal might print them.
     Unqueried,
     /// No reply has arrived yet, and none is missing.
@@ -145,7 +145,7 @@ pub(super) enum TagSupport {
 impl ReplyTracker {
     pub(super) fn new(may_ask: bool) -> Self {
         Self {
-            state: if may_ask { State::Unanswered } else { State::Unqueried },
+            state: if may_ask { ReplyState::Unanswered } else { ReplyState::Unqueried },
             ledger: Ledger::default(),
             alignment: Alignment::default(),
             tag_support: TagSupport::Unknown,
@@ -185,11 +185,11 @@ impl ReplyTracker {
     /// Returns whether a frame sent now ends with a query.
     pub(super) fn frame_ends_with_query(&self) -> bool {
         match self.state {
-            State::Unanswered | State::Recovering { .. } => true,
-            State::Steady => self.may_query(),
+            ReplyState::Unanswered | ReplyState::Recovering { .. } => true,
+            ReplyState::Steady => self.may_query(),
             // A silent terminal gets the next query only after the timeout of the last one.
-            State::Silent => self.ledger.oldest().is_none(),
-            State::Unqueried | State::Resyncing { .. } => false,
+            ReplyState::Silent => self.ledger.oldest().is_none(),
+            ReplyState::Unqueried | ReplyState::Resyncing { .. } => false,
         }
     }
 
@@ -211,13 +211,13 @@ impl ReplyTracker {
     }
 
     pub(super) fn is_responsive(&self) -> bool {
-        !matches!(self.state, State::Unqueried | State::Silent)
+        !matches!(self.state, ReplyState::Unqueried | ReplyState::Silent)
     }
 
     /// Returns whether replies are missing and the rate is unknown, so that [`InitialWindow`]
     /// limits the next frame.
     pub(super) fn uses_initial_window(&self) -> bool {
-        matches!(self.state, State::Recovering { .. } | State::Resyncing { .. }) && !self.knows_rate()
+        matches!(self.state, ReplyState::Recovering { .. } | ReplyState::Resyncing { .. }) && !self.knows_rate()
     }
 
     /// Returns whether the estimated rate can be relied on.
@@ -260,7 +260,7 @@ impl ReplyTracker {
     }
 
     pub(super) fn is_probe_due(&self, now: Duration) -> bool {
-        let asks = matches!(self.state, State::Unanswered | State::Steady);
+        let asks = matches!(self.state, ReplyState::Unanswered | ReplyState::Steady);
         asks && self.may_query() && self.last_probe.is_none_or(|last| now >= last + PROBE_INTERVAL)
     }
 
@@ -286,9 +286,9 @@ impl ReplyTracker {
     /// that does not answer a DECRQM may have taken its place, as after a detach. A terminal that perhaps repeats
     /// numbers gets both while replies are missing. In all other cases the query is a DA1.
     pub(super) fn next_query(&mut self) -> Query {
-        let doubts = matches!(self.state, State::Recovering { .. } | State::Silent);
+        let doubts = matches!(self.state, ReplyState::Recovering { .. } | ReplyState::Silent);
         match self.tag_support {
-            TagSupport::Known if self.state != State::Silent => Query::Tagged(self.ledger.next_tag()),
+            TagSupport::Known if self.state != ReplyState::Silent => Query::Tagged(self.ledger.next_tag()),
             TagSupport::Possible | TagSupport::Known if doubts => Query::Both(self.ledger.next_tag()),
             _ => Query::Counted,
         }
@@ -300,14 +300,14 @@ impl ReplyTracker {
     pub(super) fn forget_queries(&mut self) {
         self.ledger.clear();
         self.awaits_second_reply = false;
-        if matches!(self.state, State::Recovering { .. } | State::Resyncing { .. }) {
-            self.state = State::Steady;
+        if matches!(self.state, ReplyState::Recovering { .. } | ReplyState::Resyncing { .. }) {
+            self.state = ReplyState::Steady;
         }
     }
 
     /// Records a reply to DA1.
     pub(super) fn receive_attributes(&mut self, now: Duration) {
-        if let State::Resyncing { last_reply } = &mut self.state {
+        if let ReplyState::Resyncing { last_reply } = &mut self.state {
             *last_reply = now;
         }
         if std::mem::take(&mut self.awaits_second_reply) {
@@ -320,7 +320,7 @@ impl ReplyTracker {
         }
         let first = self.last_reply.replace(now).is_none();
         let in_order = !self.ledger.is_counted_reply_ambiguous()
-            || self.state != State::Silent && (first || self.is_reply_to_first_frame(now));
+            || self.state != ReplyState::Silent && (first || self.is_reply_to_first_frame(now));
         let is_unclear = if in_order { self.is_reply_too_early(oldest, now) } else { self.slow };
         if is_unclear {
             return self.resync(now);
@@ -416,7 +416,8 @@ impl ReplyTracker {
         // An ambiguous reply does not show how many bytes have arrived, and while the rate is unknown too many might be
         // in flight.
         let is_rate_unknown = matched.validity == Validity::Ambiguous && !self.knows_rate();
-        self.state = if is_rate_unknown { State::Recovering { until: self.silent_at(now) } } else { State::Steady };
+        self.state =
+            if is_rate_unknown { ReplyState::Recovering { until: self.silent_at(now) } } else { ReplyState::Steady };
         let had_round_trip = self.round_trip.is_known();
         self.record_round_trip(matched, now);
         let tells_rate = matches!(matched.validity, Validity::Exact | Validity::Spurious);
@@ -490,7 +491,7 @@ impl ReplyTracker {
             (self.rates, self.initial_window) = Default::default();
             self.restart_slow_start();
         }
-        self.state = State::Resyncing { last_reply: now };
+        self.state = ReplyState::Resyncing { last_reply: now };
     }
 
     /// Returns the time at which the reply to the oldest query in flight counts as missing; `None`
@@ -498,7 +499,7 @@ impl ReplyTracker {
     pub(super) fn times_out_at(&self) -> Option<Duration> {
         let oldest = self.ledger.oldest()?;
         Some(match self.last_reply {
-            None if self.state == State::Unanswered => oldest.sent + FIRST_RTO,
+            None if self.state == ReplyState::Unanswered => oldest.sent + FIRST_RTO,
             None => oldest.sent + FIRST_SILENCE_TIMEOUT / 2,
             Some(last_reply) => last_reply.max(self.reply_due_at(oldest)) + self.timeout(),
         })
@@ -525,32 +526,32 @@ impl ReplyTracker {
     /// Updates the state for the replies that count as missing at `now`.
     pub(super) fn check_timeouts(&mut self, now: Duration) {
         match self.state {
-            State::Unanswered | State::Steady | State::Recovering { .. } => {
+            ReplyState::Unanswered | ReplyState::Steady | ReplyState::Recovering { .. } => {
                 if self.times_out_at().is_some_and(|at| now >= at) {
                     self.ledger.time_out_all();
-                    if !matches!(self.state, State::Recovering { .. }) {
-                        self.state = State::Recovering { until: self.silent_at(now) };
+                    if !matches!(self.state, ReplyState::Recovering { .. }) {
+                        self.state = ReplyState::Recovering { until: self.silent_at(now) };
                     }
                 }
             }
-            State::Silent => {
+            ReplyState::Silent => {
                 if self.ledger.oldest().is_some_and(|oldest| now >= oldest.sent + SILENT_QUERY_INTERVAL) {
                     self.ledger.time_out_all();
                 }
             }
-            State::Resyncing { last_reply } if now >= last_reply + RESYNC_TIME + self.round_trip.shortest() => {
+            ReplyState::Resyncing { last_reply } if now >= last_reply + RESYNC_TIME + self.round_trip.shortest() => {
                 self.forget_queries();
                 self.round_trip.invalidate();
                 self.last_probe = None;
             }
-            State::Unqueried | State::Resyncing { .. } => {}
+            ReplyState::Unqueried | ReplyState::Resyncing { .. } => {}
         }
-        if let State::Recovering { until } = self.state
+        if let ReplyState::Recovering { until } = self.state
             && now >= until
         {
             self.ledger.time_out_all();
             self.restart_slow_start();
-            self.state = State::Silent;
+            self.state = ReplyState::Silent;
         }
     }
 }

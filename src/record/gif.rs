@@ -89,7 +89,7 @@ impl<W: Write> Gif<W> {
     fn quantised(&mut self, picture: &Picture) -> gif::Frame<'static> {
         let stays = self.kept_pixels(picture);
         let pixels = || picture.pixels().iter().copied().zip(&stays);
-        let palette = Palette::from_pixels(pixels().filter(|(_, stays)| !**stays).map(|(pixel, _)| pixel));
+        let palette = GifPalette::from_pixels(pixels().filter(|(_, stays)| !**stays).map(|(pixel, _)| pixel));
         self.shown.resize(picture.pixels().len(), Srgb8::default());
         let index = |((pixel, stays), shown): ((Srgb8, &bool), &mut Srgb8)| {
             if *stays {
@@ -167,7 +167,7 @@ const MAX_LASTING_DIFFERENCE: u8 = 4;
 const MAX_OUTDATED_FRAMES: u8 = 7;
 
 /// The colours of a frame.
-struct Palette {
+struct GifPalette {
     /// The palette's entries: colours, padded to [`MAX_COLORS`], and an unused one at the
     /// transparent index.
     colors: Vec<Srgb8>,
@@ -175,7 +175,7 @@ struct Palette {
     quantiser: Option<NeuQuant>,
 }
 
-impl Palette {
+impl GifPalette {
     /// Returns a palette for these pixels: all their colours if there are few enough, else the
     /// quantiser's.
     fn from_pixels(pixels: impl Iterator<Item = Srgb8> + Clone) -> Self {

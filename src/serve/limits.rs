@@ -76,7 +76,7 @@ pub(super) enum Refusal {
 
 /// A connection that the [`ConnectionLimiter`] has admitted and counts.
 #[derive(Debug)]
-pub(super) struct Entry {
+pub(super) struct Admission {
     origin: Origin,
     logging_in: bool,
 }
@@ -98,7 +98,7 @@ impl ConnectionLimiter {
     }
 
     /// Admits and counts a new connection, or returns the reason to refuse it.
-    pub(super) fn enter(&mut self, address: IpAddr, now: Duration) -> Result<Entry, Refusal> {
+    pub(super) fn enter(&mut self, address: IpAddr, now: Duration) -> Result<Admission, Refusal> {
         // A high `per_address` raises the limits on logins too, so that one machine can run a load test.
         let most_logging_in = MAX_LOGGING_IN_PER_ADDRESS.max(self.per_address / 2);
         if self.connected >= self.total || self.logging_in >= MAX_LOGGING_IN.max(self.per_address / 2) {
@@ -126,11 +126,11 @@ impl ConnectionLimiter {
         counts.logging_in += 1;
         self.connected += 1;
         self.logging_in += 1;
-        Ok(Entry { origin, logging_in: true })
+        Ok(Admission { origin, logging_in: true })
     }
 
     /// Records that a connection has logged in.
-    pub(super) fn log_in(&mut self, entry: &mut Entry) {
+    pub(super) fn log_in(&mut self, entry: &mut Admission) {
         if std::mem::take(&mut entry.logging_in) {
             self.logging_in -= 1;
             if let Some(counts) = self.origins.get_mut(&entry.origin) {
@@ -140,7 +140,7 @@ impl ConnectionLimiter {
     }
 
     /// Records that a connection has ended.
-    pub(super) fn leave(&mut self, mut entry: Entry) {
+    pub(super) fn leave(&mut self, mut entry: Admission) {
         self.log_in(&mut entry);
         self.connected -= 1;
         if let Some(counts) = self.origins.get_mut(&entry.origin) {

@@ -8,9 +8,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A count that only grows.
 #[derive(Debug, Default)]
-pub(super) struct Count(AtomicU64);
+pub(super) struct Counter(AtomicU64);
 
-impl Count {
+impl Counter {
     pub(super) fn add(&self, more: u64) {
         self.0.fetch_add(more, Ordering::Relaxed);
     }
@@ -23,21 +23,21 @@ impl Count {
 /// The counts since the start of the server.
 #[derive(Debug, Default)]
 pub(super) struct Metrics {
-    pub(super) connections: Count,
-    pub(super) logins: Count,
+    pub(super) connections: Counter,
+    pub(super) logins: Counter,
     /// The refused connections, by [`Refusal`].
-    refused: [Count; 3],
-    pub(super) visits: Count,
-    pub(super) frames: Count,
-    pub(super) bytes: Count,
+    refused: [Counter; 3],
+    pub(super) visits: Counter,
+    pub(super) frames: Counter,
+    pub(super) bytes: Counter,
     /// The pictures that were traced.
-    pub(super) traced: Count,
+    pub(super) traced: Counter,
     /// The pictures that were reused because they had been traced for another viewer.
-    pub(super) shared: Count,
+    pub(super) shared: Counter,
     /// The turns that ended with a panic.
-    pub(super) panics: Count,
+    pub(super) panics: Counter,
     /// The CPU time of all turns, in microseconds.
-    pub(super) turn_micros: Count,
+    pub(super) turn_micros: Counter,
 }
 
 impl Metrics {
@@ -54,7 +54,7 @@ impl Metrics {
             let _ = writeln!(text, "# HELP termtrace_{name} {meaning}.\n# TYPE termtrace_{name} gauge");
             let _ = writeln!(text, "termtrace_{name} {value}");
         }
-        let mut sum = |name: &str, meaning: &str, rows: &[(&str, &Count)]| {
+        let mut sum = |name: &str, meaning: &str, rows: &[(&str, &Counter)]| {
             let _ = writeln!(text, "# HELP termtrace_{name} {meaning}.\n# TYPE termtrace_{name} counter");
             for (label, count) in rows {
                 let _ = match count.get() {

@@ -38,7 +38,7 @@ pub(super) enum AfterTurn {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
+enum SessionState {
     Asleep(Option<Duration>),
     Ready(WorkKind, Duration),
     /// The session's turn is being carried out.
@@ -54,7 +54,7 @@ enum State {
 struct QueuedSession {
     /// The virtual time at which the session's last turn ended.
     finish: Duration,
-    state: State,
+    state: SessionState,
 }
 
 /// The sessions that are ready, asleep or running.
@@ -73,7 +73,7 @@ pub(super) struct RunQueue {
 impl RunQueue {
     /// Adds a session, which is ready at once.
     pub(super) fn add(&mut self, id: SessionId) {
-        self.sessions.insert(id, QueuedSession { finish: self.virtual_time, state: State::Asleep(None) });
+        self.sessions.insert(id, QueuedSession { finish: self.virtual_time, state: SessionState::Asleep(None) });
         self.wake(id);
     }
 
@@ -81,12 +81,12 @@ impl RunQueue {
     pub(super) fn wake(&mut self, id: SessionId) {
         let Some(session) = self.sessions.get_mut(&id) else { return };
         match session.state {
-            State::Running { start, .. } => session.state = State::Running { start, woken: true },
-            State::Ready(WorkKind::Picture, _) => {}
-            State::Asleep(_) | State::Ready(..) => {
+            SessionState::Running { start, .. } => session.state = SessionState::Running { start, woken: true },
+            SessionState::Ready(WorkKind::Picture, _) => {}
+            SessionState::Asleep(_) | SessionState::Ready(..) => {
                 let rested = self.virtual_time.saturating_sub(HEAD_START);
                 let start = session.finish.max(rested);
-                self.set(id, State::Ready(WorkKind::Picture, start));
+                self.set(id, SessionState::Ready(WorkKind::Picture, start));
             }
         }
     }
@@ -102,7 +102,7 @@ impl RunQueue {
         if kind == WorkKind::Picture {
             self.virtual_time = self.virtual_time.max(start);
         }
-        self.set(id, State::Running { start, woken: false });
+        self.set(id, SessionState::Running { start, woken: false });
         self.running += 1;
         Some(id)
     }
@@ -111,15 +111,15 @@ impl RunQueue {
     pub(super) fn finish(&mut self, id: SessionId, cost: Duration, next: AfterTurn) {
         self.running = self.running.saturating_sub(1);
         let Some(session) = self.sessions.get_mut(&id) else { return };
-        let State::Running { start, woken } = session.state else { return };
+        let SessionState::Running { start, woken } = session.state else { return };
         let finish = start + cost;
         session.finish = finish;
         match next {
             AfterTurn::End => drop(self.sessions.remove(&id)),
             // Input that came during the turn has not been taken, so the session may not sleep.
-            _ if woken => self.set(id, State::Ready(WorkKind::Picture, finish)),
-            AfterTurn::Turn(kind) => self.set(id, State::Ready(kind, finish)),
-            AfterTurn::Sleep(until) => self.set(id, State::Asleep(until)),
+            _ if woken => self.set(id, SessionState::Ready(WorkKind::Picture, finish)),
+            AfterTurn::Turn(kind) => self.set(id, SessionState::Ready(kind, finish)),
+            AfterTurn::Sleep(until) => self.set(id, SessionState::Asleep(until)),
         }
     }
 
@@ -138,17 +138,17 @@ impl RunQueue {
         self.sessions.len()
     }
 
-    fn set(&mut self, id: SessionId, state: State) {
+    fn set(&mut self, id: SessionId, state: SessionState) {
         let Some(session) = self.sessions.get_mut(&id) else { return };
         match session.state {
-            State::Asleep(Some(at)) => drop(self.timers.remove(&(at, id))),
-            State::Ready(kind, start) => drop(self.ready.remove(&(kind, start, id))),
-            State::Asleep(None) | State::Running { .. } => {}
+            SessionState::Asleep(Some(at)) => drop(self.timers.remove(&(at, id))),
+            SessionState::Ready(kind, start) => drop(self.ready.remove(&(kind, start, id))),
+            SessionState::Asleep(None) | SessionState::Running { .. } => {}
         }
         match state {
-            State::Asleep(Some(at)) => drop(self.timers.insert((at, id))),
-            State::Ready(kind, start) => drop(self.ready.insert((kind, start, id))),
-            State::Asleep(None) | State::Running { .. } => {}
+            SessionState::Asleep(Some(at)) => drop(self.timers.insert((at, id))),
+            SessionState::Ready(kind, start) => drop(self.ready.insert((kind, start, id))),
+            SessionState::Asleep(None) | SessionState::Running { .. } => {}
         }
         session.state = state;
     }

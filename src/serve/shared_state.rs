@@ -128,9 +128,9 @@ impl SharedState {
     }
 
     /// Adds a visitor at the end of the queue for a place; `None` if too many visitors wait.
-    pub(super) fn queue_up(self: &Arc<Self>) -> Option<Visitor> {
+    pub(super) fn queue_up(self: &Arc<Self>) -> Option<VisitorDetails> {
         let number = locked(&self.places).join()?;
-        Some(Visitor { state: Arc::clone(self), number })
+        Some(VisitorDetails { state: Arc::clone(self), number })
     }
 }
 
@@ -144,20 +144,20 @@ fn welcome_line(scene_count: usize, link: Option<&str>, columns: u16) -> String 
 }
 
 /// A visitor in the queue for a place, which leaves it when it is dropped.
-pub(super) struct Visitor {
+pub(super) struct VisitorDetails {
     state: Arc<SharedState>,
     number: u64,
 }
 
-impl Visitor {
+impl VisitorDetails {
     /// Takes a place; if none is free, returns how many visitors are ahead.
-    pub(super) fn take_place(&self) -> Result<Place, usize> {
+    pub(super) fn take_place(&self) -> Result<ViewerSlot, usize> {
         locked(&self.state.places).take(self.number)?;
-        Ok(Place(Arc::clone(&self.state)))
+        Ok(ViewerSlot(Arc::clone(&self.state)))
     }
 }
 
-impl Drop for Visitor {
+impl Drop for VisitorDetails {
     fn drop(&mut self) {
         locked(&self.state.places).give_up(self.number);
         self.state.changes.send_replace(());
@@ -165,9 +165,9 @@ impl Drop for Visitor {
 }
 
 /// A viewer's place, which is freed when it is dropped.
-pub(super) struct Place(Arc<SharedState>);
+pub(super) struct ViewerSlot(Arc<SharedState>);
 
-impl Drop for Place {
+impl Drop for ViewerSlot {
     fn drop(&mut self) {
         locked(&self.0.places).free();
         self.0.changes.send_replace(());

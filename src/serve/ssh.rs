@@ -8,7 +8,7 @@
 
 use super::client_command::{self, ClientCommand};
 use super::client_terminal::{self, ClientTerminal};
-use super::limits::Entry;
+use super::limits::Admission;
 use super::session_buffers::{SessionBuffers, locked};
 use super::shared_state::SharedState;
 use super::socket::SocketCloser;
@@ -23,7 +23,7 @@ pub(super) struct Client {
     pub(super) buffers: Arc<SessionBuffers>,
     pub(super) closer: SocketCloser,
     /// The connection's entry in the `ConnectionLimiter`; taken when the connection ends.
-    pub(super) entry: Option<Entry>,
+    pub(super) entry: Option<Admission>,
     pub(super) terminal: ClientTerminal,
     /// The one channel of the connection.
     pub(super) channel: Option<ChannelId>,

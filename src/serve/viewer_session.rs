@@ -7,7 +7,7 @@ use super::run_queue::{AfterTurn, WorkKind};
 use crate::grid::Window;
 use crate::memory::OutOfMemory;
 use crate::protocol::{FENCE, TerminalMode, TerminalModes};
-use crate::viewer::{DriverState, Frame, Job, Options, Request, Step, Viewer};
+use crate::viewer::{DriverState, Frame, Job, Options, Request, Viewer, ViewerStep};
 use base64::Engine;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -247,14 +247,14 @@ impl ViewerSession {
         for _ in 0..MAX_STEPS {
             let now = clock();
             match self.viewer.next_step(DriverState { sending, tracing: None }, now) {
-                Step::Wait(until) => {
+                ViewerStep::Wait(until) => {
                     if !sending && until.is_none_or(|at| at > now + LONG_REST) {
                         self.viewer.free_buffers();
                     }
                     return AfterTurn::Sleep(until);
                 }
-                Step::CancelRefinement => {}
-                Step::Draw => {
+                ViewerStep::CancelRefinement => {}
+                ViewerStep::Draw => {
                     let mut bytes = Vec::new();
                     self.viewer.draw(clock(), &mut bytes);
                     self.viewer.add_frame_queries(&mut bytes, clock());
@@ -264,10 +264,10 @@ impl ViewerSession {
                 }
                 // Refinements wait for a turn of their kind, except that of the first picture: it is refined before it
                 // is shown, if that takes little time.
-                Step::Trace(_, job) if job.refines && kind == WorkKind::Picture && self.viewer.has_shown() => {
+                ViewerStep::Trace(_, job) if job.refines && kind == WorkKind::Picture && self.viewer.has_shown() => {
                     return AfterTurn::Turn(WorkKind::Refinement);
                 }
-                Step::Trace(probe, job) => {
+                ViewerStep::Trace(probe, job) => {
                     out.extend_from_slice(&probe);
                     // Only refinements may be interrupted: an interrupted frame of a new view is not traced again, so a
                     // moving view would stand still while other viewers interrupt it.

@@ -2,7 +2,7 @@
 
 use super::client_terminal::ClientTerminal;
 use super::session_buffers::{Outgoing, SessionBuffers, locked};
-use super::shared_state::{Place, SharedState};
+use super::shared_state::{SharedState, ViewerSlot};
 use super::socket::SocketCloser;
 use super::total_rate::TotalRate;
 use super::viewer_session::{ViewerSession, VisitLimits};
@@ -75,7 +75,7 @@ impl Visit {
     /// Waits for a free place, and meanwhile tells the user how many visitors are ahead.
     ///
     /// Returns `None` if the user leaves, the server drains, or too many visitors wait.
-    async fn wait_for_place(&self, window: &mut Window) -> Option<Place> {
+    async fn wait_for_place(&self, window: &mut Window) -> Option<ViewerSlot> {
         let mut changes = self.state.changes.subscribe();
         let Some(visitor) = self.state.queue_up() else {
             self.send(b"full, and many wait; come back later\r\n").await;

@@ -3,7 +3,7 @@
 //!
 //! Used by property tests and by a fuzz target.
 
-use super::{DriverState, Frame, INITIAL_WIPE, Job, Options, Step, Tracing, Viewer};
+use super::{DriverState, Frame, INITIAL_WIPE, Job, Options, Tracing, Viewer, ViewerStep};
 use crate::capabilities::{CellShape, Hints};
 use crate::color::Srgb8;
 use crate::encode::Quality;
@@ -208,17 +208,17 @@ impl Driver {
         for _ in 0..=MAX_ACTIONS {
             let tracing = self.job.as_ref().map(|job| if job.refines { Tracing::Refinement } else { Tracing::NewView });
             match self.viewer.next_step(DriverState { sending: self.is_sending, tracing }, self.now) {
-                Step::Wait(until) if until.is_none_or(|until| until > self.now) => return until,
+                ViewerStep::Wait(until) if until.is_none_or(|until| until > self.now) => return until,
                 // The timeout of an incomplete escape sequence has passed.
-                Step::Wait(_) => self.receive(&[]),
-                Step::CancelRefinement => {
+                ViewerStep::Wait(_) => self.receive(&[]),
+                ViewerStep::CancelRefinement => {
                     assert!(self.job.take().is_some_and(|job| job.refines), "only a refinement is cancelled");
                 }
-                Step::Draw => {
+                ViewerStep::Draw => {
                     assert!(!self.is_sending, "a frame is drawn that cannot be sent");
                     self.draw();
                 }
-                Step::Trace(probe, job) => {
+                ViewerStep::Trace(probe, job) => {
                     assert!(
                         !self.is_sending && self.job.is_none(),
                         "a frame is begun that cannot be sent, or a second"

@@ -72,11 +72,11 @@ pub(super) struct RenderedShot {
 
 /// A tracer of shots, which keeps the painter with its cache of mixed colours between pictures.
 #[derive(Default)]
-pub(super) struct Tracer {
+pub(super) struct PaneTracer {
     painter: Option<Painter>,
 }
 
-impl Tracer {
+impl PaneTracer {
     /// Traces a shot and turns the picture into cells.
     pub(super) fn trace(&mut self, shot: Shot) -> RenderedShot {
         // Tracing fails only if its token is cancelled, and nothing else has this new token.

@@ -1,7 +1,7 @@
 //! The state of a pane between draw calls.
 
-use super::shot::{RenderedShot, Shot, Tracer};
-use super::worker::Worker;
+use super::shot::{PaneTracer, RenderedShot, Shot};
+use super::worker::PaneWorker;
 use crate::camera::{Camera, Grip};
 use crate::grid::Size;
 use crate::hit::{Hit, closest_hit};
@@ -53,8 +53,8 @@ pub struct SceneState {
     /// The shot that the last draw call requested.
     requested: Option<Shot>,
     shown: Option<RenderedShot>,
-    tracer: Tracer,
-    worker: Option<Worker>,
+    tracer: PaneTracer,
+    worker: Option<PaneWorker>,
 }
 
 impl fmt::Debug for SceneState {
@@ -75,7 +75,7 @@ impl SceneState {
             area: Rect::ZERO,
             requested: None,
             shown: None,
-            tracer: Tracer::default(),
+            tracer: PaneTracer::default(),
             worker: None,
         }
     }
@@ -103,7 +103,7 @@ impl SceneState {
     /// `wake` is called. If no thread can be started, pictures are traced in the draw call.
     #[must_use]
     pub fn in_background(self, wake: impl Fn() + Send + 'static) -> Self {
-        Self { worker: Worker::start(wake).ok(), ..self }
+        Self { worker: PaneWorker::start(wake).ok(), ..self }
     }
 
     /// Returns the camera of the next draw call.
@@ -239,6 +239,6 @@ impl SceneState {
     /// Returns whether the background thread has taken the last request.
     #[cfg(test)]
     pub(super) fn has_taken_request(&self) -> bool {
-        self.worker.as_ref().is_some_and(Worker::has_taken_request)
+        self.worker.as_ref().is_some_and(PaneWorker::has_taken_request)
     }
 }

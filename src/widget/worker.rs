@@ -1,6 +1,6 @@
 //! The background thread that traces the pictures of a pane.
 
-use super::shot::{RenderedShot, Shot, Tracer};
+use super::shot::{PaneTracer, RenderedShot, Shot};
 use crate::progress::Cancellation;
 use std::any::Any;
 use std::cell::Cell;
@@ -10,14 +10,14 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 
 /// The drawing thread's handle of the background thread.
-pub(super) struct Worker {
-    shared: Arc<Shared>,
+pub(super) struct PaneWorker {
+    shared: Arc<SharedJob>,
     thread: Option<JoinHandle<()>>,
 }
 
 /// The data shared by the drawing thread and the worker.
 #[derive(Default)]
-struct Shared {
+struct SharedJob {
     state: Mutex<SharedState>,
     /// Notified of a new request.
     request_added: Condvar,
@@ -42,10 +42,10 @@ struct SharedState {
     is_closed: bool,
 }
 
-impl Worker {
+impl PaneWorker {
     /// Starts the thread, which calls `wake` after each picture.
     pub(super) fn start(wake: impl Fn() + Send + 'static) -> io::Result<Self> {
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(SharedJob::default());
         let own = Arc::clone(&shared);
         let thread = thread::Builder::new().name("termtrace pane".to_owned()).spawn(move || {
             // Whether `wake` is running: if it panics, it must not be called again.
@@ -98,7 +98,7 @@ impl Worker {
     }
 }
 
-impl Drop for Worker {
+impl Drop for PaneWorker {
     /// Cancels the shot in progress and joins the thread.
     // The wait is short: each tracing thread only finishes its current batch, of at most 256 rays.
     fn drop(&mut self) {
@@ -114,7 +114,7 @@ impl Drop for Worker {
     }
 }
 
-impl Shared {
+impl SharedJob {
     fn lock(&self) -> MutexGuard<'_, SharedState> {
         // No code that can panic runs while the lock is held, so it is never poisoned.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
@@ -139,7 +139,7 @@ impl Shared {
 
     fn trace_all(&self, wake: &impl Fn()) {
         // One tracer for all shots keeps its cache of mixed colours.
-        let mut tracer = Tracer::default();
+        let mut tracer = PaneTracer::default();
         while let Some((shot, token)) = self.next() {
             // A cancellation is no error: pictures that were delivered before it stay valid.
             let _ = tracer.trace_progressively(shot, &token, |shown| {

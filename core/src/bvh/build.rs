@@ -11,9 +11,9 @@ use crate::threads;
 // The dragon's 871 k triangles still make over 100 tasks, enough to balance the threads.
 pub const MIN_TASK_ITEMS: usize = 8192;
 
-type Report<'r, E> = &'r (dyn Fn(usize) -> Result<(), E> + Sync);
+type ProgressReport<'r, E> = &'r (dyn Fn(usize) -> Result<(), E> + Sync);
 
-pub(super) fn build<E: Send>(boxes: &[Bounds], report: Report<'_, E>) -> Result<(Bvh, Leaves), E> {
+pub(super) fn build<E: Send>(boxes: &[Bounds], report: ProgressReport<'_, E>) -> Result<(Bvh, Leaves), E> {
     assert!(boxes.len() < 1 << 31, "there are fewer than 2^31 boxes");
     if boxes.is_empty() {
         return Ok((Bvh::default(), Leaves::default()));
@@ -50,7 +50,7 @@ fn build_subtree<E: Send>(
     items: &mut [Item],
     bounds: &ItemBounds,
     position: NodePosition,
-    report: Report<'_, E>,
+    report: ProgressReport<'_, E>,
 ) -> Result<Vec<BinaryNode>, E> {
     if items.len() < MIN_TASK_ITEMS {
         let mut nodes = Vec::with_capacity(items.len());

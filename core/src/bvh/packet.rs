@@ -232,7 +232,7 @@ fn crossed<N: Lanes>(
 }
 
 /// The visitor of a packet's traversal.
-pub trait Visitor<N>: Prefetch {
+pub trait PacketVisitor<N>: Prefetch {
     /// Whether nearer boxes are visited first, so that hits in them shorten the rays early.
     // For any-hit rays sorting costs more than it saves: without it shadow rays are 6 % faster on the dragon's 871 k
     // triangles.
@@ -272,7 +272,7 @@ impl Bvh {
 
     /// Visits the leaves that rays of a packet may hit.
     #[inline(always)]
-    pub fn visit_packet<N: Lanes, V: Visitor<N>>(
+    pub fn visit_packet<N: Lanes, V: PacketVisitor<N>>(
         &self,
         packet: &Packet<N>,
         PacketStack(waiting): &mut PacketStack,

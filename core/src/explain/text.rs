@@ -1,6 +1,6 @@
 //! Explanations as text: short lines in the lecture's symbols, for a panel or a file.
 
-use super::{Equation, Explanation, LightContribution, ShadedHit, Step, TestedSurface};
+use super::{Equation, EquationStep, Explanation, LightContribution, ShadedHit, TestedSurface};
 use crate::camera::Basis;
 use crate::color::LinearRgb;
 use crate::scene::{Scene, ToneCurve};
@@ -195,10 +195,10 @@ fn root_values(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
 
 fn add_equation(equation: &Equation, lines: &mut Vec<String>) {
     lines.extend(equation.steps.iter().flat_map(|step| match step {
-        Step::Value(what, value) => vec![format!("  {what:<21}{}", padded_number(*value as f32))],
-        Step::Text(text) => vec![format!("  {text}")],
-        Step::Formula(formula) => formula_lines(formula),
-        Step::Values(before, between, values) => {
+        EquationStep::Value(what, value) => vec![format!("  {what:<21}{}", padded_number(*value as f32))],
+        EquationStep::Text(text) => vec![format!("  {text}")],
+        EquationStep::Formula(formula) => formula_lines(formula),
+        EquationStep::Values(before, between, values) => {
             let values: Vec<_> = values.iter().map(|&value| padded_number(value as f32)).collect();
             vec![format!("  {before}{}", values.join(between))]
         }

@@ -17,7 +17,7 @@ use crate::text::{closest, visible};
 use functions::{CONSTANTS, FUNCTIONS, VARIABLES};
 use std::collections::HashMap;
 use std::ops::Range;
-use tokens::{Token, Tokens};
+use tokens::{FormulaToken, FormulaTokens};
 
 /// The deepest nesting of brackets, signs and exponents.
 // The parser is recursive, and a deeper formula could overflow the stack.
@@ -28,14 +28,14 @@ const MAX_EXPONENT: f64 = 32.0;
 
 /// A fault of a formula.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Fault {
+pub(crate) struct FormulaFault {
     /// The range of bytes in the text of the formula.
     pub(crate) range: Range<usize>,
     /// The message: one line without a full stop.
     pub(crate) message: String,
 }
 
-impl Fault {
+impl FormulaFault {
     fn new<T>(range: Range<usize>, message: impl Into<String>) -> Result<T, Self> {
         Err(Self { range, message: message.into() })
     }
@@ -55,9 +55,13 @@ fn reserved_names<'n>() -> impl Iterator<Item = &'n str> {
 }
 
 /// Returns the tape of a formula.
-pub(super) fn parse(text: &str, params: &[(String, f64)]) -> Result<Tape, Fault> {
-    let mut parser =
-        Parser { tokens: Tokens::new(text)?, tape: TapeBuilder::default(), names: HashMap::new(), depth: 0 };
+pub(super) fn parse(text: &str, params: &[(String, f64)]) -> Result<Tape, FormulaFault> {
+    let mut parser = FormulaParser {
+        tokens: FormulaTokens::new(text)?,
+        tape: TapeBuilder::default(),
+        names: HashMap::new(),
+        depth: 0,
+    };
     for (name, value) in params {
         let index = parser.constant(*value, 0..text.len())?;
         parser.names.insert(name.clone(), index);
@@ -67,29 +71,29 @@ pub(super) fn parse(text: &str, params: &[(String, f64)]) -> Result<Tape, Fault>
 }
 
 /// Returns the index of an operation, or the fault of a formula that is too long.
-fn fits(index: Result<Index, TooLong>, range: Range<usize>) -> Result<Index, Fault> {
-    index.or_else(|TooLong| Fault::new(range, format!("a formula has at most {MAX_OPERATIONS} operations")))
+fn fits(index: Result<Index, TooLong>, range: Range<usize>) -> Result<Index, FormulaFault> {
+    index.or_else(|TooLong| FormulaFault::new(range, format!("a formula has at most {MAX_OPERATIONS} operations")))
 }
 
-struct Parser<'t> {
-    tokens: Tokens<'t>,
+struct FormulaParser<'t> {
+    tokens: FormulaTokens<'t>,
     tape: TapeBuilder,
     /// The parameters and the names that the formula defines.
     names: HashMap<String, Index>,
     depth: usize,
 }
 
-impl Parser<'_> {
-    fn formula(&mut self) -> Result<Index, Fault> {
+impl FormulaParser<'_> {
+    fn formula(&mut self) -> Result<Index, FormulaFault> {
         while self.tokens.starts_definition() {
             let (name, range) = (self.tokens.text(), self.tokens.range());
             if !is_free_name(name) || self.names.contains_key(name) {
-                return Fault::new(range, format!("`{name}` has a meaning already: choose another name"));
+                return FormulaFault::new(range, format!("`{name}` has a meaning already: choose another name"));
             }
             self.tokens.advance();
             self.tokens.advance();
             let value = self.sum()?;
-            self.expect(Token::Sign(';'))?;
+            self.expect(FormulaToken::Sign(';'))?;
             self.names.insert(name.to_owned(), value);
         }
         let mut result = self.sum()?;
@@ -100,29 +104,29 @@ impl Parser<'_> {
             result = self.binary(Binary::Subtract, result, other, range)?;
         }
         match self.tokens.token() {
-            Token::End => Ok(result),
+            FormulaToken::End => Ok(result),
             _ => self.unexpected(),
         }
     }
 
-    fn sum(&mut self) -> Result<Index, Fault> {
+    fn sum(&mut self) -> Result<Index, FormulaFault> {
         let mut sum = self.product()?;
         loop {
             let function = match self.tokens.token() {
-                Token::Sign('+') => Binary::Add,
-                Token::Sign('-') => Binary::Subtract,
+                FormulaToken::Sign('+') => Binary::Add,
+                FormulaToken::Sign('-') => Binary::Subtract,
                 _ => return Ok(sum),
             };
             sum = self.then(function, sum, Self::product)?;
         }
     }
 
-    fn product(&mut self) -> Result<Index, Fault> {
+    fn product(&mut self) -> Result<Index, FormulaFault> {
         let mut product = self.unary()?;
         loop {
             let function = match self.tokens.token() {
-                Token::Sign('*') => Binary::Multiply,
-                Token::Sign('/') => Binary::Divide,
+                FormulaToken::Sign('*') => Binary::Multiply,
+                FormulaToken::Sign('/') => Binary::Divide,
                 _ => return Ok(product),
             };
             product = self.then(function, product, Self::unary)?;
@@ -134,15 +138,15 @@ impl Parser<'_> {
         &mut self,
         function: Binary,
         first: Index,
-        read: fn(&mut Self) -> Result<Index, Fault>,
-    ) -> Result<Index, Fault> {
+        read: fn(&mut Self) -> Result<Index, FormulaFault>,
+    ) -> Result<Index, FormulaFault> {
         let range = self.tokens.range();
         self.tokens.advance();
         let second = read(self)?;
         self.binary(function, first, second, range)
     }
 
-    fn unary(&mut self) -> Result<Index, Fault> {
+    fn unary(&mut self) -> Result<Index, FormulaFault> {
         if !self.tokens.is_sign('-') {
             return self.power();
         }
@@ -152,7 +156,7 @@ impl Parser<'_> {
         self.unary_of(Unary::Negate, operand, range)
     }
 
-    fn power(&mut self) -> Result<Index, Fault> {
+    fn power(&mut self) -> Result<Index, FormulaFault> {
         let base = self.atom()?;
         if !self.tokens.is_sign('^') {
             return Ok(base);
@@ -163,32 +167,34 @@ impl Parser<'_> {
         self.raised(base, exponent, range)
     }
 
-    fn atom(&mut self) -> Result<Index, Fault> {
+    fn atom(&mut self) -> Result<Index, FormulaFault> {
         let range = self.tokens.range();
         match self.tokens.token() {
-            Token::Number(value) => {
+            FormulaToken::Number(value) => {
                 self.tokens.advance();
                 self.constant(value, range)
             }
-            Token::Name => self.name(),
-            Token::Sign('(') => {
+            FormulaToken::Name => self.name(),
+            FormulaToken::Sign('(') => {
                 self.tokens.advance();
                 let inner = self.nested(range, Self::sum)?;
-                self.expect(Token::Sign(')'))?;
+                self.expect(FormulaToken::Sign(')'))?;
                 Ok(inner)
             }
-            Token::Sign('|') => {
+            FormulaToken::Sign('|') => {
                 self.tokens.advance();
                 let inner = self.nested(range.clone(), Self::sum)?;
-                self.expect(Token::Sign('|'))?;
+                self.expect(FormulaToken::Sign('|'))?;
                 self.unary_of(Unary::Abs, inner, range)
             }
-            Token::End => Fault::new(range, "the formula ends here: expected a number, a name or `(`"),
-            Token::Sign(sign) => Fault::new(range, format!("expected a number, a name or `(`, found `{sign}`")),
+            FormulaToken::End => FormulaFault::new(range, "the formula ends here: expected a number, a name or `(`"),
+            FormulaToken::Sign(sign) => {
+                FormulaFault::new(range, format!("expected a number, a name or `(`, found `{sign}`"))
+            }
         }
     }
 
-    fn name(&mut self) -> Result<Index, Fault> {
+    fn name(&mut self) -> Result<Index, FormulaFault> {
         let (name, range) = (self.tokens.text(), self.tokens.range());
         self.tokens.advance();
         if self.tokens.is_sign('(')
@@ -215,7 +221,7 @@ impl Parser<'_> {
                 self.length(&axes, range)
             }
             "time" => coordinate(self, TIME),
-            _ => Fault::new(range, self.unknown_name(name)),
+            _ => FormulaFault::new(range, self.unknown_name(name)),
         }
     }
 
@@ -230,7 +236,7 @@ impl Parser<'_> {
         }
     }
 
-    fn call(&mut self, function: &functions::Function, range: Range<usize>) -> Result<Index, Fault> {
+    fn call(&mut self, function: &functions::Function, range: Range<usize>) -> Result<Index, FormulaFault> {
         let mut operands = Vec::new();
         loop {
             // Skips `(` or `,`.
@@ -238,24 +244,31 @@ impl Parser<'_> {
             operands.push(self.nested(range.clone(), Self::sum)?);
             let (here, most) = (self.tokens.range(), function.operands.end);
             match self.tokens.token() {
-                Token::Sign(',') if operands.len() + 1 < most => {}
-                Token::Sign(',') => {
-                    return Fault::new(here, format!("{}: expected `)`", function.takes()));
+                FormulaToken::Sign(',') if operands.len() + 1 < most => {}
+                FormulaToken::Sign(',') => {
+                    return FormulaFault::new(here, format!("{}: expected `)`", function.takes()));
                 }
-                Token::Sign(')') if operands.len() < function.operands.start => {
-                    return Fault::new(here, format!("{}: expected `,`", function.takes()));
+                FormulaToken::Sign(')') if operands.len() < function.operands.start => {
+                    return FormulaFault::new(here, format!("{}: expected `,`", function.takes()));
                 }
                 _ => break,
             }
         }
-        self.expect(Token::Sign(')'))?;
+        self.expect(FormulaToken::Sign(')'))?;
         self.apply(function.kind, &operands, range)
     }
 
     /// Calls `read` one level of nesting deeper, or returns the fault of too deep a nesting.
-    fn nested<T>(&mut self, range: Range<usize>, read: impl FnOnce(&mut Self) -> Result<T, Fault>) -> Result<T, Fault> {
+    fn nested<T>(
+        &mut self,
+        range: Range<usize>,
+        read: impl FnOnce(&mut Self) -> Result<T, FormulaFault>,
+    ) -> Result<T, FormulaFault> {
         if self.depth == MAX_NESTING {
-            return Fault::new(range, format!("brackets, signs and exponents may be {MAX_NESTING} deep, not deeper"));
+            return FormulaFault::new(
+                range,
+                format!("brackets, signs and exponents may be {MAX_NESTING} deep, not deeper"),
+            );
         }
         self.depth += 1;
         let value = read(self)?;
@@ -263,74 +276,79 @@ impl Parser<'_> {
         Ok(value)
     }
 
-    fn expect(&mut self, wanted: Token) -> Result<(), Fault> {
+    fn expect(&mut self, wanted: FormulaToken) -> Result<(), FormulaFault> {
         if self.tokens.token() == wanted {
             self.tokens.advance();
             return Ok(());
         }
-        let Token::Sign(sign) = wanted else { return self.unexpected() };
+        let FormulaToken::Sign(sign) = wanted else { return self.unexpected() };
         match self.tokens.token() {
-            Token::End => Fault::new(self.tokens.range(), format!("the formula ends here: expected `{sign}`")),
+            FormulaToken::End => {
+                FormulaFault::new(self.tokens.range(), format!("the formula ends here: expected `{sign}`"))
+            }
             _ => self.unexpected(),
         }
     }
 
     /// Returns the fault of a token that cannot follow a complete operand.
-    fn unexpected<T>(&self) -> Result<T, Fault> {
+    fn unexpected<T>(&self) -> Result<T, FormulaFault> {
         let (range, text) = (self.tokens.range(), visible(self.tokens.text()));
         match (self.tokens.token(), self.tokens.before()) {
-            (Token::Name | Token::Number(_) | Token::Sign('('), Some(before)) => {
+            (FormulaToken::Name | FormulaToken::Number(_) | FormulaToken::Sign('('), Some(before)) => {
                 let before = if before.len() > 12 { ")" } else { before };
                 let operand = if text == "(" { "(...)" } else { &text };
                 let form = if before == ")" { format!("...) * {operand}") } else { format!("{before}*{operand}") };
-                Fault::new(range, format!("expected an operator, found `{text}`: write {form}"))
+                FormulaFault::new(range, format!("expected an operator, found `{text}`: write {form}"))
             }
-            (Token::End, _) => Fault::new(range, "the formula ends here: expected an operator"),
-            _ => Fault::new(range, format!("expected an operator, found `{text}`")),
+            (FormulaToken::End, _) => FormulaFault::new(range, "the formula ends here: expected an operator"),
+            _ => FormulaFault::new(range, format!("expected an operator, found `{text}`")),
         }
     }
 
     // Operations --------------------------------------------------------------------------------------------------
 
-    fn constant(&mut self, value: f64, range: Range<usize>) -> Result<Index, Fault> {
+    fn constant(&mut self, value: f64, range: Range<usize>) -> Result<Index, FormulaFault> {
         let index = self.tape.constant(value);
         fits(index, range)
     }
 
     /// Adds an operation, unless it is undefined for its constant operands.
-    fn unary_of(&mut self, function: Unary, operand: Index, range: Range<usize>) -> Result<Index, Fault> {
+    fn unary_of(&mut self, function: Unary, operand: Index, range: Range<usize>) -> Result<Index, FormulaFault> {
         let operand_value = self.tape.value(operand);
         let index = self.tape.unary(function, operand);
         let index = fits(index, range.clone())?;
         match (operand_value, self.tape.value(index)) {
             (Some(operand), Some(value)) if !value.is_finite() => {
-                Fault::new(range, format!("`{}` of {operand} is undefined", functions::name_of(function)))
+                FormulaFault::new(range, format!("`{}` of {operand} is undefined", functions::name_of(function)))
             }
             _ => Ok(index),
         }
     }
 
     /// Adds an operation, unless it is undefined for its constant operands.
-    fn binary(&mut self, function: Binary, a: Index, b: Index, range: Range<usize>) -> Result<Index, Fault> {
+    fn binary(&mut self, function: Binary, a: Index, b: Index, range: Range<usize>) -> Result<Index, FormulaFault> {
         if function == Binary::Divide && self.tape.value(b) == Some(0.0) {
-            return Fault::new(range, "a division by 0 is undefined");
+            return FormulaFault::new(range, "a division by 0 is undefined");
         }
         let index = self.tape.binary(function, a, b);
         let index = fits(index, range.clone())?;
         match self.tape.value(index) {
-            Some(value) if !value.is_finite() => Fault::new(range, "this number is too large"),
+            Some(value) if !value.is_finite() => FormulaFault::new(range, "this number is too large"),
             _ => Ok(index),
         }
     }
 
-    fn raised(&mut self, base: Index, exponent: Index, range: Range<usize>) -> Result<Index, Fault> {
+    fn raised(&mut self, base: Index, exponent: Index, range: Range<usize>) -> Result<Index, FormulaFault> {
         match self.tape.value(exponent) {
             Some(value) if value == libm::trunc(value) => {
                 if value.abs() > MAX_EXPONENT {
-                    return Fault::new(range, format!("a whole exponent is at most {MAX_EXPONENT}, found {value}"));
+                    return FormulaFault::new(
+                        range,
+                        format!("a whole exponent is at most {MAX_EXPONENT}, found {value}"),
+                    );
                 }
                 if value < 0.0 && self.tape.value(base) == Some(0.0) {
-                    return Fault::new(range, "a division by 0 is undefined");
+                    return FormulaFault::new(range, "a division by 0 is undefined");
                 }
                 let index = self.tape.power(base, value as i32);
                 fits(index, range)
@@ -345,7 +363,7 @@ impl Parser<'_> {
         }
     }
 
-    fn length(&mut self, operands: &[Index], range: Range<usize>) -> Result<Index, Fault> {
+    fn length(&mut self, operands: &[Index], range: Range<usize>) -> Result<Index, FormulaFault> {
         // The tape drops this 0 from the sum.
         let mut sum = self.constant(0.0, range.clone())?;
         for &operand in operands {

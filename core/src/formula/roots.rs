@@ -61,12 +61,12 @@ pub(crate) struct Line {
 
 thread_local! {
     /// The scratch memory of a thread: allocating it for each search took a tenth of the time.
-    static SCRATCH: RefCell<Scratch> = RefCell::default();
+    static SCRATCH: RefCell<SearchScratch> = RefCell::default();
 }
 
 /// Memory for the values of a tape's operations.
 #[derive(Debug, Default)]
-struct Scratch {
+struct SearchScratch {
     models: Vec<Model>,
     packets: Vec<StoredModels>,
     values: Vec<EightValues>,
@@ -201,18 +201,18 @@ impl<'f> Solver<'f> {
     /// Returns the lanes with a root, and their first roots, none of which depends on the other
     /// lanes.
     pub(crate) fn first_roots(self, searches: &mut Searches) -> (u32, F32x8) {
-        SCRATCH.with_borrow_mut(|scratch| simd::dispatch(Search { tape: &self.formula.tape, searches, scratch }))
+        SCRATCH.with_borrow_mut(|scratch| simd::dispatch(RootSearch { tape: &self.formula.tape, searches, scratch }))
     }
 }
 
 /// The search for the first roots along up to eight lines.
-struct Search<'a> {
+struct RootSearch<'a> {
     tape: &'a Tape,
     searches: &'a mut Searches,
-    scratch: &'a mut Scratch,
+    scratch: &'a mut SearchScratch,
 }
 
-impl SimdKernel for Search<'_> {
+impl SimdKernel for RootSearch<'_> {
     type Output = (u32, F32x8);
 
     #[inline(always)]
@@ -253,7 +253,7 @@ fn advance_one_by_one(
     forecasts: &SignForecasts,
     walks: &mut Walks,
     brackets: &mut Brackets,
-    scratch: &mut Scratch,
+    scratch: &mut SearchScratch,
 ) -> u32 {
     let mut found = 0;
     for lane in set_bits(lanes) {

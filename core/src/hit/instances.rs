@@ -10,7 +10,7 @@ use crate::shape::{Crossable, Passage, SoaLeaf, TriangleN};
 use std::ops::ControlFlow;
 
 /// The search for a ray's hit among instances: the SIMD kernel of `SingleRay::trace_instances`.
-pub(super) struct Search<'a, N: Lanes, const ANY: bool, W> {
+pub(super) struct InstanceSearch<'a, N: Lanes, const ANY: bool, W> {
     pub(super) accel: &'a Accelerator,
     pub(super) instances: &'a Instances,
     /// The ray in all lanes.
@@ -23,23 +23,23 @@ pub(super) struct Search<'a, N: Lanes, const ANY: bool, W> {
 }
 
 /// A search, and the stack on which it runs.
-pub(super) struct SearchOn<'a, N: Lanes, const ANY: bool, W> {
-    pub(super) search: Search<'a, N, ANY, W>,
+pub(super) struct InstanceSearchOn<'a, N: Lanes, const ANY: bool, W> {
+    pub(super) search: InstanceSearch<'a, N, ANY, W>,
     pub(super) stack: &'a mut RayStack,
 }
 
-impl<N: Lanes, const ANY: bool, W: Observer> SimdKernel for SearchOn<'_, N, ANY, W> {
+impl<N: Lanes, const ANY: bool, W: Observer> SimdKernel for InstanceSearchOn<'_, N, ANY, W> {
     /// The end of the interval and the primitive, as they are after the search.
     type Output = (f32, Option<u32>);
 
-    // `Same` is the type `N`, as in `single::Search`.
+    // `Same` is the type `N`, as in `single::InstanceSearch`.
     #[inline(always)]
     fn run<Same: Lanes>(self) -> Self::Output {
         let Self { search, stack } = self;
         let (bvh, rays, within) = (&search.instances.bvh, search.rays, search.within);
         let mut visitor = InInstances { stack: stack.take_inner(), search };
         match bvh.root() {
-            // As in `single::Search`, all leaves are tested for intervals with negative t, which are rare.
+            // As in `single::InstanceSearch`, all leaves are tested for intervals with negative t, which are rare.
             Some(root) if within.min >= 0.0 => bvh.visit_by_single_ray(root, rays, within, stack, &mut visitor),
             _ => {
                 let leaves = 0..visitor.search.instances.leaves.len();
@@ -53,7 +53,7 @@ impl<N: Lanes, const ANY: bool, W: Observer> SimdKernel for SearchOn<'_, N, ANY,
 
 /// The traversal of the tree over the boxes of instances.
 struct InInstances<'a, N: Lanes, const ANY: bool, W> {
-    search: Search<'a, N, ANY, W>,
+    search: InstanceSearch<'a, N, ANY, W>,
     /// The stack for the trees of meshes.
     stack: RayStack,
 }
@@ -89,7 +89,7 @@ impl<N: Lanes, const ANY: bool, W: Observer> LeafVisitor for InInstances<'_, N, 
     }
 }
 
-impl<N: Lanes, const ANY: bool, W: Observer> Search<'_, N, ANY, W> {
+impl<N: Lanes, const ANY: bool, W: Observer> InstanceSearch<'_, N, ANY, W> {
     /// Finds the hit among the triangles of an instance.
     #[inline(always)]
     fn visit(&mut self, instance: &Instance, passage: Passage, stack: &mut RayStack) {

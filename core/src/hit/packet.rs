@@ -8,7 +8,7 @@ use super::single::SingleRay;
 use super::{Stacks, split};
 use crate::accel::{self, Accelerator, Instances, List, Tree};
 use crate::bounds::crossed;
-use crate::bvh::{Child, GROUPS, Packet, Prefetch, RayStack, Visitor};
+use crate::bvh::{Child, GROUPS, Packet, PacketVisitor, Prefetch, RayStack};
 use crate::hit::{EightHits, Kernel};
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Mask, Vector, set_bits};
 use crate::ray::{EightRays, Interval, ProjectionCenter, Rays};
@@ -280,7 +280,7 @@ struct Trees<'a, 'p, N: Lanes, const ANY: bool> {
     stacks: &'a mut Stacks,
 }
 
-impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Trees<'_, 'p, N, ANY> {
+impl<'p, N: Lanes, const ANY: bool> accel::ListVisitor<'p> for Trees<'_, 'p, N, ANY> {
     #[inline(always)]
     fn visit_list<S: Endless>(&mut self, _: &'p List<S>) {}
 
@@ -303,7 +303,7 @@ struct Unculled<'a, N: Lanes, const ANY: bool> {
     accel: &'a Accelerator,
 }
 
-impl<'p, N: Lanes, const ANY: bool> accel::Visitor<'p> for Unculled<'_, N, ANY> {
+impl<'p, N: Lanes, const ANY: bool> accel::ListVisitor<'p> for Unculled<'_, N, ANY> {
     #[inline(always)]
     fn visit_list<S: Endless>(&mut self, list: &'p List<S>) {
         for (primitive, (_, surface)) in list.iter() {
@@ -355,7 +355,7 @@ impl<N: Lanes, S, const ANY: bool> Prefetch for InTree<'_, '_, N, S, ANY> {
     }
 }
 
-impl<N: Lanes, S: SoaLeaf, const ANY: bool> Visitor<N> for InTree<'_, '_, N, S, ANY> {
+impl<N: Lanes, S: SoaLeaf, const ANY: bool> PacketVisitor<N> for InTree<'_, '_, N, S, ANY> {
     // A shadow ray ends at any hit, even the farthest one, so sorting nodes by distance gains little: without sorting
     // and edge tests, dragon 871k with shadows is 1.10 times as fast, 1,000 spheres 1.03 times. The search for closest
     // hits uses both (without edge tests dragon 203k is 8 % slower).

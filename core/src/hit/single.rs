@@ -1,8 +1,8 @@
 //! Single-ray traversal: one ray against eight boxes or primitives at a time.
 
-use super::instances::{self, SearchOn};
+use super::instances::{self, InstanceSearchOn};
 use super::observer::{NoObserver, Observer, PrimitiveTest};
-use crate::accel::{Accelerator, Instances, List, PrimitiveId, Tree, Visitor};
+use crate::accel::{Accelerator, Instances, List, ListVisitor, PrimitiveId, Tree};
 use crate::bvh::{Child, LeafVisitor, Prefetch, RayStack};
 use crate::lanes::{F32x8, LaneMask, Lanes, SimdKernel, set_bits};
 use crate::ray::{Interval, Rays};
@@ -103,8 +103,9 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
         }
         let (rays, Self { accel, within, primitive, .. }) = (&self.rays.splat_lane(self.lane), &*self);
         let (accel, within, primitive) = (*accel, *within, *primitive);
-        let search = instances::Search { accel, instances, rays, within, primitive, observer: &mut self.observer };
-        (self.within.max, self.primitive) = N::call_no_inline(SearchOn::<N, ANY, W> { search, stack });
+        let search =
+            instances::InstanceSearch { accel, instances, rays, within, primitive, observer: &mut self.observer };
+        (self.within.max, self.primitive) = N::call_no_inline(InstanceSearchOn::<N, ANY, W> { search, stack });
     }
 
     /// Finds the hit below a node or leaf of a tree.
@@ -115,7 +116,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
         if ANY && self.primitive.is_some() {
             return;
         }
-        N::call_no_inline(Search { ray: self, from, tree, stack });
+        N::call_no_inline(SingleRaySearch { ray: self, from, tree, stack });
     }
 
     /// Tests the primitives of a leaf.
@@ -166,7 +167,7 @@ struct AllPrimitives<'a, 'p, N: Lanes, const ANY: bool, W> {
     stack: &'a mut RayStack,
 }
 
-impl<'p, N: Lanes, const ANY: bool, W: Observer> Visitor<'p> for AllPrimitives<'_, 'p, N, ANY, W> {
+impl<'p, N: Lanes, const ANY: bool, W: Observer> ListVisitor<'p> for AllPrimitives<'_, 'p, N, ANY, W> {
     #[inline(always)]
     fn visit_list<S: Endless>(&mut self, list: &'p List<S>) {
         self.ray.trace_list(list);
@@ -184,14 +185,14 @@ impl<'p, N: Lanes, const ANY: bool, W: Observer> Visitor<'p> for AllPrimitives<'
 }
 
 /// The SIMD kernel of [`SingleRay::trace_from`].
-struct Search<'a, 'p, N: Lanes, S, const ANY: bool, W> {
+struct SingleRaySearch<'a, 'p, N: Lanes, S, const ANY: bool, W> {
     ray: &'a mut SingleRay<'p, N, ANY, W>,
     from: Child,
     tree: &'a Tree<S>,
     stack: &'a mut RayStack,
 }
 
-impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> SimdKernel for Search<'_, '_, N, S, ANY, W> {
+impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> SimdKernel for SingleRaySearch<'_, '_, N, S, ANY, W> {
     type Output = ();
 
     // `Same` is the type `N`: `call_no_inline` of `N` runs a kernel with vectors of type `N`.

@@ -10,9 +10,9 @@ use crate::shade;
 /// An observer that counts the tests of surfaces and of tree nodes.
 // A node counts as one test, because its up to eight boxes are tested at once.
 #[derive(Default)]
-struct Count(u32);
+struct NodeCount(u32);
 
-impl Observer for Count {
+impl Observer for NodeCount {
     fn node_tested(&mut self) {
         self.0 = self.0.saturating_add(1);
     }
@@ -24,7 +24,7 @@ impl Observer for Count {
 
 /// Returns the number of tests of a pixel's eye ray and shadow rays.
 pub(super) fn eye_and_shadow_tests(scene: &Scene, sample: &GBufferSample) -> u32 {
-    let mut count = Count::default();
+    let mut count = NodeCount::default();
     closest_hit_observed(scene, &sample.ray, &mut count);
     if let Some(surface) = sample.surface(scene).filter(|_| scene.shadows()) {
         for light in scene.lights().iter().filter(|light| shade::incidence(light, &surface).is_some()) {

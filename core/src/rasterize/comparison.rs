@@ -79,7 +79,7 @@ impl Comparison {
         let (width, height) = (image.width(), image.height());
         let rays = camera.eye_rays(image.aspect_ratio());
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x as f32 + 0.5, y as f32 + 0.5)));
-        let mut count = Count(0);
+        let mut count = TestCount(0);
         let image_tests = pixels.map(|(x, y)| {
             let ray = rays.through(x / width as f32, (height as f32 - y) / height as f32);
             closest_hit_observed(scene, &ray, &mut count);
@@ -151,9 +151,9 @@ impl ObjectSteps {
 }
 
 /// An observer that counts the tests of surfaces and of tree nodes.
-struct Count(u64);
+struct TestCount(u64);
 
-impl Observer for Count {
+impl Observer for TestCount {
     fn node_tested(&mut self) {
         self.0 += 1;
     }

@@ -1,6 +1,6 @@
 //! The builder of a render.
 
-use super::report::Report;
+use super::report::TileReport;
 use super::{Executor, Sampling, progress_units, render_partial};
 use crate::camera::Camera;
 use crate::framebuffer::{Framebuffer, Resolution};
@@ -136,7 +136,7 @@ impl<'a> Render<'a> {
         let Some(callback) = callback else {
             return render(Executor::Cancellable(&token));
         };
-        let report = Report::new(&callback, token, progress_units(resolution, sampling));
+        let report = TileReport::new(&callback, token, progress_units(resolution, sampling));
         let framebuffer = render(Executor::Reporting(&report))?;
         // The picture is complete, so a `Break` is ignored here.
         let _ = callback(1.0);

@@ -15,7 +15,7 @@ const REPORT_PERIOD: Duration = Duration::from_millis(10);
 const REPORT_STEP: f32 = 0.005;
 
 /// The progress of a render, and the callback that receives it.
-pub struct Report<'a> {
+pub struct TileReport<'a> {
     callback: &'a (dyn Fn(f32) -> ControlFlow<()> + Sync),
     token: Cancellation,
     /// The number of progress units of the whole render.
@@ -25,9 +25,9 @@ pub struct Report<'a> {
     done: Mutex<Done>,
 }
 
-impl fmt::Debug for Report<'_> {
+impl fmt::Debug for TileReport<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Report").field("total", &self.total).field("done", &self.done).finish_non_exhaustive()
+        f.debug_struct("TileReport").field("total", &self.total).field("done", &self.done).finish_non_exhaustive()
     }
 }
 
@@ -38,7 +38,7 @@ struct Done {
     at: Instant,
 }
 
-impl<'a> Report<'a> {
+impl<'a> TileReport<'a> {
     /// Returns the progress of a render that has finished none of `total` units.
     ///
     /// `callback` gets the fraction done. If it returns `Break`, `token` is cancelled.

@@ -1,7 +1,7 @@
 //! The scheduling of a picture's tiles on threads, and of the batches of each tile.
 
 use super::Cost;
-use super::report::Report;
+use super::report::TileReport;
 use super::sampling::{SampleBatch, SampleBatches};
 use super::steps::{Buffers, ProgressUnit, RenderJob};
 use crate::progress::{Cancellation, Cancelled};
@@ -19,7 +19,7 @@ pub enum Executor<'a> {
     /// The threads of the current rayon pool, until the token is cancelled.
     Cancellable(&'a Cancellation),
     /// The threads of the current rayon pool, with progress reports that may cancel.
-    Reporting(&'a Report<'a>),
+    Reporting(&'a TileReport<'a>),
 }
 
 /// The largest predicted time of a picture that the calling thread traces alone.

@@ -75,13 +75,13 @@ impl From<Fault> for Faults {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {
     name: String,
-    reports: Vec<Report>,
+    reports: Vec<FaultReport>,
     more: usize,
 }
 
 /// A fault prepared for display, with all control characters replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Report {
+pub struct FaultReport {
     /// The line of the fault, counted from 1.
     pub line: usize,
     /// The column of the fault, in characters, counted from 1.
@@ -98,7 +98,7 @@ pub struct Report {
     pub caret_width: usize,
 }
 
-impl Report {
+impl FaultReport {
     /// Returns the message, preceded by the file's name and the position.
     fn message_in(&self, name: &str) -> String {
         let Self { line, column, message, .. } = self;
@@ -158,7 +158,7 @@ impl SceneError {
 
     /// Returns the faults in the order of the text, at most a thousand.
     #[doc(hidden)]
-    pub fn reports(&self) -> &[Report] {
+    pub fn reports(&self) -> &[FaultReport] {
         &self.reports
     }
 
@@ -225,12 +225,12 @@ impl<'a> LineCounter<'a> {
         }
     }
 
-    fn report(&mut self, fault: &Fault) -> Report {
+    fn report(&mut self, fault: &Fault) -> FaultReport {
         let start = character_start(self.text, fault.span.start as usize);
         let end = character_start(self.text, fault.span.end as usize).max(start);
         self.advance_to(start);
         let excerpt = Excerpt::new(&self.text[self.line_start..], start - self.line_start, end - self.line_start);
-        Report {
+        FaultReport {
             line: self.line,
             column: self.column,
             message: visible(&fault.message),

@@ -3,7 +3,7 @@
 //! It stops at the first fault, because after a missing bracket the meaning of the rest is unknown.
 
 use super::fault::{clipped, line_and_column, quoted};
-use super::tokens::{Token, Tokens};
+use super::tokens::{RonToken, RonTokens};
 use super::{Body, Fault, Field, Group, MAX_NESTING, Name, Span, SyntaxNode, Value};
 use crate::progress::{Meter, Reporter, Unfinished};
 
@@ -17,27 +17,27 @@ pub fn parse(text: &str) -> Result<SyntaxNode<'_>, Fault> {
 
 /// Parses as [`parse`] does, and reports progress to `meter`, whose callback may cancel the work.
 pub(super) fn parse_or_cancel<'a>(text: &'a str, meter: Meter<'_>) -> Parsed<SyntaxNode<'a>> {
-    let mut tokens = Tokens::new(text);
+    let mut tokens = RonTokens::new(text);
     tokens.skip_attributes()?;
     let (next, span) = tokens.next()?;
-    let mut parser = Parser { text, tokens, next, span, previous_end: 0, open: Vec::new(), misaligned: None, meter };
-    if parser.next == Token::End {
+    let mut parser = RonParser { text, tokens, next, span, previous_end: 0, open: Vec::new(), misaligned: None, meter };
+    if parser.next == RonToken::End {
         let message = "there is nothing here but comments or white space".to_owned();
         return Err(Fault { message, span: Span::empty_at(text.len()) }.into());
     }
     let root = parser.parse_value()?;
     match parser.next {
-        Token::End => Ok(root),
+        RonToken::End => Ok(root),
         _ => Err(parser.fault_here(format!("unexpected {} where the file should end", parser.describe_next()))),
     }
 }
 
-struct Parser<'a, 'm> {
+struct RonParser<'a, 'm> {
     text: &'a str,
     meter: Meter<'m>,
-    tokens: Tokens<'a>,
+    tokens: RonTokens<'a>,
     /// The next token; `span` is its range.
-    next: Token<'a>,
+    next: RonToken<'a>,
     span: Span,
     previous_end: u32,
     /// The open brackets and their spans.
@@ -53,8 +53,8 @@ struct Parser<'a, 'm> {
 
 type Parsed<T> = Result<T, Unfinished<Fault>>;
 
-impl<'a> Parser<'a, '_> {
-    fn advance(&mut self) -> Parsed<Token<'a>> {
+impl<'a> RonParser<'a, '_> {
+    fn advance(&mut self) -> Parsed<RonToken<'a>> {
         let (next, span) = self.tokens.next()?;
         self.previous_end = self.span.end;
         self.span = span;
@@ -65,34 +65,34 @@ impl<'a> Parser<'a, '_> {
     fn colon_follows(&self) -> bool {
         // Looks ahead with a copy of the lexer, which is only a position in the text.
         let mut tokens = self.tokens;
-        matches!(tokens.next(), Ok((Token::Colon, _)))
+        matches!(tokens.next(), Ok((RonToken::Colon, _)))
     }
 
     fn parse_value(&mut self) -> Parsed<SyntaxNode<'a>> {
         let start = self.span.start;
         self.meter.advance_to(start as usize)?;
         let value = match self.next {
-            Token::Word(word) => return self.parse_word(word),
-            Token::Open('(') => Value::Group(Box::new(Group { name: None, body: self.parse_body()? })),
-            Token::Open('[') => {
+            RonToken::Word(word) => return self.parse_word(word),
+            RonToken::Open('(') => Value::Group(Box::new(Group { name: None, body: self.parse_body()? })),
+            RonToken::Open('[') => {
                 self.open_bracket()?;
                 let items = self.parse_items()?;
                 self.close_bracket()?;
                 Value::List(items)
             }
-            Token::Open(_) => {
+            RonToken::Open(_) => {
                 self.open_bracket()?;
                 let entries = self.parse_entries()?;
                 self.close_bracket()?;
                 Value::Map(entries)
             }
-            Token::Number(number) => {
+            RonToken::Number(number) => {
                 self.advance()?;
                 Value::Number(number)
             }
             // `advance` returns the token itself, so that the string is not copied.
-            Token::String(_) => match self.advance()? {
-                Token::String(string) => Value::String(string),
+            RonToken::String(_) => match self.advance()? {
+                RonToken::String(string) => Value::String(string),
                 _ => Value::String(Box::default()),
             },
             _ => return Err(self.fault_here(self.no_value_message())),
@@ -111,10 +111,10 @@ impl<'a> Parser<'a, '_> {
         let value = match (word, &self.next) {
             ("true", _) => Value::Bool(true),
             ("false", _) => Value::Bool(false),
-            (_, Token::Open('{')) => {
+            (_, RonToken::Open('{')) => {
                 return Err(self.fault_here(format!("expected `(` after {}, found `{{`", quoted_word(word))));
             }
-            (_, Token::Open('(')) => return self.parse_named_group(Name { text: word, span }),
+            (_, RonToken::Open('(')) => return self.parse_named_group(Name { text: word, span }),
             _ => Value::Group(Box::new(Group { name: Some(Name { text: word, span }), body: Body::Nothing })),
         };
         Ok(self.node(span.start, value))
@@ -137,7 +137,7 @@ impl<'a> Parser<'a, '_> {
     /// Parses `(...)`: fields if the first entry is a field, otherwise values.
     fn parse_body(&mut self) -> Parsed<Body<'a>> {
         self.open_bracket()?;
-        let body = if matches!(self.next, Token::Word(_)) && self.colon_follows() {
+        let body = if matches!(self.next, RonToken::Word(_)) && self.colon_follows() {
             Body::Fields(self.parse_fields()?)
         } else {
             Body::Values(self.parse_items()?)
@@ -151,7 +151,7 @@ impl<'a> Parser<'a, '_> {
         while !self.at_end() {
             items.push(self.parse_value()?);
             // A name after items without names. Without this check, the message would be that a comma is missing.
-            if matches!(self.next, Token::Colon) {
+            if matches!(self.next, RonToken::Colon) {
                 return Err(
                     self.fault_here("unexpected `:`; all values in these brackets have names, or none has".to_owned())
                 );
@@ -167,7 +167,7 @@ impl<'a> Parser<'a, '_> {
         let mut entries = Vec::new();
         while !self.at_end() {
             let key = self.parse_value()?;
-            if self.next != Token::Colon {
+            if self.next != RonToken::Colon {
                 return Err(self.fault_here(format!("expected `:` and a value, found {}", self.describe_next())));
             }
             self.advance()?;
@@ -182,15 +182,15 @@ impl<'a> Parser<'a, '_> {
     fn parse_fields(&mut self) -> Parsed<Vec<Field<'a>>> {
         let mut fields = Vec::new();
         while !self.at_end() {
-            let Token::Word(text) = self.next else {
-                let hint = if self.next == Token::Comma { "; is it one comma too many?" } else { "" };
+            let RonToken::Word(text) = self.next else {
+                let hint = if self.next == RonToken::Comma { "; is it one comma too many?" } else { "" };
                 return Err(
                     self.fault_here(format!("expected the name of a field, found {}{hint}", self.describe_next()))
                 );
             };
             let name = Name { text, span: self.span };
             self.advance()?;
-            if self.next != Token::Colon {
+            if self.next != RonToken::Colon {
                 return Err(self.no_colon_fault(name));
             }
             self.advance()?;
@@ -203,12 +203,12 @@ impl<'a> Parser<'a, '_> {
     }
 
     fn at_end(&self) -> bool {
-        matches!(self.next, Token::Close(_) | Token::End)
+        matches!(self.next, RonToken::Close(_) | RonToken::End)
     }
 
     /// Skips a comma and returns whether there was one.
     fn skip_comma(&mut self) -> Parsed<bool> {
-        let comma = self.next == Token::Comma;
+        let comma = self.next == RonToken::Comma;
         if comma {
             self.advance()?;
         }
@@ -220,7 +220,7 @@ impl<'a> Parser<'a, '_> {
         if self.open.len() == MAX_NESTING {
             return Err(self.fault_here(format!("brackets are nested more than {MAX_NESTING} deep")));
         }
-        if let Token::Open(bracket) = self.next {
+        if let RonToken::Open(bracket) = self.next {
             self.open.push((bracket, self.span));
         }
         self.advance()?;
@@ -232,7 +232,7 @@ impl<'a> Parser<'a, '_> {
         let Some(&(bracket, opened)) = self.open.last() else {
             return Ok(());
         };
-        if self.next != Token::Close(closing_bracket(bracket)) {
+        if self.next != RonToken::Close(closing_bracket(bracket)) {
             return Err(self.not_closed_fault(bracket, opened));
         }
         if self.misaligned.is_none() && self.is_misaligned(opened) {
@@ -270,20 +270,20 @@ impl<'a> Parser<'a, '_> {
 
     fn describe_next(&self) -> String {
         match &self.next {
-            Token::Open(c) | Token::Close(c) | Token::Other(c) => format!("`{c}`"),
-            Token::Comma => "`,`".to_owned(),
-            Token::Colon => "`:`".to_owned(),
-            Token::Word(word) => quoted_word(word),
-            Token::Number(_) => "a number".to_owned(),
-            Token::String(string) => format!("the string {}", quoted(string)),
-            Token::End => "the end of the file".to_owned(),
+            RonToken::Open(c) | RonToken::Close(c) | RonToken::Other(c) => format!("`{c}`"),
+            RonToken::Comma => "`,`".to_owned(),
+            RonToken::Colon => "`:`".to_owned(),
+            RonToken::Word(word) => quoted_word(word),
+            RonToken::Number(_) => "a number".to_owned(),
+            RonToken::String(string) => format!("the string {}", quoted(string)),
+            RonToken::End => "the end of the file".to_owned(),
         }
     }
 
     fn no_value_message(&self) -> String {
         match self.next {
-            Token::Other('#') => "unexpected `#`; a colour is written in quotes, as in \"#ff8800\"".to_owned(),
-            Token::Comma if !self.text[..self.previous_end as usize].ends_with(':') => {
+            RonToken::Other('#') => "unexpected `#`; a colour is written in quotes, as in \"#ff8800\"".to_owned(),
+            RonToken::Comma if !self.text[..self.previous_end as usize].ends_with(':') => {
                 "expected a value, found `,`; is it one comma too many?".to_owned()
             }
             _ => format!("expected a value, found {}", self.describe_next()),
@@ -295,8 +295,8 @@ impl<'a> Parser<'a, '_> {
     fn no_colon_fault(&self, name: Name<'_>) -> Unfinished<Fault> {
         let word = quoted_word(name.text);
         match (&self.next, self.open.last()) {
-            (Token::Other('='), _) => self.fault_here(format!("expected `:` after {word}, found `=`")),
-            (Token::Open(_), Some(&(bracket, opened))) => {
+            (RonToken::Other('='), _) => self.fault_here(format!("expected `:` after {word}, found `=`")),
+            (RonToken::Open(_), Some(&(bracket, opened))) => {
                 let message = format!(
                     "expected a field, found {word}; is a `{}` missing before it, for the `{bracket}` at {}?",
                     closing_bracket(bracket),
@@ -312,18 +312,18 @@ impl<'a> Parser<'a, '_> {
     fn not_closed_fault(&self, bracket: char, opened: Span) -> Unfinished<Fault> {
         let right = closing_bracket(bracket);
         match self.next {
-            Token::End => {
+            RonToken::End => {
                 let (bracket, span) = self.misaligned.unwrap_or((bracket, opened));
                 let message = format!("this `{bracket}` is never closed by a `{}`", closing_bracket(bracket));
                 Fault { message, span }.into()
             }
-            Token::Close(wrong) => {
+            RonToken::Close(wrong) => {
                 let opened = self.line_and_column_text(opened);
                 self.fault_here(format!(
                     "expected `{right}`, found `{wrong}`; the `{bracket}` at {opened} is still open"
                 ))
             }
-            Token::Other(other) => self.fault_here(format!("expected `,` or `{right}`, found `{other}`")),
+            RonToken::Other(other) => self.fault_here(format!("expected `,` or `{right}`, found `{other}`")),
             _ => {
                 let message = format!("expected `,` or `{right}` before {}", self.describe_next());
                 Fault { message, span: Span::empty_at(self.previous_end as usize) }.into()

@@ -5,7 +5,7 @@ use super::{Fault, Span};
 
 /// A token of RON.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Token<'a> {
+pub(super) enum RonToken<'a> {
     /// An opening bracket: `(`, `[` or `{`.
     Open(char),
     /// A closing bracket: `)`, `]` or `}`.
@@ -23,18 +23,18 @@ pub(super) enum Token<'a> {
 
 /// The lexer: a position in the text, which can be copied to look ahead.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Tokens<'a> {
+pub(super) struct RonTokens<'a> {
     text: &'a str,
     at: usize,
 }
 
-impl<'a> Tokens<'a> {
+impl<'a> RonTokens<'a> {
     pub(super) fn new(text: &'a str) -> Self {
         Self { text, at: 0 }
     }
 
     /// Returns the next token and its range.
-    pub(super) fn next(&mut self) -> Result<(Token<'a>, Span), Fault> {
+    pub(super) fn next(&mut self) -> Result<(RonToken<'a>, Span), Fault> {
         self.skip_trivia()?;
         let start = self.at;
         let token = self.read_token()?;
@@ -62,10 +62,10 @@ impl<'a> Tokens<'a> {
         &self.text[self.at..]
     }
 
-    fn read_token(&mut self) -> Result<Token<'a>, Fault> {
+    fn read_token(&mut self) -> Result<RonToken<'a>, Fault> {
         let rest = self.rest();
         let Some(first) = rest.chars().next() else {
-            return Ok(Token::End);
+            return Ok(RonToken::End);
         };
         // Raw strings are recognized before words, because they start with the letter r.
         if let Some(hashes) = raw_string_hashes(rest) {
@@ -80,21 +80,21 @@ impl<'a> Tokens<'a> {
         }
         self.at += first.len_utf8();
         Ok(match first {
-            '(' | '[' | '{' => Token::Open(first),
-            ')' | ']' | '}' => Token::Close(first),
-            ',' => Token::Comma,
-            ':' => Token::Colon,
-            other => Token::Other(other),
+            '(' | '[' | '{' => RonToken::Open(first),
+            ')' | ']' | '}' => RonToken::Close(first),
+            ',' => RonToken::Comma,
+            ':' => RonToken::Colon,
+            other => RonToken::Other(other),
         })
     }
 
-    fn read_word(&mut self) -> Token<'a> {
+    fn read_word(&mut self) -> RonToken<'a> {
         let word = self.take_while(|c| c == '_' || c.is_alphanumeric());
         match word {
             // RON has these two words as numbers. The later checks refuse them, with a message about the value.
-            "inf" => Token::Number(f64::INFINITY),
-            "NaN" => Token::Number(f64::NAN),
-            _ => Token::Word(word),
+            "inf" => RonToken::Number(f64::INFINITY),
+            "NaN" => RonToken::Number(f64::NAN),
+            _ => RonToken::Word(word),
         }
     }
 
@@ -107,7 +107,7 @@ impl<'a> Tokens<'a> {
 
     /// Reads a number with all characters that may belong to it; a malformed one is reported as a
     /// whole.
-    fn read_number(&mut self) -> Result<Token<'a>, Fault> {
+    fn read_number(&mut self) -> Result<RonToken<'a>, Fault> {
         let start = self.at;
         self.at += 1;
         loop {
@@ -120,7 +120,7 @@ impl<'a> Tokens<'a> {
             self.at += 1;
         }
         let text = &self.text[start..self.at];
-        parse_number(text).map(Token::Number).ok_or_else(|| Fault {
+        parse_number(text).map(RonToken::Number).ok_or_else(|| Fault {
             message: format!("{} is not a number", quoted(text)),
             span: Span::new(start, self.at),
         })
@@ -129,7 +129,7 @@ impl<'a> Tokens<'a> {
     /// Reads a string in double quotes, which must end on its line.
     // RON allows line ends in strings. But a scene's strings are mostly names, colours and formulas, so a line end
     // means that the closing quote is missing. The fault is reported at the opening quote, and so on the right line.
-    fn read_string(&mut self) -> Result<Token<'a>, Fault> {
+    fn read_string(&mut self) -> Result<RonToken<'a>, Fault> {
         let start = self.at;
         let mut value = String::new();
         let mut chars = self.text[start + 1..].char_indices();
@@ -137,7 +137,7 @@ impl<'a> Tokens<'a> {
             match c {
                 '"' => {
                     self.at = start + 1 + i + 1;
-                    return Ok(Token::String(value.into()));
+                    return Ok(RonToken::String(value.into()));
                 }
                 '\n' => break,
                 '\\' => value.push(read_escape(&mut chars).ok_or_else(|| Fault {
@@ -153,7 +153,7 @@ impl<'a> Tokens<'a> {
         })
     }
 
-    fn read_raw_string(&mut self, hashes: usize) -> Result<Token<'a>, Fault> {
+    fn read_raw_string(&mut self, hashes: usize) -> Result<RonToken<'a>, Fault> {
         let start = self.at;
         let begin = start + 2 + hashes;
         let closing = format!("\"{}", "#".repeat(hashes));
@@ -161,7 +161,7 @@ impl<'a> Tokens<'a> {
             return Err(Fault { message: "this raw string is never closed".to_owned(), span: Span::new(start, begin) });
         };
         self.at = begin + length + closing.len();
-        Ok(Token::String(self.text[begin..begin + length].into()))
+        Ok(RonToken::String(self.text[begin..begin + length].into()))
     }
 
     fn single_quote_fault(&self) -> Fault {

@@ -3,7 +3,7 @@
 //! Traversal keeps only t and a primitive's index per ray. Normals and coordinates are computed here, once per ray
 //! instead of once per test.
 
-use crate::accel::{Accelerator, Instances, List, PrimitiveId, PrimitiveIds, Tree, Visitor};
+use crate::accel::{Accelerator, Instances, List, ListVisitor, PrimitiveId, PrimitiveIds, Tree};
 use crate::hit::EightHits;
 use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Vector, set_bits};
 use crate::ray::{EightRays, Rays};
@@ -125,7 +125,7 @@ struct SurfacesOfPrimitive<'h, N: Lanes> {
     found: (u32, PrimitiveIds<N>, Points<N>),
 }
 
-impl<'a, N: Lanes> Visitor<'a> for SurfacesOfPrimitive<'_, N> {
+impl<'a, N: Lanes> ListVisitor<'a> for SurfacesOfPrimitive<'_, N> {
     #[inline(always)]
     fn visit_list<S: Endless>(&mut self, list: &'a List<S>) {
         if list.contains(self.primitive) {

@@ -2,7 +2,7 @@
 
 use super::described::length_in_words;
 use super::exact::{self, Crossings, Exact, Frame, Inside};
-use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Axis, Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
@@ -73,10 +73,10 @@ impl Described for Capsule {
     /// States the equation, whose parts are those of a cylinder and of two spheres.
     fn equation(&self, ray: &Ray) -> Equation {
         let steps = vec![
-            Step::Text("|x - h a| = r, x = o + t d - from"),
-            Step::Text("h = x.a, from 0 to the length"),
-            Step::Text("sides: A t^2 + 2 B t + C = 0"),
-            Step::Text("as of cylinder and two spheres"),
+            EquationStep::Text("|x - h a| = r, x = o + t d - from"),
+            EquationStep::Text("h = x.a, from 0 to the length"),
+            EquationStep::Text("sides: A t^2 + 2 B t + C = 0"),
+            EquationStep::Text("as of cylinder and two spheres"),
         ];
         exact::equation(self, ray, steps)
     }

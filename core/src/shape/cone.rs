@@ -3,7 +3,7 @@
 use super::cylinder::{CAPS, SIDE};
 use super::described::length_in_words;
 use super::exact::{self, Crossings, Exact, Frame, Inside};
-use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Axis, Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
@@ -139,14 +139,14 @@ impl Described for Cone {
         let Quadratic { a, half_b, c } =
             self.quadratic(&self.axis.relative_to_start(self.frame.line(ray)), self.radii[0]);
         let steps = vec![
-            Step::Text("|x|^2 - h^2 - (r + k h)^2 = 0"),
-            Step::Text("x = o + t d - from, h = x.a"),
-            Step::Value("k", self.slope()),
-            Step::Text("A t^2 + 2 B t + C = 0"),
-            Step::Value("A", a),
-            Step::Value("B", half_b),
-            Step::Value("C", c),
-            Step::Text("and 0 <= h <= length"),
+            EquationStep::Text("|x|^2 - h^2 - (r + k h)^2 = 0"),
+            EquationStep::Text("x = o + t d - from, h = x.a"),
+            EquationStep::Value("k", self.slope()),
+            EquationStep::Text("A t^2 + 2 B t + C = 0"),
+            EquationStep::Value("A", a),
+            EquationStep::Value("B", half_b),
+            EquationStep::Value("C", c),
+            EquationStep::Text("and 0 <= h <= length"),
         ];
         exact::equation(self, ray, steps)
     }

@@ -2,8 +2,8 @@
 //!
 //! It shows that a new surface takes one file and one line in the table `surfaces`.
 
-use super::placement::{Place, Placement};
-use super::{CheckedShape, Described, Equation, Meshes, Points, Shape, Step, Surface, SurfacePoint};
+use super::placement::{Placeable, Placement};
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Points, Shape, Surface, SurfacePoint};
 use crate::bounds::{Bounds, crossed};
 use crate::lanes::Vector;
 use crate::ray::{Interval, Probe, Ray};
@@ -67,7 +67,7 @@ impl Described for Cube {
         let (enters, leaves) = (one.min(other).max_element(), one.max(other).min_element());
         let roots = if enters <= leaves { vec![enters, leaves] } else { Vec::new() };
         Equation {
-            steps: vec![Step::Values("t = ", " or ", roots.clone())],
+            steps: vec![EquationStep::Values("t = ", " or ", roots.clone())],
             roots,
             without_root: "miss",
             is_outside: false,
@@ -114,7 +114,7 @@ impl CheckedShape for Cube {
     }
 }
 
-impl Place for Cube {
+impl Placeable for Cube {
     /// Maps the centre; a cube cannot be rotated, or scaled differently along the axes.
     fn placed(self, placement: &Placement) -> Option<Shape> {
         let scale = placement.uniform_scale()? as f32;

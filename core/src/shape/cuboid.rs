@@ -2,7 +2,7 @@
 
 use super::described::size_in_words;
 use super::exact::{self, Crossings, Exact, Frame, Inside};
-use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::scene_text::Span;
@@ -84,12 +84,12 @@ impl Described for Cuboid {
     /// The line is inside the box from the last of the three entries to the first of the three exits.
     fn equation(&self, ray: &Ray) -> Equation {
         let line = self.frame.line(ray);
-        let mut steps = vec![Step::Text("o + t d = min and max, each axis")];
+        let mut steps = vec![EquationStep::Text("o + t d = min and max, each axis")];
         for (axis, name) in ["x: t in ", "y: t in ", "z: t in "].into_iter().enumerate() {
             let Inside { enters, leaves } = self.slab(axis, &line, DVec3::ZERO);
-            steps.push(Step::Values(name, " to ", vec![enters.t, leaves.t]));
+            steps.push(EquationStep::Values(name, " to ", vec![enters.t, leaves.t]));
         }
-        steps.push(Step::Text("inside where all three overlap"));
+        steps.push(EquationStep::Text("inside where all three overlap"));
         exact::equation(self, ray, steps)
     }
 

@@ -2,7 +2,7 @@
 
 use super::described::length_in_words;
 use super::exact::{self, Crossings, Exact, Frame, Inside, reach_of_circle};
-use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Axis, Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
@@ -102,13 +102,13 @@ impl Described for Cylinder {
         let line = self.axis.relative_to_start(self.frame.line(ray));
         let [o, d] = [line.origin, line.direction].map(|vector| self.axis.across(vector));
         let steps = vec![
-            Step::Text("|x|^2 - (x.a)^2 - r^2 = 0"),
-            Step::Text("x = o + t d - from, a its axis"),
-            Step::Text("A t^2 + 2 B t + C = 0"),
-            Step::Value("A = d.d - (d.a)^2", d.dot(d)),
-            Step::Value("B", o.dot(d)),
-            Step::Value("C", o.dot(o) - self.radius * self.radius),
-            Step::Text("and 0 <= x.a <= length"),
+            EquationStep::Text("|x|^2 - (x.a)^2 - r^2 = 0"),
+            EquationStep::Text("x = o + t d - from, a its axis"),
+            EquationStep::Text("A t^2 + 2 B t + C = 0"),
+            EquationStep::Value("A = d.d - (d.a)^2", d.dot(d)),
+            EquationStep::Value("B", o.dot(d)),
+            EquationStep::Value("C", o.dot(o) - self.radius * self.radius),
+            EquationStep::Text("and 0 <= x.a <= length"),
         ];
         exact::equation(self, ray, steps)
     }

@@ -1,7 +1,7 @@
 //! Surfaces in the text of descriptions and explanations.
 
-use super::placement::Place;
-use super::{Equation, Primitive, Shape, Step, Surface, surfaces};
+use super::placement::Placeable;
+use super::{Equation, EquationStep, Primitive, Shape, Surface, surfaces};
 use crate::bounds::Bounds;
 use crate::ray::Ray;
 use crate::text::number;
@@ -86,7 +86,7 @@ macro_rules! described {
                     Self::Facet(facet) => (facet.triangle().equation(ray), false),
                 };
                 if has_map {
-                    equation.steps.insert(0, Step::Text("o, d in coordinates of the shape:"));
+                    equation.steps.insert(0, EquationStep::Text("o, d in coordinates of the shape:"));
                 }
                 equation
             }

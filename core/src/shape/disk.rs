@@ -3,7 +3,7 @@
 use super::described::length_in_words;
 use super::exact::{self, Crossing, Crossings, Exact, Frame, reach_of_circle};
 use super::plane::{self, pattern_axis};
-use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
@@ -84,7 +84,7 @@ impl Described for Disk {
         let mut equation = plane::equation(&line, self.center, self.normal);
         if let Some(&t) = equation.roots.first() {
             let from_center = (line.origin + line.direction * t).distance(self.center);
-            equation.steps.push(Step::Value("|o + t d - a|", from_center));
+            equation.steps.push(EquationStep::Value("|o + t d - a|", from_center));
             equation.is_outside = from_center > self.radius;
         }
         equation

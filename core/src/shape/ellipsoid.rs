@@ -2,7 +2,7 @@
 
 use super::described::size_in_words;
 use super::exact::{self, Crossings, Exact, Frame, Inside};
-use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
@@ -64,12 +64,12 @@ impl Described for Ellipsoid {
         let Line { origin, direction } = self.frame.line(ray);
         let (d, from_center) = (direction / self.radii, (origin - self.center) / self.radii);
         let steps = vec![
-            Step::Text("|(o + t d - c) / r|^2 - 1 = 0"),
-            Step::Text("e = d / r, f = (o - c) / r"),
-            Step::Text("A t^2 + 2 B t + C = 0"),
-            Step::Value("A = e.e", d.dot(d)),
-            Step::Value("B = f.e", from_center.dot(d)),
-            Step::Value("C = f.f - 1", from_center.dot(from_center) - 1.0),
+            EquationStep::Text("|(o + t d - c) / r|^2 - 1 = 0"),
+            EquationStep::Text("e = d / r, f = (o - c) / r"),
+            EquationStep::Text("A t^2 + 2 B t + C = 0"),
+            EquationStep::Value("A = e.e", d.dot(d)),
+            EquationStep::Value("B = f.e", from_center.dot(d)),
+            EquationStep::Value("C = f.f - 1", from_center.dot(from_center) - 1.0),
         ];
         exact::equation(self, ray, steps)
     }

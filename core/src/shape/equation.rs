@@ -8,7 +8,7 @@
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equation {
     /// The solution of the equation, line by line.
-    pub steps: Vec<Step>,
+    pub steps: Vec<EquationStep>,
     /// The values of t at which the line crosses the surface or its plane, ascending.
     pub roots: Vec<f64>,
     /// The text to show if there is no root.
@@ -19,7 +19,7 @@ pub struct Equation {
 
 /// A line of the written-out solution of an [`Equation`], in ASCII.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Step {
+pub enum EquationStep {
     /// A formula and its value.
     Value(&'static str, f64),
     /// A formula or words without a value.

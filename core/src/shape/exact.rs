@@ -6,8 +6,8 @@
 //! kernels decide by the same computation whether it hits. The price is speed: surfaces are tested one by one.
 
 use super::described::length_in_words;
-use super::equation::{Equation, Step};
-use super::placement::{AffineMap, Place, Placement, shape_line};
+use super::equation::{Equation, EquationStep};
+use super::placement::{AffineMap, Placeable, Placement, shape_line};
 use super::{Points, Shape, Surface, SurfacePoint, flat_footprint};
 use crate::bounds::Bounds;
 use crate::formula::Line;
@@ -113,7 +113,7 @@ pub(super) fn framed<S: Exact>(mut surface: S) -> S {
     surface
 }
 
-impl<S: Exact + Into<Shape>> Place for S {
+impl<S: Exact + Into<Shape>> Placeable for S {
     fn placed(mut self, placement: &Placement) -> Option<Shape> {
         let (old, new) = (self.frame().map.as_deref(), placement.map());
         self.frame_mut().map = Some(Arc::new(old.map_or(new, |old| old.then(&new))));
@@ -266,12 +266,12 @@ fn pattern_axes_in_scene<S: Exact>(surface: &S, normal: Vec3) -> Option<[Vec3; 2
 }
 
 /// Returns the equation with the steps `steps` and the crossings of a ray's line as its roots.
-pub(super) fn equation<S: Exact>(surface: &S, ray: &Ray, mut steps: Vec<Step>) -> Equation {
+pub(super) fn equation<S: Exact>(surface: &S, ray: &Ray, mut steps: Vec<EquationStep>) -> Equation {
     let mut roots: Vec<_> = crossings(surface, ray).iter().map(|crossing| crossing.t).collect();
     let behind = roots.iter().filter(|&&root| root < 0.0).count();
     roots.drain(..behind.min(roots.len().saturating_sub(MAX_SHOWN)));
     roots.truncate(MAX_SHOWN);
-    steps.push(Step::Values("t = ", " or ", roots.clone()));
+    steps.push(EquationStep::Values("t = ", " or ", roots.clone()));
     Equation { steps, roots, without_root: "miss", is_outside: false }
 }
 

@@ -2,8 +2,8 @@
 
 use super::cuboid::WrittenBox;
 use super::described::size_in_words;
-use super::placement::{AffineMap, Place, Placement, shape_line};
-use super::{CheckedShape, Cuboid, Described, Equation, Meshes, Points, Shape, Step, Surface, SurfacePoint};
+use super::placement::{AffineMap, Placeable, Placement, shape_line};
+use super::{CheckedShape, Cuboid, Described, Equation, EquationStep, Meshes, Points, Shape, Surface, SurfacePoint};
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
 use crate::formula::{Formula, Line, Searches, Solver, is_free_name};
@@ -242,11 +242,12 @@ impl Described for Implicit {
             // The next search starts at this root, and does not find it again.
             from = root;
         }
-        let mut steps = vec![Step::Formula(self.0.text.clone()), Step::Text("f(o + t d) = 0, in the bounds")];
+        let mut steps =
+            vec![EquationStep::Formula(self.0.text.clone()), EquationStep::Text("f(o + t d) = 0, in the bounds")];
         if min <= max {
-            steps.push(Step::Values("t in ", " to ", vec![f64::from(min), f64::from(max)]));
+            steps.push(EquationStep::Values("t in ", " to ", vec![f64::from(min), f64::from(max)]));
         }
-        steps.push(Step::Values("t = ", " or ", roots.clone()));
+        steps.push(EquationStep::Values("t = ", " or ", roots.clone()));
         Equation { steps, roots, without_root: "miss", is_outside: false }
     }
 
@@ -369,7 +370,7 @@ impl CheckedShape for Implicit {
     }
 }
 
-impl Place for Implicit {
+impl Placeable for Implicit {
     fn placed(self, placement: &Placement) -> Option<Shape> {
         let (mut definition, new) = (Arc::unwrap_or_clone(self.0), placement.map());
         let map = definition.map.map_or(new, |old| old.then(&new));

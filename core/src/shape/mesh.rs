@@ -1,7 +1,7 @@
 //! A mesh: triangles that share their corners.
 
 use super::instance::{CornerCells, Passage};
-use super::placement::{AffineMap, Place, Placement};
+use super::placement::{AffineMap, Placeable, Placement};
 use super::{CheckedShape, Meshes, Shape, Surface, SurfacePoint, Triangle};
 use crate::bounds::Bounds;
 use crate::checks::{self, SceneFault};
@@ -345,7 +345,7 @@ impl CheckedShape for Mesh {
     }
 }
 
-impl Place for Mesh {
+impl Placeable for Mesh {
     fn placed(self, placement: &Placement) -> Option<Shape> {
         let Placement { scale, turn, translation } = placement;
         if let Some(old) = &self.map {

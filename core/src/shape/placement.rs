@@ -69,7 +69,7 @@ impl Placement {
 }
 
 /// A shape that can be placed.
-pub(super) trait Place {
+pub(super) trait Placeable {
     /// Returns the shape scaled, rotated and moved; `None` if a number exceeds the range of f32.
     fn placed(self, placement: &Placement) -> Option<Shape>;
 

@@ -1,9 +1,9 @@
 //! Ray-plane intersection (lecture, "Ray intersection").
 
 use super::equation::finite_quotient;
-use super::placement::{Place, Placement};
+use super::placement::{Placeable, Placement};
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Endless, Equation, Meshes, Points, Shape, Step, Surface,
+    AtCrossing, CheckedShape, Crossable, Described, Endless, Equation, EquationStep, Meshes, Points, Shape, Surface,
     SurfacePoint, flat_footprint,
 };
 use crate::bounds::Bounds;
@@ -169,10 +169,10 @@ pub(super) fn equation(&Line { origin: o, direction: d }: &Line, a: DVec3, n: DV
     let (above, below) = ((a - o).dot(n), d.dot(n));
     let t = finite_quotient(above, below);
     let steps = vec![
-        Step::Text("(o + t d - a).n = 0"),
-        Step::Value("(a-o).n", above),
-        Step::Value("d.n", below),
-        Step::Value("t = (a-o).n / d.n", t.unwrap_or_default()),
+        EquationStep::Text("(o + t d - a).n = 0"),
+        EquationStep::Value("(a-o).n", above),
+        EquationStep::Value("d.n", below),
+        EquationStep::Value("t = (a-o).n / d.n", t.unwrap_or_default()),
     ];
     Equation { steps, roots: t.into_iter().collect(), without_root: "parallel", is_outside: false }
 }
@@ -212,7 +212,7 @@ impl CheckedShape for Plane {
     }
 }
 
-impl Place for Plane {
+impl Placeable for Plane {
     fn placed(self, placement: &Placement) -> Option<Shape> {
         let (map, point) = (placement.map(), self.point.as_dvec3());
         let [normal, u, v] = [self.normal, self.u, self.v].map(|vector| map.normal(vector.as_dvec3()));

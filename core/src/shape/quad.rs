@@ -2,7 +2,7 @@
 
 use super::described::length_in_words;
 use super::exact::{self, Crossing, Crossings, Exact, Frame};
-use super::{CheckedShape, Described, Equation, Meshes, Shape, Step, plane};
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape, plane};
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::scene_text::Span;
@@ -98,7 +98,7 @@ impl Described for Quad {
             let from_corner = line.origin + line.direction * t - self.corner;
             let shares = self.shares.map(|share| share.dot(from_corner));
             equation.is_outside = shares.iter().any(|share| !(0.0..=1.0).contains(share));
-            equation.steps.push(Step::Values("edges at ", " ", shares.to_vec()));
+            equation.steps.push(EquationStep::Values("edges at ", " ", shares.to_vec()));
         }
         equation
     }

@@ -1,9 +1,9 @@
 //! Ray-sphere intersection (lecture, "Ray intersection").
 
-use super::placement::{Place, Placement};
+use super::placement::{Placeable, Placement};
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Ellipsoid, Equation, Meshes, Points, Shape, SoaLeaf, Step, Surface,
-    SurfacePoint,
+    AtCrossing, CheckedShape, Crossable, Described, Ellipsoid, Equation, EquationStep, Meshes, Points, Shape, SoaLeaf,
+    Surface, SurfacePoint,
 };
 use crate::bounds::{Bounds, crossed};
 use crate::checks::{self, SceneFault};
@@ -222,13 +222,13 @@ impl Described for Sphere {
         let root = |sign: f64| (-b + sign * under_root.sqrt()) / a;
         let roots = if under_root >= 0.0 { vec![root(-1.0), root(1.0)] } else { Vec::new() };
         let steps = vec![
-            Step::Text("|o + t d - c|^2 - r^2 = 0"),
-            Step::Text("A t^2 + 2 B t + C = 0"),
-            Step::Value("A = d.d", a),
-            Step::Value("B = (o-c).d", b),
-            Step::Value("C = (o-c).(o-c) - r^2", c),
-            Step::Text("t = (-B +- sqrt(B^2 - A C)) / A"),
-            Step::Values("  = ", " or ", roots.clone()),
+            EquationStep::Text("|o + t d - c|^2 - r^2 = 0"),
+            EquationStep::Text("A t^2 + 2 B t + C = 0"),
+            EquationStep::Value("A = d.d", a),
+            EquationStep::Value("B = (o-c).d", b),
+            EquationStep::Value("C = (o-c).(o-c) - r^2", c),
+            EquationStep::Text("t = (-B +- sqrt(B^2 - A C)) / A"),
+            EquationStep::Values("  = ", " or ", roots.clone()),
         ];
         Equation { steps, roots, without_root: "miss", is_outside: false }
     }
@@ -275,7 +275,7 @@ impl CheckedShape for Sphere {
     }
 }
 
-impl Place for Sphere {
+impl Placeable for Sphere {
     /// Maps the sphere to a sphere, or to an ellipsoid if its factors differ.
     fn placed(self, placement: &Placement) -> Option<Shape> {
         let (center, radius) = (self.center.as_dvec3(), f64::from(self.radius));

@@ -2,7 +2,7 @@
 
 use super::described::length_in_words;
 use super::exact::{self, Crossing, Crossings, Exact, Frame, reach_of_circle};
-use super::{CheckedShape, Described, Equation, Meshes, Shape, Step};
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
@@ -121,14 +121,14 @@ impl Described for Torus {
         let nearest = -o.dot(d) / d.dot(d);
         let Quartic { squares, linear, constant, .. } = self.quartic(&Line { origin: o + d * nearest, direction: d });
         let steps = vec![
-            Step::Text("(|x|^2 + R^2 - r^2)^2"),
-            Step::Text("  = 4 R^2 (|x|^2 - (x.a)^2)"),
-            Step::Text("x = o + t d - c, t = t0 + s / |d|"),
-            Step::Value("t0 = (c-o).d / d.d", nearest),
-            Step::Text("s^4 + P s^2 + Q s + C = 0"),
-            Step::Value("P", squares),
-            Step::Value("Q", linear),
-            Step::Value("C", constant),
+            EquationStep::Text("(|x|^2 + R^2 - r^2)^2"),
+            EquationStep::Text("  = 4 R^2 (|x|^2 - (x.a)^2)"),
+            EquationStep::Text("x = o + t d - c, t = t0 + s / |d|"),
+            EquationStep::Value("t0 = (c-o).d / d.d", nearest),
+            EquationStep::Text("s^4 + P s^2 + Q s + C = 0"),
+            EquationStep::Value("P", squares),
+            EquationStep::Value("Q", linear),
+            EquationStep::Value("C", constant),
         ];
         exact::equation(self, ray, steps)
     }

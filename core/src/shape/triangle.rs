@@ -4,9 +4,9 @@
 
 use super::described::size_in_words;
 use super::equation::finite_quotient;
-use super::placement::{Place, Placement};
+use super::placement::{Placeable, Placement};
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Equation, Meshes, Points, Shape, SoaLeaf, Step, Surface,
+    AtCrossing, CheckedShape, Crossable, Described, Equation, EquationStep, Meshes, Points, Shape, SoaLeaf, Surface,
     SurfacePoint,
 };
 use crate::bounds::{Bounds, crossed};
@@ -413,10 +413,10 @@ impl Described for Triangle {
         Equation {
             is_outside: shares.iter().any(|&share| share < 0.0),
             steps: vec![
-                Step::Text("(o + t d - a).n = 0"),
-                Step::Value("t = (a-o).n / d.n", t.unwrap_or_default()),
-                Step::Text("p = sum of share * corner, with"),
-                Step::Values("    ", "", shares),
+                EquationStep::Text("(o + t d - a).n = 0"),
+                EquationStep::Value("t = (a-o).n / d.n", t.unwrap_or_default()),
+                EquationStep::Text("p = sum of share * corner, with"),
+                EquationStep::Values("    ", "", shares),
             ],
             roots: t.into_iter().collect(),
             without_root: "parallel",
@@ -454,7 +454,7 @@ impl CheckedShape for Triangle {
     }
 }
 
-impl Place for Triangle {
+impl Placeable for Triangle {
     /// Maps the corners, in the opposite order if mirrored, so that the front stays in front.
     fn placed(self, placement: &Placement) -> Option<Shape> {
         let (map, is_mirrored) = (placement.map(), placement.scale.element_product() < 0.0);

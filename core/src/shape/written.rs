@@ -1,6 +1,6 @@
 //! The surfaces and meshes of scene files, before they are checked.
 
-use super::placement::{Place, Placement, WrittenPlacement};
+use super::placement::{Placeable, Placement, WrittenPlacement};
 use super::{Shape, surfaces};
 use crate::mesh_file::MeshFile;
 use crate::progress::Unfinished;

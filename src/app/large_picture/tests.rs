@@ -3,7 +3,7 @@ use super::*;
 /// A large picture makes progress even if the live view moves, and requests a pause, all the time.
 #[test]
 fn a_picture_goes_on_beside_an_endless_motion() {
-    let shared = Shared::default();
+    let shared = SharedPicture::default();
     shared.pause.lock().unwrap().is_on = true;
     let pauses: Vec<_> = (0..3)
         .map(|_| {

@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::app) struct Dependency {
     path: PathBuf,
-    state: State,
+    state: DependencyState,
 }
 
 /// The state of the file that a path leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
+enum DependencyState {
     /// There is no file, or the process has no access to it.
     Missing,
     /// A regular file.
@@ -34,7 +34,7 @@ enum State {
 /// Device and inode number, which identify a file or folder.
 pub(super) type Identity = (u64, u64);
 
-impl State {
+impl DependencyState {
     fn read(path: &Path) -> Self {
         match fs::metadata(path) {
             Ok(data) if data.is_file() => Self::Plain {
@@ -56,7 +56,7 @@ pub(super) fn identity(data: &Metadata) -> Identity {
 impl Dependency {
     /// Returns the file at `path` with its current state.
     pub(in crate::app) fn in_current_state(path: &Path) -> Self {
-        Self { path: path.to_owned(), state: State::read(path) }
+        Self { path: path.to_owned(), state: DependencyState::read(path) }
     }
 
     pub(in crate::app) fn path(&self) -> &Path {
@@ -66,7 +66,7 @@ impl Dependency {
     /// Returns whether the path led to a pipe, device or folder, so that reading it may block for
     /// ever.
     pub(in crate::app) fn is_special_file(&self) -> bool {
-        matches!(self.state, State::Special(_))
+        matches!(self.state, DependencyState::Special(_))
     }
 
     /// Returns whether the path now leads to another file, or to the same file with another state.
@@ -74,7 +74,7 @@ impl Dependency {
     /// A missing file does not count as changed, because an event reports when it comes back.
     pub(in crate::app) fn has_changed(&self) -> bool {
         // Some editors replace a file in two steps, between which it is missing.
-        let now = State::read(&self.path);
-        now != State::Missing && now != self.state
+        let now = DependencyState::read(&self.path);
+        now != DependencyState::Missing && now != self.state
     }
 }

@@ -17,7 +17,7 @@ const MAX_LINKS: usize = 40;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ResolvedPath {
     /// The folders and links on the path, each of which may be replaced.
-    steps: Vec<Step>,
+    steps: Vec<ResolvedLink>,
     /// The file; if the path cannot be resolved to its end, the component at which that failed.
     end: PathBuf,
     /// Whether the path was resolved to its end: no component is missing or unreadable, and links
@@ -26,7 +26,7 @@ pub(super) struct ResolvedPath {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Step {
+struct ResolvedLink {
     path: PathBuf,
     is_link: bool,
 }
@@ -50,12 +50,12 @@ impl ResolvedPath {
                 Ok(true) if links < MAX_LINKS => {
                     links += 1;
                     left.extend(fs::read_link(&path).map(|target| components_reversed(&target)).unwrap_or_default());
-                    steps.push(Step { path, is_link: true });
+                    steps.push(ResolvedLink { path, is_link: true });
                 }
                 Ok(false) if left.is_empty() => return Some(Self { steps, end: path, is_complete: true }),
                 Ok(false) => {
                     folder.clone_from(&path);
-                    steps.push(Step { path, is_link: false });
+                    steps.push(ResolvedLink { path, is_link: false });
                 }
                 // The component is missing or unreadable, or the links form a cycle.
                 _ => return Some(Self { steps, end: path, is_complete: false }),

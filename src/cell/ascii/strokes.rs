@@ -50,7 +50,7 @@ pub(super) fn edge(geometry: &Geometry, [column, row]: [usize; 2], kept: Option<
     if !geometry.has_edge(column, row) {
         return None;
     }
-    let window = Window::of(geometry, column, row);
+    let window = FacetWindow::of(geometry, column, row);
     let strokes = window.strokes(geometry);
     let [upright, level] = strokes.lengths;
     if upright * upright + level * level < LEAST_LENGTH * LEAST_LENGTH {
@@ -66,7 +66,7 @@ pub(super) fn edge(geometry: &Geometry, [column, row]: [usize; 2], kept: Option<
 }
 
 /// The facets in and around a cell, row by row.
-struct Window<'g>([[&'g Facet; WINDOW[0]]; WINDOW[1]]);
+struct FacetWindow<'g>([[&'g Facet; WINDOW[0]]; WINDOW[1]]);
 
 /// The points of the strokes in and around a cell.
 struct Strokes {
@@ -76,7 +76,7 @@ struct Strokes {
     lengths: [u32; 2],
 }
 
-impl<'g> Window<'g> {
+impl<'g> FacetWindow<'g> {
     fn of(geometry: &'g Geometry, column: usize, row: usize) -> Self {
         let end = [geometry.columns() * SAMPLES[0] - 1, geometry.rows() * SAMPLES[1] - 1];
         let at = |first: usize, offset: usize, end: usize| (first + offset).saturating_sub(MARGIN).min(end);

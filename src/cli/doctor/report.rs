@@ -20,7 +20,7 @@ pub(super) enum QueryOutcome {
 }
 
 /// The inputs of the report that `termtrace doctor` prints.
-pub(super) struct Report<'a> {
+pub(super) struct DoctorReport<'a> {
     pub(super) settings: &'a Settings,
     pub(super) hints: &'a Hints,
     pub(super) findings: &'a Findings,
@@ -28,7 +28,7 @@ pub(super) struct Report<'a> {
     pub(super) outcome: QueryOutcome,
 }
 
-pub(super) fn text(report: &Report<'_>) -> String {
+pub(super) fn text(report: &DoctorReport<'_>) -> String {
     let term = report.hints.variable("TERM").unwrap_or_default();
     let version = env!("CARGO_PKG_VERSION");
     let mut text = format!("{}\n", report.verdict());
@@ -41,7 +41,7 @@ pub(super) fn text(report: &Report<'_>) -> String {
 }
 
 /// Returns the rows of the report as JSON.
-pub(super) fn as_json(report: &Report<'_>) -> Value {
+pub(super) fn as_json(report: &DoctorReport<'_>) -> Value {
     let rows = report.rows().into_iter();
     let rows = rows.map(|(name, value, source)| json!({ "name": name, "value": value, "source": source }));
     json!({
@@ -55,7 +55,7 @@ pub(super) fn as_json(report: &Report<'_>) -> Value {
 /// A row of the table: a capability, its value, and the source that decided the value.
 type ReportRow = (&'static str, String, String);
 
-impl Report<'_> {
+impl DoctorReport<'_> {
     /// Returns whether the program works well here, and otherwise its limits, in a sentence.
     fn verdict(&self) -> String {
         if matches!(self.outcome, QueryOutcome::NoTerminal) {

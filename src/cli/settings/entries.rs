@@ -9,7 +9,7 @@ use termtrace::internals::scene_text::{self, Faults, Field, Name, Value, line_an
 use termtrace::internals::text::closest;
 
 /// A setting in `config.ron`.
-pub(super) struct Entry {
+pub(super) struct SettingEntry {
     pub(super) name: String,
     /// The value as it would be written after the setting's flag.
     pub(super) text: String,
@@ -18,7 +18,7 @@ pub(super) struct Entry {
 }
 
 /// Returns the settings in `file`, or all faults of the file.
-pub(super) fn read(file: &UserFile, command: &Command) -> Result<Vec<Entry>, SceneError> {
+pub(super) fn read(file: &UserFile, command: &Command) -> Result<Vec<SettingEntry>, SceneError> {
     let name = file.path.to_string_lossy();
     scene_text::read(&name, &file.text, "file of settings is ()", |root, faults| {
         let mut entries = Vec::new();
@@ -35,7 +35,7 @@ pub(super) fn read(file: &UserFile, command: &Command) -> Result<Vec<Entry>, Sce
                 faults.add(span, || format!("duplicate setting \"{name}\""));
             } else if let Some(text) = value_text(field, command, faults) {
                 let (line, _) = line_and_column(&file.text, span.start as usize);
-                entries.push(Entry { name: name.to_owned(), text, line });
+                entries.push(SettingEntry { name: name.to_owned(), text, line });
             }
         }
         faults.is_empty().then_some(entries)

@@ -21,7 +21,7 @@ pub(super) const MAX_COLORS: usize = 255;
 const SLOTS: usize = 1 << 14;
 
 #[derive(Default)]
-pub(super) struct Palette {
+pub(super) struct FramePalette {
     colors: Colors,
     bins: Vec<Bin>,
     /// The hash table of the bins: the index of a bin, or `u16::MAX` for an empty slot.
@@ -182,7 +182,7 @@ struct Share {
     loss: f32,
 }
 
-impl Palette {
+impl FramePalette {
     /// Chooses the palette for some cells, and sets the colours nearest to their halves.
     ///
     /// `radius` is the least squared distance of two colours of the palette: the last frame's on entry, this frame's on

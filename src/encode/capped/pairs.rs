@@ -1,6 +1,6 @@
 //! The pairs of colours of a frame under a limit, and the choice of a pair for each cell.
 
-use super::colors::{MAX_COLORS, Palette};
+use super::colors::{FramePalette, MAX_COLORS};
 use super::{ActiveCell, Channels, ExchangeRate, WrittenCell, channels, error, square};
 use crate::color::Srgb8;
 use crate::grid::{HalfBlocks, PackedInk};
@@ -55,7 +55,7 @@ pub(super) struct Pairs {
 
 impl Pairs {
     /// Chooses the pair of each cell.
-    pub(super) fn choose(&mut self, active: &mut [ActiveCell], colors: &Colors<'_>, columns: usize) {
+    pub(super) fn choose(&mut self, active: &mut [ActiveCell], colors: &PairColors<'_>, columns: usize) {
         self.collect_ways(active, colors);
         self.open_pairs(active, colors.rate);
         for _ in 0..2 {
@@ -114,7 +114,7 @@ impl Pairs {
     }
 
     /// Offers each cell the pairs of the colours near its halves.
-    fn collect_ways(&mut self, active: &[ActiveCell], colors: &Colors<'_>) {
+    fn collect_ways(&mut self, active: &[ActiveCell], colors: &PairColors<'_>) {
         self.ways.clear();
         self.table.resize(KEYS, UNUSED);
         for key in self.used.drain(..) {
@@ -199,7 +199,7 @@ impl Pairs {
 
     /// Gives up pairs that no longer pay for their pen, and ranks the others by what they gain per
     /// byte.
-    fn rank_pairs(&mut self, active: &mut [ActiveCell], colors: &Colors<'_>) {
+    fn rank_pairs(&mut self, active: &mut [ActiveCell], colors: &PairColors<'_>) {
         self.open.clear();
         for cell in active.iter_mut() {
             let Some(key) = cell.pair else { continue };
@@ -229,13 +229,13 @@ impl Pairs {
 }
 
 /// The palette, and how its colours may be combined.
-pub(super) struct Colors<'a> {
-    pub(super) palette: &'a Palette,
+pub(super) struct PairColors<'a> {
+    pub(super) palette: &'a FramePalette,
     pub(super) rate: ExchangeRate,
     pub(super) half_blocks: HalfBlocks,
 }
 
-impl Colors<'_> {
+impl PairColors<'_> {
     /// Returns the key of a pair: the numbers of its upper and lower colour.
     ///
     /// They are in ascending order if cells may use either half block, because one pen then shows both orders.
@@ -261,7 +261,7 @@ impl Colors<'_> {
 }
 
 /// Lets cells take the pair of the cell beside them, which saves a move.
-fn take_neighbours(active: &mut [ActiveCell], colors: &Colors<'_>, columns: usize) {
+fn take_neighbours(active: &mut [ActiveCell], colors: &PairColors<'_>, columns: usize) {
     for at in 0..active.len() {
         for beside in [at.wrapping_sub(1), at + 1] {
             let Some(&ActiveCell { at: place, pair: Some(key), .. }) = active.get(beside) else { continue };

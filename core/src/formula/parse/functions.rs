@@ -1,6 +1,6 @@
 //! The functions of formulas, and the operations that they consist of.
 
-use super::{Fault, Parser};
+use super::{FormulaFault, FormulaParser};
 use crate::formula::tape::{Binary, Index, Unary};
 use std::f64::consts::{E, FRAC_PI_2, LOG2_E, PI, TAU};
 use std::ops::Range;
@@ -27,7 +27,7 @@ pub(super) enum Kind {
     /// The least or the greatest of all operands.
     Fold(Binary),
     /// A function that consists of several operations.
-    Composed(fn(&mut Composer<'_, '_>, &[Index]) -> Result<Index, Fault>),
+    Composed(fn(&mut Composer<'_, '_>, &[Index]) -> Result<Index, FormulaFault>),
 }
 
 /// The end of `operands` of a function that takes any number: more than a formula can have.
@@ -40,7 +40,7 @@ const fn unary(name: &'static str, function: Unary) -> Function {
 const fn composed(
     name: &'static str,
     operands: Range<usize>,
-    compose: fn(&mut Composer<'_, '_>, &[Index]) -> Result<Index, Fault>,
+    compose: fn(&mut Composer<'_, '_>, &[Index]) -> Result<Index, FormulaFault>,
 ) -> Function {
     Function { name, operands, kind: Kind::Composed(compose) }
 }
@@ -152,14 +152,14 @@ pub(super) fn name_of(function: Unary) -> &'static str {
 
 /// The operations of a call under construction; faults are reported at the function's name.
 pub(super) struct Composer<'p, 't> {
-    parser: &'p mut Parser<'t>,
+    parser: &'p mut FormulaParser<'t>,
     range: Range<usize>,
 }
 
-impl Parser<'_> {
+impl FormulaParser<'_> {
     /// Adds the operations of a call of a function, whose name is at `range`, and returns the
     /// index of its result.
-    pub(super) fn apply(&mut self, kind: Kind, operands: &[Index], range: Range<usize>) -> Result<Index, Fault> {
+    pub(super) fn apply(&mut self, kind: Kind, operands: &[Index], range: Range<usize>) -> Result<Index, FormulaFault> {
         match kind {
             Kind::Unary(function) => self.unary_of(function, operands[0], range),
             Kind::Binary(function) => self.binary(function, operands[0], operands[1], range),
@@ -176,24 +176,24 @@ impl Parser<'_> {
 }
 
 impl Composer<'_, '_> {
-    fn constant(&mut self, value: f64) -> Result<Index, Fault> {
+    fn constant(&mut self, value: f64) -> Result<Index, FormulaFault> {
         self.parser.constant(value, self.range.clone())
     }
 
-    fn unary(&mut self, function: Unary, operand: Index) -> Result<Index, Fault> {
+    fn unary(&mut self, function: Unary, operand: Index) -> Result<Index, FormulaFault> {
         self.parser.unary_of(function, operand, self.range.clone())
     }
 
-    fn binary(&mut self, function: Binary, a: Index, b: Index) -> Result<Index, Fault> {
+    fn binary(&mut self, function: Binary, a: Index, b: Index) -> Result<Index, FormulaFault> {
         self.parser.binary(function, a, b, self.range.clone())
     }
 
-    fn clamp(&mut self, value: Index, low: Index, high: Index) -> Result<Index, Fault> {
+    fn clamp(&mut self, value: Index, low: Index, high: Index) -> Result<Index, FormulaFault> {
         let above = self.binary(Binary::Max, value, low)?;
         self.binary(Binary::Min, above, high)
     }
 
-    fn mix(&mut self, from: Index, to: Index, share: Index) -> Result<Index, Fault> {
+    fn mix(&mut self, from: Index, to: Index, share: Index) -> Result<Index, FormulaFault> {
         let difference = self.binary(Binary::Subtract, to, from)?;
         let product = self.binary(Binary::Multiply, share, difference)?;
         self.binary(Binary::Add, from, product)
@@ -201,7 +201,7 @@ impl Composer<'_, '_> {
 
     /// Adds the operations of half the sum of e^a and e^-a for the operand a, or of half their
     /// difference if `function` subtracts.
-    fn hyperbolic(&mut self, operand: Index, function: Binary) -> Result<Index, Fault> {
+    fn hyperbolic(&mut self, operand: Index, function: Binary) -> Result<Index, FormulaFault> {
         let negative = self.unary(Unary::Negate, operand)?;
         let (power, inverse) = (self.unary(Unary::Exp, operand)?, self.unary(Unary::Exp, negative)?);
         let (half, combined) = (self.constant(0.5)?, self.binary(function, power, inverse)?);

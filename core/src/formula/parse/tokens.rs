@@ -1,12 +1,12 @@
 //! The tokens of a formula.
 
-use super::Fault;
+use super::FormulaFault;
 use crate::text::visible_char;
 use std::ops::Range;
 
-/// A token, without its text, whose range in the formula is in [`Tokens`].
+/// A token, without its text, whose range in the formula is in [`FormulaTokens`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Token {
+pub(super) enum FormulaToken {
     Number(f64),
     Name,
     /// An operator or a bracket.
@@ -15,14 +15,14 @@ pub(super) enum Token {
 }
 
 /// The tokens of a formula, and a position among them.
-pub(super) struct Tokens<'t> {
+pub(super) struct FormulaTokens<'t> {
     text: &'t str,
-    all: Vec<(Token, Range<usize>)>,
+    all: Vec<(FormulaToken, Range<usize>)>,
     at: usize,
 }
 
-impl<'t> Tokens<'t> {
-    pub(super) fn new(text: &'t str) -> Result<Self, Fault> {
+impl<'t> FormulaTokens<'t> {
+    pub(super) fn new(text: &'t str) -> Result<Self, FormulaFault> {
         let (mut tokens, mut at) = (Vec::new(), 0);
         while let Some(c) = text[at..].chars().next() {
             let start = at;
@@ -33,28 +33,28 @@ impl<'t> Tokens<'t> {
                 }
                 '0'..='9' | '.' => {
                     at += number_length(&text[at..]);
-                    Token::Number(number(&text[start..at], start..at)?)
+                    FormulaToken::Number(number(&text[start..at], start..at)?)
                 }
                 'a'..='z' | 'A'..='Z' | '_' => {
                     at += length_while(&text[at..], |c| c.is_ascii_alphanumeric() || c == '_');
-                    Token::Name
+                    FormulaToken::Name
                 }
                 '+' | '-' | '*' | '/' | '^' | '(' | ')' | '|' | ',' | ';' | '=' => {
                     at += 1;
-                    Token::Sign(c)
+                    FormulaToken::Sign(c)
                 }
                 _ => {
                     let message = format!("`{}` is not part of a formula", visible_char(c));
-                    return Fault::new(at..at + c.len_utf8(), message);
+                    return FormulaFault::new(at..at + c.len_utf8(), message);
                 }
             };
             tokens.push((token, start..at));
         }
-        tokens.push((Token::End, text.len()..text.len()));
+        tokens.push((FormulaToken::End, text.len()..text.len()));
         Ok(Self { text, all: tokens, at: 0 })
     }
 
-    pub(super) fn token(&self) -> Token {
+    pub(super) fn token(&self) -> FormulaToken {
         self.all[self.at].0
     }
 
@@ -73,7 +73,7 @@ impl<'t> Tokens<'t> {
     }
 
     pub(super) fn is_sign(&self, sign: char) -> bool {
-        self.token() == Token::Sign(sign)
+        self.token() == FormulaToken::Sign(sign)
     }
 
     /// Goes to the next token, unless the current one is the end.
@@ -84,10 +84,10 @@ impl<'t> Tokens<'t> {
     /// Returns whether a definition `name = ...;` starts at the current token.
     pub(super) fn starts_definition(&self) -> bool {
         let mut rest = self.all[self.at..].iter().map(|&(token, _)| token);
-        rest.next() == Some(Token::Name)
-            && rest.next() == Some(Token::Sign('='))
+        rest.next() == Some(FormulaToken::Name)
+            && rest.next() == Some(FormulaToken::Sign('='))
             // Without a semicolon `x = 1` is an equation.
-            && rest.any(|token| token == Token::Sign(';'))
+            && rest.any(|token| token == FormulaToken::Sign(';'))
     }
 }
 
@@ -108,10 +108,10 @@ fn number_length(text: &str) -> usize {
     }
 }
 
-fn number(text: &str, range: Range<usize>) -> Result<f64, Fault> {
+fn number(text: &str, range: Range<usize>) -> Result<f64, FormulaFault> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Fault::new(range, "this number is too large"),
-        Err(_) => Fault::new(range, format!("`{text}` is not a number")),
+        Ok(_) => FormulaFault::new(range, "this number is too large"),
+        Err(_) => FormulaFault::new(range, format!("`{text}` is not a number")),
     }
 }

@@ -18,17 +18,17 @@ pub(super) struct Json<'a> {
 /// `materials[0].pbrMetallicRoughness.baseColorTexture.extensions.X`.
 #[derive(Clone, Copy)]
 struct JsonPath<'a> {
-    steps: [Option<Step<'a>>; 6],
+    steps: [Option<JsonStep<'a>>; 6],
 }
 
 #[derive(Clone, Copy)]
-enum Step<'a> {
+enum JsonStep<'a> {
     Field(&'a str),
     Item(usize),
 }
 
 impl<'a> JsonPath<'a> {
-    fn with_step(mut self, step: Step<'a>) -> Self {
+    fn with_step(mut self, step: JsonStep<'a>) -> Self {
         if let Some(free) = self.steps.iter_mut().find(|step| step.is_none()) {
             *free = Some(step);
         }
@@ -40,9 +40,9 @@ impl fmt::Display for JsonPath<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, step) in self.steps.iter().flatten().enumerate() {
             match step {
-                Step::Item(index) => write!(f, "[{index}]")?,
-                Step::Field(name) if i == 0 => f.write_str(name)?,
-                Step::Field(name) => write!(f, ".{name}")?,
+                JsonStep::Item(index) => write!(f, "[{index}]")?,
+                JsonStep::Field(name) if i == 0 => f.write_str(name)?,
+                JsonStep::Field(name) => write!(f, ".{name}")?,
             }
         }
         Ok(())
@@ -86,7 +86,7 @@ impl<'a> Json<'a> {
 
     /// Returns the field `name` of this object, if it exists.
     pub(super) fn field(self, name: &'static str) -> Result<Option<Self>, MeshFault> {
-        let path = self.path.with_step(Step::Field(name));
+        let path = self.path.with_step(JsonStep::Field(name));
         Ok(self.object()?.get(name).map(|value| Self { value, path }))
     }
 
@@ -104,10 +104,9 @@ impl<'a> Json<'a> {
     pub(super) fn list(self, name: &'static str) -> Result<impl Iterator<Item = Self> + use<'a>, MeshFault> {
         let list = self.field(name)?;
         let items = list.map_or(Ok(&[][..]), Self::items)?;
-        Ok(items
-            .iter()
-            .enumerate()
-            .filter_map(move |(i, value)| list.map(|list| Self { value, path: list.path.with_step(Step::Item(i)) })))
+        Ok(items.iter().enumerate().filter_map(move |(i, value)| {
+            list.map(|list| Self { value, path: list.path.with_step(JsonStep::Item(i)) })
+        }))
     }
 
     fn items(self) -> Result<&'a [Value], MeshFault> {
@@ -128,7 +127,7 @@ impl<'a> Json<'a> {
         let count = items.len();
         let missing = || self.fault(format!("{name}[{index}] does not exist: the file has {count}"));
         let value = items.get(index).ok_or_else(missing)?;
-        let path = root.path.with_step(Step::Field(name)).with_step(Step::Item(index));
+        let path = root.path.with_step(JsonStep::Field(name)).with_step(JsonStep::Item(index));
         Ok((index, Self { value, path }))
     }
 

@@ -120,7 +120,7 @@ fn it_is_described_and_explained() {
     let ray = Ray { origin: Vec3::new(0.0, 0.0, 5.0), direction: Vec3::NEG_Z };
     let equation = shape.primitive(0).equation(&ray);
     assert_eq!(equation.roots, [3.75, 6.25]);
-    assert_eq!(equation.steps[0], Step::Formula("x^2 + y^2 + z^2 = a^2".to_owned()));
+    assert_eq!(equation.steps[0], EquationStep::Formula("x^2 + y^2 + z^2 = a^2".to_owned()));
     assert!(shape.encloses(Vec3::X) && !shape.encloses(Vec3::X * 1.3));
 }
 
