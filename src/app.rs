@@ -6,7 +6,7 @@ use crate::memory::OutOfMemory;
 use crate::scene::{LoadError, Scene};
 use crate::terminal::{self, Signals, Terminal};
 use crate::text::Notice;
-/// Re-exported for the fuzz target, in test builds only.
+/// The viewer's scenario runner, re-exported for the fuzz target in test builds only.
 #[cfg(all(unit_tests, feature = "test-hooks"))]
 pub use crate::viewer::run_scenario as run_viewer_scenario;
 pub use crate::viewer::{MAX_PIXELS, Options};

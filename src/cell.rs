@@ -260,7 +260,7 @@ pub struct Painter {
     mode: CellMode,
     light_background: bool,
     inks: InkConverter,
-    /// The last frame of the live view, for glyphs that show geometry.
+    /// The last frame of the live view, from which glyphs that show geometry are kept in motion.
     last_frame: LastFrame,
 }
 
@@ -307,7 +307,7 @@ impl Painter {
         self.grid_with(picture, None)
     }
 
-    /// Returns the cells of a picture and its geometry.
+    /// Returns the cells for a picture, drawn with its geometry if given.
     pub(crate) fn grid_with(&mut self, picture: &Picture, geometry: Option<&Geometry>) -> Grid {
         let mut grid = Grid::new(Size::new(0, 0));
         self.paint(picture, geometry, &mut grid);

@@ -492,7 +492,7 @@ struct Exceeds {
 
 /// The working memory of a lossy frame.
 struct FrameMemory {
-    /// The grid that the frame is to show.
+    /// The grid to encode: the shown grid with the changes of this frame.
     drawn: Grid,
     /// The grid that the terminal shows after the frame.
     next: Grid,

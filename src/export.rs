@@ -99,7 +99,7 @@ impl Format {
         self.row().key
     }
 
-    /// Returns the name of the command that writes this format.
+    /// Returns the name of the live view's command that writes this format.
     // Users' keymaps contain the names, so they must not change.
     #[doc(hidden)]
     pub const fn command(self) -> &'static str {

@@ -211,7 +211,7 @@ impl Parser {
         let Some(left @ 1..) = self.late else {
             return false;
         };
-        // The bytes are counted, so that a terminal cannot keep the parser in this state for ever.
+        // Dropped bytes are counted, so that a terminal cannot make the parser drop its input for ever.
         self.late = Some(left - 1);
         match self.state {
             // Only a byte that begins a sequence continues a late ESC. Any other byte is more likely a key typed later
@@ -304,7 +304,7 @@ impl Parser {
             b']' => self.state = ParserState::ControlString(ControlString::Osc),
             b'P' => self.state = ParserState::ControlString(ControlString::Dcs),
             b'_' => self.state = ParserState::ControlString(ControlString::Apc),
-            // These strings are never replies, but their contents must not be parsed as keys.
+            // SOS and PM strings are never replies, but their contents must not be parsed as keys.
             b'X' | b'^' => self.state = ParserState::ControlString(ControlString::Other),
             _ => {
                 self.release_escape(out);

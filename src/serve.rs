@@ -231,7 +231,7 @@ impl Server {
         self.state.pool.session_count()
     }
 
-    /// Makes each turn panic whose input contains `byte`, for tests.
+    /// Makes a session's turn on a drawing thread panic if its input contains `byte`, for tests.
     #[cfg(feature = "test-hooks")]
     pub fn panic_at(&self, byte: u8) {
         let _ = self.state.pool.panics.set(byte);

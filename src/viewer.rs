@@ -223,7 +223,7 @@ impl Viewer {
     /// While the welcome is shown, the note is in the row above it.
     fn note_few_colors(&mut self) {
         let colors = self.display.capabilities().cell_mode.colors;
-        // An outstanding reply may still report truecolor.
+        // The note waits for outstanding replies, because one of them may still report truecolor.
         if self.display.queries().is_open() {
             return;
         }
@@ -349,7 +349,7 @@ impl Viewer {
         // A reloaded scene goes on from its current time.
         self.playback.resume_unless_paused(shown.depends_on_time() && !self.options.reduced_motion, self.now);
         self.screen.set_name(self.names.get(index).map_or("", String::as_str));
-        // The eye needs the scene even if the view is kept, because a reloaded file may contain other views.
+        // `eye` gets the scene even if its camera is kept, because a reloaded file may contain other views.
         self.eye.set_scene(&shown.at_time(self.playback.time().as_secs_f64()));
     }
 
@@ -575,7 +575,8 @@ impl Viewer {
         self.receiver.sent(&probe, now);
         self.pacing.send(bytes, now);
         self.receiver.sent(bytes, now);
-        // The query goes before the frame, so that its reply does not wait for the frame's transmission.
+        // The query of the link's round trip goes before the frame, so that its reply does not wait for the frame's
+        // transmission.
         bytes.splice(0..0, probe);
     }
 
@@ -599,7 +600,7 @@ impl Viewer {
         self.scenes.shown()
     }
 
-    /// Returns the last frame.
+    /// Returns the last frame that was accepted by [`take_frame`](Self::take_frame).
     pub(crate) fn frame(&self) -> Option<&Frame> {
         self.screen.frame()
     }

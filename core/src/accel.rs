@@ -46,7 +46,7 @@ pub(crate) struct PrimitiveIds<N> {
 // The methods are `inline(always)` because kernels call them for each group of rays (see `simd`); so are those of the
 // lists and trees below.
 impl PrimitiveIds<F32x8> {
-    /// The first primitive of the first object in all lanes.
+    /// The id of the first primitive of the first object, in all lanes.
     pub(crate) const ZERO: Self = Self { object: F32x8::ZERO, index: F32x8::ZERO };
 
     pub(crate) fn of(ids: [PrimitiveId; LANES]) -> Self {
@@ -129,7 +129,7 @@ macro_rules! accelerator {
         #[derive(Clone, Default, PartialEq)]
         pub(crate) struct Accelerator {
             $($(#[$on])* $name: by_group!($group of $kept),)*
-            /// The tree of all bounded surfaces that have no tree of their own.
+            /// The tree shared by all bounded surfaces whose kind has no tree of its own.
             scalars: Tree<ScalarLeaf<Scalar>>,
             /// The instances of meshes.
             instances: Instances,
@@ -241,7 +241,7 @@ pub(crate) trait ListVisitor<'a> {
 #[derive(Clone, PartialEq)]
 pub(crate) struct List<S> {
     primitives: Vec<(PrimitiveId, S)>,
-    /// The index of the first primitive.
+    /// The index of the list's first primitive in the scene.
     first: u32,
 }
 
@@ -289,9 +289,9 @@ pub(crate) struct Tree<S> {
     // Stored apart from the leaves, because only hits need the ids: so a leaf of triangles has 288 bytes instead of
     // 352, and incoherent rays are 1 to 5 % faster.
     pub(crate) ids: Vec<PrimitiveIds<F32x8>>,
-    /// The index of the tree's first primitive.
+    /// The index of the tree's first primitive in the scene; 0 in a tree that instances share.
     pub(crate) first: u32,
-    /// The number of primitives if the tree is a single leaf, which culls nothing; else 0.
+    /// The number of primitives to test without traversal if the tree is a single leaf; else 0.
     pub(crate) single_leaf_count: usize,
 }
 

@@ -257,7 +257,7 @@ impl Camera {
     #[doc(hidden)]
     pub fn rectangle_basis(&self) -> Basis {
         let Basis { u, v, w } = self.basis;
-        // The sums below would change the sign of a zero.
+        // Without tilt, the sums below could still turn a coordinate of -0 into 0.
         if self.rectangle.tilt == Vec2::ZERO {
             return self.basis;
         }
@@ -506,7 +506,7 @@ impl ViewRectangle {
     /// The shift is in heights of the rectangle. A text is missing if both of its numbers are 0.
     #[doc(hidden)]
     pub fn offset_texts(&self) -> Vec<String> {
-        // Adding 0 turns -0 into 0.
+        // Adding 0 turns -0 into 0, so that the text is never `-0`.
         let number = |x: f32| (100.0 * x).round() / 100.0 + 0.0;
         let tilt = self.tilt.to_array().map(f32::to_degrees);
         let texts = [("shift", self.shift.to_array()), ("tilt", tilt)].into_iter();

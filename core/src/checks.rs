@@ -53,7 +53,7 @@ impl SceneFault {
         Self { subject: subject.into(), message: message.into() }
     }
 
-    /// Returns the message without the name of the value: that of the same error in a scene file.
+    /// Returns the message without the value and its name, as errors in scene files have it.
     #[doc(hidden)]
     pub fn message(&self) -> &str {
         &self.message
@@ -135,7 +135,7 @@ pub(crate) fn copy_count(copies: f64) -> Result<f32, Message> {
     }
 }
 
-/// Checks an angle of a rotation, which stays in degrees.
+/// Checks an angle of a rotation in degrees, and returns it in degrees.
 pub(crate) fn angle_in_degrees(degrees: f64) -> Result<f32, Message> {
     const MAX_ANGLE: f64 = 36_000.0;
     if degrees.abs() <= MAX_ANGLE { Ok(degrees as f32) } else { Err("an angle must lie within ±36000 degrees".into()) }

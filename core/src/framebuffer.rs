@@ -154,7 +154,7 @@ pub enum ResolutionError {
     PixelAspect(f32),
 }
 
-/// The largest number of cells of a grid, which takes 268 MB.
+/// The largest number of cells of a grid: 16,777,216, which take 268 MB.
 // A 4K screen has 100,000 cells of 8 by 10 pixels. Without a limit, a grid of 65,535 columns and rows aborts the
 // process because memory runs out.
 pub const MAX_CELLS: usize = 1 << 24;

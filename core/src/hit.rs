@@ -103,7 +103,8 @@ impl EightHits {
         N::load(&self.primitives)
     }
 
-    /// Returns the index of each hit primitive's leaf, as the bits of a float.
+    /// Returns each hit primitive's index divided by eight, which identifies its leaf, as the bits
+    /// of a float.
     #[inline(always)]
     pub(crate) fn leaf_indices<N: Lanes>(&self) -> N {
         let mut leaves = F32x8::ZERO;

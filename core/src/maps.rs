@@ -99,7 +99,7 @@ pub struct TracedMap {
 }
 
 impl TracedMap {
-    /// Returns a picture without geometry, and its cost.
+    /// Returns the traced map with this picture and cost, without [`geometry`](Self::geometry).
     pub fn new(picture: Picture, cost: Cost) -> Self {
         Self { picture, geometry: None, cost }
     }

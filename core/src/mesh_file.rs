@@ -100,7 +100,7 @@ use glam::{DVec3, Mat3, Vec2, Vec3};
 
 /// Warm clay, `#d98b5f`: the reflectance of missing materials and textures, and of a mesh without
 /// colours in a scene made around it.
-// A light grey mesh hardly stands out from a grey floor.
+// The colour is not the default light grey, in which a mesh hardly stands out from a grey floor.
 pub(crate) const CLAY: LinearRgb = LinearRgb::new(0.694, 0.258, 0.114);
 
 /// Triangles and their attributes as in a file. All numbers are finite, all indices in range, and

@@ -78,7 +78,7 @@ fn read_and_check_end(file: &mut File, bytes: &mut Vec<u8>) -> io::Result<bool> 
     wait_until_readable(file)?;
     match file.take(CHUNK_LEN).read_to_end(bytes) {
         Ok(count) => Ok(count == 0),
-        // The pipe is empty for now; `bytes` contains everything delivered so far.
+        // The pipe is empty for now, but not closed. `read_to_end` has left in `bytes` what it has read.
         Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(false),
         Err(error) => Err(error),
     }

@@ -34,7 +34,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub struct Progress {
     /// The operation in progress.
     pub work: Work,
-    /// The amount done: bytes of a file, or bounding boxes of all trees of the scene.
+    /// The amount done: bytes of a file, or primitives sorted into the trees of the scene.
     pub done: usize,
     /// The amount to be done in total, in the same unit; 0 if unknown.
     pub total: usize,

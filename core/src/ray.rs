@@ -163,7 +163,7 @@ pub struct Shear<N: Number> {
     axis: DominantAxis<N::Mask>,
     /// The slopes of the ray in x and y, and the increase of t, per unit of the dominant axis.
     factor: Vector<N>,
-    /// The length of the direction along its dominant axis.
+    /// The magnitude of the direction's component along its dominant axis.
     pub length: N,
 }
 

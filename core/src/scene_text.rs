@@ -152,7 +152,7 @@ impl<'a> SyntaxNode<'a> {
 
     /// Returns the span at which a missing part of the value is reported: the value's name or first
     /// bracket.
-    // Not the span of the whole value, which may be a thousand lines long.
+    // The span of the whole value is not used, because it may be a thousand lines long.
     pub fn head(&self) -> Span {
         match &self.value {
             Value::Group(group) => match group.name {

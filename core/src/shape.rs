@@ -388,7 +388,7 @@ macro_rules! table {
                 tree triangles: Triangle as $crate::shape::TriangleN<$crate::lanes::F32x8>,
                     doc = "The part of a plane between three points.";
             }
-            // All of these are hidden from the documentation, because their Rust interface may still change.
+            // The surfaces in `shared` are hidden from the documentation, as their Rust interface may still change.
             shared {
                 Cuboid, doc(hidden);
                 Disk, doc(hidden);
@@ -419,7 +419,7 @@ macro_rules! surfaces {
     };
 }
 
-/// Passes both parts of the table of all surfaces to a macro.
+/// Passes the table of all surfaces to a macro, in its two parts `own` and `shared`.
 macro_rules! surfaces_in_parts {
     ($with:ident) => {
         $crate::shape::table! { surfaces_in_parts $with }
@@ -466,7 +466,7 @@ macro_rules! shapes {
                 }
             }
 
-            /// Returns the [footprint](Surface::footprint) of the surface; zero for a mesh.
+            /// Returns a pixel's [footprint](Surface::footprint) on the surface; zero for a mesh.
             #[doc(hidden)]
             #[inline(always)]
             pub fn footprint<N: Number>(

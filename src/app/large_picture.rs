@@ -45,11 +45,11 @@ struct SharedPicture {
     resumed: Condvar,
 }
 
-/// Whether the tracing thread should wait, because the live view is tracing a frame.
+/// A request to the tracing thread to pause while the live view traces a frame of a new view.
 #[derive(Default)]
 struct Pause {
     is_on: bool,
-    /// Time at which the tracing thread's last pause ended; `None` before the first one.
+    /// Time at which [`Shared::throttle_while_paused`] last returned; `None` before the first call.
     ended: Option<Instant>,
 }
 
@@ -94,7 +94,10 @@ impl LargePicture {
         self.shared.percent.load(Ordering::Relaxed)
     }
 
-    /// Makes the tracing thread wait, or go on.
+    /// Throttles the tracing thread, or lets it run at full speed.
+    ///
+    /// While it is throttled, the thread waits up to half of the time, so that the picture is finished even during an
+    /// endless motion.
     pub(super) fn set_paused(&self, is_paused: bool) {
         self.shared.pause.lock().unwrap_or_else(PoisonError::into_inner).is_on = is_paused;
         if !is_paused {
@@ -105,7 +108,7 @@ impl LargePicture {
     /// Cancels the picture, which ends within milliseconds.
     pub(super) fn cancel(&self) {
         self.shared.token.cancel();
-        // Without this, a thread that waits in a pause would notice the cancellation only after the pause.
+        // Ends a pause, because a thread that waits in one would notice the cancellation only after it.
         self.set_paused(false);
     }
 
@@ -133,7 +136,7 @@ impl SharedPicture {
     fn write(&self, picture_job: &LargePictureJob, waker: &Mutex<Waker>) -> Written {
         let Some(picture) = self.traced(picture_job, waker) else { return Ok(None) };
         let file = png(&picture, 1.0, 1).map_err(io::Error::other)?;
-        // Writing takes only a few milliseconds, so it does not check for cancellation.
+        // Checked before the file is written, but not during the write, which takes only a few milliseconds.
         if self.token.is_cancelled() {
             return Ok(None);
         }

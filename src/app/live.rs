@@ -351,7 +351,10 @@ impl Live {
         self.viewer.show_activity(Activity { records: self.recording.is_some(), picture });
     }
 
-    /// Asks the user whether to write `camera` into the scene's file, if it has one.
+    /// Asks the user whether to write `camera` into the scene's file or, for a mesh, into a new
+    /// scene file beside it.
+    ///
+    /// If the scene has no file, a note says so.
     fn propose(&mut self, camera: Camera) {
         let file = self.shown_name().and_then(|scene| scene.file.as_deref());
         self.proposed = file.and_then(|file| {

@@ -163,7 +163,7 @@ impl<E: Send + 'static> LoadWorker<E> {
             if request.cancellation.is_cancelled() {
                 continue;
             }
-            // Another thread is started only once, however many pipes the scene has.
+            // The queue is handed over to another thread at most once per load, however many pipes the scene has.
             let is_handed_over = AtomicBool::new(false);
             let hand_over_queue = || {
                 if !is_handed_over.load(Ordering::Relaxed) {

@@ -102,7 +102,9 @@ impl Renderer {
         tracing.min_by_key(|&tracing| tracing == Tracing::Refinement)
     }
 
-    /// Starts tracing a frame. A frame predicted to be small is traced at once and returned.
+    /// Starts tracing a frame on the tracing thread.
+    ///
+    /// A frame that is predicted to take little time is traced on the caller's thread instead, and returned.
     pub(super) fn start_frame(&mut self, job: Job) -> Option<Frame> {
         if self.is_small(&job) {
             return trace_once(&job).ok().map(|frame| self.record_time(frame));
@@ -345,7 +347,7 @@ impl Tracer {
     }
 }
 
-/// Returns the function that traces what a shot shows.
+/// Returns the function that traces a shot's maps, with their geometry if the shot needs it.
 fn trace_function(shot: &Shot) -> TraceMap {
     if shot.geometry { maps::trace_with_geometry } else { maps::trace }
 }

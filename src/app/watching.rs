@@ -182,7 +182,8 @@ impl Watching {
             match self.watch_folder(&folder) {
                 Ok(true) => fresh.push(folder),
                 Err(error) if containing_folders.contains(&folder) => self.problem = Some(reason(&error)),
-                // An outer folder without read permission is not reported, because it hardly ever changes.
+                // An error of an intermediate folder, such as a missing read permission, is not reported, because
+                // such a folder hardly ever changes.
                 _ => {}
             }
         }

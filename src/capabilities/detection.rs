@@ -89,7 +89,9 @@ fn non_empty_variable(clues: &Clues<'_>, name: &str) -> Option<String> {
     (clues.variable)(name).filter(|value| !value.is_empty())
 }
 
-/// Returns the colours that the user's environment variables request; a forced level is a minimum.
+/// Returns the colours that `NO_COLOR`, `CLICOLOR_FORCE` or `FORCE_COLOR` requests.
+///
+/// [`Colors::None`] is final; other colours are a minimum.
 pub(super) fn refused_or_forced(clues: &Clues<'_>) -> Option<Detected<Colors>> {
     refused_by_variable(clues).or_else(|| forced_by_variable(clues))
 }

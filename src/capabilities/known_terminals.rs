@@ -4,7 +4,7 @@
 //! reply themselves, and whose configuration decides whether 24-bit colours reach the terminal; xterm, which replies to
 //! the query about colours; Terminal.app and `PuTTY`, whose older versions had no truecolor.
 
-/// Prefixes, in lower case, of the names that these terminals send in reply to XTVERSION.
+/// Prefixes, in lower case, of the names that terminals with truecolor reply to XTVERSION.
 const NAMES: [&str; 11] = [
     "alacritty",
     "contour",

@@ -41,7 +41,9 @@ type Tone = (u8, f32);
 // 0.34 instead of 0.38.
 const OBJECT: [Tone; 8] =
     [(b':', 0.19), (b';', 0.255), (b'+', 0.41), (b'x', 0.53), (b'o', 0.645), (b'X', 0.725), (b'#', 0.885), (b'@', 1.0)];
-/// The fill characters of floors and ceilings, and those of walls: lighter than those of objects.
+/// The fill characters of floors and ceilings, and those of walls, from dark to light.
+///
+/// They have less ink than most of those of objects.
 // If neighbouring characters differed by 0.25 in ink, a plane's pattern would look like an edge.
 const LEVEL: [Tone; 4] = [(b' ', 0.0), (b'.', 0.095), (b'-', 0.105), (b'~', 0.22)];
 const UPRIGHT: [Tone; 4] = [(b' ', 0.0), (b'.', 0.095), (b':', 0.19), (b'!', 0.305)];

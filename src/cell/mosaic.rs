@@ -136,7 +136,7 @@ impl Mosaic {
         let part_pixels = self.part_pixels[0] * self.part_pixels[1];
         let mut inside = [[0; 3]; 128];
         for half in 1..1_usize << (self.parts[0] * self.parts[1] - 1) {
-            // The sum for a mask is that of the mask without its lowest part, plus that part.
+            // The sum for a mask is that of the mask without its lowest bit, plus the sum of that bit's part.
             let rest = half & (half - 1);
             inside[half] = plus(inside[rest], sums.parts[half.trailing_zeros() as usize + 1]);
             consider(Coverage::Parts(half << 1), inside[half], half.count_ones() * part_pixels);

@@ -129,7 +129,7 @@ fn gaussian_weights<const N: usize>(deviation: f64) -> [f32; N] {
     for distance in 1..8 * N {
         let deviations = distance as f64 / deviation;
         let weight = libm::exp(-0.5 * deviations * deviations);
-        // The weight applies at this distance to the right and to the left.
+        // Added twice: for the sample at this distance to the right and for the one to the left.
         weights[distance % N] += weight;
         weights[(N - distance % N) % N] += weight;
     }

@@ -1,4 +1,4 @@
-//! `--color` and `--glyphs`: the colours and glyphs of the cells that a command prints.
+//! `--color`, `--glyphs` and `--background`: the colours and glyphs that a command prints.
 
 use super::help::capitalized;
 use super::settings::defaults;
@@ -63,7 +63,7 @@ pub(super) fn glyph_parser() -> impl TypedValueParser<Value = GlyphChoice> {
 }
 
 impl CellArgs {
-    /// Returns whether one of these flags is given.
+    /// Returns whether `--color`, `--glyphs` or `--background` is given.
     pub(super) fn is_given(&self) -> bool {
         self.color.is_some() || self.glyphs.is_some() || self.background.is_some()
     }

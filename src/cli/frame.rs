@@ -1,4 +1,6 @@
-//! `termtrace frame`: one frame without a terminal. It reads nothing from the environment.
+//! `termtrace frame`: prints one frame, or writes it to a file.
+//!
+//! Only a frame on a terminal depends on the environment and on the window's size.
 
 mod golden;
 mod screen;
@@ -73,7 +75,7 @@ pub(super) struct FrameArgs {
 /// formats of pixels.
 fn formats() -> Vec<Format> {
     let mut formats = Format::ALL.to_vec();
-    // The sort is stable, so each group keeps the order of `Format::ALL`.
+    // The sort is stable, so the formats of cells and those of pixels each keep the order of `Format::ALL`.
     formats.sort_by_key(|&format| (format != DEFAULT, format.has_pixels()));
     formats
 }

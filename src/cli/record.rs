@@ -1,4 +1,4 @@
-//! `termtrace record`: a film along a camera path. It reads nothing from the environment.
+//! `termtrace record`: a film along a camera path. The film does not depend on the environment.
 
 mod numbered;
 mod progress;

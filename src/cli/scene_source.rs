@@ -137,7 +137,7 @@ fn read_stdin(stated: Option<&str>) -> Result<Vec<u8>, Failure> {
         stdin.by_ref().take(left).read_to_end(bytes).map_err(|error| Failure::runtime(STDIN, reason(&error)))
     };
     read_up_to(&mut bytes, MAX_TEXT_BYTES)?;
-    // Only a mesh may have more bytes than the text of a scene.
+    // Only a mesh may be larger than `MAX_TEXT_BYTES`, the limit for the text of a scene.
     if bytes.len() > MAX_TEXT_BYTES && (stated.is_some() || !format_name(STDIN, None, &bytes).is_empty()) {
         read_up_to(&mut bytes, MAX_MESH_BYTES)?;
     }

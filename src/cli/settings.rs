@@ -24,7 +24,7 @@ use termtrace::Sampling;
 use termtrace::internals::capabilities::Hints;
 use termtrace::internals::control::KeySpeed;
 
-/// The help text below the options.
+/// The section of `--help` on permanent settings, below the options.
 pub(super) const SETTINGS_HELP: &str = "\
 Settings:
   Permanent settings live in config.ron under the flags' names, as in

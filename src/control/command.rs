@@ -17,7 +17,7 @@ pub enum Command {
     Farther,
     /// Switches between the modes in which keys fly the eye and orbit it about the target.
     ChangeMode,
-    /// Moves the eye back or forth until all objects except planes fill the picture.
+    /// Moves the eye, but does not turn it, so that all objects except planes fill the picture.
     FrameAll,
     /// Narrows the field of view.
     Narrower,
@@ -78,7 +78,8 @@ pub enum Command {
     KeepView,
     /// Opens or closes the explanation of a pixel.
     Explain,
-    /// Selects the light nearest to the pointer for moving; if one is selected, the next one.
+    /// Selects the light nearest to the pointer for moving or, if one is selected, the next light
+    /// in the scene file.
     Light,
     /// Moves the selected light in a direction of the screen, at constant depth.
     MoveLight(Toward),
@@ -104,7 +105,10 @@ pub enum Command {
     Wireframe,
     /// Shows or hides the drawing of the x, y and z axes in the corner.
     Axes,
-    /// Shows the camera and its rays from outside, then vanishing points, then the ordinary view.
+    /// Shows the next of four views.
+    ///
+    /// In the first two, a second camera shows the first one and its rays from outside, and keys move the second or the
+    /// first camera. Then come the ordinary view with vanishing points, and the ordinary view alone.
     Outside,
     /// Starts or ends the comparison of ray tracing (image order) and rasterization (object order).
     Orders,
@@ -177,9 +181,9 @@ pub enum Toward {
 /// A side of the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// The left side.
+    /// The left side of the screen.
     Left,
-    /// The right side.
+    /// The right side of the screen.
     Right,
 }
 

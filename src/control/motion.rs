@@ -51,7 +51,7 @@ impl Default for KeySpeed {
 struct Held {
     key: PhysicalKey,
     command: Command,
-    /// Time of the last press.
+    /// Time of the last press event. A repeat event of a held key does not change it.
     pressed: Duration,
     /// Time until which the key moves at full speed; `Duration::MAX` until its release.
     full_until: Duration,
@@ -110,8 +110,8 @@ impl Motion {
         Self { key_speed, ..Self::default() }
     }
 
-    /// Sets whether the terminal reports releases. If it no longer does, all held keys are
-    /// released.
+    /// Sets whether the terminal reports releases. If it no longer does, the motion of all keys
+    /// ends at once.
     pub fn set_reports_releases(&mut self, reports_releases: bool) {
         if self.reports_releases && !reports_releases {
             self.stop();
@@ -189,7 +189,7 @@ impl Motion {
             }
             self.held.iter_mut().for_each(|held| held.tap_factor *= 0.5);
         }
-        // The key stays in `held`, because another press within `AGAIN_TIME` means that it is held.
+        // The motion ends, but the key stays in `held`, so that another press within `AGAIN_TIME` counts as a repeat.
         self.held.iter_mut().for_each(|held| held.tap_factor = 0.0);
     }
 

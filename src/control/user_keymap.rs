@@ -104,7 +104,7 @@ impl Keymap {
     /// contains that binding and so intends it.
     fn check_is_reached(&self, entry: &KeymapEntry, entries: &[KeymapEntry], faults: &mut Faults) {
         let KeymapEntry { mode: KeyMode::Always, key, command: Some(command), span } = *entry else { return };
-        // Explanation, light and dialogs are not checked: they hide keys on purpose while they are open.
+        // `Explain`, `Light`, `Orders` and the dialogs are not checked: they hide keys on purpose while active.
         for above in [KeyMode::Fly, KeyMode::Orbit] {
             let hides = |other: &KeymapEntry| other.mode == above && [key, key.without_shift()].contains(&other.key);
             let meant = self.command(&[above, KeyMode::Always], &key.pressed()).map(|(meant, _)| meant);

@@ -355,7 +355,9 @@ impl<W: Write> EncoderBackend<W> {
         bytes
     }
 
-    /// Returns the unsent bytes of an open frame, after which the pen has the default colours.
+    /// Returns the bytes of an open frame, or of the whole grid if the screen's state is unknown.
+    ///
+    /// After these bytes the pen has the default colours.
     // Sequences such as scrolling have to come after these bytes, because they fill blank rows with the pen's
     // background, which must be the default one.
     fn unsent_bytes(&mut self) -> Vec<u8> {

@@ -91,7 +91,7 @@ struct Tour<'a> {
     place: PlacedCell,
     /// The colours whose pairs are tried next: those of the pen, if the picture has them.
     near: [Option<u32>; 2],
-    /// The number of neighbours whose costs may still be computed.
+    /// The number of unvisited pairs whose costs may still be computed.
     lookups: usize,
     /// The cells of all pairs, one pair after another.
     positions: &'a [CellPosition],
@@ -138,14 +138,14 @@ type PairOfColor = u32;
 
 const END: PairOfColor = u32::MAX;
 
-/// Largest number of neighbours whose costs are compared, for each colour of the pen.
+/// Largest number of unvisited pairs whose costs are compared, for each colour of the pen.
 // Without a limit, a frame in which thousands of pairs share a colour takes quadratic time. With a limit of 64, 80,000
 // pairs that share a colour took 15 times ratatui's time; with the limit on the mean as well, 3.9 times.
 const MAX_NEIGHBOURS_PER_COLOR: usize = 64;
 
-/// Largest mean number of neighbours whose costs are compared, per pair of the tour.
-// Few pairs have many neighbours, unless the picture is noise. The limit reduces the time for noise of 80,000 cells
-// from 10 to 3.4 times ratatui's, and adds at most 0.0012 of ratatui's bytes (orbit, 200x60).
+/// Largest mean number of unvisited pairs whose costs are compared, per step of the tour.
+// Few pairs share a colour with many others, unless the picture is noise. The limit reduces the time for noise of
+// 80,000 cells from 10 to 3.4 times ratatui's, and adds at most 0.0012 of ratatui's bytes (orbit, 200x60).
 const MEAN_LOOKUPS_PER_PAIR: usize = 8;
 
 impl<'a> Tour<'a> {

@@ -45,7 +45,7 @@ struct ActiveCell {
     cost: f32,
     /// The key of the pair with which the cell is written; `None` to keep what it shows.
     pair: Option<u16>,
-    /// The colours of the pair, in the order of the halves.
+    /// The palette indices of the pair's colours, first that of the upper half.
     shown: [u8; 2],
     /// The indices of the nearest and the second nearest colour of each half.
     nearest: [[u8; 2]; 2],

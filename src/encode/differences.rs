@@ -61,7 +61,7 @@ impl Differences {
         }
     }
 
-    /// Returns whether `shown` has other text than `wanted`, or text in place of its picture.
+    /// Returns whether any text differs, or a cell of the wanted picture shows text or is unknown.
     pub(super) fn has_text(&self, shown: &Grid, wanted: &Grid) -> bool {
         let is_other = |&at: &u32| {
             let at = at as usize;

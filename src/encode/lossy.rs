@@ -289,7 +289,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Chooses palette colours for the cells that need not be exact.
+    /// Chooses palette colours for the cells that are written inexactly.
     fn snap(&mut self, writes: usize, used: &mut UsedPart) {
         let squares = &self.frame.differences.squares;
         let all: u64 = squares.as_flattened().iter().map(|&square| u64::from(square)).sum();

@@ -89,7 +89,7 @@ impl Move {
         }
     }
 
-    /// Appends the escape sequence or line feeds that move the cursor to `bytes`.
+    /// Appends to `bytes` the escape sequence or line feeds that move the cursor.
     pub(super) fn write(self, bytes: &mut Vec<u8>) {
         match self {
             Self::To(CellPosition { column: 0, row: 0 }) => bytes.extend_from_slice(b"\x1b[H"),

@@ -134,7 +134,7 @@ impl Pen {
         self.cost_of_colors(0, wanted, lens)
     }
 
-    /// Returns the number of bytes of a switch to the default background, or to other attributes.
+    /// Returns the number of bytes of a switch to `wanted`, a pen of any background and attributes.
     fn general_switch_cost(&self, wanted: &Self, lens: [usize; 2]) -> usize {
         if *wanted == Self::default() {
             return if self == wanted { 0 } else { SGR_RESET.len() };

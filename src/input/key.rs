@@ -179,6 +179,7 @@ pub(super) fn from_kitty(params: &[&[u16]]) -> Option<KeyEvent> {
 }
 
 /// The first code point after the Unicode blocks of Latin letters: the start of Greek.
+// A key with this code point or a higher one belongs to a non-Latin layout.
 const LATIN_END: u16 = 0x370;
 
 /// Returns the key of a key code of the kitty protocol.

@@ -6,7 +6,8 @@ const SHIFT: u16 = 4;
 const ALT: u16 = 8;
 const CONTROL: u16 = 16;
 const MOTION: u16 = 32;
-/// Offset that the X10 and rxvt encodings add to numbers, so that none is a control character.
+/// Offset of the three bytes of an X10 report and of the code in an rxvt report.
+// In an X10 report the offset keeps the bytes from being control characters.
 const OFFSET: u8 = 32;
 
 /// Decodes the SGR encoding: `CSI < code ; column ; row M`, or `m` for a release.

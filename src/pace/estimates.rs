@@ -30,7 +30,7 @@ const SMOOTHING: f64 = 0.75;
 // The round trips of smaller frames consist of jitter and the terminal's own delay.
 const MIN_SAMPLE_BYTES: f64 = 512.0;
 
-/// Least service time of a frame (transmission and drawing) after which [`FrameFloor`] grows.
+/// Least service time of a frame (transmission and drawing) at which [`FrameFloor`] is doubled.
 // On a slow link, a frame that is larger than the floor takes 28 ms (36 frames a second). A longer time means that the
 // terminal is drawing.
 const MIN_DRAWING_TIME: Duration = Duration::from_millis(50);

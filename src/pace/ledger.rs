@@ -16,7 +16,7 @@ use std::time::Duration;
 // are 50 to 67 queries, all of which may be answered late. (If 67 are sent, the oldest three are forgotten.)
 const MAX_TIMED_OUT_QUERIES: usize = 64;
 
-/// The kind of query that ends a frame.
+/// The kind of a query, which ends a frame or is sent without one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Query {
     /// DA1. Its reply has no number, so replies are counted.
@@ -66,7 +66,7 @@ pub(super) struct Matched {
     ///
     /// They include the bytes of older queries in flight, whose replies are lost.
     pub(super) acked: (Duration, usize),
-    /// Whether one of the older queries whose replies are lost was a query without a frame.
+    /// Whether the reply to an older query without a frame (a probe) was lost.
     pub(super) lost_probe: bool,
     pub(super) validity: Validity,
 }
@@ -175,7 +175,7 @@ impl Ledger {
         }
     }
 
-    /// Forgets all queries.
+    /// Forgets all queries, and the bytes that no query follows yet.
     pub(super) fn clear(&mut self) {
         self.queries.clear();
         self.unqueried = None;

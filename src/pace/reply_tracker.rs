@@ -77,7 +77,7 @@ const SERIAL_REPLIES: u32 = 16;
 const PROBE_INTERVAL: Duration = Duration::from_secs(1);
 /// Number of bytes delivered after which an estimated rate is relied on even if it is only a lower
 /// bound.
-// Four screens of 80x24 cells: a slow link would have shown its limit by then.
+// About four screens of 80x24 cells: within these bytes, the rate of a slow link would have been measured as its limit.
 const MIN_DELIVERED_BYTES: f64 = 60_000.0;
 
 /// The queries in flight, and what the replies so far show about the terminal and the link.
@@ -338,7 +338,7 @@ impl ReplyTracker {
             self.ledger.match_newest_sent_by(latest)
         };
         if matched.is_some_and(|matched| matches!(matched.query, Query::Both(_))) {
-            // The terminal answers the DA1 half of the query, so it has ignored the DECRQM half.
+            // The reply to the DA1 half came without one to the DECRQM half, which the terminal has therefore ignored.
             self.tag_support = TagSupport::Possible;
         }
         self.apply_reply(matched, now);
@@ -523,7 +523,7 @@ impl ReplyTracker {
             }
     }
 
-    /// Updates the state for the replies that count as missing at `now`.
+    /// Updates the state at `now`: times out missing replies, and ends a recovery or resync.
     pub(super) fn check_timeouts(&mut self, now: Duration) {
         match self.state {
             ReplyState::Unanswered | ReplyState::Steady | ReplyState::Recovering { .. } => {

@@ -25,7 +25,9 @@ pub(super) struct ClientTerminal {
 }
 
 impl ClientTerminal {
-    /// Records a variable, unless it is not one of the accepted ones or its value is unusual.
+    /// Records a variable if its name is accepted and its value is short and harmless.
+    ///
+    /// A harmless value consists of ASCII letters, digits and `+-._:@`, and does not start with a dot.
     pub(super) fn set_variable(&mut self, name: &str, value: &str) {
         let Some(name) = ACCEPTED.into_iter().find(|&known| known == name) else { return };
         let is_usual = |c: char| c.is_ascii_alphanumeric() || "+-._:@".contains(c);

@@ -66,9 +66,9 @@ struct OriginCounts {
 /// The reason why a connection is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Refusal {
-    /// Too many connections are logging in.
+    /// The server has too many connections, in total or logging in.
     Busy,
-    /// Too many connections from this address.
+    /// This address has too many connections, in total or logging in.
     Address,
     /// Too many new connections from this address in a short time.
     Rate,

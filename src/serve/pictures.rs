@@ -7,7 +7,7 @@ use crate::viewer::{Frame, Job};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// The largest number of pictures that are kept: one for each scene and window size.
+/// The largest number of pictures that are kept; each scene has one for each window size.
 const MAX_PICTURES: usize = 32;
 
 /// The most pixels of a picture that is kept, about those of 200x60 cells.

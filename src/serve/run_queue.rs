@@ -91,7 +91,9 @@ impl RunQueue {
         }
     }
 
-    /// Returns the session whose turn is at `now`, if any; it runs until [`finish`](Self::finish).
+    /// Starts a turn at `now`, and returns its session; `None` if no session is ready.
+    ///
+    /// The session runs until [`finish`](Self::finish).
     pub(super) fn take(&mut self, now: Duration) -> Option<SessionId> {
         while let Some(&(_, id)) = self.timers.first().filter(|(at, _)| *at <= now) {
             self.wake(id);

@@ -40,7 +40,7 @@ impl SocketCloser {
 }
 
 impl Socket {
-    /// Returns the socket of a new connection.
+    /// Wraps the stream of a new connection, and sets its socket options.
     pub(super) fn new(stream: TcpStream, patience: Duration) -> Self {
         // Errors are ignored, because these options affect only the speed.
         let _ = stream.set_nodelay(true);
@@ -100,7 +100,7 @@ impl AsyncWrite for Socket {
     }
 
     fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
-        // An error means that the connection has ended.
+        // An error of `shutdown` is ignored, because it means that the connection has already ended.
         let _ = shutdown(&*self.stream, Shutdown::Write);
         Poll::Ready(Ok(()))
     }

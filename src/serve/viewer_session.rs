@@ -207,7 +207,8 @@ impl ViewerSession {
         Ok(())
     }
 
-    /// Returns the time at which the visit ends if no key is pressed, and the reason.
+    /// Returns the time at which the visit ends if no key is pressed, and the reason: an idle user,
+    /// the limit of the visit, or the end of the server.
     fn next_end(&self) -> (Duration, LeaveReason) {
         // Before the first key press, the idle time counts from the beginning of the visit.
         let idle = (self.viewer.last_input_time().max(self.began) + self.limits.idle, LeaveReason::Idle);
@@ -235,7 +236,7 @@ impl ViewerSession {
         end.saturating_sub(Duration::from_secs(seconds - 1))
     }
 
-    /// Draws, and traces at most one frame of a new view.
+    /// Carries out steps of the viewer, at most two of which trace a frame, until the turn ends.
     fn carry_out_steps(
         &mut self,
         (mut sending, kind): (bool, WorkKind),
@@ -275,7 +276,7 @@ impl ViewerSession {
                         Some(frame) => self.viewer.take_frame(frame),
                         None => return AfterTurn::Turn(WorkKind::Refinement),
                     }
-                    // The first frame traced in a turn is also drawn in this turn; a second one ends the turn undrawn.
+                    // The turn goes on after its first traced frame, to draw it, and ends after the second one.
                     if std::mem::replace(&mut traced, true) {
                         return AfterTurn::Turn(kind);
                     }

@@ -139,6 +139,6 @@ fn restore_settings(keys: &File, before: &Termios, flushes: bool) {
     if flushes {
         let _ = termios::tcflush(keys, QueueSelector::IFlush);
     }
-    // An error means that the terminal is gone.
+    // An error of `tcsetattr` is ignored, because it means that the terminal is gone.
     let _ = termios::tcsetattr(keys, OptionalActions::Now, before);
 }

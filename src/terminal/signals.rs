@@ -32,7 +32,7 @@ pub struct Signals {
     deadly: Arc<AtomicUsize>,
     resized: Arc<AtomicBool>,
     continued: Arc<AtomicBool>,
-    /// `None` if SIGTSTP is ignored.
+    /// The receiver of stop requests (SIGTSTP); `None` if SIGTSTP is ignored.
     stops: Option<Receiver<StopRequest>>,
 }
 

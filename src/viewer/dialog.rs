@@ -66,7 +66,7 @@ impl Dialog {
         match self {
             Self::Export => KeyMode::Export,
             Self::SaveToFile(_) | Self::NewScene(_) => KeyMode::Keep,
-            // `Always` binds the digits to views, so that the key that saves a view is the one that returns to it.
+            // The mode `Always` binds each digit to a view, so that the same digit saves a view and returns to it.
             Self::Save => KeyMode::Always,
         }
     }

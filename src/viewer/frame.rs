@@ -78,7 +78,8 @@ pub(crate) struct Frame {
     pub(crate) sampling: Sampling,
     /// The legends of the maps, from left to right; empty for the shaded picture alone.
     pub(crate) legends: Vec<String>,
-    /// The comparison of both orders; `None` unless `Shot::orders` is set, and for a refinement.
+    /// The comparison of image order with object order; `None` for a refinement, and unless
+    /// `Shot::orders` is set.
     pub(crate) orders: Option<Arc<Comparison>>,
     /// Whether this frame has the same shot as the frame before, with more samples.
     pub(crate) refines: bool,

@@ -204,7 +204,7 @@ impl Help {
 
 /// Breaks the lines into columns, and puts on each page as many columns as fit side by side.
 fn pages(lines: &[Line], [width_of_page, height]: [usize; 2]) -> Vec<Vec<Vec<Line>>> {
-    // There is at least one row, even on a screen of three rows, all of which the border takes.
+    // The height is at least one row, even on a screen of two rows, all of which the border takes.
     let height = height.max(1);
     let paged = |height: usize| {
         let mut pages: Vec<Vec<Vec<Line>>> = Vec::new();

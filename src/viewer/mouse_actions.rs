@@ -56,7 +56,7 @@ impl Viewer {
             Gesture::Release => {}
             Gesture::DoubleClick if self.pointer.drag_target() == DragTarget::View => {
                 self.frame_object(self.pointer.object());
-                // Counts as a motion, so that the release of the button is not a click.
+                // The double click counts as a motion, so that the release of its second press is not a click.
                 self.pointer.record_motion();
             }
             // If the first press took hold of the line, a light or the cursor, the second press of a double click acts

@@ -34,7 +34,8 @@ const CURRENT_PIXEL_COLOR: Srgb8 = Srgb8::new(255, 208, 64);
 /// The panel that compares image order with object order, and builds their pictures step by step.
 pub(super) struct RenderOrdersPanel {
     pace: BuildPace,
-    /// The pictures of the shown frame as built so far; `None` until the frame is traced.
+    /// The object-order picture of the shown frame as built so far; `None` until the frame is
+    /// traced.
     build: Option<ObjectOrderBuild>,
 }
 

@@ -214,7 +214,7 @@ fn camera_beside(scene: &Scene, camera: &Camera, aspect_ratio: f32) -> Camera {
     let from = middle + distance * (0.9 * u + 0.5 * v + 0.8 * w);
     let seen = Camera::look_at(from, middle).and_then(|seen| seen.with_up(up));
     let Ok(seen) = seen.map(|seen| seen.framing(&bounds, aspect_ratio)) else { return *camera };
-    // A wall between the two eyes would hide the first one.
+    // A wall between the two eyes would hide the first eye, so the second one is moved to the first one's side of it.
     let way = seen.pose().eye - eye;
     let t = closest_hit(scene, &Ray { origin: eye, direction: way }).map_or(1.0, |hit| (0.9 * hit.t).min(1.0));
     let seen = seen.with_pose(Pose { eye: eye + t * way, ..seen.pose() }).unwrap_or(seen);

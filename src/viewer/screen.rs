@@ -364,7 +364,7 @@ impl Screen {
             status_rows,
             note_rows,
         });
-        // Order by colour saves bytes but takes 0.5 ms longer, more than a fast link saves by fewer bytes.
+        // Order by colour is used on slow links: it takes 0.5 ms longer, more than fewer bytes save on a fast link.
         let (usual, order) =
             if limit.is_some() { (Quality::Equal, Order::Color) } else { (Quality::Exact, Order::Raster) };
         self.encoder.set_order(self.cell_order.unwrap_or(order));

@@ -89,7 +89,7 @@ impl Instances {
         Ok(Self { bvh, leaves, all, bounds })
     }
 
-    /// Returns the number of triangles in the trees of the meshes that instances in `list` share.
+    /// Returns the number of triangles in the trees of all meshes that `instances` share.
     pub(super) fn distinct_triangle_count(instances: &[(u32, Arc<Mesh>)]) -> usize {
         let files: HashMap<_, _> = instances.iter().map(|(_, mesh)| (Arc::as_ptr(mesh.shared_file()), mesh)).collect();
         files.values().map(|mesh| mesh.triangle_count() as usize).sum()
@@ -106,7 +106,7 @@ impl Instances {
         &self.all[self.leaves[leaf].numbers[lane] as usize]
     }
 
-    /// Returns the index of the first primitive, and the index after the last one.
+    /// Returns the index of the instances' first primitive, and the index after their last one.
     pub(crate) fn range(&self) -> [u32; 2] {
         let end = |last: &Instance| last.first.saturating_add(last.mesh.triangle_count());
         [self.all.first().map_or(u32::MAX, |instance| instance.first), self.all.last().map_or(0, end)]

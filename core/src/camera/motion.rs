@@ -296,7 +296,7 @@ fn rotated(v: Vec3, axis: Vec3, angle: f32) -> Vec3 {
     turned * (v.length() / turned.length())
 }
 
-/// Returns `number` plus `steps`, rounded to whole steps along axes where `steps` is not 0.
+/// Returns `number` plus `steps`, rounded to a whole number along axes where `steps` is not 0.
 fn plus_whole_steps(number: Vec2, steps: Vec2) -> Vec2 {
     Vec2::select(steps.cmpeq(Vec2::ZERO), number, (number + steps).round())
 }

@@ -108,7 +108,8 @@ impl Camera {
         eye + libm::powf(WHEEL_NOTCH_FACTOR, -notches) * (point - eye)
     }
 
-    /// Converts a distance in the picture to one on the plane at distance 1 from the eye.
+    /// Converts a distance, in shares of the picture's width and height, to one on the plane at
+    /// distance 1 from the eye.
     fn on_view_plane(&self, shares: Vec2, aspect_ratio: f32) -> Vec2 {
         let (width, height, _) = self.rectangle.width_height_middle(aspect_ratio);
         shares * Vec2::new(width, height)

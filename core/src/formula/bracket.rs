@@ -59,7 +59,7 @@ impl Brackets {
         for lane in 0..LANES {
             let (t, value) = (self.next[lane], values[lane] * self.sign[lane]);
             let is_before = value > 0.0;
-            // The values at the ends are not needed, as their signs are known.
+            // The values of f at the ends of the bracket are not kept, because their signs, which are known, suffice.
             let before = if is_before { t.max(self.before[lane]) } else { self.before[lane] };
             let after = if is_before { self.after[lane] } else { t.min(self.after[lane]) };
             let (least, most) = (next_f32_above(before), next_f32_below(after));

@@ -145,7 +145,7 @@ impl Evaluation<'_> {
 
     pub(super) fn unary(&mut self, function: Unary, a: Model, is_non_negative: bool) -> Model {
         let [low, high] = a.range();
-        // True also if a bound is NaN.
+        // Negated, so that the branch is also taken if a bound is NaN.
         if !(high - low < f64::INFINITY) {
             return match function {
                 Unary::Negate => a.negate(),
@@ -248,7 +248,7 @@ impl Evaluation<'_> {
 
     fn quotient(&mut self, a: Model, b: Model) -> Model {
         let [low, high] = b.range();
-        // True also if a bound is NaN.
+        // Negated, so that the branch is also taken if a bound is NaN.
         if !(low > 0.0 || high < 0.0) {
             return self.anything(low == 0.0 && high == 0.0);
         }

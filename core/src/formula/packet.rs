@@ -12,7 +12,7 @@ use std::f64::consts::FRAC_2_PI;
 /// Twice the largest relative rounding error of an f32 operation.
 const EPSILON: f32 = f32::EPSILON;
 
-/// The least error of a model that counts as large, relative to its polynomial's extent.
+/// The least error of a model that counts as a large error, as a share of |c1| + |c2|.
 const BLUR: f32 = 1.0 / 16.0;
 
 /// A bound of the absolute error of the polynomials for sine and cosine.
@@ -57,11 +57,12 @@ pub(super) struct SignForecasts {
     pub(super) shares: [F32x8; 3],
     /// The lanes in which the sign is certain at the start of the piece.
     pub(super) is_certain: u32,
-    /// The lanes in which the sign is certain, and the same on the whole piece.
+    /// The lanes in which the sign is certain at the start and does not change on the piece.
     pub(super) has_no_zero: u32,
     /// The lanes in which the sign at the start is negative, if it is certain.
     pub(super) is_negative: u32,
-    /// The lanes in which the error is small compared with the extent of the polynomial.
+    /// The lanes in which the error is small compared with how much the polynomial varies on the
+    /// piece.
     pub(super) has_small_error: u32,
 }
 
@@ -156,7 +157,7 @@ impl SimdKernel for PacketModels<'_> {
     }
 }
 
-/// The values of a tape on eight lines.
+/// An evaluator of a tape at one point on each of eight lines.
 pub(super) struct PacketValues<'a> {
     pub(super) tape: &'a Tape,
     pub(super) lines: &'a Lines,
@@ -352,7 +353,7 @@ impl<N: Lanes> Models<N> {
         Self::with_enlarged_error([a0 * b0, a0 * b1 + a1 * b0, a0 * b2 + a1 * b1 + a2 * b0], beyond + error)
     }
 
-    /// Returns the product with a number; the error includes the rounding of the number.
+    /// Returns the product with a number; the error allows for a number that was rounded to f32.
     #[inline(always)]
     fn scaled(self, factor: N) -> Self {
         let ([c0, c1, c2], size) = (self.c, factor.abs());
@@ -360,7 +361,7 @@ impl<N: Lanes> Models<N> {
         Self::with_enlarged_error([c0 * factor, c1 * factor, c2 * factor], error)
     }
 
-    /// Returns the sum with a number; the error includes the rounding of the number.
+    /// Returns the sum with a number; the error allows for a number that was rounded to f32.
     #[inline(always)]
     fn shifted(self, term: N) -> Self {
         let [c0, c1, c2] = self.c;
@@ -417,7 +418,7 @@ impl<N: Lanes> Models<N> {
         forecasts
     }
 
-    /// Returns the Taylor polynomial of a function of the quantity, or the hull if it is narrower.
+    /// Returns a function of these models: its Taylor polynomial, or `hull` if that is narrower.
     #[inline(always)]
     fn function(self, taylor: Taylor<N>, hull: Self) -> Self {
         self.taylor(taylor).or_if_narrower(hull)
@@ -582,7 +583,7 @@ fn exp<N: Lanes>(x: N) -> N {
     let number = |value: f64| N::splat(value as f32);
     // Beyond these limits, `scale` would be subnormal or infinite.
     let x = x.max(number(-87.0)).min(number(88.0));
-    // ln 2 in two parts, of which the product with the first is exact, and the polynomial of Cephes.
+    // ln 2 is split in two, so that `power` times the first part is exact. The polynomial is that of Cephes.
     let power = (x * number(std::f64::consts::LOG2_E) + number(0.5)).floor();
     let r = x - power * number(0.693_359_375) + power * number(2.121_944_4e-4);
     let polynomial = [1.398_199_950_7e-3, 8.333_451_907_3e-3, 4.166_579_589_4e-2, 1.666_666_545_9e-1, 0.5];

@@ -23,7 +23,7 @@ use tokens::{FormulaToken, FormulaTokens};
 // The parser is recursive, and a deeper formula could overflow the stack.
 const MAX_NESTING: usize = 64;
 
-/// The largest magnitude of a whole exponent.
+/// The largest magnitude of an integer exponent; a larger one is a fault.
 const MAX_EXPONENT: f64 = 32.0;
 
 /// A fault of a formula.
@@ -133,7 +133,7 @@ impl FormulaParser<'_> {
         }
     }
 
-    /// Reads an operator and its second operand.
+    /// Reads an operator and its second operand, and adds the operation to the tape.
     fn then(
         &mut self,
         function: Binary,
@@ -364,7 +364,7 @@ impl FormulaParser<'_> {
     }
 
     fn length(&mut self, operands: &[Index], range: Range<usize>) -> Result<Index, FormulaFault> {
-        // The tape drops this 0 from the sum.
+        // This 0 adds no operation: the builder of the tape replaces 0 + x with x.
         let mut sum = self.constant(0.0, range.clone())?;
         for &operand in operands {
             let square = self.unary_of(Unary::Square, operand, range.clone())?;

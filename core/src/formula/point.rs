@@ -142,7 +142,7 @@ impl Formula {
     }
 }
 
-/// Returns the product, in which a zero vector stays zero, also times infinity.
+/// Returns the product; a zero vector stays zero even if the factor is infinite.
 // The slope of a root at 0 is infinite: times a zero vector, it would make the whole gradient NaN, as of x + sqrt(y^2)
 // at y = 0.
 fn scaled(vector: DVec3, factor: f64) -> DVec3 {

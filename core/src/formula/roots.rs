@@ -529,7 +529,7 @@ impl SignForecast {
         cube_root(TARGET / self.blur as f32).max(least).min(most)
     }
 
-    /// Returns the root between `low` and `high`, in a piece of length `width`.
+    /// Returns the bracket from `low` to `high` of a root that lies in a piece of length `width`.
     fn root(&self, [low, high]: [f64; 2], sign: f64, width: f64) -> Root {
         let (u, [c1, c2]) = (self.near + self.far - 1.0, self.c);
         Root { low, high, sign, guess: 0.5 * (low + high), slope: 2.0 * (c1 + 2.0 * u * c2) / width }

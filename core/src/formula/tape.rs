@@ -74,7 +74,7 @@ impl Tape {
         Some(f64::from_bits(bits) as f32).filter(|rounded| rounded.is_normal())
     }
 
-    /// Returns whether a value depends on the time.
+    /// Returns whether the value of the formula depends on the time.
     pub(super) fn moves(&self) -> bool {
         self.operations.contains(&Operation::Coordinate(TIME))
     }

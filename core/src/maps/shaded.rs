@@ -19,7 +19,7 @@ pub(super) fn trace(
     TracedMap::new(tone(&rendered.framebuffer, scene), rendered.cost)
 }
 
-/// Renders the light as [`trace`] does, and adds the surfaces that the picture shows.
+/// Renders the light as [`trace`] does, and adds the picture's geometry: its pixels' surfaces.
 pub(super) fn trace_with_geometry(
     executor: Executor<'_>,
     scene: &Scene,

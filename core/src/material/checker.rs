@@ -68,7 +68,8 @@ impl Reflecting for Checker {
 /// A checkered material as written: `Checker(a: ..., b: ..., size: ...)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrittenChecker {
-    /// The reflectance of the first square; `"#dddddd"` if not given.
+    /// The reflectance of one half of the squares, including the one that starts at the pattern's
+    /// origin; `"#dddddd"` if not given.
     pub a: Option<WrittenColor>,
     /// The reflectance of the other half of the squares; `"#333333"` if not given.
     pub b: Option<WrittenColor>,

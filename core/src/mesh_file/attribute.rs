@@ -124,7 +124,9 @@ impl<T: Copy> Attribute<T> {
         self.values.shrink_to_fit();
     }
 
-    /// Returns whether each corner has a value and each value passes the check.
+    /// Returns whether all indices refer to values, and all values pass the check.
+    ///
+    /// Triangles without the attribute are valid.
     pub(super) fn is_valid(&self, triangles: &[[u32; 3]], is_valid_value: impl Fn(&T) -> bool) -> bool {
         let in_range = |corner: &[u32; 3]| corner.iter().all(|&index| (index as usize) < self.values.len());
         let corners_are_valid = match &self.corners {

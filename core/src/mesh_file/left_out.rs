@@ -50,7 +50,7 @@ impl<'a> LeftOut<'a> {
         if self.faults > FEW_FAULTS {
             let lines = || self.bytes.split(|&byte| byte == b'\n').count();
             if self.faults > *self.limit.get_or_insert_with(|| lines() / 100) {
-                // The empty fault that replaces the first one is never shown.
+                // The empty fault that replaces the first one is never shown, because this error ends the reading.
                 return Err(std::mem::replace(first, MeshFault::of_file("")));
             }
         }

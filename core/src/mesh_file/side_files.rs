@@ -22,7 +22,7 @@ pub(super) struct SideFiles<'a> {
     bytes_left: usize,
     /// The path of the mesh file, whose folder precedes the names of side files in messages.
     mesh: PathBuf,
-    /// The warnings about colours that were reported.
+    /// The warnings about colours reported so far; none is reported twice.
     warnings: HashSet<String>,
     reporter: &'a Reporter<'a>,
     pub(super) left_out: LeftOut<'a>,

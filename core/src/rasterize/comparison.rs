@@ -63,7 +63,7 @@ pub struct Comparison {
     pub object_tests: Vec<u64>,
     /// The nearest object of each pixel, as an index into `object_tests`.
     pub nearest: DepthBuffer,
-    /// The times for growing numbers of spheres in a picture of the same size.
+    /// The times for growing numbers of spheres, measured at the same picture size as `times`.
     pub growth: Vec<(u32, OrderTimes)>,
 }
 

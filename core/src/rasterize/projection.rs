@@ -108,7 +108,7 @@ impl Projection {
         from_eye.truncate() / from_eye.z * self.scale + self.principal_point
     }
 
-    /// Returns the whole picture.
+    /// Returns the rectangle of all pixels of the picture.
     pub(super) fn whole(&self) -> Rectangle {
         let [width, height] = self.size;
         Rectangle { x: [0, width], y: [0, height] }

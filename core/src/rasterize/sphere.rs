@@ -76,7 +76,7 @@ fn rectangles<N: Lanes>(projection: &Projection, centers: Vector<N>, r: N) -> ([
     ([left.store(), right.store(), top.store(), bottom.store()], visible.bits())
 }
 
-/// Returns the extent of spheres along an axis of the picture, in pixels.
+/// Returns the bounds of spheres along an axis of the picture, in pixels, widened for rounding.
 #[inline(always)]
 fn extent<N: Lanes>(along: N, z: N, r: N, squared: N, [scale, principal_point]: [f32; 2]) -> [N; 2] {
     let reach = r * (along * along + squared).sqrt();

@@ -85,7 +85,7 @@ impl Accumulator {
     }
 }
 
-/// Extends the range from `least` to `most` to include a light, per channel.
+/// Widens the range between `least` and `most` so that it includes a light, per channel.
 // `f32::min` and `max` would take twice the comparisons, because they also handle NaN, which light never is.
 fn widen([least, most]: &mut [LinearRgb; 2], light: LinearRgb) {
     let join = |a: LinearRgb, b: LinearRgb, is_wanted: fn(f32, f32) -> bool| {

@@ -85,7 +85,7 @@ impl ProgressiveRender {
         })
     }
 
-    /// Traces all passes after the first.
+    /// Traces the passes with the given numbers, all of which come after the first pass.
     fn trace_refinement(&mut self, executor: Executor<'_>, scene: &Scene, passes: Range<usize>) -> Cost {
         // Contrasts are relative to the light that the exposure maps to white, as they are on the screen.
         let white = 1.0 / scene.exposure();

@@ -64,7 +64,8 @@ impl Facet {
         Self { depth, object: object + 1, normal, extent }
     }
 
-    /// Returns whether an edge separates this facet from a neighbouring one.
+    /// Returns whether a neighbouring facet is on another object, or across a crease of the
+    /// same bounded object.
     fn may_border(&self, other: &Self) -> bool {
         self.object != other.object || self.extent == Extent::Bounded && self.cosine(other) < CREASE_COSINE
     }

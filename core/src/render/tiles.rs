@@ -62,7 +62,7 @@ impl Tiles {
         [tile % self.tiles_per_row() * SIDE, tile / self.tiles_per_row() * SIDE]
     }
 
-    /// Returns the column and row in the picture of a pixel of a tile.
+    /// Returns the column and row of a tile's pixel, counted in traced pixels of the picture.
     pub(super) fn position(&self, tile: usize, pixel: u8) -> [u32; 2] {
         let ([left, top], [x, y]) = (self.corner(tile), coordinates_in_tile(pixel.into()));
         [left + x, top + y]

@@ -167,7 +167,7 @@ impl Draft {
     }
 }
 
-/// Returns the camera at the distance from which the corners of the box just fit into the picture.
+/// Returns the camera at the distance at which the mesh's box fills `FRAMED_SHARE` of the picture.
 fn camera(bounds: &Bounds, middle: Vec3) -> Option<Camera> {
     let w = TOWARDS_EYE.normalize();
     let u = Vec3::Y.cross(w).normalize();

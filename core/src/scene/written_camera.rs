@@ -78,7 +78,8 @@ impl Camera {
             .map(|[x, y]| Vec2::new(x as f32, y as f32));
         let rectangle = rectangle.with_shift(shift).and_then(|shifted| shifted.with_tilt(tilt)).unwrap_or(rectangle);
         let camera = camera.with_rectangle(rectangle);
-        // The angle of a rectangle with a width is not rounded, because its author has chosen the exact shape.
+        // The field of view is not rounded if the view rectangle has a width, because the author has then chosen the
+        // rectangle's exact shape.
         let angle = rounded_to_decimals(approximate_degrees(&rectangle), 2.0);
         match rectangle.with_vertical_fov(radians(angle)) {
             Ok(rounded) if rectangle.width().is_none() => camera.with_rectangle(rounded),

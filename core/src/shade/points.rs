@@ -85,7 +85,7 @@ impl SimdKernel for SurfacePoints<'_> {
     }
 }
 
-/// Computes the surface points of a group's hits, one list or tree at a time.
+/// Computes the surface points of eight rays' hits, one primitive list or tree at a time.
 #[inline(always)]
 fn gather_surfaces<N: Lanes>(accel: &Accelerator, rays: &EightRays, hits: &EightHits, at: &mut EightPoints) {
     let mut points = Points::<N>::nowhere();

@@ -103,7 +103,7 @@ impl Exact for Cone {
     }
 
     fn crossings(&self, line: &Line) -> Crossings {
-        // The tip of an open cone belongs to the side, so that crossings there are not dropped with the caps.
+        // The tip of an open cone counts as a part of the side, because crossings on the caps are dropped.
         let caps = if self.open && self.radii[1] == 0.0 { [CAPS[0], SIDE] } else { CAPS };
         let inside = self.side(line, self.axis.slab(line, caps));
         let mut crossings = Crossings::NONE;

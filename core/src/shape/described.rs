@@ -32,7 +32,7 @@ pub trait Described {
     }
 }
 
-/// Delegates the methods of shapes and primitives to the surfaces of the table.
+/// Implements methods of [`Shape`] and [`Primitive`] that call those of the variant's surface.
 macro_rules! described {
     ($($(#[$on:meta])* $surface:ident, $of:meta;)*) => {
         impl Shape {

@@ -22,7 +22,7 @@ const MAX_CROSSINGS: usize = 4;
 /// The largest number of crossings that an explanation shows, preferably in front of the eye.
 const MAX_SHOWN: usize = 2;
 
-/// The least size from which a point's clearance is computed, relative to the surface's extent.
+/// Lower bound of the size that scales a point's clearance, as a fraction of the surface's extent.
 // It makes the clearance at least 1.9e-12 of the extent. The error of positions in f64 is below 1e-13 of the extent for
 // rays that start up to 1,000 extents away.
 const RELATIVE_ERROR: f32 = 1e-6;
@@ -265,7 +265,7 @@ fn pattern_axes_in_scene<S: Exact>(surface: &S, normal: Vec3) -> Option<[Vec3; 2
     axes.map(|axes| axes.map(|axis| map.normal(axis.as_dvec3()).as_vec3()))
 }
 
-/// Returns the equation with the steps `steps` and the crossings of a ray's line as its roots.
+/// Returns the equation with the steps `steps` and up to [`MAX_SHOWN`] crossings as its roots.
 pub(super) fn equation<S: Exact>(surface: &S, ray: &Ray, mut steps: Vec<EquationStep>) -> Equation {
     let mut roots: Vec<_> = crossings(surface, ray).iter().map(|crossing| crossing.t).collect();
     let behind = roots.iter().filter(|&&root| root < 0.0).count();

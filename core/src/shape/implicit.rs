@@ -197,7 +197,8 @@ impl Surface for Implicit {
         let at = origin + direction * f64::from(t);
         let (value, gradient) = self.0.formula.gradient(at);
         let step = gradient * (value / gradient.dot(gradient));
-        // The rounding of t moves the point by at most `rounding`, so a longer step is not a correction.
+        // The rounding of t moves the point by at most `rounding`. A longer Newton step does not correct that error,
+        // and is not taken.
         let rounding = f64::from(f32::EPSILON) * f64::from(t).abs() * direction.abs().max_element();
         let position = if step.abs().max_element() <= rounding { at - step } else { at };
         let size = at.abs().max_element().max(f64::from(self.0.bounds.extent().max_element()));

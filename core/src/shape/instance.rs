@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 // Copies are traced in packets, which is several times as fast. A million triangles take about 100 MB.
 const MAX_COPIED_TRIANGLES: usize = 1 << 20;
 
-/// The cells along each axis into which the corners of a mesh are sorted.
+/// The number of cubic cells along a mesh's longest side, into which its corners are sorted.
 const CELLS: f32 = 8.0;
 
 /// The corners of a mesh, sorted into cells: the outermost ones in any direction are found fast.
@@ -104,7 +104,7 @@ impl Passage {
         Interval { min, max: if self.inside[1] <= max { f32::MAX } else { max } }
     }
 
-    /// Returns the t of a crossing in the scene: the nearest one in the box.
+    /// Clamps the t of a crossing to the interval of t in which the ray is inside the box.
     // As for all surfaces, the boxes of the tree then never hide a hit (`culling.md`, 2).
     #[inline(always)]
     pub(crate) fn clamp_to_box(&self, t: f32) -> f32 {

@@ -102,7 +102,7 @@ impl AffineMap {
         self.linear * point + self.translation
     }
 
-    /// Maps a normal of the shape to the scene, or a vector of which only dot products are used.
+    /// Maps a normal of the shape to the scene, or a vector that is used only in dot products.
     pub(super) fn normal(&self, normal: DVec3) -> DVec3 {
         self.inverse.transpose() * normal
     }

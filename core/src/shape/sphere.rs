@@ -276,7 +276,7 @@ impl CheckedShape for Sphere {
 }
 
 impl Placeable for Sphere {
-    /// Maps the sphere to a sphere, or to an ellipsoid if its factors differ.
+    /// Maps the sphere to a sphere, or to an ellipsoid if the placement's scale factors differ.
     fn placed(self, placement: &Placement) -> Option<Shape> {
         let (center, radius) = (self.center.as_dvec3(), f64::from(self.radius));
         let Some(scale) = placement.uniform_scale() else {

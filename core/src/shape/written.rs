@@ -135,7 +135,7 @@ macro_rules! of_kind {
                 }
             }
 
-            /// Returns the shape placed anywhere, also where no ray can be traced to it.
+            /// Returns the placed shape, without the check that rays can be traced to it.
             pub(super) fn placed_anywhere(self, placement: &Placement) -> Option<Self> {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.placed(placement),)*

@@ -24,7 +24,7 @@ pub(super) fn map_lanes<N: Lanes, const IN: usize, const OUT: usize>(
     numbers: [N; IN],
     formula: impl Fn([f32; IN]) -> [f32; OUT],
 ) -> [N; OUT] {
-    // The formula is scalar, so registers would have no advantage.
+    // `formula` computes one lane at a time, so numbers in registers would have no advantage.
     let mut stored = [F32x8::ZERO; IN];
     for (stored, numbers) in stored.iter_mut().zip(numbers) {
         *stored = numbers.store();

@@ -199,7 +199,7 @@ const POINTS: usize = 128;
 struct Matcher {
     /// For each point, the weights of all characters.
     weights: [[f32; GLYPHS.len()]; POINTS],
-    /// For each character, the squared norm of its blurred ink, plus the penalty of all points.
+    /// For each character, the squared norm of its blurred ink, plus its penalty times [`POINTS`].
     constants: [f32; GLYPHS.len()],
 }
 

@@ -46,7 +46,7 @@ impl Values {
                 word if word.starts_with(|c: char| c.is_ascii_lowercase()) => {
                     words.push((word.to_owned(), String::new()));
                 }
-                // The value is a number or a vector, for which no words can be offered.
+                // No words can be offered for other values, such as numbers, vectors and formulas.
                 _ => (),
             }
         }

@@ -41,7 +41,8 @@ impl<W: Write> EncoderBackend<W> {
         if region == (0..height) {
             scroll_screen(height, line_count, direction, &mut bytes);
         } else if is_first_row_going_out {
-            // Scrolling up moves the first row into the scrollback; scrolling down moves the other rows back.
+            // Scrolling the screen up moves its first row into the scrollback; scrolling it down again moves the other
+            // rows back to their places.
             scroll_screen(height, 1, ScrollDirection::Up, &mut bytes);
             scroll_screen(height, 1, ScrollDirection::Down, &mut bytes);
         } else {

@@ -87,7 +87,7 @@ impl Inset {
         let (across, down) = mode.pixels_per_cell();
         let cell_aspect = resolution.pixel_aspect() * down as f32 / across as f32;
         let [x, y] = self.drawn_ranges(f32::from(area.width), f32::from(area.height) * cell_aspect);
-        // Braille dots are square at the usual cell aspect of 2, half blocks are too coarse for lines.
+        // Braille, because its dots are square at the usual cell aspect of 2, and half blocks are too coarse for lines.
         let marker = if mode.glyphs.has_blocks() { Marker::Braille } else { Marker::Custom('*') };
         let ink = |color: Color| if mode.colors == Colors::None { Color::Reset } else { color };
         let line = |from: Vec2, to: Vec2, color: Color| {

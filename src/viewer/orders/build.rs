@@ -95,7 +95,7 @@ impl ObjectOrderBuild {
     }
 
     /// Returns a pixel's colour: `empty` without an object, `final_color` if its object stays
-    /// visible.
+    /// visible, else the colour that its object has until a later one hides it.
     pub(super) fn pixel_color(&self, x: u32, y: u32, empty: Srgb8, final_color: Srgb8) -> Srgb8 {
         if self.is_complete {
             return final_color;

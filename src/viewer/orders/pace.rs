@@ -6,7 +6,8 @@ use std::time::Duration;
 const BUILD_TIME: Duration = Duration::from_secs(10);
 
 /// The least time between two steps that are shown.
-// Twenty pictures a second are enough, because the pixels of image order are as wide as a character.
+// More than twenty pictures a second would not look smoother, because image order advances by whole pixels, each as
+// wide as a character.
 const STEP: Duration = Duration::from_millis(50);
 
 /// The number of steps of a build with reduced motion, one for each press of a key.

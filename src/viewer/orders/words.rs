@@ -9,8 +9,8 @@ use crate::viewer::metadata::grouped;
 use std::time::Duration;
 use unicode_width::UnicodeWidthStr;
 
-/// Least width in columns of each half of the text at which the lecture's questions are shown.
-// The two questions stand side by side. The longer one, "at what pixels is this object visible?", has 38 characters.
+/// Least width in columns of each half of the text at which the orders' questions are shown.
+// Each half has the question of its order. The longer one, "at what pixels is this object visible?", has 38 characters.
 const MIN_QUESTION_COLUMNS: usize = 38;
 
 /// Least height of the screen in rows at which the table of times is shown before the build ends.

@@ -18,7 +18,8 @@ pub(super) struct Buffers<'a, 'b> {
     side_files: &'a mut SideFiles<'b>,
     read: HashMap<usize, Bytes<'a>>,
     files: HashMap<PathBuf, Rc<[u8]>>,
-    /// Total number of bytes of the JSON, and of the buffers and images read so far.
+    /// Total number of bytes of the JSON, and of the buffers and images read so far, for
+    /// [`max_elements`](Self::max_elements).
     size: usize,
 }
 

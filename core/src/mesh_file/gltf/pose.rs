@@ -79,7 +79,7 @@ impl<'a> Pose<'a> {
         !self.joints.is_empty() || !self.weights.is_empty()
     }
 
-    /// Returns the positions or normals of a primitive in the scene's coordinates.
+    /// Returns the posed positions or normals of a primitive in the coordinates of the glTF scene.
     pub(super) fn placed(
         &self,
         primitive: Json<'a>,
