@@ -320,7 +320,8 @@ pub(crate) fn radians(degrees: f64) -> f32 {
 }
 
 impl ViewRectangle {
-    /// The largest [tilt](Self::with_tilt) along each axis, in degrees.
+    /// The largest angle, in degrees along each axis, between the direction of view and the
+    /// rectangle's normal; see [`with_tilt`](Self::with_tilt).
     // The plane is then at least cos^2(89 degrees) = 3e-4 in front of the eye, and f32 has digits left for directions.
     pub(crate) const MAX_TILT_DEGREES: f32 = 89.0;
 

@@ -1,7 +1,7 @@
 //! Capsules: cylinders with round ends.
 
 use super::described::length_in_words;
-use super::exact::{self, Crossings, Exact, Frame, Inside};
+use super::exact::{self, Crossings, Exact, Inside, PlacedBounds};
 use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
 use crate::ray::Ray;
@@ -14,12 +14,12 @@ use glam::{DVec3, Vec3};
 pub struct Capsule {
     axis: Axis,
     radius: f64,
-    frame: Frame,
+    placed_bounds: PlacedBounds,
 }
 
 impl Capsule {
     fn new(axis: Axis, radius: f64) -> Self {
-        exact::framed(Self { axis, radius, frame: Frame::NONE })
+        exact::with_bounds(Self { axis, radius, placed_bounds: PlacedBounds::NONE })
     }
 
     /// Returns the vector to a point from the nearest point of the segment.
@@ -30,12 +30,12 @@ impl Capsule {
 }
 
 impl Exact for Capsule {
-    fn frame(&self) -> &Frame {
-        &self.frame
+    fn placed_bounds(&self) -> &PlacedBounds {
+        &self.placed_bounds
     }
 
-    fn frame_mut(&mut self) -> &mut Frame {
-        &mut self.frame
+    fn placed_bounds_mut(&mut self) -> &mut PlacedBounds {
+        &mut self.placed_bounds
     }
 
     fn center(&self) -> DVec3 {
@@ -67,7 +67,7 @@ impl Described for Capsule {
 
     fn described(&self, color: &str) -> String {
         let [radius, length] = [self.radius, 2.0 * (self.axis.half_length + self.radius)].map(length_in_words);
-        format!("a {color} capsule of radius {radius} and length {length}") + &self.frame.scale_in_words()
+        format!("a {color} capsule of radius {radius} and length {length}") + &self.placed_bounds.scale_in_words()
     }
 
     /// States the equation, whose parts are those of a cylinder and of two spheres.
@@ -82,7 +82,7 @@ impl Described for Capsule {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        self.outward(self.frame.scene_to_shape(point) - self.axis.middle).length() < self.radius
+        self.outward(self.placed_bounds.scene_to_shape(point) - self.axis.middle).length() < self.radius
     }
 }
 

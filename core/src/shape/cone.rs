@@ -2,7 +2,7 @@
 
 use super::cylinder::{CAPS, SIDE};
 use super::described::length_in_words;
-use super::exact::{self, Crossings, Exact, Frame, Inside};
+use super::exact::{self, Crossings, Exact, Inside, PlacedBounds};
 use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
 use crate::ray::Ray;
@@ -20,7 +20,7 @@ pub struct Cone {
     radii: [f64; 2],
     /// Whether the cone has no caps.
     open: bool,
-    frame: Frame,
+    placed_bounds: PlacedBounds,
 }
 
 /// The coefficients of A t^2 + 2 B t + C, which is negative inside the infinite double cone.
@@ -32,7 +32,7 @@ struct Quadratic {
 
 impl Cone {
     fn new(axis: Axis, radii: [f64; 2], open: bool) -> Self {
-        exact::framed(Self { axis, radii, open, frame: Frame::NONE })
+        exact::with_bounds(Self { axis, radii, open, placed_bounds: PlacedBounds::NONE })
     }
 
     /// Returns the growth of the radius per unit of length along the axis.
@@ -86,12 +86,12 @@ impl Cone {
 }
 
 impl Exact for Cone {
-    fn frame(&self) -> &Frame {
-        &self.frame
+    fn placed_bounds(&self) -> &PlacedBounds {
+        &self.placed_bounds
     }
 
-    fn frame_mut(&mut self) -> &mut Frame {
-        &mut self.frame
+    fn placed_bounds_mut(&mut self) -> &mut PlacedBounds {
+        &mut self.placed_bounds
     }
 
     fn center(&self) -> DVec3 {
@@ -130,14 +130,14 @@ impl Described for Cone {
         let open = if self.open { "open " } else { "" };
         let radius =
             if self.radii[1] == 0.0 { format!("of radius {wide}") } else { format!("of radii {wide} to {narrow}") };
-        format!("a {color} {open}cone {radius} and length {length}") + &self.frame.scale_in_words()
+        format!("a {color} {open}cone {radius} and length {length}") + &self.placed_bounds.scale_in_words()
     }
 
     /// Solves A t^2 + 2 B t + C = 0 for the infinite double cone, with x relative to the end
     /// `from`.
     fn equation(&self, ray: &Ray) -> Equation {
         let Quadratic { a, half_b, c } =
-            self.quadratic(&self.axis.relative_to_start(self.frame.line(ray)), self.radii[0]);
+            self.quadratic(&self.axis.relative_to_start(self.placed_bounds.line(ray)), self.radii[0]);
         let steps = vec![
             EquationStep::Text("|x|^2 - h^2 - (r + k h)^2 = 0"),
             EquationStep::Text("x = o + t d - from, h = x.a"),
@@ -152,7 +152,7 @@ impl Described for Cone {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let from_middle = self.frame.scene_to_shape(point) - self.axis.middle;
+        let from_middle = self.placed_bounds.scene_to_shape(point) - self.axis.middle;
         let along = from_middle.dot(self.axis.direction);
         let radius = 0.5 * (self.radii[0] + self.radii[1]) + self.slope() * along;
         !self.open && along.abs() < self.axis.half_length && self.axis.across(from_middle).length() < radius

@@ -1,7 +1,7 @@
 //! Boxes whose faces are perpendicular to the axes.
 
 use super::described::size_in_words;
-use super::exact::{self, Crossings, Exact, Frame, Inside};
+use super::exact::{self, Crossings, Exact, Inside, PlacedBounds};
 use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
 use crate::ray::Ray;
@@ -15,12 +15,12 @@ use glam::{DVec3, Vec3};
 pub struct Cuboid {
     min: DVec3,
     max: DVec3,
-    frame: Frame,
+    placed_bounds: PlacedBounds,
 }
 
 impl Cuboid {
     fn new(min: DVec3, max: DVec3) -> Self {
-        exact::framed(Self { min, max, frame: Frame::NONE })
+        exact::with_bounds(Self { min, max, placed_bounds: PlacedBounds::NONE })
     }
 
     /// Returns the part of a line between the planes of the two faces that are perpendicular to an
@@ -33,12 +33,12 @@ impl Cuboid {
 }
 
 impl Exact for Cuboid {
-    fn frame(&self) -> &Frame {
-        &self.frame
+    fn placed_bounds(&self) -> &PlacedBounds {
+        &self.placed_bounds
     }
 
-    fn frame_mut(&mut self) -> &mut Frame {
-        &mut self.frame
+    fn placed_bounds_mut(&mut self) -> &mut PlacedBounds {
+        &mut self.placed_bounds
     }
 
     fn center(&self) -> DVec3 {
@@ -76,14 +76,14 @@ impl Described for Cuboid {
     const KIND: &'static str = "box";
 
     fn described(&self, color: &str) -> String {
-        format!("a {color} box, {}", size_in_words(self.frame.bounds()))
+        format!("a {color} box, {}", size_in_words(self.placed_bounds.bounds()))
     }
 
     /// Solves o + t d = min and o + t d = max for each axis.
     ///
     /// The line is inside the box from the last of the three entries to the first of the three exits.
     fn equation(&self, ray: &Ray) -> Equation {
-        let line = self.frame.line(ray);
+        let line = self.placed_bounds.line(ray);
         let mut steps = vec![EquationStep::Text("o + t d = min and max, each axis")];
         for (axis, name) in ["x: t in ", "y: t in ", "z: t in "].into_iter().enumerate() {
             let Inside { enters, leaves } = self.slab(axis, &line, DVec3::ZERO);
@@ -94,7 +94,7 @@ impl Described for Cuboid {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let point = self.frame.scene_to_shape(point);
+        let point = self.placed_bounds.scene_to_shape(point);
         point.cmpgt(self.min).all() && point.cmplt(self.max).all()
     }
 }

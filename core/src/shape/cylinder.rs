@@ -1,7 +1,7 @@
 //! Cylinders, with caps or open.
 
 use super::described::length_in_words;
-use super::exact::{self, Crossings, Exact, Frame, Inside, reach_of_circle};
+use super::exact::{self, Crossings, Exact, Inside, PlacedBounds, reach_of_circle};
 use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
 use crate::ray::Ray;
@@ -22,12 +22,12 @@ pub struct Cylinder {
     radius: f64,
     /// Whether the cylinder has no caps.
     open: bool,
-    frame: Frame,
+    placed_bounds: PlacedBounds,
 }
 
 impl Cylinder {
     fn new(axis: Axis, radius: f64, open: bool) -> Self {
-        exact::framed(Self { axis, radius, open, frame: Frame::NONE })
+        exact::with_bounds(Self { axis, radius, open, placed_bounds: PlacedBounds::NONE })
     }
 }
 
@@ -61,12 +61,12 @@ impl Axis {
 }
 
 impl Exact for Cylinder {
-    fn frame(&self) -> &Frame {
-        &self.frame
+    fn placed_bounds(&self) -> &PlacedBounds {
+        &self.placed_bounds
     }
 
-    fn frame_mut(&mut self) -> &mut Frame {
-        &mut self.frame
+    fn placed_bounds_mut(&mut self) -> &mut PlacedBounds {
+        &mut self.placed_bounds
     }
 
     fn center(&self) -> DVec3 {
@@ -94,12 +94,12 @@ impl Described for Cylinder {
     fn described(&self, color: &str) -> String {
         let [radius, length] = [self.radius, 2.0 * self.axis.half_length].map(length_in_words);
         format!("a {color} {}cylinder of radius {radius} and length {length}", if self.open { "open " } else { "" })
-            + &self.frame.scale_in_words()
+            + &self.placed_bounds.scale_in_words()
     }
 
     /// Solves A t^2 + 2 B t + C = 0 for the infinite cylinder, with x relative to the end `from`.
     fn equation(&self, ray: &Ray) -> Equation {
-        let line = self.axis.relative_to_start(self.frame.line(ray));
+        let line = self.axis.relative_to_start(self.placed_bounds.line(ray));
         let [o, d] = [line.origin, line.direction].map(|vector| self.axis.across(vector));
         let steps = vec![
             EquationStep::Text("|x|^2 - (x.a)^2 - r^2 = 0"),
@@ -114,7 +114,7 @@ impl Described for Cylinder {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let from_middle = self.frame.scene_to_shape(point) - self.axis.middle;
+        let from_middle = self.placed_bounds.scene_to_shape(point) - self.axis.middle;
         let is_between = from_middle.dot(self.axis.direction).abs() < self.axis.half_length;
         !self.open && is_between && self.axis.across(from_middle).length() < self.radius
     }

@@ -1,7 +1,7 @@
 //! Disks: the part of a plane within a circle.
 
 use super::described::length_in_words;
-use super::exact::{self, Crossing, Crossings, Exact, Frame, reach_of_circle};
+use super::exact::{self, Crossing, Crossings, Exact, PlacedBounds, reach_of_circle};
 use super::plane::{self, pattern_axis};
 use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
@@ -18,24 +18,24 @@ pub struct Disk {
     radius: f64,
     /// Unit vectors in the plane of the disk, along which patterns are measured.
     axes: [Vec3; 2],
-    frame: Frame,
+    placed_bounds: PlacedBounds,
 }
 
 impl Disk {
     fn new(center: DVec3, normal: DVec3, radius: f64) -> Self {
         let u = pattern_axis(normal.as_vec3());
         let axes = [u, u.cross(normal.as_vec3())];
-        exact::framed(Self { center, normal, radius, axes, frame: Frame::NONE })
+        exact::with_bounds(Self { center, normal, radius, axes, placed_bounds: PlacedBounds::NONE })
     }
 }
 
 impl Exact for Disk {
-    fn frame(&self) -> &Frame {
-        &self.frame
+    fn placed_bounds(&self) -> &PlacedBounds {
+        &self.placed_bounds
     }
 
-    fn frame_mut(&mut self) -> &mut Frame {
-        &mut self.frame
+    fn placed_bounds_mut(&mut self) -> &mut PlacedBounds {
+        &mut self.placed_bounds
     }
 
     fn center(&self) -> DVec3 {
@@ -75,12 +75,12 @@ impl Described for Disk {
     const KIND: &'static str = "disk";
 
     fn described(&self, color: &str) -> String {
-        format!("a {color} disk of radius {}", length_in_words(self.radius)) + &self.frame.scale_in_words()
+        format!("a {color} disk of radius {}", length_in_words(self.radius)) + &self.placed_bounds.scale_in_words()
     }
 
     /// Solves t = (c - o).n / d.n for the plane of the disk.
     fn equation(&self, ray: &Ray) -> Equation {
-        let line = self.frame.line(ray);
+        let line = self.placed_bounds.line(ray);
         let mut equation = plane::equation(&line, self.center, self.normal);
         if let Some(&t) = equation.roots.first() {
             let from_center = (line.origin + line.direction * t).distance(self.center);

@@ -1,7 +1,7 @@
 //! Ellipsoids whose axes are parallel to the coordinate axes.
 
 use super::described::size_in_words;
-use super::exact::{self, Crossings, Exact, Frame, Inside};
+use super::exact::{self, Crossings, Exact, Inside, PlacedBounds};
 use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
 use crate::ray::Ray;
@@ -14,23 +14,23 @@ use glam::{DVec3, Vec3};
 pub struct Ellipsoid {
     center: DVec3,
     radii: DVec3,
-    frame: Frame,
+    placed_bounds: PlacedBounds,
 }
 
 impl Ellipsoid {
     /// Returns the ellipsoid about `center`.
     pub(super) fn new(center: DVec3, radii: DVec3) -> Self {
-        exact::framed(Self { center, radii, frame: Frame::NONE })
+        exact::with_bounds(Self { center, radii, placed_bounds: PlacedBounds::NONE })
     }
 }
 
 impl Exact for Ellipsoid {
-    fn frame(&self) -> &Frame {
-        &self.frame
+    fn placed_bounds(&self) -> &PlacedBounds {
+        &self.placed_bounds
     }
 
-    fn frame_mut(&mut self) -> &mut Frame {
-        &mut self.frame
+    fn placed_bounds_mut(&mut self) -> &mut PlacedBounds {
+        &mut self.placed_bounds
     }
 
     fn center(&self) -> DVec3 {
@@ -55,13 +55,13 @@ impl Described for Ellipsoid {
     const KIND: &'static str = "ellipsoid";
 
     fn described(&self, color: &str) -> String {
-        format!("a {color} ellipsoid, {}", size_in_words(self.frame.bounds()))
+        format!("a {color} ellipsoid, {}", size_in_words(self.placed_bounds.bounds()))
     }
 
     /// Solves A t^2 + 2 B t + C = 0, as for a sphere of radius 1, for the line divided by the
     /// radii.
     fn equation(&self, ray: &Ray) -> Equation {
-        let Line { origin, direction } = self.frame.line(ray);
+        let Line { origin, direction } = self.placed_bounds.line(ray);
         let (d, from_center) = (direction / self.radii, (origin - self.center) / self.radii);
         let steps = vec![
             EquationStep::Text("|(o + t d - c) / r|^2 - 1 = 0"),
@@ -75,7 +75,7 @@ impl Described for Ellipsoid {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        ((self.frame.scene_to_shape(point) - self.center) / self.radii).length() < 1.0
+        ((self.placed_bounds.scene_to_shape(point) - self.center) / self.radii).length() < 1.0
     }
 }
 

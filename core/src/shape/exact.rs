@@ -33,10 +33,10 @@ const RELATIVE_ERROR: f32 = 1e-6;
 /// [centre](Self::center).
 pub(crate) trait Exact {
     /// Returns the bounds and the placement of the surface.
-    fn frame(&self) -> &Frame;
+    fn placed_bounds(&self) -> &PlacedBounds;
 
     /// Returns the bounds and the placement of the surface, to be changed.
-    fn frame_mut(&mut self) -> &mut Frame;
+    fn placed_bounds_mut(&mut self) -> &mut PlacedBounds;
 
     /// Returns the middle of the surface.
     fn center(&self) -> DVec3;
@@ -65,13 +65,13 @@ pub(crate) trait Exact {
 
 /// The bounds of a surface in the scene, and its map to the scene if it is placed.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Frame {
+pub(crate) struct PlacedBounds {
     bounds: Bounds,
     map: Option<Arc<AffineMap>>,
 }
 
-impl Frame {
-    /// The frame of a surface whose bounds [`framed`] has not computed yet.
+impl PlacedBounds {
+    /// The placeholder of a surface whose bounds [`with_bounds`] has not computed yet.
     pub(super) const NONE: Self = Self { bounds: Bounds { min: Vec3::ZERO, max: Vec3::ZERO }, map: None };
 
     /// Returns the bounds in the scene.
@@ -106,22 +106,22 @@ impl Frame {
 }
 
 /// Returns a surface with its bounds in the scene, computed from its reach and its map.
-pub(super) fn framed<S: Exact>(mut surface: S) -> S {
-    let map = surface.frame().map.clone();
+pub(super) fn with_bounds<S: Exact>(mut surface: S) -> S {
+    let map = surface.placed_bounds().map.clone();
     let bounds = AffineMap::bounds(map.as_deref(), surface.center(), |direction| surface.reach(direction));
-    *surface.frame_mut() = Frame { bounds, map };
+    *surface.placed_bounds_mut() = PlacedBounds { bounds, map };
     surface
 }
 
 impl<S: Exact + Into<Shape>> Placeable for S {
     fn placed(mut self, placement: &Placement) -> Option<Shape> {
-        let (old, new) = (self.frame().map.as_deref(), placement.map());
-        self.frame_mut().map = Some(Arc::new(old.map_or(new, |old| old.then(&new))));
-        Some(framed(self).into())
+        let (old, new) = (self.placed_bounds().map.as_deref(), placement.map());
+        self.placed_bounds_mut().map = Some(Arc::new(old.map_or(new, |old| old.then(&new))));
+        Some(with_bounds(self).into())
     }
 
     fn has_map(&self) -> bool {
-        self.frame().map.is_some()
+        self.placed_bounds().map.is_some()
     }
 }
 
@@ -249,7 +249,7 @@ impl Inside {
 
 /// Returns the crossings of a surface and the line of a ray.
 fn crossings<S: Exact>(surface: &S, ray: &Ray) -> Crossings {
-    let Line { origin, direction } = surface.frame().line(ray);
+    let Line { origin, direction } = surface.placed_bounds().line(ray);
     let from_center = origin - surface.center();
     // With the line's origin at its point nearest to the centre, all its numbers are about as large as the surface.
     let nearest = -from_center.dot(direction) / direction.dot(direction);
@@ -260,7 +260,7 @@ fn crossings<S: Exact>(surface: &S, ray: &Ray) -> Crossings {
 
 /// Returns the axes of patterns, for dot products with vectors of the scene.
 fn pattern_axes_in_scene<S: Exact>(surface: &S, normal: Vec3) -> Option<[Vec3; 2]> {
-    let Some(map) = &surface.frame().map else { return surface.pattern_axes(normal) };
+    let Some(map) = &surface.placed_bounds().map else { return surface.pattern_axes(normal) };
     let axes = surface.pattern_axes(map.shape_normal(normal.as_dvec3()).as_vec3());
     axes.map(|axes| axes.map(|axis| map.normal(axis.as_dvec3()).as_vec3()))
 }
@@ -282,11 +282,11 @@ pub(super) fn reach_of_circle(axis: DVec3, direction: DVec3) -> f64 {
 
 impl<S: Exact> Surface for S {
     fn bounds(&self) -> Option<Bounds> {
-        Some(*self.frame().bounds())
+        Some(*self.placed_bounds().bounds())
     }
 
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let Interval { min, max } = self.frame().bounds().crossed(probe);
+        let Interval { min, max } = self.placed_bounds().bounds().crossed(probe);
         if !(min <= max && within.min <= max && min <= within.max) {
             return None;
         }
@@ -301,9 +301,9 @@ impl<S: Exact> Surface for S {
         let Crossing { t, part } = nearest.unwrap_or(Crossing { t: f64::from(t), part: 0 });
         let direction = ray.direction.as_dvec3();
         let position = ray.origin.as_dvec3() + direction * t;
-        let at = self.frame().shape_point(position);
+        let at = self.placed_bounds().shape_point(position);
         let shape_normal = self.normal(part, at - self.center());
-        let normal = self.frame().map.as_ref().map_or(shape_normal, |map| map.normal(shape_normal));
+        let normal = self.placed_bounds().map.as_ref().map_or(shape_normal, |map| map.normal(shape_normal));
         let length = normal.dot(normal).sqrt();
         // The tip of a pointed torus has no normal.
         let normal = if length > 0.0 { normal / length } else { -direction / direction.dot(direction).sqrt() };
@@ -313,7 +313,8 @@ impl<S: Exact> Surface for S {
             axes.map(|axis| from_origin.dot(axis.as_dvec3()) as f32)
         });
         let position = position.as_vec3();
-        let size = position.abs().max_element().max(RELATIVE_ERROR * self.frame().bounds().extent().max_element());
+        let size =
+            position.abs().max_element().max(RELATIVE_ERROR * self.placed_bounds().bounds().extent().max_element());
         let rays = Probe::new(*ray).rays;
         Points::seen_by(&rays, Vector::splat(position), Vector::splat(normal), size, uv.unwrap_or_default()).point()
     }

@@ -1,7 +1,7 @@
 //! Quads: rectangles and other parallelograms.
 
 use super::described::length_in_words;
-use super::exact::{self, Crossing, Crossings, Exact, Frame};
+use super::exact::{self, Crossing, Crossings, Exact, PlacedBounds};
 use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape, plane};
 use crate::formula::Line;
 use crate::ray::Ray;
@@ -28,7 +28,7 @@ pub struct Quad {
     normal: DVec3,
     /// The vectors whose dot products with the offset of a point from the corner are its s and t.
     shares: [DVec3; 2],
-    frame: Frame,
+    placed_bounds: PlacedBounds,
 }
 
 impl Quad {
@@ -36,17 +36,17 @@ impl Quad {
         let [a, b] = edges;
         let normal = a.cross(b);
         let shares = [b.cross(normal), normal.cross(a)].map(|across| across / normal.dot(normal));
-        exact::framed(Self { corner, edges, normal, shares, frame: Frame::NONE })
+        exact::with_bounds(Self { corner, edges, normal, shares, placed_bounds: PlacedBounds::NONE })
     }
 }
 
 impl Exact for Quad {
-    fn frame(&self) -> &Frame {
-        &self.frame
+    fn placed_bounds(&self) -> &PlacedBounds {
+        &self.placed_bounds
     }
 
-    fn frame_mut(&mut self) -> &mut Frame {
-        &mut self.frame
+    fn placed_bounds_mut(&mut self) -> &mut PlacedBounds {
+        &mut self.placed_bounds
     }
 
     fn center(&self) -> DVec3 {
@@ -87,12 +87,12 @@ impl Described for Quad {
 
     fn described(&self, color: &str) -> String {
         let [a, b] = self.edges.map(|edge| length_in_words(edge.length()));
-        format!("a {color} quad with edges of {a} and {b}") + &self.frame.scale_in_words()
+        format!("a {color} quad with edges of {a} and {b}") + &self.placed_bounds.scale_in_words()
     }
 
     /// Solves t = (a - o).n / d.n for the plane of the quad.
     fn equation(&self, ray: &Ray) -> Equation {
-        let line = self.frame.line(ray);
+        let line = self.placed_bounds.line(ray);
         let mut equation = plane::equation(&line, self.corner, self.normal.normalize());
         if let Some(&t) = equation.roots.first() {
             let from_corner = line.origin + line.direction * t - self.corner;

@@ -1,7 +1,7 @@
 //! Tori: rings.
 
 use super::described::length_in_words;
-use super::exact::{self, Crossing, Crossings, Exact, Frame, reach_of_circle};
+use super::exact::{self, Crossing, Crossings, Exact, PlacedBounds, reach_of_circle};
 use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
 use crate::formula::Line;
 use crate::ray::Ray;
@@ -25,12 +25,12 @@ pub struct Torus {
     axis: DVec3,
     radius: f64,
     tube_radius: f64,
-    frame: Frame,
+    placed_bounds: PlacedBounds,
 }
 
 impl Torus {
     fn new(center: DVec3, axis: DVec3, [radius, tube_radius]: [f64; 2]) -> Self {
-        exact::framed(Self { center, axis, radius, tube_radius, frame: Frame::NONE })
+        exact::with_bounds(Self { center, axis, radius, tube_radius, placed_bounds: PlacedBounds::NONE })
     }
 
     /// Returns the height of a point over the plane of the ring, and its distance from the axis.
@@ -60,12 +60,12 @@ impl Torus {
 }
 
 impl Exact for Torus {
-    fn frame(&self) -> &Frame {
-        &self.frame
+    fn placed_bounds(&self) -> &PlacedBounds {
+        &self.placed_bounds
     }
 
-    fn frame_mut(&mut self) -> &mut Frame {
-        &mut self.frame
+    fn placed_bounds_mut(&mut self) -> &mut PlacedBounds {
+        &mut self.placed_bounds
     }
 
     fn center(&self) -> DVec3 {
@@ -109,14 +109,15 @@ impl Described for Torus {
 
     fn described(&self, color: &str) -> String {
         let [radius, tube] = [self.radius, self.tube_radius].map(length_in_words);
-        format!("a {color} torus of radius {radius} with a tube of radius {tube}") + &self.frame.scale_in_words()
+        format!("a {color} torus of radius {radius} with a tube of radius {tube}")
+            + &self.placed_bounds.scale_in_words()
     }
 
     /// Solves s^4 + P s^2 + Q s + C = 0.
     ///
     /// s is the distance along the line from its point closest to the centre.
     fn equation(&self, ray: &Ray) -> Equation {
-        let Line { origin, direction: d } = self.frame.line(ray);
+        let Line { origin, direction: d } = self.placed_bounds.line(ray);
         let o = origin - self.center;
         let nearest = -o.dot(d) / d.dot(d);
         let Quartic { squares, linear, constant, .. } = self.quartic(&Line { origin: o + d * nearest, direction: d });
@@ -134,7 +135,7 @@ impl Described for Torus {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let (height, distance) = self.height_and_distance(self.frame.scene_to_shape(point) - self.center);
+        let (height, distance) = self.height_and_distance(self.placed_bounds.scene_to_shape(point) - self.center);
         let from_ring = distance - self.radius;
         from_ring * from_ring + height * height < self.tube_radius * self.tube_radius
     }

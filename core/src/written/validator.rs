@@ -83,7 +83,7 @@ impl Validator<'_> {
     }
 }
 
-/// The axis of a shape between two points.
+/// The axis of a shape that is given by two end points: its middle, direction and half length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {
     /// The point in the middle.
