@@ -3,7 +3,6 @@
 //! All operations are exactly defined by IEEE 754, so that a ray gives the same bits alone and among eight. [`F32x8`]
 //! is a plain array for any CPU; the types of [`simd`](crate::simd) are registers.
 
-use std::array::from_fn;
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -259,6 +258,20 @@ pub struct F32x8(pub [f32; LANES]);
 #[repr(align(32))]
 pub struct Mask32x8([u32; LANES]);
 
+/// Expands to an array whose element `lane` is the value of an expression.
+// Written out, because a call of `array::from_fn` is several functions to compile for each operation.
+macro_rules! each_lane {
+    ($lane:ident => $value:expr) => {
+        each_lane!(@ $lane [0 1 2 3 4 5 6 7] $value)
+    };
+    (@ $lane:ident [$($index:literal)*] $value:expr) => {
+        [$({
+            let $lane = $index;
+            $value
+        }),*]
+    };
+}
+
 macro_rules! eight_by_eight {
     ($($operation:ident $function:ident $operator:tt)*) => {
         $(impl $operation for F32x8 {
@@ -266,7 +279,7 @@ macro_rules! eight_by_eight {
 
             #[inline(always)]
             fn $function(self, other: Self) -> Self {
-                Self(from_fn(|lane| self.0[lane] $operator other.0[lane]))
+                Self(each_lane!(lane => self.0[lane] $operator other.0[lane]))
             }
         })*
     };
@@ -279,7 +292,7 @@ impl Neg for F32x8 {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(|value| -value))
+        Self(each_lane!(lane => -self.0[lane]))
     }
 }
 
@@ -307,7 +320,7 @@ impl F32x8 {
 
     #[inline(always)]
     fn compare(self, other: Self, compare: impl Fn(f32, f32) -> bool) -> Mask32x8 {
-        Mask32x8(from_fn(|lane| if compare(self.0[lane], other.0[lane]) { u32::MAX } else { 0 }))
+        Mask32x8(each_lane!(lane => if compare(self.0[lane], other.0[lane]) { u32::MAX } else { 0 }))
     }
 }
 
@@ -321,17 +334,17 @@ impl Number for F32x8 {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self(self.0.map(f32::sqrt))
+        Self(each_lane!(lane => self.0[lane].sqrt()))
     }
 
     #[inline(always)]
     fn abs(self) -> Self {
-        Self(self.0.map(f32::abs))
+        Self(each_lane!(lane => self.0[lane].abs()))
     }
 
     #[inline(always)]
     fn floor(self) -> Self {
-        Self(self.0.map(f32::floor))
+        Self(each_lane!(lane => self.0[lane].floor()))
     }
 
     #[inline(always)]
@@ -348,7 +361,7 @@ impl Number for F32x8 {
     fn select(Mask32x8(mask): Mask32x8, Self(yes): Self, Self(no): Self) -> Self {
         // Selects by bits, because the compiler turned branches into scalar code.
         let bits = |lane: usize| (yes[lane].to_bits() & mask[lane]) | (no[lane].to_bits() & !mask[lane]);
-        Self(from_fn(|lane| f32::from_bits(bits(lane))))
+        Self(each_lane!(lane => f32::from_bits(bits(lane))))
     }
 
     // The only operation that need not be inlined, because its formulas are rare and scalar.
@@ -385,12 +398,12 @@ impl Lanes for F32x8 {
 
     #[inline(always)]
     fn mask_from_bits(bits: u32) -> Mask32x8 {
-        Mask32x8(from_fn(|lane| if bits >> lane & 1 == 1 { u32::MAX } else { 0 }))
+        Mask32x8(each_lane!(lane => if bits >> lane & 1 == 1 { u32::MAX } else { 0 }))
     }
 
     #[inline(always)]
     fn eq_bits(self, bits: u32) -> Mask32x8 {
-        Mask32x8(self.0.map(|number| if number.to_bits() == bits { u32::MAX } else { 0 }))
+        Mask32x8(each_lane!(lane => if self.0[lane].to_bits() == bits { u32::MAX } else { 0 }))
     }
 }
 
@@ -406,7 +419,7 @@ impl BitAnd for Mask32x8 {
 
     #[inline(always)]
     fn bitand(self, other: Self) -> Self {
-        Self(from_fn(|lane| self.0[lane] & other.0[lane]))
+        Self(each_lane!(lane => self.0[lane] & other.0[lane]))
     }
 }
 
@@ -415,7 +428,7 @@ impl BitOr for Mask32x8 {
 
     #[inline(always)]
     fn bitor(self, other: Self) -> Self {
-        Self(from_fn(|lane| self.0[lane] | other.0[lane]))
+        Self(each_lane!(lane => self.0[lane] | other.0[lane]))
     }
 }
 
@@ -424,7 +437,7 @@ impl Not for Mask32x8 {
 
     #[inline(always)]
     fn not(self) -> Self {
-        Self(self.0.map(|lane| !lane))
+        Self(each_lane!(lane => !self.0[lane]))
     }
 }
 
