@@ -19,7 +19,7 @@ mod instances;
 mod split;
 mod observer;
 
-pub use observer::{Observer, PrimitiveTest};
+pub use observer::{Observer, PrimitiveTest, TestCount};
 
 /// The closest intersection of a ray with a scene, in front of the ray's origin.
 ///
@@ -146,7 +146,11 @@ pub fn closest_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], hits: &mu
 }
 
 /// Finds, for each group of rays, the mask of active rays with a hit in the interval.
+///
+/// # Panics
+/// If the interval starts below 0: bounds of boxes are valid for t >= 0 only (`culling.md`, 4).
 pub fn any_hits(kernel: Kernel, scene: &Scene, rays: &[EightRays], within: Interval, hit_masks: &mut Vec<u32>) {
+    assert!(within.min >= 0.0, "{within:?} starts behind the rays' origins");
     hit_masks.clear();
     let accel = scene.accelerator();
     match kernel {
@@ -170,15 +174,15 @@ pub fn any_hit(scene: &Scene, ray: &Ray, within: Interval) -> bool {
 }
 
 /// Returns the [`closest_hit`] of a ray, and reports all tests to `observer`.
-pub fn closest_hit_observed(scene: &Scene, ray: &Ray, observer: &mut impl Observer) -> Option<Hit> {
-    let (t, primitive) = simd::dispatch(Observed::<_, CLOSEST> { scene, ray, within: Interval::IN_FRONT, observer });
+pub fn closest_hit_observed(scene: &Scene, ray: &Ray, observer: &mut dyn Observer) -> Option<Hit> {
+    let (t, primitive) = simd::dispatch(Observed::<CLOSEST> { scene, ray, within: Interval::IN_FRONT, observer });
     let PrimitiveId { object, index } = scene.accelerator().id(primitive?);
     Some(Hit { t, object, primitive: index })
 }
 
 /// Returns any hit of a ray in the interval, and reports all tests to `observer`.
-pub fn any_hit_observed(scene: &Scene, ray: &Ray, within: Interval, observer: &mut impl Observer) -> Option<Hit> {
-    let (_, primitive) = simd::dispatch(Observed::<_, ANY> { scene, ray, within, observer });
+pub fn any_hit_observed(scene: &Scene, ray: &Ray, within: Interval, observer: &mut dyn Observer) -> Option<Hit> {
+    let (_, primitive) = simd::dispatch(Observed::<ANY> { scene, ray, within, observer });
     let PrimitiveId { object, index } = scene.accelerator().id(primitive?);
     // Traversal for any hit does not keep t, so the crossing is computed again.
     let t = scene.objects()[object as usize].shape.primitive(index).closest_crossing(&Probe::new(*ray), within)?;
@@ -186,14 +190,14 @@ pub fn any_hit_observed(scene: &Scene, ray: &Ray, within: Interval, observer: &m
 }
 
 /// The SIMD kernel of [`closest_hit_observed`] and [`any_hit_observed`].
-struct Observed<'w, W, const ANY: bool> {
+struct Observed<'w, const ANY: bool> {
     scene: &'w Scene,
     ray: &'w Ray,
     within: Interval,
-    observer: &'w mut W,
+    observer: &'w mut dyn Observer,
 }
 
-impl<W: Observer, const ANY: bool> SimdKernel for Observed<'_, W, ANY> {
+impl<const ANY: bool> SimdKernel for Observed<'_, ANY> {
     type Output = (f32, Option<u32>);
 
     #[inline(always)]
@@ -293,8 +297,7 @@ impl SimdKernel for AnyHits<'_> {
         let Self { kernel, accel, rays, within, hit_masks } = self;
         let mut stacks = Stacks::default();
         let mut packet = PacketRays::<N, ANY>::new(kernel, accel, within);
-        // The bounds of packets are valid for t >= 0 only. Intervals with negative t are rare: single rays trace them.
-        let mut uses_packets = within.min >= 0.0;
+        let mut uses_packets = true;
         for rays in rays.chunks(GROUPS) {
             if uses_packets && kernel.uses_packet(rays.len()) {
                 packet.trace(rays, &mut stacks);

@@ -1,6 +1,6 @@
 //! Single-ray traversal of instances: the tree over their boxes, then the tree of a mesh.
 
-use super::observer::{Observer, PrimitiveTest};
+use super::observer::{Observation, PrimitiveTest};
 use crate::accel::{Accelerator, Instance, Instances, Tree};
 use crate::bounds::crossed;
 use crate::bvh::{LeafVisitor, Prefetch, RayStack};
@@ -28,7 +28,7 @@ pub(super) struct InstanceSearchOn<'a, N: Lanes, const ANY: bool, W> {
     pub(super) stack: &'a mut RayStack,
 }
 
-impl<N: Lanes, const ANY: bool, W: Observer> SimdKernel for InstanceSearchOn<'_, N, ANY, W> {
+impl<N: Lanes, const ANY: bool, W: Observation> SimdKernel for InstanceSearchOn<'_, N, ANY, W> {
     /// The end of the interval and the primitive, as they are after the search.
     type Output = (f32, Option<u32>);
 
@@ -38,13 +38,8 @@ impl<N: Lanes, const ANY: bool, W: Observer> SimdKernel for InstanceSearchOn<'_,
         let Self { search, stack } = self;
         let (bvh, rays, within) = (&search.instances.bvh, search.rays, search.within);
         let mut visitor = InInstances { stack: stack.take_inner(), search };
-        match bvh.root() {
-            // As in `single::InstanceSearch`, all leaves are tested for intervals with negative t, which are rare.
-            Some(root) if within.min >= 0.0 => bvh.visit_by_single_ray(root, rays, within, stack, &mut visitor),
-            _ => {
-                let leaves = 0..visitor.search.instances.leaves.len();
-                let _ = leaves.into_iter().try_for_each(|leaf| visitor.visit(leaf).map_continue(|_| ()));
-            }
+        if let Some(root) = bvh.root() {
+            bvh.visit_by_single_ray(root, rays, within, stack, &mut visitor);
         }
         stack.put_back(visitor.stack);
         (visitor.search.within.max, visitor.search.primitive)
@@ -65,7 +60,7 @@ impl<N: Lanes, const ANY: bool, W> Prefetch for InInstances<'_, N, ANY, W> {
     }
 }
 
-impl<N: Lanes, const ANY: bool, W: Observer> LeafVisitor for InInstances<'_, N, ANY, W> {
+impl<N: Lanes, const ANY: bool, W: Observation> LeafVisitor for InInstances<'_, N, ANY, W> {
     #[inline(always)]
     fn node_tested(&mut self) {
         self.search.observer.node_tested();
@@ -89,7 +84,7 @@ impl<N: Lanes, const ANY: bool, W: Observer> LeafVisitor for InInstances<'_, N, 
     }
 }
 
-impl<N: Lanes, const ANY: bool, W: Observer> InstanceSearch<'_, N, ANY, W> {
+impl<N: Lanes, const ANY: bool, W: Observation> InstanceSearch<'_, N, ANY, W> {
     /// Finds the hit among the triangles of an instance.
     #[inline(always)]
     fn visit(&mut self, instance: &Instance, passage: Passage, stack: &mut RayStack) {
@@ -99,11 +94,8 @@ impl<N: Lanes, const ANY: bool, W: Observer> InstanceSearch<'_, N, ANY, W> {
         let (tree, within) = (&*instance.triangles, passage.search());
         let observer = &mut *self.observer;
         let mut visitor = InMesh::<N, ANY, W> { rays: &rays, tree, within, found: None, instance, passage, observer };
-        match tree.bvh.root() {
-            Some(root) if within.min >= 0.0 => tree.bvh.visit_by_single_ray(root, &rays, within, stack, &mut visitor),
-            _ => {
-                let _ = (0..tree.leaves.len()).try_for_each(|leaf| visitor.visit(leaf).map_continue(|_| ()));
-            }
+        if let Some(root) = tree.bvh.root() {
+            tree.bvh.visit_by_single_ray(root, &rays, within, stack, &mut visitor);
         }
         let Some((t, triangle)) = visitor.found else { return };
         let (t, primitive) = (passage.clamp_to_box(t), instance.first + triangle);
@@ -137,7 +129,7 @@ impl<N: Lanes, const ANY: bool, W> Prefetch for InMesh<'_, N, ANY, W> {
     }
 }
 
-impl<N: Lanes, const ANY: bool, W: Observer> LeafVisitor for InMesh<'_, N, ANY, W> {
+impl<N: Lanes, const ANY: bool, W: Observation> LeafVisitor for InMesh<'_, N, ANY, W> {
     #[inline(always)]
     fn node_tested(&mut self) {
         self.observer.node_tested();
@@ -164,7 +156,7 @@ impl<N: Lanes, const ANY: bool, W: Observer> LeafVisitor for InMesh<'_, N, ANY, 
     }
 }
 
-impl<N: Lanes, const ANY: bool, W: Observer> InMesh<'_, N, ANY, W> {
+impl<N: Lanes, const ANY: bool, W: Observation> InMesh<'_, N, ANY, W> {
     /// Reports the tests of a leaf's triangles to the observer.
     fn report_tests(&mut self, leaf: usize, crossing: Option<(N::Mask, N)>) {
         let (crosses, t) = crossing.map_or((0, F32x8::ZERO), |(crosses, t)| (crosses.bits(), t.store()));

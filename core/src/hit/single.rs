@@ -1,7 +1,7 @@
 //! Single-ray traversal: one ray against eight boxes or primitives at a time.
 
 use super::instances::{self, InstanceSearchOn};
-use super::observer::{NoObserver, Observer, PrimitiveTest};
+use super::observer::{Observation, PrimitiveTest, Unobserved};
 use crate::accel::{Accelerator, Instances, List, ListVisitor, PrimitiveId, Tree};
 use crate::bvh::{Child, LeafVisitor, Prefetch, RayStack};
 use crate::lanes::{F32x8, LaneMask, Lanes, SimdKernel, set_bits};
@@ -10,7 +10,7 @@ use crate::shape::{Crossable, Endless, SoaLeaf};
 use std::ops::ControlFlow;
 
 /// A single ray in traversal, and its hit so far.
-pub(super) struct SingleRay<'p, N: Lanes, const ANY: bool, W = NoObserver> {
+pub(super) struct SingleRay<'p, N: Lanes, const ANY: bool, W = Unobserved> {
     accel: &'p Accelerator,
     /// The group of eight rays that the ray belongs to.
     // The ray is stored as a lane of its group: a test spreads its values over a register by shuffles. Loaded from
@@ -29,11 +29,11 @@ impl<'p, N: Lanes, const ANY: bool> SingleRay<'p, N, ANY> {
     /// Returns a single ray, the ray of lane `lane`, whose tests are not observed.
     #[inline(always)]
     pub(super) fn new(accel: &'p Accelerator, rays: &'p Rays<N>, lane: usize, within: Interval) -> Self {
-        Self::observed(accel, rays, lane, within, NoObserver)
+        Self::observed(accel, rays, lane, within, Unobserved)
     }
 }
 
-impl<'p, N: Lanes, const ANY: bool, W: Observer> SingleRay<'p, N, ANY, W> {
+impl<'p, N: Lanes, const ANY: bool, W: Observation> SingleRay<'p, N, ANY, W> {
     /// Returns a single ray, the ray of lane `lane`, whose tests are reported to `observer`.
     #[inline(always)]
     pub(super) fn observed(
@@ -167,7 +167,7 @@ struct AllPrimitives<'a, 'p, N: Lanes, const ANY: bool, W> {
     stack: &'a mut RayStack,
 }
 
-impl<'p, N: Lanes, const ANY: bool, W: Observer> ListVisitor<'p> for AllPrimitives<'_, 'p, N, ANY, W> {
+impl<'p, N: Lanes, const ANY: bool, W: Observation> ListVisitor<'p> for AllPrimitives<'_, 'p, N, ANY, W> {
     #[inline(always)]
     fn visit_list<S: Endless>(&mut self, list: &'p List<S>) {
         self.ray.trace_list(list);
@@ -192,7 +192,7 @@ struct SingleRaySearch<'a, 'p, N: Lanes, S, const ANY: bool, W> {
     stack: &'a mut RayStack,
 }
 
-impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> SimdKernel for SingleRaySearch<'_, '_, N, S, ANY, W> {
+impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observation> SimdKernel for SingleRaySearch<'_, '_, N, S, ANY, W> {
     type Output = ();
 
     // `Same` is the type `N`: `call_no_inline` of `N` runs a kernel with vectors of type `N`.
@@ -201,13 +201,7 @@ impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> SimdKernel for SingleRa
         let Self { ray, from, tree, stack } = self;
         let (rays, within) = (ray.rays.splat_lane(ray.lane), ray.within);
         let mut there = InTree { ray, rays: &rays, tree };
-        if within.min >= 0.0 {
-            tree.bvh.visit_by_single_ray(from, &rays, within, stack, &mut there);
-        } else {
-            // Traversal assumes t >= 0. Intervals with negative t are too rare for a traversal of their own: every
-            // leaf is tested instead.
-            let _ = (0..tree.leaves.len()).try_for_each(|leaf| there.visit(leaf).map_continue(|_| ()));
-        }
+        tree.bvh.visit_by_single_ray(from, &rays, within, stack, &mut there);
     }
 }
 
@@ -226,7 +220,7 @@ impl<N: Lanes, S, const ANY: bool, W> Prefetch for InTree<'_, '_, N, S, ANY, W> 
     }
 }
 
-impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observer> LeafVisitor for InTree<'_, '_, N, S, ANY, W> {
+impl<N: Lanes, S: SoaLeaf, const ANY: bool, W: Observation> LeafVisitor for InTree<'_, '_, N, S, ANY, W> {
     #[inline(always)]
     fn node_tested(&mut self) {
         self.ray.observer.node_tested();

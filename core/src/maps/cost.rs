@@ -2,34 +2,19 @@
 //!
 //! Rays are traced singly because packets, with which the shaded picture is traced, share tests between pixels.
 
-use crate::hit::{Observer, PrimitiveTest, any_hit_observed, closest_hit_observed};
+use crate::hit::{TestCount, any_hit_observed, closest_hit_observed};
 use crate::render::GBufferSample;
 use crate::scene::Scene;
 use crate::shade;
 
-/// An observer that counts the tests of surfaces and of tree nodes.
-// A node counts as one test, because its up to eight boxes are tested at once.
-#[derive(Default)]
-struct NodeCount(u32);
-
-impl Observer for NodeCount {
-    fn node_tested(&mut self) {
-        self.0 = self.0.saturating_add(1);
-    }
-
-    fn primitive_tested(&mut self, _: PrimitiveTest) {
-        self.0 = self.0.saturating_add(1);
-    }
-}
-
 /// Returns the number of tests of a pixel's eye ray and shadow rays.
 pub(super) fn eye_and_shadow_tests(scene: &Scene, sample: &GBufferSample) -> u32 {
-    let mut count = NodeCount::default();
+    let mut count = TestCount::default();
     closest_hit_observed(scene, &sample.ray, &mut count);
     if let Some(surface) = sample.surface(scene).filter(|_| scene.shadows()) {
         for light in scene.lights().iter().filter(|light| shade::incidence(light, &surface).is_some()) {
             any_hit_observed(scene, &shade::shadow_ray(light, &surface), light.blocking_interval(), &mut count);
         }
     }
-    count.0
+    count.0.try_into().unwrap_or(u32::MAX)
 }

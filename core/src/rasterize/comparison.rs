@@ -4,7 +4,7 @@ use super::{DepthBuffer, Rasterizer};
 use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::framebuffer::Resolution;
-use crate::hit::{Observer, PrimitiveTest, closest_hit_observed};
+use crate::hit::{TestCount, closest_hit_observed};
 use crate::material::Material;
 use crate::render::{Executor, GBufferSample, Sampling, TraceDepth, trace_g_buffer_partial};
 use crate::scene::{Object, Scene};
@@ -79,7 +79,7 @@ impl Comparison {
         let (width, height) = (image.width(), image.height());
         let rays = camera.eye_rays(image.aspect_ratio());
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x as f32 + 0.5, y as f32 + 0.5)));
-        let mut count = TestCount(0);
+        let mut count = TestCount::default();
         let image_tests = pixels.map(|(x, y)| {
             let ray = rays.through(x / width as f32, (height as f32 - y) / height as f32);
             closest_hit_observed(scene, &ray, &mut count);
@@ -147,19 +147,6 @@ impl ObjectSteps {
     /// Returns the nearest object drawn so far at a pixel, as its number from 0, and its depth.
     pub fn nearest(&self, x: u32, y: u32) -> Option<(u32, f32)> {
         self.rasterizer.buffer.at(x, y)
-    }
-}
-
-/// An observer that counts the tests of surfaces and of tree nodes.
-struct TestCount(u64);
-
-impl Observer for TestCount {
-    fn node_tested(&mut self) {
-        self.0 += 1;
-    }
-
-    fn primitive_tested(&mut self, _: PrimitiveTest) {
-        self.0 += 1;
     }
 }
 
