@@ -13,7 +13,7 @@ mod pointer;
 // `Grip` is exported with `dragged` and `Gesture`, because their signatures contain it.
 pub use crate::camera::Grip;
 pub use camera_moves::{dragged, on_turntable, speed, wheeled};
-pub use command::{Command, Direction, Side, Toward};
+pub use command::{Command, Direction, ScreenSide, Toward};
 pub use key::Key;
 pub use keymap::{Binding, KeyMode, Keymap};
 pub use motion::{AGAIN_TIME, COAST_TIME, KeySpeed, Motion, TAP_TIME};

@@ -61,7 +61,7 @@ pub enum Command {
     /// and back.
     Compare,
     /// Moves the line between the two maps of a wipe.
-    Wipe(Side),
+    Wipe(ScreenSide),
     /// Shows the next scene.
     NextScene,
     /// Shows the previous scene.
@@ -180,7 +180,7 @@ pub enum Toward {
 
 /// A side of the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum ScreenSide {
     /// The left side of the screen.
     Left,
     /// The right side of the screen.
@@ -255,8 +255,8 @@ commands! {
     [Command::NextMap] "NextMap", "next map (depth, ...)";
     [Command::LastMap] "LastMap", "previous map";
     [Command::Compare] "Compare", "compare two maps";
-    [Command::Wipe(Side::Left)] "WipeLeft", "divider left";
-    [Command::Wipe(Side::Right)] "WipeRight", "divider right";
+    [Command::Wipe(ScreenSide::Left)] "WipeLeft", "divider left";
+    [Command::Wipe(ScreenSide::Right)] "WipeRight", "divider right";
     [Command::NextScene] "NextScene", "next scene";
     [Command::LastScene] "LastScene", "previous scene";
     [Command::Export] "Export", "save picture";

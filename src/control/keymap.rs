@@ -1,6 +1,6 @@
 //! The keymap: for each mode, the commands of its keys.
 
-use super::command::{Command, Direction, Side, Toward};
+use super::command::{Command, Direction, ScreenSide, Toward};
 use super::key::Key;
 use crate::export::Format;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
@@ -198,8 +198,8 @@ const BUILT_IN: &[BuiltInBinding] = &[
     (KeyMode::Always, &[letter('v')], Command::NextMap),
     (KeyMode::Always, &[letter('b')], Command::LastMap),
     (KeyMode::Always, &[letter('|')], Command::Compare),
-    (KeyMode::Always, &[letter('<')], Command::Wipe(Side::Left)),
-    (KeyMode::Always, &[letter('>')], Command::Wipe(Side::Right)),
+    (KeyMode::Always, &[letter('<')], Command::Wipe(ScreenSide::Left)),
+    (KeyMode::Always, &[letter('>')], Command::Wipe(ScreenSide::Right)),
     (KeyMode::Always, &[letter('n')], Command::NextScene),
     (KeyMode::Always, &[letter('p')], Command::LastScene),
     (KeyMode::Always, &[letter('o')], Command::Export),

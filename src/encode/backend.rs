@@ -87,8 +87,8 @@ pub struct EncoderBackend<W> {
     limits: Option<Limits>,
     wanted: Grid,
     window: WindowSize,
-    ask_size: Option<Query<Size>>,
-    ask_position: Option<Query<Position>>,
+    ask_size: Option<SizeOrCursorQuery<Size>>,
+    ask_position: Option<SizeOrCursorQuery<Position>>,
     /// The last position of the cursor that was requested or reported.
     position: Position,
     /// The wanted state of the cursor.
@@ -103,7 +103,7 @@ pub struct EncoderBackend<W> {
 }
 
 /// A function of the program that queries the terminal's size or cursor position.
-type Query<T> = Box<dyn Fn() -> io::Result<T> + Send + Sync>;
+type SizeOrCursorQuery<T> = Box<dyn Fn() -> io::Result<T> + Send + Sync>;
 
 /// Returns the error for a window with too many cells.
 fn invalid_size(error: ResolutionError) -> io::Error {

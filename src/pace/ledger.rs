@@ -18,7 +18,7 @@ const MAX_TIMED_OUT_QUERIES: usize = 64;
 
 /// The kind of a query, which ends a frame or is sent without one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Query {
+pub(super) enum QueryKind {
     /// DA1. Its reply has no number, so replies are counted.
     Counted,
     /// DECRQM of a nonexistent mode, whose number the terminal repeats in its reply.
@@ -27,7 +27,7 @@ pub(super) enum Query {
     Both(Tag),
 }
 
-impl Query {
+impl QueryKind {
     fn tag(self) -> Option<Tag> {
         match self {
             Self::Counted => None,
@@ -43,7 +43,7 @@ impl Query {
 /// A query without a reply so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InFlight {
-    pub(super) query: Query,
+    pub(super) query: QueryKind,
     pub(super) sent: Duration,
     /// Number of bytes from the end of the previous query to the end of this one; 0 for a query
     /// without a frame.
@@ -59,7 +59,7 @@ pub(super) struct InFlight {
 /// A query and what its reply shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Matched {
-    pub(super) query: Query,
+    pub(super) query: QueryKind,
     pub(super) sent: Duration,
     pub(super) bytes: usize,
     /// All bytes that the reply confirms, and the time at which the first of them was sent.
@@ -118,7 +118,7 @@ impl Ledger {
     }
 
     /// Records that a query is sent now, at the end of `bytes` bytes.
-    pub(super) fn record(&mut self, query: Query, bytes: usize, now: Duration) {
+    pub(super) fn record(&mut self, query: QueryKind, bytes: usize, now: Duration) {
         let (first_sent, before) = self.unqueried.take().unwrap_or((now, 0));
         let bytes = before + bytes;
         self.queries.push_back(InFlight { query, sent: now, bytes, first_sent, timed_out: false, late: false });

@@ -3,7 +3,7 @@
 use super::alignment::Alignment;
 use super::estimates::{BusyPeriod, FrameFloor, Rates, RoundTrip};
 use super::initial_window::InitialWindow;
-use super::ledger::{InFlight, Ledger, Matched, Query, Validity};
+use super::ledger::{InFlight, Ledger, Matched, QueryKind, Validity};
 use super::{FALLBACK_TRANSMISSION_TIME, FRAME_TIME};
 use crate::protocol::{FENCE, Tag};
 use std::time::Duration;
@@ -86,7 +86,7 @@ pub(super) struct ReplyTracker {
     pub(super) ledger: Ledger,
     alignment: Alignment,
     pub(super) tag_support: TagSupport,
-    /// Whether the reply to the DA1 half of a [`Query::Both`] is due; the DECRQM half was answered.
+    /// Whether the DA1 reply to a [`QueryKind::Both`] is due; the DECRQM was answered.
     awaits_second_reply: bool,
     /// Time of the last reply, if any.
     pub(super) last_reply: Option<Duration>,
@@ -136,7 +136,7 @@ pub(super) enum TagSupport {
     Unknown,
     /// The terminal has answered a DECRQM, but perhaps does not answer one of a nonexistent mode.
     ///
-    /// The reply to a [`Query::Both`] will show whether it does.
+    /// The reply to a [`QueryKind::Both`] will show whether it does.
     Possible,
     /// The terminal answers DECRQM of a nonexistent mode, and repeats the number of the mode.
     Known,
@@ -270,10 +270,10 @@ impl ReplyTracker {
     pub(super) fn append_query(&mut self, bytes: &mut Vec<u8>, is_frame: bool, now: Duration) {
         let query = self.next_query();
         // The DECRQM goes first: if the reply to the DA1 comes alone, the terminal does not answer a DECRQM.
-        if let Query::Tagged(tag) | Query::Both(tag) = query {
+        if let QueryKind::Tagged(tag) | QueryKind::Both(tag) = query {
             bytes.extend_from_slice(&tag.query());
         }
-        if let Query::Counted | Query::Both(_) = query {
+        if let QueryKind::Counted | QueryKind::Both(_) = query {
             bytes.extend_from_slice(FENCE);
         }
         self.begun.get_or_insert(now);
@@ -285,12 +285,12 @@ impl ReplyTracker {
     /// A terminal that repeats numbers gets a DECRQM; once it is silent it gets a DA1 as well, because another terminal
     /// that does not answer a DECRQM may have taken its place, as after a detach. A terminal that perhaps repeats
     /// numbers gets both while replies are missing. In all other cases the query is a DA1.
-    pub(super) fn next_query(&mut self) -> Query {
+    pub(super) fn next_query(&mut self) -> QueryKind {
         let doubts = matches!(self.state, ReplyState::Recovering { .. } | ReplyState::Silent);
         match self.tag_support {
-            TagSupport::Known if self.state != ReplyState::Silent => Query::Tagged(self.ledger.next_tag()),
-            TagSupport::Possible | TagSupport::Known if doubts => Query::Both(self.ledger.next_tag()),
-            _ => Query::Counted,
+            TagSupport::Known if self.state != ReplyState::Silent => QueryKind::Tagged(self.ledger.next_tag()),
+            TagSupport::Possible | TagSupport::Known if doubts => QueryKind::Both(self.ledger.next_tag()),
+            _ => QueryKind::Counted,
         }
     }
 
@@ -337,7 +337,7 @@ impl ReplyTracker {
             let latest = now.saturating_sub(least);
             self.ledger.match_newest_sent_by(latest)
         };
-        if matched.is_some_and(|matched| matches!(matched.query, Query::Both(_))) {
+        if matched.is_some_and(|matched| matches!(matched.query, QueryKind::Both(_))) {
             // The reply to the DA1 half came without one to the DECRQM half, which the terminal has therefore ignored.
             self.tag_support = TagSupport::Possible;
         }
@@ -365,7 +365,7 @@ impl ReplyTracker {
             self.tag_support = TagSupport::Known;
         }
         if let Some(Matched { query, .. }) = matched {
-            self.awaits_second_reply = matches!(query, Query::Both(_));
+            self.awaits_second_reply = matches!(query, QueryKind::Both(_));
             self.last_reply = Some(now);
             self.apply_reply(matched, now);
         }

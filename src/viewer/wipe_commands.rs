@@ -1,7 +1,7 @@
 //! Commands that move the line between the two maps of a wipe.
 
 use super::Viewer;
-use crate::control::Side;
+use crate::control::ScreenSide;
 
 /// Distance that a key press moves the line between two maps, as a share of the width.
 // A held key, which repeats, moves the line across the picture in about a second.
@@ -9,8 +9,8 @@ const WIPE_STEP: f32 = 1.0 / 32.0;
 
 impl Viewer {
     /// Moves the line of a wipe by a step to this side.
-    pub(super) fn move_wipe(&mut self, side: Side) {
-        let step = if side == Side::Left { -WIPE_STEP } else { WIPE_STEP };
+    pub(super) fn move_wipe(&mut self, side: ScreenSide) {
+        let step = if side == ScreenSide::Left { -WIPE_STEP } else { WIPE_STEP };
         self.wipe_to(self.screen.wipe() + step);
     }
 

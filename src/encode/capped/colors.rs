@@ -22,7 +22,7 @@ const SLOTS: usize = 1 << 14;
 
 #[derive(Default)]
 pub(super) struct FramePalette {
-    colors: Colors,
+    colors: PaletteColors,
     bins: Vec<Bin>,
     /// The hash table of the bins: the index of a bin, or `u16::MAX` for an empty slot.
     slots: Vec<u16>,
@@ -34,7 +34,7 @@ pub(super) struct FramePalette {
 
 /// The colours of a palette.
 #[derive(Default)]
-struct Colors {
+struct PaletteColors {
     channels: Vec<Channels>,
     /// The colours in blocks of eight, as they are compared.
     blocks: Vec<Block>,
@@ -108,7 +108,7 @@ impl SimdKernel for FindTwoNearest<'_> {
 struct ChooseLeaders<'a> {
     fullest: &'a [u16],
     bins: &'a [Bin],
-    colors: &'a mut Colors,
+    colors: &'a mut PaletteColors,
     radius: f32,
     most: usize,
 }
@@ -142,7 +142,7 @@ impl SimdKernel for ChooseLeaders<'_> {
     }
 }
 
-impl Colors {
+impl PaletteColors {
     /// Removes all colours.
     fn clear(&mut self) {
         self.channels.clear();

@@ -1,4 +1,4 @@
-use super::super::ledger::{Ledger, Query};
+use super::super::ledger::{Ledger, QueryKind};
 use super::super::tests::ms;
 use super::*;
 
@@ -11,7 +11,7 @@ fn shows_loss(frames: usize, later: impl Fn(usize) -> u64) -> Option<usize> {
     (0..frames).find(|&number| {
         let mut ledger = Ledger::default();
         let sent = (number..number + 8).map(|number| ms(25 * number as u64));
-        sent.for_each(|sent| ledger.record(Query::Counted, 1_000, sent));
+        sent.for_each(|sent| ledger.record(QueryKind::Counted, 1_000, sent));
         let now = ms(25 * number as u64 + 220 + later(number));
         alignment.is_misaligned(ledger.counted_queries(), ms(200), 50_000.0, now)
     })

@@ -1,6 +1,6 @@
 //! The rows of the help, by group: the keys in force and what they do.
 
-use crate::control::{Command, Direction, Key, KeyMode, Keymap, Side, Toward};
+use crate::control::{Command, Direction, Key, KeyMode, Keymap, ScreenSide, Toward};
 use crossterm::event::KeyCode;
 use std::collections::HashSet;
 use unicode_width::UnicodeWidthStr;
@@ -103,7 +103,7 @@ fn shared_rows() -> Vec<(Vec<Command>, &'static str)> {
         (vec![Command::TiltLeft, Command::TiltRight, Command::TiltDown, Command::TiltUp], "tilt rectangle"),
         ((1..=9).map(Command::View).collect(), "go to view 1-9"),
         (vec![Command::NextMap, Command::LastMap], "next, previous map"),
-        (vec![Command::Wipe(Side::Left), Command::Wipe(Side::Right)], "divider left, right"),
+        (vec![Command::Wipe(ScreenSide::Left), Command::Wipe(ScreenSide::Right)], "divider left, right"),
         (vec![Command::Wireframe, Command::NextGlyphs], "wireframe, kind of cells"),
         (vec![Command::BuildFaster, Command::BuildSlower], "build faster, slower"),
         (toward(Command::Point), "move the cursor"),
