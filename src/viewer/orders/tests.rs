@@ -167,3 +167,11 @@ fn the_words_fit_into_every_screen() {
         }
     }
 }
+
+#[test]
+fn numbers_of_tests_are_grouped_by_thousands() {
+    let mut comparison = (**frame().orders.as_ref().expect("both orders")).clone();
+    comparison.object_tests = vec![3_438, 6_876];
+    let lines = words::lines(&comparison, "object", comparison.max_total_tests(), 80, 24);
+    assert!(lines[0].ends_with("Object order: 2 objects x 3,438 tests"), "{lines:?}");
+}

@@ -90,7 +90,8 @@ fn progress(name: &str, done: usize, all: usize) -> String {
 /// `until` has the number of tests up to and including each of them; `None` if there are none.
 fn tests_each(until: &[u64]) -> Option<String> {
     let mean = *until.last()? as f64 / until.len() as f64;
-    Some(if mean < 9.95 { format!(" x {mean:.1} tests") } else { format!(" x {mean:.0} tests") })
+    let text = if mean < 9.95 { format!("{mean:.1}") } else { number(mean.round() as u64) };
+    Some(format!(" x {text} tests"))
 }
 
 /// The step by which both pictures advance, in words above the table of times, if there is room.
