@@ -4,6 +4,7 @@ use super::reply_tracker::TagSupport;
 use super::tests::ms;
 use super::*;
 use crate::protocol::FENCE;
+use rayon::prelude::*;
 use std::collections::VecDeque;
 
 /// A fault of one reply, or of that reply and later ones.
@@ -204,17 +205,14 @@ impl World {
 ///
 /// # Panics
 /// If a returned time is longer than `limit`.
-fn check_each_fault(limit: Duration, mut worst: impl FnMut(bool, ReplyFault, usize) -> Duration) {
-    let mut late = Vec::new();
-    for tags in [true, false] {
-        for fault in FAULTS {
-            let worst = |at| (worst(tags, fault, at), at);
-            let (time, at) = (1..=40).map(worst).max().expect("there are replies");
-            if time > limit {
-                late.push(format!("with numbers: {tags}, {fault:?} at {at}: {time:?}"));
-            }
-        }
-    }
+fn check_each_fault(limit: Duration, worst: impl Fn(bool, ReplyFault, usize) -> Duration + Sync) {
+    let cases: Vec<_> = [true, false].into_iter().flat_map(|tags| FAULTS.map(|fault| (tags, fault))).collect();
+    let check = |&(tags, fault): &(bool, ReplyFault)| {
+        let worst = |at| (worst(tags, fault, at), at);
+        let (time, at) = (1..=40).map(worst).max().expect("there are replies");
+        (time > limit).then(|| format!("with numbers: {tags}, {fault:?} at {at}: {time:?}"))
+    };
+    let late: Vec<_> = cases.par_iter().filter_map(check).collect();
     assert!(late.is_empty(), "longer than {limit:?}:\n{}", late.join("\n"));
 }
 

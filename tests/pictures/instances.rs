@@ -1,8 +1,10 @@
 //! Instances of meshes: the same hits as those of copies, from any kernel, in little memory.
 
+use super::shapes::Random;
 use glam::Vec3;
 use std::fmt::Write;
 use std::path::Path;
+use std::sync::LazyLock;
 use termtrace::internals::hit::{Kernel, any_hits, closest_hits};
 use termtrace::internals::mesh_file::MeshFile;
 use termtrace::internals::ray::{EightRays, Interval, Ray};
@@ -12,23 +14,6 @@ use termtrace::{Hit, LinearRgb, Render, Resolution, Scene, Shape};
 
 /// The number of instances, which have 1.1 million triangles together.
 const COUNT: usize = 1100;
-
-/// A generator of numbers that is good enough for test cases (Marsaglia's xorshift).
-struct Random(u64);
-
-impl Random {
-    /// Returns a number from -1 to 1.
-    fn number(&mut self) -> f32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 40) as f32 / (1 << 23) as f32 - 1.0
-    }
-
-    fn vector(&mut self) -> Vec3 {
-        Vec3::new(self.number(), self.number(), self.number())
-    }
-}
 
 fn path(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name).to_string_lossy().into_owned()
@@ -50,6 +35,11 @@ const CAMERA: &str = "camera: (eye: (0, 1, 9), target: (0, 0.5, 0)), ambient: 0.
 
 /// Returns a scene of teapots in random places, which share their triangles.
 fn shared() -> Scene {
+    static SCENE: LazyLock<Scene> = LazyLock::new(load_shared);
+    SCENE.clone()
+}
+
+fn load_shared() -> Scene {
     let mut text = format!("({CAMERA}, objects: [");
     for placement in placements() {
         let [scale, rotate, translate] = placement.map(|Vec3 { x, y, z }| format!("({x:?}, {y:?}, {z:?})"));
@@ -62,8 +52,13 @@ fn shared() -> Scene {
     scene
 }
 
-/// Returns the same scene, in which each teapot has its own moved corners.
-fn copied(shared: &Scene) -> Scene {
+/// Returns the scene of [`shared`], in which each teapot has its own moved corners.
+fn copied() -> Scene {
+    static SCENE: LazyLock<Scene> = LazyLock::new(|| build_copied(&shared()));
+    SCENE.clone()
+}
+
+fn build_copied(shared: &Scene) -> Scene {
     let bytes = std::fs::read(path("scenes/teapot.obj")).expect("the mesh is there");
     let file = MeshFile::from_bytes("teapot.obj", &bytes, &mut |_| unreachable!("it names no file")).expect("a mesh");
     let mesh = Shape::from(Mesh::new(file).expect("it is near"));
@@ -97,7 +92,7 @@ fn hits(kernel: Kernel, scene: &Scene, rays: &[Ray]) -> Vec<Option<Hit>> {
 #[test]
 fn instances_look_like_copies_with_moved_corners() {
     let shared = shared();
-    let copied = copied(&shared);
+    let copied = copied();
     let rays = rays(6000);
     let [of_shared, of_copied] = [&shared, &copied].map(|scene| hits(Kernel::Auto, scene, &rays));
     let (mut found, mut other) = (0, 0);
@@ -134,7 +129,7 @@ fn instances_look_like_copies_with_moved_corners() {
 #[test]
 fn bounds_of_instances_are_tight() {
     let shared = shared();
-    for (one, other) in shared.objects().iter().zip(copied(&shared).objects()).take(COUNT) {
+    for (one, other) in shared.objects().iter().zip(copied().objects()).take(COUNT) {
         let [one, other] = [one, other].map(|object| object.shape.bounds().expect("a mesh has bounds"));
         let off = (one.min - other.min).abs().max((one.max - other.max).abs()).max_element();
         assert!(off < 2e-6, "{one:?} {other:?}");
@@ -152,13 +147,14 @@ fn all_kernels_see_the_same_instances() {
         any_hits(kernel, &scene, &groups, near, &mut masks);
         masks
     };
+    let single_shadows = shadows(Kernel::Single);
     for kernel in [Kernel::Packet, Kernel::Scalar, Kernel::Auto] {
         assert_eq!(hits(kernel, &scene, &rays), single, "{kernel:?}");
-        assert_eq!(shadows(kernel), shadows(Kernel::Single), "{kernel:?}");
+        assert_eq!(shadows(kernel), single_shadows, "{kernel:?}");
     }
     for (at, hit) in single.iter().enumerate() {
         let is_near = hit.is_some_and(|hit| near.contains(hit.t));
-        assert_eq!(shadows(Kernel::Single)[at / 8] >> (at % 8) & 1 == 1, is_near, "{:?}", rays[at]);
+        assert_eq!(single_shadows[at / 8] >> (at % 8) & 1 == 1, is_near, "{:?}", rays[at]);
     }
 }
 
@@ -166,7 +162,7 @@ fn all_kernels_see_the_same_instances() {
 #[test]
 fn pictures_of_instances_are_those_of_copies() {
     let shared = shared();
-    let copied = copied(&shared);
+    let copied = copied();
     let copied = Scene::builder(*shared.camera())
         .objects(copied.objects().iter().cloned())
         .ambient(shared.ambient())
@@ -181,7 +177,7 @@ fn pictures_of_instances_are_those_of_copies() {
     assert!(off < 160 * 120 / 200, "{off} pixels differ");
 }
 
-/// The fields of a scene file are those of the mesh as it stands in the scene.
+/// Explanations and descriptions are about the mesh as it is placed in the scene.
 #[test]
 fn instances_are_described_and_explained_as_meshes() {
     let scene = shared();

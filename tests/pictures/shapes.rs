@@ -235,18 +235,18 @@ fn point(scene: &Scene, ray: &Ray, t: f32) -> SurfacePoint {
 }
 
 /// A generator of numbers that is good enough for test cases (Marsaglia's xorshift).
-struct Random(u64);
+pub(super) struct Random(pub(super) u64);
 
 impl Random {
     /// Returns a number from -1 to 1.
-    fn number(&mut self) -> f32 {
+    pub(super) fn number(&mut self) -> f32 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
         (self.0 >> 40) as f32 / (1 << 23) as f32 - 1.0
     }
 
-    fn vector(&mut self) -> Vec3 {
+    pub(super) fn vector(&mut self) -> Vec3 {
         Vec3::new(self.number(), self.number(), self.number())
     }
 }

@@ -281,11 +281,12 @@ fn dense_sampling_finds_no_nearer_root() {
         let root = Solver::new(&formula).first_root(&line, [0.0, 4.0], 4.0);
         let value = |t: f64| formula.value(line.origin + line.direction * t);
         let end = root.map_or(4.0, f64::from);
-        let samples: Vec<f64> = (0..=steps).map(|step| step as f64 * 4.0 / steps as f64).collect();
-        for pair in samples.windows(2).filter(|pair| pair[1] < end - 1e-3) {
-            let [a, b] = [value(pair[0]), value(pair[1])];
+        let samples = (0..=steps).map(|step| step as f64 * 4.0 / steps as f64).take_while(|&t| t < end - 1e-3);
+        let samples: Vec<_> = samples.map(|t| (t, value(t))).collect();
+        for pair in samples.windows(2) {
+            let [(low, a), (high, b)] = [pair[0], pair[1]];
             if a * b < 0.0 {
-                let at = line.origin + line.direction * change(&value, pair[0], pair[1]);
+                let at = line.origin + line.direction * change(&value, low, high);
                 assert!(has_gap(&formula, at), "{text}: lost at {at}, {root:?}, {line:?}, seed {SEED:#x}");
             }
         }

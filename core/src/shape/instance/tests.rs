@@ -5,7 +5,7 @@ use glam::Vec3;
 
 /// The outermost corner in any direction is found, although only few cells are looked through.
 #[test]
-fn the_reach_of_a_hull_is_that_of_all_corners() {
+fn the_reach_of_corner_cells_is_that_of_all_corners() {
     let corner = |at: u32| Vec3::new((at * 37 % 101) as f32, (at * 53 % 97) as f32 * 0.01, (at * 29 % 89) as f32 - 1e3);
     let corners: Vec<_> = (0..500).map(corner).collect();
     let file = MeshFile::new(corners.clone(), vec![[0, 1, 2]]).expect("a mesh");
