@@ -26,6 +26,7 @@ modules! {
     bvh
     shape
     material
+    finish
     light
     camera
     camera_path

@@ -114,6 +114,7 @@
 //! - `shape`: surfaces f(p) = 0, their intersections with rays, their normals
 //! - `accel`: the trees over all shapes of a scene, built once
 //! - `material`: diffuse reflectance
+//! - `finish`: mirrors, glass and glowing surfaces: Snell's law and Fresnel's equations
 //! - `light`: point lights
 //! - `camera`: eye, target, up, field of view -> basis u, v, w -> eye rays
 //! - `camera_path`: the camera over time: an orbit, or a path through keyframes
@@ -209,8 +210,9 @@
 //! batches; `render::steps` takes a batch through the five steps. `render::tiles` makes the eye rays (by `camera`) ->
 //! `hit` finds the closest hits: among the unbounded objects, then in the trees (`accel`, over `bvh`), whose leaves
 //! hold primitives of `shape`s -> `shade` computes the surface points (`shade::points`) -> it traces shadow rays (`hit`
-//! again) and adds up the light of the `light`s that reach the points -> the `material` reflects it. `render::tiles`
-//! writes a tile's light into the `framebuffer` -> `tone` -> `cell` -> `encode` or `export`.
+//! again) and adds up the light of the `light`s that reach the points -> the `material` reflects it -> where a `finish`
+//! mirrors or refracts, further rays are traced and shaded (`shade::bounces`). `render::tiles` writes a tile's light
+//! into the `framebuffer` -> `tone` -> `cell` -> `encode` or `export`.
 //!
 //! # One scene with a typo
 //!
@@ -272,6 +274,7 @@
 //! - **geometric normal**: the normal of the primitive; **shading normal**: the one interpolated over a smooth mesh.
 //! - **footprint**: the size of a pixel on the surface, by which patterns and textures are averaged.
 //! - **reflectance**: the reflected share of the arriving light, per **channel** (red, green, blue).
+//! - **finish**: how a surface sends light on besides diffusely; **bounce**: one reflection or refraction of a ray.
 //! - **falloff**: the decrease of a light with distance. **ambient light**: light that arrives from everywhere.
 //!
 //! Rendering:
@@ -311,8 +314,8 @@ compile_error!("the feature `live` of termtrace is for Linux and macOS: it needs
 
 // The tracer is a crate of its own, whose modules are used by the same paths as those below.
 use termtrace_core::{
-    bounds, bvh, camera, camera_path, color, describe, explain, framebuffer, hit, lanes, light, maps, material, memory,
-    mesh_file, progress, rasterize, ray, render, scene, scene_text, shade, shape, simd, text, tone, written,
+    bounds, bvh, camera, camera_path, color, describe, explain, finish, framebuffer, hit, lanes, light, maps, material,
+    memory, mesh_file, progress, rasterize, ray, render, scene, scene_text, shade, shape, simd, text, tone, written,
 };
 #[cfg(feature = "ron")]
 use termtrace_core::{named_file, scene_file};

@@ -166,6 +166,18 @@ pub(crate) fn reflectance(channel: f64) -> Result<f32, Message> {
     }
 }
 
+/// Checks a number of reflections and refractions.
+#[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have bounces"))]
+pub(crate) fn bounces(count: f64) -> Result<u32, Message> {
+    // Each surface of glass may double the number of rays.
+    const MAX_BOUNCES: f64 = 16.0;
+    if (0.0..=MAX_BOUNCES).contains(&count) && libm::trunc(count) == count {
+        Ok(count as u32)
+    } else {
+        Err("the number of bounces must be a whole number from 0 to 16".into())
+    }
+}
+
 /// Checks an exposure.
 pub(crate) fn exposure(value: f64) -> Result<f32, Message> {
     // The second comparison rejects numbers that f32 rounds to 0, which would make the picture black.

@@ -67,8 +67,9 @@ pub fn facts(scene: &Scene, camera: &Camera, resolution: Resolution) -> Facts {
 
 /// Returns the colour and kind of an object, such as `red sphere`.
 pub fn short_name(object: &Object) -> String {
-    let color = object.material.described(color).map(|color| color + " ").unwrap_or_default();
-    color + object.shape.kind()
+    let color = object.material.described(color);
+    let words = [color.as_deref(), object.finish.described(), Some(object.shape.kind())];
+    words.into_iter().flatten().collect::<Vec<_>>().join(" ")
 }
 
 /// The inputs of a description, with a method for each part of its text.
@@ -136,7 +137,9 @@ impl Description<'_> {
 
     /// Describes an object by its colour, kind and size.
     fn describe_object(&self, object: u32, part: &Coverage) -> String {
-        self.scene.objects()[object as usize].shape.described(&self.color_of(object, part))
+        let (color, described) = (self.color_of(object, part), &self.scene.objects()[object as usize]);
+        let look = described.finish.described().map_or(color.clone(), |finish| format!("{color} {finish}"));
+        described.shape.described(&look)
     }
 
     fn color_of(&self, object: u32, part: &Coverage) -> String {

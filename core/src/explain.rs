@@ -10,6 +10,7 @@ pub use text::{MAX_LINE_WIDTH, SurfaceName};
 
 use crate::camera::Camera;
 use crate::color::{LinearRgb, Srgb8};
+use crate::finish::Finish;
 use crate::framebuffer::{Framebuffer, Resolution};
 use crate::hit::{self, Hit, Observer, PrimitiveTest};
 use crate::light::Light;
@@ -88,6 +89,9 @@ pub struct ShadedHit {
     pub arriving: LinearRgb,
     /// The reflectance of the surface, by which the arriving light is multiplied.
     pub reflectance: LinearRgb,
+    /// The finish of the surface, and the part of the light that it mirrors.
+    #[doc(hidden)]
+    pub finish: (Finish, f32),
 }
 
 /// The contribution of one light.
@@ -160,6 +164,7 @@ pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u
 /// Returns the hit of a traced pixel with its shading.
 fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit) -> ShadedHit {
     let point = hit.surface(scene).at_crossing(&trace.ray, hit.t);
+    let finish = scene.objects()[hit.object as usize].finish;
     ShadedHit {
         hit,
         name: SurfaceName::of_primitive(scene, hit.object, hit.primitive),
@@ -168,6 +173,7 @@ fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit) -> ShadedHit {
         lights: scene.lights().iter().map(|light| light_contribution(scene, light, &point)).collect(),
         arriving: trace.arriving,
         reflectance: trace.reflectance,
+        finish: (finish, finish.mirrored_part(&trace.ray, point.shading_normal)),
     }
 }
 

@@ -29,6 +29,7 @@ pub mod bvh;
 pub mod shape;
 pub mod accel;
 pub mod material;
+pub mod finish;
 pub mod light;
 pub mod camera;
 pub mod camera_path;

@@ -34,6 +34,7 @@ use crate::camera::Camera;
 use crate::checks;
 pub use crate::checks::SceneFault;
 use crate::color::LinearRgb;
+use crate::finish::Finish;
 use crate::light::Light;
 use crate::material::Material;
 use crate::shape::Shape;
@@ -75,14 +76,20 @@ impl fmt::Debug for Scene {
             shadows,
             exposure,
             tone_curve,
+            bounces,
             objects,
+            all_matte,
         } = &*self.checked;
         let mut scene = f.debug_struct("Scene");
         scene.field("caption", caption).field("mesh", mesh).field("camera", camera).field("views", views);
         // A colour takes one line even with `{:#?}`, because a line per channel would make the output hard to read.
         scene.field("background", &format_args!("{background:?}")).field("ambient", &format_args!("{ambient:?}"));
         scene.field("lights", lights).field("shadows", shadows);
-        scene.field("exposure", exposure).field("tone_curve", tone_curve).field("objects", objects);
+        scene.field("exposure", exposure).field("tone_curve", tone_curve);
+        if !all_matte {
+            scene.field("bounces", bounces);
+        }
+        scene.field("objects", objects);
         scene.finish_non_exhaustive()
     }
 }
@@ -107,11 +114,19 @@ struct Checked {
     shadows: bool,
     exposure: f32,
     tone_curve: ToneCurve,
+    /// The most reflections and refractions of a ray.
+    bounces: u32,
     /// The objects, in an `Arc` so that a scene with other lights does not copy a million of them.
     objects: Arc<[Object]>,
+    /// Whether every object reflects only diffusely.
+    all_matte: bool,
 }
 
 impl Checked {
+    /// The default of [`Scene::bounces`].
+    // Six show a ball through a glass ball in a mirror: two surfaces of each way through glass, and the mirror.
+    const DEFAULT_BOUNCES: u32 = 6;
+
     /// Returns the checked values with this camera and these objects; all others are the defaults
     /// of [`Scene::builder`].
     fn new(camera: Camera, objects: Vec<Object>) -> Self {
@@ -126,7 +141,9 @@ impl Checked {
             shadows: true,
             exposure: 1.0,
             tone_curve: ToneCurve::None,
+            bounces: Self::DEFAULT_BOUNCES,
             objects: objects.into(),
+            all_matte: true,
         }
     }
 
@@ -239,7 +256,7 @@ impl Scene {
             return self;
         }
         self.accelerator = Arc::new(self.accelerator.at_time(seconds));
-        let at_time = |object: &Object| Object { shape: object.shape.at_time(seconds), material: object.material };
+        let at_time = |object: &Object| Object { shape: object.shape.at_time(seconds), ..object.clone() };
         self.with(|checked| checked.objects = checked.objects.iter().map(at_time).collect())
     }
 
@@ -286,6 +303,17 @@ impl Scene {
     #[doc(hidden)]
     pub fn tone_curve(&self) -> ToneCurve {
         self.checked.tone_curve
+    }
+
+    /// Returns the most reflections and refractions of a ray by mirrors and glass.
+    #[doc(hidden)]
+    pub fn bounces(&self) -> u32 {
+        self.checked.bounces
+    }
+
+    /// Returns whether every object reflects only diffusely, so that no ray goes on from a surface.
+    pub(crate) fn is_all_matte(&self) -> bool {
+        self.checked.all_matte
     }
 
     /// Returns the objects, in the order of the scene file.
@@ -394,19 +422,41 @@ impl Scene {
 /// assert!(scene.objects().iter().all(|object| object.material == termtrace::Material::default()));
 /// # Ok::<(), termtrace::SceneError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Object {
     /// The surface of the object.
     pub shape: Shape,
     /// The material of the object.
     pub material: Material,
+    /// The finish of the object: mirrors, glass and the like.
+    #[doc(hidden)]
+    pub finish: Finish,
+}
+
+/// Shows the finish unless it is matte, as most are.
+impl fmt::Debug for Object {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { shape, material, finish } = self;
+        let mut object = f.debug_struct("Object");
+        object.field("shape", shape).field("material", material);
+        if !finish.is_matte() {
+            object.field("finish", finish);
+        }
+        object.finish()
+    }
 }
 
 impl Object {
     /// Returns an object with the given shape and material.
     #[doc(hidden)]
     pub fn new(shape: impl Into<Shape>, material: impl Into<Material>) -> Self {
-        Self { shape: shape.into(), material: material.into() }
+        Self { shape: shape.into(), material: material.into(), finish: Finish::Matte }
+    }
+
+    /// Returns the object with another finish.
+    #[doc(hidden)]
+    pub fn with_finish(self, finish: Finish) -> Self {
+        Self { finish, ..self }
     }
 }
 

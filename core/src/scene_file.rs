@@ -14,6 +14,7 @@ mod path;
 pub use camera::{WrittenCamera, WrittenLens};
 pub use path::{PathFile, WrittenKeyframe};
 
+use crate::finish::WrittenFinish;
 use crate::light::WrittenLight;
 use crate::material::WrittenMaterial;
 use crate::progress::Reporter;
@@ -48,6 +49,8 @@ pub struct SceneFile {
     pub shadows: Option<bool>,
     /// The exposure.
     pub exposure: Option<WrittenNumber>,
+    /// The most reflections and refractions of a ray.
+    pub bounces: Option<WrittenNumber>,
     /// The tone curve.
     pub tone_curve: Option<WrittenToneCurve>,
 }
@@ -108,6 +111,8 @@ pub struct WrittenObject {
     /// The material and its span. By default the shape's own colours (those of a mesh's file or of
     /// an implicit surface's formulas), else light grey.
     pub material: Option<Spanned<MaterialUse>>,
+    /// The finish and its span; matte by default.
+    pub finish: Option<Spanned<WrittenFinish>>,
 }
 
 impl SceneFile {
@@ -131,6 +136,7 @@ impl SceneFile {
             shadows: reader.optional(&fields, "shadows", NodeReader::boolean),
             exposure: reader.optional(&fields, "exposure", NodeReader::number),
             tone_curve: reader.optional_keeping_none(&fields, "tone_curve", NodeReader::tone_curve),
+            bounces: reader.optional(&fields, "bounces", NodeReader::number),
             materials: Vec::new(),
             materials_complete: true,
         };
@@ -155,6 +161,7 @@ impl NodeReader<'_> {
             "shadows",
             "exposure",
             "tone_curve",
+            "bounces",
         ];
         self.fields(root, "a scene", "a scene (camera: ..., lights: [...], objects: [...])", FIELDS)
     }

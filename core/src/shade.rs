@@ -24,8 +24,10 @@ use crate::shape::SurfacePoint;
 use crate::simd::{self, SimdKernel};
 use glam::Vec3;
 
+mod bounces;
 mod points;
 
+pub use bounces::{Bounces, Generation};
 pub use points::{EightPoints, surface_points};
 
 /// The light along eight rays, per channel.

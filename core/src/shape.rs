@@ -63,8 +63,8 @@ pub use scalar_leaf::ScalarLeaf;
 pub use sphere::{Sphere, SphereN};
 pub use torus::Torus;
 pub use triangle::{EdgeFunctions, Triangle, TriangleN};
-pub(crate) use written::without_coordinates;
 pub use written::{CheckedShape, Meshes, WrittenShape};
+pub(crate) use written::{without_coordinates, without_inside};
 
 /// A surface that rays can cross.
 pub trait Surface {

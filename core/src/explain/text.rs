@@ -3,6 +3,7 @@
 use super::{Equation, EquationStep, Explanation, LightContribution, ShadedHit, TestedSurface};
 use crate::camera::Basis;
 use crate::color::LinearRgb;
+use crate::finish::Finish;
 use crate::scene::{Scene, ToneCurve};
 use crate::shape::{Shape, Side};
 use glam::{Vec2, Vec3};
@@ -157,9 +158,29 @@ impl Explanation {
             "E = ambient + all lights".to_owned(),
             light_line("ambient", shaded.ambient),
             light_line("E", shaded.arriving),
-            "L = R E with the reflectance R".to_owned(),
-            light_line("R", shaded.reflectance),
         ]);
+        let (finish, mirrored) = shaded.finish;
+        match finish {
+            Finish::Matte => lines.push("L = R E with the reflectance R".to_owned()),
+            Finish::Polished { .. } => lines.extend([
+                "polished: mirrors F (Fresnel)".to_owned(),
+                format!("F    {}", padded_number(mirrored)),
+                "L = (1 - F) R E + F L'".to_owned(),
+                "L' = light of the mirrored ray".to_owned(),
+            ]),
+            Finish::Metal => {
+                lines.extend(["metal: L = R L'".to_owned(), "L' = light of the mirrored ray".to_owned()]);
+            }
+            Finish::Glass { .. } => lines.extend([
+                "glass: mirrors F (Fresnel)".to_owned(),
+                format!("F    {}", padded_number(mirrored)),
+                "L = F L' + (1 - F) R L''".to_owned(),
+                "L' = light of the mirrored ray".to_owned(),
+                "L'' = light of the refracted ray".to_owned(),
+            ]),
+            Finish::Glowing { strength } => lines.push(format!("glowing: L = {strength} R")),
+        }
+        lines.push(light_line("R", shaded.reflectance));
     }
 
     fn add_tone(&self, lines: &mut Vec<String>) {

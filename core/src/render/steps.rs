@@ -7,7 +7,7 @@ use super::tiles::Tiles;
 use crate::hit::{self, EightHits, Kernel};
 use crate::ray::EightRays;
 use crate::scene::Scene;
-use crate::shade::{self, EightArriving, EightLights, EightPoints, ShadowRays};
+use crate::shade::{self, Bounces, EightArriving, EightLights, EightPoints, Generation, ShadowRays};
 use std::ops::Range;
 
 /// A stage of rendering, named by its result.
@@ -68,6 +68,7 @@ pub(super) struct Buffers {
     pub(super) shadows: ShadowRays,
     pub(super) arriving: Vec<EightArriving>,
     pub(super) lights: Vec<EightLights>,
+    pub(super) bounces: Bounces,
 }
 
 impl Buffers {
@@ -90,6 +91,9 @@ impl Buffers {
         }
         if last_stage >= Stage::Reflected {
             self.compute_reflected_light(job, batch);
+            if !scene.is_all_matte() {
+                traced += self.add_bounced_light(job, batch);
+            }
         }
         traced
     }
@@ -110,6 +114,15 @@ impl Buffers {
             arriving,
             lights,
         );
+    }
+
+    /// Adds the light of rays that go on from mirrors and glass.
+    ///
+    /// Returns the number of traced rays.
+    fn add_bounced_light(&mut self, &RenderJob { scene, tiles, .. }: &RenderJob<'_>, batch: &SampleBatch) -> u64 {
+        let Self { rays, hits, points, arriving, lights, bounces, .. } = self;
+        let steps = tiles.sample_direction_steps(batch.samples.start);
+        bounces.add(scene, steps, &Generation { rays, hits, points, arriving }, lights)
     }
 
     /// Returns the reflected light of all rays as one array per channel.

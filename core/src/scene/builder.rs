@@ -4,9 +4,10 @@ use super::{Background, Checked, Draft, Object, Scene, SceneFault, ToneCurve};
 use crate::camera::Camera;
 use crate::checks;
 use crate::color::LinearRgb;
+use crate::finish::Finish;
 use crate::light::Light;
 use crate::material::Material;
-use crate::shape::{Shape, without_coordinates};
+use crate::shape::{Shape, without_coordinates, without_inside};
 
 /// A builder of a scene, made by [`Scene::builder`].
 ///
@@ -97,12 +98,15 @@ impl SceneBuilder {
     /// than 0 and at most 1e6; or if an object has a pattern, and its shape has no surface coordinates.
     pub fn build(self) -> Result<Scene, SceneFault> {
         let Self { objects, rest } = self;
-        for (at, Object { shape, material }) in objects.iter().enumerate() {
+        for (at, Object { shape, material, finish }) in objects.iter().enumerate() {
             if let Some(pattern) = material.material_and_pattern_names()
                 && !shape.has_coordinates()
             {
                 // Objects are counted from 1, as in descriptions and explanations.
                 return Err(SceneFault::new(format!("object {}", at + 1), without_coordinates(pattern, shape.owner())));
+            }
+            if matches!(finish, Finish::Glass { .. }) && !shape.has_inside() {
+                return Err(SceneFault::new(format!("object {}", at + 1), without_inside(shape.owner())));
             }
         }
         Ok(Draft::new(Checked {

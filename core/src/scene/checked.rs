@@ -9,12 +9,15 @@ pub(super) mod path;
 use super::{Background, Checked, Draft, Object, ToneCurve, caption};
 use crate::checks::{self, Message, SceneFault};
 use crate::color::{LinearRgb, Srgb8};
+use crate::finish::{Finish, WrittenFinish};
 use crate::material::{Material, WrittenMaterial};
 use crate::mesh_file::MeshFile;
 use crate::progress::Reporter;
 use crate::scene_file::{MaterialUse, NamedMaterial, SceneFile, WrittenBackground, WrittenObject, WrittenToneCurve};
 use crate::scene_text::{Faults, quoted};
-use crate::shape::{CornerCells, Mesh, Meshes, Placement, Shape, WrittenMesh, WrittenShape, without_coordinates};
+use crate::shape::{
+    CornerCells, Mesh, Meshes, Placement, Shape, WrittenMesh, WrittenShape, without_coordinates, without_inside,
+};
 use crate::text::{closest, listed};
 use crate::written::{Spanned, Validator};
 use std::collections::HashMap;
@@ -37,6 +40,7 @@ pub(super) fn check(
     let ambient = file.ambient.and_then(|color| validator.light_color(color));
     let lights = file.lights.iter().filter_map(|light| light.check(&mut validator)).collect();
     let exposure = file.exposure.and_then(|written| validator.accept(written.span, checks::exposure(written.value)));
+    let bounces = file.bounces.and_then(|written| validator.accept(written.span, checks::bounces(written.value)));
     let objects = validator.objects(file, meshes, reporter);
     if !faults.is_empty() {
         return None;
@@ -54,6 +58,7 @@ pub(super) fn check(
         lights,
         shadows: file.shadows.unwrap_or(true),
         exposure: exposure.unwrap_or(1.0),
+        bounces: bounces.unwrap_or(Checked::DEFAULT_BOUNCES),
         tone_curve,
         ..Checked::new(camera?, objects)
     }))
@@ -82,23 +87,33 @@ impl Validator<'_> {
         let (mut objects, mut sharing) = (Vec::new(), MeshSharing::of(file));
         for written in file.objects.iter().take_while(|_| !reporter.is_cancelled()) {
             let (shape, material) = (written.shape.check(self, meshes), self.material_of(written, file, &materials));
+            let finish = written.finish.map_or(Some(Finish::Matte), |finish| self.finish_of(finish, written));
             let placements = written.placement.as_ref().map(|placement| placement.check(self));
             // All parts have been checked by now, so that the faults of each are reported.
-            let (Some(shape), Some(material)) = (shape, material) else { continue };
+            let (Some(shape), Some(material), Some(finish)) = (shape, material, finish) else { continue };
             match placements {
                 Some(None) => {}
                 // The coordinates of a mesh are checked as it is placed.
-                None if !matches!(shape, Shape::Mesh(_)) => objects.push(Object { shape, material }),
+                None if !matches!(shape, Shape::Mesh(_)) => objects.push(Object { shape, material, finish }),
                 placements => {
                     let placements = placements.flatten().unwrap_or_else(|| vec![Placement::NONE]);
                     let placed = |placement| sharing.placed(written, &shape, placement);
                     let placed: Result<Vec<_>, _> = placements.iter().map(placed).collect();
                     let shapes = self.accept(written.span, placed).unwrap_or_default();
-                    objects.extend(shapes.into_iter().map(|shape| Object { shape, material }));
+                    objects.extend(shapes.into_iter().map(|shape| Object { shape, material, finish }));
                 }
             }
         }
         objects
+    }
+
+    /// Returns the finish of an object.
+    fn finish_of(&mut self, finish: Spanned<WrittenFinish>, object: &WrittenObject) -> Option<Finish> {
+        let checked = finish.value.check(self)?;
+        if matches!(checked, Finish::Glass { .. }) && !object.shape.has_inside() {
+            return self.fault(finish.span, || without_inside(object.shape.owner()));
+        }
+        Some(checked)
     }
 
     /// Returns the material of an object: the one written in place or named, or the default of its

@@ -17,7 +17,8 @@ pub struct Draft {
 }
 
 impl Draft {
-    pub(super) fn new(checked: Checked) -> Self {
+    pub(super) fn new(mut checked: Checked) -> Self {
+        checked.all_matte = checked.objects.iter().all(|object| object.finish.is_matte());
         Self { checked: checked.into() }
     }
 

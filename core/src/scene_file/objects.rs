@@ -1,6 +1,7 @@
 //! Reading of objects and materials from the syntax tree.
 
 use super::{MaterialUse, NamedMaterial, WrittenObject};
+use crate::finish::WrittenFinish;
 use crate::material::WrittenMaterial;
 use crate::scene_text::{Body, SyntaxNode, Value, quoted};
 use crate::shape::{WrittenPlacement, WrittenShape};
@@ -19,7 +20,10 @@ impl NodeReader<'_> {
         let (shape, fields) = WrittenShape::read(name, self, node)?;
         let placement = WrittenPlacement::read(self, &fields).map(Box::new);
         let material = self.optional(&fields, "material", NodeReader::material_use);
-        Some(WrittenObject { shape, span: node.head(), placement, material })
+        let finish = self.optional(&fields, "finish", |reader, node| {
+            Some(Spanned { value: WrittenFinish::read(reader, node)?, span: node.span })
+        });
+        Some(WrittenObject { shape, span: node.head(), placement, material, finish })
     }
 
     fn material_use(&mut self, node: &SyntaxNode<'_>) -> Option<Spanned<MaterialUse>> {

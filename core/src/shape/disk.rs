@@ -118,6 +118,7 @@ impl InSceneFile for Disk {
 
 impl CheckedShape for Disk {
     const HAS_COORDINATES: bool = true;
+    const HAS_INSIDE: bool = false;
 
     fn check(written: &WrittenDisk, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
         let center = written.center.and_then(|center| validator.coordinates(center));

@@ -136,6 +136,7 @@ impl InSceneFile for Quad {
 
 impl CheckedShape for Quad {
     const HAS_COORDINATES: bool = true;
+    const HAS_INSIDE: bool = false;
 
     fn check(written: &WrittenQuad, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
         let corner = written.corner.and_then(|corner| validator.coordinates(corner));

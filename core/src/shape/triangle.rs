@@ -445,6 +445,8 @@ impl InSceneFile for Triangle {
 }
 
 impl CheckedShape for Triangle {
+    const HAS_INSIDE: bool = false;
+
     fn check(written: &WrittenTriangle, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
         let all = written.corners?;
         let [a, b, c] = all.map(|corner| validator.point(corner));

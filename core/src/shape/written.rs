@@ -14,6 +14,9 @@ pub trait CheckedShape: InSceneFile {
     /// Whether the surface has coordinates, on which patterns are laid out.
     const HAS_COORDINATES: bool = false;
 
+    /// Whether the surface has an inside, also an endless one, through which glass refracts light.
+    const HAS_INSIDE: bool = true;
+
     /// Returns whether the surface may have its own colours, as meshes have from their files.
     fn brings_colors(_: &Self::Written) -> bool {
         false
@@ -33,9 +36,9 @@ pub trait Meshes {
 }
 
 /// The fields of all objects, whatever their shape.
-const OF_OBJECTS: [&str; 5] = {
+const OF_OBJECTS: [&str; 6] = {
     let [scale, rotate, translate, copies] = WrittenPlacement::FIELDS;
-    [scale, rotate, translate, copies, "material"]
+    [scale, rotate, translate, copies, "material", "finish"]
 };
 
 /// Returns the fields of a shape, followed by those of all objects.
@@ -111,6 +114,13 @@ macro_rules! written {
                 }
             }
 
+            /// Returns whether the shape has an inside.
+            pub(crate) fn has_inside(&self) -> bool {
+                match self {
+                    $($(#[$on])* Self::$surface(_) => super::$surface::HAS_INSIDE,)*
+                }
+            }
+
             /// Returns whether the shape may have colours of its own.
             pub(crate) fn brings_colors(&self) -> bool {
                 match self {
@@ -143,6 +153,14 @@ macro_rules! of_kind {
                 }
             }
 
+            /// Returns whether the shape has an inside.
+            pub(crate) fn has_inside(&self) -> bool {
+                match self {
+                    $($(#[$on])* Self::$surface(_) => super::$surface::HAS_INSIDE,)*
+                    Self::Mesh(_) => super::Mesh::HAS_INSIDE,
+                }
+            }
+
             /// Returns whether the shape has coordinates for patterns.
             pub(crate) fn has_coordinates(&self) -> bool {
                 match self {
@@ -155,6 +173,11 @@ macro_rules! of_kind {
 }
 
 surfaces! { of_kind }
+
+/// Returns the message for glass of a shape without an inside, whose name has an article.
+pub(crate) fn without_inside(shape: &str) -> String {
+    format!("{shape} has no inside that could be of glass; give it a closed shape, such as a Box")
+}
 
 /// Returns the message for a material with a pattern on a shape without coordinates.
 ///

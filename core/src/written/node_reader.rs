@@ -312,7 +312,7 @@ fn is_word(node: &SyntaxNode<'_>, word: &str) -> bool {
 ///
 /// Its name has a similar spelling, or is called `name` in other programs.
 fn meant_field(name: &str, known: &[&'static str]) -> Option<&'static str> {
-    const ALSO_CALLED: [(&str, &str); 12] = [
+    const ALSO_CALLED: [(&str, &str); 13] = [
         ("look_at", "target"),
         ("lookat", "target"),
         ("from", "eye"),
@@ -325,6 +325,7 @@ fn meant_field(name: &str, known: &[&'static str]) -> Option<&'static str> {
         ("power", "intensity"),
         ("color", "material"),
         ("color", "reflectance"),
+        ("ior", "index"),
     ];
     // A name of three letters or more may be an abbreviation, such as `pos` for `position`. Shorter ones fit too many
     // names.

@@ -1,0 +1,61 @@
+use super::*;
+
+fn degrees(angle: f64) -> Vec3 {
+    let (sine, cosine) = libm::sincos(angle.to_radians());
+    Vec3::new(sine as f32, -cosine as f32, 0.0)
+}
+
+/// At normal incidence ((n - 1) / (n + 1))^2 is mirrored, from either side.
+#[test]
+fn fresnel_at_normal_incidence() {
+    for index in [1.0_f32, 1.33, 1.5, 2.42, 4.0] {
+        let part = f64::from((index - 1.0) / (index + 1.0));
+        let expected = part * part;
+        for ratio in [index, 1.0 / index] {
+            let found = f64::from(fresnel(1.0, ratio));
+            assert!((found - expected).abs() < 1e-6, "index {index}: {found}, not {expected}");
+        }
+    }
+}
+
+/// At Brewster's angle, tan a = n, only one polarization is mirrored; at 90 degrees all light is.
+#[test]
+fn fresnel_at_brewsters_angle_and_at_grazing_incidence() {
+    let index = 1.5_f64;
+    let cosine = 1.0 / (1.0 + index * index).sqrt();
+    let perpendicular = (1.0 - index * index) / (1.0 + index * index);
+    let found = f64::from(fresnel(cosine as f32, (1.0 / index) as f32));
+    assert!((found - 0.5 * perpendicular * perpendicular).abs() < 1e-6, "{found}");
+    assert_eq!(fresnel(0.0, 1.0 / 1.5), 1.0);
+    assert_eq!(fresnel(0.0, 1.0), 0.0);
+}
+
+/// sin a = n sin b (Snell), for rays into and out of glass.
+#[test]
+fn refraction_follows_snells_law() {
+    for index in [1.33_f64, 1.5, 2.42] {
+        for angle in [0.0_f64, 10.0, 30.0, 45.0, 60.0, 89.0] {
+            let inside = refract(degrees(angle), Vec3::Y, (1.0 / index) as f32).expect("it enters");
+            let expected = libm::asin(libm::sin(angle.to_radians()) / index).to_degrees();
+            let found = libm::atan2(inside.x.into(), (-inside.y).into()).to_degrees();
+            assert!((found - expected).abs() < 1e-3, "{angle} degrees: {found}, not {expected}");
+            assert!((inside.length() - 1.0).abs() < 1e-6);
+            let outside = refract(inside, Vec3::Y, index as f32).expect("it leaves");
+            assert!(outside.distance(degrees(angle)) < 1e-4, "{angle} degrees: {outside}");
+        }
+    }
+}
+
+/// From the critical angle asin(1 / n) on, all light is mirrored.
+#[test]
+fn total_internal_reflection_starts_at_the_critical_angle() {
+    let critical = libm::asin(1.0 / 1.5).to_degrees();
+    assert!(refract(degrees(critical - 0.01), Vec3::Y, 1.5).is_some());
+    assert_eq!(refract(degrees(critical + 0.01), Vec3::Y, 1.5), None);
+    assert_eq!(fresnel(-degrees(critical + 0.01).y, 1.5), 1.0);
+}
+
+#[test]
+fn a_mirror_image_has_the_same_angle_on_the_other_side() {
+    assert_eq!(reflect(Vec3::new(3.0, -4.0, 1.0), Vec3::Y), Vec3::new(3.0, 4.0, 1.0));
+}
