@@ -210,6 +210,7 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is frame" -a '(__termtrace_scenes)'
@@ -288,6 +289,7 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is record" -a '(__termtrace_scenes)'
@@ -335,6 +337,7 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is explain" -a '(__termtrace_scenes)'
@@ -376,6 +379,7 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is check" -a '(__termtrace_scenes)'
@@ -420,6 +424,7 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is describe" -a '(__termtrace_scenes)'
@@ -460,6 +465,7 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is bench" -a '(__termtrace_scenes)'
@@ -661,6 +667,7 @@ gyroid\t'A gyroid in a ball: one sheet that parts space into two mazes, and neve
 bare\t'The lecture\'s barest picture: no shadows, and light that does not decrease with distance.'
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
+glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is ''" -a '(__termtrace_scenes)'

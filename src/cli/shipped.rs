@@ -51,6 +51,7 @@ shipped! {
     "bare",
     "two_lights",
     "three_lights",
+    "glass",
     "teapots" ["teapot.obj"],
     "crowd" ["teapot.obj"],
 }
