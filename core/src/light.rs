@@ -11,12 +11,10 @@ use crate::written::{InSceneFile, NodeReader, Validator};
 use glam::Vec3;
 
 mod point;
-#[cfg(all(test, unit_tests))]
 mod sun;
 
 pub use point::{Falloff, PointLight, WrittenPointLight};
-#[cfg(all(test, unit_tests))]
-pub use sun::Sun;
+pub use sun::{Sun, WrittenSun};
 
 /// A kind of light source.
 pub trait LightSource: InSceneFile + Copy {
@@ -64,14 +62,14 @@ pub trait LightSource: InSceneFile + Copy {
 
 /// Defines [`Light`] and [`WrittenLight`] from the table of lights.
 macro_rules! lights {
-    ($($(#[$on:meta])* $name:ident: $light:ident, $of:literal;)*) => {
+    ($($(#[$attribute:meta])* $name:ident: $light:ident, $of:literal;)*) => {
         /// A light source of any kind.
         // `Light` is an enum, not a trait object, because its methods are generic over the lanes and inlined into the
         // kernels.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Light {
-            $(#[doc = $of] $(#[$on])* $name($light),)*
+            $(#[doc = $of] $(#[$attribute])* $name($light),)*
         }
 
         impl Light {
@@ -80,7 +78,7 @@ macro_rules! lights {
             #[doc(hidden)]
             pub fn blocking_interval(&self) -> Interval {
                 match self {
-                    $($(#[$on])* Self::$name(_) => $light::BLOCKING_INTERVAL,)*
+                    $(Self::$name(_) => $light::BLOCKING_INTERVAL,)*
                 }
             }
 
@@ -89,7 +87,7 @@ macro_rules! lights {
             #[inline(always)]
             pub fn to_light<N: Number>(&self, point: Vector<N>) -> Vector<N> {
                 match self {
-                    $($(#[$on])* Self::$name(light) => light.to_light(point),)*
+                    $(Self::$name(light) => light.to_light(point),)*
                 }
             }
 
@@ -100,14 +98,14 @@ macro_rules! lights {
             #[inline(always)]
             pub fn irradiance_over_pi<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3] {
                 match self {
-                    $($(#[$on])* Self::$name(light) => light.irradiance_over_pi(l, distance_squared, cosine),)*
+                    $(Self::$name(light) => light.irradiance_over_pi(l, distance_squared, cosine),)*
                 }
             }
 
             /// Returns the formula of the arriving light, by [`LightSource::formula`].
             pub(crate) fn formula(&self) -> &'static str {
                 match self {
-                    $($(#[$on])* Self::$name(light) => light.formula(),)*
+                    $(Self::$name(light) => light.formula(),)*
                 }
             }
 
@@ -115,7 +113,7 @@ macro_rules! lights {
             #[doc(hidden)]
             pub fn color(&self) -> LinearRgb {
                 match self {
-                    $($(#[$on])* Self::$name(light) => light.color(),)*
+                    $(Self::$name(light) => light.color(),)*
                 }
             }
 
@@ -123,7 +121,7 @@ macro_rules! lights {
             #[doc(hidden)]
             pub fn position(&self) -> Option<Vec3> {
                 match self {
-                    $($(#[$on])* Self::$name(light) => LightSource::position(light),)*
+                    $(Self::$name(light) => LightSource::position(light),)*
                 }
             }
 
@@ -132,12 +130,12 @@ macro_rules! lights {
             #[must_use]
             pub fn moved_to(self, position: Vec3) -> Self {
                 match self {
-                    $($(#[$on])* Self::$name(light) => light.moved_to(position).into(),)*
+                    $(Self::$name(light) => light.moved_to(position).into(),)*
                 }
             }
         }
 
-        $($(#[$on])* impl From<$light> for Light {
+        $(impl From<$light> for Light {
             fn from(light: $light) -> Self {
                 Self::$name(light)
             }
@@ -146,17 +144,17 @@ macro_rules! lights {
         /// A light as written in a scene file.
         #[derive(Clone, Debug, PartialEq)]
         pub enum WrittenLight {
-            $(#[doc = $of] $(#[$on])* $name(<$light as InSceneFile>::Written),)*
+            $(#[doc = $of] $name(<$light as InSceneFile>::Written),)*
         }
 
         #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenLight {
             /// The names of all lights in scene files.
-            pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $light::NAME,)*];
+            pub(crate) const NAMES: &'static [&'static str] = &[$($light::NAME,)*];
 
             /// Reads the light called `name`; `None` if it is unknown or `node` has no fields.
             pub(crate) fn read(name: &str, reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
-                $($(#[$on])* if name == $light::NAME {
+                $(if name == $light::NAME {
                     return $light::read_node(reader, node).map(Self::$name);
                 })*
                 None
@@ -165,7 +163,7 @@ macro_rules! lights {
             /// Returns the checked light, or `None` after a fault has been reported to `validator`.
             pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Light> {
                 match self {
-                    $($(#[$on])* Self::$name(written) => $light::check(written, validator).map(Light::from),)*
+                    $(Self::$name(written) => $light::check(written, validator).map(Light::from),)*
                 }
             }
         }
@@ -174,6 +172,6 @@ macro_rules! lights {
 
 lights! {
     Point: PointLight, "A point source.";
-    #[cfg(all(test, unit_tests))]
+    #[doc(hidden)]
     Sun: Sun, "Light from infinitely far.";
 }

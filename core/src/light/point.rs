@@ -77,6 +77,13 @@ pub enum Falloff {
     None,
 }
 
+impl Falloff {
+    /// Reads the name of a falloff.
+    pub(super) fn read(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
+        reader.choice(node, "a falloff", &[("InverseSquare", Self::InverseSquare), ("None", Self::None)])
+    }
+}
+
 impl LightSource for PointLight {
     #[inline(always)]
     fn to_light<N: Number>(&self, point: Vector<N>) -> Vector<N> {
@@ -115,16 +122,9 @@ impl LightSource for PointLight {
 
     fn check(written: &WrittenPointLight, validator: &mut Validator<'_>) -> Option<Self> {
         let position = written.position.and_then(|position| validator.point(position));
-        let color = match written.color {
-            Some(color) => validator.light_color(color),
-            None => Some(LinearRgb::grey(1.0)),
-        };
-        let factor = match written.intensity {
-            Some(intensity) => validator.amount("the intensity", intensity),
-            None => Some(1.0),
-        };
+        let intensity = validator.intensity(written.color, written.intensity);
         let falloff = written.falloff.unwrap_or_default();
-        Some(Self { position: position?, intensity: color? * factor?, falloff })
+        Some(Self { position: position?, intensity: intensity?, falloff })
     }
 }
 
@@ -154,12 +154,7 @@ impl InSceneFile for PointLight {
             position: reader.required(fields, "position", NodeReader::point),
             color: reader.optional(fields, "color", NodeReader::color),
             intensity: reader.optional(fields, "intensity", NodeReader::number),
-            falloff: reader.optional_keeping_none(fields, "falloff", read_falloff),
+            falloff: reader.optional_keeping_none(fields, "falloff", Falloff::read),
         }
     }
-}
-
-fn read_falloff(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Falloff> {
-    let all = [("InverseSquare", Falloff::InverseSquare), ("None", Falloff::None)];
-    reader.choice(node, "a falloff", &all)
 }

@@ -1,20 +1,35 @@
-//! A directional light for tests, which shows that a new light takes one file and one line in the
-//! table `lights`.
+//! Directional light, such as that of the sun.
 
 use super::LightSource;
+use crate::checks::{self, SceneFault};
 use crate::color::LinearRgb;
 use crate::lanes::{Number, Vector};
 use crate::ray::Interval;
-use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor, WrittenNumber, WrittenVector};
 use glam::Vec3;
 
-/// White directional light with the same irradiance everywhere.
-///
-/// A white surface that faces it has the radiance 1.
+/// A directional light, which has the same direction and irradiance everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
     /// The direction to the light. Unit length.
-    pub direction: Vec3,
+    direction: Vec3,
+    /// The [intensity](Self::new), not negative.
+    intensity: LinearRgb,
+}
+
+impl Sun {
+    /// Returns a light at infinity; `direction` is the direction to the light, of any length but 0.
+    ///
+    /// `intensity` is the irradiance times 1/pi: the radiance of a white surface that faces the light.
+    ///
+    /// # Errors
+    /// If a coordinate is not within ±1e9, the direction is 0, or a channel of the intensity is not within 0 and 1e12.
+    #[doc(hidden)]
+    pub fn new(direction: Vec3, intensity: LinearRgb) -> Result<Self, SceneFault> {
+        let direction = checks::checked_direction("direction", direction)?;
+        let intensity = checks::checked_color("intensity", intensity, checks::light)?;
+        Ok(Self { direction, intensity })
+    }
 }
 
 impl LightSource for Sun {
@@ -28,29 +43,46 @@ impl LightSource for Sun {
 
     #[inline(always)]
     fn irradiance_over_pi<N: Number>(&self, _: Vector<N>, _: N, cosine: N) -> [N; 3] {
-        [cosine; 3]
+        let LinearRgb { r, g, b } = self.intensity;
+        [N::splat(r) * cosine, N::splat(g) * cosine, N::splat(b) * cosine]
     }
 
     fn color(&self) -> LinearRgb {
-        LinearRgb::grey(1.0)
+        self.intensity
     }
 
-    fn check(&written: &Option<WrittenVector>, validator: &mut Validator<'_>) -> Option<Self> {
-        Some(Self { direction: validator.unit_vector("direction", written?)?.as_vec3() })
+    fn check(written: &WrittenSun, validator: &mut Validator<'_>) -> Option<Self> {
+        let direction = written.direction.and_then(|direction| validator.unit_vector("direction", direction));
+        let intensity = validator.intensity(written.color, written.intensity);
+        Some(Self { direction: direction?.as_vec3(), intensity: intensity? })
     }
 }
 
+/// A directional light as written: `Sun(direction: ...)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrittenSun {
+    /// The direction to the light.
+    pub direction: Option<WrittenVector>,
+    /// The colour; white if not given.
+    pub color: Option<WrittenColor>,
+    /// The factor of the colour; 1 if not given.
+    pub intensity: Option<WrittenNumber>,
+}
+
 impl InSceneFile for Sun {
-    /// The written direction.
-    type Written = Option<WrittenVector>;
+    type Written = WrittenSun;
 
     const NAME: &'static str = "Sun";
     const OWNER: &'static str = "a Sun";
     const FORM: &'static str = "Sun(direction: ...)";
-    const FIELDS: &'static [&'static str] = &["direction"];
+    const FIELDS: &'static [&'static str] = &["direction", "color", "intensity"];
 
-    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> Option<WrittenVector> {
-        reader.required(fields, "direction", NodeReader::direction)
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenSun {
+        WrittenSun {
+            direction: reader.required(fields, "direction", NodeReader::direction),
+            color: reader.optional(fields, "color", NodeReader::color),
+            intensity: reader.optional(fields, "intensity", NodeReader::number),
+        }
     }
 }
 

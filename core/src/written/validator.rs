@@ -54,6 +54,18 @@ impl Validator<'_> {
         self.color(written, checks::light)
     }
 
+    /// Checks the colour and the intensity of a light, by default white and 1, and returns their
+    /// product.
+    pub(crate) fn intensity(
+        &mut self,
+        color: Option<WrittenColor>,
+        factor: Option<WrittenNumber>,
+    ) -> Option<LinearRgb> {
+        let color = color.map_or(Some(LinearRgb::grey(1.0)), |color| self.light_color(color));
+        let factor = factor.map_or(Some(1.0), |factor| self.amount("the intensity", factor));
+        Some(color? * factor?)
+    }
+
     /// Checks a reflectance, whose channels are from 0 to 1.
     pub(crate) fn reflectance(&mut self, written: WrittenColor) -> Option<LinearRgb> {
         self.color(written, checks::reflectance)

@@ -1,6 +1,8 @@
+use super::*;
 use crate::describe::describe;
 use crate::explain::explain;
 use crate::framebuffer::Resolution;
+use crate::light::Light;
 use crate::render::{Sampling, render};
 use crate::scene::Scene;
 
@@ -27,6 +29,20 @@ fn its_light_is_that_of_the_closed_form() {
 }
 
 #[test]
+fn its_colour_is_multiplied_by_its_intensity() {
+    let scene = read("Sun(direction: (0, 2, 0), color: (1, 0.5, 0), intensity: 4)", "");
+    let sun = Sun::new(Vec3::Y, LinearRgb::new(4.0, 2.0, 0.0)).expect("a light");
+    assert_eq!(scene.lights(), [Light::from(sun)]);
+    assert_eq!(sun.irradiance_over_pi(Vector::<f32>::splat(Vec3::Y), 1.0, 0.5), [2.0, 1.0, 0.0]);
+}
+
+#[test]
+fn it_cannot_be_moved() {
+    let sun = Light::from(Sun::new(Vec3::Y, LinearRgb::grey(1.0)).expect("a light"));
+    assert_eq!((sun.position(), sun.moved_to(Vec3::ONE)), (None, sun));
+}
+
+#[test]
 fn it_is_described_and_explained() {
     let scene = read("Sun(direction: (0, 0, 1))", "");
     let text = describe("sun.ron", &scene, scene.camera(), Resolution::square(40, 40));
@@ -39,6 +55,7 @@ fn it_is_described_and_explained() {
 fn its_faults_have_the_messages_of_other_lights() {
     let message = |sun: &str| Scene::from_ron("x.ron", &scene(sun, "")).expect_err("a fault").to_string();
     assert!(message("Sun()").contains("missing field \"direction\"; a Sun needs one"));
+    assert!(message("Sun(direction: (0, 1, 0), power: 2)").contains("did you mean \"intensity\"?"));
     assert!(message("Sun(direction: (0, 0, 0))").contains("the direction must have a length"));
     assert!(message("Sum(direction: (0, 0, 1))").contains("did you mean Sun?"));
 }
