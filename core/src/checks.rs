@@ -141,6 +141,21 @@ pub(crate) fn angle_in_degrees(degrees: f64) -> Result<f32, Message> {
     if degrees.abs() <= MAX_ANGLE { Ok(degrees as f32) } else { Err("an angle must lie within ±36000 degrees".into()) }
 }
 
+/// Checks the angle of a light's whole cone in degrees, and returns it in degrees.
+pub(crate) fn cone_angle(degrees: f64) -> Result<f32, Message> {
+    // Unit vectors in f32 are exact to about 1e-7, which is a hundredth of the least angle.
+    if is_within(degrees, 0.001, 180.0) {
+        Ok(degrees as f32)
+    } else {
+        Err("the angle of a cone must lie between 0.001 and 180 degrees".into())
+    }
+}
+
+/// Checks the softness of a light's cone: the share of half its angle in which the light fades.
+pub(crate) fn softness(share: f64) -> Result<f32, Message> {
+    if (0.0..=1.0).contains(&share) { Ok(share as f32) } else { Err("the softness must lie within 0 and 1".into()) }
+}
+
 /// Checks an amount of light; `what` is its name for messages.
 pub(crate) fn light_amount(what: &str, value: f64) -> Result<f32, Message> {
     if value < 0.0 {

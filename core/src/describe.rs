@@ -255,7 +255,8 @@ impl Description<'_> {
             let to_light = light.to_light(Vector::<f32>::splat(target));
             // `MIN_POSITIVE` avoids a division by 0 for a light at the target itself.
             let distance_squared = to_light.dot(to_light).max(f32::MIN_POSITIVE);
-            let [r, g, b] = light.irradiance_over_pi(to_light, distance_squared, 1.0);
+            let l = to_light * (1.0 / distance_squared.sqrt());
+            let [r, g, b] = light.irradiance_over_pi(l, distance_squared, 1.0);
             LinearRgb::new(r, g, b).luminance()
         };
         lights.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
@@ -269,7 +270,9 @@ impl Description<'_> {
             let distance = light.position().map(|position| position.distance(target));
             let distance =
                 distance.map_or_else(String::new, |distance| format!(", {} from the target", number(distance)));
-            let _ = writeln!(text, "- {}, {}{distance}", Self::light_color(light), self.direction_of(to_light));
+            let cone = light.cone_angle();
+            let cone = cone.map_or_else(String::new, |angle| format!(", in a cone of {} degrees", number(angle)));
+            let _ = writeln!(text, "- {}, {}{distance}{cone}", Self::light_color(light), self.direction_of(to_light));
         }
         if lights.len() > MAX_LISTED {
             let _ = writeln!(text, "- and {} more", lights.len() - MAX_LISTED);

@@ -113,6 +113,11 @@ impl LightContribution {
         0.0 < self.incidence.cosine
     }
 
+    /// Returns whether the light reaches the surface.
+    pub fn is_lit(&self) -> bool {
+        self.faces() && self.blocker.is_none() && self.light.cone_share(self.incidence.l) != Some(0.0)
+    }
+
     /// Returns the arriving light, or black if it is blocked or the surface faces away from it.
     pub fn arriving(&self) -> LinearRgb {
         if self.faces() && self.blocker.is_none() { self.incidence.light } else { LinearRgb::BLACK }

@@ -11,9 +11,11 @@ use crate::written::{InSceneFile, NodeReader, Validator};
 use glam::Vec3;
 
 mod point;
+mod spot;
 mod sun;
 
 pub use point::{Falloff, PointLight, WrittenPointLight};
+pub use spot::{SpotLight, WrittenSpotLight};
 pub use sun::{Sun, WrittenSun};
 
 /// A kind of light source.
@@ -34,11 +36,31 @@ pub trait LightSource: InSceneFile + Copy {
     // The result includes the factor 1/pi of diffuse reflection, so that no later step needs pi.
     fn irradiance_over_pi<N: Number>(&self, l: Vector<N>, distance_squared: N, cosine: N) -> [N; 3];
 
+    /// Returns the mask of the directions in which the light shines; `None` if it shines in all.
+    ///
+    /// `l` is the unit vector to the light.
+    #[inline(always)]
+    fn shines_along<N: Number>(&self, _l: Vector<N>) -> Option<N::Mask> {
+        None
+    }
+
     /// Returns the formula of the [irradiance over pi](Self::irradiance_over_pi), for explanations.
     ///
-    /// V is the visibility, I the [`color`](Self::color) and D the distance.
+    /// V is the visibility, I the [`color`](Self::color), D the distance and S the [share](Self::cone_share).
     fn formula(&self) -> &'static str {
         "V I max(0, n.l)"
+    }
+
+    /// Returns the share of the light that the cone of a spot leaves in a direction.
+    ///
+    /// `l` is the unit vector to the light. `None` for a light without a cone.
+    fn cone_share(&self, _l: Vec3) -> Option<f32> {
+        None
+    }
+
+    /// Returns the angle of the cone in degrees; `None` for a light without a cone.
+    fn cone_angle(&self) -> Option<f32> {
+        None
     }
 
     /// Returns the light's colour, multiplied by its intensity.
@@ -102,10 +124,33 @@ macro_rules! lights {
                 }
             }
 
+            /// Returns the mask of the directions in which the light shines, by
+            /// [`LightSource::shines_along`].
+            #[inline(always)]
+            pub(crate) fn shines_along<N: Number>(&self, l: Vector<N>) -> Option<N::Mask> {
+                match self {
+                    $(Self::$name(light) => light.shines_along(l),)*
+                }
+            }
+
             /// Returns the formula of the arriving light, by [`LightSource::formula`].
             pub(crate) fn formula(&self) -> &'static str {
                 match self {
                     $(Self::$name(light) => light.formula(),)*
+                }
+            }
+
+            /// Returns the share of the light in a direction, by [`LightSource::cone_share`].
+            pub(crate) fn cone_share(&self, l: Vec3) -> Option<f32> {
+                match self {
+                    $(Self::$name(light) => light.cone_share(l),)*
+                }
+            }
+
+            /// Returns the angle of the cone in degrees, by [`LightSource::cone_angle`].
+            pub(crate) fn cone_angle(&self) -> Option<f32> {
+                match self {
+                    $(Self::$name(light) => light.cone_angle(),)*
                 }
             }
 
@@ -174,4 +219,6 @@ lights! {
     Point: PointLight, "A point source.";
     #[doc(hidden)]
     Sun: Sun, "Light from infinitely far.";
+    #[doc(hidden)]
+    Spot: SpotLight, "A point source with a cone of light.";
 }

@@ -8,7 +8,8 @@
 //!
 //! The visibility V is 0 if an object is between the point and the light, else 1; n is the shading normal on the
 //! visible side, l the unit vector to the light, d the distance to the light. The intensity I includes the 1/pi of
-//! diffuse reflection. The position of the eye only decides which side of the surface is visible.
+//! diffuse reflection, and of a spot the share of its light in that direction. The position of the eye only decides
+//! which side of the surface is visible.
 //!
 //! All steps work on groups of eight rays. Lanes without a hit are computed as well, because branches would cost more
 //! than they save; no later step reads these lanes.
@@ -97,9 +98,9 @@ impl SimdKernel for AimShadowRays<'_> {
         rays.clear();
         lights.clear();
         for points in points {
-            let (faces, IncidentLight { light: [r, g, b], .. }) =
+            let (reaches, IncidentLight { light: [r, g, b], .. }) =
                 incident_light::<N>(light, points.position.load(), points.shading_normal.load());
-            rays.push(eight_shadow_rays::<N>(light, points, faces.bits() & points.hit_mask));
+            rays.push(eight_shadow_rays::<N>(light, points, reaches.bits() & points.hit_mask));
             lights.push([r.store(), g.store(), b.store()]);
         }
     }
@@ -292,17 +293,24 @@ pub struct Incidence {
     pub light: LinearRgb,
 }
 
-/// Returns the incidence of a light at a point, or `None` if the surface faces away.
+/// Returns the incidence of a light at a point, or `None` if the surface faces away or is outside
+/// the light's cone.
 pub fn incidence(light: &Light, point: &SurfacePoint) -> Option<Incidence> {
-    Some(incidence_with_signed_cosine(light, point)).filter(|incidence| 0.0 < incidence.cosine)
+    let (reaches, incidence) = incidence_anywhere(light, point);
+    reaches.then_some(incidence)
 }
 
 /// Returns the incidence of a light at a point, also if the surface faces away.
 pub fn incidence_with_signed_cosine(light: &Light, point: &SurfacePoint) -> Incidence {
+    incidence_anywhere(light, point).1
+}
+
+/// Returns whether a light reaches a point that nothing hides, and its incidence there.
+fn incidence_anywhere(light: &Light, point: &SurfacePoint) -> (bool, Incidence) {
     let (position, normal) = (Vector::<f32>::splat(point.position), Vector::splat(point.shading_normal));
-    let (_, IncidentLight { l, distance, cosine, light: [r, g, b] }) = incident_light(light, position, normal);
+    let (reaches, IncidentLight { l, distance, cosine, light: [r, g, b] }) = incident_light(light, position, normal);
     let distance = if light.position().is_some() { distance } else { f32::INFINITY };
-    Incidence { l: l.into(), distance, cosine, light: LinearRgb::new(r, g, b) }
+    (reaches, Incidence { l: l.into(), distance, cosine, light: LinearRgb::new(r, g, b) })
 }
 
 /// The values of [`Incidence`] at one point, or at one point per lane.
@@ -313,7 +321,8 @@ struct IncidentLight<N> {
     light: [N; 3],
 }
 
-/// Returns the mask of points that face a light, and the light that arrives there.
+/// Returns the mask of points that face a light and are inside its cone, and the light that arrives
+/// there.
 #[inline(always)]
 fn incident_light<N: Number>(light: &Light, position: Vector<N>, normal: Vector<N>) -> (N::Mask, IncidentLight<N>) {
     let to_light = light.to_light(position);
@@ -321,10 +330,15 @@ fn incident_light<N: Number>(light: &Light, position: Vector<N>, normal: Vector<
     let distance = distance_squared.sqrt();
     let l = Vector { x: to_light.x / distance, y: to_light.y / distance, z: to_light.z / distance };
     let cosine = normal.dot(l);
+    // The comparison is also false for NaN, the cosine if the light is at the point itself.
+    let faces = N::splat(0.0).lt(cosine);
+    let reaches = match light.shines_along(l) {
+        Some(shines) => faces & shines,
+        None => faces,
+    };
     let light =
         light.irradiance_over_pi(l, distance_squared, cosine).map(|channel| channel.min(N::splat(MAX_IRRADIANCE)));
-    // The comparison is also false for NaN, the cosine if the light is at the point itself.
-    (N::splat(0.0).lt(cosine), IncidentLight { l, distance, cosine, light })
+    (reaches, IncidentLight { l, distance, cosine, light })
 }
 
 /// The largest arriving light per channel and light source.

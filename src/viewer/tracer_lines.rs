@@ -111,7 +111,7 @@ pub(super) fn draw_eye_ray(canvas: &mut Canvas<'_>, frame: &Frame, explanation: 
         let p = hit.point.position;
         for lit in &hit.lights {
             let end = lit.light.position().unwrap_or(p + distance * lit.incidence.l);
-            plot.line([p, end], if lit.faces() && lit.blocker.is_none() { YELLOW } else { GREY });
+            plot.line([p, end], if lit.is_lit() { YELLOW } else { GREY });
         }
         let end = p + VECTOR_LENGTH * distance * hit.point.shading_normal;
         plot.line([p, end], MAGENTA);

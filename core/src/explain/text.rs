@@ -246,6 +246,7 @@ fn add_light(at: usize, contribution: &LightContribution, lines: &mut Vec<String
     lines.push(match contribution.blocker {
         _ if !contribution.faces() => "V = 0, faces away".to_owned(),
         Some((name, _)) => format!("V = 0, behind {name}"),
+        None if !contribution.is_lit() => "V = 1, outside the cone".to_owned(),
         None => "V = 1, lit".to_owned(),
     });
     lines.push(light_line("I", contribution.light.color()));
@@ -255,6 +256,9 @@ fn add_light(at: usize, contribution: &LightContribution, lines: &mut Vec<String
         f32::INFINITY => "D         infinite".to_owned(),
         distance => format!("D    {}", padded_number(distance)),
     });
+    if let Some(share) = contribution.light.cone_share(incidence.l) {
+        lines.push(format!("S    {}", padded_number(share)));
+    }
     lines.push(light_line("=", contribution.arriving()));
 }
 

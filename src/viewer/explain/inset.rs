@@ -64,7 +64,7 @@ impl Inset {
             let end =
                 |(light, lit): (&Light, &LightContribution)| from_side(light.position().unwrap_or_else(|| far(lit)));
             let ends = scene.lights().iter().zip(&shaded.lights).map(end);
-            ends.zip(&shaded.lights).map(|(end, lit)| (end, lit.faces() && lit.blocker.is_none())).collect()
+            ends.zip(&shaded.lights).map(|(end, lit)| (end, lit.is_lit())).collect()
         });
         Self {
             rectangle: [0.0, 1.0].map(|qv| from_side(rays.through(explanation.q.x, qv).at(near))),
