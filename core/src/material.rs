@@ -7,20 +7,21 @@
 //! [`InSceneFile`], and add a line to the table `materials` here.
 
 use crate::checks::SceneFault;
-use crate::color::LinearRgb;
+use crate::color::{LinearRgb, Srgb8};
 use crate::lanes::Number;
 use crate::scene_text::SyntaxNode;
-use crate::written::{InSceneFile, NodeReader, Validator};
+use crate::written::{InSceneFile, NodeReader, Validator, WrittenColor};
 
 mod checker;
 mod diffuse;
-#[cfg(all(test, unit_tests))]
+mod gradient;
 mod stripes;
+mod waves;
 
 pub use checker::{Checker, WrittenChecker};
 pub use diffuse::Diffuse;
-#[cfg(all(test, unit_tests))]
-pub use stripes::Stripes;
+pub use gradient::{Gradient, WrittenGradient};
+pub use stripes::{Stripes, WrittenStripes};
 
 /// A diffuse material, plain or patterned. Reflectances are linear, each channel in 0..=1.
 // The enum `Material` is used instead of trait objects, as `reflectance` is generic over the lanes and inlined into the
@@ -46,7 +47,7 @@ pub trait Reflecting: InSceneFile + Copy {
 
 /// Defines [`Material`] and [`WrittenMaterial`] from the table of materials.
 macro_rules! materials {
-    ($($(#[$on:meta])* $material:ident, $of:literal;)*) => {
+    ($($material:ident, $of:literal;)*) => {
         /// A material of an object.
         ///
         /// ```
@@ -60,7 +61,7 @@ macro_rules! materials {
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Material {
-            $(#[doc = $of] #[doc(hidden)] $(#[$on])* $material($material),)*
+            $(#[doc = $of] #[doc(hidden)] $material($material),)*
             /// The colours and textures of a mesh's file, or the colours that the formulas of an
             /// implicit surface give.
             ///
@@ -75,7 +76,7 @@ macro_rules! materials {
             #[inline(always)]
             pub fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3] {
                 match self {
-                    $($(#[$on])* Self::$material(material) => material.reflectance(uv, footprint),)*
+                    $(Self::$material(material) => material.reflectance(uv, footprint),)*
                     Self::Own => channels(Self::DEFAULT_REFLECTANCE),
                 }
             }
@@ -83,7 +84,7 @@ macro_rules! materials {
             /// Returns a patterned material's name with an article, and its pattern's name.
             pub(crate) fn material_and_pattern_names(&self) -> Option<(&'static str, &'static str)> {
                 match self {
-                    $($(#[$on])* Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
+                    $(Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
                     Self::Own => None,
                 }
             }
@@ -91,13 +92,13 @@ macro_rules! materials {
             /// Returns the adjective of [`Reflecting::described`]; `None` for [`Own`](Self::Own).
             pub(crate) fn described(&self, name: fn(LinearRgb) -> &'static str) -> Option<String> {
                 match self {
-                    $($(#[$on])* Self::$material(material) => Some(material.described(name)),)*
+                    $(Self::$material(material) => Some(material.described(name)),)*
                     Self::Own => None,
                 }
             }
         }
 
-        $($(#[$on])* impl From<$material> for Material {
+        $(impl From<$material> for Material {
             fn from(material: $material) -> Self {
                 Self::$material(material)
             }
@@ -106,19 +107,19 @@ macro_rules! materials {
         /// A material as written in a scene file.
         #[derive(Clone, Debug, PartialEq)]
         pub enum WrittenMaterial {
-            $(#[doc = $of] $(#[$on])* $material(<$material as InSceneFile>::Written),)*
+            $(#[doc = $of] $material(<$material as InSceneFile>::Written),)*
         }
 
         #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenMaterial {
             /// The names of all materials in scene files.
-            pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* $material::NAME,)*];
+            pub(crate) const NAMES: &'static [&'static str] = &[$($material::NAME,)*];
 
             /// Reads the material called `name`.
             ///
             /// Returns `None` if the name is unknown or `node` has no fields or values that can be read.
             pub(crate) fn read(name: &str, reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
-                $($(#[$on])* if name == $material::NAME {
+                $(if name == $material::NAME {
                     return $material::read_node(reader, node).map(Self::$material);
                 })*
                 None
@@ -128,14 +129,14 @@ macro_rules! materials {
             /// `validator`.
             pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Material> {
                 match self {
-                    $($(#[$on])* Self::$material(written) => $material::check(written, validator).map(Material::from),)*
+                    $(Self::$material(written) => $material::check(written, validator).map(Material::from),)*
                 }
             }
 
             /// Returns a patterned material's name with an article, and its pattern's name.
             pub(crate) fn material_and_pattern_names(&self) -> Option<(&'static str, &'static str)> {
                 match self {
-                    $($(#[$on])* Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
+                    $(Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
                 }
             }
         }
@@ -145,8 +146,8 @@ macro_rules! materials {
 materials! {
     Diffuse, "The same reflectance everywhere.";
     Checker, "Squares of two reflectances in turn.";
-    #[cfg(all(test, unit_tests))]
     Stripes, "Stripes of two reflectances in turn.";
+    Gradient, "Reflectances from one to another and back.";
 }
 
 /// Returns the material of an object without one: a diffuse light grey.
@@ -183,6 +184,23 @@ impl Material {
     pub fn checker(a: LinearRgb, b: LinearRgb, size: f32) -> Result<Self, SceneFault> {
         Checker::new(a, b, size).map(Self::Checker)
     }
+}
+
+/// Returns the sums of two reflectances, each multiplied by its share.
+#[inline(always)]
+fn mixed<N: Number>([a, b]: [LinearRgb; 2], [of_a, of_b]: [N; 2]) -> [N; 3] {
+    let ([r0, g0, b0], [r1, g1, b1]) = (channels::<N>(a), channels::<N>(b));
+    [r0 * of_a + r1 * of_b, g0 * of_a + g1 * of_b, b0 * of_a + b1 * of_b]
+}
+
+/// Checks the two reflectances of a pattern, by default a light and a dark grey.
+fn check_two([a, b]: [Option<WrittenColor>; 2], validator: &mut Validator<'_>) -> Option<[LinearRgb; 2]> {
+    let mut color_or = |color: Option<WrittenColor>, grey: u8| match color {
+        Some(color) => validator.reflectance(color),
+        None => Some(LinearRgb::from_srgb8(Srgb8::new(grey, grey, grey))),
+    };
+    let (a, b) = (color_or(a, 0xdd), color_or(b, 0x33));
+    Some([a?, b?])
 }
 
 /// Returns the channels of a colour in all lanes.

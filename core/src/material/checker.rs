@@ -1,8 +1,9 @@
 //! A checkered material: squares of two reflectances.
 
-use super::{Reflecting, channels};
+use super::waves::mean_of_square_wave;
+use super::{Reflecting, check_two, mixed};
 use crate::checks::{self, SceneFault};
-use crate::color::{LinearRgb, Srgb8};
+use crate::color::LinearRgb;
 use crate::lanes::Number;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor, WrittenNumber};
 
@@ -42,12 +43,12 @@ impl Reflecting for Checker {
     #[inline(always)]
     fn reflectance<N: Number>(&self, uv: [N; 2], footprint: [N; 2]) -> [N; 3] {
         let size = N::splat(self.size);
+        // The mean over a footprint is the product of both axes' means, so squares too small for their pixels turn
+        // grey. Point samples would give a moiré pattern, and supersampling would take 64 rays.
         let balance = mean_of_square_wave(uv[0] / size, footprint[0] / size)
             * mean_of_square_wave(uv[1] / size, footprint[1] / size);
         let half = N::splat(0.5);
-        let [of_a, of_b] = [half + half * balance, half - half * balance];
-        let ([r0, g0, b0], [r1, g1, b1]) = (channels::<N>(self.a), channels::<N>(self.b));
-        [r0 * of_a + r1 * of_b, g0 * of_a + g1 * of_b, b0 * of_a + b1 * of_b]
+        mixed([self.a, self.b], [half + half * balance, half - half * balance])
     }
 
     fn described(&self, name: fn(LinearRgb) -> &'static str) -> String {
@@ -55,13 +56,10 @@ impl Reflecting for Checker {
     }
 
     fn check(written: &WrittenChecker, validator: &mut Validator<'_>) -> Option<Self> {
-        let mut color_or = |color: Option<WrittenColor>, grey: u8| match color {
-            Some(color) => validator.reflectance(color),
-            None => Some(LinearRgb::from_srgb8(Srgb8::new(grey, grey, grey))),
-        };
-        let (a, b) = (color_or(written.a, 0xdd), color_or(written.b, 0x33));
+        let colors = check_two([written.a, written.b], validator);
         let size = written.size.map_or(Some(1.0), |size| validator.length(SIZE, size));
-        Some(Self { a: a?, b: b?, size: size? })
+        let ([a, b], size) = (colors?, size?);
+        Some(Self { a, b, size })
     }
 }
 
@@ -92,40 +90,4 @@ impl InSceneFile for Checker {
             size: reader.optional(fields, "size", NodeReader::number),
         }
     }
-}
-
-/// Returns the mean of a square wave over an interval.
-///
-/// The wave is 1 from each even integer to the next integer, and -1 otherwise.
-// The mean is a box filter. The checker's mean over a footprint is the product of both axes' means, so squares too
-// small for their pixels turn grey. Point samples would give a moiré pattern, and supersampling would take 64 rays.
-#[inline(always)]
-fn mean_of_square_wave<N: Number>(middle: N, width: N) -> N {
-    let (zero, one, half) = (N::splat(0.0), N::splat(1.0), N::splat(0.5) * width);
-    let (start, end) = (middle - half, middle + half);
-    let (first, last) = (start.floor(), end.floor());
-    let sign = N::select(is_even(first), one, -one);
-    // The mean over an interval with one edge of the wave: the share before the edge minus the share after it, with the
-    // sign of the wave before the edge.
-    let over_one = sign * ((last - start) - (end - last)) / (end - start);
-    let over_more = (triangle_wave(end) - triangle_wave(start)) / (end - start);
-    let over_edges = N::select((last - first).eq(one), over_one, over_more);
-    let mean = N::select(first.eq(last), sign, over_edges);
-    // For widths from 1e6 on, whose intervals may be infinite or NaN, the mean is below 1e-6, and taken as 0.
-    N::select(width.lt(N::splat(1e6)), mean, zero)
-}
-
-/// Returns the integral of the square wave from 0: a triangle wave.
-#[inline(always)]
-fn triangle_wave<N: Number>(x: N) -> N {
-    let (one, two) = (N::splat(1.0), N::splat(2.0));
-    let in_period = x - two * (N::splat(0.5) * x).floor();
-    one - (in_period - one).abs()
-}
-
-/// Returns whether an integer is even. In f32 all integers above 2^24 are.
-#[inline(always)]
-fn is_even<N: Number>(whole: N) -> N::Mask {
-    let half = whole * N::splat(0.5);
-    half.floor().eq(half)
 }

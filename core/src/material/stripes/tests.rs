@@ -1,4 +1,4 @@
-use crate::color::LinearRgb;
+use super::*;
 use crate::describe::describe;
 use crate::framebuffer::Resolution;
 use crate::render::{Sampling, render};
@@ -27,11 +27,22 @@ fn they_are_read_drawn_and_described() {
 }
 
 #[test]
+fn their_mean_is_that_of_the_footprint() {
+    let stripes = Stripes::new(LinearRgb::grey(1.0), LinearRgb::grey(0.0), 2.0).expect("a pattern");
+    for (u, footprint, expected) in
+        [(1.0, 0.0, 1.0), (3.0, 0.0, 0.0), (-1.0, 1.0, 0.0), (2.0, 1.0, 0.5), (2.5, 2.0, 0.25), (2.0, 1e9, 0.5)]
+    {
+        assert_eq!(stripes.reflectance([u, 7.0], [footprint, 3.0]), [expected; 3], "{u} {footprint}");
+    }
+}
+
+#[test]
 fn faults_are_reported_like_those_of_other_materials() {
     let message = |objects: &str| Scene::from_ron("x.ron", &scene(objects)).expect_err("a fault").to_string();
     let on = |shape: &str, stripes: &str| message(&format!("{shape}, material: {stripes})"));
     let plane = "Plane(point: (0, 0, 0), normal: (0, 1, 0)";
-    assert!(on(plane, "Stripes(a: 0.5)").contains("missing field \"b\"; Stripes needs one"));
+    assert!(on(plane, "Stripes(width: 0)").contains("the width of a stripe must be greater than 0"));
+    assert!(on(plane, "Stripes(size: 2)").contains("unknown field \"size\"; Stripes has a, b and width"));
     assert!(on(plane, "Stripes(a: 0.5, b: 2)").contains("a reflectance must lie within 0 and 1"));
     assert!(
         on(plane, "Strpes(a: 0.5, b: 1)").contains("did you mean Stripes?"),
