@@ -15,12 +15,14 @@ use crate::written::{InSceneFile, NodeReader, Validator, WrittenColor};
 mod checker;
 mod diffuse;
 mod gradient;
+mod noise;
 mod stripes;
 mod waves;
 
 pub use checker::{Checker, WrittenChecker};
 pub use diffuse::Diffuse;
 pub use gradient::{Gradient, WrittenGradient};
+pub use noise::{Noise, WrittenNoise};
 pub use stripes::{Stripes, WrittenStripes};
 
 /// A diffuse material, plain or patterned. Reflectances are linear, each channel in 0..=1.
@@ -148,6 +150,7 @@ materials! {
     Checker, "Squares of two reflectances in turn.";
     Stripes, "Stripes of two reflectances in turn.";
     Gradient, "Reflectances from one to another and back.";
+    Noise, "Irregular spots of two reflectances.";
 }
 
 /// Returns the material of an object without one: a diffuse light grey.
@@ -208,3 +211,6 @@ fn check_two([a, b]: [Option<WrittenColor>; 2], validator: &mut Validator<'_>) -
 fn channels<N: Number>(LinearRgb { r, g, b }: LinearRgb) -> [N; 3] {
     [N::splat(r), N::splat(g), N::splat(b)]
 }
+
+#[cfg(all(test, unit_tests))]
+mod tests;
