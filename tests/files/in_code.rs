@@ -2,7 +2,8 @@
 
 use glam::{Vec2, Vec3};
 use std::error::Error;
-use termtrace::internals::material::Checker;
+use termtrace::internals::light::{SpotLight, Sun};
+use termtrace::internals::material::{Checker, Gradient, Noise, Stripes};
 use termtrace::{
     Background, Camera, Falloff, LinearRgb, Material, Mesh, Plane, PointLight, Pose, Scene, Sphere, ToneCurve,
     Triangle, ViewRectangle,
@@ -79,6 +80,34 @@ fn lights_and_materials_are_refused_in_the_words_of_scene_files() {
         (message(Checker::new(grey(0.5), grey(-2.0), 1.0)), material("Checker(b: -2)")),
         (message(Checker::new(grey(0.5), grey(0.5), 0.0)), material("Checker(size: 0)")),
         (message(Material::checker(grey(0.5), grey(0.5), 1e-12)), material("Checker(size: 1e-12)")),
+        (message(Stripes::new(grey(2.0), grey(0.5), 1.0)), material("Stripes(a: 2)")),
+        (message(Stripes::new(grey(0.5), grey(0.5), 0.0)), material("Stripes(width: 0)")),
+        (message(Gradient::new(grey(0.5), grey(-1.0), 1.0)), material("Gradient(from: 0.5, to: -1)")),
+        (message(Gradient::new(grey(0.5), grey(0.5), 1e10)), material("Gradient(from: 0.5, to: 0.5, length: 1e10)")),
+        (message(Noise::new(grey(0.5), grey(f32::NAN), 1.0)), material("Noise(b: NaN)")),
+        (message(Noise::new(grey(0.5), grey(0.5), -1.0)), material("Noise(size: -1)")),
+    ] {
+        assert_eq!(code, file);
+    }
+}
+
+#[test]
+fn spots_and_suns_are_refused_in_the_words_of_scene_files() {
+    let (grey, o, y) = (LinearRgb::grey, Vec3::ZERO, Vec3::Y);
+    let sun = |sun: &str| in_file(&format!("lights: [Sun({sun})]"));
+    let spot = |rest: &str| in_file(&format!("lights: [Spot(position: (0, 1, 0), {rest})]"));
+    let cone = |degrees, softness| SpotLight::new(y, o, grey(1.0)).expect("a light").with_cone(degrees, softness);
+    for (code, file) in [
+        (message(Sun::new(o, grey(1.0))), sun("direction: (0, 0, 0)")),
+        (message(Sun::new(y * 2e9, grey(1.0))), sun("direction: (0, 2e9, 0)")),
+        (message(Sun::new(y, grey(-1.0))), sun("direction: (0, 1, 0), color: -1")),
+        (message(SpotLight::new(y, y, grey(1.0))), spot("target: (0, 1, 0)")),
+        (message(SpotLight::new(y, Vec3::NAN, grey(1.0))), spot("target: (NaN, 0, 0)")),
+        (message(SpotLight::new(y, o, grey(2e12))), spot("target: (0, 0, 0), color: 2e12")),
+        (message(cone(0.0, 0.5)), spot("target: (0, 0, 0), angle: 0")),
+        (message(cone(180.5, 0.5)), spot("target: (0, 0, 0), angle: 180.5")),
+        (message(cone(40.0, -0.5)), spot("target: (0, 0, 0), softness: -0.5")),
+        (message(cone(40.0, f32::INFINITY)), spot("target: (0, 0, 0), softness: inf")),
     ] {
         assert_eq!(code, file);
     }
@@ -172,12 +201,19 @@ fn a_scene_in_code_is_the_scene_of_a_file() {
         exposure: 2,
         tone_curve: Filmic,
         shadows: false,
-        lights: [Point(position: (3, 5, 4), intensity: 45), Point(position: (0, 9, 0), color: (1, 0.5, 0), falloff: None)],
+        lights: [
+            Point(position: (3, 5, 4), intensity: 45), Point(position: (0, 9, 0), color: (1, 0.5, 0), falloff: None),
+            Spot(position: (3, 5, 4), target: (0, 1, 0), angle: 30, softness: 1, intensity: 2, falloff: None),
+            Sun(direction: (1, 2, -3), color: (1, 0.5, 0)),
+        ],
         objects: [
             Sphere(center: (0, 1, 0), radius: 1, material: Diffuse((0.8, 0.1, 0.1))),
             Sphere(center: (1, 1, 0), radius: 1e-9),
             Plane(point: (0, 0, 0), normal: (1, 2, -3), material: Checker(a: 0.25, b: 1, size: 1e-9)),
             Triangle(corners: [(0, 0, 0), (1, 0, 0), (0, 1e9, 0)]),
+            Plane(point: (0, 0, 0), normal: (0, 1, 0), material: Stripes(a: 0.25, b: 1, width: 2)),
+            Plane(point: (0, 0, 0), normal: (0, 1, 0), material: Gradient(from: 0.25, to: 1, length: 2)),
+            Plane(point: (0, 0, 0), normal: (0, 1, 0), material: Noise(a: 0.25, b: 1, size: 2)),
         ],
     )";
     let built = || -> Result<Scene, Box<dyn Error>> {
@@ -185,6 +221,8 @@ fn a_scene_in_code_is_the_scene_of_a_file() {
         let side = Pose { eye: Vec3::new(6.0, 1.5, 0.0), up: Vec3::new(0.0, 1.0, 1.0), ..camera.pose() };
         let above = PointLight::new(Vec3::Y * 9.0, LinearRgb::new(1.0, 0.5, 0.0))?;
         let pattern = Material::checker(LinearRgb::grey(0.25), LinearRgb::grey(1.0), 1e-9)?;
+        let (dark, white, floor) = (LinearRgb::grey(0.25), LinearRgb::grey(1.0), Plane::new(Vec3::ZERO, Vec3::Y)?);
+        let spot = SpotLight::new(Vec3::new(3.0, 5.0, 4.0), Vec3::Y, LinearRgb::grey(2.0))?.with_cone(30.0, 1.0)?;
         let red = Material::diffuse(LinearRgb::new(0.8, 0.1, 0.1))?;
         Ok(Scene::builder(camera)
             .view(camera.with_pose(side)?)
@@ -195,10 +233,15 @@ fn a_scene_in_code_is_the_scene_of_a_file() {
             .shadows(false)
             .light(PointLight::new(Vec3::new(3.0, 5.0, 4.0), LinearRgb::grey(45.0))?)
             .light(above.with_falloff(Falloff::None))
+            .light(spot.with_falloff(Falloff::None))
+            .light(Sun::new(Vec3::new(1.0, 2.0, -3.0), LinearRgb::new(1.0, 0.5, 0.0))?)
             .object(Sphere::new(Vec3::Y, 1.0)?, red)
             .object(Sphere::new(Vec3::new(1.0, 1.0, 0.0), 1e-9)?, Material::DEFAULT)
             .object(Plane::new(Vec3::ZERO, Vec3::new(1.0, 2.0, -3.0))?, pattern)
             .object(Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y * 1e9])?, Material::DEFAULT)
+            .object(floor, Stripes::new(dark, white, 2.0)?)
+            .object(floor, Gradient::new(dark, white, 2.0)?)
+            .object(floor, Noise::new(dark, white, 2.0)?)
             .build()?)
     };
     let built = built().unwrap_or_else(|error| panic!("{error}"));

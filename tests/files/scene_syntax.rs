@@ -14,8 +14,14 @@ Scene(
     camera: (eye: (0, 1.5, 6), target: [0, 0.7, 0], up: (0, 1, 0), focal_length: 2, width: 3, height: 2, shift: (0, 0.1), tilt: (5, -10)),
     views: [(eye: (1, 2, 3), target: (0, 0, 0)), (eye: [0, 9, 0], target: [0, 0, 0], up: (0, 0, 1), vertical_fov: 30)],
     background: Gradient(bottom: "#fff", top: "SteelBlue"), ambient: (0.1, 1e-2, 0x1),
-    lights: [Point(position: (4, 6, 5), color: Some("white"), intensity: 60_0, falloff: InverseSquare)],
-    materials: { "floor": Checker(a: "#dddddd", b: 0.2, size: 1), r#"ball"#: Diffuse(reflectance: (1, 0.5, 0)) },
+    lights: [
+        Point(position: (4, 6, 5), color: Some("white"), intensity: 60_0, falloff: InverseSquare),
+        Spot(position: (4, 6, 5), target: [0, 1, 0], angle: 30, softness: None), Sun(direction: (1, 2, 3)),
+    ],
+    materials: {
+        "floor": Checker(a: "#dddddd", b: 0.2, size: 1), r#"ball"#: Diffuse(reflectance: (1, 0.5, 0)),
+        "planks": Stripes(width: 2), "wall": Gradient(from: "red", to: 0.5), "moss": Noise(a: "olive", size: 0.5),
+    },
     objects: (
         Sphere(center: (0, 1, 0), radius: 1, material: "ball"), /* a /* nested */ comment */
         Plane(point: (0, 0, 0), normal: (0, 2, 0), material: "floor"),

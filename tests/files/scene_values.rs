@@ -2,7 +2,8 @@
 
 use glam::{Vec2, Vec3};
 use std::path::Path;
-use termtrace::internals::material::Checker;
+use termtrace::internals::light::{SpotLight, Sun};
+use termtrace::internals::material::{Checker, Noise, Stripes};
 use termtrace::internals::shape::Primitive;
 use termtrace::{
     Background, Camera, Falloff, Light, LinearRgb, Material, Object, Plane, PointLight, Pose, Scene, Sphere, Srgb8,
@@ -103,6 +104,36 @@ fn lights_multiply_color_by_intensity() {
     let expected =
         [light(LinearRgb::grey(1.0), Falloff::InverseSquare), light(LinearRgb::new(4.0, 2.0, 0.0), Falloff::None)];
     assert_eq!(lights, expected);
+}
+
+#[test]
+fn spots_and_suns_are_white_by_default() {
+    let lights = scene(
+        "lights: [
+            Spot(position: (1, 2, 3), target: (1, 0, 3)),
+            Spot(position: (1, 2, 3), target: (1, 0, 3), angle: 40, softness: 0.2, color: 1, intensity: 1, falloff: InverseSquare),
+            Sun(direction: (0, 4, 3)), Sun(direction: (0, 40, 30), color: \"white\", intensity: 1),
+        ]",
+    )
+    .lights()
+    .to_vec();
+    let [position, target] = [Vec3::new(1.0, 2.0, 3.0), Vec3::new(1.0, 0.0, 3.0)];
+    let spot = Light::from(SpotLight::new(position, target, LinearRgb::grey(1.0)).expect("a light"));
+    let sun = Light::from(Sun::new(Vec3::new(0.0, 0.8, 0.6), LinearRgb::grey(1.0)).expect("a light"));
+    assert_eq!(lights[..2], [spot, spot]);
+    assert_eq!(lights[2], lights[3]);
+    assert_eq!(lights[2], sun);
+}
+
+#[test]
+fn patterns_are_grey_by_default() {
+    let plane = |material: &str| format!("Plane(point: (0, 0, 0), normal: (0, 1, 0), material: {material})");
+    let scene = scene(&format!("objects: [{}, {}]", plane("Stripes()"), plane("Noise()")));
+    let (light, dark) = (srgb(0xdd, 0xdd, 0xdd), srgb(0x33, 0x33, 0x33));
+    let stripes = Stripes::new(light, dark, 1.0).expect("a pattern");
+    let noise = Noise::new(light, dark, 1.0).expect("a pattern");
+    let expected = [Material::from(stripes), Material::from(noise)];
+    assert_eq!(scene.objects().iter().map(|object| object.material).collect::<Vec<_>>(), expected);
 }
 
 #[test]
@@ -250,10 +281,18 @@ fn a_mesh_without_a_visible_size_is_an_error() {
 fn extreme_values_make_a_picture() {
     let text = "(
         camera: (eye: (1e9, 1e9, 1e9), target: (-1e9, 0, 1e9), up: (0, 1e-8, 0), vertical_fov: 179.9, shift: (1000, -1000)),
-        lights: [Point(position: (1e9, 1, 1e9), color: 1e12, intensity: 1e12), Point(position: (0, 0, 0))],
+        lights: [
+            Point(position: (1e9, 1, 1e9), color: 1e12, intensity: 1e12), Point(position: (0, 0, 0)),
+            Spot(position: (1e9, 1, 1e9), target: (1e9, 1, 0), angle: 180, softness: 0, color: 1e12, intensity: 1e12),
+            Spot(position: (0, 0, 0), target: (0, 0, 1e-9), angle: 0.001, softness: 1),
+            Sun(direction: (1e9, 1e-9, -1e9), color: 1e12, intensity: 1e12),
+        ],
         objects: [
             Sphere(center: (-1e9, 1e9, 0), radius: 1e9), Sphere(center: (0, 0, 0), radius: 1e-9),
             Plane(point: (0, -1e9, 0), normal: (1e9, 1e-9, -1e9), material: Checker(size: 1e-9)),
+            Plane(point: (0, 0, 1e9), normal: (0, 1, 0), material: Stripes(width: 1e-9)),
+            Plane(point: (0, 1e9, 0), normal: (0, 1, 1), material: Gradient(from: 0, to: 1, length: 1e-9)),
+            Plane(point: (1e9, 0, 0), normal: (1, 1, 0), material: Noise(size: 1e-9)),
         ],
         exposure: 1e6, tone_curve: Filmic,
     )";

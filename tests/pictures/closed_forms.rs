@@ -6,14 +6,14 @@ use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 use std::num::NonZeroU32;
 use termtrace::internals::hit::any_hit;
-use termtrace::internals::light::LightSource;
-use termtrace::internals::material::Checker;
+use termtrace::internals::light::{LightSource, SpotLight, Sun};
+use termtrace::internals::material::{Checker, Gradient, Noise, Stripes};
 use termtrace::internals::ray::{Interval, Probe, Ray};
 use termtrace::internals::shade::{incidence, shadow_ray};
 use termtrace::internals::shape::{Side, Surface};
 use termtrace::{
-    Background, Camera, Falloff, Framebuffer, LinearRgb, Material, Object, Plane, PointLight, Pose, Resolution, Scene,
-    Sphere, ToneCurve, ViewRectangle, render, tone,
+    Background, Camera, Falloff, Framebuffer, Light, LinearRgb, Material, Object, Plane, PointLight, Pose, Resolution,
+    Scene, Sphere, ToneCurve, ViewRectangle, render, tone,
 };
 
 /// Returns a camera that sees `fov` degrees vertically.
@@ -38,7 +38,7 @@ fn floor() -> Object {
     Object::new(Plane::new(Vec3::ZERO, Vec3::Y).expect("a plane"), grey())
 }
 
-fn lit(camera: Camera, objects: Vec<Object>, lights: Vec<PointLight>) -> Scene {
+fn lit(camera: Camera, objects: Vec<Object>, lights: impl IntoIterator<Item: Into<Light>>) -> Scene {
     let mut scene = Scene::new(camera, objects);
     scene = scene.with_lights(lights);
     scene
@@ -106,6 +106,60 @@ fn a_light_without_falloff_is_as_strong_anywhere() {
         let lamp = light([4.0 * scale, 3.0 * scale, 0.0], 1.5).with_falloff(Falloff::None);
         let scene = lit(camera([0.0, 2.0, 2.0], [0.0, 0.0, 0.0], 40.0), vec![floor()], vec![lamp]);
         assert_close(seen(&scene), 0.5 * 1.5 * 0.6);
+    }
+}
+
+/// The light of a sun is rho I n.l on every surface that faces it.
+///
+/// An object blocks it at any distance.
+#[test]
+fn a_sun_shines_everywhere_alike() {
+    let sun = |direction: [f32; 3]| Sun::new(Vec3::from(direction), LinearRgb::grey(1.5)).expect("a light");
+    for (direction, cosine) in
+        [([0.0, 7.0, 0.0], 1.0), ([3.0, 4.0, 0.0], 0.8), ([-4.0, 3.0, 0.0], 0.6), ([1.0, -1.0, 0.0], 0.0)]
+    {
+        for x in [0.0, 100.0, -30.0] {
+            let view = camera([x, 2.0, 2.0], [x, 0.0, 0.0], 40.0);
+            let expected = 0.5 * 1.5 * cosine;
+            assert_close(seen(&lit(view, vec![floor()], [sun(direction)])), expected);
+        }
+    }
+    let far = |distance: f32| {
+        let ball = Sphere::new(Vec3::new(0.6, 0.8, 0.0) * distance, 0.1 * distance).expect("a sphere");
+        let view = camera([0.0, 0.1, 0.2], [0.0, 0.0, 0.0], 40.0);
+        seen(&lit(view, vec![floor(), Object::new(ball, grey())], [sun([3.0, 4.0, 0.0])]))
+    };
+    assert_eq!([2.0, 1e4, 1e8].map(far), [0.0; 3]);
+}
+
+/// On a floor below a spot the cosine of the angle to the axis is that of n.l.
+///
+/// Inside the cone the light is rho I h / (h^2 + r^2)^(3/2), as of a point; between the two angles it is multiplied by a
+/// smooth step, which is 1/2 where the cosine is in the middle; outside it is dark.
+#[test]
+fn a_spot_lights_a_cone() {
+    let (h, degrees, softness) = (3.0_f64, 50.0_f32, 0.4_f32);
+    let spot = SpotLight::new(Vec3::Y * 3.0, Vec3::ZERO, LinearRgb::grey(10.0)).expect("a light");
+    let spot = spot.with_cone(degrees, softness).expect("a cone");
+    let cosine_at = |half_angle: f64| libm::cos(half_angle.to_radians());
+    let (outer, inner) = (cosine_at(25.0), cosine_at(15.0));
+    // The distance from the foot of the light at which the angle has a cosine.
+    let r_of = |cosine: f64| h * (1.0 / (cosine * cosine) - 1.0).sqrt();
+    for (cosine, share) in [
+        (1.0, 1.0),
+        (cosine_at(8.0), 1.0),
+        (cosine_at(14.9), 1.0),
+        (inner - 0.25 * (inner - outer), 27.0 / 32.0),
+        (0.5 * (inner + outer), 0.5),
+        (outer + 0.25 * (inner - outer), 5.0 / 32.0),
+        (cosine_at(25.1), 0.0),
+        (cosine_at(60.0), 0.0),
+    ] {
+        let r = r_of(cosine);
+        let view = camera([r as f32, 1.0, 1.5], [r as f32, 0.0, 0.0], 40.0);
+        let found = seen(&lit(view, vec![floor()], [spot]));
+        let expected = share * 0.5 * 10.0 * h / libm::pow(h * h + r * r, 1.5);
+        assert!((found - expected).abs() < 2e-4 * expected.max(1e-3), "at {r}: {found}, not {expected}");
     }
 }
 
@@ -330,6 +384,59 @@ fn edges_of_a_checker() {
         let mut scene = Scene::new(camera([x, 1.0, z + 1e-3], [x, 0.0, z], 10.0), vec![board.clone()]);
         scene = scene.with_ambient(LinearRgb::grey(1.0)).expect("light");
         assert_close(seen(&scene), 0.1 + 0.8 * of_a);
+    }
+}
+
+/// Returns the reflectance of a floor in one pixel that looks straight down at (x, z), with the
+/// pixel's width.
+fn straight_down(material: impl Into<Material>, [x, z]: [f32; 2], fov: f32) -> (f64, f64) {
+    let floor = Object::new(Plane::new(Vec3::ZERO, Vec3::Y).expect("a plane"), material);
+    let mut scene = Scene::new(camera([x, 1.0, z + 1e-3], [x, 0.0, z], fov), vec![floor]);
+    scene = scene.with_ambient(LinearRgb::grey(1.0)).expect("light");
+    (seen(&scene), 2.0 * tan_of_degrees(f64::from(fov) / 2.0))
+}
+
+/// Stripes are across the x axis; a pixel over an edge has the mean of its parts.
+#[test]
+fn stripes_and_their_edges() {
+    let stripes = Stripes::new(LinearRgb::grey(0.9), LinearRgb::grey(0.1), 2.0).expect("a pattern");
+    let share = |distance: f64, width: f64| 0.5 - distance / width;
+    for z in [0.0, 7.3] {
+        for (x, expected) in [(0.5, 0.9), (1.9, 0.9), (2.1, 0.1), (3.9, 0.1), (4.1, 0.9), (-0.1, 0.1), (-2.5, 0.9)] {
+            assert_close(straight_down(stripes, [x, z], 1.0).0, expected);
+        }
+        for (x, distance) in [(2.0, 0.0), (2.02, 0.02), (1.98, -0.02)] {
+            let (found, width) = straight_down(stripes, [x, z], 10.0);
+            assert_close(found, 0.1 + 0.8 * share(distance, width));
+        }
+    }
+}
+
+/// A gradient is along the z axis; at its ends a pixel has the mean of both sides.
+#[test]
+fn a_gradient_and_its_ends() {
+    let gradient = Gradient::new(LinearRgb::grey(0.1), LinearRgb::grey(0.9), 2.0).expect("a pattern");
+    for x in [0.0, -3.7] {
+        for (z, share) in [(0.5, 0.25), (1.5, 0.75), (2.5, 0.75), (3.5, 0.25), (-0.5, 0.25), (-1.5, 0.75)] {
+            assert_close(straight_down(gradient, [x, z], 1.0).0, 0.1 + 0.8 * share);
+        }
+        for (z, is_end) in [(0.0, false), (2.0, true)] {
+            let (found, width) = straight_down(gradient, [x, z], 10.0);
+            // The mean distance from the end of a pixel in whose middle the end is.
+            let off = 0.25 * width / 2.0;
+            assert_close(found, 0.1 + 0.8 * if is_end { 1.0 - off } else { off });
+        }
+    }
+}
+
+/// Noise that is finer than a pixel is the mean of both colours.
+#[test]
+fn fine_noise_is_its_mean() {
+    let noise = |size: f32| Noise::new(LinearRgb::grey(0.9), LinearRgb::grey(0.1), size).expect("a pattern");
+    for place in [[0.0, 0.0], [12.3, -4.5], [-700.1, 33.3]] {
+        assert_close(straight_down(noise(0.01), place, 10.0).0, 0.5);
+        let coarse = straight_down(noise(1.0), place, 1.0).0;
+        assert!((0.1..=0.9).contains(&coarse) && (coarse - 0.5).abs() > 1e-3, "{coarse}");
     }
 }
 

@@ -9,7 +9,8 @@ use std::io::Cursor;
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use termtrace::internals::material::Checker;
+use termtrace::internals::light::{SpotLight, Sun};
+use termtrace::internals::material::{Checker, Gradient, Noise, Stripes};
 use termtrace::internals::mesh_file::MeshFile;
 use termtrace::internals::render::ProgressiveRender;
 use termtrace::internals::{cell, control, maps, record};
@@ -176,6 +177,31 @@ fn scenes() -> Vec<Case> {
         }),
         ("checker of size 0", With("size is 0: the size of a square must be greater than 0"), || {
             made(Checker::new(LinearRgb::BLACK, LinearRgb::grey(1.0), 0.0))
+        }),
+        ("stripes of width NaN", With(NOT_FINITE), || {
+            made(Stripes::new(LinearRgb::BLACK, LinearRgb::grey(1.0), f32::NAN))
+        }),
+        ("gradient of length 0", With("length is 0: the length of a gradient must be greater than 0"), || {
+            made(Gradient::new(LinearRgb::BLACK, LinearRgb::grey(1.0), 0.0))
+        }),
+        ("noise of infinite size", With(NOT_FINITE), || {
+            made(Noise::new(LinearRgb::BLACK, LinearRgb::grey(1.0), f32::INFINITY))
+        }),
+        ("sun in no direction", With("direction is (0, 0, 0): the direction must have a length"), || {
+            made(Sun::new(Vec3::ZERO, LinearRgb::grey(9.0)))
+        }),
+        ("spot at its target", With("target is (1, 1, 1): position and target must be different points"), || {
+            made(SpotLight::new(Vec3::ONE, Vec3::ONE, LinearRgb::grey(9.0)))
+        }),
+        ("spot with a cone of NaN degrees", With(NOT_FINITE), || {
+            made(
+                SpotLight::new(Vec3::ONE, Vec3::ZERO, LinearRgb::grey(9.0))
+                    .and_then(|spot| spot.with_cone(f32::NAN, 0.5)),
+            )
+        }),
+        ("spot at the surface", With("16"), || {
+            let light = SpotLight::new(Vec3::Z, Vec3::ZERO, LinearRgb::grey(9.0)).expect("a light");
+            shot(&scene().with_lights([light]), Resolution::square(4, 4))
         }),
         ("light at NaN", With(NOT_FINITE), || made(PointLight::new(Vec3::NAN, LinearRgb::grey(9.0)))),
         ("negative light", With("intensity is (-5, -5, -5): light must not be negative"), || {

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
-use termtrace::internals::material::Checker;
+use termtrace::internals::material::{Checker, Gradient, Noise, Stripes};
 use termtrace::internals::progress::Cancellation;
 use termtrace::internals::render::{Executor, ProgressiveRender, render_by};
 use termtrace::{
@@ -135,9 +135,17 @@ fn a_refinement_can_be_cancelled() {
 
 /// Returns a checkered floor to the horizon, lit by ambient light alone.
 fn floor(size: f32) -> Scene {
+    floor_of(Checker::new(LIGHT, DARK, size).expect("a pattern"))
+}
+
+/// The colours of the floors.
+const LIGHT: LinearRgb = LinearRgb::grey(0.9);
+const DARK: LinearRgb = LinearRgb::grey(0.1);
+
+/// Returns a floor to the horizon, lit by ambient light alone.
+fn floor_of(material: impl Into<Material>) -> Scene {
     let pose = Pose { eye: Vec3::new(0.3, 1.0, 0.0), target: Vec3::new(0.9, 0.8, -3.0), up: Vec3::Y };
     let camera = Camera::new(pose, ViewRectangle::from_vertical_fov(1.0).unwrap()).unwrap();
-    let material = Material::from(Checker::new(LinearRgb::grey(0.9), LinearRgb::grey(0.1), size).expect("a pattern"));
     let mut scene = Scene::new(camera, vec![Object::new(Plane::new(Vec3::ZERO, Vec3::Y).expect("a plane"), material)]);
     scene = scene.with_ambient(LinearRgb::grey(1.0)).expect("light");
     scene
@@ -145,9 +153,16 @@ fn floor(size: f32) -> Scene {
 
 /// Far away a pattern is its mean: no pixel has the colour of one square, and neighbours are alike.
 #[test]
-fn far_checkers_are_grey() {
-    let scene = floor(0.02);
-    let light = render(&scene, scene.camera(), SIZE, NonZeroU32::MIN);
+fn far_patterns_are_grey() {
+    are_grey_far_away(&floor(0.02));
+    are_grey_far_away(&floor_of(Stripes::new(LIGHT, DARK, 0.01).expect("a pattern")));
+    are_grey_far_away(&floor_of(Gradient::new(LIGHT, DARK, 0.02).expect("a pattern")));
+    are_grey_far_away(&floor_of(Noise::new(LIGHT, DARK, 0.02).expect("a pattern")));
+}
+
+#[track_caller]
+fn are_grey_far_away(scene: &Scene) {
+    let light = render(scene, scene.camera(), SIZE, NonZeroU32::MIN);
     let rows = |y: u32| (0..80).map(move |x| (x, y)).collect::<Vec<_>>();
     let floor_from = (0..48).find(|&y| light.pixel(0, y) != LinearRgb::BLACK).expect("there is a floor");
     for y in floor_from + 1..floor_from + 8 {
@@ -163,19 +178,29 @@ fn far_checkers_are_grey() {
 /// The truth is 1,024 rays that each see a point.
 #[test]
 fn a_filtered_pattern_is_near_the_truth() {
+    let squares = |x: f32, z: f32| if (x.floor() + z.floor()) % 2.0 == 0.0 { 0.9 } else { 0.1 };
+    let stripes = |x: f32, _: f32| if x.floor() % 2.0 == 0.0 { 0.9 } else { 0.1 };
+    let gradient = |_: f32, z: f32| 0.1 + 0.8 * (z.rem_euclid(2.0) - 1.0).abs();
     for size in [0.3, 1.0] {
-        let scene = floor(size);
-        let truth = truth(&scene, size);
-        let one = psnr(&scene, &render(&scene, scene.camera(), SIZE, NonZeroU32::MIN), &truth);
-        let best = psnr(&scene, &render(&scene, scene.camera(), SIZE, Sampling::BEST), &truth);
-        println!("squares of {size}: one ray {one:.1} dB, best {best:.1} dB");
-        assert!(one > 22.0, "one ray of squares of {size}: {one} dB");
-        assert!(best > 30.0, "squares of {size}: {best} dB");
+        is_near_the_truth("squares", size, &floor(size), squares);
+        is_near_the_truth("stripes", size, &floor_of(Stripes::new(LIGHT, DARK, size).expect("a pattern")), stripes);
+        is_near_the_truth("gradient", size, &floor_of(Gradient::new(LIGHT, DARK, size).expect("a pattern")), gradient);
     }
 }
 
+/// Compares a picture with the truth, by the reflectance at points of a pattern of size 1.
+#[track_caller]
+fn is_near_the_truth(pattern: &str, size: f32, scene: &Scene, reflectance: impl Fn(f32, f32) -> f32) {
+    let truth = truth(scene, size, reflectance);
+    let one = psnr(scene, &render(scene, scene.camera(), SIZE, NonZeroU32::MIN), &truth);
+    let best = psnr(scene, &render(scene, scene.camera(), SIZE, Sampling::BEST), &truth);
+    println!("{pattern} of {size}: one ray {one:.1} dB, best {best:.1} dB");
+    assert!(one > 22.0, "one ray of {pattern} of {size}: {one} dB");
+    assert!(best > 30.0, "{pattern} of {size}: {best} dB");
+}
+
 /// Returns the truth by the lecture's formula for the plane, with 32 times 32 samples of a pixel.
-fn truth(scene: &Scene, size: f32) -> Framebuffer {
+fn truth(scene: &Scene, size: f32, reflectance: impl Fn(f32, f32) -> f32) -> Framebuffer {
     let eye_rays = scene.camera().eye_rays(SIZE.aspect_ratio());
     let shade = |x: f32, y: f32| {
         let ray = eye_rays.through(x / 80.0, (48.0 - y) / 48.0);
@@ -184,7 +209,7 @@ fn truth(scene: &Scene, size: f32) -> Framebuffer {
             return 0.0;
         }
         let point = ray.at(t) / size;
-        if (point.x.floor() + point.z.floor()) % 2.0 == 0.0 { 0.9 } else { 0.1 }
+        reflectance(point.x, point.z)
     };
     let mut truth = Framebuffer::new(SIZE);
     for (at, pixel) in (0..).zip(truth.pixels_mut()) {
