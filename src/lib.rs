@@ -193,7 +193,7 @@
 //!   for tests).
 //!   Surfaces whose Rust form may still change are hidden: scenes with them are files. A new material is a file under
 //!   `material/` with a `Reflecting` type and a line in the table of `material`, and a new light a file under `light/`
-//!   with a `LightSource` and a line in the table of `light` (`material::stripes` and `light::sun`, for tests).
+//!   with a `LightSource` and a line in the table of `light` (`material::stripes` and `light::sun` are short ones).
 //! - No crate reads scenes or meshes: `scene_text` and `mesh_file` list those that were tried, and where each failed.
 //! - No fixed epsilon: see `SurfacePoint::ray_origin`.
 //! - No effect of the tree's order on the picture: see `Bounds::crossed`.

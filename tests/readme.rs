@@ -61,9 +61,22 @@ fn every_scene_and_path_loads() {
 fn every_kind_of_item_is_shown() {
     let page = page("docs/scenes.md");
     let scenes = blocks(&page, "ron").concat();
-    for word in
-        ["Point(", "Sphere(", "Plane(", "Diffuse(", "Checker(", "Gradient(", "focal_length", "vertical_fov", "shift"]
-    {
+    for word in [
+        "Point(",
+        "Spot(",
+        "Sun(",
+        "Sphere(",
+        "Plane(",
+        "Diffuse(",
+        "Checker(",
+        "Stripes(",
+        "Gradient(bottom",
+        "Gradient(from",
+        "Noise(",
+        "focal_length",
+        "vertical_fov",
+        "shift",
+    ] {
         assert!(scenes.contains(word), "no scene of docs/scenes.md shows {word}");
     }
 }
