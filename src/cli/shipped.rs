@@ -52,6 +52,7 @@ shipped! {
     "two_lights",
     "three_lights",
     "glass",
+    "lantern",
     "teapots" ["teapot.obj"],
     "crowd" ["teapot.obj"],
 }
