@@ -211,6 +211,7 @@ bare\t'The lecture\'s barest picture: no shadows, and light that does not decrea
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
 glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
+lantern\t'A lantern at dusk: a spot over a deck, a low sun, and patterns.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is frame" -a '(__termtrace_scenes)'
@@ -290,6 +291,7 @@ bare\t'The lecture\'s barest picture: no shadows, and light that does not decrea
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
 glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
+lantern\t'A lantern at dusk: a spot over a deck, a low sun, and patterns.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is record" -a '(__termtrace_scenes)'
@@ -338,6 +340,7 @@ bare\t'The lecture\'s barest picture: no shadows, and light that does not decrea
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
 glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
+lantern\t'A lantern at dusk: a spot over a deck, a low sun, and patterns.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is explain" -a '(__termtrace_scenes)'
@@ -380,6 +383,7 @@ bare\t'The lecture\'s barest picture: no shadows, and light that does not decrea
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
 glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
+lantern\t'A lantern at dusk: a spot over a deck, a low sun, and patterns.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is check" -a '(__termtrace_scenes)'
@@ -425,6 +429,7 @@ bare\t'The lecture\'s barest picture: no shadows, and light that does not decrea
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
 glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
+lantern\t'A lantern at dusk: a spot over a deck, a low sun, and patterns.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is describe" -a '(__termtrace_scenes)'
@@ -466,6 +471,7 @@ bare\t'The lecture\'s barest picture: no shadows, and light that does not decrea
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
 glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
+lantern\t'A lantern at dusk: a spot over a deck, a low sun, and patterns.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is bench" -a '(__termtrace_scenes)'
@@ -668,6 +674,7 @@ bare\t'The lecture\'s barest picture: no shadows, and light that does not decrea
 two_lights\t'Two lights of two colours, warm and cold, on white surfaces.'
 three_lights\t'Red, green and blue light on a white sphere in front of a white wall: light adds.'
 glass\t'A glass ball, a golden ball and a silver ring on a polished floor.'
+lantern\t'A lantern at dusk: a spot over a deck, a low sun, and patterns.'
 teapots\t'Two teapots from one mesh, as in its file and mirrored, and a triangle that leans on nothing.'
 crowd\t'Ten thousand teapots, which share the triangles of one.'"
 complete -c termtrace -n "__termtrace_is ''" -a '(__termtrace_scenes)'
