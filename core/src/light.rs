@@ -51,7 +51,7 @@ pub trait LightSource: InSceneFile + Copy {
         "V I max(0, n.l)"
     }
 
-    /// Returns the share of the light that the cone of a spot leaves in a direction.
+    /// Returns the share of the light that a spot's cone lets through in a direction.
     ///
     /// `l` is the unit vector to the light. `None` for a light without a cone.
     fn cone_share(&self, _l: Vec3) -> Option<f32> {

@@ -189,7 +189,7 @@ impl Material {
     }
 }
 
-/// Returns the sums of two reflectances, each multiplied by its share.
+/// Returns the sum of two reflectances, each multiplied by its share.
 #[inline(always)]
 fn mixed<N: Number>([a, b]: [LinearRgb; 2], [of_a, of_b]: [N; 2]) -> [N; 3] {
     let ([r0, g0, b0], [r1, g1, b1]) = (channels::<N>(a), channels::<N>(b));

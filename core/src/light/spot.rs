@@ -20,7 +20,7 @@ pub struct SpotLight {
 /// The cone of a spot.
 ///
 /// The share of the light is a smooth step of the cosine of the angle to the axis.
-// Stored as 1 minus cosines, which have many digits also in a narrow cone, where cosines are near 1.
+// Stores 1 minus each cosine, which keeps its precision in a narrow cone, where the cosine is near 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cone {
     /// The angle of the whole cone in degrees.
@@ -85,8 +85,9 @@ impl SpotLight {
         Self { source: self.source.with_falloff(falloff), ..self }
     }
 
-    /// Returns the shares of the light that the cone leaves at points with these unit vectors to
-    /// the light.
+    /// Returns the share of the light that the cone lets through.
+    ///
+    /// `l` is the unit vector to the light.
     #[inline(always)]
     fn share<N: Number>(&self, l: Vector<N>) -> N {
         let [zero, half, one, two, three] = [0.0, 0.5, 1.0, 2.0, 3.0].map(N::splat);

@@ -19,7 +19,8 @@ pub struct Noise {
 const SIZE: &str = "size of a spot";
 
 /// The octaves of the noise: each has cells of half the size and half the weight of the one before.
-// The shifts keep apart cells with the same random numbers, and the edges of cells, along which the noise is flat.
+// The shifts keep the octaves from having equal random numbers or cell edges, where the noise is flat, at the same
+// places.
 const OCTAVES: [Octave; 3] = [
     Octave { cells: 1.0, weight: 4.0 / 7.0, shift: 0.0 },
     Octave { cells: 2.0, weight: 2.0 / 7.0, shift: 37.37 },
@@ -90,8 +91,8 @@ fn noise<N: Number>([x, y]: [N; 2], footprint: [N; 2]) -> N {
 }
 
 /// Returns the share of the noise that remains in its mean over a number of cells along one axis.
-// The best estimate of the mean from the middle: the correlation of the middle with all places of the interval. That is
-// 1 - cells / 4 up to two cells, and tends to 0 then.
+// The mean is estimated from the value in the middle, by their correlation: 1 - cells / 4 up to two cells, and near 0
+// for more.
 #[inline(always)]
 fn remaining<N: Number>(cells: N) -> N {
     // For NaN `max` returns 0.
@@ -105,7 +106,9 @@ fn remaining<N: Number>(cells: N) -> N {
 fn cell_noise<N: Number>([x, y]: [N; 2]) -> N {
     let [one, two, three] = [1.0, 2.0, 3.0].map(N::splat);
     let (left, bottom) = (x.floor(), y.floor());
-    let (x, y) = (x - left, y - bottom);
+    // For an infinite place the difference is NaN, for which `max` returns 0.
+    let zero = N::splat(0.0);
+    let (x, y) = ((x - left).max(zero), (y - bottom).max(zero));
     let (of_right, of_top) = (x * x * (three - two * x), y * y * (three - two * y));
     let (of_left, of_bottom) = (one - of_right, one - of_top);
     let [bottom_left, bottom_right, top_left, top_right] = N::map_lanes([left, bottom], corners);
@@ -115,7 +118,7 @@ fn cell_noise<N: Number>([x, y]: [N; 2]) -> N {
 /// Returns the random numbers at the four corners of a cell, whose lower left corner is at
 /// integers.
 fn corners([left, bottom]: [f32; 2]) -> [f32; 4] {
-    // The conversion saturates. At such distances a cell is smaller than the distance of neighbouring f32.
+    // The conversion saturates, but so far away neighbouring f32 are more than a cell apart.
     let (left, bottom) = (left as i32 as u32, bottom as i32 as u32);
     let (right, top) = (left.wrapping_add(1), bottom.wrapping_add(1));
     let [bottom, top] = [bottom, top].map(scrambled);
@@ -126,8 +129,7 @@ fn corners([left, bottom]: [f32; 2]) -> [f32; 4] {
     })
 }
 
-/// Returns a number that each bit of `number` changes in an irregular way: the hash `lowbias32` by
-/// C. Wellons.
+/// Returns a hash of `number`, by C. Wellons's `lowbias32`.
 #[inline(always)]
 fn scrambled(number: u32) -> u32 {
     // Without the sum, the hash of 0 would be 0.

@@ -40,7 +40,7 @@ pub(super) fn mean_of_triangle_wave<N: Number>(middle: N, width: N) -> N {
 
 /// Returns the integral from 0 of the triangle wave less its mean of 1/2.
 ///
-/// It has the wave's period, so that far from 0 a difference of two integrals is as exact as near it.
+/// It is periodic like the wave, so that differences of two integrals stay exact far from 0.
 #[inline(always)]
 fn triangle_wave_integral<N: Number>(x: N) -> N {
     let (half, one, two) = (N::splat(0.5), N::splat(1.0), N::splat(2.0));
@@ -62,7 +62,8 @@ fn triangle_wave<N: Number>(x: N) -> N {
     one - (in_period - one).abs()
 }
 
-/// Returns whether an integer is even. In f32 all integers above 2^24 are.
+/// Returns whether an integer is even.
+// In f32 all integers above 2^24 are even.
 #[inline(always)]
 fn is_even<N: Number>(whole: N) -> N::Mask {
     let half = whole * N::splat(0.5);
