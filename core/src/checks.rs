@@ -184,7 +184,7 @@ pub(crate) fn reflectance(channel: f64) -> Result<f32, Message> {
 /// Checks a number of reflections and refractions.
 #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have bounces"))]
 pub(crate) fn bounces(count: f64) -> Result<u32, Message> {
-    // Each surface of glass may double the number of rays.
+    // Glass may split a ray in two at each bounce; `shade::bounces` bounds the number of rays.
     const MAX_BOUNCES: f64 = 16.0;
     if (0.0..=MAX_BOUNCES).contains(&count) && libm::trunc(count) == count {
         Ok(count as u32)

@@ -1,7 +1,8 @@
 //! Finishes: what a surface does with light besides reflecting it diffusely.
 //!
-//! A material says which colours a surface reflects, and its finish how: in all directions (the lecture), as a mirror,
-//! or through it. Mirrors and glass follow Snell's law and Fresnel's equations (Hecht, Optics, chapter 4).
+//! A material says which light a surface reflects, and its finish says how: diffusely (as in the lecture), as a
+//! mirror, or by letting light through. Mirrors and glass follow Snell's law and Fresnel's equations (Hecht, Optics,
+//! chapter 4).
 
 use crate::checks::{self, Message, SceneFault};
 use crate::ray::Ray;
@@ -11,7 +12,7 @@ use glam::Vec3;
 
 /// The finish of an object.
 ///
-/// R is the reflectance of the object's material, and F the part of the light that Fresnel's equations reflect.
+/// R is the reflectance of the object's material, and F the mirrored part of the light by Fresnel's equations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Finish {
     /// Reflects diffusely, by R: the lecture's assumption.
@@ -64,12 +65,12 @@ impl Finish {
         Ok(Self::Glowing { strength: checks::checked_number("strength", strength, strength_of_glow)? })
     }
 
-    /// Returns whether rays go on from the surface, or light comes from it.
+    /// Returns whether the surface only reflects diffusely.
     pub(crate) fn is_matte(self) -> bool {
         self == Self::Matte
     }
 
-    /// Returns the part of the light that is mirrored towards the origin of a ray from outside.
+    /// Returns the part of the light that the surface mirrors, for a ray from outside.
     pub(crate) fn mirrored_part(self, ray: &Ray, normal: Vec3) -> f32 {
         match self {
             Self::Matte | Self::Glowing { .. } => 0.0,
@@ -107,7 +108,8 @@ pub fn fresnel(cosine: f32, ratio: f32) -> f32 {
 
 /// Returns the cosine of the angle of refraction, or `None` for total internal reflection.
 fn refracted_cosine(cosine: f32, ratio: f32) -> Option<f32> {
-    let squared = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
+    // This form is exact for a ratio of 1, and keeps small cosines, which `1 - cosine * cosine` loses.
+    let squared = (1.0 - ratio * ratio) + ratio * ratio * (cosine * cosine);
     (squared >= 0.0).then(|| squared.sqrt())
 }
 
@@ -132,17 +134,17 @@ pub fn refract(direction: Vec3, normal: Vec3, ratio: f32) -> Option<Vec3> {
 /// Returns the cosine of the angle of incidence, from 0 to 1.
 pub fn cosine_of_incidence(direction: Vec3, normal: Vec3) -> f32 {
     let cosine = -direction.dot(normal) / direction.dot(direction).sqrt();
-    // `clamp` keeps NaN, which the comparisons of callers then take for no light.
+    // `clamp` keeps NaN, for which `refracted_cosine` returns `None`: total reflection.
     cosine.clamp(0.0, 1.0)
 }
 
 /// Checks an index of refraction.
-// Diamond has 2.4, germanium 4.0 in the infrared; below 1 no transparent solid is.
+// Diamond has 2.4, and germanium 4.0 in the infrared. No transparent solid has less than 1.
 fn refractive_index(index: f64) -> Result<f32, Message> {
     if (1.0..=4.0).contains(&index) {
         Ok(index as f32)
     } else {
-        Err("an index of refraction must lie within 1 and 4: water has 1.33, glass 1.5, diamond 2.42".into())
+        Err("an index of refraction must lie between 1 and 4: water has 1.33, glass 1.5, diamond 2.42".into())
     }
 }
 

@@ -311,7 +311,7 @@ impl Scene {
         self.checked.bounces
     }
 
-    /// Returns whether every object reflects only diffusely, so that no ray goes on from a surface.
+    /// Returns whether every object is matte, so that no ray bounces.
     pub(crate) fn is_all_matte(&self) -> bool {
         self.checked.all_matte
     }

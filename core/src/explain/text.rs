@@ -178,7 +178,9 @@ impl Explanation {
                 "L' = light of the mirrored ray".to_owned(),
                 "L'' = light of the refracted ray".to_owned(),
             ]),
-            Finish::Glowing { strength } => lines.push(format!("glowing: L = {strength} R")),
+            Finish::Glowing { strength } => {
+                lines.extend(["glowing: L = s R".to_owned(), format!("s    {}", padded_number(strength))]);
+            }
         }
         lines.push(light_line("R", shaded.reflectance));
     }

@@ -101,7 +101,9 @@ impl<'a> Render<'a> {
         Self { threads: Some(count.clamp(1, Self::MAX_THREADS)), ..self }
     }
 
-    /// Sets a token that cancels the render, which then ends within the time of tracing 256 rays.
+    /// Sets a token that cancels the render, which then ends after at most 256 eye rays.
+    ///
+    /// Each thread finishes the rays of its batch, with those that mirrors and glass make of them.
     #[doc(hidden)]
     pub fn cancelled_by(self, token: &Cancellation) -> Self {
         Self { token: token.clone(), ..self }

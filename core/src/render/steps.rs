@@ -116,7 +116,7 @@ impl Buffers {
         );
     }
 
-    /// Adds the light of rays that go on from mirrors and glass.
+    /// Adds the light of bounced rays.
     ///
     /// Returns the number of traced rays.
     fn add_bounced_light(&mut self, &RenderJob { scene, tiles, .. }: &RenderJob<'_>, batch: &SampleBatch) -> u64 {

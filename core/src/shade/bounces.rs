@@ -1,14 +1,13 @@
-//! Rays that go on from mirrors and glass, and the light that they bring.
+//! Bounced rays, which mirrors and glass reflect and refract, and their light.
 //!
-//! The rays of a batch are followed together, one generation of reflections and refractions after the other, so that
-//! neighbouring rays stay packets. Each ray has a weight, the part of its light that reaches the eye, and a ray whose
-//! weight is too small to be seen ends.
+//! The rays of a batch are traced generation by generation, so that neighbouring rays stay in one packet. Each ray has
+//! a weight, the part of its light that reaches the eye; a ray ends if its weight is too small to be seen.
 
 use super::{EightArriving, EightLights, EightPoints, ShadowRays};
 use crate::color::LinearRgb;
 use crate::finish::{self, Finish};
 use crate::hit::{self, EightHits, Kernel};
-use crate::lanes::{F32x8, LANES};
+use crate::lanes::{F32x8, LANES, Number};
 use crate::ray::{EightRays, Ray};
 use crate::scene::Scene;
 use glam::Vec3;
@@ -17,10 +16,16 @@ use glam::Vec3;
 // A quarter of a step of 8-bit linear light, and so invisible unless what is reflected is brighter than white.
 const MIN_WEIGHT: f32 = 1.0 / 1024.0;
 
-/// A ray that goes on from a surface.
+/// The smallest weight of the weaker of the two rays into which glass splits a ray.
+// The weights of the rays that one eye ray becomes add up to at most 1, so glass makes at most 256 of it.
+const MIN_SPLIT_WEIGHT: f32 = 1.0 / 256.0;
+
+/// A ray that a surface has reflected or refracted.
 #[derive(Clone, Copy, Debug)]
 struct BouncedRay {
     ray: Ray,
+    /// The sum of t from the eye to the ray's origin.
+    t: f32,
     /// The part of the ray's light that reaches the eye.
     weight: LinearRgb,
     /// The index of the eye ray in its batch.
@@ -29,7 +34,7 @@ struct BouncedRay {
     inside: Option<u32>,
 }
 
-/// The arrays of the rays that go on, reused from batch to batch.
+/// The bounced rays of a batch and the results of their steps, in buffers that are reused.
 #[derive(Default)]
 pub struct Bounces {
     current: Vec<BouncedRay>,
@@ -57,9 +62,9 @@ pub struct Generation<'a> {
 }
 
 impl Bounces {
-    /// Replaces the light of eye rays that hit a surface with a [`Finish`].
+    /// Adds the light of bounced rays to that of eye rays.
     ///
-    /// Returns the number of rays that were traced for it.
+    /// Light of surfaces that are not matte is replaced. Returns the number of traced rays.
     ///
     /// `lights` has the diffusely reflected light of `eye`. For `direction_steps` see
     /// [`reflected_light`](super::reflected_light).
@@ -79,12 +84,13 @@ impl Bounces {
             for lane in finished_lanes(scene, points) {
                 let ray = BouncedRay {
                     ray: eye.rays[group].ray(lane),
+                    t: 0.0,
                     weight: LinearRgb::grey(1.0),
                     eye_ray: (group * LANES + lane) as u32,
                     inside: None,
                 };
                 let reflectance = super::lane_light(&self.reflectances.found[group], lane);
-                let surface = Surface::of(scene, points, lane, reflectance);
+                let surface = Surface::of(scene, points, lane, eye.hits[group].t.0[lane], reflectance);
                 let light = surface.light(&ray, super::lane_light(&lights[group], lane), &mut self.next);
                 put(&mut lights[group], lane, light);
             }
@@ -100,7 +106,7 @@ impl Bounces {
         traced
     }
 
-    /// Traces the current generation, adds its light to that of the eye rays, and makes the next.
+    /// Traces the current generation, adds its light to the eye rays, and makes the next one.
     fn trace(&mut self, scene: &Scene, direction_steps: [Vec3; 2], lights: &mut [EightLights]) -> u64 {
         let Self { current, next, rays, hits, points, shadows, arriving, diffuse, reflectances } = self;
         rays.clear();
@@ -111,6 +117,10 @@ impl Bounces {
         }));
         hit::closest_hits(Kernel::Auto, scene, rays, hits);
         super::surface_points(scene, rays, hits, points);
+        // Footprints grow with the whole way from the eye, as directions keep their length.
+        for (at, ray) in current.iter().enumerate() {
+            hits[at / LANES].t.0[at % LANES] += ray.t;
+        }
         let traced = current.len() as u64 + super::arriving_light(scene, points, shadows, arriving);
         super::reflected_light(scene, rays, direction_steps, hits, points, arriving, diffuse);
         reflectances.find(scene, direction_steps, &Generation { rays, hits, points, arriving });
@@ -120,7 +130,8 @@ impl Bounces {
             let mut light = super::lane_light(&diffuse[group], lane);
             if finish_at(scene, &points[group], lane).is_some_and(|finish| !finish.is_matte()) {
                 let reflectance = super::lane_light(&reflectances.found[group], lane);
-                light = Surface::of(scene, &points[group], lane, reflectance).light(ray, light, next);
+                let t = hits[group].t.0[lane] - ray.t;
+                light = Surface::of(scene, &points[group], lane, t, reflectance).light(ray, light, next);
             }
             let (group, lane) = (ray.eye_ray as usize / LANES, ray.eye_ray as usize % LANES);
             let sum = super::lane_light(&lights[group], lane) + light * ray.weight;
@@ -138,11 +149,13 @@ struct Surface {
     shading_normal: Vec3,
     geometric_normal: Vec3,
     clearance: f32,
+    /// The t of the ray's hit.
+    t: f32,
     reflectance: LinearRgb,
 }
 
 impl Surface {
-    fn of(scene: &Scene, points: &EightPoints, lane: usize, reflectance: LinearRgb) -> Self {
+    fn of(scene: &Scene, points: &EightPoints, lane: usize, t: f32, reflectance: LinearRgb) -> Self {
         let object = points.ids.id(lane).object;
         Self {
             finish: scene.objects()[object as usize].finish,
@@ -151,13 +164,14 @@ impl Surface {
             shading_normal: points.shading_normal.of_lane(lane),
             geometric_normal: points.geometric_normal.of_lane(lane),
             clearance: points.clearance.0[lane],
+            t,
             reflectance,
         }
     }
 
-    /// Returns the light towards the ray's origin, without that of further rays.
+    /// Returns the light towards the ray's origin, without that of bounced rays.
     ///
-    /// Further rays are added to `next`.
+    /// Bounced rays are added to `next`.
     ///
     /// `diffuse` is the light that a matte surface would reflect.
     fn light(&self, ray: &BouncedRay, diffuse: LinearRgb, next: &mut Vec<BouncedRay>) -> LinearRgb {
@@ -178,22 +192,35 @@ impl Surface {
             Finish::Glass { index } => {
                 let is_leaving = ray.inside == Some(self.object);
                 let ratio = if is_leaving { index } else { 1.0 / index };
-                let mirrored = finish::fresnel(cosine, ratio);
+                let mirrored = followed_part(finish::fresnel(cosine, ratio), ray.weight);
                 self.add_reflection(ray, LinearRgb::grey(mirrored), next);
-                if let Some(refracted) = finish::refract(direction, self.shading_normal, ratio) {
-                    // Light is coloured once on its way through, where it enters.
-                    let color = if is_leaving { LinearRgb::grey(1.0) } else { self.reflectance };
-                    let inside = if is_leaving { None } else { Some(self.object) };
-                    let origin = self.position - self.geometric_normal * self.clearance;
-                    let weight = color * (1.0 - mirrored);
-                    add(next, BouncedRay { ray: Ray { origin, direction: refracted }, weight, inside, ..*ray }, ray);
+                if mirrored < 1.0 {
+                    self.add_refraction(ray, ratio, is_leaving, 1.0 - mirrored, next);
                 }
                 LinearRgb::BLACK
             }
         }
     }
 
-    /// Adds the ray that is mirrored, with this part of the light.
+    /// Adds the refracted ray; `part` is its part of the light.
+    fn add_refraction(&self, ray: &BouncedRay, ratio: f32, is_leaving: bool, part: f32, next: &mut Vec<BouncedRay>) {
+        let direction = ray.ray.direction;
+        // As with reflections, an interpolated normal may refract the ray back out of the surface.
+        let refracted = finish::refract(direction, self.shading_normal, ratio)
+            .filter(|refracted| refracted.dot(self.geometric_normal) < 0.0)
+            .or_else(|| finish::refract(direction, self.geometric_normal, ratio));
+        let Some(refracted) = refracted else { return };
+        // The position may be that of a smooth surface, above the triangle; the ray starts below the triangle.
+        let lift = (self.position - ray.ray.at(self.t)).dot(self.geometric_normal).max(0.0);
+        let origin = self.position - self.geometric_normal * (self.clearance + lift);
+        // Light is coloured once on its way through, where it enters.
+        let color = if is_leaving { LinearRgb::grey(1.0) } else { self.reflectance };
+        let inside = if is_leaving { None } else { Some(self.object) };
+        let (ray_inside, t) = (Ray { origin, direction: refracted }, ray.t + self.t);
+        add(next, BouncedRay { ray: ray_inside, t, weight: color * part, inside, ..*ray }, ray);
+    }
+
+    /// Adds the mirrored ray; `weight` is its part of the light.
     fn add_reflection(&self, ray: &BouncedRay, weight: LinearRgb, next: &mut Vec<BouncedRay>) {
         let mut direction = finish::reflect(ray.ray.direction, self.shading_normal);
         // Near the outline of a smooth mesh, the mirror image about an interpolated normal may point into the surface.
@@ -201,11 +228,25 @@ impl Surface {
             direction = finish::reflect(ray.ray.direction, self.geometric_normal);
         }
         let origin = self.position + self.geometric_normal * self.clearance;
-        add(next, BouncedRay { ray: Ray { origin, direction }, weight, ..*ray }, ray);
+        add(next, BouncedRay { ray: Ray { origin, direction }, t: ray.t + self.t, weight, ..*ray }, ray);
     }
 }
 
-/// Adds a ray whose weight is a part of that of the ray before it.
+/// Returns the mirrored part, or 0 or 1 if the weaker of both rays is too weak to be followed.
+///
+/// The other ray then has all of the light. `weight` is that of the ray before both.
+fn followed_part(mirrored: f32, LinearRgb { r, g, b }: LinearRgb) -> f32 {
+    let weight = <f32 as Number>::max(r, <f32 as Number>::max(g, b));
+    if mirrored * weight < MIN_SPLIT_WEIGHT {
+        0.0
+    } else if (1.0 - mirrored) * weight < MIN_SPLIT_WEIGHT {
+        1.0
+    } else {
+        mirrored
+    }
+}
+
+/// Adds a ray whose weight is still relative to that of the ray `before`.
 ///
 /// It is not added if the weight is too small or the ray has no direction.
 fn add(next: &mut Vec<BouncedRay>, mut ray: BouncedRay, before: &BouncedRay) {

@@ -176,7 +176,7 @@ surfaces! { of_kind }
 
 /// Returns the message for glass of a shape without an inside, whose name has an article.
 pub(crate) fn without_inside(shape: &str) -> String {
-    format!("{shape} has no inside that could be of glass; give it a closed shape, such as a Box")
+    format!("{shape} has no inside, which Glass needs; use a closed shape, such as a Box")
 }
 
 /// Returns the message for a material with a pattern on a shape without coordinates.

@@ -4,10 +4,16 @@ use crate::finish::Finish;
 use crate::framebuffer::{Framebuffer, Resolution};
 use crate::light::PointLight;
 use crate::material::Material;
+#[cfg(feature = "mesh")]
+use crate::mesh_file::MeshFile;
 use crate::render::render;
 use crate::scene::{Background, Object, Scene};
+#[cfg(feature = "mesh")]
+use crate::shape::Mesh;
 use crate::shape::{Plane, Shape, Sphere};
 use glam::Vec3;
+#[cfg(feature = "mesh")]
+use std::fmt::Write;
 use std::num::NonZeroU32;
 
 fn grey(reflectance: f32) -> Material {
@@ -103,4 +109,44 @@ fn the_number_of_bounces_is_limited() {
     };
     let scene = below_a_sky(vec![mirror(-1.0), mirror(6.0)]);
     assert_eq!(picture(&scene, 1).pixel(0, 0), LinearRgb::BLACK);
+}
+
+/// Returns a unit ball of triangles with the normals of a sphere, as an OBJ file.
+#[cfg(feature = "mesh")]
+fn ball_of_triangles() -> String {
+    const COLUMNS: usize = 96;
+    const ROWS: usize = 48;
+    let mut text = String::new();
+    for row in 0..=ROWS {
+        for column in 0..COLUMNS {
+            let (y, ring) = libm::sincos(std::f64::consts::PI * (row as f64 / ROWS as f64 - 0.5));
+            let (x, z) = libm::sincos(std::f64::consts::TAU * column as f64 / COLUMNS as f64);
+            let point = format!("{} {y} {}", ring * x, ring * z);
+            let _ = writeln!(text, "v {point}\nvn {point}");
+        }
+    }
+    let at = |row: usize, column: usize| row * COLUMNS + column % COLUMNS + 1;
+    for row in 0..ROWS {
+        for column in 0..COLUMNS {
+            let [a, b, c, d] = [at(row, column), at(row, column + 1), at(row + 1, column + 1), at(row + 1, column)];
+            let _ = writeln!(text, "f {a}//{a} {b}//{b} {c}//{c} {d}//{d}");
+        }
+    }
+    text
+}
+
+/// Rays enter and leave the triangles of a smooth mesh as they do the sphere that it approximates.
+#[test]
+#[cfg(feature = "mesh")]
+fn a_glass_mesh_refracts_as_the_sphere_does() {
+    let file = MeshFile::from_bytes("ball.obj", ball_of_triangles().as_bytes(), &mut |_| unreachable!("no side file"));
+    let mesh = Mesh::new(file.expect("a mesh")).expect("it is near");
+    let behind = Object::new(sphere(Vec3::new(0.4, 0.6, -4.0), 1.0), grey(0.9));
+    let pictures = [Shape::from(mesh), sphere(Vec3::ZERO, 1.0)].map(|ball| {
+        let ball = Object::new(ball, grey(1.0)).with_finish(Finish::glass(1.5).expect("an index"));
+        picture(&below_a_sky(vec![ball, behind.clone()]), 48)
+    });
+    let [of_mesh, of_sphere] = pictures.each_ref().map(Framebuffer::pixels);
+    let count = of_mesh.iter().zip(of_sphere).filter(|(a, b)| (a.g - b.g).abs() > 0.05).count();
+    assert!(count <= of_sphere.len() / 50, "{count} pixels differ");
 }
