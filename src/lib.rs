@@ -115,7 +115,7 @@
 //! - `accel`: the trees over all shapes of a scene, built once
 //! - `material`: diffuse reflectance
 //! - `finish`: mirrors, glass and glowing surfaces: Snell's law and Fresnel's equations
-//! - `light`: point lights
+//! - `light`: point lights, spots and suns
 //! - `camera`: eye, target, up, field of view -> basis u, v, w -> eye rays
 //! - `camera_path`: the camera over time: an orbit, or a path through keyframes
 //! - `scene_file`: a whole file as the author wrote it, typed
