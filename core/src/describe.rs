@@ -135,11 +135,17 @@ impl Description<'_> {
         text
     }
 
-    /// Describes an object by its colour, kind and size.
+    /// Describes an object by its colour, finish, kind and size.
     fn describe_object(&self, object: u32, part: &Coverage) -> String {
-        let (color, described) = (self.color_of(object, part), &self.scene.objects()[object as usize]);
-        let look = described.finish.described().map_or(color.clone(), |finish| format!("{color} {finish}"));
-        described.shape.described(&look)
+        let Object { shape, finish, .. } = &self.scene.objects()[object as usize];
+        let color = self.color_of(object, part);
+        let look = [Some(&*color), finish.described()].into_iter().flatten().collect::<Vec<_>>().join(" ");
+        let text = shape.described(&look);
+        match text.strip_prefix("a ") {
+            // Shapes write "a" before any colour.
+            Some(rest) if rest.starts_with(['a', 'e', 'i', 'o', 'u']) => format!("an {rest}"),
+            _ => text,
+        }
     }
 
     fn color_of(&self, object: u32, part: &Coverage) -> String {

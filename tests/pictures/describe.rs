@@ -56,6 +56,20 @@ fn positions_are_described_as_seen_in_the_picture() {
 }
 
 #[test]
+fn a_finish_follows_the_colour_and_its_article() {
+    for (look, words) in [
+        ("material: Diffuse(\"#fa8c1e\")", "object 1, an orange sphere of radius 1"),
+        ("material: Diffuse(\"red\"), finish: Polished", "object 1, a red polished sphere of radius 1"),
+        ("material: Diffuse(\"#fa8c1e\"), finish: Glowing", "object 1, an orange glowing sphere of radius 1"),
+    ] {
+        let text = told_of(&format!(
+            "(camera: (eye: (0, 0, 10), target: (0, 0, 0)), objects: [Sphere(center: (0, 0, 0), radius: 1, {look})])"
+        ));
+        assert!(text.contains(words), "{text}");
+    }
+}
+
+#[test]
 fn an_occlusion_is_described_for_both_objects() {
     let text = told_of(
         "(camera: (eye: (0, 0, 10), target: (0, 0, 0)), objects: [
