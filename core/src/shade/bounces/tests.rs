@@ -150,3 +150,17 @@ fn a_glass_mesh_refracts_as_the_sphere_does() {
     let count = of_mesh.iter().zip(of_sphere).filter(|(a, b)| (a.g - b.g).abs() > 0.05).count();
     assert!(count <= of_sphere.len() / 50, "{count} pixels differ");
 }
+
+/// A metal ball shows the sky after one bounce, and none if there may be none.
+#[test]
+#[cfg(feature = "ron")]
+fn a_scene_says_how_often_rays_bounce() {
+    let middle = |bounces: u32| {
+        let text = format!(
+            "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), background: 0.5, bounces: {bounces},
+              objects: [Sphere(center: (0, 0, 0), radius: 1, material: Diffuse(1), finish: Metal)])"
+        );
+        picture(&Scene::from_ron("ball.ron", &text).expect("a scene"), 1).pixel(0, 0).g
+    };
+    assert_eq!([0, 1].map(middle), [0.0, 0.5]);
+}
