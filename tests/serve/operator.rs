@@ -144,13 +144,38 @@ fn value(counts: &str, name: &str) -> Option<f64> {
     counts.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' ')?.parse().ok())
 }
 
-fn counts(hosting: &Hosting) -> String {
+/// Returns the status and the body of a page of the server.
+fn page(hosting: &Hosting, path: &str) -> (String, String) {
     let mut stream = TcpStream::connect(hosting.server.metrics_address().expect("an address")).expect("it listens");
-    stream.write_all(b"GET /metrics HTTP/1.1\r\nHost: x\r\n\r\n").expect("it is taken");
+    stream.write_all(format!("GET {path} HTTP/1.1\r\nHost: x\r\n\r\n").as_bytes()).expect("it is taken");
     let mut response = String::new();
     stream.read_to_string(&mut response).expect("text");
-    assert!(response.starts_with("HTTP/1.1 200 OK\r\n"), "{response}");
-    response.split("\r\n\r\n").nth(1).expect("a body").to_owned()
+    let (head, body) = response.split_once("\r\n\r\n").expect("a body");
+    let status = head.lines().next().and_then(|line| line.strip_prefix("HTTP/1.1 ")).expect("a status");
+    (status.to_owned(), body.to_owned())
+}
+
+fn counts(hosting: &Hosting) -> String {
+    let (status, counts) = page(hosting, "/metrics");
+    assert_eq!(status, "200 OK", "{counts}");
+    counts
+}
+
+#[test]
+fn the_health_check_fails_while_draining() {
+    let hosting = Hosting::start(|settings| settings.metrics = Some(([127, 0, 0, 1], 0).into()));
+    assert_eq!(page(&hosting, "/health"), ("200 OK".to_owned(), "ok\n".to_owned()));
+    assert_eq!(page(&hosting, "/other").0, "404 Not Found");
+    run(async {
+        let mut guest = Guest::enter(&hosting).await;
+        guest.see_picture().await;
+        hosting.server.drain();
+        guest.see_text("the server restarts: you leave in").await;
+        assert_eq!(page(&hosting, "/health"), ("503 Service Unavailable".to_owned(), "draining\n".to_owned()));
+        assert_eq!(value(&counts(&hosting), "termtrace_draining"), Some(1.0));
+        guest.send(b"q").await;
+        assert_eq!(guest.leave().await, Some(0));
+    });
 }
 
 #[test]

@@ -88,7 +88,7 @@ pub(in crate::cli) struct ServeArgs {
     /// Link in the first line that a viewer sees, and on leaving
     #[arg(long, value_name = "URL")]
     link: Option<String>,
-    /// Address of this machine at which counts can be read, for Prometheus
+    /// Address of this machine with counts for Prometheus, and a health check
     #[arg(long, value_name = "ADDRESS:PORT", hide_short_help = true)]
     metrics: Option<SocketAddr>,
     /// File of settings, such as (listen: "0.0.0.0:22", public: true, fps: 20)
