@@ -6,12 +6,12 @@
 //! session are the `session_buffers`, with at most one frame. `limits` counts connections and places for viewers; `ssh`
 //! and `client_command` define what a client may ask for; `visit` leads a client through the queue to its session.
 //!
-//! The modules `run_queue`, `viewer_session`, `limits`, `total_rate`, `client_command` and `client_terminal` are pure:
-//! they do no I/O, and the time is a parameter.
+//! The modules `run_queue`, `viewer_session`, `limits`, `total_rate`, `log_line`, `client_command` and
+//! `client_terminal` are pure: they do no I/O, and the time is a parameter.
 
 use crate::scene::Scene;
 use crate::terminal::{Signals, without_signals};
-use limits::Refusal;
+use log_line::LogLine;
 use russh::keys::PublicKey;
 use russh::server::{Config, run_stream};
 use russh::{MethodKind, MethodSet, Preferred, SshId, mac};
@@ -36,6 +36,7 @@ mod client_command;
 mod client_terminal;
 mod host_key;
 mod limits;
+mod log_line;
 mod metrics;
 mod pictures;
 mod run_queue;
@@ -159,7 +160,7 @@ pub struct Server {
     ended: Arc<AtomicBool>,
 }
 
-/// A function that receives the lines of a server's log.
+/// A function that receives the lines of a server's log, such as `event=drain viewers=12`.
 pub type Log = Arc<dyn Fn(&str) + Send + Sync>;
 
 impl Server {
@@ -193,7 +194,7 @@ impl Server {
         let (pool, threads) = WorkerPool::start(settings.threads.unwrap_or_else(cores))?;
         let fingerprint = host_key::fingerprint(&key);
         let config = Arc::new(ssh_config(&settings, key));
-        let state = Arc::new(SharedState::new(scenes, settings, pool));
+        let state = Arc::new(SharedState::new(scenes, settings, pool, log));
         let (ended, shared) = (Arc::new(AtomicBool::new(false)), Arc::clone(&state));
         let flag = Arc::clone(&ended);
         // One thread suffices for the sockets, and leaves the cores to the threads that draw.
@@ -203,7 +204,7 @@ impl Server {
                 if let Some(Ok(listener)) = counts.map(tokio::net::TcpListener::from_std) {
                     tokio::spawn(scrape::serve(Arc::clone(&shared), listener));
                 }
-                serve_until_drained(shared, config, listener, log).await;
+                serve_until_drained(shared, config, listener).await;
             });
             flag.store(true, Ordering::SeqCst);
             on_end();
@@ -239,7 +240,9 @@ impl Server {
 
     /// Accepts no more connections, and tells all viewers that they have to leave.
     pub fn drain(&self) {
-        self.state.drain(self.state.pool.now() + self.state.settings.drain);
+        let (viewers, time) = (self.viewers(), self.state.settings.drain);
+        self.state.log(&LogLine::event("drain").with("viewers", viewers).with("seconds", time.as_secs()));
+        self.state.drain(self.state.pool.now() + time);
     }
 
     /// Returns whether the server has ended after [`drain`](Self::drain).
@@ -291,7 +294,6 @@ pub fn run_until_drained(
             Some(signal) if draining && !is_other => return Ok(Some(signal)),
             Some(_) if !draining => {
                 draining = true;
-                log(&format!("draining {} viewers; a second signal ends at once", server.viewers()));
                 server.drain();
             }
             _ => {}
@@ -328,13 +330,13 @@ fn ssh_config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
 }
 
 /// Accepts connections until the server drains, and waits until the last viewer has left.
-async fn serve_until_drained(state: Arc<SharedState>, config: Arc<Config>, listener: TcpListener, log: Log) {
+async fn serve_until_drained(state: Arc<SharedState>, config: Arc<Config>, listener: TcpListener) {
     let listener = match tokio::net::TcpListener::from_std(listener) {
         Ok(listener) => listener,
-        Err(error) => return log(&format!("the socket cannot be used: {error}")),
+        Err(error) => return state.log(&LogLine::event("socket_failed").with("error", error)),
     };
     let mut changes = state.changes.subscribe();
-    let accepting = tokio::spawn(accept_all(Arc::clone(&state), config, listener, log));
+    let accepting = tokio::spawn(accept_all(Arc::clone(&state), config, listener));
     while state.drain_deadline().is_none() && changes.changed().await.is_ok() {}
     accepting.abort();
     // Viewers get up to three seconds more, for the last replies of their terminals and the last bytes to them.
@@ -348,44 +350,42 @@ async fn serve_until_drained(state: Arc<SharedState>, config: Arc<Config>, liste
 
 /// Accepts connections for ever.
 // Used instead of the loop of `russh`, which ends at the first error of `accept`.
-async fn accept_all(state: Arc<SharedState>, config: Arc<Config>, listener: tokio::net::TcpListener, log: Log) {
+async fn accept_all(state: Arc<SharedState>, config: Arc<Config>, listener: tokio::net::TcpListener) {
     loop {
         match listener.accept().await {
             Ok((stream, address)) => {
                 let entry = locked(&state.limiter).enter(address.ip(), state.pool.now());
                 let metrics = &state.pool.metrics;
+                let from = limits::anonymized(address.ip());
                 match entry {
                     Ok(entry) => {
                         metrics.connections.add(1);
-                        let connection = connect(Arc::clone(&state), Arc::clone(&config), stream, entry);
+                        let connection = connect(Arc::clone(&state), Arc::clone(&config), stream, (entry, from));
                         tokio::spawn(connection);
                     }
                     // Closing the connection costs the least; a message to the client would need the whole handshake.
                     Err(refusal) => {
                         metrics.refuse(refusal);
-                        log(&format!("refused {}: {}", limits::anonymized(address.ip()), refusal_log_text(refusal)));
+                        state.log(&LogLine::event("refused").with("from", from).with("reason", refusal.name()));
                     }
                 }
             }
             // The error may pass: if too many files are open, for example, other connections may end meanwhile.
             Err(error) => {
-                log(&format!("cannot accept a connection: {error}"));
+                state.log(&LogLine::event("accept_failed").with("error", error));
                 sleep(ACCEPT_PAUSE).await;
             }
         }
     }
 }
 
-fn refusal_log_text(refusal: Refusal) -> &'static str {
-    match refusal {
-        Refusal::Busy => "too many connections",
-        Refusal::Address => "too many connections from this address",
-        Refusal::Rate => "too many new connections from this address",
-    }
-}
-
 /// Serves one connection, and closes it if the client does not log in or request anything in time.
-async fn connect(state: Arc<SharedState>, config: Arc<Config>, stream: TcpStream, entry: limits::Admission) {
+async fn connect(
+    state: Arc<SharedState>,
+    config: Arc<Config>,
+    stream: TcpStream,
+    (entry, from): (limits::Admission, String),
+) {
     let (login_time, idle) = (state.settings.login_time, state.settings.idle);
     let socket = Socket::new(stream, state.settings.patience);
     let (closer, buffers) = (socket.closer(), Arc::new(SessionBuffers::default()));
@@ -394,6 +394,7 @@ async fn connect(state: Arc<SharedState>, config: Arc<Config>, stream: TcpStream
         buffers: Arc::clone(&buffers),
         closer: closer.clone(),
         entry: Some(entry),
+        from,
         terminal: client_terminal::ClientTerminal::default(),
         channel: None,
         asked: false,

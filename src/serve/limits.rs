@@ -74,6 +74,17 @@ pub(super) enum Refusal {
     Rate,
 }
 
+impl Refusal {
+    /// Returns the name of the reason in the log and the counts.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Busy => "busy",
+            Self::Address => "address",
+            Self::Rate => "rate",
+        }
+    }
+}
+
 /// A connection that the [`ConnectionLimiter`] has admitted and counts.
 #[derive(Debug)]
 pub(super) struct Admission {

@@ -3,7 +3,7 @@
 //! Both sides hold a lock only to move bytes, so the thread of the sockets never waits for a picture.
 
 use super::run_queue::SessionId;
-use super::viewer_session::PendingInput;
+use super::viewer_session::{LeaveReason, PendingInput};
 use crate::grid::Window;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Duration;
@@ -48,16 +48,16 @@ struct Outbox {
     bytes: Vec<u8>,
     /// Whether bytes are being sent.
     sending: bool,
-    /// The exit status, once the session has ended.
-    ended: Option<u32>,
+    /// The reason why the session has ended, if it has.
+    ended: Option<LeaveReason>,
 }
 
 /// The bytes that a connection is to send next.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Outgoing {
     pub(super) bytes: Vec<u8>,
-    /// The exit status, if these are the last bytes.
-    pub(super) ended: Option<u32>,
+    /// The reason why the session has ended, if these are the last bytes.
+    pub(super) ended: Option<LeaveReason>,
 }
 
 /// Locks a mutex, even if it is poisoned by a panic of another thread.
@@ -137,8 +137,8 @@ impl SessionBuffers {
         outbox.sending || !outbox.bytes.is_empty()
     }
 
-    /// Appends bytes to those to send, and sets the exit status if they are the last ones.
-    pub(super) fn send(&self, mut bytes: Vec<u8>, ended: Option<u32>) {
+    /// Appends bytes to those to send, and sets the reason of the end if they are the last ones.
+    pub(super) fn send(&self, mut bytes: Vec<u8>, ended: Option<LeaveReason>) {
         if bytes.is_empty() && ended.is_none() {
             return;
         }

@@ -2,10 +2,11 @@
 
 use super::client_terminal::ClientTerminal;
 use super::limits::{ConnectionLimiter, Places};
+use super::log_line::LogLine;
 use super::session_buffers::locked;
 use super::total_rate::TotalRate;
 use super::worker_pool::WorkerPool;
-use super::{HostedScene, Settings};
+use super::{HostedScene, Log, Settings};
 use crate::capabilities::{Colors, terminfo_colors};
 use crate::control::{Command, Keymap};
 use crate::export::text_frame;
@@ -40,6 +41,7 @@ pub(super) struct SharedState {
     /// queue, or the server begins to drain.
     pub(super) changes: watch::Sender<()>,
     drain_deadline: OnceLock<Duration>,
+    log: Log,
     keymap: Keymap,
     /// The colours of terminals according to terminfo, which is read once for each name.
     terminals: Mutex<HashMap<String, Option<Colors>>>,
@@ -49,7 +51,7 @@ pub(super) struct SharedState {
 }
 
 impl SharedState {
-    pub(super) fn new(scenes: Vec<HostedScene>, settings: Settings, pool: Arc<WorkerPool>) -> Self {
+    pub(super) fn new(scenes: Vec<HostedScene>, settings: Settings, pool: Arc<WorkerPool>, log: Log) -> Self {
         let mut keymap = Keymap::default();
         keymap.remove(&LEFT_OUT);
         // There may be more connections than viewers, because some only ask for text, and some wait for a place.
@@ -65,8 +67,14 @@ impl SharedState {
             terminals: Mutex::default(),
             settings,
             pool,
+            log,
             keymap,
         }
+    }
+
+    /// Writes a line into the log.
+    pub(super) fn log(&self, line: &LogLine) {
+        (self.log)(line.text());
     }
 
     /// Returns the options of a new viewer, whose window has this number of columns.

@@ -9,6 +9,7 @@
 use super::client_command::{self, ClientCommand};
 use super::client_terminal::{self, ClientTerminal};
 use super::limits::Admission;
+use super::metrics::Counter;
 use super::session_buffers::{SessionBuffers, locked};
 use super::shared_state::SharedState;
 use super::socket::SocketCloser;
@@ -24,6 +25,8 @@ pub(super) struct Client {
     pub(super) closer: SocketCloser,
     /// The connection's entry in the `ConnectionLimiter`; taken when the connection ends.
     pub(super) entry: Option<Admission>,
+    /// The network that the client's address is in, for the log.
+    pub(super) from: String,
     pub(super) terminal: ClientTerminal,
     /// The one channel of the connection.
     pub(super) channel: Option<ChannelId>,
@@ -73,6 +76,8 @@ impl Client {
             state: Arc::clone(&self.state),
             buffers: Arc::clone(&self.buffers),
             closer: self.closer.clone(),
+            from: std::mem::take(&mut self.from),
+            sent: Counter::default(),
             handle: session.handle(),
             channel,
         };

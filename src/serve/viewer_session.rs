@@ -36,6 +36,8 @@ pub(super) enum LeaveReason {
     Drained,
     /// There is not enough memory for the window.
     OutOfMemory,
+    /// A turn has panicked.
+    Fault,
 }
 
 impl LeaveReason {
@@ -50,6 +52,23 @@ impl LeaveReason {
         format!("{what} in {seconds} s")
     }
 
+    /// Returns the name of the reason in the log.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Quit => "quit",
+            Self::Idle => "idle",
+            Self::TimeOver => "time_over",
+            Self::Drained => "drained",
+            Self::OutOfMemory => "out_of_memory",
+            Self::Fault => "fault",
+        }
+    }
+
+    /// Returns the exit status of a view that ends for this reason.
+    pub(super) fn exit_status(self) -> u32 {
+        u32::from(matches!(self, Self::OutOfMemory | Self::Fault))
+    }
+
     /// Returns the sentence that is printed on leaving; empty if the user chose to leave.
     fn farewell(self) -> &'static str {
         match self {
@@ -58,6 +77,7 @@ impl LeaveReason {
             Self::TimeOver => "your time was over; come back at any time\r\n",
             Self::Drained => "the server restarts; come back soon\r\n",
             Self::OutOfMemory => "there is not enough memory for a window of this size\r\n",
+            Self::Fault => "a fault of the server ended this view\r\n",
         }
     }
 }
@@ -99,8 +119,9 @@ pub(super) struct ViewerSession {
     drain_deadline: Option<Duration>,
     /// The seconds in the last note of the countdown; `None` before the countdown.
     counted: Option<u64>,
-    /// The time at which the viewer began to leave and its terminal was restored; `None` before.
-    leaving: Option<Duration>,
+    /// The time at which the viewer began to leave and its terminal was restored, and the reason;
+    /// `None` before.
+    leaving: Option<(Duration, LeaveReason)>,
     /// The time at which the last turn ended.
     latest: Duration,
     /// The number of frames drawn since the last call of `take_drawn`.
@@ -324,6 +345,11 @@ impl ViewerSession {
         std::mem::take(&mut self.drawn)
     }
 
+    /// Returns the reason why the viewer leaves, if it does.
+    pub(super) fn leave_reason(&self) -> Option<LeaveReason> {
+        self.leaving.map(|(_, reason)| reason)
+    }
+
     /// Restores the terminal, and prints the farewell and the command that shows this view.
     pub(super) fn leave(&mut self, reason: LeaveReason, now: Duration, out: &mut Vec<u8>) -> AfterTurn {
         self.modes_off(now, out);
@@ -335,7 +361,7 @@ impl ViewerSession {
         if let Some(link) = &self.link {
             out.extend_from_slice(format!("{link}\r\n").as_bytes());
         }
-        self.leaving = Some(now);
+        self.leaving = Some((now, reason));
         self.await_last_replies(&[], now)
     }
 
@@ -357,14 +383,14 @@ impl ViewerSession {
     fn await_last_replies(&mut self, bytes: &[u8], now: Duration) -> AfterTurn {
         let receiver = self.viewer.receiver();
         receiver.receive(bytes, now);
-        let due = self.leaving.map_or(now, |since| since + LAST_REPLIES);
+        let due = self.leaving.map_or(now, |(since, _)| since + LAST_REPLIES);
         if receiver.reply_time_left(now).is_none() || now >= due { AfterTurn::End } else { AfterTurn::Sleep(Some(due)) }
     }
 
     /// Restores the terminal after a panic in a turn.
     pub(super) fn abandon(&mut self, out: &mut Vec<u8>) {
         self.modes.switch_all_off(out);
-        out.extend_from_slice(b"a fault of the server ended this view\r\n");
+        out.extend_from_slice(LeaveReason::Fault.farewell().as_bytes());
     }
 }
 

@@ -1,12 +1,15 @@
 //! One visit of a client, from the wait for a viewer's place to the last byte.
 
 use super::client_terminal::ClientTerminal;
+use super::log_line::LogLine;
+use super::metrics::Counter;
+use super::run_queue::SessionId;
 use super::session_buffers::{Outgoing, SessionBuffers, locked};
 use super::shared_state::{SharedState, ViewerSlot};
 use super::socket::SocketCloser;
 use super::total_rate::TotalRate;
-use super::viewer_session::{ViewerSession, VisitLimits};
-use crate::grid::Window;
+use super::viewer_session::{LeaveReason, ViewerSession, VisitLimits};
+use crate::grid::{Size, Window};
 use crate::text::visible;
 use russh::ChannelId;
 use russh::server::Handle;
@@ -28,6 +31,10 @@ pub(super) struct Visit {
     pub(super) state: Arc<SharedState>,
     pub(super) buffers: Arc<SessionBuffers>,
     pub(super) closer: SocketCloser,
+    /// The network that the client's address is in, for the log.
+    pub(super) from: String,
+    /// The bytes that the client has taken.
+    pub(super) sent: Counter,
     pub(super) handle: Handle,
     pub(super) channel: ChannelId,
 }
@@ -58,18 +65,37 @@ impl Visit {
         }
         // Input that arrived before `set_session` has not woken the session.
         state.pool.wake(id);
-        while let Some(Outgoing { bytes, ended }) = self.buffers.outgoing().await {
+        let Size { columns, rows } = window.size;
+        let name = &state.scenes[scene].name;
+        let line = LogLine::event("view").with("viewer", id).with("from", &self.from).with("scene", name);
+        state.log(&line.with("columns", columns).with("rows", rows));
+        let ended = self.pass_bytes(id).await;
+        let (reason, seconds) =
+            (ended.map_or("hang_up", LeaveReason::name), state.pool.now().saturating_sub(now).as_secs());
+        let line = LogLine::event("leave").with("viewer", id).with("reason", reason);
+        state.log(&line.with("seconds", seconds).with("bytes", self.sent.get()));
+        if let Some(reason) = ended {
+            self.end(reason.exit_status()).await;
+        } else {
+            self.buffers.hang_up();
+            state.pool.wake(id);
+        }
+    }
+
+    /// Sends the session's bytes until it ends, and returns the reason; `None` if the connection
+    /// has ended.
+    async fn pass_bytes(&self, id: SessionId) -> Option<LeaveReason> {
+        loop {
+            let Outgoing { bytes, ended } = self.buffers.outgoing().await?;
             if !self.send(&bytes).await {
-                break;
+                return None;
             }
             self.buffers.record_sent();
-            match ended {
-                Some(status) => return self.end(status).await,
-                None => state.pool.wake(id),
+            if ended.is_some() {
+                return ended;
             }
+            self.state.pool.wake(id);
         }
-        self.buffers.hang_up();
-        state.pool.wake(id);
     }
 
     /// Waits for a free place, and meanwhile tells the user how many visitors are ahead.
@@ -147,6 +173,7 @@ impl Visit {
                 self.closer.close();
                 return false;
             }
+            self.sent.add(message.len() as u64);
             pool.metrics.bytes.add(message.len() as u64);
         }
         true

@@ -7,7 +7,7 @@ use super::metrics::Metrics;
 use super::pictures::{Pictures, is_worth_sharing};
 use super::run_queue::{AfterTurn, RunQueue, SessionId, WorkKind};
 use super::session_buffers::{SessionBuffers, locked};
-use super::viewer_session::{PendingInput, ViewerSession};
+use super::viewer_session::{LeaveReason, PendingInput, ViewerSession};
 use crate::app::Tracer;
 use crate::progress::Cancellation;
 use crate::viewer::{FIRST_FRAME_MOTION, Frame, Job};
@@ -151,7 +151,7 @@ impl WorkerPool {
                 self.metrics.panics.add(1);
                 let mut out = Vec::new();
                 locked(&pooled.session).abandon(&mut out);
-                pooled.buffers.send(out, Some(1));
+                pooled.buffers.send(out, Some(LeaveReason::Fault));
                 AfterTurn::End
             });
             let cost = cpu_time().saturating_sub(started);
@@ -221,7 +221,7 @@ impl WorkerPool {
         let kind = if load <= self.threads { WorkKind::Refinement } else { WorkKind::Picture };
         let next = session.take_turn(&input, (buffers.is_sending(), kind), &|| self.now(), &mut trace, &mut out);
         self.metrics.frames.add(session.take_drawn());
-        buffers.send(out, (next == AfterTurn::End).then_some(0));
+        buffers.send(out, session.leave_reason().filter(|_| next == AfterTurn::End));
         next
     }
 

@@ -78,6 +78,17 @@ fn scenes() -> Vec<HostedScene> {
     vec![scene("three_spheres"), scene("corridor")]
 }
 
+/// Waits until something holds that no event tells.
+async fn until(what: &str, mut holds: impl FnMut() -> bool) {
+    for _ in 0..2000 {
+        if holds() {
+            return;
+        }
+        tokio::time::sleep(Duration::from_millis(10)).await;
+    }
+    panic!("{what}");
+}
+
 /// Runs a test. An event that does not come fails it.
 fn run<T>(test: impl Future<Output = T>) -> T {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");

@@ -3,7 +3,7 @@
 use crate::counter::{Counter, run_all};
 use crate::guest::{Anybody, Guest, connect, connect_as};
 use crate::program::Program;
-use crate::{Hosting, Place, run};
+use crate::{Hosting, Place, run, until};
 use russh::keys::ssh_key::private::{Ed25519Keypair, KeypairData};
 use russh::keys::{PrivateKey, PrivateKeyWithHashAlg};
 use std::fs;
@@ -159,6 +159,33 @@ fn counts(hosting: &Hosting) -> String {
     let (status, counts) = page(hosting, "/metrics");
     assert_eq!(status, "200 OK", "{counts}");
     counts
+}
+
+#[test]
+fn row_19_the_log_has_events_and_truncated_addresses() {
+    let hosting = Hosting::start(|settings| settings.max_per_address = 2);
+    run(async {
+        let mut guest = Guest::enter_with(&hosting, (90, 30), Some("corridor")).await;
+        guest.see_picture().await;
+        let mut other = Guest::enter(&hosting).await;
+        other.see_picture().await;
+        let mut refused = tokio::net::TcpStream::connect(hosting.address()).await.expect("the socket is accepted");
+        let _ = tokio::io::AsyncReadExt::read_to_end(&mut refused, &mut Vec::new()).await;
+        guest.send(b"q").await;
+        assert_eq!(guest.leave().await, Some(0));
+        until("the end of the view is in the log", || hosting.log().len() == 4).await;
+        drop(other);
+        until("the end of the connection is in the log", || hosting.log().len() == 5).await;
+    });
+    let log = hosting.log();
+    let expected = [
+        "event=view viewer=0 from=127.0.0.0/24 scene=corridor columns=90 rows=30",
+        "event=view viewer=1 from=127.0.0.0/24 scene=three_spheres columns=80 rows=24",
+        "event=refused from=127.0.0.0/24 reason=address",
+        "event=leave viewer=0 reason=quit seconds=",
+        "event=leave viewer=1 reason=hang_up seconds=",
+    ];
+    assert!(log.iter().zip(expected).all(|(line, start)| line.starts_with(start)), "{log:?}");
 }
 
 #[test]

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use termtrace::internals::serve::{self, HostedScene, Settings};
 use termtrace::internals::terminal::die_of;
-use termtrace::internals::text::{visible, visible_lines};
+use termtrace::internals::text::visible;
 use termtrace::live::Signals;
 
 const EXAMPLES: &str = "\
@@ -107,7 +107,7 @@ pub(in crate::cli) fn run(mut args: ServeArgs, given: &ArgMatches) -> CommandRes
     let settings = settings(&args)?;
     let scenes = scenes(&args.scenes)?;
     let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
-    let log: serve::Log = Arc::new(|line: &str| print_error(&format!("termtrace: {}\n", visible_lines(line))));
+    let log: serve::Log = Arc::new(|line: &str| print_error(&format!("{}\n", visible(line))));
     let started = |address: SocketAddr, fingerprint: &str| {
         let (ip, port) = (address.ip(), address.port());
         let line = format!("listening on {address}: ssh -p {port} {ip}\nhost key {fingerprint}\n");
