@@ -1,4 +1,4 @@
-//! Any bytes as a texture, PNG or JPEG: a sound mesh, or an error that can be shown.
+//! Any bytes as a texture of any format: a sound mesh, or an error that can be shown.
 
 #![no_main]
 #![allow(dead_code, reason = "the tests ask for more of this module")]

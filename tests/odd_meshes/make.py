@@ -68,6 +68,76 @@ write("only here.png", png((0, 0, 255)))
 obj("b5_mtl", "mtllib C:\\art\\b5_slash.mtl\nusemtl a\n" + SQUARE)
 obj("b6", TEXTURED, mtl="newmtl a\nmap_Kd t.xcf\n")
 beside("t.xcf", b"gimp xcf file\0")
+
+
+# Pictures with a blue upper and a red lower half, and the MTL files that name them. Their lower half is at v = 0.25.
+def bits(*numbers):
+    """Packs (value, width) pairs, least significant bit first, as WebP does."""
+    total, at = 0, 0
+    for value, width in numbers:
+        total |= value << at
+        at += width
+    return total.to_bytes(-(-at // 8), "little")
+
+
+def webp():
+    # Lossless, of 1 x 2 pixels, without transforms, a cache of colours, and further codes.
+    head = [(0x2F, 8), (0, 14), (1, 14), (0, 1), (0, 3), (0, 1), (0, 1), (0, 1)]
+    zero, either, opaque = [(1, 1), (0, 3)], [(1, 1), (1, 1), (1, 1), (0, 8), (255, 8)], [(1, 1), (0, 1), (1, 1), (255, 8)]
+    # The codes of green, red, blue, opacity and distance; then a bit of red and one of blue per pixel.
+    data = bits(*head, *zero, *either, *either, *opaque, *zero, (0, 1), (1, 1), (1, 1), (0, 1))
+    chunk = b"VP8L" + struct.pack("<I", len(data)) + data + bytes(len(data) % 2)
+    return b"RIFF" + struct.pack("<I", 4 + len(chunk)) + b"WEBP" + chunk
+
+
+def tiff():
+    pixels = bytes([0, 0, 255, 255, 0, 0])
+    tags = [(256, 3, 1, 1), (257, 3, 1, 2), (258, 3, 1, 8), (259, 3, 1, 1), (262, 3, 1, 2), (273, 4, 1, 8)]
+    tags += [(277, 3, 1, 3), (278, 3, 1, 2), (279, 4, 1, 6)]
+    # Eight bits for each of three channels take more than the four bytes of an entry.
+    entries = b"".join(
+        struct.pack("<HHII", 258, 3, 3, 14) if tag == 258 else struct.pack("<HHII", *fields)
+        for tag, *rest in tags
+        for fields in [(tag, *rest)]
+    )
+    head = b"II*\0" + struct.pack("<I", 20) + pixels + struct.pack("<3H", 8, 8, 8)
+    return head + struct.pack("<H", len(tags)) + entries + struct.pack("<I", 0)
+
+
+def dds(fourcc=b"DXT1"):
+    size = struct.pack("<7I", 124, 0x81007, 4, 4, 8, 0, 0) + bytes(44)
+    head = b"DDS " + size + struct.pack("<2I4s5I", 32, 4, fourcc, 0, 0, 0, 0, 0) + struct.pack("<5I", 0x1000, 0, 0, 0, 0)
+    # Two colours of 5, 6 and 5 bits, blue and red; two bits per pixel choose the first in the upper rows.
+    return head + struct.pack("<HH4B", 0x1F, 0xF800, 0, 0, 0x55, 0x55)
+
+
+PICTURES = {
+    # The rows of BMP and TGA go upwards, those of BMP to a multiple of four bytes.
+    "bmp": b"BM"
+    + struct.pack("<I4xI", 62, 54)
+    + struct.pack("<I2i2H6I", 40, 1, 2, 1, 24, 0, 8, 0, 0, 0, 0)
+    + bytes([0, 0, 255, 0, 255, 0, 0, 0]),
+    "tga": struct.pack("<3B5x4x2H2B", 0, 0, 2, 1, 2, 24, 0) + bytes([0, 0, 255, 255, 0, 0]),
+    # Two colours; codes of three bits: clear, 0, 1, end.
+    "gif": b"GIF89a\1\0\2\0\x80\0\0\0\0\xff\xff\0\0,\0\0\0\0\1\0\2\0\0\2\2"
+    + bits((4, 3), (0, 3), (1, 3), (5, 3))
+    + b"\0;",
+    "tiff": tiff(),
+    "webp": webp(),
+    "dds": dds(),
+    # With a claim of 65,535 x 65,535 pixels, and one of a kind that is not read.
+    "large.bmp": b"BM" + struct.pack("<I4xI", 62, 54) + struct.pack("<I2i2H6I", 40, 65535, 65535, 1, 24, 0, 0, 0, 0, 0, 0),
+    "bc7.dds": dds(b"BC7L"),
+}
+for kind, content in PICTURES.items():
+    beside(f"half.{kind}", content)
+    lower = TEXTURED.replace("vt 0 0", "vt 0.5 0.25")
+    obj(f"b6_{kind.replace('.', '_')}", lower, mtl=f"newmtl a\nmap_Kd half.{kind}\n")
+    if kind in ["bmp", "tiff", "gif", "webp", "dds", "tga"]:
+        # Without its last bytes, which have pixels.
+        beside(f"cut.{kind}", content[: len(content) * 4 // 5])
+        obj(f"b6_cut_{kind}", lower, mtl=f"newmtl a\nmap_Kd cut.{kind}\n")
+
 obj("b7", TEXTURED, mtl="newmtl a\nmap_Kd T.PNG\n")
 obj("b7_quotes", TEXTURED, mtl='newmtl a\nmap_Kd "t.png"\n')
 obj("b7_url", TEXTURED, mtl="newmtl a\nmap_Kd https://example.com/t.png\n")

@@ -88,8 +88,8 @@ impl<'a> MaterialReader<'_, 'a, '_> {
     /// number of its texture coordinate set; `None` if the file of the texture is missing.
     fn placement(&mut self, info: Json<'a>) -> Result<Option<(TexturePlacement, usize)>, MeshFault> {
         let (_, texture) = info.required("index")?.item_of(self.buffers.root(), "textures")?;
-        // Images in formats other than PNG and JPEG are named by glTF extensions. `decode` refuses these formats with
-        // a message about the image.
+        // Images in formats other than PNG and JPEG are named by glTF extensions. `decode` recognises the format by the
+        // image, and refuses AVIF and Basis Universal with a message about it.
         let mut source = texture.field("source")?;
         for extension in ["EXT_texture_webp", "MSFT_texture_dds", "KHR_texture_basisu", "EXT_texture_avif"] {
             if source.is_none()

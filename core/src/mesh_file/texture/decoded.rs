@@ -1,7 +1,18 @@
-//! Decoding of texture files: PNG and JPEG.
+//! Decoding of texture files: PNG and JPEG here, other formats in modules of their own.
+//!
+//! The crate `image` is taken for BMP, GIF, WebP, DDS (DXT1, DXT3 and DXT5) and TGA only. Its TIFF decoder turns on the
+//! SIMD of `zune-jpeg`, with which JPEG textures might have other bits on other CPUs. `tiff` alone is taken instead,
+//! without JPEG inside TIFF.
 
+mod other;
+mod samples;
+mod tiff;
+
+pub(in crate::mesh_file) use samples::TexelBudget;
+
+use self::other::OtherFormat;
+use self::samples::{check_plausible, checked_texture, texels_of};
 use super::{Texture, TexturePlacement};
-use crate::color::Srgb8;
 use crate::mesh_file::limits::MAX_TEXELS;
 use glam::Vec3;
 use std::fmt;
@@ -19,39 +30,21 @@ impl TexturePlacement {
     }
 }
 
-/// The number of texels that may still be decoded.
-pub(in crate::mesh_file) struct TexelBudget(usize);
-
-impl Default for TexelBudget {
-    fn default() -> Self {
-        Self(MAX_TEXELS)
-    }
-}
-
-impl TexelBudget {
-    fn spend(&mut self, width: usize, height: usize) -> Result<(), String> {
-        if width == 0 || height == 0 {
-            return Err("is a picture without pixels".to_owned());
-        }
-        let left = width.checked_mul(height).and_then(|texels| self.0.checked_sub(texels));
-        let too_large =
-            || format!("is {width} x {height} pixels, too large: all textures together have at most {MAX_TEXELS}");
-        self.0 = left.ok_or_else(too_large)?;
-        Ok(())
-    }
-}
-
-/// Decodes an image. An `Err` is a message without its subject, such as "is neither a PNG nor a
-/// JPEG picture".
+/// Decodes an image. An `Err` is a message without its subject, such as "is a PNG picture that is
+/// cut short".
 pub(in crate::mesh_file) fn decode(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String> {
     if bytes.starts_with(b"\x89PNG") {
         decode_png(bytes, budget)
     } else if bytes.starts_with(b"\xff\xd8") {
         decode_jpeg(bytes, budget)
+    } else if tiff::is_tiff(bytes) {
+        tiff::decode(bytes, budget)
+    } else if let Some(format) = OtherFormat::recognised(bytes) {
+        format.decode(bytes, budget)
     } else if bytes.starts_with(b"version https://git-lfs") {
         Err("is only a pointer of Git LFS to the file: fetch it with `git lfs pull`".to_owned())
     } else {
-        Err("is neither a PNG nor a JPEG picture".to_owned())
+        Err("is not a picture of a known format (PNG, JPEG, BMP, TGA, GIF, TIFF, WebP, DDS)".to_owned())
     }
 }
 
@@ -75,11 +68,7 @@ fn decode_png(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String>
     let frame = reader.next_frame(&mut samples).map_err(say)?;
     // The frame of an animation may be smaller than the buffer.
     samples.truncate(frame.buffer_size());
-    let texels = match frame.color_type.samples() {
-        1 => samples.iter().map(|&y| Srgb8::new(y, y, y)).collect(),
-        2 => samples.chunks_exact(2).map(|s| Srgb8::new(s[0], s[0], s[0])).collect(),
-        n => samples.chunks_exact(n).map(|s| Srgb8::new(s[0], s[1], s[2])).collect(),
-    };
+    let texels = texels_of(&samples, frame.color_type.samples());
     checked_texture(width, height, texels, "PNG")
 }
 
@@ -97,30 +86,7 @@ fn decode_jpeg(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String
     budget.spend(width, height)?;
     check_plausible(width * height, bytes, 8 * 64, "JPEG")?;
     let samples = decoder.decode().map_err(|error| say(&error))?;
-    let texels = samples.chunks_exact(3).map(|s| Srgb8::new(s[0], s[1], s[2])).collect();
-    checked_texture(width as u32, height as u32, texels, "JPEG") // sizes of JPEG have 16 bits
-}
-
-/// Refuses a file too short for the texels that it claims, before they cost time and memory.
-///
-/// The limit is `most_per_byte` texels per byte. A byte of PNG decodes to at most 1032 bytes (the limit of deflate) of
-/// one bit per texel; in JPEG each block of 64 texels takes at least a bit. The fuzzer found a JPEG of 700 bytes whose
-/// 16 million texels took seconds to decode.
-fn check_plausible(texels: usize, bytes: &[u8], most_per_byte: usize, format: &str) -> Result<(), String> {
-    if texels / most_per_byte > bytes.len() { Err(cut_short(format)) } else { Ok(()) }
-}
-
-fn cut_short(format: &str) -> String {
-    format!("is a {format} picture that is cut short")
-}
-
-/// Returns the texture, after checking that the decoder returned `width * height` texels: indexing
-/// relies on it.
-fn checked_texture(width: u32, height: u32, texels: Vec<Srgb8>, format: &str) -> Result<Texture, String> {
-    if texels.len() != width as usize * height as usize {
-        return Err(cut_short(format));
-    }
-    Ok(Texture { width, height, texels })
+    checked_texture(width as u32, height as u32, texels_of(&samples, 3), "JPEG") // sizes of JPEG have 16 bits
 }
 
 #[cfg(all(test, unit_tests))]

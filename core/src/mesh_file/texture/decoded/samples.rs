@@ -1,0 +1,58 @@
+//! Checks of decoded pictures, and the texels of their samples.
+
+use crate::color::Srgb8;
+use crate::mesh_file::limits::MAX_TEXELS;
+use crate::mesh_file::texture::Texture;
+
+/// The number of texels that may still be decoded.
+pub(in crate::mesh_file) struct TexelBudget(usize);
+
+impl Default for TexelBudget {
+    fn default() -> Self {
+        Self(MAX_TEXELS)
+    }
+}
+
+impl TexelBudget {
+    pub(super) fn spend(&mut self, width: usize, height: usize) -> Result<(), String> {
+        if width == 0 || height == 0 {
+            return Err("is a picture without pixels".to_owned());
+        }
+        let left = width.checked_mul(height).and_then(|texels| self.0.checked_sub(texels));
+        let too_large =
+            || format!("is {width} x {height} pixels, too large: all textures together have at most {MAX_TEXELS}");
+        self.0 = left.ok_or_else(too_large)?;
+        Ok(())
+    }
+}
+
+/// Refuses a file too short for the texels that it claims, before they cost time and memory.
+///
+/// The limit is `most_per_byte` texels per byte. A byte of PNG decodes to at most 1032 bytes (the limit of deflate) of
+/// one bit per texel; in JPEG each block of 64 texels takes at least a bit. The fuzzer found a JPEG of 700 bytes whose
+/// 16 million texels took seconds to decode.
+pub(super) fn check_plausible(texels: usize, bytes: &[u8], most_per_byte: usize, format: &str) -> Result<(), String> {
+    if texels / most_per_byte > bytes.len() { Err(cut_short(format)) } else { Ok(()) }
+}
+
+/// Returns the texels of samples with one or two (grey), three or four (RGB) channels, of which the
+/// second and the fourth are opacities.
+pub(super) fn texels_of(samples: &[u8], channels: usize) -> Vec<Srgb8> {
+    match channels {
+        1 | 2 => samples.chunks_exact(channels).map(|s| Srgb8::new(s[0], s[0], s[0])).collect(),
+        _ => samples.chunks_exact(channels).map(|s| Srgb8::new(s[0], s[1], s[2])).collect(),
+    }
+}
+
+pub(super) fn cut_short(format: &str) -> String {
+    format!("is a {format} picture that is cut short")
+}
+
+/// Returns the texture, after checking that the decoder returned `width * height` texels: indexing
+/// relies on it.
+pub(super) fn checked_texture(width: u32, height: u32, texels: Vec<Srgb8>, format: &str) -> Result<Texture, String> {
+    if texels.len() != width as usize * height as usize {
+        return Err(cut_short(format));
+    }
+    Ok(Texture { width, height, texels })
+}
