@@ -6,12 +6,15 @@
 //! session are the `session_buffers`, with at most one frame. `limits` counts connections and places for viewers; `ssh`
 //! and `client_command` define what a client may ask for; `visit` leads a client through the queue to its session.
 //!
-//! The modules `run_queue`, `viewer_session`, `limits`, `total_rate`, `log_line`, `client_command` and
-//! `client_terminal` are pure: they do no I/O, and the time is a parameter.
+//! The modules `run_queue`, `viewer_session`, `limits`, `total_rate`, `network`, `log_line`, `client_command`
+//! and `client_terminal` are pure: they do no I/O, and the time is a parameter.
 
 use crate::scene::Scene;
 use crate::terminal::{Signals, without_signals};
+use limits::{Admission, Refusal, anonymized};
 use log_line::LogLine;
+pub use network::Network;
+use proxy_header::ReadHeader;
 use russh::keys::PublicKey;
 use russh::server::{Config, run_stream};
 use russh::{MethodKind, MethodSet, Preferred, SshId, mac};
@@ -22,13 +25,14 @@ use socket::Socket;
 use ssh::Client;
 use std::borrow::Cow;
 use std::io;
-use std::net::{SocketAddr, TcpListener};
+use std::net::{IpAddr, SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 use tokio::net::TcpStream;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{sleep, timeout};
 use worker_pool::WorkerPool;
 
@@ -38,7 +42,9 @@ mod host_key;
 mod limits;
 mod log_line;
 mod metrics;
+mod network;
 mod pictures;
+mod proxy_header;
 mod run_queue;
 mod scrape;
 mod session_buffers;
@@ -52,6 +58,9 @@ mod worker_pool;
 
 /// Pause after a failed `accept`, such as with too many open files.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
+
+/// The largest number of connections of load balancers whose header has not arrived yet.
+const MAX_HEADERS: usize = 256;
 
 /// A scene that the server shows to its viewers.
 #[derive(Clone, Debug)]
@@ -99,6 +108,8 @@ pub struct Settings {
     pub link: Option<String>,
     /// The address at which the server's counts can be read, in the text format of Prometheus.
     pub metrics: Option<SocketAddr>,
+    /// The networks of load balancers, which tell the address of each client by the PROXY protocol.
+    pub proxies: Vec<Network>,
     /// The longest time that a client may take to log in.
     pub login_time: Duration,
     /// The longest time in which a client takes no bytes. After it, the connection is closed.
@@ -126,6 +137,7 @@ impl Settings {
             banner: None,
             link: None,
             metrics: None,
+            proxies: Vec::new(),
             // `russh` does not limit the time for the login: 500 of 500 connections that sent nothing were still open
             // after 20 seconds.
             login_time: Duration::from_secs(10),
@@ -351,23 +363,18 @@ async fn serve_until_drained(state: Arc<SharedState>, config: Arc<Config>, liste
 /// Accepts connections for ever.
 // Used instead of the loop of `russh`, which ends at the first error of `accept`.
 async fn accept_all(state: Arc<SharedState>, config: Arc<Config>, listener: tokio::net::TcpListener) {
+    let headers = Arc::new(Semaphore::new(MAX_HEADERS));
     loop {
         match listener.accept().await {
             Ok((stream, address)) => {
-                let entry = locked(&state.limiter).enter(address.ip(), state.pool.now());
-                let metrics = &state.pool.metrics;
-                let from = limits::anonymized(address.ip());
-                match entry {
-                    Ok(entry) => {
-                        metrics.connections.add(1);
-                        let connection = connect(Arc::clone(&state), Arc::clone(&config), stream, (entry, from));
-                        tokio::spawn(connection);
+                let (state, config, address) = (Arc::clone(&state), Arc::clone(&config), address.ip());
+                if state.settings.proxies.iter().any(|proxy| proxy.contains(address)) {
+                    match Arc::clone(&headers).try_acquire_owned() {
+                        Ok(place) => drop(tokio::spawn(admit_proxied(state, config, stream, (address, place)))),
+                        Err(_) => state.refuse(address, Refusal::Busy),
                     }
-                    // Closing the connection costs the least; a message to the client would need the whole handshake.
-                    Err(refusal) => {
-                        metrics.refuse(refusal);
-                        state.log(&LogLine::event("refused").with("from", from).with("reason", refusal.name()));
-                    }
+                } else {
+                    admit(state, config, stream, (address, Vec::new()));
                 }
             }
             // The error may pass: if too many files are open, for example, other connections may end meanwhile.
@@ -379,15 +386,40 @@ async fn accept_all(state: Arc<SharedState>, config: Arc<Config>, listener: toki
     }
 }
 
-/// Serves one connection, and closes it if the client does not log in or request anything in time.
-async fn connect(
+/// Reads the header of a load balancer at `address`, and admits its client.
+async fn admit_proxied(
     state: Arc<SharedState>,
     config: Arc<Config>,
     stream: TcpStream,
-    (entry, from): (limits::Admission, String),
+    (address, place): (IpAddr, OwnedSemaphorePermit),
 ) {
+    let header = proxy_header::read(&stream).await;
+    drop(place);
+    match header {
+        Some(ReadHeader { client, rest }) => admit(state, config, stream, (client.unwrap_or(address), rest)),
+        None => state.refuse(address, Refusal::Header),
+    }
+}
+
+/// Admits a connection of a client at `address`, or refuses it.
+///
+/// `first` is what has been read from the connection.
+fn admit(state: Arc<SharedState>, config: Arc<Config>, stream: TcpStream, (address, first): (IpAddr, Vec<u8>)) {
+    let entry = locked(&state.limiter).enter(address, state.pool.now());
+    match entry {
+        Ok(entry) => {
+            state.pool.metrics.connections.add(1);
+            let socket = Socket::new(stream, first, state.settings.patience);
+            tokio::spawn(connect(state, config, socket, (entry, anonymized(address))));
+        }
+        // Closing the connection costs the least; a message to the client would need the whole handshake.
+        Err(refusal) => state.refuse(address, refusal),
+    }
+}
+
+/// Serves one connection, and closes it if the client does not log in or request anything in time.
+async fn connect(state: Arc<SharedState>, config: Arc<Config>, socket: Socket, (entry, from): (Admission, String)) {
     let (login_time, idle) = (state.settings.login_time, state.settings.idle);
-    let socket = Socket::new(stream, state.settings.patience);
     let (closer, buffers) = (socket.closer(), Arc::new(SessionBuffers::default()));
     let client = Client {
         state,

@@ -72,6 +72,8 @@ pub(super) enum Refusal {
     Address,
     /// Too many new connections from this address in a short time.
     Rate,
+    /// A load balancer sent no header with the address of its client.
+    Header,
 }
 
 impl Refusal {
@@ -81,6 +83,7 @@ impl Refusal {
             Self::Busy => "busy",
             Self::Address => "address",
             Self::Rate => "rate",
+            Self::Header => "header",
         }
     }
 }

@@ -26,7 +26,7 @@ pub(super) struct Metrics {
     pub(super) connections: Counter,
     pub(super) logins: Counter,
     /// The refused connections, by [`Refusal`].
-    refused: [Counter; 3],
+    refused: [Counter; 4],
     pub(super) visits: Counter,
     pub(super) frames: Counter,
     pub(super) bytes: Counter,
@@ -65,8 +65,13 @@ impl Metrics {
                 };
             }
         };
-        let [busy, address, rate] = &self.refused;
-        let reasons = [("{reason=\"busy\"}", busy), ("{reason=\"address\"}", address), ("{reason=\"rate\"}", rate)];
+        let [busy, address, rate, header] = &self.refused;
+        let reasons = [
+            ("{reason=\"busy\"}", busy),
+            ("{reason=\"address\"}", address),
+            ("{reason=\"rate\"}", rate),
+            ("{reason=\"header\"}", header),
+        ];
         sum("connections_total", "Connections that were accepted", &[("", &self.connections)]);
         sum("refused_total", "Connections that were refused", &reasons);
         sum("logins_total", "Connections that have logged in", &[("", &self.logins)]);

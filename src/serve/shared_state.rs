@@ -1,7 +1,7 @@
 //! The state that all connections share: scenes, settings, limits, and the threads that draw.
 
 use super::client_terminal::ClientTerminal;
-use super::limits::{ConnectionLimiter, Places};
+use super::limits::{ConnectionLimiter, Places, Refusal, anonymized};
 use super::log_line::LogLine;
 use super::session_buffers::locked;
 use super::total_rate::TotalRate;
@@ -14,6 +14,7 @@ use crate::grid::Size;
 use crate::viewer::Options;
 use std::collections::HashMap;
 use std::fmt::Write;
+use std::net::IpAddr;
 use std::sync::{Arc, Mutex, OnceLock};
 use std::time::Duration;
 use tokio::sync::watch;
@@ -75,6 +76,13 @@ impl SharedState {
     /// Writes a line into the log.
     pub(super) fn log(&self, line: &LogLine) {
         (self.log)(line.text());
+    }
+
+    /// Counts and logs a connection from `address` that is refused.
+    pub(super) fn refuse(&self, address: IpAddr, refusal: Refusal) {
+        self.pool.metrics.refuse(refusal);
+        let line = LogLine::event("refused").with("from", anonymized(address));
+        self.log(&line.with("reason", refusal.name()));
     }
 
     /// Returns the options of a new viewer, whose window has this number of columns.

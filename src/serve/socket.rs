@@ -2,7 +2,8 @@
 //! stalls.
 
 use rustix::net::{Shutdown, shutdown, sockopt};
-use std::io;
+use std::collections::VecDeque;
+use std::io::{self, Read};
 use std::pin::Pin;
 use std::sync::{Arc, Weak};
 use std::task::{Context, Poll, ready};
@@ -20,6 +21,8 @@ const SEND_BUFFER: usize = 64 * 1024;
 pub(super) struct Socket {
     // Shared with `SocketCloser`, whose reference is weak, so that it does not keep the socket open.
     stream: Arc<TcpStream>,
+    /// The bytes that were read from the stream before it was wrapped, and not yet from here.
+    first: VecDeque<u8>,
     /// The longest time that a client may take no bytes while some wait to be sent.
     patience: Duration,
     /// The timer of `patience`, which runs while bytes wait and the client takes none.
@@ -40,15 +43,16 @@ impl SocketCloser {
 }
 
 impl Socket {
-    /// Wraps the stream of a new connection, and sets its socket options.
-    pub(super) fn new(stream: TcpStream, patience: Duration) -> Self {
+    /// Wraps the stream of a new connection, from which `first` has been read, and sets its socket
+    /// options.
+    pub(super) fn new(stream: TcpStream, first: Vec<u8>, patience: Duration) -> Self {
         // Errors are ignored, because these options affect only the speed.
         let _ = stream.set_nodelay(true);
         let _ = sockopt::set_socket_send_buffer_size(&stream, SEND_BUFFER);
         // With keepalive a client's host that has vanished is noticed even if the server sends nothing.
         let _ = sockopt::set_socket_keepalive(&stream, true);
         let _ = sockopt::set_tcp_keepidle(&stream, Duration::from_secs(60));
-        Self { stream: Arc::new(stream), patience, stalled: None }
+        Self { stream: Arc::new(stream), first: first.into(), patience, stalled: None }
     }
 
     /// Returns a handle that closes the socket.
@@ -58,7 +62,12 @@ impl Socket {
 }
 
 impl AsyncRead for Socket {
-    fn poll_read(self: Pin<&mut Self>, cx: &mut Context<'_>, buffer: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
+    fn poll_read(mut self: Pin<&mut Self>, cx: &mut Context<'_>, buffer: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
+        if !self.first.is_empty() {
+            let count = self.first.read(buffer.initialize_unfilled())?;
+            buffer.advance(count);
+            return Poll::Ready(Ok(()));
+        }
         loop {
             ready!(self.stream.poll_read_ready(cx))?;
             match self.stream.try_read(buffer.initialize_unfilled()) {

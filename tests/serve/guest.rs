@@ -101,7 +101,8 @@ impl Guest {
         Self::on(log_in(place).await, size).await
     }
 
-    async fn on(session: Handle<Anybody>, (columns, rows): (u16, u16)) -> Self {
+    /// Opens a channel of a session.
+    pub(crate) async fn on(session: Handle<Anybody>, (columns, rows): (u16, u16)) -> Self {
         let channel = session.channel_open_session().await.expect("a channel");
         let (bytes, errors, screen) = (Vec::new(), Vec::new(), Screen::new(columns, rows));
         let (delay, owed) = (Duration::ZERO, VecDeque::new());

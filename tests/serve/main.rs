@@ -3,6 +3,7 @@
 //! The tests wait for events. Times that a server grants are shortened, so that they pass within a test.
 
 mod abuse;
+mod balancer;
 mod counter;
 mod guest;
 mod openssh;

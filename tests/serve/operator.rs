@@ -2,21 +2,17 @@
 
 use crate::counter::{Counter, run_all};
 use crate::guest::{Anybody, Guest, connect, connect_as};
-use crate::program::Program;
+use crate::program::{Program, termtrace};
 use crate::{Hosting, Place, run, until};
 use russh::keys::ssh_key::private::{Ed25519Keypair, KeypairData};
 use russh::keys::{PrivateKey, PrivateKeyWithHashAlg};
 use std::fs;
 use std::io::{Read, Write};
 use std::net::TcpStream;
-use std::process::{Command, Output};
+use std::process::Command;
 use std::sync::Arc;
 use std::time::Duration;
 use tempfile::TempDir;
-
-fn termtrace(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_termtrace")).arg("serve").args(arguments).output().expect("it runs")
-}
 
 fn folder_with(name: &str, text: &str) -> (TempDir, String) {
     let folder = tempfile::tempdir().expect("a folder");

@@ -3,8 +3,13 @@
 use crate::Place;
 use std::io::{BufRead, BufReader};
 use std::net::SocketAddr;
-use std::process::{Child, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdout, Command, Output, Stdio};
 use tempfile::TempDir;
+
+/// Runs `termtrace serve` with arguments by which it ends at once.
+pub(crate) fn termtrace(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_termtrace")).arg("serve").args(arguments).output().expect("it runs")
+}
 
 /// A running `termtrace serve`; it is ended when it is dropped.
 pub(crate) struct Program {

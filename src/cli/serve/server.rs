@@ -13,7 +13,7 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
-use termtrace::internals::serve::{self, HostedScene, Settings};
+use termtrace::internals::serve::{self, HostedScene, Network, Settings};
 use termtrace::internals::terminal::die_of;
 use termtrace::internals::text::visible;
 use termtrace::live::Signals;
@@ -91,6 +91,9 @@ pub(in crate::cli) struct ServeArgs {
     /// Address of this machine with counts for Prometheus, and a health check
     #[arg(long, value_name = "ADDRESS:PORT", hide_short_help = true)]
     metrics: Option<SocketAddr>,
+    /// Networks of load balancers that send the PROXY protocol, such as 10.0.0.0/8
+    #[arg(long, value_name = "CIDR,...", value_delimiter = ',', hide_short_help = true)]
+    proxy_protocol: Vec<Network>,
     /// File of settings, such as (listen: "0.0.0.0:22", public: true, fps: 20)
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
@@ -148,6 +151,7 @@ fn settings(args: &ServeArgs) -> Result<Settings, Failure> {
         )));
     }
     settings.metrics = args.metrics;
+    settings.proxies.clone_from(&args.proxy_protocol);
     settings.threads = args.threads.map(usize::from);
     let named = |path: &Path, error: &io::Error| Failure::runtime(path.display(), reason(error));
     if let Some(path) = &args.authorized_keys {
