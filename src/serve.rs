@@ -15,12 +15,12 @@ use limits::{Admission, Refusal, anonymized};
 use log_line::LogLine;
 pub use network::Network;
 use proxy_header::ReadHeader;
-use russh::keys::PublicKey;
+use russh::keys::{PrivateKey, PublicKey};
 use russh::server::{Config, run_stream};
 use russh::{MethodKind, MethodSet, Preferred, SshId, mac};
 use rustix::event::{PollFd, PollFlags, poll};
 use session_buffers::{SessionBuffers, locked};
-use shared_state::SharedState;
+use shared_state::{Setup, SharedState};
 use socket::Socket;
 use ssh::Client;
 use std::borrow::Cow;
@@ -61,6 +61,8 @@ const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 
 /// The largest number of connections of load balancers whose header has not arrived yet.
 const MAX_HEADERS: usize = 256;
+
+const NO_SCENE: &str = "there is no scene to show";
 
 /// A scene that the server shows to its viewers.
 #[derive(Clone, Debug)]
@@ -147,6 +149,19 @@ impl Settings {
     }
 }
 
+impl Settings {
+    /// Returns the name of the first setting that differs and cannot change while a server runs.
+    fn first_fixed_change(&self, before: &Self) -> Option<&'static str> {
+        let changes = [
+            ("listen", self.listen != before.listen),
+            ("host_key", self.host_key != before.host_key),
+            ("threads", self.threads != before.threads),
+            ("metrics", self.metrics != before.metrics),
+        ];
+        changes.into_iter().find_map(|(name, has_changed)| has_changed.then_some(name))
+    }
+}
+
 /// Reads the public keys of a file as `sshd` does, but does not accept options before a key.
 ///
 /// # Errors
@@ -164,6 +179,7 @@ pub fn authorized_keys(path: &Path) -> io::Result<Vec<PublicKey>> {
 /// A running server of views over SSH.
 pub struct Server {
     state: Arc<SharedState>,
+    key: PrivateKey,
     address: SocketAddr,
     metrics: Option<SocketAddr>,
     fingerprint: String,
@@ -190,7 +206,7 @@ impl Server {
         on_end: impl FnOnce() + Send + 'static,
     ) -> io::Result<Self> {
         if scenes.is_empty() {
-            return Err(io::Error::other("there is no scene to show"));
+            return Err(io::Error::other(NO_SCENE));
         }
         let named = |what: String| move |error: io::Error| io::Error::new(error.kind(), format!("{what}: {error}"));
         let key = host_key::load_or_make(&settings.host_key).map_err(named(settings.host_key.display().to_string()))?;
@@ -205,8 +221,8 @@ impl Server {
         let cores = || thread::available_parallelism().map_or(1, usize::from);
         let (pool, threads) = WorkerPool::start(settings.threads.unwrap_or_else(cores))?;
         let fingerprint = host_key::fingerprint(&key);
-        let config = Arc::new(ssh_config(&settings, key));
-        let state = Arc::new(SharedState::new(scenes, settings, pool, log));
+        let ssh = ssh_config(&settings, key.clone());
+        let state = Arc::new(SharedState::new(Setup::new(settings, scenes, ssh), pool, log));
         let (ended, shared) = (Arc::new(AtomicBool::new(false)), Arc::clone(&state));
         let flag = Arc::clone(&ended);
         // One thread suffices for the sockets, and leaves the cores to the threads that draw.
@@ -216,12 +232,12 @@ impl Server {
                 if let Some(Ok(listener)) = counts.map(tokio::net::TcpListener::from_std) {
                     tokio::spawn(scrape::serve(Arc::clone(&shared), listener));
                 }
-                serve_until_drained(shared, config, listener).await;
+                serve_until_drained(shared, listener).await;
             });
             flag.store(true, Ordering::SeqCst);
             on_end();
         })?;
-        Ok(Self { state, address, metrics, fingerprint, sockets: Some(sockets), threads, ended })
+        Ok(Self { state, key, address, metrics, fingerprint, sockets: Some(sockets), threads, ended })
     }
 
     /// Returns the address that the server listens at.
@@ -250,9 +266,26 @@ impl Server {
         let _ = self.state.pool.panics.set(byte);
     }
 
+    /// Replaces the scenes and the settings.
+    ///
+    /// New views have all new settings. Open views keep the times and rates of their beginning, and get the new scenes:
+    /// each shows the scene of the same name. The settings that cannot change while the server runs are `listen`,
+    /// `host_key`, `threads` and `metrics`. If there is no scene, nothing changes.
+    pub fn reload(&self, scenes: Vec<HostedScene>, settings: Settings) {
+        if scenes.is_empty() {
+            return self.state.log(&LogLine::event("reload_failed").with("error", NO_SCENE));
+        }
+        let line = LogLine::event("reload").with("scenes", scenes.len());
+        let unchanged = settings.first_fixed_change(&self.state.setup().settings);
+        let line = unchanged.into_iter().fold(line, |line, name| line.with("needs_restart", name));
+        let ssh = ssh_config(&settings, self.key.clone());
+        self.state.replace_setup(Setup::new(settings, scenes, ssh));
+        self.state.log(&line);
+    }
+
     /// Accepts no more connections, and tells all viewers that they have to leave.
     pub fn drain(&self) {
-        let (viewers, time) = (self.viewers(), self.state.settings.drain);
+        let (viewers, time) = (self.viewers(), self.state.setup().settings.drain);
         self.state.log(&LogLine::event("drain").with("viewers", viewers).with("seconds", time.as_secs()));
         self.state.drain(self.state.pool.now() + time);
     }
@@ -275,15 +308,19 @@ impl Server {
     }
 }
 
+/// A function that reads the scenes and the settings of a server, or returns the text of an error.
+pub type Reader<'a> = dyn FnMut() -> Result<(Vec<HostedScene>, Settings), String> + 'a;
+
 /// Runs a server until a signal asks it to end and it has drained; a second signal ends it at once.
 ///
-/// `started` is told the address and the host key's fingerprint.
+/// SIGHUP replaces the scenes and settings by those that `read` returns. But if the server's terminal has been closed,
+/// which sends SIGHUP too, the server drains. `started` is told the address and the host key's fingerprint.
 ///
 /// # Errors
 /// As for [`Server::start`].
 pub fn run_until_drained(
-    scenes: Vec<HostedScene>,
-    settings: Settings,
+    (scenes, settings): (Vec<HostedScene>, Settings),
+    read: &mut Reader<'_>,
     signals: &mut Signals,
     log: &Log,
     started: impl FnOnce(SocketAddr, &str),
@@ -296,11 +333,18 @@ pub fn run_until_drained(
         // An error of `poll`, such as an interruption by a signal, is ignored: the code below checks the state itself.
         let _ = poll(&mut [PollFd::from_borrowed_fd(signals.wake_pipe(), PollFlags::IN)], None);
         signals.drain();
+        let reloads = signals.take_reload();
         // These signals do not ask the server to end: its own terminal was resized, or it was stopped and continued.
-        let is_other = signals.take_resized() | signals.take_continued();
+        let is_other = signals.take_resized() | signals.take_continued() | reloads;
         if server.has_ended() {
             server.join();
             return Ok(None);
+        }
+        if reloads && !draining {
+            match read() {
+                Ok((scenes, settings)) => server.reload(scenes, settings),
+                Err(error) => server.state.log(&LogLine::event("reload_failed").with("error", error)),
+            }
         }
         match signals.deadly() {
             Some(signal) if draining && !is_other => return Ok(Some(signal)),
@@ -315,7 +359,7 @@ pub fn run_until_drained(
 
 /// Returns the configuration of SSH: the host key, the ways to log in, and the limits of a
 /// connection.
-fn ssh_config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
+fn ssh_config(settings: &Settings, key: PrivateKey) -> Config {
     let with_keys = settings.authorized_keys.is_some();
     let macs = [mac::HMAC_SHA256_ETM, mac::HMAC_SHA512_ETM, mac::HMAC_SHA256, mac::HMAC_SHA512];
     Config {
@@ -342,13 +386,13 @@ fn ssh_config(settings: &Settings, key: russh::keys::PrivateKey) -> Config {
 }
 
 /// Accepts connections until the server drains, and waits until the last viewer has left.
-async fn serve_until_drained(state: Arc<SharedState>, config: Arc<Config>, listener: TcpListener) {
+async fn serve_until_drained(state: Arc<SharedState>, listener: TcpListener) {
     let listener = match tokio::net::TcpListener::from_std(listener) {
         Ok(listener) => listener,
         Err(error) => return state.log(&LogLine::event("socket_failed").with("error", error)),
     };
     let mut changes = state.changes.subscribe();
-    let accepting = tokio::spawn(accept_all(Arc::clone(&state), config, listener));
+    let accepting = tokio::spawn(accept_all(Arc::clone(&state), listener));
     while state.drain_deadline().is_none() && changes.changed().await.is_ok() {}
     accepting.abort();
     // Viewers get up to three seconds more, for the last replies of their terminals and the last bytes to them.
@@ -362,19 +406,19 @@ async fn serve_until_drained(state: Arc<SharedState>, config: Arc<Config>, liste
 
 /// Accepts connections for ever.
 // Used instead of the loop of `russh`, which ends at the first error of `accept`.
-async fn accept_all(state: Arc<SharedState>, config: Arc<Config>, listener: tokio::net::TcpListener) {
+async fn accept_all(state: Arc<SharedState>, listener: tokio::net::TcpListener) {
     let headers = Arc::new(Semaphore::new(MAX_HEADERS));
     loop {
         match listener.accept().await {
             Ok((stream, address)) => {
-                let (state, config, address) = (Arc::clone(&state), Arc::clone(&config), address.ip());
-                if state.settings.proxies.iter().any(|proxy| proxy.contains(address)) {
+                let (state, address) = (Arc::clone(&state), address.ip());
+                if state.setup().settings.proxies.iter().any(|proxy| proxy.contains(address)) {
                     match Arc::clone(&headers).try_acquire_owned() {
-                        Ok(place) => drop(tokio::spawn(admit_proxied(state, config, stream, (address, place)))),
+                        Ok(place) => drop(tokio::spawn(admit_proxied(state, stream, (address, place)))),
                         Err(_) => state.refuse(address, Refusal::Busy),
                     }
                 } else {
-                    admit(state, config, stream, (address, Vec::new()));
+                    admit(state, stream, (address, Vec::new()));
                 }
             }
             // The error may pass: if too many files are open, for example, other connections may end meanwhile.
@@ -387,16 +431,11 @@ async fn accept_all(state: Arc<SharedState>, config: Arc<Config>, listener: toki
 }
 
 /// Reads the header of a load balancer at `address`, and admits its client.
-async fn admit_proxied(
-    state: Arc<SharedState>,
-    config: Arc<Config>,
-    stream: TcpStream,
-    (address, place): (IpAddr, OwnedSemaphorePermit),
-) {
+async fn admit_proxied(state: Arc<SharedState>, stream: TcpStream, (address, place): (IpAddr, OwnedSemaphorePermit)) {
     let header = proxy_header::read(&stream).await;
     drop(place);
     match header {
-        Some(ReadHeader { client, rest }) => admit(state, config, stream, (client.unwrap_or(address), rest)),
+        Some(ReadHeader { client, rest }) => admit(state, stream, (client.unwrap_or(address), rest)),
         None => state.refuse(address, Refusal::Header),
     }
 }
@@ -404,13 +443,13 @@ async fn admit_proxied(
 /// Admits a connection of a client at `address`, or refuses it.
 ///
 /// `first` is what has been read from the connection.
-fn admit(state: Arc<SharedState>, config: Arc<Config>, stream: TcpStream, (address, first): (IpAddr, Vec<u8>)) {
+fn admit(state: Arc<SharedState>, stream: TcpStream, (address, first): (IpAddr, Vec<u8>)) {
     let entry = locked(&state.limiter).enter(address, state.pool.now());
     match entry {
         Ok(entry) => {
             state.pool.metrics.connections.add(1);
-            let socket = Socket::new(stream, first, state.settings.patience);
-            tokio::spawn(connect(state, config, socket, (entry, anonymized(address))));
+            let socket = Socket::new(stream, first, state.setup().settings.patience);
+            tokio::spawn(connect(state, socket, (entry, anonymized(address))));
         }
         // Closing the connection costs the least; a message to the client would need the whole handshake.
         Err(refusal) => state.refuse(address, refusal),
@@ -418,8 +457,9 @@ fn admit(state: Arc<SharedState>, config: Arc<Config>, stream: TcpStream, (addre
 }
 
 /// Serves one connection, and closes it if the client does not log in or request anything in time.
-async fn connect(state: Arc<SharedState>, config: Arc<Config>, socket: Socket, (entry, from): (Admission, String)) {
-    let (login_time, idle) = (state.settings.login_time, state.settings.idle);
+async fn connect(state: Arc<SharedState>, socket: Socket, (entry, from): (Admission, String)) {
+    let setup = state.setup();
+    let (login_time, idle) = (setup.settings.login_time, setup.settings.idle);
     let (closer, buffers) = (socket.closer(), Arc::new(SessionBuffers::default()));
     let client = Client {
         state,
@@ -432,7 +472,7 @@ async fn connect(state: Arc<SharedState>, config: Arc<Config>, socket: Socket, (
         asked: false,
     };
     let log_in = async {
-        let session = run_stream(config, socket, client).await.ok()?;
+        let session = run_stream(Arc::clone(&setup.ssh), socket, client).await.ok()?;
         buffers.logged_in.notified().await;
         Some(session)
     };

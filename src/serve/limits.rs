@@ -111,6 +111,11 @@ impl ConnectionLimiter {
         Self { per_address, total, connected: 0, logging_in: 0, origins: HashMap::new() }
     }
 
+    /// Replaces the limits. Connections above them stay.
+    pub(super) fn set_limits(&mut self, total: usize, per_address: usize) {
+        (self.total, self.per_address) = (total, per_address);
+    }
+
     /// Admits and counts a new connection, or returns the reason to refuse it.
     pub(super) fn enter(&mut self, address: IpAddr, now: Duration) -> Result<Admission, Refusal> {
         // A high `per_address` raises the limits on logins too, so that one machine can run a load test.
@@ -190,6 +195,11 @@ impl Places {
     /// Returns the places for `most` viewers, all of them free.
     pub(super) fn new(most: usize) -> Self {
         Self { most, taken: 0, waiting: VecDeque::new(), next: 0 }
+    }
+
+    /// Sets the number of places. Viewers above it stay.
+    pub(super) fn set_most(&mut self, most: usize) {
+        self.most = most;
     }
 
     /// Adds a visitor to the end of the queue, and returns its number; `None` if too many wait.

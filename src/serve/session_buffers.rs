@@ -2,10 +2,11 @@
 //!
 //! Both sides hold a lock only to move bytes, so the thread of the sockets never waits for a picture.
 
+use super::HostedScene;
 use super::run_queue::SessionId;
 use super::viewer_session::{LeaveReason, PendingInput};
 use crate::grid::Window;
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Duration;
 use tokio::sync::Notify;
 
@@ -102,6 +103,11 @@ impl SessionBuffers {
     /// Tells the session the time at which the server ends.
     pub(super) fn set_drain_deadline(&self, at: Duration) {
         locked(&self.inbox).pending.drain_deadline = Some(at);
+    }
+
+    /// Tells the session the scenes that replace those it has.
+    pub(super) fn set_scenes(&self, scenes: Arc<[HostedScene]>) {
+        locked(&self.inbox).pending.scenes = Some(scenes);
     }
 
     /// Records that the connection has ended.

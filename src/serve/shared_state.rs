@@ -12,6 +12,7 @@ use crate::control::{Command, Keymap};
 use crate::export::text_frame;
 use crate::grid::Size;
 use crate::viewer::Options;
+use russh::server::Config;
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::net::IpAddr;
@@ -25,19 +26,60 @@ use tokio::sync::watch;
 const LEFT_OUT: [Command; 6] =
     [Command::Export, Command::ExportLarge, Command::Record, Command::KeepView, Command::TurnMesh, Command::Suspend];
 
+/// The largest number of bytes in one SSH message to a client.
+// The buffer of a connection never shrinks: it keeps the size of the largest message.
+const MAX_MESSAGE: usize = 8 * 1024;
+
 /// The largest number of terminal names whose colours are cached.
 // Clients choose the names, so without a limit the map would grow for ever.
 const MAX_TERMINALS: usize = 256;
 
-/// The state that all connections share.
-pub(super) struct SharedState {
+/// The settings and the scenes of the server, which a reload replaces as a whole.
+pub(super) struct Setup {
     pub(super) settings: Settings,
     pub(super) scenes: Arc<[HostedScene]>,
+    /// The configuration of SSH that follows from the settings.
+    pub(super) ssh: Arc<Config>,
+    /// One frame of each scene as text, made when it is first asked for.
+    // Kept, because otherwise a client could make the server trace a frame with each request.
+    text_frames: Vec<OnceLock<String>>,
+}
+
+impl Setup {
+    pub(super) fn new(settings: Settings, scenes: Vec<HostedScene>, ssh: Config) -> Self {
+        let text_frames = scenes.iter().map(|_| OnceLock::new()).collect();
+        Self { settings, scenes: scenes.into(), ssh: Arc::new(ssh), text_frames }
+    }
+
+    /// Returns the largest number of connections.
+    fn max_connections(&self) -> usize {
+        // There may be more connections than viewers, because some only ask for text, and some wait for a place.
+        2 * self.settings.max_viewers + 64
+    }
+
+    /// Returns a frame of 80x24 cells of a scene as text, for clients without a terminal.
+    pub(super) fn text_frame(&self, scene: usize) -> &str {
+        self.text_frames[scene].get_or_init(|| text_frame(&self.scenes[scene].scene, Size::new(80, 24)))
+    }
+
+    /// Returns the list of scenes.
+    pub(super) fn scene_list(&self) -> String {
+        let width = self.scenes.iter().map(|scene| scene.name.len()).max().unwrap_or(0);
+        self.scenes.iter().fold(String::new(), |mut list, HostedScene { name, title, .. }| {
+            let _ = write!(list, "{}\r\n", format!("{name:width$}  {title}").trim_end());
+            list
+        })
+    }
+}
+
+/// The state that all connections share.
+pub(super) struct SharedState {
+    setup: Mutex<Arc<Setup>>,
     pub(super) pool: Arc<WorkerPool>,
     pub(super) limiter: Mutex<ConnectionLimiter>,
     places: Mutex<Places>,
     /// The queue that limits the bytes per second of all viewers together; `None` for no limit.
-    pub(super) total_rate: Option<Mutex<TotalRate>>,
+    total_rate: Mutex<Option<TotalRate>>,
     /// A signal without a value: notifies receivers when a place is freed, a visitor leaves the
     /// queue, or the server begins to drain.
     pub(super) changes: watch::Sender<()>,
@@ -46,31 +88,56 @@ pub(super) struct SharedState {
     keymap: Keymap,
     /// The colours of terminals according to terminfo, which is read once for each name.
     terminals: Mutex<HashMap<String, Option<Colors>>>,
-    /// One frame of each scene as text, made when it is first asked for.
-    // Kept, because otherwise a client could make the server trace a frame with each request.
-    text_frames: Vec<OnceLock<String>>,
 }
 
 impl SharedState {
-    pub(super) fn new(scenes: Vec<HostedScene>, settings: Settings, pool: Arc<WorkerPool>, log: Log) -> Self {
+    pub(super) fn new(setup: Setup, pool: Arc<WorkerPool>, log: Log) -> Self {
         let mut keymap = Keymap::default();
         keymap.remove(&LEFT_OUT);
-        // There may be more connections than viewers, because some only ask for text, and some wait for a place.
-        let connections = 2 * settings.max_viewers + 64;
+        let settings = &setup.settings;
         Self {
-            limiter: Mutex::new(ConnectionLimiter::new(connections, settings.max_per_address)),
+            limiter: Mutex::new(ConnectionLimiter::new(setup.max_connections(), settings.max_per_address)),
             places: Mutex::new(Places::new(settings.max_viewers)),
-            total_rate: settings.max_rate_total.map(|rate| Mutex::new(TotalRate::new(rate))),
+            total_rate: Mutex::new(settings.max_rate_total.map(TotalRate::new)),
             changes: watch::Sender::new(()),
             drain_deadline: OnceLock::new(),
-            text_frames: scenes.iter().map(|_| OnceLock::new()).collect(),
-            scenes: scenes.into(),
             terminals: Mutex::default(),
-            settings,
+            setup: Mutex::new(Arc::new(setup)),
             pool,
             log,
             keymap,
         }
+    }
+
+    /// Returns the current settings and scenes.
+    pub(super) fn setup(&self) -> Arc<Setup> {
+        Arc::clone(&locked(&self.setup))
+    }
+
+    /// Replaces the settings and the scenes.
+    ///
+    /// Open views get the scenes; the limits on all viewers together count at once.
+    pub(super) fn replace_setup(&self, setup: Setup) {
+        let Settings { max_viewers, max_per_address, max_rate_total, .. } = setup.settings;
+        locked(&self.limiter).set_limits(setup.max_connections(), max_per_address);
+        locked(&self.places).set_most(max_viewers);
+        *locked(&self.total_rate) = max_rate_total.map(TotalRate::new);
+        let scenes = Arc::clone(&setup.scenes);
+        *locked(&self.setup) = Arc::new(setup);
+        self.pool.replace_scenes(&scenes);
+        // There may be more places now.
+        self.changes.send_replace(());
+    }
+
+    /// Returns the most bytes of a message to a client.
+    pub(super) fn max_message(&self) -> usize {
+        if locked(&self.total_rate).is_some() { TotalRate::MAX_PART } else { MAX_MESSAGE }
+    }
+
+    /// Returns how long a message has to wait for the limit on the bytes of all viewers together.
+    pub(super) fn reserve_wait(&self, bytes: usize) -> Duration {
+        let now = self.pool.now();
+        locked(&self.total_rate).as_mut().map_or(Duration::ZERO, |rate| rate.reserve_wait(bytes, now))
     }
 
     /// Writes a line into the log.
@@ -86,12 +153,13 @@ impl SharedState {
     }
 
     /// Returns the options of a new viewer, whose window has this number of columns.
-    pub(super) fn viewer_options(&self, terminal: &ClientTerminal, columns: u16) -> Options {
+    pub(super) fn viewer_options(&self, setup: &Setup, terminal: &ClientTerminal, columns: u16) -> Options {
+        let Setup { settings, scenes, .. } = setup;
         let mut options = Options::new(terminal.hints(&|name| self.terminal_colors(name)));
-        options.max_rate = self.settings.max_rate;
-        options.max_frames = Some(self.settings.max_frames);
+        options.max_rate = settings.max_rate;
+        options.max_frames = Some(settings.max_frames);
         options.keymap = self.keymap.clone();
-        options.welcome = Some(welcome_line(self.scenes.len(), self.settings.link.as_deref(), columns));
+        options.welcome = Some(welcome_line(scenes.len(), settings.link.as_deref(), columns));
         options
     }
 
@@ -105,20 +173,6 @@ impl SharedState {
             known.insert(name.to_owned(), colors);
         }
         colors
-    }
-
-    /// Returns a frame of 80x24 cells of a scene as text, for clients without a terminal.
-    pub(super) fn text_frame(&self, scene: usize) -> &str {
-        self.text_frames[scene].get_or_init(|| text_frame(&self.scenes[scene].scene, Size::new(80, 24)))
-    }
-
-    /// Returns the list of scenes.
-    pub(super) fn scene_list(&self) -> String {
-        let width = self.scenes.iter().map(|scene| scene.name.len()).max().unwrap_or(0);
-        self.scenes.iter().fold(String::new(), |mut list, HostedScene { name, title, .. }| {
-            let _ = write!(list, "{}\r\n", format!("{name:width$}  {title}").trim_end());
-            list
-        })
     }
 
     /// Returns the server's counts in the text format of Prometheus.

@@ -70,10 +70,11 @@ impl Client {
         }
         session.channel_success(channel)?;
         self.buffers.asked.notify_one();
-        let names = self.state.scenes.iter().map(|scene| scene.name.as_str());
-        let command = client_command::parse_command(command, names);
+        let setup = self.state.setup();
+        let command = client_command::parse_command(command, setup.scenes.iter().map(|scene| scene.name.as_str()));
         let visit = Visit {
             state: Arc::clone(&self.state),
+            setup,
             buffers: Arc::clone(&self.buffers),
             closer: self.closer.clone(),
             from: std::mem::take(&mut self.from),
@@ -85,8 +86,8 @@ impl Client {
         tokio::spawn(async move {
             match (command, terminal.window) {
                 (Ok(ClientCommand::Scene(scene)), Some(window)) => visit.show(scene, &terminal, window).await,
-                (Ok(ClientCommand::Scene(scene)), None) => visit.print(visit.state.text_frame(scene)).await,
-                (Ok(ClientCommand::List), _) => visit.print(&visit.state.scene_list()).await,
+                (Ok(ClientCommand::Scene(scene)), None) => visit.print(visit.setup.text_frame(scene)).await,
+                (Ok(ClientCommand::List), _) => visit.print(&visit.setup.scene_list()).await,
                 (Err(message), _) => visit.refuse(&message).await,
             }
         });
@@ -98,19 +99,19 @@ impl Handler for Client {
     type Error = Error;
 
     async fn auth_none(&mut self, _user: &str) -> Result<Auth, Error> {
-        Ok(if self.state.settings.authorized_keys.is_none() { self.log_in() } else { Auth::reject() })
+        Ok(if self.state.setup().settings.authorized_keys.is_none() { self.log_in() } else { Auth::reject() })
     }
 
     async fn auth_publickey(&mut self, _user: &str, key: VerifiedPublicKey<'_>) -> Result<Auth, Error> {
         let known = |keys: &Vec<_>| {
             keys.iter().any(|known: &russh::keys::PublicKey| known.key_data() == key.public_key.key_data())
         };
-        let accepts = self.state.settings.authorized_keys.as_ref().is_none_or(known);
+        let accepts = self.state.setup().settings.authorized_keys.as_ref().is_none_or(known);
         Ok(if accepts { self.log_in() } else { Auth::reject() })
     }
 
     async fn authentication_banner(&mut self) -> Result<Option<String>, Error> {
-        Ok(self.state.settings.banner.clone())
+        Ok(self.state.setup().settings.banner.clone())
     }
 
     async fn channel_open_session(

@@ -98,6 +98,8 @@ pub(super) struct PendingInput {
     /// The time at which the last of the bytes arrived.
     pub(super) at: Duration,
     pub(super) window: Option<Window>,
+    /// The scenes that replace those of the session.
+    pub(super) scenes: Option<Arc<[HostedScene]>>,
     /// The time at which the server ends, if it does.
     pub(super) drain_deadline: Option<Duration>,
 }
@@ -176,6 +178,20 @@ impl ViewerSession {
         }
     }
 
+    /// Replaces the scenes, and shows the one of the same name, or else the first one.
+    ///
+    /// The camera stays if the scene has the same own camera and the same place in the list.
+    fn replace_scenes(&mut self, scenes: Arc<[HostedScene]>) {
+        let before = std::mem::replace(&mut self.scenes, scenes);
+        let name = &before[self.shown].name;
+        let found = self.scenes.iter().position(|scene| scene.name == *name);
+        self.viewer.set_names(self.scenes.iter().map(|scene| scene.name.clone()).collect());
+        self.show(found.unwrap_or(0));
+        if found.is_none() {
+            self.viewer.show_note(format!("the scene {name} is no longer shown"));
+        }
+    }
+
     /// Handles the input that has arrived, carries out the viewer's actions, and appends the bytes
     /// to send.
     ///
@@ -216,6 +232,9 @@ impl ViewerSession {
     fn apply_input(&mut self, input: &PendingInput, now: Duration, out: &mut Vec<u8>) -> Result<(), OutOfMemory> {
         if let Some(window) = input.window {
             self.viewer.resize(window)?;
+        }
+        if let Some(scenes) = &input.scenes {
+            self.replace_scenes(Arc::clone(scenes));
         }
         // `receive` is called without bytes, too, so that a lone ESC becomes the Escape key after its timeout. It gets
         // the time at which the bytes arrived: their wait for this turn is not part of the link's round trip. With that

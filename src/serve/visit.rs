@@ -4,10 +4,9 @@ use super::client_terminal::ClientTerminal;
 use super::log_line::LogLine;
 use super::metrics::Counter;
 use super::run_queue::SessionId;
-use super::session_buffers::{Outgoing, SessionBuffers, locked};
-use super::shared_state::{SharedState, ViewerSlot};
+use super::session_buffers::{Outgoing, SessionBuffers};
+use super::shared_state::{Setup, SharedState, ViewerSlot};
 use super::socket::SocketCloser;
-use super::total_rate::TotalRate;
 use super::viewer_session::{LeaveReason, ViewerSession, VisitLimits};
 use crate::grid::{Size, Window};
 use crate::text::visible;
@@ -17,9 +16,6 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::{sleep, timeout};
 
-/// The largest number of bytes in one SSH message to a client.
-// The buffer of a connection never shrinks: it keeps the size of the largest message.
-const MAX_MESSAGE: usize = 8 * 1024;
 /// The time within which a client that was told to leave has to close the connection.
 // After a disconnect `russh` itself waits for the client to close, without a limit.
 const CLOSING_TIME: Duration = Duration::from_secs(2);
@@ -29,6 +25,8 @@ const LEAVING: &[u8] = b"q\x03\x04";
 /// One visit: the connection, and the client's channel.
 pub(super) struct Visit {
     pub(super) state: Arc<SharedState>,
+    /// The settings and scenes at the time of the client's request.
+    pub(super) setup: Arc<Setup>,
     pub(super) buffers: Arc<SessionBuffers>,
     pub(super) closer: SocketCloser,
     /// The network that the client's address is in, for the log.
@@ -47,13 +45,12 @@ impl Visit {
             return self.end(1).await;
         };
         let (state, now) = (&self.state, self.state.pool.now());
-        let settings = &state.settings;
+        let Setup { settings, scenes, .. } = &*self.setup;
         let limits = VisitLimits { idle: settings.idle, ends: now + settings.session_max };
-        let options = state.viewer_options(terminal, window.size.columns);
+        let options = state.viewer_options(&self.setup, terminal, window.size.columns);
         let mut first = Vec::new();
-        let scenes = Arc::clone(&state.scenes);
-        let session =
-            ViewerSession::new(scenes, scene, (options, settings.link.clone()), window, limits, now, &mut first);
+        let options = (options, settings.link.clone());
+        let session = ViewerSession::new(Arc::clone(scenes), scene, options, window, limits, now, &mut first);
         let Ok(session) = session else {
             return self.refuse("there is not enough memory for a window of this size").await;
         };
@@ -63,10 +60,14 @@ impl Visit {
         if let Some(at) = state.drain_deadline() {
             self.buffers.set_drain_deadline(at);
         }
+        let current = state.setup();
+        if !Arc::ptr_eq(&current, &self.setup) {
+            self.buffers.set_scenes(Arc::clone(&current.scenes));
+        }
         // Input that arrived before `set_session` has not woken the session.
         state.pool.wake(id);
         let Size { columns, rows } = window.size;
-        let name = &state.scenes[scene].name;
+        let name = &scenes[scene].name;
         let line = LogLine::event("view").with("viewer", id).with("from", &self.from).with("scene", name);
         state.log(&line.with("columns", columns).with("rows", rows));
         let ended = self.pass_bytes(id).await;
@@ -160,21 +161,19 @@ impl Visit {
     /// A client is disconnected if its SSH window has no room for the bytes for too long. (A client that does not read
     /// its socket at all is noticed by `Socket`.)
     async fn send(&self, bytes: &[u8]) -> bool {
-        let SharedState { total_rate, pool, .. } = &*self.state;
-        for message in bytes.chunks(if total_rate.is_some() { TotalRate::MAX_PART } else { MAX_MESSAGE }) {
-            if let Some(rate) = total_rate {
-                let wait = locked(rate).reserve_wait(message.len(), pool.now());
-                if !wait.is_zero() {
-                    sleep(wait).await;
-                }
+        let (state, patience) = (&self.state, self.setup.settings.patience);
+        for message in bytes.chunks(state.max_message()) {
+            let wait = state.reserve_wait(message.len());
+            if !wait.is_zero() {
+                sleep(wait).await;
             }
-            let sent = timeout(self.state.settings.patience, self.handle.data(self.channel, message.to_vec())).await;
+            let sent = timeout(patience, self.handle.data(self.channel, message.to_vec())).await;
             if !matches!(sent, Ok(Ok(()))) {
                 self.closer.close();
                 return false;
             }
             self.sent.add(message.len() as u64);
-            pool.metrics.bytes.add(message.len() as u64);
+            state.pool.metrics.bytes.add(message.len() as u64);
         }
         true
     }

@@ -3,6 +3,7 @@
 //! A turn is carried out by one thread from the input to the bytes: passing a frame of 0.1 ms to another thread would
 //! take as long as tracing it. Each thread is a rayon pool of its own, so that parallel functions stay on that thread.
 
+use super::HostedScene;
 use super::metrics::Metrics;
 use super::pictures::{Pictures, is_worth_sharing};
 use super::run_queue::{AfterTurn, RunQueue, SessionId, WorkKind};
@@ -102,9 +103,17 @@ impl WorkerPool {
 
     /// Tells all sessions the time at which the server ends.
     pub(super) fn drain(&self, at: Duration) {
+        self.tell_all(|buffers| buffers.set_drain_deadline(at));
+    }
+
+    /// Tells all sessions the scenes that replace those they have.
+    pub(super) fn replace_scenes(&self, scenes: &Arc<[HostedScene]>) {
+        self.tell_all(|buffers| buffers.set_scenes(Arc::clone(scenes)));
+    }
+
+    fn tell_all(&self, tell: impl Fn(&SessionBuffers)) {
         let mut state = locked(&self.state);
-        let ids: Vec<_> =
-            state.sessions.iter().map(|(&id, pooled)| (pooled.buffers.set_drain_deadline(at), id).1).collect();
+        let ids: Vec<_> = state.sessions.iter().map(|(&id, pooled)| (tell(&pooled.buffers), id).1).collect();
         for id in ids {
             state.queue.wake(id);
         }

@@ -32,12 +32,19 @@ pub struct Signals {
     deadly: Arc<AtomicUsize>,
     resized: Arc<AtomicBool>,
     continued: Arc<AtomicBool>,
+    /// Whether SIGHUP has asked to read files again.
+    reload: Arc<AtomicBool>,
+    /// Whether the process had a controlling terminal at the start.
+    had_terminal: bool,
     /// The receiver of stop requests (SIGTSTP); `None` if SIGTSTP is ignored.
     stops: Option<Receiver<StopRequest>>,
 }
 
 /// Signals that conventionally ask a program to end, for which handlers are installed.
 const CAUGHT: [i32; 4] = [SIGTERM, SIGHUP, SIGINT, SIGQUIT];
+
+/// Signals that ask a server to end: those of [`CAUGHT`] but SIGHUP.
+const CAUGHT_BY_SERVER: [i32; 3] = [SIGTERM, SIGINT, SIGQUIT];
 
 /// Signals that [`before_death`] catches besides [`CAUGHT`].
 ///
@@ -106,12 +113,31 @@ impl Signals {
     /// # Errors
     /// If the operating system refuses.
     pub fn catch() -> io::Result<Self> {
+        Self::install(&CAUGHT)
+    }
+
+    /// Installs the handlers of a server, for which SIGHUP is a request to read its files again.
+    ///
+    /// # Errors
+    /// If the operating system refuses.
+    #[doc(hidden)]
+    pub fn catch_for_server() -> io::Result<Self> {
+        let signals = Self::install(&CAUGHT_BY_SERVER)?;
+        if !contains_signal(ignored_signals(), SIGHUP) {
+            signal_hook::flag::register(SIGHUP, Arc::clone(&signals.reload))?;
+            signal_hook::low_level::pipe::register(SIGHUP, signals.write.try_clone()?)?;
+        }
+        Ok(signals)
+    }
+
+    /// Installs the handlers, by which these signals ask the program to end.
+    fn install(deadly_signals: &[i32]) -> io::Result<Self> {
         let (read, write) = UnixStream::pair()?;
         // Non-blocking, because `drain` reads until the pipe is empty.
         read.set_nonblocking(true)?;
         let ignored = ignored_signals();
         let deadly = Arc::new(AtomicUsize::new(0));
-        catch_deadly(&CAUGHT, ignored, &deadly, &write)?;
+        catch_deadly(deadly_signals, ignored, &deadly, &write)?;
         let flag = |signal| -> io::Result<Arc<AtomicBool>> {
             let flag = Arc::new(AtomicBool::new(false));
             signal_hook::flag::register(signal, Arc::clone(&flag))?;
@@ -121,7 +147,16 @@ impl Signals {
         let (resized, continued) = (flag(SIGWINCH)?, flag(SIGCONT)?);
         let stops = spawn_signal_acceptor(ignored, Arc::clone(&deadly), Waker(write.try_clone()?))?;
         let stops = (!contains_signal(ignored, SIGTSTP)).then_some(stops);
-        Ok(Self { read, write, deadly, resized, continued, stops })
+        Ok(Self {
+            read,
+            write,
+            deadly,
+            resized,
+            continued,
+            reload: Arc::default(),
+            had_terminal: has_controlling_terminal(),
+            stops,
+        })
     }
 
     /// Returns the reading end of the wake pipe, to be polled.
@@ -152,6 +187,20 @@ impl Signals {
     #[doc(hidden)]
     pub fn deadly(&self) -> Option<i32> {
         signal_in(&self.deadly)
+    }
+
+    /// Returns whether SIGHUP has asked since the last call to read files again.
+    ///
+    /// That is only so after [`catch_for_server`](Self::catch_for_server). If the terminal of the process has been
+    /// closed, which sends SIGHUP too, the signal asks the program to end.
+    #[doc(hidden)]
+    pub fn take_reload(&self) -> bool {
+        let reloads = self.reload.swap(false, Ordering::SeqCst);
+        if reloads && self.had_terminal && !has_controlling_terminal() {
+            self.deadly.store(SIGHUP as usize, Ordering::SeqCst);
+            return false;
+        }
+        reloads
     }
 
     /// Returns whether the window may have changed its size since the last call.
@@ -411,6 +460,14 @@ impl Waker {
         // Errors do not matter: a full pipe wakes the loop anyway, and a closed one means that the loop has ended.
         let _ = self.0.write(&[1]);
     }
+}
+
+/// Returns whether the process has a controlling terminal.
+///
+/// It loses that terminal when it is closed.
+fn has_controlling_terminal() -> bool {
+    use rustix::fs::{Mode, OFlags};
+    rustix::fs::open("/dev/tty", OFlags::RDONLY | OFlags::NOCTTY | OFlags::CLOEXEC, Mode::empty()).is_ok()
 }
 
 /// Ends the process by the signal's default action, so that its parent sees the signal as the

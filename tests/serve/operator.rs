@@ -321,6 +321,57 @@ fn row_17_the_unit_gives_the_server_no_rights() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
 }
 
+#[test]
+fn a_hang_up_reloads_scenes_and_settings() {
+    let scene = |title: &str| {
+        let sphere = "objects: [Sphere(center: (0, 0, 0), radius: 1)], ambient: 1";
+        format!("(caption: \"{title}\", camera: (eye: (0, 0, 5), target: (0, 0, 0)), {sphere})")
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("a file");
+    let path = |name: &str| folder.path().join(name).to_str().expect("UTF-8").to_owned();
+    fs::create_dir(folder.path().join("scenes")).expect("a folder");
+    write("scenes/one.ron", &scene("before"));
+    write("scenes/two.ron", &scene("before"));
+    write("serve.ron", r#"(listen: "127.0.0.1:0", link: "https://example.org/before", max_viewers: 1)"#);
+    let program = Program::start_in("exec", &[&path("scenes"), "--config", &path("serve.ron")]);
+    let has_logged = |event: &str| program.errors().lines().any(|line| line == event);
+    run(async {
+        let mut first = Guest::enter_with(&program, (80, 24), Some("two")).await;
+        first.see_text("https://example.org/before").await;
+        let mut waiting = Guest::enter(&program).await;
+        waiting.see_text("full, 0 ahead of you").await;
+
+        // A file with an error changes nothing.
+        write("serve.ron", "(max_viewers: 0)");
+        program.hang_up();
+        let failed = |line: &str| line.starts_with("event=reload_failed error=") && line.contains("max_viewers");
+        until("the error is in the log", || program.errors().lines().any(failed)).await;
+
+        fs::remove_file(folder.path().join("scenes/two.ron")).expect("it is there");
+        write("scenes/one.ron", &scene("after"));
+        write("scenes/three.ron", &scene("after"));
+        write("serve.ron", r#"(listen: "127.0.0.1:1", link: "https://example.org/after", max_viewers: 2)"#);
+        program.hang_up();
+        until("it is in the log", || has_logged("event=reload scenes=2 needs_restart=listen")).await;
+        // The new number of places counts at once, and who shows a scene that is gone is told so.
+        waiting.see_picture().await;
+        first.see_text("the scene two is no longer shown").await;
+        first.send(b"n").await;
+        first.see_text("three (2 of 2)").await;
+        let mut list = Guest::without_terminal(&program, (80, 24)).await;
+        list.ask(Some("--list")).await;
+        list.see("the new list", |guest| guest.has("one    after\r\nthree  after\r\n")).await;
+
+        // A server that drains goes on draining.
+        program.terminate();
+        first.see_text("the server restarts: you leave in").await;
+        program.hang_up();
+        first.send(b"q").await;
+        assert_eq!(first.leave().await, Some(0));
+    });
+}
+
 /// The unit's limits, as far as a shell can set them: few files, little memory, no new file.
 #[test]
 fn row_17_the_server_runs_with_few_rights() {

@@ -31,7 +31,7 @@ Examples:
   termtrace serve scenes --listen 0.0.0.0:2222 --public
 
 SIGTERM tells all viewers that they have 30 seconds, and ends; a second one
-ends at once.";
+ends at once. SIGHUP reads the scenes and the settings again.";
 
 /// Limits on the link, in characters, and on the banner, in bytes.
 // The short welcome has 19 columns. With two blanks before the link and one at each side of the note, the line fills 80
@@ -100,16 +100,10 @@ pub(in crate::cli) struct ServeArgs {
 }
 
 /// Runs the server until a signal ends it.
-pub(in crate::cli) fn run(mut args: ServeArgs, given: &ArgMatches) -> CommandResult {
-    if let Some(path) = args.config.take() {
-        let command = ServeArgs::augment_args(clap::Command::new("serve").no_binary_name(true));
-        args = ServeArgs::from_arg_matches(&read_as_flags(path, &command)?).map_err(usage)?;
-        // Flags of the command line override the settings of the file.
-        args.update_from_arg_matches(given).map_err(usage)?;
-    }
-    let settings = settings(&args)?;
-    let scenes = scenes(&args.scenes)?;
-    let mut signals = Signals::catch().map_err(|error| Failure::runtime("signals", reason(&error)))?;
+pub(in crate::cli) fn run(_args: ServeArgs, given: &ArgMatches) -> CommandResult {
+    let first = read(given)?;
+    let mut read_again = || read(given).map_err(|failure| failure.to_string());
+    let mut signals = Signals::catch_for_server().map_err(|error| Failure::runtime("signals", reason(&error)))?;
     let log: serve::Log = Arc::new(|line: &str| print_error(&format!("{}\n", visible(line))));
     let started = |address: SocketAddr, fingerprint: &str| {
         let (ip, port) = (address.ip(), address.port());
@@ -117,11 +111,24 @@ pub(in crate::cli) fn run(mut args: ServeArgs, given: &ArgMatches) -> CommandRes
         // The server also runs if the reader of its output has gone.
         let _ = write_stdout(line.as_bytes());
     };
-    let ended = serve::run_until_drained(scenes, settings, &mut signals, &log, started);
+    let ended = serve::run_until_drained(first, &mut read_again, &mut signals, &log, started);
     if let Some(signal) = ended.map_err(|error| Failure::Runtime(reason(&error)))? {
         die_of(signal);
     }
     Ok(())
+}
+
+/// Reads the scenes and the settings from the files that the command line names.
+fn read(given: &ArgMatches) -> Result<(Vec<HostedScene>, Settings), Failure> {
+    let mut args = ServeArgs::from_arg_matches(given).map_err(usage)?;
+    if let Some(path) = args.config.take() {
+        let command = ServeArgs::augment_args(clap::Command::new("serve").no_binary_name(true));
+        args = ServeArgs::from_arg_matches(&read_as_flags(path, &command)?).map_err(usage)?;
+        // Flags of the command line override the settings of the file.
+        args.update_from_arg_matches(given).map_err(usage)?;
+    }
+    let settings = settings(&args)?;
+    Ok((scenes(&args.scenes)?, settings))
 }
 
 fn settings(args: &ServeArgs) -> Result<Settings, Failure> {
