@@ -13,8 +13,8 @@
 //!   hundred is faulty; contents that no picture shows, such as lines, are counted. `left_out` makes notices of both.
 //! - Any bytes give a mesh or an error in linear time. Memory is not reserved for a claimed count that the file could
 //!   not hold, so that it stays within a small multiple of the file's size (40 times the JSON of a glTF file that names
-//!   nothing but empty meshes, at most 8 times elsewhere). At most [`MAX_MESH_BYTES`] are read, [`MAX_TRIANGLES`] made,
-//!   and [`MAX_TEXELS`] decoded.
+//!   nothing but empty meshes, at most 16 times elsewhere), besides 1 KiB for each of up to 1 Mi points and lines. At
+//!   most [`MAX_MESH_BYTES`] are read, [`MAX_TRIANGLES`] made, and [`MAX_TEXELS`] decoded.
 //!
 //! Side files (MTL files, textures, buffers of glTF) are requested by their path relative to the mesh through a
 //! function passed in; no URL and no absolute path is ever requested: of an absolute path only the last part is. A
@@ -61,6 +61,8 @@ mod format;
 #[cfg(feature = "mesh")]
 mod left_out;
 mod limits;
+#[cfg(feature = "mesh")]
+mod marks;
 #[cfg_attr(not(feature = "mesh"), allow(dead_code, reason = "only mesh files are turned"))]
 mod up;
 #[cfg(feature = "mesh")]

@@ -79,10 +79,10 @@ fn missing_materials_and_textures_are_warnings_except_in_check_and_with_strict()
 #[test]
 fn what_is_left_out_of_a_mesh_is_told_by_every_command() {
     let folder = Folder::new();
-    folder.write("odd.obj", format!("{TRIANGLE}f 1 1 2\nl 1 2\nf 1 2\n"));
+    folder.write("odd.obj", format!("{TRIANGLE}f 1 1 2\ncurv 0 1 1 2\nf 1 2\n"));
     folder.write("plain.obj", TRIANGLE);
     let notices = "warning: odd.obj:8:1: a face has at least 3 corners; this one has 2 (ignored)\n\
-                   warning: odd.obj: not shown: 1 line\n";
+                   warning: odd.obj: not shown: 1 curve\n";
     for command in ["frame", "frame --strict", "describe", "check"] {
         let run = folder.run(&format!("{command} odd.obj"));
         assert_eq!((run.code, run.stderr.as_str()), (Some(0), notices), "{command}");

@@ -41,11 +41,11 @@ fn leave(session: &mut Session) {
 }
 
 #[test]
-fn a_missing_material_file_and_lines_are_named_on_the_screen_until_a_key() {
-    let folder = folder(&[("a.obj", &format!("mtllib a.mtl\nusemtl red\n{SOLID}l 1 2\n"))]);
+fn a_missing_material_file_and_curves_are_named_on_the_screen_until_a_key() {
+    let folder = folder(&[("a.obj", &format!("mtllib a.mtl\nusemtl red\n{SOLID}curv 0 1 1 2\n"))]);
     let mut session = start(&folder.path().join("a.obj"));
     session.wait_for_text("materials missing: a.mtl");
-    session.wait_for_text("not shown: 1 line");
+    session.wait_for_text("not shown: 1 curve");
     session.send(b"i");
     wait_for_no(&mut session, "materials missing");
     // The file is watched, although it is missing.

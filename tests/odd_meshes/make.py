@@ -156,6 +156,12 @@ obj("b13_order", "f 1 2 3\n" + SQUARE + "f 1 2 9\n")
 obj("c5", VERTICES + "f 1 2 3 4\n" * 700 + "f 1 2 x\nv 1 2\nf 5 1 2\nf 0 1 2\nf 1 2 3 -9\nf -1 -2 -3\n" + "f 1 2 3\n" * 100)
 obj("c5_many", VERTICES + "f 1 2 3 4\n" * 100 + "f 1 2\n" * 6)
 
+# Clouds of points, and lines alone; the colours of both.
+GRID = [(x, y) for x in range(10) for y in range(10)]
+obj("b15", "".join(f"v {x} {y} 0\n" for x, y in GRID))
+obj("b15_colors", "".join(f"v {x} {y} 0 0 0 1\n" for x, y in GRID) + "p 1 2 -1\n")
+obj("b15_lines", VERTICES + "usemtl x\nl 1/1 2/2 3/3\nl 3 9\nl 4\n", mtl="newmtl x\nKd 1 0 0\n")
+
 # STL
 FACET = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
 TEXT = "solid x\n" + FACET + "endsolid x\n"
@@ -216,6 +222,10 @@ ply("b13.ply", CORNERS, ["4 0 1 2 3"], head="Created by x\n")
 ply("c5_row.ply", CORNERS + ["1 x 0"], ["4 0 1 2 3", "3 0 1 4", "3 0 1"])
 edges = "element edge 2\nproperty int vertex1\nproperty int vertex2\n"
 ply("a10_edges.ply", CORNERS, ["4 0 1 2 3"], rows=edges, more=["0 1", "1 2"])
+cloud = [f"{x} {y} 0 0 255 0" for x, y in GRID]
+ply("b15.ply", cloud, [], vertex=RGB)
+ply("b15_nan.ply", ["nan 0 0", *CORNERS], [])
+ply("b15_edges.ply", [c + " 255 0 0" for c in CORNERS], [], vertex=RGB, rows=edges, more=["0 1", "1 2"])
 binary = b"".join(struct.pack("<3f", *map(float, c.split())) for c in CORNERS + ["nan 0 0"])
 binary += struct.pack("<B2i", 2, 0, 1) + struct.pack("<B3i", 3, 0, 1, 2) + struct.pack("<B3i", 3, 0, 1, 7)
 ply("b2_binary.ply", CORNERS + ["0 0 0"], ["", "", ""], body="binary_little_endian")
@@ -309,6 +319,9 @@ mesh.write("a9_blend.gltf")
 mesh = Gltf()
 mesh.json["meshes"][0]["primitives"] += [dict(mesh.primitive, mode=mode) for mode in range(4)]
 mesh.write("a10.gltf")
+mesh.json["meshes"][0]["primitives"] = [dict(mesh.primitive, mode=0)]
+mesh.primitive["attributes"]["COLOR_0"] = mesh.floats("VEC3", [0, 0, 1] * 3)
+mesh.write("b15.gltf")
 mesh = Gltf()
 mesh.accessors.append({"componentType": 5121, "type": "SCALAR", "count": 3})
 mesh.primitive["indices"] = 1

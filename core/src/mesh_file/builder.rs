@@ -4,8 +4,10 @@ use super::attribute::Attribute;
 use super::fault::MeshFault;
 use super::left_out::LeftOut;
 use super::limits::MAX_TRIANGLES;
+use super::marks::{BYTES_PER_MARK, MAX_MARKS, Mark, MarkEnd, MarkStyle};
 use super::{MeshFile, MeshMaterial, is_flat};
 use crate::color::LinearRgb;
+use crate::memory;
 use glam::{DVec3, Vec2, Vec3};
 use std::collections::HashSet;
 
@@ -21,6 +23,11 @@ pub(super) struct MeshBuilder {
     pub(super) material_runs: Vec<(u32, Option<u32>)>,
     /// Features of materials that are not shown: the material's index, the name in the singular.
     pub(super) not_shown: Vec<(u32, &'static str)>,
+    /// Points and lines.
+    pub(super) marks: Vec<Mark>,
+    /// Whether the file has faces or surfaces. In a file without them, and without marks, all
+    /// vertices are points.
+    pub(super) has_faces: bool,
 }
 
 /// The indices of a triangle's corners, for its positions and each attribute that it has.
@@ -77,6 +84,7 @@ impl MeshBuilder {
     ///
     /// `nothing` describes the contents of a file without triangles, for the message.
     pub(super) fn finish(mut self, nothing: &str, left_out: &mut LeftOut<'_>) -> Result<MeshFile, MeshFault> {
+        self.add_marks(left_out)?;
         if self.triangles.is_empty() || (left_out.has_faults() && !self.flatten_incomplete_triangles(left_out)) {
             return Err(left_out.fault_of_nothing(format!("there are no triangles in this file: {nothing}")));
         }
@@ -90,6 +98,87 @@ impl MeshBuilder {
         // Readers have already checked all this, and reported faults with their positions; this is the last line of
         // defence.
         self.into_mesh().ok_or_else(|| MeshFault::of_file("this mesh has numbers or indices out of range"))
+    }
+
+    /// Adds the triangles of the points and lines.
+    fn add_marks(&mut self, left_out: &mut LeftOut<'_>) -> Result<(), MeshFault> {
+        let mut marks = std::mem::take(&mut self.marks);
+        if marks.is_empty() && self.triangles.is_empty() && !self.has_faces {
+            marks = self.vertices_as_points();
+        }
+        // A position that could not be read is not finite.
+        marks.retain(|mark| mark.ends.iter().all(|end| self.positions[end.position as usize].is_finite()));
+        let kept = marks.len().div_ceil(marks.len().div_ceil(MAX_MARKS).max(1));
+        if kept < marks.len() {
+            let what = if marks.iter().all(Mark::is_point) { "point" } else { "line" };
+            left_out.not_shown(format!("{what} (too many; evenly selected)"), marks.len() - kept);
+            marks = marks.iter().step_by(marks.len().div_ceil(MAX_MARKS)).copied().collect();
+        }
+        if marks.is_empty() {
+            return Ok(());
+        }
+        let count = marks.len();
+        memory::check(count * BYTES_PER_MARK)
+            .map_err(|error| MeshFault::of_file(format!("{error} for its {count} points and lines")))?;
+        // In a mesh of marks alone the only vertices are those of bodies, so that all attributes share their indices.
+        let (positions, colors) = if self.triangles.is_empty() {
+            self.normals = Attribute::default();
+            self.texture_coordinates = Attribute::default();
+            (std::mem::take(&mut self.positions), std::mem::take(&mut self.colors).values().to_vec())
+        } else {
+            (self.positions.clone(), self.colors.values().to_vec())
+        };
+        let place = |mark: &Mark| mark.ends.map(|end| positions[end.position as usize]);
+        let (points, lines): (Vec<_>, Vec<_>) = marks.iter().partition(|mark| mark.is_point());
+        let points: Vec<_> = points.into_iter().map(|mark| place(&mark)[0]).collect();
+        let style = MarkStyle::of(&points, &lines.iter().map(place).collect::<Vec<_>>());
+        for mark in &marks {
+            let mark_colors = mark.ends.map(|end| end.color.map(|color| colors[color as usize]));
+            self.set_material(mark.material);
+            self.add_body(&style, place(mark), mark_colors)?;
+        }
+        Ok(())
+    }
+
+    /// Returns a point for each position, with the colour of the same index.
+    fn vertices_as_points(&self) -> Vec<Mark> {
+        let has_colors = self.colors.values().len() == self.positions.len();
+        let material = self.current_material();
+        let point = |position| {
+            let end = MarkEnd { position, color: has_colors.then_some(position) };
+            Mark { ends: [end; 2], material }
+        };
+        (0..self.positions.len() as u32).map(point).collect() // fewer than the file's bytes
+    }
+
+    /// Adds the triangles of a point or line.
+    fn add_body(
+        &mut self,
+        style: &MarkStyle,
+        ends: [Vec3; 2],
+        colors: [Option<LinearRgb>; 2],
+    ) -> Result<(), MeshFault> {
+        let body = style.body(ends, colors);
+        let first_position = self.positions.len() as u32; // below 2^31, as their number and that of the marks
+        let first_normal = self.normals.values().len() as u32;
+        let first_color = self.colors.values().len() as u32;
+        self.positions.extend(body.vertices.iter().map(|vertex| vertex.position));
+        self.normals.values_mut().extend(body.vertices.iter().map(|vertex| vertex.normal));
+        let white = LinearRgb::grey(1.0);
+        let has_color = colors.iter().any(Option::is_some);
+        if has_color {
+            self.colors.values_mut().extend(body.vertices.iter().map(|vertex| vertex.color.unwrap_or(white)));
+        }
+        for triangle in body.triangles {
+            let from = |first: u32| triangle.map(|vertex| first + vertex);
+            self.push(TriangleIndices {
+                positions: from(first_position),
+                normals: Some(from(first_normal)),
+                texture_coordinates: None,
+                colors: has_color.then(|| from(first_color)),
+            })?;
+        }
+        Ok(())
     }
 
     /// Returns the mesh; `None` if a number or index is out of range, or there is no triangle.

@@ -1,8 +1,9 @@
 //! Wavefront OBJ: polygons, normals, texture coordinates, the colours that some programs write
-//! after a position, and materials of MTL files. Lines, points, curves and surfaces are not shown.
+//! after a position, lines, points, and materials of MTL files. Curves and surfaces are not shown.
 
 use super::builder::{MeshBuilder, TriangleIndices, unit};
 use super::fault::{MeshFault, shown};
+use super::marks::{Mark, MarkEnd};
 use super::mtl::{self, Library};
 use super::side_files::{SideFiles, side_file_path};
 use super::text::TextCursor;
@@ -38,7 +39,7 @@ pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, mut meter: Mete
     reader.early_faces()?;
     let ObjReader { mut mesh, library, side_files, .. } = reader;
     (mesh.materials, mesh.not_shown) = library.map(Library::into_materials_and_unshown).unwrap_or_default();
-    mesh.finish("it has no faces (f)", &mut side_files.left_out)
+    mesh.finish("it has no faces (f) and no vertices", &mut side_files.left_out)
 }
 
 struct ObjReader<'a, 'b> {
@@ -74,6 +75,10 @@ impl ObjReader<'_, '_> {
             b"vn" => self.normal(),
             b"vt" => self.texture_coordinate(),
             b"f" | b"fo" => self.face(at),
+            b"l" | b"p" => {
+                self.marks(word == b"l");
+                Ok(())
+            }
             b"usemtl" => self.use_material(),
             b"mtllib" => self.library(),
             _ if is_skipped(word) => {
@@ -85,16 +90,42 @@ impl ObjReader<'_, '_> {
         }
     }
 
-    /// Counts the lines, points, curves or surfaces of a statement with the keyword `word`.
+    /// Counts the curve or surface of a statement with the keyword `word`.
     fn count_not_shown(&mut self, word: &[u8]) {
-        let (what, count) = match word {
-            b"l" => ("line", 1),
-            b"p" => ("point", std::iter::repeat_with(|| self.text.word()).take_while(|word| !word.is_empty()).count()),
-            b"curv" | b"curv2" => ("curve", 1),
-            b"surf" => ("curved surface", 1),
+        let what = match word {
+            b"curv" | b"curv2" => "curve",
+            b"surf" => "curved surface",
             _ => return,
         };
-        self.side_files.left_out.not_shown(what, count);
+        self.mesh.has_faces = true;
+        self.side_files.left_out.not_shown(what, 1);
+    }
+
+    /// Reads the points `p v v ...`, or the line `l v v ...`, where `/vt` may follow each vertex.
+    ///
+    /// A point, or a part of a line, whose vertex does not exist above is not shown.
+    fn marks(&mut self, is_line: bool) {
+        let has_colors = !self.mesh.colors.values().is_empty();
+        if has_colors {
+            self.pad_colors(self.mesh.positions.len());
+        }
+        let material = self.mesh.current_material();
+        let mut last = None;
+        while !self.text.is_at_line_end() {
+            let vertex = self.index("vertex", self.mesh.positions.len()).ok();
+            // The rest of the word, with the index of a texture coordinate.
+            if !self.text.is_at_word_end() {
+                self.text.word();
+            }
+            let end = vertex.map(|position| MarkEnd { position, color: has_colors.then_some(position) });
+            match (last.replace(end), end) {
+                (_, Some(end)) if !is_line => self.mesh.marks.push(Mark { ends: [end; 2], material }),
+                (Some(Some(last)), Some(end)) => self.mesh.marks.push(Mark { ends: [last, end], material }),
+                (_, None) => self.side_files.left_out.not_shown(if is_line { "line" } else { "point" }, 1),
+                _ => {}
+            }
+        }
+        self.text.skip_line();
     }
 
     /// Skips the faulty line that begins at `line_start`.
@@ -183,6 +214,7 @@ impl ObjReader<'_, '_> {
     ///
     /// If some of its vertices come later in the file, the face is read at the end of the file.
     fn face(&mut self, at: usize) -> Result<(), MeshFault> {
+        self.mesh.has_faces = true;
         let start = self.text.at();
         match self.face_corners() {
             Err(Corner::Early(_)) => {
@@ -421,18 +453,16 @@ fn library_names(text: &str) -> Vec<&str> {
 
 /// Returns whether a line of an OBJ file may start with this word.
 pub(super) fn is_statement(word: &[u8]) -> bool {
-    [&b"v"[..], b"vn", b"vt", b"f", b"fo", b"usemtl", b"mtllib"].contains(&word) || is_skipped(word)
+    [&b"v"[..], b"vn", b"vt", b"f", b"fo", b"l", b"p", b"usemtl", b"mtllib"].contains(&word) || is_skipped(word)
 }
 
 /// Returns whether a word is a keyword of OBJ whose line is skipped, because it adds no triangles.
 /// A word that is not a keyword of OBJ is a fault: it is the first sign of a file that is not OBJ.
 fn is_skipped(word: &[u8]) -> bool {
-    const WORDS: [&str; 38] = [
+    const WORDS: [&str; 36] = [
         "g",
         "o",
         "s",
-        "l",
-        "p",
         "vp",
         "mg",
         "deg",

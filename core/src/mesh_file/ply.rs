@@ -1,8 +1,9 @@
-//! PLY, as text and as binary in either byte order: faces and triangle strips, normals, colours and
-//! texture coordinates. Other elements and properties are skipped, whatever their type and order.
+//! PLY, as text and as binary in either byte order: faces, triangle strips, edges and points, with
+//! normals, colours and texture coordinates. Other elements and properties are skipped, whatever their type and order.
 
 mod header;
 mod body;
+mod edges;
 mod faces;
 mod vertices;
 
@@ -42,13 +43,22 @@ fn read_body<R: RowReader>(
     let material = (!mesh.materials.is_empty()).then_some(0);
     mesh.set_material(material);
     let left_out = &mut side_files.left_out;
+    let mut has_colors = false;
     for element in &header.elements {
+        mesh.has_faces |= ["face", "tristrips"].contains(&element.name) && element.count > 0;
         let indices = element.properties.iter().position(Property::is_indices);
         match (element.name, indices) {
-            ("vertex", _) => vertices::read(element, &mut rows, &mut mesh, left_out)?,
+            ("vertex", _) => {
+                vertices::read(element, &mut rows, &mut mesh, left_out)?;
+                // Colours of faces, which come later, have other indices than vertices.
+                has_colors = !mesh.colors.values().is_empty();
+            }
             ("face", Some(at)) => faces::read(element, at, vertex_count, &mut rows, &mut mesh, left_out)?,
             ("tristrips", Some(at)) => {
                 faces::read_strips(element, at, vertex_count, &mut rows, &mut mesh, left_out)?;
+            }
+            ("edge", _) if edges::are_read(element) => {
+                edges::read(element, vertex_count, has_colors, &mut rows, &mut mesh, left_out)?;
             }
             // Rows without properties take no bytes and are not looped over: the header may claim 4 billion of them.
             _ if element.properties.is_empty() => {}
@@ -60,11 +70,7 @@ fn read_body<R: RowReader>(
             }
         }
     }
-    let is_cloud = !mesh.positions.is_empty();
-    mesh.finish(
-        if is_cloud { "it has vertices but no faces (a cloud of points?)" } else { "it has no faces" },
-        left_out,
-    )
+    mesh.finish("it has no faces", left_out)
 }
 
 /// Returns the materials of the textures that the header names; none if it names none.

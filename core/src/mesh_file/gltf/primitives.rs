@@ -9,6 +9,7 @@ use crate::color::LinearRgb;
 use crate::mesh_file::MeshFile;
 use crate::mesh_file::builder::{MeshBuilder, TriangleIndices};
 use crate::mesh_file::fault::MeshFault;
+use crate::mesh_file::marks::{Mark, MarkEnd};
 use glam::{DMat3, DMat4, Vec2};
 use std::collections::HashMap;
 
@@ -102,9 +103,6 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
             self.normals.clear();
         }
         let mode = primitive.index_or("mode", 4)?;
-        if mode < 4 {
-            return self.count_not_shown(primitive, mode);
-        }
         let material = primitive.field("material")?.map(|index| index.item_of(self.buffers.root(), "materials"));
         let material = material.transpose()?.map(|(index, _)| index);
         let attributes = primitive.required("attributes")?;
@@ -120,6 +118,18 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         }
         let indices = self.indices(primitive, positions.count)?;
         let length = indices.as_ref().map_or(positions.count, Vec::len);
+        if mode < 4 {
+            let material = material.map(|index| index as u32); // fewer than the file's bytes
+            for ends in marks(mode, length) {
+                let end = |corner: usize| {
+                    let vertex = indices.as_ref().map_or(corner as u32, |indices| indices[corner]);
+                    let at = |range: Range| range.start + vertex;
+                    MarkEnd { position: at(positions), color: colors.map(at) }
+                };
+                self.mesh.marks.push(Mark { ends: ends.map(end), material });
+            }
+            return self.check_size(primitive);
+        }
         self.mesh.set_material(material.map(|index| index as u32)); // fewer than the file's bytes
         // glTF: a negative determinant reverses the orientation of the triangles.
         let is_mirrored = DMat3::from_mat4(pose.transform).determinant() < 0.0;
@@ -139,28 +149,10 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         self.check_size(primitive)
     }
 
-    /// Counts the points or lines of a primitive of mode 0 to 3, which have no surface.
-    fn count_not_shown(&mut self, primitive: Json<'a>, mode: usize) -> Result<(), MeshFault> {
-        let elements = match primitive.field("indices")? {
-            Some(indices) => indices,
-            None => primitive.required("attributes")?.required("POSITION")?,
-        };
-        let (_, accessor) = elements.item_of(self.buffers.root(), "accessors")?;
-        let count = accessor.required("count")?.index()?;
-        // Modes 1, 2 and 3: separate lines, a loop and a strip.
-        let (what, count) = match mode {
-            0 => ("point", count),
-            1 => ("line", count / 2),
-            2 => ("line", count),
-            _ => ("line", count.saturating_sub(1)),
-        };
-        self.buffers.left_out().not_shown(what, count);
-        Ok(())
-    }
-
     fn check_size(&self, json: Json<'_>) -> Result<(), MeshFault> {
         let most = self.buffers.max_elements();
-        if self.mesh.triangles.len().max(self.mesh.positions.len()) > most {
+        let counts = [self.mesh.triangles.len(), self.mesh.positions.len(), self.mesh.marks.len()];
+        if counts.into_iter().any(|count| count > most) {
             return Err(
                 json.fault(format!("the nodes repeat meshes until there are more than {most} triangles or vertices"))
             );
@@ -266,6 +258,22 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
 /// 2^31, the limit on a file's size.
 fn range_after(length: usize, count: usize) -> Range {
     Range { start: length as u32, count }
+}
+
+/// Returns the ends of each point or line, as positions in an index list of `length`, for a glTF
+/// primitive mode: 0 is points, 1 separate lines, 2 a loop, and 3 a strip.
+fn marks(mode: usize, length: usize) -> impl Iterator<Item = [usize; 2]> {
+    let count = match mode {
+        0 => length,
+        1 => length / 2,
+        2 if length > 1 => length,
+        _ => length.saturating_sub(1),
+    };
+    (0..count).map(move |i| match mode {
+        0 => [i, i],
+        1 => [2 * i, 2 * i + 1],
+        _ => [i, (i + 1) % length],
+    })
 }
 
 /// Returns the corners of each triangle, as positions in an index list of `length`, for a glTF

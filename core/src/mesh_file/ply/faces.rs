@@ -146,7 +146,7 @@ fn read_corners(
 }
 
 #[inline]
-fn checked_index(index: i64, count: u32) -> Result<u32, String> {
+pub(super) fn checked_index(index: i64, count: u32) -> Result<u32, String> {
     u32::try_from(index).ok().filter(|&index| index < count).ok_or_else(|| no_such_vertex(index, count))
 }
 
