@@ -349,6 +349,182 @@ mesh.json["asset"] = {"version": 2.0}
 mesh.write("c4_number.gltf")
 mesh.json["asset"] = {"version": 2}
 mesh.write("c4_integer.gltf")
+
+
+# meshopt compression: encoders that take any allowed code, and each at least once.
+def zigzag(difference):
+    return 2 * difference if difference >= 0 else -2 * difference - 1
+
+
+def varint(number):
+    out = b""
+    while number > 127:
+        out += bytes([number & 127 | 128])
+        number >>= 7
+    return out + bytes([number])
+
+
+def meshopt_attributes(data, stride):
+    def group(deltas):
+        packed = {0: b"", 3: bytes(deltas)} if any(deltas) else {0: b""}
+        for mode, width in [(1, 2), (2, 4)]:
+            own = 2**width - 1
+            codes = [min(delta, own) for delta in deltas]
+            per = 8 // width
+            rows = [codes[i : i + per] for i in range(0, 16, per)]
+            whole = [sum(code << (8 - width * (i + 1)) for i, code in enumerate(row)) for row in rows]
+            packed[mode] = bytes(whole) + bytes(delta for delta in deltas if delta >= own)
+        if any(deltas):
+            del packed[0]
+        mode = min(packed, key=lambda mode: len(packed[mode]))
+        return mode, packed[mode]
+
+    count = len(data) // stride
+    most = min(8192 // stride & ~15, 256)
+    first = last = data[:stride]
+    out = b"\xa0"
+    for start in range(0, count, most):
+        rows = [data[i * stride : (i + 1) * stride] for i in range(start, min(start + most, count))]
+        for k in range(stride):
+            column = [last[k]] + [row[k] for row in rows]
+            deltas = [(b - a + 128) % 256 - 128 for a, b in zip(column, column[1:])]
+            deltas = [zigzag(delta) for delta in deltas]
+            deltas += [0] * (-len(deltas) % 16)
+            groups = [group(deltas[i : i + 16]) for i in range(0, len(deltas), 16)]
+            modes = [mode for mode, _ in groups] + [0] * (-len(groups) % 4)
+            out += bytes(sum(mode << 2 * i for i, mode in enumerate(modes[j : j + 4])) for j in range(0, len(modes), 4))
+            out += b"".join(packed for _, packed in groups)
+        last = rows[-1]
+    return out + first.rjust(32, b"\0")
+
+
+def meshopt_triangles(indices):
+    codes, data, edges, vertices, state = [], b"", [], [], {"next": 0, "last": 0}
+
+    def kind(vertex):
+        """A new vertex, one of the last 14, or one of its own: the code, and whether it is pushed."""
+        if vertex == state["next"]:
+            state["next"] += 1
+            return 0
+        recent = vertices[::-1][:14]
+        return recent.index(vertex) + 1 if vertex in recent else 15
+
+    def own(vertex):
+        difference, state["last"] = vertex - state["last"], vertex
+        return varint(zigzag(difference))
+
+    table = [0x00, 0x76, 0x87, 0x56, 0x67, 0x78, 0xA9, 0x86, 0x65, 0x89, 0x68, 0x98, 0x01, 0x69, 0, 0]
+    for triangle in zip(*[iter(indices)] * 3):
+        turned = [triangle[i:] + triangle[:i] for i in range(3)]
+        found = [(edges[::-1][:15].index(t[:2]), t) for t in turned if t[:2] in edges[::-1][:15]]
+        if found:
+            back, (a, b, c) = min(found)
+            code = 0
+            if c == state["next"]:
+                state["next"] += 1
+                vertices.append(c)
+            elif c in vertices[::-1][:13] and vertices[::-1].index(c) > 0:
+                code = vertices[::-1].index(c)
+            elif abs(c - state["last"]) == 1:
+                code = 13 if c < state["last"] else 14
+                state["last"] = c
+                vertices.append(c)
+            else:
+                code = 15
+                data += own(c)
+                vertices.append(c)
+            codes.append(back << 4 | code)
+            edges += [(c, b), (a, c)]
+            continue
+        # A new first vertex has a shorter code.
+        a, b, c = next((t for t in turned if t[0] == state["next"]), triangle)
+        kinds = [kind(a)]
+        if kinds[0] != 0:
+            kinds = [15]
+        kinds += [kind(b), kind(c)]
+        pair = kinds[1] << 4 | kinds[2]
+        if kinds[0] == 0 and pair in table[:14]:
+            codes.append(0xF0 | table.index(pair))
+        else:
+            codes.append(0xFE if kinds[0] == 0 else 0xFF)
+            data += bytes([pair]) + b"".join(own(v) for v, k in zip((a, b, c), kinds) if k == 15)
+        vertices += [v for v, k in zip((a, b, c), kinds) if k in (0, 15)]
+        edges += [(b, a), (c, b), (a, c)]
+    return b"\xe1" + bytes(codes) + data + bytes(table)
+
+
+def meshopt_indices(indices):
+    last, data = [0, 0], b""
+    for index in indices:
+        nearer = min((0, 1), key=lambda i: abs(index - last[i]))
+        data += varint(zigzag(index - last[nearer]) << 1 | nearer)
+        last[nearer] = index
+    return b"\xd1" + data + bytes(4)
+
+
+class Compressed(Gltf):
+    """A grid of 20 by 20 vertices, whose buffer views are compressed."""
+
+    def compressed(self, mode, data, raw, stride, filter="NONE"):
+        view = self.view(data)
+        about = {"buffer": 0, "byteOffset": self.views[view]["byteOffset"], "byteLength": len(data), "mode": mode}
+        about |= {"byteStride": stride, "count": len(raw) // stride, "filter": filter}
+        self.views[view] = {"buffer": 1, "byteLength": len(raw), "extensions": {"EXT_meshopt_compression": about}}
+        if mode == "ATTRIBUTES":
+            self.views[view]["byteStride"] = stride
+        return view
+
+    def reference(self, view, component, kind, count, **more):
+        self.accessors.append({"bufferView": view, "componentType": component, "type": kind, "count": count} | more)
+        return len(self.accessors) - 1
+
+    def document(self, uri):
+        fallback = {"byteLength": 1 << 20, "extensions": {"EXT_meshopt_compression": {"fallback": True}}}
+        document = json.loads(super().document(uri))
+        document["buffers"].append(fallback)
+        return json.dumps(document)
+
+
+def grid(mode, filter, quads=19):
+    mesh = Compressed()
+    side = quads + 1
+    places = [(x, y) for y in range(side) for x in range(side)]
+    if filter == "EXPONENTIAL":
+        # A mantissa of 24 bits and an exponent: x / 4 and y / 4 at z = 3 / 4.
+        raw = b"".join(struct.pack("<3I", *(v | (254 << 24) for v in (x, y, 3))) for x, y in places)
+        view = mesh.compressed("ATTRIBUTES", meshopt_attributes(raw, 12), raw, 12, filter)
+        positions = mesh.reference(view, 5126, "VEC3", side * side)
+    else:
+        raw = b"".join(struct.pack("<4H", 1000 * x, 1000 * y, (x * y) % 7, 0) for x, y in places)
+        view = mesh.compressed("ATTRIBUTES", meshopt_attributes(raw, 8), raw, 8)
+        positions = mesh.reference(view, 5123, "VEC3", side * side)
+    normals = b"".join(struct.pack("<4b", x, -y, 127, 0) for x, y in places)
+    view = mesh.compressed("ATTRIBUTES", meshopt_attributes(normals, 4), normals, 4, "OCTAHEDRAL")
+    normals = mesh.reference(view, 5120, "VEC3", side * side, normalized=True)
+    indices = []
+    for y in range(quads):
+        for x in range(quads):
+            a = y * side + x
+            indices += [a, a + 1, a + side, a + side, a + 1, a + side + 1]
+    raw = struct.pack(f"<{len(indices)}H", *indices)
+    data = meshopt_triangles(indices) if mode == "TRIANGLES" else meshopt_indices(indices)
+    view = mesh.compressed(mode, data, raw, 2)
+    indices = mesh.reference(view, 5123, "SCALAR", len(indices))
+    mesh.primitive |= {"attributes": {"POSITION": positions, "NORMAL": normals}, "indices": indices}
+    mesh.json["extensionsUsed"] = mesh.json["extensionsRequired"] = ["EXT_meshopt_compression", "KHR_mesh_quantization"]
+    return mesh
+
+
+grid("TRIANGLES", "NONE").write("b14_meshopt.gltf")
+grid("INDICES", "EXPONENTIAL").write_binary("b14_meshopt.glb")
+mesh = grid("TRIANGLES", "NONE")
+about = mesh.views[-1]["extensions"]["EXT_meshopt_compression"]
+about["byteLength"] -= 1
+mesh.write("b14_meshopt_cut.gltf")
+about["count"] = 3 << 20
+mesh.write("b14_meshopt_claim.gltf")
+about["mode"] = "ZIP"
+mesh.write("b14_meshopt_mode.gltf")
 mesh = Gltf()
 mesh.json["extensionsUsed"] = mesh.json["extensionsRequired"] = ["ACME_wonder"]
 mesh.write("b14_unknown.gltf")

@@ -1,8 +1,10 @@
 //! The buffers of a glTF file: in the GLB file, in side files, or in `data:` URIs.
 
 use super::json::Json;
+use super::meshopt::{self, Elements, Filter, Mode};
+use crate::memory;
 use crate::mesh_file::MAX_TRIANGLES;
-use crate::mesh_file::fault::{MeshFault, shown_path};
+use crate::mesh_file::fault::{MeshFault, shown, shown_path};
 use crate::mesh_file::left_out::LeftOut;
 use crate::mesh_file::side_files::{SideFiles, side_file_path};
 use base64::Engine;
@@ -18,7 +20,10 @@ pub(super) struct Buffers<'a, 'b> {
     side_files: &'a mut SideFiles<'b>,
     read: HashMap<usize, Bytes<'a>>,
     files: HashMap<PathBuf, Rc<[u8]>>,
-    /// Total number of bytes of the JSON, and of the buffers and images read so far, for
+    /// The decoded bytes of compressed buffer views, and their total number.
+    decompressed: HashMap<usize, Rc<[u8]>>,
+    decompressed_size: usize,
+    /// Total number of bytes of the JSON, and of the buffers and images read or decoded so far, for
     /// [`max_elements`](Self::max_elements).
     size: usize,
 }
@@ -71,7 +76,16 @@ impl<'a, 'b> Buffers<'a, 'b> {
     /// chunk of a GLB file.
     pub(super) fn new(root: Json<'a>, size: usize, glb: Option<&'a [u8]>, side_files: &'a mut SideFiles<'b>) -> Self {
         let size = size + glb.map_or(0, <[u8]>::len);
-        Self { root, glb, side_files, read: HashMap::new(), files: HashMap::new(), size }
+        Self {
+            root,
+            glb,
+            side_files,
+            read: HashMap::new(),
+            files: HashMap::new(),
+            decompressed: HashMap::new(),
+            decompressed_size: 0,
+            size,
+        }
     }
 
     pub(super) fn root(&self) -> Json<'a> {
@@ -96,10 +110,14 @@ impl<'a, 'b> Buffers<'a, 'b> {
 
     /// Returns the buffer view with this index.
     pub(super) fn view(&mut self, index: Json<'a>) -> Result<BufferView<'a>, MeshFault> {
-        let (_, view) = index.item_of(self.root, "bufferViews")?;
-        // Refused even if the extension is not listed as required: such files often have no uncompressed fallback.
-        if view.extension("EXT_meshopt_compression")?.is_some() {
-            return Err(view.fault("this part of the file is compressed with meshopt, which is not supported"));
+        let (number, view) = index.item_of(self.root, "bufferViews")?;
+        // Decoded even if the extension is not required: the buffer of the uncompressed bytes may be missing.
+        for name in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
+            if let Some(compressed) = view.extension(name)? {
+                let buffer = self.decompressed(number, compressed)?;
+                let (end, stride) = (buffer.len(), view.field("byteStride")?.map(Json::index).transpose()?);
+                return Ok(BufferView { buffer, start: 0, end, stride });
+            }
         }
         let buffer = self.buffer(view.required("buffer")?)?;
         let start = view.index_or("byteOffset", 0)?;
@@ -110,6 +128,49 @@ impl<'a, 'b> Buffers<'a, 'b> {
             view.fault(format!("{length} bytes from byte {start} on are not in the buffer, which has {size}"))
         })?;
         Ok(BufferView { buffer, start, end, stride })
+    }
+
+    /// Returns the decoded bytes of a buffer view, which is compressed with meshopt.
+    fn decompressed(&mut self, number: usize, compressed: Json<'a>) -> Result<Bytes<'a>, MeshFault> {
+        if let Some(bytes) = self.decompressed.get(&number) {
+            return Ok(Bytes::Read(Rc::clone(bytes)));
+        }
+        let buffer = self.buffer(compressed.required("buffer")?)?;
+        let (start, length) = (compressed.index_or("byteOffset", 0)?, compressed.required("byteLength")?.index()?);
+        let data = start.checked_add(length).and_then(|end| buffer.get(start..end));
+        let data = data.ok_or_else(|| compressed.fault("these bytes are not in the buffer"))?;
+        let mode = compressed.required("mode")?;
+        let mode = match mode.string()? {
+            "ATTRIBUTES" => Mode::Attributes,
+            "TRIANGLES" => Mode::Triangles,
+            "INDICES" => Mode::Indices,
+            _ => return Err(mode.fault("expected ATTRIBUTES, TRIANGLES or INDICES")),
+        };
+        let filter = match compressed.field("filter")?.map(Json::string).transpose()?.unwrap_or("NONE") {
+            "NONE" => Filter::None,
+            "OCTAHEDRAL" => Filter::Octahedral,
+            "EXPONENTIAL" => Filter::Exponential,
+            other => return Err(compressed.fault(format!("the filter {} is not supported", shown(other.as_bytes())))),
+        };
+        let elements = Elements {
+            count: compressed.required("count")?.index()?,
+            stride: compressed.required("byteStride")?.index()?,
+        };
+        // Views may overlap, so that each byte could be decoded many times.
+        let size = elements.count.saturating_mul(elements.stride);
+        let total = self.decompressed_size.saturating_add(size);
+        if total > meshopt::MAX_RATIO.saturating_mul(self.size - self.decompressed_size) {
+            return Err(compressed.fault("this part of the file claims more elements than its bytes can hold"));
+        }
+        memory::check(size).map_err(|error| compressed.fault(error))?;
+        let bytes = meshopt::decoded(data, mode, filter, elements)
+            .map_err(|what| compressed.fault(format!("this part of the file cannot be decompressed: {what}")))?;
+        // A byte may stand for many elements.
+        self.decompressed_size += bytes.len();
+        self.size += bytes.len();
+        let bytes: Rc<[u8]> = bytes.into();
+        self.decompressed.insert(number, Rc::clone(&bytes));
+        Ok(Bytes::Read(bytes))
     }
 
     fn buffer(&mut self, index: Json<'a>) -> Result<Bytes<'a>, MeshFault> {
