@@ -8,6 +8,9 @@
 //! `--moving` visitors turn the scene all the time. Of the others ten press a key twice a second, from which the time
 //! to the end of the next frame is taken; the rest only looks. All answer the queries that a terminal answers.
 //!
+//! `--followers N` visitors follow the tour of the server (`--tour`, and `--moving 0`), in `--classes N` kinds of terminals
+//! (up to 8: four sizes, two numbers of colours). One more leaves the tour and comes back twice a second.
+//!
 //! `--odd KIND:N` adds visitors of another kind, whose frames are not counted: `big` ones turn in windows of 500x200
 //! cells, `late` ones turn and answer after 400 ms, `slow` ones press keys behind a link of 50 KB/s with a round trip of
 //! 200 ms, `slow-turning` ones turn behind such a link. `--seed N` makes visitors come, go, stall and resize, and prints
@@ -49,7 +52,11 @@ struct Measured {
     first: Vec<f64>,
     /// From a key to the end of the next frame, in milliseconds.
     keys: Vec<f64>,
-    /// Frames of each moving visitor while all are there.
+    /// From a key of a follower to the frame of a view of their own, in milliseconds.
+    left: Vec<f64>,
+    /// From the key that enters the tour to its frame, in milliseconds.
+    entered: Vec<f64>,
+    /// Frames of each moving visitor or follower while all are there.
     frames: Vec<u32>,
     bytes: u64,
     /// Bytes that came for those who only look.
@@ -72,6 +79,8 @@ struct Arguments {
     address: String,
     viewers: usize,
     moving: usize,
+    followers: usize,
+    classes: usize,
     seconds: u64,
     size: (u32, u32),
     pid: Option<u32>,
@@ -85,6 +94,8 @@ fn arguments() -> Option<Arguments> {
         address: words.next()?,
         viewers: 50,
         moving: 50,
+        followers: 0,
+        classes: 1,
         seconds: 10,
         size: (80, 24),
         pid: None,
@@ -95,6 +106,8 @@ fn arguments() -> Option<Arguments> {
         match flag.as_str() {
             "--viewers" => arguments.viewers = value.parse().ok()?,
             "--moving" => arguments.moving = value.parse().ok()?,
+            "--followers" => arguments.followers = value.parse().ok()?,
+            "--classes" => arguments.classes = value.parse().ok().filter(|classes| (1..=8).contains(classes))?,
             "--seconds" => arguments.seconds = value.parse().ok()?,
             "--seed" => arguments.seed = Some(value.parse().ok()?),
             "--odd" => {
@@ -119,10 +132,27 @@ fn arguments() -> Option<Arguments> {
     Some(arguments)
 }
 
+impl Arguments {
+    /// Returns the number of visitors whose frames are counted.
+    fn counted(&self) -> usize {
+        self.moving + self.followers
+    }
+
+    /// Returns the size of a visitor's window, and whether it has all colours.
+    fn terminal(&self, number: usize) -> ((u32, u32), bool) {
+        if !(self.moving..self.counted()).contains(&number) {
+            return (self.size, true);
+        }
+        let class = number % self.classes;
+        let size = [self.size, (100, 30), (120, 40), (60, 20)][class % 4];
+        (size, class < 4)
+    }
+}
+
 fn main() {
     let Some(arguments) = arguments() else {
         println!(
-            "serve_load ADDRESS:PORT [--viewers N] [--moving N] [--seconds S] [--size COLUMNSxROWS] [--pid SERVER] \
+            "serve_load ADDRESS:PORT [--viewers N] [--moving N] [--followers N] [--classes N] [--seconds S] [--size COLUMNSxROWS] [--pid SERVER] \
              [--odd big|late|slow|slow-turning:N] [--seed N]"
         );
         return;
@@ -138,7 +168,7 @@ fn main() {
 
 async fn load(arguments: Arguments) {
     let measured = Rc::new(RefCell::new(Measured::default()));
-    measured.borrow_mut().frames = vec![0; arguments.moving];
+    measured.borrow_mut().frames = vec![0; arguments.counted()];
     let arguments = Rc::new(arguments);
     let began = Instant::now();
     let all = arguments.viewers + arguments.odd.map_or(0, |(_, count)| count);
@@ -168,7 +198,7 @@ async fn load(arguments: Arguments) {
     measured.replace(Measured {
         first: entered.first,
         failed: entered.failed,
-        frames: vec![0; arguments.moving],
+        frames: vec![0; arguments.counted()],
         counts: true,
         ..Measured::default()
     });
@@ -180,8 +210,9 @@ async fn load(arguments: Arguments) {
 }
 
 fn report(arguments: &Arguments, measured: &mut Measured, up: Duration, seconds: f64, [server, client]: [f64; 2]) {
-    let Arguments { viewers, moving, size: (columns, rows), .. } = *arguments;
-    println!("{viewers} viewers of {columns}x{rows}, {moving} moving, {} failed", measured.failed);
+    let Arguments { viewers, moving, followers, size: (columns, rows), .. } = *arguments;
+    let failed = measured.failed;
+    println!("{viewers} viewers of {columns}x{rows}, {moving} moving, {followers} followers, {failed} failed");
     println!("| figure | value |\n|---|---|");
     let first = Shares::of(&mut measured.first);
     println!("| all connected | {:.2} s, {:.0} a second |", up.as_secs_f64(), viewers as f64 / up.as_secs_f64());
@@ -193,7 +224,10 @@ fn report(arguments: &Arguments, measured: &mut Measured, up: Duration, seconds:
         println!("| fastest to slowest | {:.2} |", rates.most / rates.least);
         let still = measured.frames.iter().filter(|&&frames| frames == 0).count();
         println!("| without a frame | {still} |");
-        println!("| bytes a second, one viewer | {:.0} |", measured.bytes as f64 / seconds / moving as f64);
+        println!(
+            "| bytes a second, one viewer | {:.0} |",
+            measured.bytes as f64 / seconds / arguments.counted() as f64
+        );
     }
     println!("| bytes for those at rest | {} |", measured.idle_bytes);
     if !measured.keys.is_empty() {
@@ -202,6 +236,11 @@ fn report(arguments: &Arguments, measured: &mut Measured, up: Duration, seconds:
             "| key to frame, p50, p95, p99, max | {:.1}, {:.1}, {:.1}, {:.1} ms |",
             keys.median, keys.p95, keys.p99, keys.most
         );
+    }
+    for (what, times) in [("leaving the tour", &mut measured.left), ("entering the tour", &mut measured.entered)] {
+        if !times.is_empty() {
+            println!("| {what}, p50, p95, max | {} ms |", Shares::of(times));
+        }
     }
     println!("| CPU of the server, of this client | {server:.0} %, {client:.0} % |");
     if let Some(kilobytes) = arguments.pid.and_then(memory_of) {
@@ -235,18 +274,29 @@ impl std::fmt::Display for Shares {
 /// Enters, and reads for ever.
 async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured>) -> Option<()> {
     let odd = arguments.odd.map(|(kind, _)| kind).filter(|_| number >= arguments.viewers);
-    let is_counted = number < arguments.moving;
-    let turns = is_counted || odd.is_some_and(|odd| odd != Odd::Slow);
+    let is_counted = number < arguments.counted();
+    let is_leaving = arguments.followers > 0 && number == arguments.counted();
+    let turns = number < arguments.moving || odd.is_some_and(|odd| odd != Odd::Slow);
     let is_keyed = odd == Some(Odd::Slow)
-        || odd.is_none() && (arguments.moving..arguments.moving + KEYED).contains(&number) && arguments.odd.is_none();
+        || odd.is_none()
+            && (arguments.counted()..arguments.counted() + KEYED).contains(&number)
+            && arguments.odd.is_none()
+            && arguments.followers == 0;
     let pause = Duration::from_millis(if odd.is_some() { 1500 } else { 500 });
     let delay = Duration::from_millis(if odd == Some(Odd::Late) { 400 } else { 0 });
-    let size = if odd == Some(Odd::Big) { (500, 200) } else { arguments.size };
+    let (size, has_all_colors) = arguments.terminal(number);
+    let size = if odd == Some(Odd::Big) { (500, 200) } else { size };
     let slow = matches!(odd, Some(Odd::Slow | Odd::SlowTurning));
-    let (mut channel, _session, asked) = enter(&arguments.address, size, slow).await?;
+    let (mut channel, _session, asked) = enter(&arguments.address, size, (slow, has_all_colors)).await?;
+    let mut is_following = true;
     let (mut tail, mut frames, mut pressed, mut next_key, mut painted) = (Vec::new(), 0_u32, None, asked, false);
     let (mut owed, mut opens) = (VecDeque::<(Instant, Vec<u8>)>::new(), false);
     loop {
+        if is_leaving && painted && Instant::now() >= next_key && pressed.is_none() {
+            next_key = Instant::now() + pause;
+            channel.data(if is_following { &b"w"[..] } else { &b"T"[..] }).await.ok()?;
+            pressed = Some(Instant::now());
+        }
         if is_keyed && painted && Instant::now() >= next_key && pressed.is_none() {
             next_key = Instant::now() + pause;
             // Behind a slow link frames of before are under way: the first one with the status is waited for.
@@ -260,7 +310,7 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
         {
             channel.data(&*replies).await.ok()?;
         }
-        let wait = if is_keyed { Duration::from_millis(50) } else { Duration::from_secs(3600) };
+        let wait = if is_keyed || is_leaving { Duration::from_millis(50) } else { Duration::from_secs(3600) };
         let wait = owed.front().map_or(wait, |(due, _)| due.saturating_duration_since(Instant::now()).min(wait));
         let Ok(message) = timeout(wait, channel.wait()).await else { continue };
         let ChannelMsg::Data { data } = message? else { continue };
@@ -280,7 +330,16 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
         frames += ended;
         let mut measured = measured.borrow_mut();
         let shows = if slow { has(&data, b"three_spheres") } else { ended > 0 };
-        if let Some(pressed) = pressed.take_if(|_| shows) {
+        if is_leaving {
+            let shown: &[u8] = if is_following { b"left the tour" } else { b"watching" };
+            if let Some(pressed) = pressed.take_if(|_| has(&data, shown)) {
+                let time = 1e3 * Instant::elapsed(&pressed).as_secs_f64();
+                let Measured { left, entered, .. } = &mut *measured;
+                let times = if is_following { left } else { entered };
+                times.push(time);
+                is_following = !is_following;
+            }
+        } else if let Some(pressed) = pressed.take_if(|_| shows) {
             let time: Duration = Instant::elapsed(&pressed);
             measured.keys.push(1e3 * time.as_secs_f64());
         }
@@ -296,7 +355,7 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
 async fn enter(
     address: &str,
     (columns, rows): (u32, u32),
-    slow: bool,
+    (slow, has_all_colors): (bool, bool),
 ) -> Option<(Channel<Msg>, Handle<Anybody>, Instant)> {
     let config = Arc::new(client::Config { nodelay: true, ..client::Config::default() });
     let mut session = if slow {
@@ -306,7 +365,9 @@ async fn enter(
     };
     session.authenticate_none("load").await.ok()?.success().then_some(())?;
     let channel = session.channel_open_session().await.ok()?;
-    channel.set_env(false, "COLORTERM", "truecolor").await.ok()?;
+    if has_all_colors {
+        channel.set_env(false, "COLORTERM", "truecolor").await.ok()?;
+    }
     channel.request_pty(false, "xterm-256color", columns, rows, 0, 0, &[]).await.ok()?;
     let asked = Instant::now();
     channel.request_shell(false).await.ok()?;
@@ -409,7 +470,7 @@ async fn soak(arguments: Arguments, seed: u64) {
 ///
 /// The visitor turns the scene or only looks, may resize the window, and may stop reading.
 async fn short_visit(arguments: &Arguments, random: &mut Random) -> Option<()> {
-    let (mut channel, _session, asked) = enter(&arguments.address, arguments.size, false).await?;
+    let (mut channel, _session, asked) = enter(&arguments.address, arguments.size, (false, true)).await?;
     let end = asked + Duration::from_millis(2000 + random.below(18_000));
     let stalls_at = (random.below(4) == 0).then(|| asked + Duration::from_millis(random.below(10_000)));
     if random.below(2) == 0 {

@@ -210,6 +210,16 @@ impl Encoder {
         self.due = Some(Duration::ZERO);
     }
 
+    /// Appends a reset of the pen's colours.
+    ///
+    /// Other output then does not inherit them, and two terminals that show the same cells are in the same state.
+    #[cfg(any(feature = "backend", feature = "serve"))]
+    pub(crate) fn reset_pen(&mut self, bytes: &mut Vec<u8>) {
+        if let Some(known) = &mut self.known {
+            known.pen.switch_to(Pen::default(), bytes);
+        }
+    }
+
     /// Appends the bytes that make the terminal show `wanted` exactly; none if it does already.
     pub fn encode(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) {
         let start = bytes.len();

@@ -5,10 +5,12 @@
 //! them, from its input to its bytes, and the `run_queue` shares their time fairly. Between a connection and its
 //! session are the `session_buffers`, with at most one frame. `limits` counts connections and places for viewers; `ssh`
 //! and `client_command` define what a client may ask for; `visit` leads a client through the queue to its session.
+//! Viewers who follow the `tour` get the frames of an `audience` instead of their session's.
 //!
-//! The modules `run_queue`, `viewer_session`, `limits`, `total_rate`, `network`, `log_line`, `client_command`
+//! The modules `run_queue`, `viewer_session`, `limits`, `total_rate`, `tour`, `network`, `log_line`, `client_command`
 //! and `client_terminal` are pure: they do no I/O, and the time is a parameter.
 
+use crate::camera_path::CameraPath;
 use crate::scene::Scene;
 use crate::terminal::{Signals, without_signals};
 use limits::{Admission, Refusal, anonymized};
@@ -36,6 +38,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{sleep, timeout};
 use worker_pool::WorkerPool;
 
+mod audience;
 mod client_command;
 mod client_terminal;
 mod host_key;
@@ -52,6 +55,7 @@ mod shared_state;
 mod socket;
 mod ssh;
 mod total_rate;
+mod tour;
 mod viewer_session;
 mod visit;
 mod worker_pool;
@@ -110,6 +114,8 @@ pub struct Settings {
     pub link: Option<String>,
     /// The address at which the server's counts can be read, in the text format of Prometheus.
     pub metrics: Option<SocketAddr>,
+    /// The camera path of the tour through the first scene, if there is one.
+    pub tour: Option<CameraPath>,
     /// The networks of load balancers, which tell the address of each client by the PROXY protocol.
     pub proxies: Vec<Network>,
     /// The longest time that a client may take to log in.
@@ -139,6 +145,7 @@ impl Settings {
             banner: None,
             link: None,
             metrics: None,
+            tour: None,
             proxies: Vec::new(),
             // `russh` does not limit the time for the login: 500 of 500 connections that sent nothing were still open
             // after 20 seconds.
@@ -222,7 +229,8 @@ impl Server {
         let (pool, threads) = WorkerPool::start(settings.threads.unwrap_or_else(cores))?;
         let fingerprint = host_key::fingerprint(&key);
         let ssh = ssh_config(&settings, key.clone());
-        let state = Arc::new(SharedState::new(Setup::new(settings, scenes, ssh), pool, log));
+        let setup = Setup::new(settings, scenes, ssh).map_err(|error| io::Error::other(format!("tour: {error}")))?;
+        let state = Arc::new(SharedState::new(setup, pool, log));
         let (ended, shared) = (Arc::new(AtomicBool::new(false)), Arc::clone(&state));
         let flag = Arc::clone(&ended);
         // One thread suffices for the sockets, and leaves the cores to the threads that draw.
@@ -270,7 +278,7 @@ impl Server {
     ///
     /// New views have all new settings. Open views keep the times and rates of their beginning, and get the new scenes:
     /// each shows the scene of the same name. The settings that cannot change while the server runs are `listen`,
-    /// `host_key`, `threads` and `metrics`. If there is no scene, nothing changes.
+    /// `host_key`, `threads` and `metrics`. If there is no scene, or the tour is invalid, nothing changes.
     pub fn reload(&self, scenes: Vec<HostedScene>, settings: Settings) {
         if scenes.is_empty() {
             return self.state.log(&LogLine::event("reload_failed").with("error", NO_SCENE));
@@ -279,8 +287,13 @@ impl Server {
         let unchanged = settings.first_fixed_change(&self.state.setup().settings);
         let line = unchanged.into_iter().fold(line, |line, name| line.with("needs_restart", name));
         let ssh = ssh_config(&settings, self.key.clone());
-        self.state.replace_setup(Setup::new(settings, scenes, ssh));
-        self.state.log(&line);
+        match Setup::new(settings, scenes, ssh) {
+            Ok(setup) => {
+                self.state.replace_setup(setup);
+                self.state.log(&line);
+            }
+            Err(error) => self.state.log(&LogLine::event("reload_failed").with("error", format!("tour: {error}"))),
+        }
     }
 
     /// Accepts no more connections, and tells all viewers that they have to leave.

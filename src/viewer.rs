@@ -136,6 +136,8 @@ pub(crate) enum Request {
     Record,
     /// Ask the user whether to write this camera into the scene's file, if it has one.
     ProposeView(Camera),
+    /// Enter or leave the tour.
+    Tour,
     /// Write the camera of the last [`Self::ProposeView`] into the scene's file.
     SaveView,
 }
@@ -624,6 +626,22 @@ impl Viewer {
         self.screen.free_buffers();
     }
 
+    /// Moves the eye to a camera at once.
+    #[cfg(feature = "serve")]
+    pub(crate) fn set_camera(&mut self, camera: Camera, now: Duration) {
+        self.set_now(now);
+        self.eye.change(now, |_, _| camera);
+    }
+
+    /// Draws the view anew on a screen that has shown something else.
+    #[cfg(feature = "serve")]
+    pub(crate) fn take_screen_back(&mut self) {
+        // The last frame shows a view of before.
+        self.screen.forget_frame();
+        self.pacing.forget_begun();
+        self.forget_screen();
+    }
+
     /// Returns the size of the terminal's window in cells.
     pub(crate) fn window_size(&self) -> Size {
         self.display.window_size()
@@ -647,7 +665,7 @@ impl Viewer {
         self.display.resolution()
     }
 
-    fn picture_size(&self) -> Size {
+    pub(crate) fn picture_size(&self) -> Size {
         self.display.picture_size()
     }
 

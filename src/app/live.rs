@@ -248,6 +248,8 @@ impl Live {
                 }
                 Request::CancelLarge => self.large_picture.iter().for_each(LargePicture::cancel),
                 Request::Record => self.toggle_recording(),
+                // Only a keymap of the user's binds a key to it.
+                Request::Tour => self.viewer.show_note("only a server gives a tour"),
                 Request::ProposeView(camera) => self.propose(camera),
                 Request::SaveView => {
                     if let Some(proposal) = self.proposed.take() {

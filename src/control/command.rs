@@ -43,6 +43,10 @@ pub enum Command {
     Turntable,
     /// Pauses a scene that moves, or lets it go on.
     Pause,
+    /// Enters or leaves the tour that a server gives.
+    ///
+    /// No key is bound to it by default.
+    Tour,
     /// Moves the camera to view 1 to 9: one saved by the user, otherwise one of the scene file.
     View(u8),
     /// Asks for a number from 1 to 9 and saves the camera as that view.
@@ -239,6 +243,7 @@ commands! {
     [Command::TiltUp] "TiltUp", "tilt rectangle up";
     [Command::Turntable] "Turntable", "turntable on or off";
     [Command::Pause] "Pause", "pause a moving scene";
+    [Command::Tour] "Tour", "enter or leave the tour";
     [Command::View(1)] "View1", A_VIEW;
     [Command::View(2)] "View2", A_VIEW;
     [Command::View(3)] "View3", A_VIEW;

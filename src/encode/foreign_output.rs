@@ -3,7 +3,6 @@
 
 use super::Encoder;
 use super::moves::CellPosition;
-use super::pen::Pen;
 use crate::grid::Cell;
 use std::ops::Range;
 
@@ -23,13 +22,6 @@ impl Encoder {
     /// Returns whether the terminal shows an approximation of the last wanted grid.
     pub(super) fn is_inexact(&self) -> bool {
         self.known.is_some() && self.due.is_some()
-    }
-
-    /// Appends a reset of the pen's colours, so that other output does not inherit them.
-    pub(super) fn reset_pen(&mut self, bytes: &mut Vec<u8>) {
-        if let Some(known) = &mut self.known {
-            known.pen.switch_to(Pen::default(), bytes);
-        }
     }
 
     /// Records that the contents of `region` have moved up by `line_count` rows.

@@ -30,6 +30,10 @@ pub(super) struct Metrics {
     pub(super) visits: Counter,
     pub(super) frames: Counter,
     pub(super) bytes: Counter,
+    /// The frames of the tour that were drawn, once for each audience.
+    pub(super) tour_drawn: Counter,
+    /// The frames of the tour that were sent, once for each follower.
+    pub(super) tour_sent: Counter,
     /// The pictures that were traced.
     pub(super) traced: Counter,
     /// The pictures that were reused because they had been traced for another viewer.
@@ -78,6 +82,8 @@ impl Metrics {
         sum("visits_total", "Views that were opened", &[("", &self.visits)]);
         sum("frames_total", "Frames that were drawn", &[("", &self.frames)]);
         sum("sent_bytes_total", "Bytes for terminals, before encryption", &[("", &self.bytes)]);
+        let tour = [("{at=\"drawn\"}", &self.tour_drawn), ("{at=\"sent\"}", &self.tour_sent)];
+        sum("tour_frames_total", "Frames of the tour: drawn for an audience, and sent to followers", &tour);
         let pictures = [("{from=\"tracer\"}", &self.traced), ("{from=\"memory\"}", &self.shared)];
         sum("pictures_total", "Pictures, traced or of another viewer", &pictures);
         sum("panics_total", "Views that a fault of the server ended", &[("", &self.panics)]);

@@ -135,11 +135,6 @@ impl RunQueue {
         self.running + self.ready.range(..(WorkKind::Refinement, Duration::ZERO, 0)).count()
     }
 
-    /// Returns the number of sessions.
-    pub(super) fn len(&self) -> usize {
-        self.sessions.len()
-    }
-
     fn set(&mut self, id: SessionId, state: SessionState) {
         let Some(session) = self.sessions.get_mut(&id) else { return };
         match session.state {

@@ -3,6 +3,7 @@
 //! Both sides hold a lock only to move bytes, so the thread of the sockets never waits for a picture.
 
 use super::HostedScene;
+use super::audience::Follower;
 use super::run_queue::SessionId;
 use super::viewer_session::{LeaveReason, PendingInput};
 use crate::grid::Window;
@@ -49,14 +50,27 @@ struct Outbox {
     bytes: Vec<u8>,
     /// Whether bytes are being sent.
     sending: bool,
+    /// The source of the screen's content from now on, if it has changed.
+    source: Option<ScreenSource>,
     /// The reason why the session has ended, if it has.
     ended: Option<LeaveReason>,
 }
 
+/// The source of what a client's screen shows.
+#[derive(Debug)]
+pub(super) enum ScreenSource {
+    /// The session of the client.
+    Session,
+    /// The tour.
+    Tour(Follower),
+}
+
 /// The bytes that a connection is to send next.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug)]
 pub(super) struct Outgoing {
     pub(super) bytes: Vec<u8>,
+    /// The source of the screen's content after the bytes, if it has changed.
+    pub(super) source: Option<ScreenSource>,
     /// The reason why the session has ended, if these are the last bytes.
     pub(super) ended: Option<LeaveReason>,
 }
@@ -143,9 +157,12 @@ impl SessionBuffers {
         outbox.sending || !outbox.bytes.is_empty()
     }
 
-    /// Appends bytes to those to send, and sets the reason of the end if they are the last ones.
-    pub(super) fn send(&self, mut bytes: Vec<u8>, ended: Option<LeaveReason>) {
-        if bytes.is_empty() && ended.is_none() {
+    /// Appends bytes to those to send.
+    ///
+    /// `source` is the source of the screen's content after them, if it changes; `ended` the reason of the end, if they
+    /// are the last ones.
+    pub(super) fn send(&self, mut bytes: Vec<u8>, source: Option<ScreenSource>, ended: Option<LeaveReason>) {
+        if bytes.is_empty() && source.is_none() && ended.is_none() {
             return;
         }
         let mut outbox = locked(&self.outbox);
@@ -155,6 +172,7 @@ impl SessionBuffers {
         } else {
             outbox.bytes.append(&mut bytes);
         }
+        outbox.source = source.or(outbox.source.take());
         outbox.ended = ended;
         // The lock is released before the notification, so that the woken task need not wait for it.
         drop(outbox);
@@ -170,8 +188,9 @@ impl SessionBuffers {
             {
                 let mut outbox = locked(&self.outbox);
                 outbox.sending = !outbox.bytes.is_empty();
-                if outbox.sending || outbox.ended.is_some() {
-                    return Some(Outgoing { bytes: std::mem::take(&mut outbox.bytes), ended: outbox.ended });
+                if outbox.sending || outbox.source.is_some() || outbox.ended.is_some() {
+                    let (bytes, source) = (std::mem::take(&mut outbox.bytes), outbox.source.take());
+                    return Some(Outgoing { bytes, source, ended: outbox.ended });
                 }
             }
             self.filled.notified().await;

@@ -5,10 +5,12 @@ use super::limits::{ConnectionLimiter, Places, Refusal, anonymized};
 use super::log_line::LogLine;
 use super::session_buffers::locked;
 use super::total_rate::TotalRate;
+use super::tour::Tour;
 use super::worker_pool::WorkerPool;
 use super::{HostedScene, Log, Settings};
+use crate::camera_path::PathError;
 use crate::capabilities::{Colors, terminfo_colors};
-use crate::control::{Command, Keymap};
+use crate::control::{Command, Key, KeyMode, Keymap};
 use crate::export::text_frame;
 use crate::grid::Size;
 use crate::viewer::Options;
@@ -26,6 +28,9 @@ use tokio::sync::watch;
 const LEFT_OUT: [Command; 6] =
     [Command::Export, Command::ExportLarge, Command::Record, Command::KeepView, Command::TurnMesh, Command::Suspend];
 
+/// The key that enters or leaves the tour.
+const TOUR_KEY: Key = Key::letter('T');
+
 /// The largest number of bytes in one SSH message to a client.
 // The buffer of a connection never shrinks: it keeps the size of the largest message.
 const MAX_MESSAGE: usize = 8 * 1024;
@@ -38,6 +43,8 @@ const MAX_TERMINALS: usize = 256;
 pub(super) struct Setup {
     pub(super) settings: Settings,
     pub(super) scenes: Arc<[HostedScene]>,
+    pub(super) tour: Option<Arc<Tour>>,
+    keymap: Keymap,
     /// The configuration of SSH that follows from the settings.
     pub(super) ssh: Arc<Config>,
     /// One frame of each scene as text, made when it is first asked for.
@@ -46,9 +53,21 @@ pub(super) struct Setup {
 }
 
 impl Setup {
-    pub(super) fn new(settings: Settings, scenes: Vec<HostedScene>, ssh: Config) -> Self {
+    /// Returns the settings, the scenes and the configuration of SSH as one value.
+    ///
+    /// # Errors
+    /// If a camera of the tour is invalid.
+    pub(super) fn new(settings: Settings, scenes: Vec<HostedScene>, ssh: Config) -> Result<Self, PathError> {
         let text_frames = scenes.iter().map(|_| OnceLock::new()).collect();
-        Self { settings, scenes: scenes.into(), ssh: Arc::new(ssh), text_frames }
+        let tour =
+            settings.tour.as_ref().zip(scenes.first()).map(|(path, scene)| Tour::new(path, &scene.scene, &settings));
+        let tour = tour.transpose()?.map(Arc::new);
+        let mut keymap = Keymap::default();
+        keymap.remove(&LEFT_OUT);
+        if tour.is_some() {
+            keymap.bind(KeyMode::Always, TOUR_KEY, Some(Command::Tour));
+        }
+        Ok(Self { settings, scenes: scenes.into(), tour, keymap, ssh: Arc::new(ssh), text_frames })
     }
 
     /// Returns the largest number of connections.
@@ -85,16 +104,14 @@ pub(super) struct SharedState {
     pub(super) changes: watch::Sender<()>,
     drain_deadline: OnceLock<Duration>,
     log: Log,
-    keymap: Keymap,
     /// The colours of terminals according to terminfo, which is read once for each name.
     terminals: Mutex<HashMap<String, Option<Colors>>>,
 }
 
 impl SharedState {
     pub(super) fn new(setup: Setup, pool: Arc<WorkerPool>, log: Log) -> Self {
-        let mut keymap = Keymap::default();
-        keymap.remove(&LEFT_OUT);
         let settings = &setup.settings;
+        pool.set_tour(setup.tour.clone());
         Self {
             limiter: Mutex::new(ConnectionLimiter::new(setup.max_connections(), settings.max_per_address)),
             places: Mutex::new(Places::new(settings.max_viewers)),
@@ -105,7 +122,6 @@ impl SharedState {
             setup: Mutex::new(Arc::new(setup)),
             pool,
             log,
-            keymap,
         }
     }
 
@@ -123,6 +139,7 @@ impl SharedState {
         locked(&self.places).set_most(max_viewers);
         *locked(&self.total_rate) = max_rate_total.map(TotalRate::new);
         let scenes = Arc::clone(&setup.scenes);
+        self.pool.set_tour(setup.tour.clone());
         *locked(&self.setup) = Arc::new(setup);
         self.pool.replace_scenes(&scenes);
         // There may be more places now.
@@ -154,11 +171,11 @@ impl SharedState {
 
     /// Returns the options of a new viewer, whose window has this number of columns.
     pub(super) fn viewer_options(&self, setup: &Setup, terminal: &ClientTerminal, columns: u16) -> Options {
-        let Setup { settings, scenes, .. } = setup;
+        let Setup { settings, scenes, keymap, .. } = setup;
         let mut options = Options::new(terminal.hints(&|name| self.terminal_colors(name)));
         options.max_rate = settings.max_rate;
         options.max_frames = Some(settings.max_frames);
-        options.keymap = self.keymap.clone();
+        options.keymap = keymap.clone();
         options.welcome = Some(welcome_line(scenes.len(), settings.link.as_deref(), columns));
         options
     }
@@ -179,6 +196,7 @@ impl SharedState {
     pub(super) fn metrics_text(&self) -> String {
         self.pool.metrics.text(&[
             ("viewers", "Views that are open", self.pool.session_count()),
+            ("followers", "Views of the tour", self.pool.follower_count()),
             ("waiting", "Visitors who wait for a place", locked(&self.places).waiting()),
             ("draining", "Whether the server ends soon", usize::from(self.drain_deadline().is_some())),
         ])

@@ -4,6 +4,7 @@
 
 use super::HostedScene;
 use super::run_queue::{AfterTurn, WorkKind};
+use super::tour::{AudienceClass, Tour};
 use crate::grid::Window;
 use crate::memory::OutOfMemory;
 use crate::protocol::{FENCE, TerminalMode, TerminalModes};
@@ -102,6 +103,17 @@ pub(super) struct PendingInput {
     pub(super) scenes: Option<Arc<[HostedScene]>>,
     /// The time at which the server ends, if it does.
     pub(super) drain_deadline: Option<Duration>,
+    /// The tour that the server gives, if any.
+    pub(super) tour: Option<Arc<Tour>>,
+}
+
+/// A change of what a viewer's screen shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum AudienceChange {
+    /// The frames of the tour for terminals of this class.
+    Follow(AudienceClass),
+    /// The view of the viewer's own camera.
+    Leave,
 }
 
 /// A function that traces the frame of a job, or returns `None` if it was interrupted.
@@ -124,6 +136,10 @@ pub(super) struct ViewerSession {
     /// The time at which the viewer began to leave and its terminal was restored, and the reason;
     /// `None` before.
     leaving: Option<(Duration, LeaveReason)>,
+    /// The time since which the viewer follows the tour; `None` in a view of their own camera.
+    following: Option<Duration>,
+    /// The class of the viewer's audience at the last call of `take_audience_change`.
+    audience: Option<AudienceClass>,
     /// The time at which the last turn ended.
     latest: Duration,
     /// The number of frames drawn since the last call of `take_drawn`.
@@ -131,15 +147,15 @@ pub(super) struct ViewerSession {
 }
 
 impl ViewerSession {
-    /// Returns a session that shows the scene with index `shown`, and appends its first bytes to
-    /// `out`.
+    /// Returns a session that shows the scene with index `shown`, or the tour if `follows`, and
+    /// appends its first bytes to `out`.
     ///
     /// # Errors
     /// If there is not enough memory for the window.
     pub(super) fn new(
         scenes: Arc<[HostedScene]>,
         shown: usize,
-        (options, link): (Options, Option<String>),
+        (options, link, follows): (Options, Option<String>, bool),
         window: Window,
         limits: VisitLimits,
         now: Duration,
@@ -164,6 +180,8 @@ impl ViewerSession {
             drain_deadline,
             counted,
             leaving,
+            following: follows.then_some(now),
+            audience: None,
             latest: now,
             drawn: 0,
         };
@@ -210,17 +228,41 @@ impl ViewerSession {
         if self.leaving.is_some() {
             return self.await_last_replies(&input.bytes, now);
         }
+        let tour = input.tour.as_deref();
+        // A lone ESC becomes a key without further bytes.
+        let may_have_key = !input.bytes.is_empty() || self.viewer.receiver().sequence_times_out_at(now).is_some();
+        if let Some(tour) = tour.filter(|_| self.following.is_some() && may_have_key) {
+            // A key that leaves the tour moves the camera from where the tour is, which is in the first scene.
+            if self.shown != 0 {
+                self.show(0);
+            }
+            self.viewer.set_camera(tour.camera(Tour::tick_at(now)), now);
+        }
         if self.apply_input(input, now, out).is_err() {
             return self.leave(LeaveReason::OutOfMemory, now, out);
         }
-        if self.carry_out_requests(out).is_break() {
+        if self.carry_out_requests(tour.is_some(), now, out).is_break() {
             return self.leave(LeaveReason::Quit, now, out);
+        }
+        let has_key = |since| self.viewer.last_input_time() > since;
+        if self.following.is_some_and(|since| tour.is_none() || has_key(since)) {
+            let is_over = tour.is_none();
+            self.leave_tour(if is_over { "the tour has ended" } else { "you have left the tour; T goes back to it" });
         }
         let (end, reason) = self.next_end();
         if now >= end {
             return self.leave(reason, now, out);
         }
         let counted = self.count_down(end, reason, now);
+        if self.following.is_some() && self.counted.is_some() {
+            // The tour's frames have no room for the countdown of one viewer.
+            self.leave_tour(&reason.countdown_text(self.counted.unwrap_or(0)));
+        }
+        if self.following.is_some() {
+            self.latest = clock();
+            let sequence = self.viewer.receiver().sequence_times_out_at(now);
+            return AfterTurn::Sleep(sequence.into_iter().chain([counted]).min());
+        }
         let next = self.carry_out_steps((sending, kind), clock, trace, out);
         self.latest = clock();
         match next {
@@ -252,9 +294,11 @@ impl ViewerSession {
     fn next_end(&self) -> (Duration, LeaveReason) {
         // Before the first key press, the idle time counts from the beginning of the visit.
         let idle = (self.viewer.last_input_time().max(self.began) + self.limits.idle, LeaveReason::Idle);
-        let ends = [(self.limits.ends, LeaveReason::TimeOver), idle];
+        let time_over = (self.limits.ends, LeaveReason::TimeOver);
         let drained = self.drain_deadline.map(|at| (at, LeaveReason::Drained));
-        drained.into_iter().chain(ends).min_by_key(|&(at, _)| at).expect("there are two")
+        // A follower of the tour presses no key.
+        let idle = Some(idle).filter(|_| self.following.is_none());
+        drained.into_iter().chain(idle).fold(time_over, |first, end| if end.0 < first.0 { end } else { first })
     }
 
     /// Shows the seconds left during the countdown, and returns the time of the next change of that
@@ -326,10 +370,27 @@ impl ViewerSession {
         AfterTurn::Turn(kind)
     }
 
+    /// Shows the view of this viewer's own camera again, which is where the tour was.
+    fn leave_tour(&mut self, note: &str) {
+        self.following = None;
+        self.viewer.take_screen_back();
+        self.viewer.show_note(note);
+    }
+
+    /// Returns what the viewer's screen shows from now on, if that has changed since the last call.
+    pub(super) fn take_audience_change(&mut self) -> Option<AudienceChange> {
+        let class = self
+            .following
+            .filter(|_| self.leaving.is_none())
+            .map(|_| AudienceClass { size: self.viewer.picture_size(), capabilities: *self.viewer.capabilities() });
+        let has_changed = std::mem::replace(&mut self.audience, class) != class;
+        has_changed.then(|| class.map_or(AudienceChange::Leave, AudienceChange::Follow))
+    }
+
     /// Carries out the viewer's requests; breaks if the user leaves.
     ///
     /// Requests to write to the server's disk, to turn a mesh or to suspend do nothing; no key is bound to them.
-    fn carry_out_requests(&mut self, out: &mut Vec<u8>) -> ControlFlow<()> {
+    fn carry_out_requests(&mut self, has_tour: bool, now: Duration, out: &mut Vec<u8>) -> ControlFlow<()> {
         let mut copied = None;
         while let Some(request) = self.viewer.next_request() {
             match request {
@@ -344,6 +405,13 @@ impl ViewerSession {
                         format!("{} ({} of {count})", self.scenes[index].name, index + 1)
                     };
                     self.viewer.show_note(note);
+                }
+                Request::Tour if has_tour && self.following.is_none() => {
+                    // The tour goes through the first scene, in which its camera is valid.
+                    if self.shown != 0 {
+                        self.show(0);
+                    }
+                    self.following = Some(now);
                 }
                 Request::ShowMetadata => self.viewer.show_metadata(self.scenes[self.shown].name.clone()),
                 // Only the last text is sent, because only that stays on the clipboard; sending all of them would take

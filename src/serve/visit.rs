@@ -4,7 +4,7 @@ use super::client_terminal::ClientTerminal;
 use super::log_line::LogLine;
 use super::metrics::Counter;
 use super::run_queue::SessionId;
-use super::session_buffers::{Outgoing, SessionBuffers};
+use super::session_buffers::{Outgoing, ScreenSource, SessionBuffers};
 use super::shared_state::{Setup, SharedState, ViewerSlot};
 use super::socket::SocketCloser;
 use super::viewer_session::{LeaveReason, ViewerSession, VisitLimits};
@@ -13,6 +13,7 @@ use crate::text::visible;
 use russh::ChannelId;
 use russh::server::Handle;
 use std::sync::Arc;
+use std::task::Poll;
 use std::time::Duration;
 use tokio::time::{sleep, timeout};
 
@@ -49,12 +50,13 @@ impl Visit {
         let limits = VisitLimits { idle: settings.idle, ends: now + settings.session_max };
         let options = state.viewer_options(&self.setup, terminal, window.size.columns);
         let mut first = Vec::new();
-        let options = (options, settings.link.clone());
+        let follows = self.setup.tour.is_some() && scene == 0;
+        let options = (options, settings.link.clone(), follows);
         let session = ViewerSession::new(Arc::clone(scenes), scene, options, window, limits, now, &mut first);
         let Ok(session) = session else {
             return self.refuse("there is not enough memory for a window of this size").await;
         };
-        self.buffers.send(first, None);
+        self.buffers.send(first, None, None);
         let id = state.pool.add(session, Arc::clone(&self.buffers));
         self.buffers.set_session(id);
         if let Some(at) = state.drain_deadline() {
@@ -85,9 +87,24 @@ impl Visit {
 
     /// Sends the session's bytes until it ends, and returns the reason; `None` if the connection
     /// has ended.
+    ///
+    /// While the client follows the tour, sends the tour's bytes too.
     async fn pass_bytes(&self, id: SessionId) -> Option<LeaveReason> {
+        let mut source = ScreenSource::Session;
         loop {
-            let Outgoing { bytes, ended } = self.buffers.outgoing().await?;
+            let outgoing = match &mut source {
+                ScreenSource::Session => self.buffers.outgoing().await,
+                ScreenSource::Tour(follower) => match either(self.buffers.outgoing(), follower.next_bytes()).await {
+                    Either::First(outgoing) => outgoing,
+                    Either::Second(bytes) if self.send(&bytes).await => {
+                        self.state.pool.metrics.tour_sent.add(1);
+                        continue;
+                    }
+                    Either::Second(_) => return None,
+                },
+            };
+            let Outgoing { bytes, source: next_source, ended } = outgoing?;
+            source = next_source.unwrap_or(source);
             if !self.send(&bytes).await {
                 return None;
             }
@@ -132,7 +149,7 @@ impl Visit {
                 let text = format!("\r\x1b[Kfull, {ahead} ahead of you; q leaves");
                 self.send(text.as_bytes()).await;
             }
-            first_of(changes.changed(), self.buffers.wait_for_wake()).await;
+            either(changes.changed(), self.buffers.wait_for_wake()).await;
             let input = self.buffers.take_input();
             *window = input.window.unwrap_or(*window);
             if self.buffers.is_hung_up() || input.bytes.iter().any(|byte| LEAVING.contains(byte)) {
@@ -193,15 +210,20 @@ impl Visit {
     }
 }
 
-/// Waits for the first of two events.
-async fn first_of<A, B>(first: impl Future<Output = A>, second: impl Future<Output = B>) {
+/// The result of the first of two futures.
+enum Either<A, B> {
+    First(A),
+    Second(B),
+}
+
+/// Waits for the first of two futures, and drops the other one.
+async fn either<A, B>(first: impl Future<Output = A>, second: impl Future<Output = B>) -> Either<A, B> {
     let (mut first, mut second) = (std::pin::pin!(first), std::pin::pin!(second));
     std::future::poll_fn(|cx| {
-        if first.as_mut().poll(cx).is_ready() || second.as_mut().poll(cx).is_ready() {
-            std::task::Poll::Ready(())
-        } else {
-            std::task::Poll::Pending
+        if let Poll::Ready(first) = first.as_mut().poll(cx) {
+            return Poll::Ready(Either::First(first));
         }
+        second.as_mut().poll(cx).map(Either::Second)
     })
-    .await;
+    .await
 }

@@ -4,11 +4,13 @@
 //! take as long as tracing it. Each thread is a rayon pool of its own, so that parallel functions stay on that thread.
 
 use super::HostedScene;
+use super::audience::{Audience, Drawing, Follower};
 use super::metrics::Metrics;
 use super::pictures::{Pictures, is_worth_sharing};
 use super::run_queue::{AfterTurn, RunQueue, SessionId, WorkKind};
-use super::session_buffers::{SessionBuffers, locked};
-use super::viewer_session::{LeaveReason, PendingInput, ViewerSession};
+use super::session_buffers::{ScreenSource, SessionBuffers, locked};
+use super::tour::{AudienceClass, Tour};
+use super::viewer_session::{AudienceChange, LeaveReason, PendingInput, ViewerSession};
 use crate::app::Tracer;
 use crate::progress::Cancellation;
 use crate::viewer::{FIRST_FRAME_MOTION, Frame, Job};
@@ -25,10 +27,26 @@ struct PooledSession {
     buffers: Arc<SessionBuffers>,
 }
 
+/// An audience of the tour, and the drawing of its frames.
+struct PooledAudience {
+    audience: Audience,
+    drawing: Mutex<Drawing>,
+}
+
+/// The owner of a turn.
+#[derive(Clone)]
+enum TurnOwner {
+    Session(Arc<PooledSession>),
+    Audience(Arc<PooledAudience>),
+}
+
 #[derive(Default)]
 struct PoolState {
     queue: RunQueue,
     sessions: HashMap<SessionId, Arc<PooledSession>>,
+    /// The audiences, whose numbers are those of no session.
+    audiences: HashMap<SessionId, Arc<PooledAudience>>,
+    tour: Option<Arc<Tour>>,
     next_id: SessionId,
     /// The number of threads that wait for work.
     resting: usize,
@@ -122,7 +140,33 @@ impl WorkerPool {
 
     /// Returns the number of sessions.
     pub(super) fn session_count(&self) -> usize {
-        locked(&self.state).queue.len()
+        locked(&self.state).sessions.len()
+    }
+
+    /// Returns the number of sessions that follow the tour.
+    pub(super) fn follower_count(&self) -> usize {
+        locked(&self.state).audiences.values().map(|pooled| pooled.audience.len()).sum()
+    }
+
+    /// Sets the tour that the server gives.
+    pub(super) fn set_tour(&self, tour: Option<Arc<Tour>>) {
+        locked(&self.state).tour = tour;
+    }
+
+    /// Adds a follower to the audience of a class.
+    fn follow(&self, class: AudienceClass) -> Follower {
+        let mut state = locked(&self.state);
+        if let Some(pooled) = state.audiences.values().find(|pooled| pooled.audience.class == class) {
+            return pooled.audience.follow();
+        }
+        let (audience, drawing) = (Audience::new(class), Mutex::new(Drawing::new(&class)));
+        let follower = audience.follow();
+        let id = state.next_id;
+        state.next_id += 1;
+        state.audiences.insert(id, Arc::new(PooledAudience { audience, drawing }));
+        state.queue.add(id);
+        self.wake_or_preempt(&mut state);
+        follower
     }
 
     /// Ends the threads.
@@ -145,10 +189,13 @@ impl WorkerPool {
         // Makes this thread a rayon pool. Without it, each `rayon::join` would run on the global pool.
         let rayon_pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
         let mut tracer = Tracer::default();
-        while let Some((id, pooled, load, token)) = self.next_turn() {
+        while let Some((id, owner, load, token)) = self.next_turn() {
             // CPU time, because on a busy machine the elapsed time would charge a session for the turns of others.
             let started = cpu_time();
-            let mut turn = || self.take_turn(&pooled, load, &token, &mut tracer);
+            let mut turn = || match &owner {
+                TurnOwner::Session(pooled) => self.take_turn(pooled, load, &token, &mut tracer),
+                TurnOwner::Audience(pooled) => self.draw_for(pooled),
+            };
             let turned = catch_unwind(AssertUnwindSafe(|| match &rayon_pool {
                 Ok(pool) => pool.install(&mut turn),
                 Err(_) => turn(),
@@ -158,26 +205,33 @@ impl WorkerPool {
                 // tracer is replaced, because the panic may have left it in an invalid state.
                 tracer = Tracer::default();
                 self.metrics.panics.add(1);
-                let mut out = Vec::new();
-                locked(&pooled.session).abandon(&mut out);
-                pooled.buffers.send(out, Some(LeaveReason::Fault));
+                if let TurnOwner::Session(pooled) = &owner {
+                    let mut out = Vec::new();
+                    locked(&pooled.session).abandon(&mut out);
+                    pooled.buffers.send(out, Some(ScreenSource::Session), Some(LeaveReason::Fault));
+                }
                 AfterTurn::End
             });
             let cost = cpu_time().saturating_sub(started);
             self.metrics.turn_micros.add(u64::try_from(cost.as_micros()).unwrap_or(0));
             let mut state = locked(&self.state);
-            state.queue.finish(id, cost, next);
+            // All followers pay for the frames of their audience together.
+            let sharers = if let TurnOwner::Audience(pooled) = &owner { pooled.audience.len() } else { 1 };
+            // A follower may have come since the turn ended.
+            let next = if sharers == 0 { AfterTurn::End } else { next };
+            state.queue.finish(id, cost / u32::try_from(sharers.max(1)).unwrap_or(u32::MAX), next);
             if next == AfterTurn::End {
                 state.sessions.remove(&id);
+                state.audiences.remove(&id);
             }
         }
     }
 
-    /// Waits for the next turn, and returns its session, the load, and the token that cancels
+    /// Waits for the next turn, and returns its owner, the load, and the token that cancels
     /// refinements.
     ///
     /// The load is the number of sessions that run or are ready for a picture. `None` if the pool is closed.
-    fn next_turn(&self) -> Option<(SessionId, Arc<PooledSession>, usize, Cancellation)> {
+    fn next_turn(&self) -> Option<(SessionId, TurnOwner, usize, Cancellation)> {
         let mut state = locked(&self.state);
         loop {
             if state.closed {
@@ -186,8 +240,10 @@ impl WorkerPool {
             let now = self.now();
             if let Some(id) = state.queue.take(now) {
                 let (load, token) = (state.queue.load(), state.refinements.clone());
-                if let Some(pooled) = state.sessions.get(&id) {
-                    return Some((id, Arc::clone(pooled), load, token));
+                let session = || state.sessions.get(&id).cloned().map(TurnOwner::Session);
+                let audience = || state.audiences.get(&id).cloned().map(TurnOwner::Audience);
+                if let Some(owner) = session().or_else(audience) {
+                    return Some((id, owner, load, token));
                 }
                 state.queue.finish(id, Duration::ZERO, AfterTurn::End);
                 continue;
@@ -220,7 +276,7 @@ impl WorkerPool {
             Some(frame)
         };
         let mut out = Vec::new();
-        let input: PendingInput = buffers.take_input();
+        let input = PendingInput { tour: self.tour(), ..buffers.take_input() };
         #[cfg(feature = "test-hooks")]
         assert!(
             !self.panics.get().is_some_and(|key| input.bytes.contains(key)),
@@ -230,8 +286,24 @@ impl WorkerPool {
         let kind = if load <= self.threads { WorkKind::Refinement } else { WorkKind::Picture };
         let next = session.take_turn(&input, (buffers.is_sending(), kind), &|| self.now(), &mut trace, &mut out);
         self.metrics.frames.add(session.take_drawn());
-        buffers.send(out, session.leave_reason().filter(|_| next == AfterTurn::End));
+        let source = session.take_audience_change().map(|change| match change {
+            AudienceChange::Follow(class) => ScreenSource::Tour(self.follow(class)),
+            AudienceChange::Leave => ScreenSource::Session,
+        });
+        buffers.send(out, source, session.leave_reason().filter(|_| next == AfterTurn::End));
         next
+    }
+
+    fn tour(&self) -> Option<Arc<Tour>> {
+        locked(&self.state).tour.clone()
+    }
+
+    /// Draws the next frame of the tour for an audience.
+    fn draw_for(&self, pooled: &PooledAudience) -> AfterTurn {
+        let Some(tour) = self.tour() else { return AfterTurn::End };
+        let line = format!(" tour, {} watching: any key leaves it ", self.session_count());
+        self.metrics.tour_drawn.add(1);
+        AfterTurn::Sleep(Some(locked(&pooled.drawing).draw(&pooled.audience, &tour, &line, self.now())))
     }
 
     /// Returns the picture of a job, or `None` if it is cancelled.

@@ -167,6 +167,7 @@ impl Viewer {
             Command::TiltUp => self.tilt_rectangle([0.0, 1.0]),
             Command::Turntable => self.toggle_turntable(),
             Command::Pause => self.toggle_playback(),
+            Command::Tour => self.requests.push_back(Request::Tour),
             Command::View(number) => self.go_to_view(number),
             Command::SaveView => self.screen.open(Dialog::Save),
             Command::Reset => self.reset_eye(),

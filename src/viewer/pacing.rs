@@ -30,6 +30,12 @@ impl Pacing {
         Self { link, quality: QualityControl::new(options.sampling), begun: None }
     }
 
+    /// Forgets the last frame that was begun, so that another one is begun even of the same shot.
+    #[cfg(feature = "serve")]
+    pub(super) fn forget_begun(&mut self) {
+        self.begun = None;
+    }
+
     /// Returns whether the last frame begun shows `shot`.
     pub(super) fn has_begun(&self, shot: &Shot) -> bool {
         self.begun.as_ref().is_some_and(|begun| begun.shot == *shot)

@@ -150,6 +150,12 @@ impl Screen {
         self.grid = Grid::new(Size::new(0, 0));
     }
 
+    /// Forgets the last frame. Until the next one nothing is drawn.
+    #[cfg(feature = "serve")]
+    pub(super) fn forget_frame(&mut self) {
+        self.content.frame = None;
+    }
+
     /// Opens a layer and replaces the open one of its type.
     pub(super) fn open<L: Layer>(&mut self, layer: L) {
         self.content.layers.open(layer);

@@ -180,10 +180,39 @@ impl Guest {
         self.owed.len()
     }
 
+    /// Reads for this time.
+    pub(crate) async fn read_for(&mut self, time: Duration) {
+        let end = Instant::now() + time;
+        while let Ok(is_open) = timeout_at(end, self.read()).await {
+            assert!(is_open, "the server closed the channel");
+        }
+    }
+
+    /// Returns what the cells of the screen look like: two colours, or a character.
+    pub(crate) fn cells(&self) -> String {
+        let (rows, columns) = self.screen.second_opinion().size();
+        let (rows, columns) = (rows.get(), columns.get());
+        let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+        let looks = cells.map(|(column, row)| {
+            let cell = self.screen.cell(column.into(), row.into());
+            let (fg, bg) = (cell.foreground, cell.background);
+            match cell.glyph {
+                ' ' => format!("{bg:?} {bg:?}\n"),
+                '▄' => format!("{bg:?} {fg:?}\n"),
+                '▀' => format!("{fg:?} {bg:?}\n"),
+                '█' => format!("{fg:?} {fg:?}\n"),
+                glyph => format!("{glyph} {fg:?} {bg:?}\n"),
+            }
+        });
+        looks.collect()
+    }
+
     /// Reads until the bytes and the screen are as wanted.
     pub(crate) async fn see(&mut self, what: &str, wanted: impl Fn(&Self) -> bool) {
+        let end = Instant::now() + Duration::from_secs(50);
         while !wanted(self) {
-            let is_open = self.read().await;
+            let is_open = timeout_at(end, self.read()).await;
+            let is_open = is_open.unwrap_or_else(|_| panic!("{what} is not on the screen: {:#?}", self.text()));
             assert!(is_open || wanted(self), "the server closed the channel before {what}: {:?}", self.text());
         }
     }

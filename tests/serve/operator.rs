@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use tempfile::TempDir;
 
-fn folder_with(name: &str, text: &str) -> (TempDir, String) {
+pub(crate) fn folder_with(name: &str, text: &str) -> (TempDir, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join(name);
     fs::write(&path, text).expect("a file");
@@ -136,7 +136,7 @@ fn all_viewers_together_have_a_rate_and_share_it() {
 }
 
 /// Returns the value of a row of the counts.
-fn value(counts: &str, name: &str) -> Option<f64> {
+pub(crate) fn value(counts: &str, name: &str) -> Option<f64> {
     counts.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' ')?.parse().ok())
 }
 
@@ -151,7 +151,7 @@ fn page(hosting: &Hosting, path: &str) -> (String, String) {
     (status.to_owned(), body.to_owned())
 }
 
-fn counts(hosting: &Hosting) -> String {
+pub(crate) fn counts(hosting: &Hosting) -> String {
     let (status, counts) = page(hosting, "/metrics");
     assert_eq!(status, "200 OK", "{counts}");
     counts

@@ -13,6 +13,7 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
+use termtrace::CameraPath;
 use termtrace::internals::serve::{self, HostedScene, Network, Settings};
 use termtrace::internals::terminal::die_of;
 use termtrace::internals::text::visible;
@@ -91,6 +92,9 @@ pub(in crate::cli) struct ServeArgs {
     /// Address of this machine with counts for Prometheus, and a health check
     #[arg(long, value_name = "ADDRESS:PORT", hide_short_help = true)]
     metrics: Option<SocketAddr>,
+    /// Camera path through the first scene, which all viewers follow until a key
+    #[arg(long, value_name = "PATH")]
+    tour: Option<PathBuf>,
     /// Networks of load balancers that send the PROXY protocol, such as 10.0.0.0/8
     #[arg(long, value_name = "CIDR,...", value_delimiter = ',', hide_short_help = true)]
     proxy_protocol: Vec<Network>,
@@ -127,8 +131,11 @@ fn read(given: &ArgMatches) -> Result<(Vec<HostedScene>, Settings), Failure> {
         // Flags of the command line override the settings of the file.
         args.update_from_arg_matches(given).map_err(usage)?;
     }
-    let settings = settings(&args)?;
-    Ok((scenes(&args.scenes)?, settings))
+    let (mut settings, scenes) = (settings(&args)?, scenes(&args.scenes)?);
+    if let Some((path, first)) = args.tour.as_ref().zip(scenes.first()) {
+        settings.tour = Some(CameraPath::load(path, first.scene.camera()).map_err(usage)?);
+    }
+    Ok((scenes, settings))
 }
 
 fn settings(args: &ServeArgs) -> Result<Settings, Failure> {

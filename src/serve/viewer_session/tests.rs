@@ -35,7 +35,7 @@ impl Harness {
     fn new(limits: VisitLimits) -> Self {
         let window = crate::serve::client_terminal::window([20, 6, 0, 0]);
         let variable = |name: &str| (name == "TERM").then(|| "xterm-256color".to_owned());
-        let options = (Options::new(Hints::gather(&variable, &|_| None)), None);
+        let options = (Options::new(Hints::gather(&variable, &|_| None)), None, false);
         let mut bytes = Vec::new();
         let session =
             ViewerSession::new(scenes(), 0, options, window, limits, SECOND, &mut bytes).expect("there is memory");

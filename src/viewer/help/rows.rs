@@ -47,7 +47,8 @@ impl Group {
             | C::SaveView
             | C::Reset
             | C::ViewBack
-            | C::ViewForward => Self::Views,
+            | C::ViewForward
+            | C::Tour => Self::Views,
             C::NextMap
             | C::LastMap
             | C::Compare

@@ -1,0 +1,115 @@
+//! The tour: a camera path through a scene, on which all followers see the same at the same time.
+//!
+//! Pure: the time is a parameter.
+
+use super::Settings;
+use crate::camera::Camera;
+use crate::camera_path::{CameraPath, PathError};
+use crate::capabilities::Capabilities;
+use crate::grid::Size;
+use crate::scene::Scene;
+use std::time::Duration;
+
+/// The number of pictures per second.
+const FRAMES_PER_SECOND: u32 = 10;
+
+/// The time between two ticks, in milliseconds.
+const TICK_MILLIS: u64 = 1000 / FRAMES_PER_SECOND as u64;
+
+/// The longest duration of a path in seconds: an hour.
+// All cameras are computed when the server starts, so that none of them is found to be invalid during the tour.
+const MAX_SECONDS: f64 = 3600.0;
+
+/// The window and the capabilities of the terminals that get the same bytes of the tour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct AudienceClass {
+    /// The size of the picture in cells.
+    pub(super) size: Size,
+    pub(super) capabilities: Capabilities,
+}
+
+/// A tour through the first scene of the server.
+#[derive(Debug)]
+pub(super) struct Tour {
+    scene: Scene,
+    /// The camera at each tick. There is at least one.
+    cameras: Vec<Camera>,
+    /// The most bytes per second for one follower.
+    max_rate: Option<u32>,
+    /// The shortest time between two frames.
+    interval: Duration,
+}
+
+impl Tour {
+    /// Returns the tour along a path through a scene.
+    ///
+    /// # Errors
+    /// If a camera of the path is invalid.
+    pub(super) fn new(path: &CameraPath, scene: &Scene, settings: &Settings) -> Result<Self, PathError> {
+        let seconds = path.seconds().min(MAX_SECONDS);
+        let frames = ((seconds * f64::from(FRAMES_PER_SECOND)).round() as usize).max(1);
+        let cameras = path.cameras(frames, FRAMES_PER_SECOND)?;
+        // A tenth less, so that a limit of as many frames as there are ticks skips none of them.
+        let interval = Duration::from_secs_f64(0.9 / f64::from(settings.max_frames));
+        Ok(Self { scene: scene.clone(), cameras, max_rate: settings.max_rate, interval })
+    }
+
+    /// Returns the number of the tick that contains a time.
+    pub(super) fn tick_at(now: Duration) -> u64 {
+        u64::try_from(now.as_millis()).unwrap_or(u64::MAX) / TICK_MILLIS
+    }
+
+    /// Returns the camera at a tick. After the end of the path, the tour starts again.
+    pub(super) fn camera(&self, tick: u64) -> Camera {
+        self.cameras[(tick % self.cameras.len() as u64) as usize]
+    }
+
+    /// Returns the time of the frame after one at `now` that takes `bytes`.
+    pub(super) fn next_frame_at(&self, now: Duration, bytes: usize) -> Duration {
+        let next_tick = Duration::from_millis((Self::tick_at(now) + 1).saturating_mul(TICK_MILLIS));
+        let seconds = self.max_rate.map_or(0.0, |rate| bytes as f64 / f64::from(rate));
+        next_tick.max(now + self.interval).max(now + Duration::from_secs_f64(seconds))
+    }
+
+    /// Returns the scene at a tick.
+    pub(super) fn scene(&self, tick: u64) -> Scene {
+        self.scene.clone().at_time(tick as f64 / f64::from(FRAMES_PER_SECOND))
+    }
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests {
+    use super::*;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    fn tour(change: impl FnOnce(&mut Settings)) -> Tour {
+        let scene = Scene::from_ron("x.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))").expect("a scene");
+        let path = CameraPath::orbit(*scene.camera(), 2.0);
+        let mut settings = Settings::new("key".into());
+        change(&mut settings);
+        Tour::new(&path, &scene, &settings).expect("a tour")
+    }
+
+    #[test]
+    fn a_tour_starts_again_at_its_end() {
+        let tour = tour(|_| {});
+        assert_eq!((Tour::tick_at(1999 * MS), Tour::tick_at(2000 * MS)), (19, 20));
+        assert_eq!(tour.camera(0), tour.camera(20));
+        assert_ne!(tour.camera(0), tour.camera(10));
+        assert_eq!(tour.camera(u64::MAX), tour.camera(u64::MAX % 20));
+    }
+
+    #[test]
+    fn frames_follow_at_ticks_and_within_the_limits() {
+        let usual = tour(|_| {});
+        assert_eq!(usual.next_frame_at(1000 * MS, 3000), 1100 * MS);
+        assert_eq!(usual.next_frame_at(1050 * MS, 3000), 1100 * MS);
+        // 100 kB at 200 kB per second.
+        assert_eq!(usual.next_frame_at(1000 * MS, 100_000), 1500 * MS);
+        let unlimited = tour(|settings| settings.max_rate = None);
+        assert_eq!(unlimited.next_frame_at(1000 * MS, 100_000), 1100 * MS);
+        let slow = tour(|settings| settings.max_frames = 2.0);
+        assert_eq!(slow.next_frame_at(1000 * MS, 0), 1450 * MS);
+    }
+}
