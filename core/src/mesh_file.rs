@@ -90,7 +90,7 @@ pub use limits::{MAX_MESH_BYTES, MAX_TEXELS, MAX_TRIANGLES};
 pub use mesh_error::{FilePosition, MeshError};
 #[cfg(feature = "mesh")]
 pub use read::{format_name, is_mesh};
-pub use texture::{Texture, TexturePlacement};
+pub use texture::{Sampler, Texture, TexturePlacement, Wrap};
 #[cfg(all(feature = "ron", not(feature = "mesh")))]
 pub use unread::{format_name, is_mesh};
 pub use up::UpAxis;

@@ -55,10 +55,7 @@ fn color_of(mesh: &MeshFile, triangle: usize) -> String {
     let white = LinearRgb::grey(1.0);
     let material = mesh.material_of(triangle).map(|index| &mesh.materials()[index]);
     let uv = mesh.texture_coordinates_of(triangle).map(|uvs| uvs[0]);
-    let texel = |uv: Vec2| {
-        let placement = material?.texture.as_ref()?;
-        Some(placement.texture.color_at(placement.at(uv)))
-    };
+    let texel = |uv: Vec2| Some(material?.texture.as_ref()?.color_at(uv));
     let own = mesh.colors_of(triangle).map(|colors| colors[0]);
     if material.is_none() && own.is_none() {
         return "no colour".to_owned();

@@ -339,6 +339,23 @@ mesh.json["images"] = [{"uri": "beside/t.xcf"}]
 mesh.write("b6.gltf")
 mesh.json["images"] = [{"uri": "C:/art/ONLY%20HERE.png"}]
 mesh.write("b5.gltf")
+# A picture with a blue upper half, at v = 1.25 (or, in the last two, 2.25 and 0.4).
+for name, sampler, v in [
+    ("repeat", {}, 1.25),
+    ("clamp", {"wrapS": 33071, "wrapT": 33071}, 1.25),
+    ("mirror", {"wrapT": 33648}, 1.25),
+    ("mirror_even", {"wrapT": 33648}, 2.25),
+    ("nearest", {"magFilter": 9728}, 0.4),
+    ("linear", {"magFilter": 9729}, 0.4),
+    ("unknown", {"wrapS": 5}, 0.4),
+]:
+    sampled = Gltf()
+    sampled.primitive["material"] = 0
+    sampled.primitive["attributes"]["TEXCOORD_0"] = sampled.floats("VEC2", [0.5, v] * 3)
+    sampled.json |= mesh.json | {"meshes": sampled.json["meshes"], "samplers": [sampler]}
+    sampled.json |= {"images": [{"uri": "beside/half.bmp"}], "textures": [{"source": 0, "sampler": 0}]}
+    sampled.write(f"d3_{name}.gltf")
+obj("d3_clamp", TEXTURED.replace("vt 0 0", "vt 0.5 -0.25"), mtl="newmtl a\nmap_Kd -clamp on half.bmp\n")
 mesh.json["images"] = [{"uri": "beside/t.png"}]
 mesh.json["textures"] = [{"extensions": {"KHR_texture_basisu": {"source": 0}}}]
 mesh.json["extensionsUsed"] = mesh.json["extensionsRequired"] = ["KHR_texture_basisu"]

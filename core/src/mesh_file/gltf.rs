@@ -2,8 +2,7 @@
 //! with normals, colours, base colours and base-colour textures, moved by their skins and morph targets.
 //! Meshopt compression is decoded.
 //!
-//! Not read: animations, cameras and lights, other properties of materials than the base colour, and samplers (textures
-//! repeat).
+//! Not read: animations, cameras and lights, and other properties of materials than the base colour.
 
 mod accessor;
 mod buffers;

@@ -5,7 +5,7 @@
 use super::fault::{MeshFault, shown_path};
 use super::side_files::{SideFiles, side_file_path};
 use super::text::TextCursor;
-use super::texture::{self, TexelBudget, Texture, TexturePlacement};
+use super::texture::{self, Sampler, TexelBudget, Texture, TexturePlacement, Wrap};
 use super::{CLAY, MeshMaterial};
 use crate::color::LinearRgb;
 use glam::Vec3;
@@ -158,7 +158,7 @@ impl MtlReader<'_, '_> {
 
     /// Reads the options and the name of a texture, then its file. `None` if the file is missing.
     fn texture(&mut self) -> Result<Option<TexturePlacement>, MeshFault> {
-        let transform = self.options()?;
+        let (transform, sampler) = self.options()?;
         let name = self.text.rest_of_line();
         let at = self.text.at() - name.len();
         let name = String::from_utf8_lossy(name);
@@ -169,7 +169,7 @@ impl MtlReader<'_, '_> {
             Some(texture) => Some(Arc::clone(texture)),
             None => self.load(path, at)?,
         };
-        Ok(texture.map(|texture| TexturePlacement { texture, transform }))
+        Ok(texture.map(|texture| TexturePlacement { texture, transform, sampler }))
     }
 
     fn load(&mut self, path: PathBuf, at: usize) -> Result<Option<Arc<Texture>>, MeshFault> {
@@ -185,10 +185,11 @@ impl MtlReader<'_, '_> {
         Ok(Some(texture))
     }
 
-    /// Reads the options between `map_Kd` and the file name: `-s` (scale) and `-o` (offset) take
-    /// effect, others are skipped. Returns the texture's transform.
-    fn options(&mut self) -> Result<[Vec3; 2], MeshFault> {
+    /// Reads the options between `map_Kd` and the file name: `-s` (scale), `-o` (offset) and
+    /// `-clamp` take effect, others are skipped.
+    fn options(&mut self) -> Result<([Vec3; 2], Sampler), MeshFault> {
         let (mut scale, mut offset) = ([1.0; 2], [0.0; 2]);
+        let mut sampler = Sampler::default();
         loop {
             let start = self.text.at();
             match self.text.word() {
@@ -196,8 +197,10 @@ impl MtlReader<'_, '_> {
                 b"-o" => self.first_two_numbers(&mut offset)?,
                 b"-t" => self.first_two_numbers(&mut [0.0; 2])?,
                 b"-mm" => self.skip_words(2),
-                b"-blendu" | b"-blendv" | b"-clamp" | b"-cc" | b"-bm" | b"-boost" | b"-texres" | b"-imfchan"
-                | b"-type" => self.skip_words(1),
+                b"-clamp" => sampler.wrap = [if self.text.word() == b"on" { Wrap::Clamp } else { Wrap::Repeat }; 2],
+                b"-blendu" | b"-blendv" | b"-cc" | b"-bm" | b"-boost" | b"-texres" | b"-imfchan" | b"-type" => {
+                    self.skip_words(1);
+                }
                 _ => {
                     self.text = self.text.cursor_at(start);
                     break;
@@ -208,7 +211,7 @@ impl MtlReader<'_, '_> {
         let v = Vec3::new(0.0, scale[1], 1.0 - scale[1] - offset[1]);
         let u = Vec3::new(scale[0], 0.0, offset[0]);
         if u.is_finite() && v.is_finite() {
-            return Ok([u, v]);
+            return Ok(([u, v], sampler));
         }
         Err(MeshFault::in_text(self.text.at(), "the texture's scale or offset is too large"))
     }

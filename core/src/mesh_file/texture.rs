@@ -19,7 +19,28 @@ pub struct Texture {
     texels: Vec<Srgb8>,
 }
 
-/// A texture and its placement on a surface, over which the image repeats without end.
+/// The colour of an image beyond one of its edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wrap {
+    /// The image is repeated.
+    #[default]
+    Repeat,
+    /// The image is repeated, every other time as its mirror image.
+    Mirror,
+    /// The colour of the edge.
+    Clamp,
+}
+
+/// The way in which the colour of an image is found between and beyond its texels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sampler {
+    /// The colours beyond the edges in u and v.
+    pub wrap: [Wrap; 2],
+    /// Whether the colour is that of the nearest texel, without interpolation.
+    pub is_nearest: bool,
+}
+
+/// A texture and its placement on a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TexturePlacement {
     /// The image that is placed on the surface.
@@ -28,6 +49,8 @@ pub struct TexturePlacement {
     /// The transform from the mesh's texture coordinates (u, v) to the image's (u', v'): the dot
     /// products of the two vectors with (u, v, 1). All numbers are finite.
     pub transform: [Vec3; 2],
+    /// The way in which colours are found in the image.
+    pub sampler: Sampler,
 }
 
 impl TexturePlacement {
@@ -36,6 +59,11 @@ impl TexturePlacement {
     pub fn at(&self, uv: Vec2) -> Vec2 {
         let uv1 = uv.extend(1.0);
         Vec2::new(self.transform[0].dot(uv1), self.transform[1].dot(uv1))
+    }
+
+    /// Returns the colour for the mesh's texture coordinates as linear light.
+    pub fn color_at(&self, uv: Vec2) -> LinearRgb {
+        self.texture.sample(self.at(uv), self.sampler)
     }
 }
 
@@ -53,15 +81,16 @@ impl Texture {
     /// Returns the colour at image coordinates as linear light, bilinearly interpolated between the
     /// centres of four texels. The image repeats beyond 0..1.
     pub fn color_at(&self, at: Vec2) -> LinearRgb {
-        // The centre of texel `i` is at (i + 0.5) / length, hence the 0.5.
-        let place = |coordinate: f32, length: u32| {
-            let place = (coordinate - coordinate.floor()) * length as f32 - 0.5;
-            let first = place.floor();
-            // The image repeats: the texel before the first one is the last one.
-            let index = (first as i64).rem_euclid(length.into()) as u32;
-            ([index, (index + 1) % length], place - first)
+        self.sample(at, Sampler::default())
+    }
+
+    fn sample(&self, at: Vec2, Sampler { wrap, is_nearest }: Sampler) -> LinearRgb {
+        let place = |coordinate: f32, length: u32, wrap: Wrap| {
+            let (texels, share) = wrap.texels(coordinate, length);
+            (texels, if is_nearest { f32::from(u8::from(share >= 0.5)) } else { share })
         };
-        let ((columns, right), (rows, down)) = (place(at.x, self.width), place(at.y, self.height));
+        let (columns, right) = place(at.x, self.width, wrap[0]);
+        let (rows, down) = place(at.y, self.height, wrap[1]);
         let row = |y: u32| {
             let [left, next] = columns.map(|x| LinearRgb::from_srgb8(self.texels[(y * self.width + x) as usize]));
             left.lerp(next, right)
@@ -72,6 +101,31 @@ impl Texture {
     /// Returns the texels row by row, from the top left one.
     pub fn texels(&self) -> &[Srgb8] {
         &self.texels
+    }
+}
+
+impl Wrap {
+    /// Returns the two texels of a row or column of `length` texels whose centres are nearest to a
+    /// coordinate, and the share of the second one.
+    fn texels(self, coordinate: f32, length: u32) -> ([u32; 2], f32) {
+        let within = match self {
+            Self::Repeat => coordinate - coordinate.floor(),
+            // The distance to the nearest even number, of which the image begins.
+            Self::Mirror => (coordinate - 2.0 * (0.5 * coordinate + 0.5).floor()).abs(),
+            Self::Clamp => coordinate.clamp(0.0, 1.0),
+        };
+        // The centre of texel `i` is at (i + 0.5) / length, hence the 0.5.
+        let place = within * length as f32 - 0.5;
+        let first = place.floor();
+        let texels = if self == Self::Repeat {
+            // The texel before the first one is the last one.
+            let index = (first as i64).rem_euclid(length.into()) as u32;
+            [index, (index + 1) % length]
+        } else {
+            let last = i64::from(length) - 1;
+            [first as i64, first as i64 + 1].map(|index| index.clamp(0, last) as u32)
+        };
+        (texels, place - first)
     }
 }
 

@@ -289,7 +289,7 @@ impl Facet<'_> {
         let textured = material.and_then(|material| {
             let texture = material.texture.as_ref()?;
             let at = interpolate(self.mesh.in_order(file.texture_coordinates_of(index)?), uv);
-            Some(texture.texture.color_at(texture.at(at)))
+            Some(texture.color_at(at))
         });
         let own = [material.map(|material| material.reflectance), textured, colors];
         own.into_iter().flatten().reduce(|a, b| a * b)

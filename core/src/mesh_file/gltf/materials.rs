@@ -4,7 +4,7 @@ use super::buffers::{Buffers, shown_image_name};
 use super::json::Json;
 use crate::color::LinearRgb;
 use crate::mesh_file::fault::MeshFault;
-use crate::mesh_file::texture::{self, TexelBudget, Texture, TexturePlacement};
+use crate::mesh_file::texture::{self, Sampler, TexelBudget, Texture, TexturePlacement, Wrap};
 use crate::mesh_file::{CLAY, MeshMaterial};
 use glam::Vec3;
 use std::collections::HashMap;
@@ -99,8 +99,9 @@ impl<'a> MaterialReader<'_, 'a, '_> {
             }
         }
         let Some(source) = source else { return Err(texture.fault("the texture has no source")) };
+        let sampler = sampler_of(texture, self.buffers.root())?;
         let Some(texture) = self.texture(source)? else { return Ok(None) };
-        let mut placement = TexturePlacement::plain(texture);
+        let mut placement = TexturePlacement { sampler, ..TexturePlacement::plain(texture) };
         let mut set = info.index_or("texCoord", 0)?;
         if let Some(transform) = info.extension("KHR_texture_transform")? {
             placement.transform = transform_of(transform)?;
@@ -128,6 +129,22 @@ impl<'a> MaterialReader<'_, 'a, '_> {
         self.textures.insert(index, Arc::clone(&texture));
         Ok(Some(texture))
     }
+}
+
+/// Returns the sampler of a texture. Its filter for textures that look smaller is not used.
+fn sampler_of<'a>(texture: Json<'a>, root: Json<'a>) -> Result<Sampler, MeshFault> {
+    let Some(index) = texture.field("sampler")? else { return Ok(Sampler::default()) };
+    let (_, json) = index.item_of(root, "samplers")?;
+    let wrap = |name: &'static str| {
+        // The constants of OpenGL.
+        Ok(match json.index_or(name, 10497)? {
+            10497 => Wrap::Repeat,
+            33071 => Wrap::Clamp,
+            33648 => Wrap::Mirror,
+            other => return Err(json.fault(format!("{name} {other} is none of 10497, 33071 and 33648"))),
+        })
+    };
+    Ok(Sampler { wrap: [wrap("wrapS")?, wrap("wrapT")?], is_nearest: json.index_or("magFilter", 9729)? == 9728 })
 }
 
 /// Reads `KHR_texture_transform`. Returns the rows of a 2 x 3 matrix that scales, then rotates,

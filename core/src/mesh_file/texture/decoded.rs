@@ -12,7 +12,7 @@ pub(in crate::mesh_file) use samples::TexelBudget;
 
 use self::other::OtherFormat;
 use self::samples::{check_plausible, checked_texture, texels_of};
-use super::{Texture, TexturePlacement};
+use super::{Sampler, Texture, TexturePlacement};
 use crate::mesh_file::limits::MAX_TEXELS;
 use glam::Vec3;
 use std::fmt;
@@ -26,7 +26,7 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 impl TexturePlacement {
     /// Returns a placement that takes the mesh's texture coordinates unchanged.
     pub(in crate::mesh_file) fn plain(texture: Arc<Texture>) -> Self {
-        Self { texture, transform: [Vec3::X, Vec3::Y] }
+        Self { texture, transform: [Vec3::X, Vec3::Y], sampler: Sampler::default() }
     }
 }
 
