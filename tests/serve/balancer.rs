@@ -123,7 +123,7 @@ fn a_balancer_without_a_header_is_refused() {
 }
 
 #[test]
-fn an_address_that_is_no_balancer_cannot_claim_another_one() {
+fn row_29_an_address_that_is_no_balancer_cannot_claim_another_one() {
     let hosting = behind_balancer(1);
     run(async {
         let mut streams = Vec::new();

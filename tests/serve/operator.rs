@@ -3,9 +3,11 @@
 use crate::counter::{Counter, run_all};
 use crate::guest::{Anybody, Guest, connect, connect_as};
 use crate::program::{Program, termtrace};
+use crate::pty::Start;
 use crate::{Hosting, Place, run, until};
 use russh::keys::ssh_key::private::{Ed25519Keypair, KeypairData};
 use russh::keys::{PrivateKey, PrivateKeyWithHashAlg};
+use rustix::process::Signal;
 use std::fs;
 use std::io::{Read, Write};
 use std::net::TcpStream;
@@ -112,6 +114,56 @@ fn a_banner_goes_before_the_login_and_controls_nothing() {
     let output = termtrace(&["three_spheres", "--banner", &path]);
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.code() == Some(1) && message.contains("at most 4096 bytes"), "{message}");
+}
+
+/// The texts have escape sequences and bidirectional controls, and 10 KB.
+#[test]
+fn row_30_names_banners_and_links_control_nothing() {
+    const HOSTILE: &str = "\x1b]0;title\x07\x1b[2J\u{9b}31m\u{202e}\u{2066}evil\u{200b}";
+    let long = HOSTILE.to_owned() + &"x".repeat(10_000);
+    let scene = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Sphere(center: (0, 0, 0), radius: 1)])";
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join(format!("{HOSTILE}.ron"));
+    fs::write(&path, scene).expect("a file");
+    let banner = folder.path().join("banner");
+    fs::write(&banner, format!("{HOSTILE}\n").repeat(20)).expect("a file");
+    let [path, banner] = [path, banner].map(|path| path.to_str().expect("UTF-8").to_owned());
+    let program = Program::start(&[&path, "--banner", &banner, "--link", &long]);
+    let is_hostile = |text: &str| {
+        let parts = ["\x1b]0;", "\x07", "\x1b[2J", "\u{9b}", "\u{202e}", "\u{2066}", "\u{200b}"];
+        parts.into_iter().find(|part| text.contains(part)).map(|part| format!("{part:?} in {text:?}"))
+    };
+    run(async {
+        let client = Anybody::default();
+        let heard = Arc::clone(&client.banner);
+        let mut session = connect_as(&program, client).await;
+        assert!(session.authenticate_none(&long).await.expect("an answer").success());
+        assert_eq!(is_hostile(&heard.lock().expect("no holder of this lock panics")), None);
+        let mut guest = Guest::on(session, (80, 24)).await;
+        guest.channel.request_pty(true, &long, 80, 24, 0, 0, &[]).await.expect("a terminal");
+        guest.ask(None).await;
+        // The link is cut, so that the keys beside it have room.
+        guest.see_text("evil").await;
+        assert!(guest.text().iter().any(|row| row.contains("q quits")), "{:?}", guest.text());
+        guest.send(b"i").await;
+        guest.see_text("q quit").await;
+        guest.send(b"q").await;
+        assert_eq!(guest.leave().await, Some(0));
+        guest.assert_clean();
+        assert_eq!(is_hostile(&String::from_utf8_lossy(&guest.bytes)), None);
+
+        let mut list = Guest::without_terminal(&program, (80, 24)).await;
+        list.ask(Some("--list")).await;
+        list.see("the list", |guest| guest.has("evil")).await;
+        assert_eq!(is_hostile(&String::from_utf8_lossy(&list.bytes)), None);
+        let mut other = Guest::without_terminal(&program, (80, 24)).await;
+        other.ask(Some(&long)).await;
+        other.leave().await;
+        assert_eq!(is_hostile(&String::from_utf8_lossy(&other.errors)), None);
+    });
+    let log = program.errors();
+    assert!(log.lines().any(|line| line.starts_with("event=view ")), "{log}");
+    assert_eq!(is_hostile(&log), None);
 }
 
 #[test]
@@ -370,6 +422,21 @@ fn a_hang_up_reloads_scenes_and_settings() {
         first.send(b"q").await;
         assert_eq!(first.leave().await, Some(0));
     });
+}
+
+#[test]
+fn a_server_drains_when_its_terminal_is_closed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let server = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg("serve").arg("three_spheres");
+    let server = server.arg("--listen").arg("127.0.0.1:0").arg("--host-key").arg(folder.path().join("key"));
+    let mut session = server.spawn();
+    session.wait_for_text("host key SHA256:");
+    // On a terminal that is there, the signal asks to read the files again.
+    session.signal(Signal::HUP);
+    session.wait_for_text("event=reload ");
+    session.vanish();
+    let status = session.wait_exit(Duration::from_secs(20));
+    assert!(status.success(), "{status}");
 }
 
 /// The unit's limits, as far as a shell can set them: few files, little memory, no new file.

@@ -142,7 +142,7 @@ fn each_window_and_colour_depth_has_an_audience() {
 }
 
 #[test]
-fn a_follower_who_falls_behind_delays_nobody_and_catches_up() {
+fn row_27_a_follower_who_falls_behind_delays_nobody_and_catches_up() {
     let hosting = with_tour(|settings| settings.max_rate = None);
     run(async {
         let mut slow = Guest::enter_with_little_room(&hosting).await;
@@ -161,7 +161,7 @@ fn a_follower_who_falls_behind_delays_nobody_and_catches_up() {
 }
 
 #[test]
-fn many_followers_press_a_key_at_once() {
+fn row_28_many_followers_press_a_key_at_once() {
     let hosting = with_tour(|_| {});
     run(async {
         let mut guests = Vec::new();
