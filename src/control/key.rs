@@ -54,7 +54,8 @@ impl Key {
     /// Parses a key: a character, `Ctrl-` and a letter, or a name such as `PageUp`, `Space` or
     /// `F1`.
     ///
-    /// `None` for an unknown name, and for a key that not every terminal sends (see [`is_unambiguous`](Self::is_unambiguous)).
+    /// `None` for an unknown name, and for a key that not every terminal sends (see
+    /// [`is_unambiguous`](Self::is_unambiguous)).
     pub fn from_name(name: &str) -> Option<Self> {
         // `Ctrl-L` and `Ctrl-l` are the same key: the control character has no case.
         let key = match name.strip_prefix(CTRL) {
