@@ -17,7 +17,7 @@ pub(super) enum MeshFormat {
 
 /// First bytes of formats that are not supported, each with the end of the error message. The order
 /// matters: `<?xml` comes before `<`.
-const OTHERS: [(&[u8], &str); 17] = [
+const OTHERS: [(&[u8], &str); 15] = [
     (b"\x1f\x8b", "is gzip-compressed: unpack it first (gunzip)"),
     (b"BZh", "is bzip2-compressed: unpack it first (bunzip2)"),
     (b"\xfd7zXZ\0", "is xz-compressed: unpack it first (unxz)"),
@@ -36,8 +36,6 @@ const OTHERS: [(&[u8], &str); 17] = [
     (b"BLENDER", "is a Blender file: export it as OBJ, STL, PLY or glTF"),
     (b"<?xml", "is XML (COLLADA or X3D?): export it as OBJ, STL, PLY or glTF"),
     (b"<", "is a web page or XML, not a mesh; was the right link downloaded?"),
-    (b"\xff\xfe", "is UTF-16 text: save it as UTF-8"),
-    (b"\xfe\xff", "is UTF-16 text: save it as UTF-8"),
 ];
 
 const READ: &str = "OBJ, STL, PLY, glTF and GLB files are read";

@@ -6,7 +6,7 @@ use super::fault::{MeshFault, shown};
 use super::marks::{Mark, MarkEnd};
 use super::mtl::{self, Library};
 use super::side_files::{SideFiles, side_file_path};
-use super::text::TextCursor;
+use super::text::{TextCursor, without_utf16};
 use super::{MeshFile, polygon};
 use crate::color::{LinearRgb, linear_from_srgb};
 use crate::progress::Meter;
@@ -397,7 +397,7 @@ impl ObjReader<'_, '_> {
             return Ok(Ok(()));
         }
         if let Some(bytes) = self.side_files.read_colors(&path, "materials")? {
-            return Ok(mtl::read(&path, &bytes, self.side_files, library));
+            return Ok(mtl::read(&path, &without_utf16(&bytes), self.side_files, library));
         }
         library.record_missing(path);
         Ok(Ok(()))

@@ -3,10 +3,11 @@
 use super::fault::MeshFault;
 use super::format::{self, MeshFormat};
 use super::side_files::{SideFiles, in_any_case};
-use super::{MAX_MESH_BYTES, MeshError, MeshFile, gltf, obj, ply, stl};
+use super::{MAX_MESH_BYTES, MeshError, MeshFile, gltf, obj, ply, stl, text};
 use crate::memory;
 use crate::named_file::{self, Accepted};
 use crate::progress::{Meter, Reporter, Unfinished};
+use std::borrow::Cow;
 use std::io;
 use std::path::Path;
 
@@ -36,6 +37,8 @@ impl MeshFile {
         open: &mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
         reporter: &Reporter<'_>,
     ) -> Result<Self, Unfinished<MeshError>> {
+        let text = as_utf8(bytes);
+        let bytes = &*text;
         let mut side_files = SideFiles::new(name, bytes, open, reporter);
         let mesh = read(name, stated, bytes, &mut side_files, reporter);
         let mesh = mesh.map_err(|fault| fault.into_error(name, bytes))?;
@@ -122,7 +125,13 @@ pub fn is_mesh(name: &str, bytes: &[u8]) -> bool {
 
 /// Returns the name of the format of these bytes, for people; empty if they are no mesh.
 pub fn format_name(name: &str, stated: Option<&str>, bytes: &[u8]) -> &'static str {
-    format::recognised(name, stated, bytes).map_or("", MeshFormat::name)
+    format::recognised(name, stated, &as_utf8(bytes)).map_or("", MeshFormat::name)
+}
+
+/// Returns a mesh file's text in UTF-16 as UTF-8, and other bytes unchanged.
+fn as_utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
+    // The header of a binary STL file may begin with any bytes.
+    if stl::size_fits(bytes) { Cow::Borrowed(bytes) } else { text::without_utf16(bytes) }
 }
 
 /// Recognises the format and reads the mesh.

@@ -4,6 +4,7 @@
 //! continued by `\` are part of OBJ only, but no valid file of the others contains either sign.
 
 use super::fault::{MeshFault, shown};
+use std::borrow::Cow;
 
 /// A position in a text, from which words and numbers are read.
 ///
@@ -245,4 +246,19 @@ fn line_ending_len(bytes: &[u8]) -> usize {
         [b'\n' | b'\r', ..] => 1,
         _ => 0,
     }
+}
+
+/// Returns a text as UTF-8, if it begins with the byte order mark of UTF-16; other bytes unchanged.
+///
+/// Some programs on Windows write UTF-16. Lines and columns stay the same.
+pub(super) fn without_utf16(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let unit: fn([u8; 2]) -> u16 = match bytes {
+        [0xff, 0xfe, ..] => u16::from_le_bytes,
+        [0xfe, 0xff, ..] => u16::from_be_bytes,
+        _ => return Cow::Borrowed(bytes),
+    };
+    let (units, _) = bytes[2..].as_chunks();
+    let characters = char::decode_utf16(units.iter().map(|&bytes| unit(bytes)));
+    let text: String = characters.map(|character| character.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+    Cow::Owned(text.into_bytes())
 }
