@@ -24,6 +24,7 @@ mod outcome;
 mod outputs;
 mod picture;
 mod record;
+mod reference;
 mod scene_args;
 mod serve;
 mod settings;
@@ -51,7 +52,7 @@ Commands:
   frame, record, serve        write a picture or a film, show scenes over SSH
   describe, explain, check    a picture in words, one pixel, a file's faults
   doctor, config, bench       this terminal, the settings, the speed
-  completions, man, help, version
+  reference, completions, man, help, version
 
 Options:
   --eye X,Y,Z                 look from there; --target X,Y,Z looks at a point
@@ -136,6 +137,8 @@ enum Command {
     Record(DeferredArgs<record::RecordArgs>),
     /// Explain one pixel: its ray, what it hit, each light
     Explain(DeferredArgs<explain::ExplainArgs>),
+    /// Print the reference of scene files, or of one name
+    Reference(DeferredArgs<reference::ReferenceArgs>),
     /// Report every fault of a scene file
     Check(DeferredArgs<check::CheckArgs>),
     /// Describe a picture in words
@@ -179,6 +182,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Frame(DeferredArgs(args))) => frame::run(&args),
         Some(Command::Record(DeferredArgs(args))) => record::run(&args),
         Some(Command::Explain(DeferredArgs(args))) => explain::run(&args),
+        Some(Command::Reference(DeferredArgs(args))) => reference::run(&args),
         Some(Command::Check(DeferredArgs(args))) => check::run(&args),
         Some(Command::Describe(DeferredArgs(args))) => describe::run(&args),
         Some(Command::Bench(DeferredArgs(args))) => bench::run(&args),

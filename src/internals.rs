@@ -26,8 +26,9 @@ modules! {
     bvh
     shape
     material
-    finish
     light
+    finish
+    fog
     camera
     camera_path
     scene

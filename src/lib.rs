@@ -114,8 +114,9 @@
 //! - `shape`: surfaces f(p) = 0, their intersections with rays, their normals
 //! - `accel`: the trees over all shapes of a scene, built once
 //! - `material`: diffuse reflectance
-//! - `finish`: mirrors, glass and glowing surfaces: Snell's law and Fresnel's equations
-//! - `light`: point lights, spots and suns
+//! - `light`: point lights, spots, suns, luminous balls and panels
+//! - `finish`: highlights, mirrors, glass and glowing surfaces: Snell's law and Fresnel's equations
+//! - `fog`: the light that air absorbs and adds
 //! - `camera`: eye, target, up, field of view -> basis u, v, w -> eye rays
 //! - `camera_path`: the camera over time: an orbit, or a path through keyframes
 //! - `scene_file`: a whole file as the author wrote it, typed
@@ -210,9 +211,9 @@
 //! batches; `render::steps` takes a batch through the five steps. `render::tiles` makes the eye rays (by `camera`) ->
 //! `hit` finds the closest hits: among the unbounded objects, then in the trees (`accel`, over `bvh`), whose leaves
 //! hold primitives of `shape`s -> `shade` computes the surface points (`shade::points`) -> it traces shadow rays (`hit`
-//! again) and adds up the light of the `light`s that reach the points -> the `material` reflects it -> where a `finish`
-//! mirrors or refracts, further rays are traced and shaded (`shade::bounces`). `render::tiles` writes a tile's light
-//! into the `framebuffer` -> `tone` -> `cell` -> `encode` or `export`.
+//! again) and adds up the light of the `light`s that reach the points (`shade::arriving`) -> the `material` reflects
+//! it -> where a `finish` mirrors or refracts, further rays are traced and shaded (`shade::bounces`). `render::tiles`
+//! writes a tile's light into the `framebuffer` -> `tone` -> `cell` -> `encode` or `export`.
 //!
 //! # One scene with a typo
 //!
@@ -314,8 +315,9 @@ compile_error!("the feature `live` of termtrace is for Linux and macOS: it needs
 
 // The tracer is a crate of its own, whose modules are used by the same paths as those below.
 use termtrace_core::{
-    bounds, bvh, camera, camera_path, color, describe, explain, finish, framebuffer, hit, lanes, light, maps, material,
-    memory, mesh_file, progress, rasterize, ray, render, scene, scene_text, shade, shape, simd, text, tone, written,
+    bounds, bvh, camera, camera_path, color, describe, explain, finish, fog, framebuffer, hit, lanes, light, maps,
+    material, memory, mesh_file, progress, rasterize, ray, render, scene, scene_text, shade, shape, simd, text, tone,
+    written,
 };
 #[cfg(feature = "ron")]
 use termtrace_core::{named_file, scene_file};

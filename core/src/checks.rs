@@ -181,6 +181,11 @@ pub(crate) fn reflectance(channel: f64) -> Result<f32, Message> {
     }
 }
 
+/// Checks an opacity.
+pub(crate) fn opacity(part: f64) -> Result<f32, Message> {
+    if (0.0..=1.0).contains(&part) { Ok(part as f32) } else { Err("the opacity must lie within 0 and 1".into()) }
+}
+
 /// Checks a number of reflections and refractions.
 #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have bounces"))]
 pub(crate) fn bounces(count: f64) -> Result<u32, Message> {

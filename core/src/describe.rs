@@ -137,9 +137,13 @@ impl Description<'_> {
 
     /// Describes an object by its colour, finish, kind and size.
     fn describe_object(&self, object: u32, part: &Coverage) -> String {
-        let Object { shape, finish, .. } = &self.scene.objects()[object as usize];
+        let Object { shape, finish, opacity, .. } = &self.scene.objects()[object as usize];
         let color = self.color_of(object, part);
-        let look = [Some(&*color), finish.described()].into_iter().flatten().collect::<Vec<_>>().join(" ");
+        let look = [Some(&*color), (*opacity < 1.0).then_some("transparent"), finish.described()]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join(" ");
         let text = shape.described(&look);
         match text.strip_prefix("a ") {
             // Shapes write "a" before any colour.
@@ -244,6 +248,9 @@ impl Description<'_> {
 
     /// Returns the background's colours in words.
     fn background_colors(&self) -> String {
+        if let Some(fog) = self.scene.fog() {
+            return format!("{} fog", color(fog.color() * self.scene.exposure()));
+        }
         match self.scene.background() {
             Background::Color(light) => color(light * self.scene.exposure()).to_owned(),
             Background::Gradient { bottom, top } => {
@@ -278,13 +285,18 @@ impl Description<'_> {
                 distance.map_or_else(String::new, |distance| format!(", {} from the target", number(distance)));
             let cone = light.cone_angle();
             let cone = cone.map_or_else(String::new, |angle| format!(", in a cone of {} degrees", number(angle)));
-            let _ = writeln!(text, "- {}, {}{distance}{cone}", Self::light_color(light), self.direction_of(to_light));
+            let size = if light.has_size() { ", with soft shadows" } else { "" };
+            let _ =
+                writeln!(text, "- {}, {}{distance}{cone}{size}", Self::light_color(light), self.direction_of(to_light));
         }
         if lights.len() > MAX_LISTED {
             let _ = writeln!(text, "- and {} more", lights.len() - MAX_LISTED);
         }
         if self.scene.ambient().luminance() > 0.0 {
             text += "A little light comes from everywhere.\n";
+        }
+        if let Some(fog) = self.scene.fog() {
+            let _ = writeln!(text, "Fog leaves 37 % of the light after {}.", number(fog.distance()));
         }
         if !self.scene.shadows() && !lights.is_empty() {
             text += "Nothing casts a shadow.\n";

@@ -16,7 +16,7 @@ use crate::hit::{self, Hit, Observer, PrimitiveTest};
 use crate::light::Light;
 use crate::ray::Ray;
 use crate::render::{PixelTrace, trace_pixel};
-use crate::scene::{Scene, ToneCurve};
+use crate::scene::{Object, Scene, ToneCurve};
 use crate::shade::{self, Incidence};
 use crate::shape::{Surface, SurfacePoint};
 use crate::tone::{tone, tone_mapped};
@@ -49,6 +49,9 @@ pub struct Explanation {
     /// The closest hit and its shading; `None` if the pixel shows the background.
     #[doc(hidden)]
     pub hit: Option<ShadedHit>,
+    /// The part of the light that fog leaves; `None` without fog.
+    #[doc(hidden)]
+    pub transmittance: Option<f32>,
     /// The linear light that reaches the eye.
     pub light: LinearRgb,
     /// The scene's exposure, a factor of the light.
@@ -92,6 +95,9 @@ pub struct ShadedHit {
     /// The finish of the surface, and the part of the light that it mirrors.
     #[doc(hidden)]
     pub finish: (Finish, f32),
+    /// The part of the light that does not pass straight through the surface.
+    #[doc(hidden)]
+    pub opacity: f32,
 }
 
 /// The contribution of one light.
@@ -105,6 +111,9 @@ pub struct LightContribution {
     /// A surface that blocks the light, with the t of the crossing: 0 at the hit, 1 at the light.
     // Any surface in the way, as for the shadow rays of pictures; not necessarily the one closest to the hit.
     pub blocker: Option<(SurfaceName, f32)>,
+    /// The light that arrives, and its part of the light without shadows, if it may be blocked in
+    /// part: that of a light with a size, or in a scene with transparent objects.
+    partial: Option<(LinearRgb, f32)>,
 }
 
 impl LightContribution {
@@ -115,11 +124,31 @@ impl LightContribution {
 
     /// Returns whether the light reaches the surface.
     pub fn is_lit(&self) -> bool {
+        if let Some((_, visibility)) = self.partial {
+            return visibility > 0.0;
+        }
         self.faces() && self.blocker.is_none() && self.light.cone_share(self.incidence.l) != Some(0.0)
+    }
+
+    /// Returns the part of the light that arrives: the lecture's V, if a light has no size.
+    pub(crate) fn visibility(&self) -> f32 {
+        match self.partial {
+            Some((_, visibility)) => visibility,
+            None => {
+                if self.is_lit() {
+                    1.0
+                } else {
+                    0.0
+                }
+            }
+        }
     }
 
     /// Returns the arriving light, or black if it is blocked or the surface faces away from it.
     pub fn arriving(&self) -> LinearRgb {
+        if let Some((light, _)) = self.partial {
+            return light;
+        }
         if self.faces() && self.blocker.is_none() { self.incidence.light } else { LinearRgb::BLACK }
     }
 }
@@ -157,7 +186,14 @@ pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u
         ray: trace.ray,
         nodes: recorder.nodes,
         tested: recorder.tested_surfaces(scene, &trace.ray),
-        hit: trace.hit.map(|hit| shaded_hit(scene, &trace, hit)),
+        hit: trace.hit.map(|hit| {
+            let arriving = |scene: &Scene| trace_pixel(scene, camera, resolution, pixel).arriving;
+            shaded_hit(scene, &trace, hit, &arriving)
+        }),
+        transmittance: scene.fog().map(|fog| {
+            let t = trace.hit.map_or(f32::INFINITY, |hit| hit.t);
+            fog.transmittance(t * trace.ray.direction.length())
+        }),
         light: trace.light,
         exposure: scene.exposure(),
         tone_curve: scene.tone_curve(),
@@ -167,32 +203,47 @@ pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u
 }
 
 /// Returns the hit of a traced pixel with its shading.
-fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit) -> ShadedHit {
+///
+/// `arriving` returns the light that arrives there in another scene.
+fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit, arriving: &dyn Fn(&Scene) -> LinearRgb) -> ShadedHit {
     let point = hit.surface(scene).at_crossing(&trace.ray, hit.t);
-    let finish = scene.objects()[hit.object as usize].finish;
+    let Object { finish, opacity, .. } = scene.objects()[hit.object as usize];
     ShadedHit {
         hit,
         name: SurfaceName::of_primitive(scene, hit.object, hit.primitive),
         point,
         ambient: scene.ambient(),
-        lights: scene.lights().iter().map(|light| light_contribution(scene, light, &point)).collect(),
+        lights: scene.lights().iter().map(|light| light_contribution(scene, light, &point, arriving)).collect(),
         arriving: trace.arriving,
         reflectance: trace.reflectance,
         finish: (finish, finish.mirrored_part(&trace.ray, point.shading_normal)),
+        opacity,
     }
 }
 
 /// Returns the contribution of a light at a surface point.
 // The shadow ray is traced singly, with an observer, because packets do not return which surface blocks a ray.
-fn light_contribution(scene: &Scene, light: &Light, point: &SurfacePoint) -> LightContribution {
+fn light_contribution(
+    scene: &Scene,
+    light: &Light,
+    point: &SurfacePoint,
+    arriving: &dyn Fn(&Scene) -> LinearRgb,
+) -> LightContribution {
     let incidence = shade::incidence_with_signed_cosine(light, point);
     let ray = shade::shadow_ray(light, point);
     let blocker = (scene.shadows() && 0.0 < incidence.cosine)
         .then(|| hit::any_hit_observed(scene, &ray, light.blocking_interval(), &mut TestRecorder::default()))
         .flatten();
+    let partial = (light.has_size() || scene.has_transparent()).then(|| {
+        let alone = scene.clone().with_lights([*light]).without_ambient();
+        let lit = arriving(&alone);
+        let without_shadows = arriving(&alone.with_shadows(false)).luminance();
+        (lit, if without_shadows > 0.0 { lit.luminance() / without_shadows } else { 0.0 })
+    });
     LightContribution {
         light: *light,
         incidence,
+        partial,
         blocker: blocker.map(|hit| (SurfaceName::of_primitive(scene, hit.object, hit.primitive), hit.t)),
     }
 }

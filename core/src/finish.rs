@@ -1,13 +1,15 @@
 //! Finishes: what a surface does with light besides reflecting it diffusely.
 //!
-//! A material says which light a surface reflects, and its finish says how: diffusely (as in the lecture), as a
-//! mirror, or by letting light through. Mirrors and glass follow Snell's law and Fresnel's equations (Hecht, Optics,
-//! chapter 4).
+//! A material says which light a surface reflects, and its finish says how: diffusely (as in the lecture), with
+//! highlights, as a mirror, or by letting light through. Mirrors and glass follow Snell's law and Fresnel's equations
+//! (Hecht, Optics, chapter 4).
 
 use crate::checks::{self, Message, SceneFault};
+use crate::lanes::{Number, Vector};
+use crate::light::{Light, PartPosition};
 use crate::ray::Ray;
 use crate::scene_text::{Body, SyntaxNode, Value};
-use crate::written::{NodeReader, Validator, WrittenNumber};
+use crate::written::{NodeReader, ReferenceEntry, Validator, WrittenNumber};
 use glam::Vec3;
 
 /// The finish of an object.
@@ -18,13 +20,24 @@ pub enum Finish {
     /// Reflects diffusely, by R: the lecture's assumption.
     #[default]
     Matte,
+    /// Reflects diffusely, by R, and mirrors the lights as soft highlights (Blinn, Models of Light
+    /// Reflection for Computer Synthesized Pictures, 1977).
+    Shiny {
+        /// The exponent of n.h: the larger, the smaller the highlights.
+        exponent: u32,
+        /// The factor of the highlights, 0 or more.
+        strength: f32,
+    },
     /// A clear coat over a matte surface: mirrors F of the light, and reflects the rest diffusely.
     Polished {
         /// The index of refraction of the coat.
         index: f32,
     },
     /// Mirrors R of the light, without diffuse reflection.
-    Metal,
+    Metal {
+        /// The roughness, from 0, a mirror, to 1.
+        roughness: f32,
+    },
     /// Mirrors F of the light, and refracts the rest, of which R enters.
     Glass {
         /// The index of refraction.
@@ -40,6 +53,31 @@ pub enum Finish {
 impl Finish {
     /// The index of refraction of window glass, the default.
     pub(crate) const GLASS_INDEX: f32 = 1.5;
+    /// The default exponent of highlights.
+    const EXPONENT: u32 = 50;
+    /// The default strength of highlights.
+    const STRENGTH: f32 = 0.5;
+
+    /// A mirror without roughness.
+    pub const MIRROR: Self = Self::Metal { roughness: 0.0 };
+
+    /// Returns a finish with highlights.
+    ///
+    /// # Errors
+    /// If the exponent is not between 1 and 10,000, or the strength not between 0 and 1e12.
+    pub fn shiny(exponent: u32, strength: f32) -> Result<Self, SceneFault> {
+        let checked = highlight_exponent(exponent.into());
+        let exponent = checked.map_err(|message| SceneFault::new(format!("exponent is {exponent}"), message))?;
+        Ok(Self::Shiny { exponent, strength: checks::checked_number("strength", strength, strength_of_highlight)? })
+    }
+
+    /// Returns metal with this roughness.
+    ///
+    /// # Errors
+    /// If the roughness is not between 0 and 1.
+    pub fn metal(roughness: f32) -> Result<Self, SceneFault> {
+        Ok(Self::Metal { roughness: checks::checked_number("roughness", roughness, metal_roughness)? })
+    }
 
     /// Returns a clear coat with this index of refraction.
     ///
@@ -73,8 +111,8 @@ impl Finish {
     /// Returns the part of the light that the surface mirrors, for a ray from outside.
     pub(crate) fn mirrored_part(self, ray: &Ray, normal: Vec3) -> f32 {
         match self {
-            Self::Matte | Self::Glowing { .. } => 0.0,
-            Self::Metal => 1.0,
+            Self::Matte | Self::Shiny { .. } | Self::Glowing { .. } => 0.0,
+            Self::Metal { .. } => 1.0,
             Self::Polished { index } | Self::Glass { index } => {
                 fresnel(cosine_of_incidence(ray.direction, normal), 1.0 / index)
             }
@@ -85,8 +123,10 @@ impl Finish {
     pub(crate) fn described(self) -> Option<&'static str> {
         match self {
             Self::Matte => None,
+            Self::Shiny { .. } => Some("shiny"),
             Self::Polished { .. } => Some("polished"),
-            Self::Metal => Some("metal"),
+            Self::Metal { roughness: 0.0 } => Some("metal"),
+            Self::Metal { .. } => Some("rough metal"),
             Self::Glass { .. } => Some("glass"),
             Self::Glowing { .. } => Some("glowing"),
         }
@@ -131,6 +171,65 @@ pub fn refract(direction: Vec3, normal: Vec3, ratio: f32) -> Option<Vec3> {
     Some(direction * ratio + normal * (length * (ratio * cosine - refracted)))
 }
 
+/// The largest light of a highlight: times the largest strength, 1e12, it is finite.
+const MAX_HIGHLIGHT: f32 = 1e18;
+
+/// Returns the light of a highlight, for a strength of 1: I (n.h)^p / d^2.
+///
+/// h is the unit vector halfway between l and the direction to the eye. `direction` is that of the ray from the eye,
+/// `normal` n, and `exponent` p.
+pub(crate) fn highlight(
+    light: &Light,
+    to_light: Vector<f32>,
+    direction: Vec3,
+    normal: Vec3,
+    exponent: u32,
+) -> [f32; 3] {
+    let distance_squared = to_light.dot(to_light);
+    let l = to_light * (1.0 / distance_squared.sqrt());
+    let halfway = Vec3::from(l) - direction * (1.0 / direction.dot(direction).sqrt());
+    let cosine = halfway.dot(normal) / halfway.dot(halfway).sqrt();
+    let power = whole_power(<f32 as Number>::max(cosine, 0.0), exponent);
+    light
+        .irradiance_over_pi(l, distance_squared, 1.0)
+        .map(|channel| <f32 as Number>::min(channel, MAX_HIGHLIGHT) * power)
+}
+
+/// Returns `base` raised to a power by repeated squaring, in the same order on every CPU.
+fn whole_power(base: f32, mut exponent: u32) -> f32 {
+    let (mut power, mut square) = (1.0, base);
+    while exponent > 0 {
+        if exponent % 2 == 1 {
+            power *= square;
+        }
+        square *= square;
+        exponent /= 2;
+    }
+    power
+}
+
+/// Returns the normal of a facet of rough metal, by which one of its rays is mirrored.
+///
+/// The facets' normals have the distribution of Trowbridge and Reitz (GGX) with alpha = roughness^2, drawn as in
+/// Walter et al., Microfacet Models for Refraction through Rough Surfaces, 2007, equations 35 and 36. All mirrored rays
+/// have the same weight: facets do not hide each other.
+pub(crate) fn facet_normal(normal: Vec3, roughness: f32, part: &PartPosition<f32>) -> Vec3 {
+    let alpha = roughness * roughness;
+    let tangent_squared = alpha * alpha * part.height / (1.0 - part.height);
+    let cosine = 1.0 / (1.0 + tangent_squared).sqrt();
+    let [a, b] = part.direction.map(|coordinate| coordinate * (cosine * tangent_squared.sqrt()));
+    let [u, v] = perpendicular(normal);
+    normal * cosine + u * a + v * b
+}
+
+/// Returns two unit vectors perpendicular to a unit vector and to each other (Frisvad, 2012).
+fn perpendicular(Vec3 { x, y, z }: Vec3) -> [Vec3; 2] {
+    // The y axis is the one without a jump: floors are more frequent than ceilings.
+    let fall = 1.0 / <f32 as Number>::max(1.0 + y, 1e-6);
+    let across = -(x * z) * fall;
+    [Vec3::new(1.0 - x * x * fall, -x, across), Vec3::new(across, -z, 1.0 - z * z * fall)]
+}
+
 /// Returns the cosine of the angle of incidence, from 0 to 1.
 pub fn cosine_of_incidence(direction: Vec3, normal: Vec3) -> f32 {
     let cosine = -direction.dot(normal) / direction.dot(direction).sqrt();
@@ -153,75 +252,159 @@ fn strength_of_glow(strength: f64) -> Result<f32, Message> {
     checks::light_amount("the strength", strength)
 }
 
-/// A finish as written: `Metal`, `Glass(index: 1.5)`.
+/// Checks the exponent of highlights.
+// At 10,000 a highlight of the sun has about the sun's own width, half a degree.
+fn highlight_exponent(exponent: f64) -> Result<u32, Message> {
+    if (1.0..=10_000.0).contains(&exponent) && libm::trunc(exponent) == exponent {
+        Ok(exponent as u32)
+    } else {
+        Err("the exponent of a highlight must be a whole number from 1, wide and soft, to 10000, a point".into())
+    }
+}
+
+/// Checks the strength of highlights.
+fn strength_of_highlight(strength: f64) -> Result<f32, Message> {
+    checks::light_amount("the strength", strength)
+}
+
+/// Checks the roughness of metal.
+fn metal_roughness(roughness: f64) -> Result<f32, Message> {
+    if (0.0..=1.0).contains(&roughness) {
+        Ok(roughness as f32)
+    } else {
+        Err("the roughness must lie within 0, a mirror, and 1".into())
+    }
+}
+
+/// Returns the reference of a finish.
+const fn entry(
+    name: &'static str,
+    form: &'static str,
+    summary: &'static str,
+    fields: &'static [&'static str],
+    meanings: &'static [&'static str],
+) -> ReferenceEntry {
+    ReferenceEntry { name, form, summary, fields, meanings }.checked()
+}
+
+/// A finish as written: `Metal`, `Glass(index: 1.5)`. A number that is not given is `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WrittenFinish {
     /// `Matte`.
     Matte,
-    /// `Polished`, with the index if given.
+    /// `Shiny`, with the exponent and the strength.
+    Shiny([Option<WrittenNumber>; 2]),
+    /// `Polished`, with the index.
     Polished(Option<WrittenNumber>),
-    /// `Metal`.
-    Metal,
-    /// `Glass`, with the index if given.
+    /// `Metal`, with the roughness.
+    Metal(Option<WrittenNumber>),
+    /// `Glass`, with the index.
     Glass(Option<WrittenNumber>),
-    /// `Glowing`, with the strength if given.
+    /// `Glowing`, with the strength.
     Glowing(Option<WrittenNumber>),
 }
 
 #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
 impl WrittenFinish {
-    const NAMES: [&'static str; 5] = ["Matte", "Polished", "Metal", "Glass", "Glowing"];
+    /// The reference of all finishes. Their forms show the defaults.
+    pub(crate) const REFERENCE: [ReferenceEntry; 6] = [
+        entry("Matte", "Matte", "Reflects in all directions.", &[], &[]),
+        entry(
+            "Shiny",
+            "Shiny(exponent: 50, strength: 0.5)",
+            "Reflects in all directions, with highlights.",
+            &["exponent", "strength"],
+            &["how small the highlights are, 1 to 10000; 50", "the factor of the highlights; 0.5"],
+        ),
+        entry(
+            "Polished",
+            "Polished(index: 1.5)",
+            "A clear coat that mirrors by Fresnel's equations, over a matte surface.",
+            &["index"],
+            &["the index of refraction, 1 to 4; 1.5"],
+        ),
+        entry(
+            "Metal",
+            "Metal(roughness: 0)",
+            "A mirror in the colour of the material.",
+            &["roughness"],
+            &["how blurred the mirror is, 0 to 1; 0"],
+        ),
+        entry(
+            "Glass",
+            "Glass(index: 1.5)",
+            "Mirrors and refracts by Fresnel's equations.",
+            &["index"],
+            &["the index of refraction, 1 to 4; 1.5"],
+        ),
+        entry(
+            "Glowing",
+            "Glowing(strength: 1)",
+            "Sends out light of its own.",
+            &["strength"],
+            &["the factor of the material's colour; 1"],
+        ),
+    ];
 
-    /// Reads a finish: its name, alone or with its field.
+    /// Reads a finish: its name, alone or with its fields.
     pub(crate) fn read(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self> {
         const FORM: &str = "a finish, such as Metal or Glass(index: 1.5)";
-        let name = reader.group_name(node, "a finish", FORM, &Self::NAMES)?;
-        let form = match name {
-            "Polished" => "Polished(index: 1.5)",
-            "Glass" => "Glass(index: 1.5)",
-            "Glowing" => "Glowing(strength: 1)",
-            _ => name,
-        };
-        let field = if name == "Glowing" { "strength" } else { "index" };
+        let known = Self::REFERENCE.map(|finish| finish.name);
+        let name = reader.group_name(node, "a finish", FORM, &known)?;
+        let &ReferenceEntry { form, fields: names, .. } = Self::REFERENCE.iter().find(|finish| finish.name == name)?;
         let is_bare = matches!(&node.value, Value::Group(group) if group.body == Body::Nothing);
-        let number = match name {
-            _ if is_bare => None,
-            "Matte" | "Metal" => {
+        let mut numbers = [None; 2];
+        if !is_bare {
+            if names.is_empty() {
                 reader.fault(node.head(), || format!("{name} has no fields; write {name} alone"));
                 return None;
             }
-            _ => {
-                let fields = reader.fields(node, name, form, &[field])?;
-                reader.optional(&fields, field, NodeReader::number)
+            let fields = reader.fields(node, name, form, names)?;
+            for (number, field) in numbers.iter_mut().zip(names) {
+                *number = reader.optional(&fields, field, NodeReader::number);
             }
-        };
+        }
+        let [first, _] = numbers;
         Some(match name {
-            "Polished" => Self::Polished(number),
-            "Metal" => Self::Metal,
-            "Glass" => Self::Glass(number),
-            "Glowing" => Self::Glowing(number),
+            "Shiny" => Self::Shiny(numbers),
+            "Polished" => Self::Polished(first),
+            "Metal" => Self::Metal(first),
+            "Glass" => Self::Glass(first),
+            "Glowing" => Self::Glowing(first),
             _ => Self::Matte,
         })
     }
 
     /// Returns the checked finish, or `None` after a fault has been reported to `validator`.
     pub(crate) fn check(self, validator: &mut Validator<'_>) -> Option<Finish> {
-        let mut index = |written: Option<WrittenNumber>| match written {
-            Some(index) => validator.accept(index.span, refractive_index(index.value)),
-            None => Some(Finish::GLASS_INDEX),
+        let number = |validator: &mut Validator<'_>, written: Option<WrittenNumber>, rule: Rule<f32>, default: f32| {
+            written.map_or(Some(default), |written| validator.accept(written.span, rule(written.value)))
         };
         Some(match self {
             Self::Matte => Finish::Matte,
-            Self::Polished(written) => Finish::Polished { index: index(written)? },
-            Self::Metal => Finish::Metal,
-            Self::Glass(written) => Finish::Glass { index: index(written)? },
-            Self::Glowing(None) => Finish::Glowing { strength: 1.0 },
-            Self::Glowing(Some(strength)) => {
-                Finish::Glowing { strength: validator.accept(strength.span, strength_of_glow(strength.value))? }
+            Self::Shiny([exponent, strength]) => {
+                let exponent = exponent.map_or(Some(Finish::EXPONENT), |exponent| {
+                    validator.accept(exponent.span, highlight_exponent(exponent.value))
+                });
+                let strength = number(validator, strength, strength_of_highlight, Finish::STRENGTH);
+                Finish::Shiny { exponent: exponent?, strength: strength? }
+            }
+            Self::Polished(index) => {
+                Finish::Polished { index: number(validator, index, refractive_index, Finish::GLASS_INDEX)? }
+            }
+            Self::Metal(roughness) => Finish::Metal { roughness: number(validator, roughness, metal_roughness, 0.0)? },
+            Self::Glass(index) => {
+                Finish::Glass { index: number(validator, index, refractive_index, Finish::GLASS_INDEX)? }
+            }
+            Self::Glowing(strength) => {
+                Finish::Glowing { strength: number(validator, strength, strength_of_glow, 1.0)? }
             }
         })
     }
 }
+
+/// A rule that checks a number.
+type Rule<T> = fn(f64) -> Result<T, Message>;
 
 #[cfg(all(test, unit_tests))]
 mod tests;

@@ -29,8 +29,9 @@ pub mod bvh;
 pub mod shape;
 pub mod accel;
 pub mod material;
-pub mod finish;
 pub mod light;
+pub mod finish;
+pub mod fog;
 pub mod camera;
 pub mod camera_path;
 #[cfg(feature = "ron")]

@@ -4,19 +4,47 @@
 //! [`InSceneFile`], and add a line to the table `lights` here.
 
 use crate::color::LinearRgb;
-use crate::lanes::{Number, Vector};
+use crate::lanes::{F32x8, Number, Vector};
 use crate::ray::Interval;
 use crate::scene_text::SyntaxNode;
-use crate::written::{InSceneFile, NodeReader, Validator};
+use crate::written::{InSceneFile, NodeReader, ReferenceEntry, Validator};
 use glam::Vec3;
 
+mod globe;
+mod panel;
 mod point;
 mod spot;
 mod sun;
 
+pub use globe::{Globe, WrittenGlobe};
+pub use panel::{Panel, WrittenPanel};
 pub use point::{Falloff, PointLight, WrittenPointLight};
 pub use spot::{SpotLight, WrittenSpotLight};
 pub use sun::{Sun, WrittenSun};
+
+/// The number of parts of a light with a size.
+// Shadow rays to 16 parts leave steps of at most 6 % of the light in a penumbra, about what a neighbouring pixel's edge
+// of a pattern differs by; further samples of a pixel make them finer.
+pub(crate) const PARTS: u32 = 16;
+
+/// The position of a part on a light, by which each kind of light places its parts.
+#[derive(Clone, Copy, Debug)]
+pub struct PartPosition<N> {
+    /// The coordinates in the unit square.
+    pub square: [N; 2],
+    /// A unit vector in a plane.
+    pub direction: [N; 2],
+    /// A number from 0 to 1, evenly distributed for each direction.
+    pub height: N,
+}
+
+impl PartPosition<F32x8> {
+    /// Returns the position in one lane.
+    pub(crate) fn of_lane(&self, lane: usize) -> PartPosition<f32> {
+        let Self { square: [x, y], direction: [a, b], height } = self;
+        PartPosition { square: [x.0[lane], y.0[lane]], direction: [a.0[lane], b.0[lane]], height: height.0[lane] }
+    }
+}
 
 /// A kind of light source.
 pub trait LightSource: InSceneFile + Copy {
@@ -44,6 +72,26 @@ pub trait LightSource: InSceneFile + Copy {
         None
     }
 
+    /// Whether the light has a size, so that its shadows have penumbras.
+    const HAS_SIZE: bool = false;
+
+    /// Returns the vectors from points to a part of the light.
+    ///
+    /// Each of the [`PARTS`] gives an equal share of [`irradiance_over_pi`](Self::irradiance_over_pi) at its vector.
+    #[inline(always)]
+    fn to_part<N: Number>(&self, point: Vector<N>, _part: &PartPosition<N>) -> Vector<N> {
+        self.to_light(point)
+    }
+
+    /// Returns the part of the way to a part of the light on which an object blocks it, from 0 to
+    /// 1.
+    ///
+    /// `distance` is the length of [`to_part`](Self::to_part).
+    #[inline(always)]
+    fn unlit_way<N: Number>(&self, _distance: N) -> N {
+        N::splat(1.0)
+    }
+
     /// Returns the formula of the [irradiance over pi](Self::irradiance_over_pi), for explanations.
     ///
     /// V is the visibility, I the [`color`](Self::color), D the distance and S the [share](Self::cone_share).
@@ -68,6 +116,12 @@ pub trait LightSource: InSceneFile + Copy {
 
     /// Returns the position in world space; `None` for a light at infinity.
     fn position(&self) -> Option<Vec3> {
+        None
+    }
+
+    /// Returns the point source that the light is in the lecture's model; `None` for one at
+    /// infinity.
+    fn point_source(&self) -> Option<PointLight> {
         None
     }
 
@@ -133,6 +187,31 @@ macro_rules! lights {
                 }
             }
 
+            /// Returns whether the light has a size, by [`LightSource::HAS_SIZE`].
+            #[doc(hidden)]
+            pub fn has_size(&self) -> bool {
+                match self {
+                    $(Self::$name(_) => $light::HAS_SIZE,)*
+                }
+            }
+
+            /// Returns the vectors to a part of the light, by [`LightSource::to_part`].
+            #[inline(always)]
+            pub(crate) fn to_part<N: Number>(self, point: Vector<N>, part: &PartPosition<N>) -> Vector<N> {
+                match self {
+                    $(Self::$name(light) => light.to_part(point, part),)*
+                }
+            }
+
+            /// Returns the part of the way on which an object blocks the light, by
+            /// [`LightSource::unlit_way`].
+            #[inline(always)]
+            pub(crate) fn unlit_way<N: Number>(&self, distance: N) -> N {
+                match self {
+                    $(Self::$name(light) => light.unlit_way(distance),)*
+                }
+            }
+
             /// Returns the formula of the arriving light, by [`LightSource::formula`].
             pub(crate) fn formula(&self) -> &'static str {
                 match self {
@@ -170,6 +249,13 @@ macro_rules! lights {
                 }
             }
 
+            /// Returns the light as it is in the lecture's model, by [`LightSource::point_source`].
+            pub(crate) fn as_in_lecture(&self) -> Self {
+                match self {
+                    $(Self::$name(light) => light.point_source().map_or(*self, Self::from),)*
+                }
+            }
+
             /// Returns the light at another position, by [`LightSource::moved_to`].
             #[doc(hidden)]
             #[must_use]
@@ -194,6 +280,9 @@ macro_rules! lights {
 
         #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenLight {
+            /// The reference of all lights.
+            pub(crate) const REFERENCE: &'static [ReferenceEntry] = &[$(ReferenceEntry::of::<$light>(),)*];
+
             /// The names of all lights in scene files.
             pub(crate) const NAMES: &'static [&'static str] = &[$($light::NAME,)*];
 
@@ -221,4 +310,8 @@ lights! {
     Sun: Sun, "Light from infinitely far.";
     #[doc(hidden)]
     Spot: SpotLight, "A point source with a cone of light.";
+    #[doc(hidden)]
+    Globe: Globe, "A luminous ball.";
+    #[doc(hidden)]
+    Panel: Panel, "A luminous parallelogram.";
 }

@@ -10,7 +10,7 @@ use crate::checks::SceneFault;
 use crate::color::{LinearRgb, Srgb8};
 use crate::lanes::Number;
 use crate::scene_text::SyntaxNode;
-use crate::written::{InSceneFile, NodeReader, Validator, WrittenColor};
+use crate::written::{InSceneFile, NodeReader, ReferenceEntry, Validator, WrittenColor};
 
 mod checker;
 mod diffuse;
@@ -114,6 +114,9 @@ macro_rules! materials {
 
         #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenMaterial {
+            /// The reference of all materials.
+            pub(crate) const REFERENCE: &'static [ReferenceEntry] = &[$(ReferenceEntry::of::<$material>(),)*];
+
             /// The names of all materials in scene files.
             pub(crate) const NAMES: &'static [&'static str] = &[$($material::NAME,)*];
 

@@ -35,6 +35,7 @@ use crate::checks;
 pub use crate::checks::SceneFault;
 use crate::color::LinearRgb;
 use crate::finish::Finish;
+use crate::fog::Fog;
 use crate::light::Light;
 use crate::material::Material;
 use crate::shape::Shape;
@@ -77,8 +78,9 @@ impl fmt::Debug for Scene {
             exposure,
             tone_curve,
             bounces,
+            fog,
             objects,
-            all_matte,
+            needs,
         } = &*self.checked;
         let mut scene = f.debug_struct("Scene");
         scene.field("caption", caption).field("mesh", mesh).field("camera", camera).field("views", views);
@@ -86,8 +88,11 @@ impl fmt::Debug for Scene {
         scene.field("background", &format_args!("{background:?}")).field("ambient", &format_args!("{ambient:?}"));
         scene.field("lights", lights).field("shadows", shadows);
         scene.field("exposure", exposure).field("tone_curve", tone_curve);
-        if !all_matte {
+        if needs.bounces {
             scene.field("bounces", bounces);
+        }
+        if let Some(fog) = fog {
+            scene.field("fog", fog);
         }
         scene.field("objects", objects);
         scene.finish_non_exhaustive()
@@ -116,10 +121,32 @@ struct Checked {
     tone_curve: ToneCurve,
     /// The most reflections and refractions of a ray.
     bounces: u32,
+    fog: Option<Fog>,
     /// The objects, in an `Arc` so that a scene with other lights does not copy a million of them.
     objects: Arc<[Object]>,
-    /// Whether every object reflects only diffusely.
-    all_matte: bool,
+    /// The steps of shading that the objects need.
+    needs: ShadingNeeds,
+}
+
+/// The steps of shading that the objects of a scene need besides diffuse reflection.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct ShadingNeeds {
+    /// Whether an object is not [matte](Object::is_matte), so that rays bounce.
+    bounces: bool,
+    /// Whether an object lets light through to other objects, by its opacity.
+    transparency: bool,
+    /// Whether an object has highlights.
+    highlights: bool,
+}
+
+impl ShadingNeeds {
+    fn of(objects: &[Object]) -> Self {
+        Self {
+            bounces: !objects.iter().all(Object::is_matte),
+            transparency: objects.iter().any(|object| object.opacity < 1.0),
+            highlights: objects.iter().any(|object| matches!(object.finish, Finish::Shiny { .. })),
+        }
+    }
 }
 
 impl Checked {
@@ -142,9 +169,21 @@ impl Checked {
             exposure: 1.0,
             tone_curve: ToneCurve::None,
             bounces: Self::DEFAULT_BOUNCES,
+            fog: None,
             objects: objects.into(),
-            all_matte: true,
+            needs: ShadingNeeds::default(),
         }
+    }
+
+    /// Returns the values without what the lecture's model of light does not have.
+    fn in_lecture(mut self) -> Self {
+        self.fog = None;
+        self.lights.iter_mut().for_each(|light| *light = light.as_in_lecture());
+        let plain = |object: &Object| Object { finish: Finish::Matte, opacity: 1.0, ..object.clone() };
+        if !self.objects.iter().all(Object::is_matte) {
+            self.objects = self.objects.iter().map(plain).collect();
+        }
+        self
     }
 
     fn shapes(&self) -> impl Iterator<Item = &Shape> {
@@ -311,9 +350,31 @@ impl Scene {
         self.checked.bounces
     }
 
+    /// Returns the fog, if there is any.
+    #[doc(hidden)]
+    pub fn fog(&self) -> Option<Fog> {
+        self.checked.fog
+    }
+
     /// Returns whether every object is matte, so that no ray bounces.
     pub(crate) fn is_all_matte(&self) -> bool {
-        self.checked.all_matte
+        !self.checked.needs.bounces
+    }
+
+    /// Returns whether an object lets a part of the light through.
+    pub(crate) fn has_transparent(&self) -> bool {
+        self.checked.needs.transparency
+    }
+
+    /// Returns whether an object has highlights.
+    pub(crate) fn has_highlights(&self) -> bool {
+        self.checked.needs.highlights
+    }
+
+    /// Returns whether the light of a sample depends on its number in the pixel, and not only on
+    /// its ray.
+    pub(crate) fn is_sampled(&self) -> bool {
+        self.checked.lights.iter().any(Light::has_size) || self.checked.needs.bounces
     }
 
     /// Returns the objects, in the order of the scene file.
@@ -369,6 +430,11 @@ impl Scene {
         Ok(self.with(|checked| checked.ambient = ambient))
     }
 
+    /// Returns the scene without ambient light.
+    pub(crate) fn without_ambient(self) -> Self {
+        self.with(|checked| checked.ambient = LinearRgb::BLACK)
+    }
+
     /// Returns the scene with other [lights](Self::lights).
     #[doc(hidden)]
     pub fn with_lights(self, lights: impl IntoIterator<Item: Into<Light>>) -> Self {
@@ -395,6 +461,12 @@ impl Scene {
     #[doc(hidden)]
     pub fn with_tone_curve(self, tone_curve: ToneCurve) -> Self {
         self.with(|checked| checked.tone_curve = tone_curve)
+    }
+
+    /// Returns the scene with or without [fog](Self::fog).
+    #[doc(hidden)]
+    pub fn with_fog(self, fog: Option<Fog>) -> Self {
+        self.with(|checked| checked.fog = fog)
     }
 
     /// Returns whether both scenes are clones of the same scene, and neither was changed since.
@@ -431,16 +503,22 @@ pub struct Object {
     /// The finish of the object: mirrors, glass and the like.
     #[doc(hidden)]
     pub finish: Finish,
+    /// The part of the light that does not pass straight through the surface, from 0 to 1.
+    #[doc(hidden)]
+    pub opacity: f32,
 }
 
-/// Shows the finish unless it is matte, as most are.
+/// Shows the finish unless it is matte, as most are, and the opacity unless it is 1.
 impl fmt::Debug for Object {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { shape, material, finish } = self;
+        let Self { shape, material, finish, opacity } = self;
         let mut object = f.debug_struct("Object");
         object.field("shape", shape).field("material", material);
         if !finish.is_matte() {
             object.field("finish", finish);
+        }
+        if *opacity < 1.0 {
+            object.field("opacity", opacity);
         }
         object.finish()
     }
@@ -450,13 +528,27 @@ impl Object {
     /// Returns an object with the given shape and material.
     #[doc(hidden)]
     pub fn new(shape: impl Into<Shape>, material: impl Into<Material>) -> Self {
-        Self { shape: shape.into(), material: material.into(), finish: Finish::Matte }
+        Self { shape: shape.into(), material: material.into(), finish: Finish::Matte, opacity: 1.0 }
     }
 
     /// Returns the object with another finish.
     #[doc(hidden)]
     pub fn with_finish(self, finish: Finish) -> Self {
         Self { finish, ..self }
+    }
+
+    /// Returns the object with another opacity.
+    ///
+    /// # Errors
+    /// If the opacity is not within 0 and 1.
+    #[doc(hidden)]
+    pub fn with_opacity(self, opacity: f32) -> Result<Self, SceneFault> {
+        Ok(Self { opacity: checks::checked_number("opacity", opacity, checks::opacity)?, ..self })
+    }
+
+    /// Returns whether the surface only reflects diffusely, so that it makes no further rays.
+    pub(crate) fn is_matte(&self) -> bool {
+        self.finish.is_matte() && self.opacity == 1.0
     }
 }
 

@@ -15,12 +15,13 @@ pub use camera::{WrittenCamera, WrittenLens};
 pub use path::{PathFile, WrittenKeyframe};
 
 use crate::finish::WrittenFinish;
+use crate::fog::WrittenFog;
 use crate::light::WrittenLight;
 use crate::material::WrittenMaterial;
 use crate::progress::Reporter;
 use crate::scene_text::{Faults, Span, SyntaxNode, Value};
-use crate::shape::{WrittenPlacement, WrittenShape};
-use crate::written::{Fields, NodeReader, Spanned, WrittenColor, WrittenNumber};
+use crate::shape::{OBJECT_REFERENCE, WrittenPlacement, WrittenShape};
+use crate::written::{Fields, NodeReader, ReferenceEntry, Spanned, WrittenColor, WrittenNumber};
 
 /// A whole scene file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -51,6 +52,10 @@ pub struct SceneFile {
     pub exposure: Option<WrittenNumber>,
     /// The most reflections and refractions of a ray.
     pub bounces: Option<WrittenNumber>,
+    /// Whether the scene has the lecture's model of light only.
+    pub lecture: Option<bool>,
+    /// The fog.
+    pub fog: Option<WrittenFog>,
     /// The tone curve.
     pub tone_curve: Option<WrittenToneCurve>,
 }
@@ -113,6 +118,8 @@ pub struct WrittenObject {
     pub material: Option<Spanned<MaterialUse>>,
     /// The finish and its span; matte by default.
     pub finish: Option<Spanned<WrittenFinish>>,
+    /// The part of the light that does not pass through the surface; 1 by default.
+    pub opacity: Option<WrittenNumber>,
 }
 
 impl SceneFile {
@@ -137,6 +144,8 @@ impl SceneFile {
             exposure: reader.optional(&fields, "exposure", NodeReader::number),
             tone_curve: reader.optional_keeping_none(&fields, "tone_curve", NodeReader::tone_curve),
             bounces: reader.optional(&fields, "bounces", NodeReader::number),
+            lecture: reader.optional(&fields, "lecture", NodeReader::boolean),
+            fog: reader.optional(&fields, "fog", WrittenFog::read),
             materials: Vec::new(),
             materials_complete: true,
         };
@@ -147,23 +156,60 @@ impl SceneFile {
     }
 }
 
+/// The reference of the fields of a scene.
+const REFERENCE: ReferenceEntry = ReferenceEntry {
+    name: "scene",
+    form: "(camera: ..., lights: [...], objects: [...])",
+    summary: "A scene file.",
+    fields: &[
+        "caption",
+        "camera",
+        "views",
+        "background",
+        "ambient",
+        "lights",
+        "materials",
+        "objects",
+        "shadows",
+        "exposure",
+        "tone_curve",
+        "bounces",
+        "fog",
+        "lecture",
+    ],
+    meanings: &[
+        "what the scene shows, in quotes; the comment that the file begins with",
+        "the camera",
+        "a list of further cameras; none",
+        "a colour, or Gradient(bottom: ..., top: ...); black",
+        "light that arrives equally from everywhere, a colour; none",
+        "a list of lights; none",
+        "named materials, {\"name\": ...}; none",
+        "a list of objects; none",
+        "false leaves shadows out; true",
+        "the factor of all light before it is shown; 1",
+        "None, Reinhard or Filmic; None",
+        "the most mirrors, glass and transparent surfaces on the way of a ray, 0 to 16; 6",
+        "air that takes away light; none",
+        "true leaves out what the lecture's model of light does not have; false",
+    ],
+}
+.checked();
+
+/// Returns the reference of scene files: titles, each with entries.
+pub fn reference() -> [(&'static str, Vec<ReferenceEntry>); 5] {
+    [
+        ("Scene", vec![REFERENCE, camera::REFERENCE, WrittenFog::REFERENCE]),
+        ("Lights", WrittenLight::REFERENCE.to_vec()),
+        ("Materials", WrittenMaterial::REFERENCE.to_vec()),
+        ("Finishes", WrittenFinish::REFERENCE.to_vec()),
+        ("Objects", [&[OBJECT_REFERENCE], WrittenShape::REFERENCE].concat()),
+    ]
+}
+
 impl NodeReader<'_> {
     fn root_fields<'n>(&mut self, root: &'n SyntaxNode<'n>) -> Option<Fields<'n>> {
-        const FIELDS: &[&str] = &[
-            "caption",
-            "camera",
-            "views",
-            "background",
-            "ambient",
-            "lights",
-            "materials",
-            "objects",
-            "shadows",
-            "exposure",
-            "tone_curve",
-            "bounces",
-        ];
-        self.fields(root, "a scene", "a scene (camera: ..., lights: [...], objects: [...])", FIELDS)
+        self.fields(root, "a scene", "a scene (camera: ..., lights: [...], objects: [...])", REFERENCE.fields)
     }
 
     fn caption(&mut self, node: &SyntaxNode<'_>) -> Option<String> {

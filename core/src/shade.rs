@@ -15,9 +15,10 @@
 //! than they save; no later step reads these lanes.
 
 use crate::color::LinearRgb;
-use crate::hit::{self, EightHits, Kernel};
-use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Number, Vector, set_bits};
-use crate::light::Light;
+use crate::fog::Fog;
+use crate::hit::EightHits;
+use crate::lanes::{ALL, F32x8, LANES, Lanes, Number, Vector, set_bits};
+use crate::light::{Light, PARTS, PartPosition};
 use crate::material::Material;
 use crate::ray::{EightRays, Ray};
 use crate::scene::{Background, Object, Scene};
@@ -25,9 +26,13 @@ use crate::shape::SurfacePoint;
 use crate::simd::{self, SimdKernel};
 use glam::Vec3;
 
+mod arriving;
 mod bounces;
+mod light_parts;
 mod points;
+mod transparent_shadows;
 
+pub use arriving::{EightArriving, ShadowRays, Surfaces, arriving_light, count, shadow_rays};
 pub use bounces::{Bounces, Generation};
 pub use points::{EightPoints, surface_points};
 
@@ -38,159 +43,6 @@ pub type EightLights = [F32x8; 3];
 #[inline(always)]
 pub fn lane_light([r, g, b]: &EightLights, lane: usize) -> LinearRgb {
     LinearRgb::new(r.0[lane], g.0[lane], b.0[lane])
-}
-
-/// The light that arrives at eight surface points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EightArriving {
-    /// The sum ambient + sum over lights of V * I * max(0, n.l) / d^2.
-    pub light: EightLights,
-    /// The mask of lights that reach each point; light 32 shares its bit with light 0, and so on.
-    // Adaptive sampling compares the masks to find edges of shadows. For that, 32 bits are enough in all but contrived
-    // scenes.
-    pub lit_by: [u32; LANES],
-}
-
-/// The shadow rays to one light, as arrays with an entry for each group of eight points.
-#[derive(Default)]
-pub struct ShadowRays {
-    pub(crate) rays: Vec<EightRays>,
-    /// The light that arrives along each ray if it is not blocked.
-    lights: Vec<EightLights>,
-    /// The mask of blocked rays of each group, for which V = 0.
-    pub(crate) blocked: Vec<u32>,
-}
-
-/// Computes the light that arrives at each point, and returns the number of traced shadow rays.
-// Loops over lights, not over points, because shadow rays that end at the same light make good packets.
-pub fn arriving_light(
-    scene: &Scene,
-    points: &[EightPoints],
-    shadows: &mut ShadowRays,
-    arriving: &mut Vec<EightArriving>,
-) -> u64 {
-    let LinearRgb { r, g, b } = scene.ambient();
-    let ambient = [r, g, b].map(|channel| F32x8([channel; LANES]));
-    let mut shadow_rays = 0;
-    arriving.clear();
-    arriving.resize(points.len(), EightArriving { light: ambient, lit_by: [0; LANES] });
-    for (number, light) in scene.lights().iter().enumerate() {
-        simd::dispatch(AimShadowRays { light, points, shadows });
-        shadow_rays += shadows.trace(scene, light);
-        simd::dispatch(AddUnblocked { number, shadows, arriving });
-    }
-    shadow_rays
-}
-
-/// The SIMD kernel that makes the shadow rays of points that face a light.
-struct AimShadowRays<'w> {
-    light: &'w Light,
-    points: &'w [EightPoints],
-    shadows: &'w mut ShadowRays,
-}
-
-impl SimdKernel for AimShadowRays<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<N: Lanes>(self) {
-        let Self { light, points, shadows: ShadowRays { rays, lights, .. } } = self;
-        rays.clear();
-        lights.clear();
-        for points in points {
-            let (reaches, IncidentLight { light: [r, g, b], .. }) =
-                incident_light::<N>(light, points.position.load(), points.shading_normal.load());
-            rays.push(eight_shadow_rays::<N>(light, points, reaches.bits() & points.hit_mask));
-            lights.push([r.store(), g.store(), b.store()]);
-        }
-    }
-}
-
-impl ShadowRays {
-    /// Finds the blocked rays, and returns the number of traced rays.
-    fn trace(&mut self, scene: &Scene, light: &Light) -> u64 {
-        if scene.shadows() {
-            hit::any_hits(Kernel::Auto, scene, &self.rays, light.blocking_interval(), &mut self.blocked);
-            count(&self.rays)
-        } else {
-            self.blocked.clear();
-            self.blocked.resize(self.rays.len(), 0);
-            0
-        }
-    }
-}
-
-/// Returns the number of active rays in groups of eight.
-pub fn count(rays: &[EightRays]) -> u64 {
-    rays.iter().map(|rays| u64::from(rays.active.count_ones())).sum()
-}
-
-/// The SIMD kernel that adds a light's unblocked contributions to the arriving light.
-struct AddUnblocked<'w> {
-    number: usize,
-    shadows: &'w ShadowRays,
-    arriving: &'w mut [EightArriving],
-}
-
-impl SimdKernel for AddUnblocked<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<N: Lanes>(self) {
-        let Self { number, shadows: ShadowRays { rays, lights, blocked }, arriving } = self;
-        for (at, arriving) in arriving.iter_mut().enumerate() {
-            let lit = rays[at].active & !blocked[at];
-            for (sum, more) in arriving.light.iter_mut().zip(&lights[at]) {
-                let dark = N::load(sum);
-                *sum = N::select(N::mask_from_bits(lit), dark + N::load(more), dark).store();
-            }
-            for (lane, lit_by) in arriving.lit_by.iter_mut().enumerate() {
-                *lit_by |= (lit >> lane & 1) << (number % 32);
-            }
-        }
-    }
-}
-
-/// Makes a shadow ray from each point to a light, even from points that face away from it.
-pub fn shadow_rays(light: &Light, points: &[EightPoints], rays: &mut Vec<EightRays>) {
-    rays.clear();
-    simd::dispatch(Shadows { light, points, rays });
-}
-
-/// The SIMD kernel of [`shadow_rays`].
-struct Shadows<'w> {
-    light: &'w Light,
-    points: &'w [EightPoints],
-    rays: &'w mut Vec<EightRays>,
-}
-
-impl SimdKernel for Shadows<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<N: Lanes>(self) {
-        for points in self.points {
-            self.rays.push(eight_shadow_rays::<N>(self.light, points, points.hit_mask));
-        }
-    }
-}
-
-/// Returns the shadow rays of the points in the mask `active`, as [`shadow_ray`] makes them.
-#[inline(always)]
-fn eight_shadow_rays<N: Lanes>(light: &Light, points: &EightPoints, active: u32) -> EightRays {
-    let origin = points.position.load() + points.geometric_normal.load() * N::load(&points.clearance);
-    let direction = light.to_light(origin);
-    let rays = EightRays { origin: origin.store(), direction: direction.store(), active };
-    if active == ALL || active == 0 {
-        return rays;
-    }
-    // Inactive lanes repeat an active ray, so that they do not widen the bounds of the group.
-    let (one, is_active) = (rays.ray(active.trailing_zeros() as usize % LANES), N::mask_from_bits(active));
-    EightRays {
-        origin: Vector::select(is_active, origin, Vector::splat(one.origin)).store(),
-        direction: Vector::select(is_active, direction, Vector::splat(one.direction)).store(),
-        active,
-    }
 }
 
 /// Computes the light that each ray carries to the eye: reflected light, or the background's
@@ -325,7 +177,28 @@ struct IncidentLight<N> {
 /// there.
 #[inline(always)]
 fn incident_light<N: Number>(light: &Light, position: Vector<N>, normal: Vector<N>) -> (N::Mask, IncidentLight<N>) {
-    let to_light = light.to_light(position);
+    light_from(light, light.to_light(position), normal)
+}
+
+/// The share of a part in the light of the whole.
+const PART_SHARE: f32 = 1.0 / PARTS as f32;
+
+/// Returns the mask of points that face a part of a light, and the light of the part that arrives
+/// there.
+#[inline(always)]
+fn incident_light_of_part<N: Number>(
+    light: &Light,
+    part: &PartPosition<N>,
+    position: Vector<N>,
+    normal: Vector<N>,
+) -> (N::Mask, IncidentLight<N>) {
+    let (reaches, incident) = light_from(light, light.to_part(position, part), normal);
+    (reaches, IncidentLight { light: incident.light.map(|channel| channel * N::splat(PART_SHARE)), ..incident })
+}
+
+/// Returns the mask of points that face a light, and the light that arrives there along `to_light`.
+#[inline(always)]
+fn light_from<N: Number>(light: &Light, to_light: Vector<N>, normal: Vector<N>) -> (N::Mask, IncidentLight<N>) {
     let distance_squared = to_light.dot(to_light);
     let distance = distance_squared.sqrt();
     let l = Vector { x: to_light.x / distance, y: to_light.y / distance, z: to_light.z / distance };
@@ -352,6 +225,19 @@ pub fn shadow_ray(light: &Light, point: &SurfacePoint) -> Ray {
     Ray { origin, direction: light.to_light(Vector::<f32>::splat(origin)).into() }
 }
 
+/// Adds fog between the eye and what each ray hits to the light along the rays.
+pub fn add_fog(fog: &Fog, rays: &[EightRays], hits: &[EightHits], lights: &mut [EightLights]) {
+    for ((rays, hits), lights) in rays.iter().zip(hits).zip(lights) {
+        for lane in 0..LANES {
+            let is_hit = hits.hit_mask >> lane & 1 == 1;
+            let t = if is_hit { hits.t.0[lane] } else { f32::INFINITY };
+            let way = t * rays.direction.of_lane(lane).length();
+            let LinearRgb { r, g, b } = fog.dimmed(lane_light(lights, lane), fog.transmittance(way));
+            [lights[0].0[lane], lights[1].0[lane], lights[2].0[lane]] = [r, g, b];
+        }
+    }
+}
+
 /// Returns the background's light along rays without a hit.
 #[inline(always)]
 fn backgrounds<N: Number>(scene: &Scene, direction: Vector<N>) -> [N; 3] {
@@ -367,3 +253,6 @@ fn backgrounds<N: Number>(scene: &Scene, direction: Vector<N>) -> [N; 3] {
         }
     }
 }
+
+#[cfg(all(test, unit_tests))]
+pub mod tests;

@@ -63,6 +63,8 @@ pub use scalar_leaf::ScalarLeaf;
 pub use sphere::{Sphere, SphereN};
 pub use torus::Torus;
 pub use triangle::{EdgeFunctions, Triangle, TriangleN};
+#[cfg(feature = "ron")]
+pub(crate) use written::OBJECT_REFERENCE;
 pub use written::{CheckedShape, Meshes, WrittenShape};
 pub(crate) use written::{without_coordinates, without_inside};
 

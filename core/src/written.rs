@@ -54,6 +54,13 @@ pub trait InSceneFile {
     /// The names of the fields; for a surface, without those of every object, such as `material`.
     const FIELDS: &'static [&'static str];
 
+    /// A sentence that says what the value is.
+    const SUMMARY: &'static str;
+
+    /// The meaning of each field, with its default after a semicolon, in the order of
+    /// [`FIELDS`](Self::FIELDS).
+    const MEANINGS: &'static [&'static str];
+
     /// Reads the value from its fields.
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> Self::Written;
 
@@ -61,5 +68,33 @@ pub trait InSceneFile {
     fn read_node(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<Self::Written> {
         let fields = reader.fields(node, Self::OWNER, Self::FORM, Self::FIELDS)?;
         Some(Self::read(reader, &fields))
+    }
+}
+
+/// An entry of the reference: a value with fields.
+#[derive(Clone, Copy, Debug)]
+pub struct ReferenceEntry {
+    /// The name: "Sphere".
+    pub name: &'static str,
+    /// The form with all required fields: "Sphere(center: ..., radius: ...)".
+    pub form: &'static str,
+    /// A sentence that says what the value is.
+    pub summary: &'static str,
+    /// The names of the fields.
+    pub fields: &'static [&'static str],
+    /// The meanings of the fields, each with the field's default after a semicolon.
+    pub meanings: &'static [&'static str],
+}
+
+impl ReferenceEntry {
+    /// Returns the entry of a type.
+    pub(crate) const fn of<T: InSceneFile>() -> Self {
+        Self { name: T::NAME, form: T::FORM, summary: T::SUMMARY, fields: T::FIELDS, meanings: T::MEANINGS }.checked()
+    }
+
+    /// Returns the entry; does not compile for a constant in which a field has no meaning.
+    pub(crate) const fn checked(self) -> Self {
+        assert!(self.fields.len() == self.meanings.len(), "each field has a meaning");
+        self
     }
 }

@@ -93,6 +93,9 @@ pub(super) struct CameraArgs {
     /// Refuse a mesh whose materials or textures are missing, as check does
     #[arg(long, help_heading = "Mesh", hide_short_help = true)]
     pub(super) strict: bool,
+    /// Draw with the lecture's model of light only: diffuse surfaces, point sources, clear air
+    #[arg(long, help_heading = "Picture", hide_short_help = true)]
+    pub(super) lecture: bool,
     /// Number of threads that trace [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     #[arg(help_heading = "Picture", hide_short_help = true)]
@@ -148,7 +151,7 @@ impl CameraArgs {
             let message = "--mesh-up turns a mesh file; in a scene, write rotate: (-90, 0, 0) in the mesh";
             return Err(Failure::Usage(format!("{source}: {message}")));
         }
-        Ok(draft)
+        Ok(if self.lecture { draft.in_lecture() } else { draft })
     }
 
     /// Returns `camera` changed by the flags for its pose and its view rectangle.

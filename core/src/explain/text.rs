@@ -71,6 +71,11 @@ impl Explanation {
             Some(shaded) => self.add_hit(shaded, &mut lines),
             None => lines.push(String::new()),
         }
+        if let Some(transmittance) = self.transmittance {
+            lines.push("fog of colour C leaves T".to_owned());
+            lines.push(format!("T    {}", padded_number(transmittance)));
+            lines.push("L = T L + (1 - T) C".to_owned());
+        }
         lines.push(light_line("L", self.light));
         self.add_tone(&mut lines);
         lines
@@ -168,8 +173,16 @@ impl Explanation {
                 "L = (1 - F) R E + F L'".to_owned(),
                 "L' = light of the mirrored ray".to_owned(),
             ]),
-            Finish::Metal => {
+            Finish::Shiny { exponent, strength } => lines.extend([
+                "shiny: L = R E + s H".to_owned(),
+                format!("H = sum of V I (n.h)^{exponent} / D^2"),
+                format!("s    {}", padded_number(strength)),
+            ]),
+            Finish::Metal { roughness: 0.0 } => {
                 lines.extend(["metal: L = R L'".to_owned(), "L' = light of the mirrored ray".to_owned()]);
+            }
+            Finish::Metal { .. } => {
+                lines.extend(["rough metal: L = R L'".to_owned(), "L' = mean of mirrored rays".to_owned()]);
             }
             Finish::Glass { .. } => lines.extend([
                 "glass: mirrors F (Fresnel)".to_owned(),
@@ -183,6 +196,11 @@ impl Explanation {
             }
         }
         lines.push(light_line("R", shaded.reflectance));
+        if shaded.opacity < 1.0 {
+            lines.push("of opacity a: L = a L + (1 - a) L_p".to_owned());
+            lines.push(format!("a    {}", padded_number(shaded.opacity)));
+            lines.push("L_p = light of the passing ray".to_owned());
+        }
     }
 
     fn add_tone(&self, lines: &mut Vec<String>) {
@@ -245,12 +263,18 @@ fn add_light(at: usize, contribution: &LightContribution, lines: &mut Vec<String
     let incidence = &contribution.incidence;
     lines.push(String::new());
     lines.push(format!("light {at}: {}", contribution.light.formula()));
+    let (visibility, light) = (contribution.visibility(), &contribution.light);
     lines.push(match contribution.blocker {
+        _ if 0.0 < visibility && visibility < 1.0 => format!("V = {visibility:.4}, partly lit"),
+        _ if visibility > 0.0 => "V = 1, lit".to_owned(),
         _ if !contribution.faces() => "V = 0, faces away".to_owned(),
         Some((name, _)) => format!("V = 0, behind {name}"),
-        None if !contribution.is_lit() => "V = 1, outside the cone".to_owned(),
-        None => "V = 1, lit".to_owned(),
+        None if light.cone_share(incidence.l) == Some(0.0) => "V = 1, outside the cone".to_owned(),
+        None => "V = 0, in the shadow".to_owned(),
     });
+    if light.has_size() {
+        lines.push("mean of 16 parts; l, D: the middle".to_owned());
+    }
     lines.push(light_line("I", contribution.light.color()));
     lines.push(vector_line("l", incidence.l));
     lines.push(format!("n.l  {}", padded_number(incidence.cosine)));

@@ -59,3 +59,25 @@ fn total_internal_reflection_starts_at_the_critical_angle() {
 fn a_mirror_image_has_the_same_angle_on_the_other_side() {
     assert_eq!(reflect(Vec3::new(3.0, -4.0, 1.0), Vec3::Y), Vec3::new(3.0, 4.0, 1.0));
 }
+
+#[test]
+fn whole_powers_are_those_of_pow() {
+    for exponent in [1, 2, 3, 50, 255, 10_000] {
+        let (found, expected) = (whole_power(0.999, exponent), libm::pow(f64::from(0.999_f32), exponent.into()));
+        assert!((f64::from(found) / expected - 1.0).abs() < 1e-3, "{exponent}: {found}, not {expected}");
+    }
+}
+
+/// A facet's tangent squared is alpha^2 h / (1 - h): half of the facets are within the angle of
+/// tangent alpha = roughness^2.
+#[test]
+fn half_of_the_facets_are_within_alpha() {
+    for normal in [Vec3::Y, Vec3::Z, Vec3::NEG_Y, Vec3::new(0.6, -0.48, 0.64)] {
+        let part = PartPosition { square: [0.0; 2], direction: [0.8, -0.6], height: 0.5 };
+        let facet = facet_normal(normal, 0.5, &part);
+        assert!((facet.length() - 1.0).abs() < 1e-5, "{normal}: {facet}");
+        let tangent = (1.0 / (facet.dot(normal) * facet.dot(normal)) - 1.0).sqrt();
+        assert!((tangent - 0.25).abs() < 1e-3, "{normal}: {tangent}");
+        assert!((facet_normal(normal, 0.0, &part) - normal).length() < 1e-6);
+    }
+}

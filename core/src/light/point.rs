@@ -148,6 +148,13 @@ impl InSceneFile for PointLight {
     const OWNER: &'static str = "a Point light";
     const FORM: &'static str = "Point(position: ...)";
     const FIELDS: &'static [&'static str] = &["position", "color", "intensity", "falloff"];
+    const SUMMARY: &'static str = "A point source, which shines in all directions.";
+    const MEANINGS: &'static [&'static str] = &[
+        "the point that the light comes from",
+        "the colour; white",
+        "the factor of the colour; 1",
+        "InverseSquare, or None for the same light at every distance; InverseSquare",
+    ];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenPointLight {
         WrittenPointLight {

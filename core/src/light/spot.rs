@@ -147,6 +147,10 @@ impl LightSource for SpotLight {
         self.source.color()
     }
 
+    fn point_source(&self) -> Option<PointLight> {
+        Some(self.source)
+    }
+
     fn position(&self) -> Option<Vec3> {
         LightSource::position(&self.source)
     }
@@ -193,6 +197,16 @@ impl InSceneFile for SpotLight {
     const FORM: &'static str = "Spot(position: ..., target: ...)";
     const FIELDS: &'static [&'static str] =
         &["position", "target", "angle", "softness", "color", "intensity", "falloff"];
+    const SUMMARY: &'static str = "A point source whose light is limited to a cone.";
+    const MEANINGS: &'static [&'static str] = &[
+        "the point that the light comes from",
+        "a point on the axis of the cone",
+        "the angle of the whole cone in degrees, 0.001 to 180; 40",
+        "the share of half the angle over which the light fades, 0 to 1; 0.2",
+        "the colour; white",
+        "the factor of the colour; 1",
+        "InverseSquare, or None for the same light at every distance; InverseSquare",
+    ];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenSpotLight {
         WrittenSpotLight {

@@ -76,6 +76,9 @@ impl InSceneFile for Sun {
     const OWNER: &'static str = "a Sun";
     const FORM: &'static str = "Sun(direction: ...)";
     const FIELDS: &'static [&'static str] = &["direction", "color", "intensity"];
+    const SUMMARY: &'static str = "Light from infinitely far, in parallel rays.";
+    const MEANINGS: &'static [&'static str] =
+        &["the direction to the light, of any length", "the colour; white", "the factor of the colour; 1"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenSun {
         WrittenSun {

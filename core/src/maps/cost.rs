@@ -1,6 +1,7 @@
 //! The cost map: the intersection tests of a pixel's rays, each traced singly.
 //!
-//! Rays are traced singly because packets, with which the shaded picture is traced, share tests between pixels.
+//! One shadow ray to the middle of each light is counted, however many parts the light has. Rays are traced singly
+//! because packets, with which the shaded picture is traced, share tests between pixels.
 
 use crate::hit::{TestCount, any_hit_observed, closest_hit_observed};
 use crate::render::GBufferSample;

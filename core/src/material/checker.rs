@@ -82,6 +82,12 @@ impl InSceneFile for Checker {
     const OWNER: &'static str = "a Checker";
     const FORM: &'static str = "Checker(a: ..., b: ..., size: ...)";
     const FIELDS: &'static [&'static str] = &["a", "b", "size"];
+    const SUMMARY: &'static str = "Squares of two colours.";
+    const MEANINGS: &'static [&'static str] = &[
+        "the colour of every other square; #dddddd",
+        "the colour of the squares between; #333333",
+        "the side of a square; 1",
+    ];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenChecker {
         WrittenChecker {

@@ -50,6 +50,8 @@ impl InSceneFile for Diffuse {
     const OWNER: &'static str = "Diffuse";
     const FORM: &'static str = "Diffuse(\"#rrggbb\")";
     const FIELDS: &'static [&'static str] = &["reflectance"];
+    const SUMMARY: &'static str = "One colour; Diffuse(\"red\") is the short form.";
+    const MEANINGS: &'static [&'static str] = &["the colour"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> Option<WrittenColor> {
         reader.required(fields, "reflectance", NodeReader::color)

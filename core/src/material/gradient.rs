@@ -76,6 +76,9 @@ impl InSceneFile for Gradient {
     const OWNER: &'static str = "a Gradient";
     const FORM: &'static str = "Gradient(from: ..., to: ..., length: ...)";
     const FIELDS: &'static [&'static str] = &["from", "to", "length"];
+    const SUMMARY: &'static str = "Colours from one to another and back, over and over.";
+    const MEANINGS: &'static [&'static str] =
+        &["the first colour", "the second colour", "the way from one to the other; 1"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenGradient {
         WrittenGradient {

@@ -157,6 +157,9 @@ impl InSceneFile for Noise {
     const OWNER: &'static str = "Noise";
     const FORM: &'static str = "Noise(a: ..., b: ..., size: ...)";
     const FIELDS: &'static [&'static str] = &["a", "b", "size"];
+    const SUMMARY: &'static str = "Irregular spots between two colours.";
+    const MEANINGS: &'static [&'static str] =
+        &["one of the colours; #dddddd", "the other colour; #333333", "the size of the spots; 1"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenNoise {
         WrittenNoise {

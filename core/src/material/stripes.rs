@@ -78,6 +78,12 @@ impl InSceneFile for Stripes {
     const OWNER: &'static str = "Stripes";
     const FORM: &'static str = "Stripes(a: ..., b: ..., width: ...)";
     const FIELDS: &'static [&'static str] = &["a", "b", "width"];
+    const SUMMARY: &'static str = "Stripes of two colours.";
+    const MEANINGS: &'static [&'static str] = &[
+        "the colour of every other stripe; #dddddd",
+        "the colour of the stripes between; #333333",
+        "the width of a stripe; 1",
+    ];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenStripes {
         WrittenStripes {

@@ -142,6 +142,12 @@ impl SampleBatch {
         (0..pixels).step_by(pixels_at_once).map(move |first| first..pixels.min(first + pixels_at_once))
     }
 
+    /// Writes the number in its pixel of the sample of each of `rays` rays to `of_rays`.
+    pub(super) fn assign_samples(&self, rays: usize, of_rays: &mut Vec<u32>) {
+        of_rays.clear();
+        of_rays.extend(self.samples.clone().cycle().take(rays));
+    }
+
     /// Writes the index of each ray's pixel to `of_rays`.
     pub(super) fn assign_pixels(&self, pixels: &[u8], of_rays: &mut Vec<u8>) {
         of_rays.clear();

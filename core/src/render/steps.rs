@@ -7,7 +7,7 @@ use super::tiles::Tiles;
 use crate::hit::{self, EightHits, Kernel};
 use crate::ray::EightRays;
 use crate::scene::Scene;
-use crate::shade::{self, Bounces, EightArriving, EightLights, EightPoints, Generation, ShadowRays};
+use crate::shade::{self, Bounces, EightArriving, EightLights, EightPoints, Generation, ShadowRays, Surfaces};
 use std::ops::Range;
 
 /// A stage of rendering, named by its result.
@@ -61,6 +61,8 @@ pub(super) struct Buffers {
     pub(super) active: Vec<u8>,
     /// The index in the tile of each ray's pixel.
     pub(super) pixels: Vec<u8>,
+    /// The number of each ray's sample in its pixel; empty if no light depends on it.
+    pub(super) samples: Vec<u32>,
     // The remaining arrays have an element for each group of eight rays. Those after the job's last stage stay empty.
     pub(super) rays: Vec<EightRays>,
     pub(super) hits: Vec<EightHits>,
@@ -78,7 +80,7 @@ impl Buffers {
     /// Runs the steps up to the job's last stage.
     pub(super) fn trace(&mut self, job: &RenderJob<'_>, tile: usize, batch: &SampleBatch, range: Range<usize>) -> u64 {
         let &RenderJob { scene, tiles, kernel, last_stage, .. } = job;
-        let Self { active, pixels, rays, hits, points, shadows, arriving, .. } = self;
+        let Self { active, pixels, samples, rays, hits, points, shadows, arriving, .. } = self;
         batch.assign_pixels(&active[range], pixels);
         tiles.make_eye_rays(tile, pixels, batch, rays);
         hit::closest_hits(kernel, scene, rays, hits);
@@ -87,12 +89,19 @@ impl Buffers {
             shade::surface_points(scene, rays, hits, points);
         }
         if last_stage >= Stage::Arriving {
-            traced += shade::arriving_light(scene, points, shadows, arriving);
+            samples.clear();
+            if scene.is_sampled() {
+                batch.assign_samples(pixels.len(), samples);
+            }
+            traced += shade::arriving_light(scene, &Surfaces { rays, points, samples }, shadows, arriving);
         }
         if last_stage >= Stage::Reflected {
             self.compute_reflected_light(job, batch);
             if !scene.is_all_matte() {
                 traced += self.add_bounced_light(job, batch);
+            }
+            if let Some(fog) = scene.fog() {
+                shade::add_fog(&fog, &self.rays, &self.hits, &mut self.lights);
             }
         }
         traced
@@ -120,9 +129,9 @@ impl Buffers {
     ///
     /// Returns the number of traced rays.
     fn add_bounced_light(&mut self, &RenderJob { scene, tiles, .. }: &RenderJob<'_>, batch: &SampleBatch) -> u64 {
-        let Self { rays, hits, points, arriving, lights, bounces, .. } = self;
+        let Self { samples, rays, hits, points, shadows, arriving, lights, bounces, .. } = self;
         let steps = tiles.sample_direction_steps(batch.samples.start);
-        bounces.add(scene, steps, &Generation { rays, hits, points, arriving }, lights)
+        bounces.add(scene, steps, &Generation { rays, hits, points, arriving, shadows, samples }, lights)
     }
 
     /// Returns the reflected light of all rays as one array per channel.

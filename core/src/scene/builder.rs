@@ -98,7 +98,7 @@ impl SceneBuilder {
     /// than 0 and at most 1e6; or if an object has a pattern, and its shape has no surface coordinates.
     pub fn build(self) -> Result<Scene, SceneFault> {
         let Self { objects, rest } = self;
-        for (at, Object { shape, material, finish }) in objects.iter().enumerate() {
+        for (at, Object { shape, material, finish, .. }) in objects.iter().enumerate() {
             if let Some(pattern) = material.material_and_pattern_names()
                 && !shape.has_coordinates()
             {

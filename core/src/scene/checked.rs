@@ -41,6 +41,7 @@ pub(super) fn check(
     let lights = file.lights.iter().filter_map(|light| light.check(&mut validator)).collect();
     let exposure = file.exposure.and_then(|written| validator.accept(written.span, checks::exposure(written.value)));
     let bounces = file.bounces.and_then(|written| validator.accept(written.span, checks::bounces(written.value)));
+    let fog = file.fog.and_then(|fog| fog.check(&mut validator));
     let objects = validator.objects(file, meshes, reporter);
     if !faults.is_empty() {
         return None;
@@ -50,7 +51,7 @@ pub(super) fn check(
         Some(WrittenToneCurve::Reinhard) => ToneCurve::Reinhard,
         Some(WrittenToneCurve::Filmic) => ToneCurve::Filmic,
     };
-    Some(Draft::new(Checked {
+    let draft = Draft::new(Checked {
         caption: file.caption.as_deref().and_then(caption::displayed_caption),
         views,
         background: background.unwrap_or(Background::Color(LinearRgb::BLACK)),
@@ -59,9 +60,11 @@ pub(super) fn check(
         shadows: file.shadows.unwrap_or(true),
         exposure: exposure.unwrap_or(1.0),
         bounces: bounces.unwrap_or(Checked::DEFAULT_BOUNCES),
+        fog,
         tone_curve,
         ..Checked::new(camera?, objects)
-    }))
+    });
+    Some(if file.lecture == Some(true) { draft.in_lecture() } else { draft })
 }
 
 impl Validator<'_> {
@@ -88,19 +91,23 @@ impl Validator<'_> {
         for written in file.objects.iter().take_while(|_| !reporter.is_cancelled()) {
             let (shape, material) = (written.shape.check(self, meshes), self.material_of(written, file, &materials));
             let finish = written.finish.map_or(Some(Finish::Matte), |finish| self.finish_of(finish, written));
+            let opacity =
+                written.opacity.map_or(Some(1.0), |opacity| self.accept(opacity.span, checks::opacity(opacity.value)));
             let placements = written.placement.as_ref().map(|placement| placement.check(self));
             // All parts have been checked by now, so that the faults of each are reported.
-            let (Some(shape), Some(material), Some(finish)) = (shape, material, finish) else { continue };
+            let (Some(shape), Some(material), Some(finish), Some(opacity)) = (shape, material, finish, opacity) else {
+                continue;
+            };
             match placements {
                 Some(None) => {}
                 // The coordinates of a mesh are checked as it is placed.
-                None if !matches!(shape, Shape::Mesh(_)) => objects.push(Object { shape, material, finish }),
+                None if !matches!(shape, Shape::Mesh(_)) => objects.push(Object { shape, material, finish, opacity }),
                 placements => {
                     let placements = placements.flatten().unwrap_or_else(|| vec![Placement::NONE]);
                     let placed = |placement| sharing.placed(written, &shape, placement);
                     let placed: Result<Vec<_>, _> = placements.iter().map(placed).collect();
                     let shapes = self.accept(written.span, placed).unwrap_or_default();
-                    objects.extend(shapes.into_iter().map(|shape| Object { shape, material, finish }));
+                    objects.extend(shapes.into_iter().map(|shape| Object { shape, material, finish, opacity }));
                 }
             }
         }

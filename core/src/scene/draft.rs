@@ -1,6 +1,6 @@
 //! Drafts: scenes that are read and checked but have no trees yet.
 
-use super::{Checked, MeshOrigin, Scene};
+use super::{Checked, MeshOrigin, Scene, ShadingNeeds};
 use crate::accel::Accelerator;
 use crate::bvh::MIN_TASK_ITEMS;
 use crate::camera::Camera;
@@ -18,7 +18,7 @@ pub struct Draft {
 
 impl Draft {
     pub(super) fn new(mut checked: Checked) -> Self {
-        checked.all_matte = checked.objects.iter().all(|object| object.finish.is_matte());
+        checked.needs = ShadingNeeds::of(&checked.objects);
         Self { checked: checked.into() }
     }
 
@@ -30,6 +30,15 @@ impl Draft {
     /// Returns the mesh file around which the scene was made; `None` for a scene with its own file.
     pub fn mesh(&self) -> Option<MeshOrigin> {
         self.checked.mesh
+    }
+
+    /// Returns the draft with the lecture's model of light only: diffuse reflection, opaque
+    /// surfaces, clear air, and lights without a size that shine in all directions.
+    ///
+    /// A [`Sun`](crate::light::Sun) stays as it is: a point source that is infinitely far away.
+    pub fn in_lecture(self) -> Self {
+        let checked = Arc::unwrap_or_clone(self.checked);
+        Self::new(checked.in_lecture())
     }
 
     /// Returns the draft with another camera.

@@ -2,7 +2,7 @@
 
 use crate::scene_text::{Span, SyntaxNode, quoted};
 use crate::text::listed;
-use crate::written::{Fields, NodeReader, WrittenNumber, WrittenVector};
+use crate::written::{Fields, NodeReader, ReferenceEntry, WrittenNumber, WrittenVector};
 
 /// The scene's camera or a view, as written.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +54,38 @@ impl WrittenCamera {
     }
 }
 
+/// The reference of the fields of a camera or view.
+pub(super) const REFERENCE: ReferenceEntry = ReferenceEntry {
+    name: "camera",
+    form: "(eye: ..., target: ...)",
+    summary: "The camera, and each of the views.",
+    fields: &[
+        "eye",
+        "target",
+        "up",
+        "vertical_fov",
+        "aspect_ratio",
+        "focal_length",
+        "width",
+        "height",
+        "shift",
+        "tilt",
+    ],
+    meanings: &[
+        "the point that the picture is seen from",
+        "the point in the middle of the picture",
+        "the direction that is up in the picture; (0, 1, 0)",
+        "the vertical field of view in degrees; 45",
+        "width over height of the view rectangle; that of the picture",
+        "the distance of the view rectangle, with width and height instead of vertical_fov; none",
+        "the width of the view rectangle; none",
+        "the height of the view rectangle; none",
+        "the shift of the view rectangle to the right and up, in its heights; (0, 0)",
+        "the tilt of the view rectangle to the right and up, in degrees; (0, 0)",
+    ],
+}
+.checked();
+
 impl NodeReader<'_> {
     pub(super) fn camera(&mut self, node: &SyntaxNode<'_>) -> Option<WrittenCamera> {
         self.camera_called(node, "a camera", "a camera (eye: ..., target: ...)")
@@ -70,19 +102,7 @@ impl NodeReader<'_> {
     /// Reads a camera or a view. For messages, `owner` is what it is called, and `form` an example
     /// of it.
     fn camera_called(&mut self, node: &SyntaxNode<'_>, owner: &'static str, form: &str) -> Option<WrittenCamera> {
-        const FIELDS: &[&str] = &[
-            "eye",
-            "target",
-            "up",
-            "vertical_fov",
-            "aspect_ratio",
-            "focal_length",
-            "width",
-            "height",
-            "shift",
-            "tilt",
-        ];
-        let fields = self.fields(node, owner, form, FIELDS)?;
+        let fields = self.fields(node, owner, form, REFERENCE.fields)?;
         Some(WrittenCamera {
             span: node.head(),
             eye: self.required(&fields, "eye", NodeReader::point),

@@ -23,7 +23,8 @@ impl NodeReader<'_> {
         let finish = self.optional(&fields, "finish", |reader, node| {
             Some(Spanned { value: WrittenFinish::read(reader, node)?, span: node.span })
         });
-        Some(WrittenObject { shape, span: node.head(), placement, material, finish })
+        let opacity = self.optional(&fields, "opacity", NodeReader::number);
+        Some(WrittenObject { shape, span: node.head(), placement, material, finish, opacity })
     }
 
     fn material_use(&mut self, node: &SyntaxNode<'_>) -> Option<Spanned<MaterialUse>> {

@@ -3,13 +3,14 @@
 //! The rays of a batch are traced generation by generation, so that neighbouring rays stay in one packet. Each ray has
 //! a weight, the part of its light that reaches the eye; a ray ends if its weight is too small to be seen.
 
-use super::{EightArriving, EightLights, EightPoints, ShadowRays};
+use super::light_parts::PartShifts;
+use super::{EightArriving, EightLights, EightPoints, ShadowRays, Surfaces};
 use crate::color::LinearRgb;
 use crate::finish::{self, Finish};
 use crate::hit::{self, EightHits, Kernel};
 use crate::lanes::{F32x8, LANES, Number};
 use crate::ray::{EightRays, Ray};
-use crate::scene::Scene;
+use crate::scene::{Object, Scene};
 use glam::Vec3;
 
 /// The smallest weight of a ray that is followed.
@@ -20,7 +21,14 @@ const MIN_WEIGHT: f32 = 1.0 / 1024.0;
 // The weights of the rays that one eye ray becomes add up to at most 1, so glass makes at most 256 of it.
 const MIN_SPLIT_WEIGHT: f32 = 1.0 / 256.0;
 
-/// A ray that a surface has reflected or refracted.
+/// The number of rays that rough metal mirrors at once.
+const SPREAD: u32 = 8;
+
+/// The smallest weight of a ray that rough metal mirrors as [`SPREAD`] rays instead of one.
+// The rays of a spread have at most an eighth, so that they are not spread again.
+const MIN_SPREAD_WEIGHT: f32 = 0.25;
+
+/// A ray that a surface has reflected, refracted or let through.
 #[derive(Clone, Copy, Debug)]
 struct BouncedRay {
     ray: Ray,
@@ -32,6 +40,10 @@ struct BouncedRay {
     eye_ray: u32,
     /// The object in whose glass the ray is.
     inside: Option<u32>,
+    /// The number of the eye ray's sample in its pixel.
+    sample: u32,
+    /// The number of the ray among those that rough metal mirrors at once.
+    sibling: u32,
 }
 
 /// The bounced rays of a batch and the results of their steps, in buffers that are reused.
@@ -47,6 +59,7 @@ pub struct Bounces {
     /// The diffusely reflected light.
     diffuse: Vec<EightLights>,
     reflectances: Reflectances,
+    samples: Vec<u32>,
 }
 
 /// The results of the steps for one generation of rays, from eye rays to diffusely reflected light.
@@ -59,6 +72,10 @@ pub struct Generation<'a> {
     pub points: &'a [EightPoints],
     /// The light that arrives at the points.
     pub arriving: &'a [EightArriving],
+    /// The shadow rays of the points, with the highlights that they found.
+    pub shadows: &'a ShadowRays,
+    /// The number of each ray's sample in its pixel; empty if all are 0.
+    pub samples: &'a [u32],
 }
 
 impl Bounces {
@@ -88,10 +105,13 @@ impl Bounces {
                     weight: LinearRgb::grey(1.0),
                     eye_ray: (group * LANES + lane) as u32,
                     inside: None,
+                    sample: eye.samples.get(group * LANES + lane).copied().unwrap_or(0),
+                    sibling: 0,
                 };
                 let reflectance = super::lane_light(&self.reflectances.found[group], lane);
                 let surface = Surface::of(scene, points, lane, eye.hits[group].t.0[lane], reflectance);
-                let light = surface.light(&ray, super::lane_light(&lights[group], lane), &mut self.next);
+                let diffuse = super::lane_light(&lights[group], lane);
+                let light = surface.light(&ray, diffuse, eye.shadows.highlight(group, lane), &mut self.next);
                 put(&mut lights[group], lane, light);
             }
         }
@@ -108,7 +128,7 @@ impl Bounces {
 
     /// Traces the current generation, adds its light to the eye rays, and makes the next one.
     fn trace(&mut self, scene: &Scene, direction_steps: [Vec3; 2], lights: &mut [EightLights]) -> u64 {
-        let Self { current, next, rays, hits, points, shadows, arriving, diffuse, reflectances } = self;
+        let Self { current, next, rays, hits, points, shadows, arriving, diffuse, reflectances, samples } = self;
         rays.clear();
         rays.extend(current.chunks(LANES).map(|group| {
             let mut eight = [current[0].ray; LANES];
@@ -121,17 +141,29 @@ impl Bounces {
         for (at, ray) in current.iter().enumerate() {
             hits[at / LANES].t.0[at % LANES] += ray.t;
         }
-        let traced = current.len() as u64 + super::arriving_light(scene, points, shadows, arriving);
+        samples.clear();
+        samples.extend(current.iter().map(|ray| ray.sample));
+        let surfaces = Surfaces { rays, points, samples };
+        let traced = current.len() as u64 + super::arriving_light(scene, &surfaces, shadows, arriving);
         super::reflected_light(scene, rays, direction_steps, hits, points, arriving, diffuse);
-        reflectances.find(scene, direction_steps, &Generation { rays, hits, points, arriving });
+        reflectances.find(scene, direction_steps, &Generation { rays, hits, points, arriving, shadows, samples });
         next.clear();
         for (at, ray) in current.iter().enumerate() {
             let (group, lane) = (at / LANES, at % LANES);
             let mut light = super::lane_light(&diffuse[group], lane);
-            if finish_at(scene, &points[group], lane).is_some_and(|finish| !finish.is_matte()) {
+            let is_hit = points[group].hit_mask >> lane & 1 == 1;
+            let t = if is_hit { hits[group].t.0[lane] - ray.t } else { f32::INFINITY };
+            // Glass keeps the fog out.
+            let fog = scene.fog().filter(|_| ray.inside.is_none());
+            let transmittance = fog.map_or(1.0, |fog| fog.transmittance(t * ray.ray.direction.length()));
+            if is_finished(scene, &points[group], lane) {
                 let reflectance = super::lane_light(&reflectances.found[group], lane);
-                let t = hits[group].t.0[lane] - ray.t;
-                light = Surface::of(scene, &points[group], lane, t, reflectance).light(ray, light, next);
+                let surface = Surface::of(scene, &points[group], lane, t, reflectance);
+                let dimmed = BouncedRay { weight: ray.weight * transmittance, ..*ray };
+                light = surface.light(&dimmed, light, shadows.highlight(group, lane), next);
+            }
+            if let Some(fog) = fog {
+                light = fog.dimmed(light, transmittance);
             }
             let (group, lane) = (ray.eye_ray as usize / LANES, ray.eye_ray as usize % LANES);
             let sum = super::lane_light(&lights[group], lane) + light * ray.weight;
@@ -144,6 +176,7 @@ impl Bounces {
 /// A surface that a ray meets, with its finish.
 struct Surface {
     finish: Finish,
+    opacity: f32,
     object: u32,
     position: Vec3,
     shading_normal: Vec3,
@@ -157,8 +190,10 @@ struct Surface {
 impl Surface {
     fn of(scene: &Scene, points: &EightPoints, lane: usize, t: f32, reflectance: LinearRgb) -> Self {
         let object = points.ids.id(lane).object;
+        let Object { finish, opacity, .. } = scene.objects()[object as usize];
         Self {
-            finish: scene.objects()[object as usize].finish,
+            finish,
+            opacity,
             object,
             position: points.position.of_lane(lane),
             shading_normal: points.shading_normal.of_lane(lane),
@@ -173,15 +208,41 @@ impl Surface {
     ///
     /// Bounced rays are added to `next`.
     ///
-    /// `diffuse` is the light that a matte surface would reflect.
-    fn light(&self, ray: &BouncedRay, diffuse: LinearRgb, next: &mut Vec<BouncedRay>) -> LinearRgb {
+    /// `diffuse` is the light that a matte surface would reflect, and `highlight` that of a highlight of strength 1.
+    fn light(
+        &self,
+        ray: &BouncedRay,
+        diffuse: LinearRgb,
+        highlight: LinearRgb,
+        next: &mut Vec<BouncedRay>,
+    ) -> LinearRgb {
+        if self.opacity < 1.0 {
+            self.add_passing(ray, next);
+        }
+        let ray = &BouncedRay { weight: ray.weight * self.opacity, ..*ray };
+        self.finished_light(ray, diffuse, highlight, next) * self.opacity
+    }
+
+    /// Returns the light of the part of the surface that is not transparent; `ray` has its weight.
+    fn finished_light(
+        &self,
+        ray: &BouncedRay,
+        diffuse: LinearRgb,
+        highlight: LinearRgb,
+        next: &mut Vec<BouncedRay>,
+    ) -> LinearRgb {
         let direction = ray.ray.direction;
         let cosine = finish::cosine_of_incidence(direction, self.shading_normal);
         match self.finish {
             Finish::Matte => diffuse,
             Finish::Glowing { strength } => self.reflectance * strength,
-            Finish::Metal => {
+            Finish::Shiny { strength, .. } => diffuse + highlight * strength,
+            Finish::Metal { roughness: 0.0 } => {
                 self.add_reflection(ray, self.reflectance, next);
+                LinearRgb::BLACK
+            }
+            Finish::Metal { roughness } => {
+                self.add_rough_reflections(ray, roughness, next);
                 LinearRgb::BLACK
             }
             Finish::Polished { index } => {
@@ -202,6 +263,27 @@ impl Surface {
         }
     }
 
+    /// Adds the ray that passes straight through the surface.
+    fn add_passing(&self, ray: &BouncedRay, next: &mut Vec<BouncedRay>) {
+        let passing = Ray { origin: self.origin_behind(ray), direction: ray.ray.direction };
+        let weight = LinearRgb::grey(1.0 - self.opacity);
+        // A ray that passes the surface of glass is inside it, or outside again.
+        let inside = match self.finish {
+            Finish::Glass { .. } if ray.inside == Some(self.object) => None,
+            Finish::Glass { .. } => Some(self.object),
+            _ => ray.inside,
+        };
+        add(next, BouncedRay { ray: passing, t: ray.t + self.t, weight, inside, ..*ray }, ray);
+    }
+
+    /// Returns the origin of a ray that leaves the surface on the side away from the ray that met
+    /// it.
+    fn origin_behind(&self, ray: &BouncedRay) -> Vec3 {
+        // The position may be that of a smooth surface, above the triangle; the new ray starts below the triangle.
+        let lift = (self.position - ray.ray.at(self.t)).dot(self.geometric_normal).max(0.0);
+        self.position - self.geometric_normal * (self.clearance + lift)
+    }
+
     /// Adds the refracted ray; `part` is its part of the light.
     fn add_refraction(&self, ray: &BouncedRay, ratio: f32, is_leaving: bool, part: f32, next: &mut Vec<BouncedRay>) {
         let direction = ray.ray.direction;
@@ -210,9 +292,7 @@ impl Surface {
             .filter(|refracted| refracted.dot(self.geometric_normal) < 0.0)
             .or_else(|| finish::refract(direction, self.geometric_normal, ratio));
         let Some(refracted) = refracted else { return };
-        // The position may be that of a smooth surface, above the triangle; the ray starts below the triangle.
-        let lift = (self.position - ray.ray.at(self.t)).dot(self.geometric_normal).max(0.0);
-        let origin = self.position - self.geometric_normal * (self.clearance + lift);
+        let origin = self.origin_behind(ray);
         // Light is coloured once on its way through, where it enters.
         let color = if is_leaving { LinearRgb::grey(1.0) } else { self.reflectance };
         let inside = if is_leaving { None } else { Some(self.object) };
@@ -227,6 +307,33 @@ impl Surface {
         if direction.dot(self.geometric_normal) <= 0.0 {
             direction = finish::reflect(ray.ray.direction, self.geometric_normal);
         }
+        self.add_mirrored(direction, ray, weight, next);
+    }
+
+    /// Adds the rays that facets of rough metal mirror.
+    fn add_rough_reflections(&self, ray: &BouncedRay, roughness: f32, next: &mut Vec<BouncedRay>) {
+        let shifts = PartShifts::of(&[ray.sample]);
+        let mut add = |part: u32, sibling: u32, weight: LinearRgb| {
+            let part = shifts.position::<F32x8>(part).of_lane(0);
+            let normal = finish::facet_normal(self.shading_normal, roughness, &part);
+            let mut direction = finish::reflect(ray.ray.direction, normal);
+            // A ray that a facet mirrors into the surface is mirrored by another facet.
+            if direction.dot(self.geometric_normal) <= 0.0 {
+                direction = finish::reflect(direction, self.geometric_normal);
+            }
+            self.add_mirrored(direction, &BouncedRay { sibling, ..*ray }, weight, next);
+        };
+        let LinearRgb { r, g, b } = ray.weight;
+        if r.max(g).max(b) < MIN_SPREAD_WEIGHT {
+            // Each of the rays that were mirrored at once takes another facet.
+            add(ray.sibling, ray.sibling, self.reflectance);
+        } else {
+            (0..SPREAD).for_each(|part| add(part, part, self.reflectance * (1.0 / SPREAD as f32)));
+        }
+    }
+
+    /// Adds the mirrored ray with this direction; `weight` is its part of the light.
+    fn add_mirrored(&self, direction: Vec3, ray: &BouncedRay, weight: LinearRgb, next: &mut Vec<BouncedRay>) {
         let origin = self.position + self.geometric_normal * self.clearance;
         add(next, BouncedRay { ray: Ray { origin, direction }, t: ray.t + self.t, weight, ..*ray }, ray);
     }
@@ -258,14 +365,14 @@ fn add(next: &mut Vec<BouncedRay>, mut ray: BouncedRay, before: &BouncedRay) {
     }
 }
 
-/// Returns the finish of the object at a point, or `None` without a hit.
-fn finish_at(scene: &Scene, points: &EightPoints, lane: usize) -> Option<Finish> {
-    (points.hit_mask >> lane & 1 == 1).then(|| scene.objects()[points.ids.id(lane).object as usize].finish)
+/// Returns whether a point is on an object that is not matte.
+fn is_finished(scene: &Scene, points: &EightPoints, lane: usize) -> bool {
+    points.hit_mask >> lane & 1 == 1 && !scene.objects()[points.ids.id(lane).object as usize].is_matte()
 }
 
 /// Returns the lanes whose point is on an object that is not matte.
 fn finished_lanes(scene: &Scene, points: &EightPoints) -> impl Iterator<Item = usize> {
-    (0..LANES).filter(|&lane| finish_at(scene, points, lane).is_some_and(|finish| !finish.is_matte()))
+    (0..LANES).filter(|&lane| is_finished(scene, points, lane))
 }
 
 /// The reflectances of materials at surface points.

@@ -100,6 +100,8 @@ impl InSceneFile for Capsule {
     const OWNER: &'static str = "a Capsule";
     const FORM: &'static str = "Capsule(from: ..., to: ..., radius: ...)";
     const FIELDS: &'static [&'static str] = &["from", "to", "radius"];
+    const SUMMARY: &'static str = "A cylinder with round ends about two points.";
+    const MEANINGS: &'static [&'static str] = &["the middle of one end", "the middle of the other end", "the radius"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenCapsule {
         WrittenCapsule {

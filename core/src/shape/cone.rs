@@ -176,6 +176,14 @@ impl InSceneFile for Cone {
     const OWNER: &'static str = "a Cone";
     const FORM: &'static str = "Cone(from: ..., to: ..., radius: ...)";
     const FIELDS: &'static [&'static str] = &["from", "to", "radius", "to_radius", "open"];
+    const SUMMARY: &'static str = "A cone, or a part of one, between two points.";
+    const MEANINGS: &'static [&'static str] = &[
+        "the middle of one end",
+        "the middle of the other end",
+        "the radius at `from`",
+        "the radius at `to`; 0, a tip",
+        "true leaves out both caps; false",
+    ];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenCone {
         WrittenCone {

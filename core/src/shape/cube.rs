@@ -97,6 +97,8 @@ impl InSceneFile for Cube {
     const OWNER: &'static str = "a Cube";
     const FORM: &'static str = "Cube(center: ..., side: ...)";
     const FIELDS: &'static [&'static str] = &["center", "side"];
+    const SUMMARY: &'static str = "A cube along the axes.";
+    const MEANINGS: &'static [&'static str] = &["the centre", "the side; 2"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenCube {
         WrittenCube {

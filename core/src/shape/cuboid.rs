@@ -126,6 +126,9 @@ impl InSceneFile for Cuboid {
     const OWNER: &'static str = "a Box";
     const FORM: &'static str = "Box(min: ..., max: ...)";
     const FIELDS: &'static [&'static str] = &["min", "max"];
+    const SUMMARY: &'static str = "A box along the axes.";
+    const MEANINGS: &'static [&'static str] =
+        &["the corner with the least coordinates", "the corner with the greatest coordinates"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenBox {
         let min = reader.required(fields, "min", NodeReader::point);

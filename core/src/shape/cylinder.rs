@@ -135,6 +135,9 @@ impl InSceneFile for Cylinder {
     const OWNER: &'static str = "a Cylinder";
     const FORM: &'static str = "Cylinder(from: ..., to: ..., radius: ...)";
     const FIELDS: &'static [&'static str] = &["from", "to", "radius", "open"];
+    const SUMMARY: &'static str = "A cylinder between two points.";
+    const MEANINGS: &'static [&'static str] =
+        &["the middle of one end", "the middle of the other end", "the radius", "true leaves out both caps; false"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenCylinder {
         WrittenCylinder {

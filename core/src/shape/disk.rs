@@ -106,6 +106,8 @@ impl InSceneFile for Disk {
     const OWNER: &'static str = "a Disk";
     const FORM: &'static str = "Disk(center: ..., normal: ..., radius: ...)";
     const FIELDS: &'static [&'static str] = &["center", "normal", "radius"];
+    const SUMMARY: &'static str = "A flat disk, seen from both sides.";
+    const MEANINGS: &'static [&'static str] = &["the centre", "the normal, of any length", "the radius"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenDisk {
         WrittenDisk {

@@ -93,6 +93,8 @@ impl InSceneFile for Ellipsoid {
     const OWNER: &'static str = "an Ellipsoid";
     const FORM: &'static str = "Ellipsoid(center: ..., radii: (..., ..., ...))";
     const FIELDS: &'static [&'static str] = &["center", "radii"];
+    const SUMMARY: &'static str = "An ellipsoid along the axes.";
+    const MEANINGS: &'static [&'static str] = &["the centre", "the radii along x, y and z"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenEllipsoid {
         WrittenEllipsoid {

@@ -282,6 +282,13 @@ impl InSceneFile for Implicit {
     const OWNER: &'static str = "an Implicit";
     const FORM: &'static str = "Implicit(f: \"...\", bounds: Box(min: ..., max: ...))";
     const FIELDS: &'static [&'static str] = &["f", "bounds", "params", "color"];
+    const SUMMARY: &'static str = "All points at which a formula is 0.";
+    const MEANINGS: &'static [&'static str] = &[
+        "the formula of x, y, z and time, in quotes",
+        "Box(min: ..., max: ...) or Sphere(center: ..., radius: ...) around the surface",
+        "values of names in the formulas, {\"name\": 1}; none",
+        "formulas of red, green and blue, [\"...\", \"...\", \"...\"]; grey",
+    ];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenImplicit {
         WrittenImplicit {

@@ -322,6 +322,9 @@ impl InSceneFile for Mesh {
     const OWNER: &'static str = "a Mesh";
     const FORM: &'static str = "Mesh(path: \"...\")";
     const FIELDS: &'static [&'static str] = &["path"];
+    const SUMMARY: &'static str = "A mesh from a file.";
+    const MEANINGS: &'static [&'static str] =
+        &["the path of an OBJ, STL, PLY or glTF file, relative to the scene file, in quotes"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenMesh {
         let path = reader.required(fields, "path", |reader, node| reader.text(node, "the path of a mesh in quotes"));

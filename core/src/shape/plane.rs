@@ -193,6 +193,8 @@ impl InSceneFile for Plane {
     const OWNER: &'static str = "a Plane";
     const FORM: &'static str = "Plane(point: ..., normal: ...)";
     const FIELDS: &'static [&'static str] = &["point", "normal"];
+    const SUMMARY: &'static str = "An endless plane, seen from both sides.";
+    const MEANINGS: &'static [&'static str] = &["any point of the plane", "the normal, of any length"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenPlane {
         WrittenPlane {

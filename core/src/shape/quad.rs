@@ -6,7 +6,7 @@ use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape, plan
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::scene_text::Span;
-use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector, values};
+use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
 use glam::{DVec3, Vec3};
 
 /// The fraction of an edge's length by which a quad is extended beyond each of its sides.
@@ -118,18 +118,13 @@ impl InSceneFile for Quad {
     const OWNER: &'static str = "a Quad";
     const FORM: &'static str = "Quad(corner: ..., edges: [..., ...])";
     const FIELDS: &'static [&'static str] = &["corner", "edges"];
+    const SUMMARY: &'static str = "A parallelogram, seen from both sides.";
+    const MEANINGS: &'static [&'static str] = &["a corner", "two vectors from the corner along the edges"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenQuad {
         WrittenQuad {
             corner: reader.required(fields, "corner", NodeReader::point),
-            edges: reader.required(fields, "edges", |reader, node| {
-                let Some(items) = values(node).filter(|items| items.len() == 2) else {
-                    reader.mismatch(node, "two edges [(x, y, z), (x, y, z)]");
-                    return None;
-                };
-                let edges = reader.read_all(items, NodeReader::direction);
-                Some((edges.try_into().ok()?, node.span))
-            }),
+            edges: reader.required(fields, "edges", NodeReader::two_edges),
         }
     }
 }

@@ -258,6 +258,8 @@ impl InSceneFile for Sphere {
     const OWNER: &'static str = "a Sphere";
     const FORM: &'static str = "Sphere(center: ..., radius: ...)";
     const FIELDS: &'static [&'static str] = &["center", "radius"];
+    const SUMMARY: &'static str = "All points at one distance from a centre.";
+    const MEANINGS: &'static [&'static str] = &["the centre", "the radius"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenSphere {
         WrittenSphere {

@@ -33,6 +33,13 @@ impl Torus {
         exact::with_bounds(Self { center, axis, radius, tube_radius, placed_bounds: PlacedBounds::NONE })
     }
 
+    /// Returns whether a point in the coordinates of the shape is inside.
+    fn contains(&self, point: DVec3) -> bool {
+        let (height, distance) = self.height_and_distance(point - self.center);
+        let from_ring = distance - self.radius;
+        from_ring * from_ring + height * height < self.tube_radius * self.tube_radius
+    }
+
     /// Returns the height of a point over the plane of the ring, and its distance from the axis.
     fn height_and_distance(&self, at: DVec3) -> (f64, f64) {
         let height = at.dot(self.axis);
@@ -135,9 +142,7 @@ impl Described for Torus {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let (height, distance) = self.height_and_distance(self.placed_bounds.scene_to_shape(point) - self.center);
-        let from_ring = distance - self.radius;
-        from_ring * from_ring + height * height < self.tube_radius * self.tube_radius
+        self.contains(self.placed_bounds.scene_to_shape(point))
     }
 }
 
@@ -157,6 +162,13 @@ impl InSceneFile for Torus {
     const OWNER: &'static str = "a Torus";
     const FORM: &'static str = "Torus(center: ..., axis: ..., radius: ..., tube_radius: ...)";
     const FIELDS: &'static [&'static str] = &["center", "axis", "radius", "tube_radius"];
+    const SUMMARY: &'static str = "A ring.";
+    const MEANINGS: &'static [&'static str] = &[
+        "the centre",
+        "the axis, of any length",
+        "the distance from the centre to the middle of the tube",
+        "the radius of the tube",
+    ];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenTorus {
         WrittenTorus {

@@ -438,6 +438,8 @@ impl InSceneFile for Triangle {
     const OWNER: &'static str = "a Triangle";
     const FORM: &'static str = "Triangle(corners: [(x, y, z), (x, y, z), (x, y, z)])";
     const FIELDS: &'static [&'static str] = &["corners"];
+    const SUMMARY: &'static str = "A triangle, seen from both sides.";
+    const MEANINGS: &'static [&'static str] = &["three points"];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenTriangle {
         WrittenTriangle { corners: reader.required(fields, "corners", read_corners) }

@@ -6,7 +6,7 @@ use crate::mesh_file::MeshFile;
 use crate::progress::Unfinished;
 use crate::scene_text::SyntaxNode;
 use crate::text;
-use crate::written::{Fields, InSceneFile, NodeReader, Validator};
+use crate::written::{Fields, InSceneFile, NodeReader, ReferenceEntry, Validator};
 use std::sync::Arc;
 
 /// A surface in a scene file, and its check.
@@ -36,10 +36,29 @@ pub trait Meshes {
 }
 
 /// The fields of all objects, whatever their shape.
-const OF_OBJECTS: [&str; 6] = {
+const OF_OBJECTS: [&str; 7] = {
     let [scale, rotate, translate, copies] = WrittenPlacement::FIELDS;
-    [scale, rotate, translate, copies, "material", "finish"]
+    [scale, rotate, translate, copies, "material", "finish", "opacity"]
 };
+
+/// The reference of the fields of all objects.
+#[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have a reference"))]
+pub(crate) const OBJECT_REFERENCE: ReferenceEntry = ReferenceEntry {
+    name: "object",
+    form: "Sphere(..., material: ..., finish: ...)",
+    summary: "Fields of every object, whatever its shape.",
+    fields: &OF_OBJECTS,
+    meanings: &[
+        "a factor, or one along each axis (x, y, z); 1",
+        "angles in degrees about x, then y, then z; (0, 0, 0)",
+        "a vector by which the object is moved; (0, 0, 0)",
+        "rows of copies along the axes, (count: (x, y, z), step: (x, y, z)); one copy",
+        "a material, or the name of one in quotes; light grey, or the colours of a mesh's file",
+        "a finish; Matte",
+        "the part of the light that does not pass straight through, 0 to 1; 1",
+    ],
+}
+.checked();
 
 /// Returns the fields of a shape, followed by those of all objects.
 const fn with_those_of_objects<const ALL: usize>(own: &[&'static str]) -> [&'static str; ALL] {
@@ -66,6 +85,10 @@ macro_rules! written {
 
         #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenShape {
+            /// The reference of all shapes.
+            pub(crate) const REFERENCE: &'static [ReferenceEntry] =
+                &[$($(#[$on])* ReferenceEntry::of::<super::$surface>(),)*];
+
             /// The names of all shapes.
             pub(crate) const NAMES: &'static [&'static str] = &[$($(#[$on])* <super::$surface as InSceneFile>::NAME,)*];
 

@@ -269,6 +269,16 @@ impl<'f> NodeReader<'f> {
         self.vector(node, "a direction (x, y, z)")
     }
 
+    /// Reads the two edges of a parallelogram, and returns them with their span.
+    pub(crate) fn two_edges(&mut self, node: &SyntaxNode<'_>) -> Option<([WrittenVector; 2], Span)> {
+        let Some(items) = values(node).filter(|items| items.len() == 2) else {
+            self.mismatch(node, "two edges [(x, y, z), (x, y, z)]");
+            return None;
+        };
+        let edges = self.read_all(items, Self::direction);
+        Some((edges.try_into().ok()?, node.span))
+    }
+
     fn vector(&mut self, node: &SyntaxNode<'_>, wanted: &str) -> Option<WrittenVector> {
         let components = self.numbers(node, wanted)?;
         Some(WrittenVector { components, span: node.span })

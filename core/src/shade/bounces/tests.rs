@@ -43,7 +43,7 @@ fn a_mirror_shows_mirrored_objects() {
     let camera = Camera::look_at(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO).expect("a camera");
     let mirror = Plane::new(Vec3::ZERO, Vec3::Z).expect("a plane");
     // The ball is behind the eye, so that it is seen in the mirror only.
-    let mirror = Object::new(mirror, grey(1.0)).with_finish(Finish::Metal);
+    let mirror = Object::new(mirror, grey(1.0)).with_finish(Finish::MIRROR);
     let mirrored = Scene::new(camera, vec![mirror, ball(7.0)]).with_lights([light(6.0)]);
     let direct = Scene::new(camera, vec![ball(-7.0)]).with_lights([light(-6.0)]);
     let [mirrored, direct] = [mirrored, direct].map(|scene| picture(&scene, 40));
@@ -105,7 +105,7 @@ fn a_glowing_surface_has_its_own_light() {
 fn the_number_of_bounces_is_limited() {
     let mirror = |z: f32| {
         let plane = Plane::new(Vec3::Z * z, Vec3::Z).expect("a plane");
-        Object::new(plane, grey(1.0)).with_finish(Finish::Metal)
+        Object::new(plane, grey(1.0)).with_finish(Finish::MIRROR)
     };
     let scene = below_a_sky(vec![mirror(-1.0), mirror(6.0)]);
     assert_eq!(picture(&scene, 1).pixel(0, 0), LinearRgb::BLACK);
