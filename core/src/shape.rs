@@ -35,6 +35,7 @@ mod placement;
 pub mod plane;
 pub mod quad;
 mod scalar;
+pub mod solid;
 pub mod sphere;
 pub mod torus;
 pub mod triangle;
@@ -60,6 +61,7 @@ pub use plane::Plane;
 pub use quad::Quad;
 pub use scalar::Scalar;
 pub use scalar_leaf::ScalarLeaf;
+pub use solid::Solid;
 pub use sphere::{Sphere, SphereN};
 pub use torus::Torus;
 pub use triangle::{EdgeFunctions, Triangle, TriangleN};
@@ -400,6 +402,7 @@ macro_rules! table {
                 Capsule, doc(hidden);
                 Ellipsoid, doc(hidden);
                 Torus, doc(hidden);
+                Solid, doc(hidden);
                 Implicit, doc(hidden);
                 #[cfg(all(test, unit_tests))]
                 Cube, doc(hidden);

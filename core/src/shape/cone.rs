@@ -83,6 +83,11 @@ impl Cone {
             _ => Inside::NOTHING,
         }
     }
+
+    /// Returns whether the shape has no caps, so that it encloses nothing.
+    pub(super) fn is_open(&self) -> bool {
+        self.open
+    }
 }
 
 impl Exact for Cone {

@@ -29,6 +29,11 @@ impl Cylinder {
     fn new(axis: Axis, radius: f64, open: bool) -> Self {
         exact::with_bounds(Self { axis, radius, open, placed_bounds: PlacedBounds::NONE })
     }
+
+    /// Returns whether the shape has no caps, so that it encloses nothing.
+    pub(super) fn is_open(&self) -> bool {
+        self.open
+    }
 }
 
 impl Axis {

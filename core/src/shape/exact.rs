@@ -248,7 +248,7 @@ impl Inside {
 }
 
 /// Returns the crossings of a surface and the line of a ray.
-fn crossings<S: Exact>(surface: &S, ray: &Ray) -> Crossings {
+pub(super) fn crossings<S: Exact>(surface: &S, ray: &Ray) -> Crossings {
     let Line { origin, direction } = surface.placed_bounds().line(ray);
     let from_center = origin - surface.center();
     // With the line's origin at its point nearest to the centre, all its numbers are about as large as the surface.

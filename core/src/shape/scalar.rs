@@ -3,7 +3,7 @@
 #[cfg(all(test, unit_tests))]
 use super::Cube;
 use super::surfaces_in_parts;
-use super::{Capsule, Cone, Cuboid, Cylinder, Disk, Ellipsoid, Implicit, Quad, Surface, SurfacePoint, Torus};
+use super::{Capsule, Cone, Cuboid, Cylinder, Disk, Ellipsoid, Implicit, Quad, Solid, Surface, SurfacePoint, Torus};
 use crate::bounds::Bounds;
 use crate::lanes::F32x8;
 use crate::ray::{EightRays, Interval, Probe, Ray};

@@ -40,6 +40,12 @@ impl Torus {
         from_ring * from_ring + height * height < self.tube_radius * self.tube_radius
     }
 
+    /// Returns whether a point of a ray's line is inside.
+    pub(super) fn contains_at(&self, ray: &Ray, t: f64) -> bool {
+        let Line { origin, direction } = self.placed_bounds.line(ray);
+        self.contains(origin + direction * t)
+    }
+
     /// Returns the height of a point over the plane of the ring, and its distance from the axis.
     fn height_and_distance(&self, at: DVec3) -> (f64, f64) {
         let height = at.dot(self.axis);

@@ -1,0 +1,462 @@
+//! Solids: unions, intersections and differences of closed shapes.
+//!
+//! A line crosses each part in pairs of an entry and an exit. Sorted by t, they divide the line into pieces, on each of
+//! which it is known which parts contain it; where the answer for the whole solid changes is a crossing of the solid
+//! (Roth, Ray Casting for Modeling Solids, 1982).
+
+use super::described::size_in_words;
+use super::exact::{self, Crossings, Inside};
+use super::placement::{Placeable, Placement, WrittenPlacement};
+use super::{
+    CheckedShape, Described, Equation, EquationStep, Meshes, Plane, Shape, Side, Sphere, Surface, SurfacePoint, Torus,
+    WrittenShape,
+};
+use crate::bounds::Bounds;
+use crate::checks::Message;
+use crate::ray::{Interval, Probe, Ray, clamp_keeping_nan};
+use crate::scene_text::{Span, SyntaxNode};
+use crate::written::{Fields, InSceneFile, NodeReader, Spanned, Validator};
+use glam::Vec3;
+use std::cmp::Ordering;
+use std::sync::Arc;
+
+/// The most shapes in a solid, those of the solids among its parts counted.
+// A line has up to four crossings with each, and all of them are kept in an array on the stack.
+const MAX_SHAPES: usize = 16;
+
+/// The most boundaries of a solid along a line.
+const MAX_BOUNDARIES: usize = 4 * MAX_SHAPES;
+
+/// The distance, relative to the largest t, within which two boundaries are one.
+// Two parts that share a face compute its t with different roundings, of about 1e-15. Points in f32 are off by 1e-7.
+const TOLERANCE: f64 = 1e-11;
+
+/// The operation by which a solid is made of its parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operation {
+    /// All that is in at least one part.
+    Union,
+    /// All that is in every part.
+    Intersection,
+    /// All that is in the first part and in no other.
+    Difference,
+}
+
+impl Operation {
+    const ALL: [Self; 3] = [Self::Union, Self::Intersection, Self::Difference];
+
+    /// Returns the name of the field of scene files.
+    const fn field(self) -> &'static str {
+        match self {
+            Self::Union => "union",
+            Self::Intersection => "intersection",
+            Self::Difference => "difference",
+        }
+    }
+
+    /// Returns whether a point is in the solid whose parts contain it by the mask `inside`.
+    fn contains(self, inside: u32, parts: usize) -> bool {
+        match self {
+            Self::Union => inside != 0,
+            Self::Intersection => inside.count_ones() as usize == parts,
+            Self::Difference => inside == 1,
+        }
+    }
+
+    /// Returns the bounds of the solid from those of its parts; `None` if it is unbounded.
+    fn bounds(self, parts: &[Shape]) -> Option<Bounds> {
+        let mut bounds = parts.iter().map(Shape::bounds);
+        match self {
+            Self::Difference => bounds.next().flatten(),
+            Self::Union => bounds.reduce(|all, one| Some(all?.union(&one?))).flatten(),
+            Self::Intersection => {
+                bounds.flatten().reduce(|all, one| Bounds { min: all.min.max(one.min), max: all.max.min(one.max) })
+            }
+        }
+    }
+}
+
+/// A solid that is made of closed shapes.
+#[doc(hidden)]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solid {
+    operation: Operation,
+    parts: Arc<[Shape]>,
+    bounds: Bounds,
+}
+
+/// An end of a piece of a line inside a solid.
+#[derive(Clone, Copy)]
+struct Boundary<'s> {
+    t: f64,
+    /// The shape on whose surface it is.
+    shape: &'s Shape,
+    /// Whether the line enters the solid here.
+    enters: bool,
+}
+
+/// The boundaries of a solid along a line, in ascending order.
+struct Boundaries<'s> {
+    found: [Option<Boundary<'s>>; MAX_BOUNDARIES],
+    count: usize,
+    /// Whether the line begins inside, at t = -infinity.
+    begins_inside: bool,
+}
+
+impl<'s> Boundaries<'s> {
+    fn new(begins_inside: bool) -> Self {
+        Self { found: [None; MAX_BOUNDARIES], count: 0, begins_inside }
+    }
+
+    fn push(&mut self, boundary: Boundary<'s>) {
+        // There is always a free place: the number of shapes is limited.
+        if let Some(free) = self.found.get_mut(self.count) {
+            *free = Some(boundary);
+            self.count += 1;
+        }
+    }
+
+    fn iter(&self) -> impl Iterator<Item = Boundary<'s>> {
+        self.found[..self.count].iter().copied().flatten()
+    }
+
+    /// Returns the boundaries of a shape that is not a solid.
+    fn of_shape(shape: &'s Shape, ray: &Ray) -> Self {
+        let crossings = match shape {
+            Shape::Plane(plane) => return Self::of_half_space(shape, plane, ray),
+            Shape::Sphere(sphere) => sphere_crossings(sphere, ray),
+            Shape::Cuboid(shape) => exact::crossings(shape, ray),
+            Shape::Cylinder(shape) => exact::crossings(shape, ray),
+            Shape::Cone(shape) => exact::crossings(shape, ray),
+            Shape::Capsule(shape) => exact::crossings(shape, ray),
+            Shape::Ellipsoid(shape) => exact::crossings(shape, ray),
+            Shape::Torus(torus) => return Self::of_torus(shape, torus, ray),
+            _ => Crossings::NONE,
+        };
+        let mut boundaries = Self::new(false);
+        for crossing in crossings.iter() {
+            let enters = boundaries.count % 2 == 0;
+            boundaries.push(Boundary { t: crossing.t, shape, enters });
+        }
+        boundaries
+    }
+
+    /// Returns the boundaries of a torus, without the points at which a line only touches it.
+    fn of_torus(shape: &'s Shape, torus: &Torus, ray: &Ray) -> Self {
+        let crossings = exact::crossings(torus, ray);
+        let mut crossings = crossings.iter().map(|crossing| crossing.t).peekable();
+        let (mut boundaries, mut is_inside) = (Self::new(false), false);
+        while let Some(t) = crossings.next() {
+            let enters = crossings.peek().is_some_and(|next| torus.contains_at(ray, 0.5 * (t + next)));
+            if enters != is_inside {
+                is_inside = enters;
+                boundaries.push(Boundary { t, shape, enters });
+            }
+        }
+        boundaries
+    }
+
+    /// Returns the boundary of all that is behind a plane.
+    fn of_half_space(shape: &'s Shape, plane: &Plane, ray: &Ray) -> Self {
+        let [point, normal] = [plane.point(), plane.normal()].map(Vec3::as_dvec3);
+        let height = (ray.origin.as_dvec3() - point).dot(normal);
+        let change = ray.direction.as_dvec3().dot(normal);
+        if change == 0.0 {
+            return Self::new(height < 0.0);
+        }
+        let mut boundaries = Self::new(change > 0.0);
+        boundaries.push(Boundary { t: -height / change, shape, enters: change < 0.0 });
+        boundaries
+    }
+}
+
+/// Returns the crossings of a sphere, computed in f64.
+fn sphere_crossings(sphere: &Sphere, ray: &Ray) -> Crossings {
+    let from_center = ray.origin.as_dvec3() - sphere.center().as_dvec3();
+    Inside::ball(from_center, ray.direction.as_dvec3(), sphere.radius().into()).crossings()
+}
+
+impl Solid {
+    /// Returns a solid of these parts, which are closed shapes, half spaces (planes) and solids.
+    fn new(operation: Operation, parts: Vec<Shape>) -> Result<Self, Message> {
+        let count: usize = parts.iter().map(shape_count).sum();
+        if count > MAX_SHAPES {
+            return Err(format!("a solid may have up to {MAX_SHAPES} shapes; this one has {count}").into());
+        }
+        let Some(bounds) = operation.bounds(&parts) else {
+            return Err("a Solid must be bounded; a Plane can only cut other parts, in an intersection or after the \
+                first part of a difference"
+                .into());
+        };
+        if !bounds.min.cmplt(bounds.max).all() {
+            return Err("the parts have no volume in common; nothing is left of the intersection".into());
+        }
+        Ok(Self { operation, parts: parts.into(), bounds })
+    }
+
+    /// Returns where the line of a ray enters and leaves the solid.
+    fn boundaries(&self, ray: &Ray) -> Boundaries<'_> {
+        let (mut events, mut count) = ([(0.0, 0, None); MAX_BOUNDARIES], 0);
+        let mut inside = 0_u32;
+        for (number, part) in self.parts.iter().enumerate() {
+            let of_part = match part {
+                Shape::Solid(solid) => solid.boundaries(ray),
+                shape => Boundaries::of_shape(shape, ray),
+            };
+            inside |= u32::from(of_part.begins_inside) << number;
+            for boundary in of_part.iter().filter(|boundary| !boundary.t.is_nan()) {
+                events[count.min(MAX_BOUNDARIES - 1)] = (boundary.t, number, Some(boundary));
+                count = (count + 1).min(MAX_BOUNDARIES);
+            }
+        }
+        let events = &mut events[..count];
+        // A stable sort, so that boundaries at one t keep the order of the parts.
+        events.sort_by(|(a, ..), (b, ..)| a.partial_cmp(b).unwrap_or(Ordering::Equal));
+        let contains = |inside| self.operation.contains(inside, self.parts.len());
+        let mut boundaries = Boundaries::new(contains(inside));
+        // The t of a plane that is almost parallel to the line is no measure of the solid.
+        let is_bounded =
+            |boundary: &Option<Boundary<'_>>| boundary.is_some_and(|found| !matches!(found.shape, Shape::Plane(_)));
+        let bounded = events.iter().filter(|(.., boundary)| is_bounded(boundary));
+        let largest = bounded.map(|(t, ..)| t.abs()).filter(|t| t.is_finite()).fold(0.0, f64::max);
+        let is_one = |(a, ..): &Event<'_>, (b, ..): &Event<'_>| b - a <= TOLERANCE * largest;
+        let (mut start, mut was_inside) = (0, boundaries.begins_inside);
+        while start < events.len() {
+            let end = (start..events.len()).find(|&at| !is_one(&events[start], &events[at])).unwrap_or(events.len());
+            let mut decisive = None;
+            for (_, number, boundary) in &events[start..end.max(start + 1)] {
+                let before = contains(inside);
+                inside ^= 1 << number;
+                if contains(inside) != before {
+                    decisive = *boundary;
+                }
+            }
+            if contains(inside) != was_inside
+                && let Some(boundary) = decisive
+            {
+                was_inside = !was_inside;
+                boundaries.push(Boundary { enters: was_inside, ..boundary });
+            }
+            start = end.max(start + 1);
+        }
+        boundaries
+    }
+}
+
+/// A boundary of a part: its t, the number of the part, and the boundary.
+type Event<'s> = (f64, usize, Option<Boundary<'s>>);
+
+/// Returns the number of shapes that a shape is made of.
+fn shape_count(shape: &Shape) -> usize {
+    match shape {
+        Shape::Solid(solid) => solid.parts.iter().map(shape_count).sum(),
+        _ => 1,
+    }
+}
+
+/// Returns whether a shape can be a part of a solid.
+fn is_closed(shape: &Shape) -> bool {
+    match shape {
+        Shape::Cylinder(cylinder) => !cylinder.is_open(),
+        Shape::Cone(cone) => !cone.is_open(),
+        Shape::Plane(_)
+        | Shape::Sphere(_)
+        | Shape::Cuboid(_)
+        | Shape::Capsule(_)
+        | Shape::Ellipsoid(_)
+        | Shape::Torus(_)
+        | Shape::Solid(_) => true,
+        _ => false,
+    }
+}
+
+impl Surface for Solid {
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.bounds)
+    }
+
+    fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
+        let Interval { min, max } = self.bounds.crossed(probe);
+        if !(min <= max && within.min <= max && min <= within.max) {
+            return None;
+        }
+        let boundaries = self.boundaries(&probe.ray);
+        let finite = boundaries.iter().filter(|boundary| boundary.t.is_finite());
+        finite.map(|boundary| clamp_keeping_nan(min, max, boundary.t as f32)).find(|&t| within.contains(t))
+    }
+
+    /// Returns the point on the part that the boundary belongs to; its side is that of the solid.
+    fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
+        let off = |boundary: &Boundary<'_>| (boundary.t as f32 - t).abs();
+        let boundaries = self.boundaries(ray);
+        let nearest = boundaries.iter().min_by(|one, other| off(one).total_cmp(&off(other)));
+        let (shape, t, enters) =
+            nearest.map_or((&self.parts[0], t, true), |Boundary { t, shape, enters }| (shape, t as f32, enters));
+        let point = shape.primitive(0).at_crossing(ray, t);
+        SurfacePoint { side: if enters { Side::Front } else { Side::Back }, ..point }
+    }
+}
+
+impl Placeable for Solid {
+    fn placed(self, placement: &Placement) -> Option<Shape> {
+        let parts: Option<Vec<_>> = self.parts.iter().map(|part| part.clone().placed_anywhere(placement)).collect();
+        Some(Self::new(self.operation, parts?).ok()?.into())
+    }
+}
+
+impl Described for Solid {
+    const KIND: &'static str = "solid";
+
+    fn described(&self, color: &str) -> String {
+        let count: usize = self.parts.iter().map(shape_count).sum();
+        format!("a {color} solid of {count} shapes, {}", size_in_words(&self.bounds))
+    }
+
+    /// Returns the boundaries of the solid, without the equations of its parts.
+    fn equation(&self, ray: &Ray) -> Equation {
+        let boundaries = self.boundaries(ray);
+        let mut roots: Vec<_> = boundaries.iter().map(|boundary| boundary.t).collect();
+        // Two are shown, preferably in front of the eye.
+        let behind = roots.iter().filter(|&&root| root < 0.0).count();
+        roots.drain(..behind.min(roots.len().saturating_sub(2)));
+        roots.truncate(2);
+        let rule = match self.operation {
+            Operation::Union => "inside = inside any part",
+            Operation::Intersection => "inside = inside all parts",
+            Operation::Difference => "inside = in the first part alone",
+        };
+        let steps = vec![
+            EquationStep::Text("o + t d crosses each part"),
+            EquationStep::Text(rule),
+            EquationStep::Values("t = ", " or ", roots.clone()),
+        ];
+        Equation { steps, roots, without_root: "miss", is_outside: false }
+    }
+
+    fn encloses(&self, point: Vec3) -> bool {
+        let encloses = |part: &Shape| match part {
+            Shape::Plane(plane) => (point.as_dvec3() - plane.point().as_dvec3()).dot(plane.normal().as_dvec3()) < 0.0,
+            part => part.encloses(point),
+        };
+        let inside = (0..).zip(self.parts.iter()).map(|(number, part)| u32::from(encloses(part)) << number);
+        self.operation.contains(inside.sum(), self.parts.len())
+    }
+}
+
+/// A solid as written: `Solid(union: [...])`, `Solid(intersection: [...])` or
+/// `Solid(difference: [...])`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenSolid {
+    /// The operation and its parts; `None` after a fault.
+    parts: Option<(Operation, Spanned<Vec<WrittenPart>>)>,
+}
+
+/// A part of a solid as written.
+#[derive(Clone, Debug, PartialEq)]
+struct WrittenPart {
+    shape: Box<WrittenShape>,
+    placement: Option<Box<WrittenPlacement>>,
+    /// The range of the name of the shape in the text.
+    span: Span,
+}
+
+impl InSceneFile for Solid {
+    type Written = WrittenSolid;
+
+    const NAME: &'static str = "Solid";
+    const OWNER: &'static str = "a Solid";
+    const FORM: &'static str = "Solid(difference: [Box(...), Sphere(...)])";
+    const FIELDS: &'static [&'static str] =
+        &[Operation::ALL[0].field(), Operation::ALL[1].field(), Operation::ALL[2].field()];
+    const SUMMARY: &'static str = "A solid made of closed shapes; one of the three fields is given.";
+    const MEANINGS: &'static [&'static str] = &[
+        "shapes, of which it has all that is in any; none",
+        "shapes, of which it has what all have in common; none",
+        "shapes, of which it has the first one without the others; none",
+    ];
+
+    fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenSolid {
+        let given: Vec<_> = Operation::ALL
+            .into_iter()
+            .filter_map(|operation| Some((operation, fields.get(operation.field())?)))
+            .collect();
+        match *given {
+            [(operation, node)] => WrittenSolid { parts: read_parts(reader, node).map(|parts| (operation, parts)) },
+            [_, (_, second), ..] => {
+                reader.fault(second.head(), || {
+                    "a Solid has one of union, intersection and difference; make another Solid a part of it".to_owned()
+                });
+                WrittenSolid { parts: None }
+            }
+            [] => {
+                reader.fault(fields.head(), || {
+                    "a Solid needs union, intersection or difference: a list of shapes".to_owned()
+                });
+                WrittenSolid { parts: None }
+            }
+        }
+    }
+}
+
+fn read_parts<'n>(reader: &mut NodeReader<'_>, node: &'n SyntaxNode<'n>) -> Option<Spanned<Vec<WrittenPart>>> {
+    let items = reader.list(node, "a list of shapes [Box(...), Sphere(...)]")?;
+    let parts = reader.read_all(items, read_part);
+    // The fault of a part that could not be read has been reported.
+    (parts.len() == items.len()).then_some(Spanned { value: parts, span: node.span })
+}
+
+fn read_part(reader: &mut NodeReader<'_>, node: &SyntaxNode<'_>) -> Option<WrittenPart> {
+    const FORM: &str = "a shape, such as Sphere(center: ..., radius: ...)";
+    let name = reader.group_name(node, "a shape", FORM, WrittenShape::NAMES)?;
+    let (shape, fields) = WrittenShape::read(name, reader, node)?;
+    for of_whole in ["material", "finish", "opacity", "copies"] {
+        if let Some(value) = fields.get(of_whole) {
+            reader.fault(value.head(), || format!("a part of a Solid has no {of_whole}; give it to the Solid"));
+        }
+    }
+    let placement = WrittenPlacement::read(reader, &fields).map(Box::new);
+    Some(WrittenPart { shape: Box::new(shape), placement, span: node.head() })
+}
+
+impl WrittenPart {
+    fn check(&self, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
+        if matches!(*self.shape, WrittenShape::Mesh(_) | WrittenShape::Implicit(_)) {
+            let owner = self.shape.owner();
+            return validator
+                .fault(self.span, || format!("{owner} cannot be a part of a Solid; a Box or a Sphere can"));
+        }
+        let shape = self.shape.check(validator, meshes);
+        let placement = self.placement.as_ref().map(|placement| placement.check(validator));
+        let shape = shape?;
+        if !is_closed(&shape) {
+            let kind = shape.kind();
+            return validator.fault(self.span, || {
+                format!("this {kind} encloses nothing, so it cannot be a part of a Solid; use a closed shape")
+            });
+        }
+        match placement {
+            None => Some(shape),
+            Some(placements) => {
+                let placed = shape.placed(placements?.first()?);
+                validator.accept(self.span, placed.map_err(|fault| fault.message().to_owned().into()))
+            }
+        }
+    }
+}
+
+impl CheckedShape for Solid {
+    fn check(written: &WrittenSolid, validator: &mut Validator<'_>, meshes: &mut dyn Meshes) -> Option<Shape> {
+        let (operation, Spanned { value: parts, span }) = written.parts.as_ref()?;
+        let checked: Vec<_> = parts.iter().filter_map(|part| part.check(validator, meshes)).collect();
+        if checked.len() < parts.len() {
+            return None;
+        }
+        if checked.len() < 2 {
+            return validator.fault(*span, || "a Solid needs at least two parts".to_owned());
+        }
+        validator.accept(*span, Self::new(*operation, checked)).map(Shape::from)
+    }
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests;
