@@ -44,6 +44,7 @@ shipped! {
     "inside_sphere",
     "train",
     "temple",
+    "dice",
     "heart",
     "tanglecube",
     "barth",
@@ -53,6 +54,8 @@ shipped! {
     "three_lights",
     "glass",
     "lantern",
+    "studio",
+    "misty_columns",
     "teapots" ["teapot.obj"],
     "crowd" ["teapot.obj"],
 }
