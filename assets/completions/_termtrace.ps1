@@ -45,6 +45,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('--hint', '--hint', [CompletionResultType]::ParameterName, 'Show which keys to press, in the lowest row, until the first key press [default: true]')
             [CompletionResult]::new('--order', '--order', [CompletionResultType]::ParameterName, 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]')
             [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, as check does')
+            [CompletionResult]::new('--lecture', '--lecture', [CompletionResultType]::ParameterName, 'Draw with the lecture''s model of light only: diffuse surfaces, point sources, clear air')
             [CompletionResult]::new('--compressed-link', '--compressed-link', [CompletionResultType]::ParameterName, 'The link compresses, as ssh -C does: send cells row by row (--order raster)')
             [CompletionResult]::new('--quiet', '--quiet', [CompletionResultType]::ParameterName, 'Do not print the camera on exit')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'Ignore config.ron and keys.ron')
@@ -58,6 +59,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('frame', 'frame', [CompletionResultType]::ParameterValue, 'Print one frame, or compare it with a golden frame')
             [CompletionResult]::new('record', 'record', [CompletionResultType]::ParameterValue, 'Record a film along a camera path: asciicast, GIF, PNGs')
             [CompletionResult]::new('explain', 'explain', [CompletionResultType]::ParameterValue, 'Explain one pixel: its ray, what it hit, each light')
+            [CompletionResult]::new('reference', 'reference', [CompletionResultType]::ParameterValue, 'Print the reference of scene files, or of one name')
             [CompletionResult]::new('check', 'check', [CompletionResultType]::ParameterValue, 'Report every fault of a scene file')
             [CompletionResult]::new('describe', 'describe', [CompletionResultType]::ParameterValue, 'Describe a picture in words')
             [CompletionResult]::new('bench', 'bench', [CompletionResultType]::ParameterValue, 'Measure how fast a scene is traced')
@@ -148,6 +150,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, as check does')
+            [CompletionResult]::new('--lecture', '--lecture', [CompletionResultType]::ParameterName, 'Draw with the lecture''s model of light only: diffuse surfaces, point sources, clear air')
             [CompletionResult]::new('--bless', '--bless', [CompletionResultType]::ParameterName, 'With --check: write the golden frame instead of comparing')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
@@ -181,6 +184,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, as check does')
+            [CompletionResult]::new('--lecture', '--lecture', [CompletionResultType]::ParameterName, 'Draw with the lecture''s model of light only: diffuse surfaces, point sources, clear air')
             [CompletionResult]::new('--compressed-link', '--compressed-link', [CompletionResultType]::ParameterName, 'The link compresses, as ssh -C does: send cells row by row (--order raster)')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
@@ -203,7 +207,14 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, as check does')
+            [CompletionResult]::new('--lecture', '--lecture', [CompletionResultType]::ParameterName, 'Draw with the lecture''s model of light only: diffuse surfaces, point sources, clear air')
             [CompletionResult]::new('--json', '--json', [CompletionResultType]::ParameterName, 'Print JSON')
+            [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
+            break
+        }
+        'termtrace;reference' {
+            [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
+            [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
         }
@@ -220,6 +231,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, as check does')
+            [CompletionResult]::new('--lecture', '--lecture', [CompletionResultType]::ParameterName, 'Draw with the lecture''s model of light only: diffuse surfaces, point sources, clear air')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break
         }
@@ -238,6 +250,7 @@ Register-ArgumentCompleter -Native -CommandName 'termtrace' -ScriptBlock {
             [CompletionResult]::new('-h', '-h', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--help', '--help', [CompletionResultType]::ParameterName, 'Print help; -h prints a summary')
             [CompletionResult]::new('--strict', '--strict', [CompletionResultType]::ParameterName, 'Refuse a mesh whose materials or textures are missing, as check does')
+            [CompletionResult]::new('--lecture', '--lecture', [CompletionResultType]::ParameterName, 'Draw with the lecture''s model of light only: diffuse surfaces, point sources, clear air')
             [CompletionResult]::new('--json', '--json', [CompletionResultType]::ParameterName, 'Print JSON')
             [CompletionResult]::new('--no-config', '--no-config', [CompletionResultType]::ParameterName, 'no-config')
             break

@@ -42,6 +42,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand --hint 'Show which keys to press, in the lowest row, until the first key press [default: true]'
             cand --order 'Order in which changed cells are sent [default: color; live, raster until the link is found slow]'
             cand --strict 'Refuse a mesh whose materials or textures are missing, as check does'
+            cand --lecture 'Draw with the lecture''s model of light only: diffuse surfaces, point sources, clear air'
             cand --compressed-link 'The link compresses, as ssh -C does: send cells row by row (--order raster)'
             cand --quiet 'Do not print the camera on exit'
             cand --no-config 'Ignore config.ron and keys.ron'
@@ -55,6 +56,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand frame 'Print one frame, or compare it with a golden frame'
             cand record 'Record a film along a camera path: asciicast, GIF, PNGs'
             cand explain 'Explain one pixel: its ray, what it hit, each light'
+            cand reference 'Print the reference of scene files, or of one name'
             cand check 'Report every fault of a scene file'
             cand describe 'Describe a picture in words'
             cand bench 'Measure how fast a scene is traced'
@@ -141,6 +143,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
             cand --strict 'Refuse a mesh whose materials or textures are missing, as check does'
+            cand --lecture 'Draw with the lecture''s model of light only: diffuse surfaces, point sources, clear air'
             cand --bless 'With --check: write the golden frame instead of comparing'
             cand --no-config 'no-config'
         }
@@ -173,6 +176,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
             cand --strict 'Refuse a mesh whose materials or textures are missing, as check does'
+            cand --lecture 'Draw with the lecture''s model of light only: diffuse surfaces, point sources, clear air'
             cand --compressed-link 'The link compresses, as ssh -C does: send cells row by row (--order raster)'
             cand --no-config 'no-config'
         }
@@ -194,7 +198,13 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
             cand --strict 'Refuse a mesh whose materials or textures are missing, as check does'
+            cand --lecture 'Draw with the lecture''s model of light only: diffuse surfaces, point sources, clear air'
             cand --json 'Print JSON'
+            cand --no-config 'no-config'
+        }
+        &'termtrace;reference'= {
+            cand -h 'Print help; -h prints a summary'
+            cand --help 'Print help; -h prints a summary'
             cand --no-config 'no-config'
         }
         &'termtrace;check'= {
@@ -210,6 +220,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
             cand --strict 'Refuse a mesh whose materials or textures are missing, as check does'
+            cand --lecture 'Draw with the lecture''s model of light only: diffuse surfaces, point sources, clear air'
             cand --no-config 'no-config'
         }
         &'termtrace;describe'= {
@@ -227,6 +238,7 @@ set edit:completion:arg-completer[termtrace] = {|@words|
             cand -h 'Print help; -h prints a summary'
             cand --help 'Print help; -h prints a summary'
             cand --strict 'Refuse a mesh whose materials or textures are missing, as check does'
+            cand --lecture 'Draw with the lecture''s model of light only: diffuse surfaces, point sources, clear air'
             cand --json 'Print JSON'
             cand --no-config 'no-config'
         }
