@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each file in `assets/`, and the command that prints it.
-const ASSETS: [(&str, &str); 22] = [
+const ASSETS: [(&str, &str); 23] = [
     ("completions/termtrace.bash", "completions bash"),
     ("completions/termtrace.elv", "completions elvish"),
     ("completions/termtrace.fish", "completions fish"),
@@ -28,6 +28,7 @@ const ASSETS: [(&str, &str); 22] = [
     ("man/termtrace-man.1", "man man"),
     ("man/termtrace-new.1", "man new"),
     ("man/termtrace-record.1", "man record"),
+    ("man/termtrace-reference.1", "man reference"),
     ("man/termtrace-scenes.1", "man scenes"),
     ("man/termtrace-serve.1", "man serve"),
     ("man/termtrace-tour.1", "man tour"),

@@ -25,6 +25,7 @@ mod pipes;
 #[path = "../pty/mod.rs"]
 mod pty;
 mod record;
+mod reference;
 mod shells;
 mod shipped;
 mod sizes;
