@@ -51,9 +51,9 @@ fn the_lectures_model_leaves_out_all_else() {
     };
     let globe = "Globe(position: (2, 4, 3), radius: 0.5, intensity: 20)";
     let fields = "fog: (distance: 5), ";
-    folder.write("rich.ron", &scene(fields, globe, "finish: Shiny, opacity: 0.5"));
-    folder.write("field.ron", &scene(&format!("lecture: true, {fields}"), globe, "finish: Metal"));
-    folder.write("plain.ron", &scene("", "Point(position: (2, 4, 3), intensity: 20)", ""));
+    folder.write("rich.ron", scene(fields, globe, "finish: Shiny, opacity: 0.5"));
+    folder.write("field.ron", scene(&format!("lecture: true, {fields}"), globe, "finish: Metal"));
+    folder.write("plain.ron", scene("", "Point(position: (2, 4, 3), intensity: 20)", ""));
     let frame = |arguments: &str| folder.run(&format!("frame --format ansi {arguments}")).text();
     let plain = frame("plain.ron");
     assert_eq!(frame("rich.ron --lecture"), plain);
