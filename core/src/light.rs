@@ -77,7 +77,7 @@ pub trait LightSource: InSceneFile + Copy {
 
     /// Returns the vectors from points to a part of the light.
     ///
-    /// Each of the [`PARTS`] gives an equal share of [`irradiance_over_pi`](Self::irradiance_over_pi) at its vector.
+    /// Each of the 16 parts gives an equal share of [`irradiance_over_pi`](Self::irradiance_over_pi) at its vector.
     #[inline(always)]
     fn to_part<N: Number>(&self, point: Vector<N>, _part: &PartPosition<N>) -> Vector<N> {
         self.to_light(point)
