@@ -218,16 +218,8 @@ pub(crate) fn facet_normal(normal: Vec3, roughness: f32, part: &PartPosition<f32
     let tangent_squared = alpha * alpha * part.height / (1.0 - part.height);
     let cosine = 1.0 / (1.0 + tangent_squared).sqrt();
     let [a, b] = part.direction.map(|coordinate| coordinate * (cosine * tangent_squared.sqrt()));
-    let [u, v] = perpendicular(normal);
+    let [u, v] = Vector::<f32>::splat(normal).perpendicular_pair().map(Vec3::from);
     normal * cosine + u * a + v * b
-}
-
-/// Returns two unit vectors perpendicular to a unit vector and to each other (Frisvad, 2012).
-fn perpendicular(Vec3 { x, y, z }: Vec3) -> [Vec3; 2] {
-    // The y axis is the one without a jump: floors are more frequent than ceilings.
-    let fall = 1.0 / <f32 as Number>::max(1.0 + y, 1e-6);
-    let across = -(x * z) * fall;
-    [Vec3::new(1.0 - x * x * fall, -x, across), Vec3::new(across, -z, 1.0 - z * z * fall)]
 }
 
 /// Returns the cosine of the angle of incidence, from 0 to 1.
@@ -377,7 +369,7 @@ impl WrittenFinish {
 
     /// Returns the checked finish, or `None` after a fault has been reported to `validator`.
     pub(crate) fn check(self, validator: &mut Validator<'_>) -> Option<Finish> {
-        let number = |validator: &mut Validator<'_>, written: Option<WrittenNumber>, rule: Rule<f32>, default: f32| {
+        let number = |validator: &mut Validator<'_>, written: Option<WrittenNumber>, rule: Rule, default: f32| {
             written.map_or(Some(default), |written| validator.accept(written.span, rule(written.value)))
         };
         Some(match self {
@@ -404,7 +396,7 @@ impl WrittenFinish {
 }
 
 /// A rule that checks a number.
-type Rule<T> = fn(f64) -> Result<T, Message>;
+type Rule = fn(f64) -> Result<f32, Message>;
 
 #[cfg(all(test, unit_tests))]
 mod tests;

@@ -23,8 +23,8 @@ pub use spot::{SpotLight, WrittenSpotLight};
 pub use sun::{Sun, WrittenSun};
 
 /// The number of parts of a light with a size.
-// Shadow rays to 16 parts leave steps of at most 6 % of the light in a penumbra, about what a neighbouring pixel's edge
-// of a pattern differs by; further samples of a pixel make them finer.
+// Sixteen shadow rays leave steps of 6 % of the light in a penumbra: about the contrast from which on a pixel gets more
+// samples, which make the steps finer.
 pub(crate) const PARTS: u32 = 16;
 
 /// The position of a part on a light, by which each kind of light places its parts.
@@ -88,7 +88,7 @@ pub trait LightSource: InSceneFile + Copy {
     ///
     /// `distance` is the length of [`to_part`](Self::to_part).
     #[inline(always)]
-    fn unlit_way<N: Number>(&self, _distance: N) -> N {
+    fn blocking_share<N: Number>(&self, _distance: N) -> N {
         N::splat(1.0)
     }
 
@@ -204,11 +204,11 @@ macro_rules! lights {
             }
 
             /// Returns the part of the way on which an object blocks the light, by
-            /// [`LightSource::unlit_way`].
+            /// [`LightSource::blocking_share`].
             #[inline(always)]
-            pub(crate) fn unlit_way<N: Number>(&self, distance: N) -> N {
+            pub(crate) fn blocking_share<N: Number>(&self, distance: N) -> N {
                 match self {
-                    $(Self::$name(light) => light.unlit_way(distance),)*
+                    $(Self::$name(light) => light.blocking_share(distance),)*
                 }
             }
 

@@ -225,6 +225,15 @@ pub fn shadow_ray(light: &Light, point: &SurfacePoint) -> Ray {
     Ray { origin, direction: light.to_light(Vector::<f32>::splat(origin)).into() }
 }
 
+/// Returns the origin of a ray that goes on behind a surface.
+///
+/// `position`, `normal` and `clearance` are those of the surface point, and `met` is the point of the ray that met it.
+fn origin_behind(position: Vec3, normal: Vec3, clearance: f32, met: Vec3) -> Vec3 {
+    // The position may be that of a smooth surface, above the triangle; the new ray starts below the triangle.
+    let lift = (position - met).dot(normal).max(0.0);
+    position - normal * (clearance + lift)
+}
+
 /// Adds fog between the eye and what each ray hits to the light along the rays.
 pub fn add_fog(fog: &Fog, rays: &[EightRays], hits: &[EightHits], lights: &mut [EightLights]) {
     for ((rays, hits), lights) in rays.iter().zip(hits).zip(lights) {

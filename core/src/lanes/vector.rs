@@ -47,6 +47,19 @@ impl<N: Number> Vector<N> {
         Self { x: N::select(mask, yes.x, no.x), y: N::select(mask, yes.y, no.y), z: N::select(mask, yes.z, no.z) }
     }
 
+    /// Returns two unit vectors perpendicular to this unit vector and to each other.
+    ///
+    /// They change abruptly only at -y (Frisvad, Building an Orthonormal Basis from a 3D Unit Vector Without
+    /// Normalization, 2012).
+    #[inline(always)]
+    pub fn perpendicular_pair(self) -> [Self; 2] {
+        let Self { x, y, z } = self;
+        let one = N::splat(1.0);
+        let fall = one / (one + y).max(N::splat(1e-6));
+        let across = -(x * z) * fall;
+        [Self { x: one - x * x * fall, y: -x, z: across }, Self { x: across, y: -z, z: one - z * z * fall }]
+    }
+
     /// Returns the cross product.
     #[inline(always)]
     pub fn cross(self, other: Self) -> Self {

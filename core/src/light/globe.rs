@@ -63,28 +63,20 @@ impl LightSource for Globe {
         let middle = self.to_light(point);
         let distance_squared = middle.dot(middle);
         let distance = distance_squared.sqrt();
-        let Vector { x, y, z } = middle * (one / distance);
+        let towards = middle * (one / distance);
         // A solid angle is proportional to the height on the sphere (Archimedes), here the cosine.
         // 1 - cos a = sin^2 a / (1 + cos a), which keeps the size of a small ball that is far away.
         let (sine_squared, edge) = self.edge(distance_squared);
         let below_one = part.height * (sine_squared / (one + edge));
         let (cosine, sine) = (one - below_one, (below_one * (N::splat(2.0) - below_one)).sqrt());
-        // Two vectors perpendicular to the middle and each other (Frisvad, Building an Orthonormal Basis from a 3D Unit
-        // Vector Without Normalization, 2012). They turn abruptly only where the ball is straight below.
-        let fall = one / (one + y).max(N::splat(1e-6));
-        let across = -(x * z) * fall;
-        let [a, b] = part.direction.map(|coordinate| coordinate * sine);
-        let direction = Vector {
-            x: x * cosine + (one - x * x * fall) * a + across * b,
-            y: y * cosine - x * a - z * b,
-            z: z * cosine + across * a + (one - z * z * fall) * b,
-        };
+        let ([u, v], [a, b]) = (towards.perpendicular_pair(), part.direction.map(|coordinate| coordinate * sine));
+        let direction = towards * cosine + u * a + v * b;
         direction * distance
     }
 
     /// Returns the part of the way in front of the ball.
     #[inline(always)]
-    fn unlit_way<N: Number>(&self, distance: N) -> N {
+    fn blocking_share<N: Number>(&self, distance: N) -> N {
         // A little less, so that an object in the place of the ball does not block it by rounding. Just outside the
         // ball the way is not 0, because rays need a direction.
         ((N::splat(1.0) - N::splat(self.radius) / distance) * N::splat(0.9999)).max(N::splat(1e-3))

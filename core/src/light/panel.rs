@@ -80,7 +80,7 @@ impl LightSource for Panel {
 
     /// Returns a part just below 1, so that an object in the same place does not block the light.
     #[inline(always)]
-    fn unlit_way<N: Number>(&self, _: N) -> N {
+    fn blocking_share<N: Number>(&self, _: N) -> N {
         N::splat(0.9999)
     }
 

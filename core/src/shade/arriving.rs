@@ -133,7 +133,7 @@ impl SimdKernel for AimAtPart<'_> {
                 incident_light_of_part::<N>(light, &part, position, normal);
             let direction = |origin| {
                 let whole = light.to_part(origin, &part);
-                whole * light.unlit_way(whole.dot(whole).sqrt())
+                whole * light.blocking_share(whole.dot(whole).sqrt())
             };
             rays.push(eight_shadow_rays::<N>(points, reaches.bits() & points.hit_mask, direction));
             lights.push([r.store(), g.store(), b.store()]);

@@ -279,9 +279,7 @@ impl Surface {
     /// Returns the origin of a ray that leaves the surface on the side away from the ray that met
     /// it.
     fn origin_behind(&self, ray: &BouncedRay) -> Vec3 {
-        // The position may be that of a smooth surface, above the triangle; the new ray starts below the triangle.
-        let lift = (self.position - ray.ray.at(self.t)).dot(self.geometric_normal).max(0.0);
-        self.position - self.geometric_normal * (self.clearance + lift)
+        super::origin_behind(self.position, self.geometric_normal, self.clearance, ray.ray.at(self.t))
     }
 
     /// Adds the refracted ray; `part` is its part of the light.

@@ -95,11 +95,9 @@ impl TransparentShadows {
                 continue;
             }
             let (ray, normal) = (rays.ray(lane), points.geometric_normal.of_lane(lane));
-            // The position may be that of a smooth surface, above the triangle; the ray goes on below the triangle.
-            let position = points.position.of_lane(lane);
-            let lift = (position - ray.at(hits.t.0[lane])).dot(normal).max(0.0);
-            let origin = position - normal * (points.clearance.0[lane] + lift);
-            // The end of a ray to a light with a place stays where it is.
+            let (position, met) = (points.position.of_lane(lane), ray.at(hits.t.0[lane]));
+            let origin = super::origin_behind(position, normal, points.clearance.0[lane], met);
+            // The end of a ray to a light at a finite distance stays where it is.
             let direction = if max.is_finite() { ray.at(1.0) - origin } else { ray.direction };
             // The last surface may be so close to the light that the ray is behind it now.
             if direction.dot(ray.direction) > 0.0 {
