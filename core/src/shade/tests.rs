@@ -108,3 +108,29 @@ fn a_transparent_surface_adds_its_own_light() {
     let seen = |opacity| light_on_floor("", &sheet(opacity), 0.0, 1);
     assert!((seen(0.25) - 0.25 * seen(1.0)).abs() < 1e-6);
 }
+
+#[test]
+fn a_highlight_behind_a_transparent_sheet_is_weaker() {
+    let disk = "Disk(center: (0, 0.01, 0), normal: (0, 1, 0), radius: 0.1, material: Diffuse(0), finish: Shiny)";
+    let sheet = "Disk(center: (0, 1, 0), normal: (0, 1, 0), radius: 9, opacity: 0.25)";
+    let seen = |objects: &str| light_on_floor("Point(position: (0, 2, 0))", objects, 0.0, 1);
+    let share = seen(&format!("{disk}, {sheet}")) / seen(disk);
+    assert!((share - 0.75).abs() < 1e-6, "{share}");
+}
+
+/// Glass of index 1 neither mirrors nor refracts, so that its opacity changes nothing, and fog
+/// begins again behind it.
+#[test]
+fn rays_that_pass_transparent_glass_are_inside_it_and_outside_again() {
+    let ball = |opacity: f32| {
+        format!(
+            "Sphere(center: (0, 0.15, 0), radius: 0.05, material: Diffuse(1), finish: Glass(index: 1), \
+                opacity: {opacity})"
+        )
+    };
+    let seen = |opacity| {
+        let fields = "shadows: false, fog: (color: 0.5, distance: 0.2),";
+        seen_on_floor(fields, "Point(position: (0, 2, 0), intensity: 8)", &ball(opacity), 0.0, 1).g
+    };
+    assert!((seen(0.5) - seen(1.0)).abs() < 1e-5, "{} {}", seen(0.5), seen(1.0));
+}
