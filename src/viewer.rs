@@ -58,6 +58,8 @@ mod cell_commands;
 mod note;
 mod options;
 mod orders;
+#[cfg(feature = "serve")]
+mod others;
 mod outside;
 mod pacing;
 mod playback;
@@ -88,6 +90,8 @@ use metadata::Metadata;
 use note::Note;
 pub use options::Options;
 use orders::RenderOrdersPanel;
+#[cfg(feature = "serve")]
+pub(crate) use others::{LooksAt, OtherViewer, OtherViewers, label};
 use outside::OutsideView;
 use pacing::Pacing;
 use playback::Playback;
@@ -138,6 +142,15 @@ pub(crate) enum Request {
     ProposeView(Camera),
     /// Enter or leave the tour.
     Tour,
+    /// Begin or stop to lead the tour.
+    Lead,
+    /// Call [`Viewer::turn_viewer_list`] with the viewers of the server.
+    ListViewers,
+    /// Call [`Viewer::toggle_other_eyes`] with the viewers of the server.
+    MarkViewers,
+    /// Follow the viewer with this digit in the list.
+    #[cfg(feature = "serve")]
+    Follow(u8),
     /// Write the camera of the last [`Self::ProposeView`] into the scene's file.
     SaveView,
 }
@@ -180,6 +193,8 @@ pub(crate) struct Viewer {
     now: Duration,
     /// The time of the last key or movement of the mouse; 0 before the first.
     last_input_time: Duration,
+    /// The time of the last press of a key or mouse button, or turn of the wheel; 0 before.
+    last_press_time: Duration,
 }
 
 impl Viewer {
@@ -204,6 +219,7 @@ impl Viewer {
             captions: options.tour.is_some(),
             now: Duration::ZERO,
             last_input_time: Duration::ZERO,
+            last_press_time: Duration::ZERO,
             display,
             screen,
             options: Options { welcome: None, ..options.clone() },
@@ -607,15 +623,36 @@ impl Viewer {
         self.screen.frame()
     }
 
-    /// Records the time of a key or of a movement of the mouse.
-    fn record_input_time(&mut self, now: Duration) {
+    /// Records the time of a key or of a movement of the mouse, and whether it presses something.
+    fn record_input_time(&mut self, now: Duration, is_press: bool) {
         self.last_input_time = now;
+        if is_press {
+            self.last_press_time = now;
+        }
     }
 
     /// Returns the time of the last key or movement of the mouse; 0 before the first.
     #[cfg(feature = "serve")]
     pub(crate) fn last_input_time(&self) -> Duration {
         self.last_input_time
+    }
+
+    /// Returns the time of the last press of a key or mouse button, or turn of the wheel.
+    ///
+    /// 0 before the first.
+    #[cfg(feature = "serve")]
+    pub(crate) fn last_press_time(&self) -> Duration {
+        self.last_press_time
+    }
+
+    /// Returns the scene, the camera and the map that the picture shows; `None` without a scene.
+    #[cfg(feature = "serve")]
+    pub(crate) fn guide_view(&self) -> Option<(Scene, Camera, crate::maps::Map)> {
+        // The last frame may still show the scene before.
+        let frame = self.screen.frame().filter(|frame| frame.shot.scene == self.scenes.count());
+        let scene = frame.map(|frame| frame.scene.clone()).or_else(|| self.scene_at_current_time())?;
+        let camera = frame.map(|frame| frame.shot.camera).or_else(|| self.first_camera())?;
+        Some((scene, camera, self.layout.maps().next().unwrap_or_default()))
     }
 
     /// Frees the memory that is only needed while frames are drawn.

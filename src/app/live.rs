@@ -248,8 +248,11 @@ impl Live {
                 }
                 Request::CancelLarge => self.large_picture.iter().for_each(LargePicture::cancel),
                 Request::Record => self.toggle_recording(),
-                // Only a keymap of the user's binds a key to it.
-                Request::Tour => self.viewer.show_note("only a server gives a tour"),
+                // Only a keymap of the user's binds keys to these.
+                Request::Tour | Request::Lead => self.viewer.show_note("only a server gives a tour"),
+                Request::ListViewers | Request::MarkViewers => self.viewer.show_note("only a server has other viewers"),
+                #[cfg(feature = "serve")]
+                Request::Follow(_) => {}
                 Request::ProposeView(camera) => self.propose(camera),
                 Request::SaveView => {
                     if let Some(proposal) = self.proposed.take() {

@@ -47,6 +47,18 @@ pub enum Command {
     ///
     /// No key is bound to it by default.
     Tour,
+    /// Begins or stops to lead the tour of a server.
+    ///
+    /// No key is bound to it by default.
+    Lead,
+    /// Opens the list of a server's viewers, turns its page, or closes it.
+    ///
+    /// No key is bound to it by default.
+    ListViewers,
+    /// Shows or hides the number of a server's viewers, and marks at their cameras.
+    ///
+    /// No key is bound to it by default.
+    MarkViewers,
     /// Moves the camera to view 1 to 9: one saved by the user, otherwise one of the scene file.
     View(u8),
     /// Asks for a number from 1 to 9 and saves the camera as that view.
@@ -244,6 +256,9 @@ commands! {
     [Command::Turntable] "Turntable", "turntable on or off";
     [Command::Pause] "Pause", "pause a moving scene";
     [Command::Tour] "Tour", "enter or leave the tour";
+    [Command::Lead] "Lead", "lead the tour or stop";
+    [Command::ListViewers] "ListViewers", "list of viewers";
+    [Command::MarkViewers] "MarkViewers", "mark other viewers";
     [Command::View(1)] "View1", A_VIEW;
     [Command::View(2)] "View2", A_VIEW;
     [Command::View(3)] "View3", A_VIEW;

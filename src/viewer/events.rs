@@ -14,7 +14,7 @@ use crate::control::Command;
 use crate::input::{Input, Reply};
 use crate::maps::Map;
 use crate::memory::OutOfMemory;
-use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers};
+use crossterm::event::{Event, KeyEvent, KeyEventKind, KeyModifiers, MouseEventKind};
 use std::time::Duration;
 
 /// Flags of the kitty keyboard protocol that a terminal must confirm before its keys are read as
@@ -22,6 +22,16 @@ use std::time::Duration;
 ///
 /// Disambiguation (1), releases (2) and every key as an escape sequence (8).
 const KEYBOARD: u16 = 1 | 2 | 8;
+
+/// Returns whether an input presses a key or a mouse button, or turns the wheel.
+// The release of a key that has entered a tour must not leave the tour.
+fn is_press(input: &Input) -> bool {
+    match input {
+        Input::Event(Event::Key(key)) => key.kind == KeyEventKind::Press,
+        Input::Event(Event::Mouse(mouse)) => !matches!(mouse.kind, MouseEventKind::Up(_) | MouseEventKind::Moved),
+        _ => false,
+    }
+}
 
 impl Viewer {
     /// Handles bytes that have arrived from the terminal; empty `bytes` report only that time has
@@ -63,7 +73,7 @@ impl Viewer {
         self.set_now(now);
         for (at, input) in inputs.iter().enumerate() {
             if matches!(input, Input::Event(Event::Key(_) | Event::Mouse(_))) {
-                self.record_input_time(now);
+                self.record_input_time(now, is_press(input));
             }
             match input {
                 input if mouse_actions::is_superseded(input, inputs.get(at + 1)) => {}
@@ -168,6 +178,11 @@ impl Viewer {
             Command::Turntable => self.toggle_turntable(),
             Command::Pause => self.toggle_playback(),
             Command::Tour => self.requests.push_back(Request::Tour),
+            Command::Lead => self.requests.push_back(Request::Lead),
+            Command::ListViewers => self.requests.push_back(Request::ListViewers),
+            Command::MarkViewers => self.requests.push_back(Request::MarkViewers),
+            #[cfg(feature = "serve")]
+            Command::View(number) if self.follow_listed(number) => {}
             Command::View(number) => self.go_to_view(number),
             Command::SaveView => self.screen.open(Dialog::Save),
             Command::Reset => self.reset_eye(),
@@ -182,6 +197,8 @@ impl Viewer {
             Command::KeepView => self.propose_view(),
             Command::Status => self.toggle_status(),
             Command::Help => self.open_help(),
+            #[cfg(feature = "serve")]
+            Command::Close if self.close_viewer_list() => {}
             Command::Close => self.close_topmost(),
             Command::Light => self.take_light(),
             Command::MoveLight(toward) => self.step_light(toward, more),

@@ -49,8 +49,8 @@ impl Layer for LightMarker {
     }
 }
 
-/// The picture that the marker is on: of two maps side by side the left one.
-struct PictureOnScreen {
+/// The picture that a marker is on: of two maps side by side the left one.
+pub(super) struct PictureOnScreen {
     aspect_ratio: f32,
     /// The size of the picture in cells.
     cells: Vec2,
@@ -58,18 +58,18 @@ struct PictureOnScreen {
 }
 
 impl PictureOnScreen {
-    fn of(frame: &Frame, screen: Rect) -> Self {
+    pub(super) fn of(frame: &Frame, screen: Rect) -> Self {
         let (part, _) = frame.part_at([0, 0]);
         let columns = f32::from(screen.width) * part.width() as f32 / frame.resolution().width() as f32;
         Self { aspect_ratio: part.aspect_ratio(), cells: Vec2::new(columns, screen.height.into()), screen }
     }
 
-    fn contains(&self, cell: Vec2) -> bool {
+    pub(super) fn contains(&self, cell: Vec2) -> bool {
         cell.cmpge(Vec2::ZERO).all() && cell.cmplt(self.cells).all()
     }
 
     /// Returns the column and row of a point, or `None` if it is behind the eye.
-    fn cell_of(&self, camera: &Camera, point: Vec3) -> Option<Vec2> {
+    pub(super) fn cell_of(&self, camera: &Camera, point: Vec3) -> Option<Vec2> {
         Some(camera.project(point, self.aspect_ratio)? * self.cells)
     }
 
@@ -116,7 +116,7 @@ impl PictureOnScreen {
 
 /// Returns the area of a mark of this width centred at a column and row, moved into `screen` if it
 /// would be outside.
-fn centred_area(screen: Rect, cell: Vec2, width: u16) -> Rect {
+pub(super) fn centred_area(screen: Rect, cell: Vec2, width: u16) -> Rect {
     let within = |at: f32, size: u16, of: u16| at.clamp(0.0, f32::from(of.saturating_sub(size))) as u16;
     let x = within(cell.x.floor() - f32::from(width / 2), width, screen.width);
     Rect { x, y: within(cell.y, 1, screen.height), width, height: 1 }.intersection(screen)

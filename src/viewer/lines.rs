@@ -20,7 +20,7 @@ const MAX_DOTS: f32 = 4000.0;
 
 /// Share of the way from the eye to a point within which a surface hides the point.
 // The interval ends before 1, because a point that lies on a surface must not be hidden by that surface.
-const HIDING_INTERVAL: Interval = Interval { min: 0.0, max: 0.99 };
+pub(super) const HIDING_INTERVAL: Interval = Interval { min: 0.0, max: 0.99 };
 
 /// Lines and letters to be drawn over a picture on the screen, as the picture's camera sees them.
 pub(super) struct Plot<'f> {
@@ -54,6 +54,12 @@ impl<'f> Plot<'f> {
         let [(_, left), (_, right)] = *frame.shot.layout.map_sizes(frame.resolution()) else { return None };
         let plot = Self::new(canvas, camera, right, left.width() + 1);
         Some(Self { scene: Some(&frame.scene), ..plot })
+    }
+
+    /// Sets the scene whose surfaces hide lines.
+    #[cfg(feature = "serve")]
+    pub(super) fn hidden_by(self, scene: &'f Scene) -> Self {
+        Self { scene: Some(scene), ..self }
     }
 
     /// Returns the position of a point in the picture, in cells, or `None` if it is not in front of

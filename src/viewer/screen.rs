@@ -186,6 +186,16 @@ impl Screen {
         self.content.layers.get_mut()
     }
 
+    /// Calls `change` with the layer of a type, if open, without counting it as a change.
+    ///
+    /// The next frame that is drawn shows the change.
+    #[cfg(feature = "serve")]
+    pub(super) fn change_quietly<L: Layer>(&mut self, change: impl FnOnce(&mut L)) {
+        if let Some(layer) = self.content.quietly().layers.get_mut() {
+            change(layer);
+        }
+    }
+
     /// Builds the pictures of image order and object order up to `now`.
     ///
     /// Returns the time of the next step, if there is one.

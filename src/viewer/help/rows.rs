@@ -48,7 +48,10 @@ impl Group {
             | C::Reset
             | C::ViewBack
             | C::ViewForward
-            | C::Tour => Self::Views,
+            | C::Tour
+            | C::Lead
+            | C::ListViewers
+            | C::MarkViewers => Self::Views,
             C::NextMap
             | C::LastMap
             | C::Compare
