@@ -77,7 +77,7 @@
 //! | `scrolling-regions` | the same beside ratatui's feature of this name; includes `backend` | 34 |
 //! | `serde` | cameras, colours, sizes, maps and samplings in the formats of serde, checked when they are read | 12 |
 //! | `live` | the live view, on Linux and macOS; includes all of the above but `gif` and the last four | 108 |
-//! | `serve` | the server of the live view over SSH, for the program; includes `live`; needs Rust 1.89 | 215 |
+//! | `serve` | the server of the live view over SSH, for the program; includes `live`; needs Rust 1.89 | 216 |
 //! | `cli` | the program `termtrace`, by default | 121 |
 //!
 //! A program that uses only the library turns the default features off:

@@ -5,15 +5,17 @@
 //! them, from its input to its bytes, and the `run_queue` shares their time fairly. Between a connection and its
 //! session are the `session_buffers`, with at most one frame. `limits` counts connections and places for viewers; `ssh`
 //! and `client_command` define what a client may ask for; `visit` leads a client through the queue to its session.
-//! Viewers who follow the `tour` get the frames of an `audience` instead of their session's.
+//! Viewers who follow the `tour` or another viewer get the frames of an `audience` instead of their session's; the
+//! `roster` knows who sees what.
 //!
-//! The modules `run_queue`, `viewer_session`, `limits`, `total_rate`, `tour`, `network`, `log_line`, `client_command`
-//! and `client_terminal` are pure: they do no I/O, and the time is a parameter.
+//! The modules `run_queue`, `viewer_session`, `leave_reason`, `limits`, `total_rate`, `tour`, `guide`, `roster`,
+//! `network`, `log_line`, `client_command` and `client_terminal` are pure: they do no I/O, and the time is a parameter.
 
 use crate::camera_path::CameraPath;
 use crate::scene::Scene;
 use crate::terminal::{Signals, without_signals};
 use limits::{Admission, Refusal, anonymized};
+use lock::locked;
 use log_line::LogLine;
 pub use network::Network;
 use proxy_header::ReadHeader;
@@ -21,7 +23,7 @@ use russh::keys::{PrivateKey, PublicKey};
 use russh::server::{Config, run_stream};
 use russh::{MethodKind, MethodSet, Preferred, SshId, mac};
 use rustix::event::{PollFd, PollFlags, poll};
-use session_buffers::{SessionBuffers, locked};
+use session_buffers::SessionBuffers;
 use shared_state::{Setup, SharedState};
 use socket::Socket;
 use ssh::Client;
@@ -41,13 +43,17 @@ use worker_pool::WorkerPool;
 mod audience;
 mod client_command;
 mod client_terminal;
+mod guide;
 mod host_key;
+mod leave_reason;
 mod limits;
+mod lock;
 mod log_line;
 mod metrics;
 mod network;
 mod pictures;
 mod proxy_header;
+mod roster;
 mod run_queue;
 mod scrape;
 mod session_buffers;
@@ -108,6 +114,10 @@ pub struct Settings {
     pub threads: Option<usize>,
     /// The public keys of the users who may log in; `None` if every user may.
     pub authorized_keys: Option<Vec<PublicKey>>,
+    /// The public keys of the users who may lead the tour.
+    pub leaders: Option<Vec<PublicKey>>,
+    /// Whether viewers see the login names of one another.
+    pub show_names: bool,
     /// The text that clients print before the login.
     pub banner: Option<String>,
     /// The URL that is shown in the welcome line and printed when a viewer leaves.
@@ -142,6 +152,8 @@ impl Settings {
             max_frames: 30.0,
             threads: None,
             authorized_keys: None,
+            leaders: None,
+            show_names: false,
             banner: None,
             link: None,
             metrics: None,
@@ -212,19 +224,34 @@ impl Server {
         log: Log,
         on_end: impl FnOnce() + Send + 'static,
     ) -> io::Result<Self> {
+        Self::start_on(None, scenes, settings, log, on_end)
+    }
+
+    /// Starts a server as [`start`](Self::start) does, on a socket that listens already, if given.
+    ///
+    /// `settings.listen` then has no effect.
+    ///
+    /// # Errors
+    /// As for [`start`](Self::start).
+    pub fn start_on(
+        socket: Option<TcpListener>,
+        scenes: Vec<HostedScene>,
+        settings: Settings,
+        log: Log,
+        on_end: impl FnOnce() + Send + 'static,
+    ) -> io::Result<Self> {
         if scenes.is_empty() {
             return Err(io::Error::other(NO_SCENE));
         }
         let named = |what: String| move |error: io::Error| io::Error::new(error.kind(), format!("{what}: {error}"));
         let key = host_key::load_or_make(&settings.host_key).map_err(named(settings.host_key.display().to_string()))?;
         // The address is bound here and not by the thread of the sockets, so that `start` reports an address in use.
-        let bind = |address: SocketAddr| {
-            let listener = TcpListener::bind(address).map_err(named(address.to_string()))?;
-            // tokio's `TcpListener::from_std` needs a non-blocking socket.
-            listener.set_nonblocking(true).and_then(|()| Ok((listener.local_addr()?, listener)))
-        };
-        let (address, listener) = bind(settings.listen)?;
-        let (metrics, counts) = settings.metrics.map(bind).transpose()?.unzip();
+        let bind = |address: SocketAddr| TcpListener::bind(address).map_err(named(address.to_string()));
+        // tokio's `TcpListener::from_std` needs a non-blocking socket.
+        let prepared =
+            |socket: TcpListener| socket.set_nonblocking(true).and_then(|()| Ok((socket.local_addr()?, socket)));
+        let (address, listener) = prepared(socket.map_or_else(|| bind(settings.listen), Ok)?)?;
+        let (metrics, counts) = settings.metrics.map(bind).transpose()?.map(prepared).transpose()?.unzip();
         let cores = || thread::available_parallelism().map_or(1, usize::from);
         let (pool, threads) = WorkerPool::start(settings.threads.unwrap_or_else(cores))?;
         let fingerprint = host_key::fingerprint(&key);
@@ -327,11 +354,13 @@ pub type Reader<'a> = dyn FnMut() -> Result<(Vec<HostedScene>, Settings), String
 /// Runs a server until a signal asks it to end and it has drained; a second signal ends it at once.
 ///
 /// SIGHUP replaces the scenes and settings by those that `read` returns. But if the server's terminal has been closed,
-/// which sends SIGHUP too, the server drains. `started` is told the address and the host key's fingerprint.
+/// which sends SIGHUP too, the server drains. `started` is told the address and the host key's fingerprint. `socket` is
+/// one that listens already, if there is one.
 ///
 /// # Errors
 /// As for [`Server::start`].
 pub fn run_until_drained(
+    socket: Option<TcpListener>,
     (scenes, settings): (Vec<HostedScene>, Settings),
     read: &mut Reader<'_>,
     signals: &mut Signals,
@@ -339,7 +368,8 @@ pub fn run_until_drained(
     started: impl FnOnce(SocketAddr, &str),
 ) -> io::Result<Option<i32>> {
     let mut waker = signals.waker()?;
-    let server = without_signals(|| Server::start(scenes, settings, Arc::clone(log), move || waker.wake()))?;
+    let start = || Server::start_on(socket, scenes, settings, Arc::clone(log), move || waker.wake());
+    let server = without_signals(start)?;
     started(server.address(), server.fingerprint());
     let mut draining = false;
     loop {
@@ -388,8 +418,9 @@ fn ssh_config(settings: &Settings, key: PrivateKey) -> Config {
         maximum_packet_size: 4 * 1024,
         channel_buffer_size: 4,
         event_buffer_size: 2,
-        // The default of OpenSSH (`MaxAuthTries`).
-        max_auth_attempts: 6,
+        // The default of OpenSSH (`MaxAuthTries`) is 6. A visitor by the name of a leader may have more keys, all of
+        // them of no use here.
+        max_auth_attempts: if settings.leaders.is_some() { 16 } else { 6 },
         // Not needed here: `ViewerSession` limits the time without a key, and `Socket` the time in which a client takes
         // no bytes.
         inactivity_timeout: None,
@@ -480,6 +511,7 @@ async fn connect(state: Arc<SharedState>, socket: Socket, (entry, from): (Admiss
         closer: closer.clone(),
         entry: Some(entry),
         from,
+        user: visit::User::default(),
         terminal: client_terminal::ClientTerminal::default(),
         channel: None,
         asked: false,

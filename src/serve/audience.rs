@@ -1,4 +1,4 @@
-//! The followers of the tour whose terminals get the same bytes.
+//! The followers of a guide whose terminals get the same bytes.
 //!
 //! Each picture is traced and encoded once for all of them.
 //!
@@ -6,12 +6,14 @@
 //! most once in a tick, and only if a follower needs it. So a slow follower delays no other one, and holds at most one
 //! frame.
 
-use super::tour::{AudienceClass, Tour};
+use super::guide::GuideView;
+use super::tour::{AudienceClass, AudienceLimits, Tour};
 use crate::cell::{self, Painter};
 use crate::encode::Encoder;
 use crate::grid::Grid;
-use crate::maps::Map;
 use crate::overlay;
+use crate::render::Sampling;
+use bytes::Bytes;
 use ratatui_core::buffer::Buffer;
 use ratatui_core::layout::Rect;
 use ratatui_core::style::Style;
@@ -21,21 +23,21 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use tokio::sync::watch;
 
-/// Rays per pixel of a picture.
+/// Rays per pixel of a picture in motion. At rest it has as many as any picture at rest.
 const SAMPLES: NonZeroU32 = NonZeroU32::new(4).expect("4 is not 0");
 
 /// The pixels above which a picture has one ray per pixel.
 const MAX_SAMPLED_PIXELS: u64 = 30_000;
 
-/// One frame of the tour, for all terminals of a class.
+/// One frame of a guide's view, for all terminals of a class.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TourFrame {
     /// The frame's number: 0 before the first one.
     number: u64,
     /// The bytes that change the frame before into this one.
-    delta: Arc<[u8]>,
+    delta: Bytes,
     /// The bytes that draw this frame on any screen, if a follower needs them.
-    key: Option<Arc<[u8]>>,
+    key: Option<Bytes>,
 }
 
 /// An audience: the frames that it gets, and its need of a key frame.
@@ -77,7 +79,7 @@ impl Follower {
     /// Waits for the next frame that can be sent, and returns its bytes.
     ///
     /// Does not lose a frame if the future is dropped.
-    pub(super) async fn next_bytes(&mut self) -> Arc<[u8]> {
+    pub(super) async fn next_bytes(&mut self) -> Bytes {
         loop {
             if self.frames.changed().await.is_err() {
                 // The audience lasts as long as it has a follower.
@@ -104,6 +106,18 @@ pub(super) struct Drawing {
     encoder: Encoder,
     /// The tick of the last frame.
     tick: Option<u64>,
+    /// The view and the title of the last frame.
+    shown: Option<(GuideView, String)>,
+    /// Whether the last frame has all samples of a picture at rest.
+    is_refined: bool,
+}
+
+/// The line in the lowest row of an audience's frames.
+pub(super) struct GuideLine {
+    /// The words for the guide. A frame is drawn when they change.
+    pub(super) title: String,
+    /// The number of viewers. No frame is drawn because it changes.
+    pub(super) watching: usize,
 }
 
 impl Drawing {
@@ -115,25 +129,48 @@ impl Drawing {
             .with_colors(mode.colors != cell::Colors::None)
             .with_synchronized_output(capabilities.synchronized_output);
         let painter = Painter::new(mode).with_light_background(capabilities.light_background);
-        Self { painter, encoder, tick: None }
+        Self { painter, encoder, tick: None, shown: None, is_refined: false }
     }
 
-    /// Draws the frame of the tick at `now`, and returns the time of the next frame.
+    /// Draws the frame of the tick at `now`.
     ///
-    /// Draws nothing if that tick's frame has been drawn. `line` is the text in the lowest row.
-    pub(super) fn draw(&mut self, audience: &Audience, tour: &Tour, line: &str, now: Duration) -> Duration {
-        let tick = Tour::tick_at(now);
+    /// Returns the time of the next frame, and whether a frame was drawn.
+    ///
+    /// Draws nothing if that tick's frame has been drawn, or if it shows the same as the last one and no follower needs
+    /// it.
+    pub(super) fn draw(
+        &mut self,
+        audience: &Audience,
+        (view, line): (GuideView, GuideLine),
+        limits: AudienceLimits,
+        now: Duration,
+    ) -> (Duration, bool) {
+        let (tick, skipped) = (Tour::tick_at(now), (limits.next_frame_at(now, 0), false));
         if self.tick.replace(tick) == Some(tick) {
-            return tour.next_frame_at(now, 0);
+            return skipped;
         }
-        let AudienceClass { size, capabilities } = audience.class;
-        let Ok(resolution) = cell::resolution(capabilities.cell_mode, size, capabilities.cell_aspect) else {
-            return tour.next_frame_at(now, 0);
+        let is_same_picture = |(shown, _): &(GuideView, String)| {
+            shown.scene.is_copy_of(&view.scene) && shown.camera == view.camera && shown.map == view.map
         };
-        let samples = if resolution.pixel_count() as u64 <= MAX_SAMPLED_PIXELS { SAMPLES } else { NonZeroU32::MIN };
-        let (scene, camera) = (tour.scene(tick), tour.camera(tick));
-        let mut grid = self.painter.trace(Map::Shaded, &scene, &camera, resolution, samples);
-        write_line(&mut grid, line);
+        let rests = self.shown.as_ref().is_some_and(is_same_picture);
+        let is_same = rests && self.shown.as_ref().is_some_and(|(_, title)| *title == line.title);
+        if is_same && self.is_refined && !audience.needs_key.load(Ordering::Relaxed) {
+            return skipped;
+        }
+        let AudienceClass { size, capabilities, .. } = audience.class;
+        let Ok(resolution) = cell::resolution(capabilities.cell_mode, size, capabilities.cell_aspect) else {
+            return skipped;
+        };
+        let is_smooth = view.map.refines() && resolution.pixel_count() as u64 <= MAX_SAMPLED_PIXELS;
+        let sampling = match (is_smooth, rests) {
+            (false, _) => Sampling::Each(NonZeroU32::MIN),
+            (true, false) => Sampling::Each(SAMPLES),
+            (true, true) => Sampling::BEST,
+        };
+        self.is_refined = rests || !is_smooth;
+        let mut grid = self.painter.trace(view.map, &view.scene, &view.camera, resolution, sampling);
+        write_line(&mut grid, &format!(" {}, {} watching: any key leaves it ", line.title, line.watching));
+        self.shown = Some((view, line.title));
         let mut delta = Vec::new();
         self.encoder.encode(&grid, &mut delta);
         let key = audience.needs_key.swap(false, Ordering::Relaxed).then(|| {
@@ -148,10 +185,10 @@ impl Drawing {
         });
         let length = delta.len();
         audience.frames.send_modify(|frame| {
-            *frame = TourFrame { number: frame.number + 1, delta: delta.into(), key: key.map(Arc::from) };
+            *frame = TourFrame { number: frame.number + 1, delta: delta.into(), key: key.map(Bytes::from) };
         });
         // Key frames do not count, so that followers who join or fall behind do not slow the others.
-        tour.next_frame_at(now, length)
+        (limits.next_frame_at(now, length), true)
     }
 }
 

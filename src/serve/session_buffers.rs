@@ -4,10 +4,12 @@
 
 use super::HostedScene;
 use super::audience::Follower;
+use super::leave_reason::LeaveReason;
+use super::lock::locked;
 use super::run_queue::SessionId;
-use super::viewer_session::{LeaveReason, PendingInput};
+use super::viewer_session::PendingInput;
 use crate::grid::Window;
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::time::Duration;
 use tokio::sync::Notify;
 
@@ -73,13 +75,6 @@ pub(super) struct Outgoing {
     pub(super) source: Option<ScreenSource>,
     /// The reason why the session has ended, if these are the last bytes.
     pub(super) ended: Option<LeaveReason>,
-}
-
-/// Locks a mutex, even if it is poisoned by a panic of another thread.
-// Poisoning is ignored because a panic leaves no invalid value behind: each field of the locked values is valid by
-// itself.
-pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl SessionBuffers {

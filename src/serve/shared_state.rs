@@ -2,10 +2,10 @@
 
 use super::client_terminal::ClientTerminal;
 use super::limits::{ConnectionLimiter, Places, Refusal, anonymized};
+use super::lock::locked;
 use super::log_line::LogLine;
-use super::session_buffers::locked;
 use super::total_rate::TotalRate;
-use super::tour::Tour;
+use super::tour::{AudienceLimits, Tour};
 use super::worker_pool::WorkerPool;
 use super::{HostedScene, Log, Settings};
 use crate::camera_path::PathError;
@@ -28,8 +28,11 @@ use tokio::sync::watch;
 const LEFT_OUT: [Command; 6] =
     [Command::Export, Command::ExportLarge, Command::Record, Command::KeepView, Command::TurnMesh, Command::Suspend];
 
-/// The key that enters or leaves the tour.
+/// The keys that only a server has: for the tour, its lead, and the list and the marks of viewers.
 const TOUR_KEY: Key = Key::letter('T');
+const LEAD_KEY: Key = Key::letter('G');
+const LIST_KEY: Key = Key::letter('u');
+const MARKS_KEY: Key = Key::letter('U');
 
 /// The largest number of bytes in one SSH message to a client.
 // The buffer of a connection never shrinks: it keeps the size of the largest message.
@@ -45,6 +48,8 @@ pub(super) struct Setup {
     pub(super) scenes: Arc<[HostedScene]>,
     pub(super) tour: Option<Arc<Tour>>,
     keymap: Keymap,
+    /// The keymap of those who may lead the tour.
+    leaders_keymap: Keymap,
     /// The configuration of SSH that follows from the settings.
     pub(super) ssh: Arc<Config>,
     /// One frame of each scene as text, made when it is first asked for.
@@ -59,15 +64,18 @@ impl Setup {
     /// If a camera of the tour is invalid.
     pub(super) fn new(settings: Settings, scenes: Vec<HostedScene>, ssh: Config) -> Result<Self, PathError> {
         let text_frames = scenes.iter().map(|_| OnceLock::new()).collect();
-        let tour =
-            settings.tour.as_ref().zip(scenes.first()).map(|(path, scene)| Tour::new(path, &scene.scene, &settings));
+        let tour = settings.tour.as_ref().zip(scenes.first()).map(|(path, scene)| Tour::new(path, scene));
         let tour = tour.transpose()?.map(Arc::new);
         let mut keymap = Keymap::default();
         keymap.remove(&LEFT_OUT);
-        if tour.is_some() {
+        keymap.bind(KeyMode::Always, LIST_KEY, Some(Command::ListViewers));
+        keymap.bind(KeyMode::Always, MARKS_KEY, Some(Command::MarkViewers));
+        if tour.is_some() || settings.leaders.is_some() {
             keymap.bind(KeyMode::Always, TOUR_KEY, Some(Command::Tour));
         }
-        Ok(Self { settings, scenes: scenes.into(), tour, keymap, ssh: Arc::new(ssh), text_frames })
+        let mut leaders_keymap = keymap.clone();
+        leaders_keymap.bind(KeyMode::Always, LEAD_KEY, Some(Command::Lead));
+        Ok(Self { settings, scenes: scenes.into(), tour, keymap, leaders_keymap, ssh: Arc::new(ssh), text_frames })
     }
 
     /// Returns the largest number of connections.
@@ -111,7 +119,7 @@ pub(super) struct SharedState {
 impl SharedState {
     pub(super) fn new(setup: Setup, pool: Arc<WorkerPool>, log: Log) -> Self {
         let settings = &setup.settings;
-        pool.set_tour(setup.tour.clone());
+        pool.set_tour(setup.tour.clone(), AudienceLimits::new(settings));
         Self {
             limiter: Mutex::new(ConnectionLimiter::new(setup.max_connections(), settings.max_per_address)),
             places: Mutex::new(Places::new(settings.max_viewers)),
@@ -139,7 +147,7 @@ impl SharedState {
         locked(&self.places).set_most(max_viewers);
         *locked(&self.total_rate) = max_rate_total.map(TotalRate::new);
         let scenes = Arc::clone(&setup.scenes);
-        self.pool.set_tour(setup.tour.clone());
+        self.pool.set_tour(setup.tour.clone(), AudienceLimits::new(&setup.settings));
         *locked(&self.setup) = Arc::new(setup);
         self.pool.replace_scenes(&scenes);
         // There may be more places now.
@@ -170,8 +178,15 @@ impl SharedState {
     }
 
     /// Returns the options of a new viewer, whose window has this number of columns.
-    pub(super) fn viewer_options(&self, setup: &Setup, terminal: &ClientTerminal, columns: u16) -> Options {
-        let Setup { settings, scenes, keymap, .. } = setup;
+    pub(super) fn viewer_options(
+        &self,
+        setup: &Setup,
+        terminal: &ClientTerminal,
+        columns: u16,
+        may_lead: bool,
+    ) -> Options {
+        let Setup { settings, scenes, keymap, leaders_keymap, .. } = setup;
+        let keymap = if may_lead { leaders_keymap } else { keymap };
         let mut options = Options::new(terminal.hints(&|name| self.terminal_colors(name)));
         options.max_rate = settings.max_rate;
         options.max_frames = Some(settings.max_frames);
@@ -196,7 +211,7 @@ impl SharedState {
     pub(super) fn metrics_text(&self) -> String {
         self.pool.metrics.text(&[
             ("viewers", "Views that are open", self.pool.session_count()),
-            ("followers", "Views of the tour", self.pool.follower_count()),
+            ("followers", "Views of the tour or of another viewer", self.pool.follower_count()),
             ("waiting", "Visitors who wait for a place", locked(&self.places).waiting()),
             ("draining", "Whether the server ends soon", usize::from(self.drain_deadline().is_some())),
         ])

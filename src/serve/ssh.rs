@@ -5,18 +5,29 @@
 //! subsystems, and passwords. The channel's own queue of messages is dropped, because a channel that is not read blocks
 //! its whole connection after some messages; input comes by [`Handler::data`], output goes by [`Handle::data`], which
 //! waits while the client takes nothing.
+//!
+//! Clients ask first whether they get in without a key (the method `none`), and one that does shows no key. So a client
+//! with the user name [`LEADER`] is told that a key is wanted, and one without a leader's key that it gets in by
+//! `keyboard-interactive`, without any question. All others are not told of keys: their own public keys would tell who
+//! they are.
 
 use super::client_command::{self, ClientCommand};
 use super::client_terminal::{self, ClientTerminal};
 use super::limits::Admission;
+use super::lock::locked;
 use super::metrics::Counter;
-use super::session_buffers::{SessionBuffers, locked};
+use super::roster::shown_name;
+use super::session_buffers::SessionBuffers;
 use super::shared_state::SharedState;
 use super::socket::SocketCloser;
-use super::visit::Visit;
-use russh::server::{Auth, ChannelOpenHandle, Handler, Msg, Session, VerifiedPublicKey};
-use russh::{Channel, ChannelId, Error, Pty};
+use super::visit::{User, Visit};
+use russh::keys::PublicKey;
+use russh::server::{Auth, ChannelOpenHandle, Handler, Msg, PublicKeyOffer, Response, Session, VerifiedPublicKey};
+use russh::{Channel, ChannelId, Error, MethodKind, MethodSet, Pty};
 use std::sync::Arc;
+
+/// The user name with which a client is asked for the key of a leader.
+const LEADER: &str = "leader";
 
 /// The state of one client's connection.
 pub(super) struct Client {
@@ -27,6 +38,7 @@ pub(super) struct Client {
     pub(super) entry: Option<Admission>,
     /// The network that the client's address is in, for the log.
     pub(super) from: String,
+    pub(super) user: User,
     pub(super) terminal: ClientTerminal,
     /// The one channel of the connection.
     pub(super) channel: Option<ChannelId>,
@@ -53,13 +65,28 @@ impl Client {
         }
     }
 
-    fn log_in(&mut self) -> Auth {
+    fn log_in(&mut self, user: &str, may_lead: bool) -> Auth {
+        let name = self.state.setup().settings.show_names.then(|| shown_name(user)).flatten();
+        self.user = User { name, may_lead };
         if let Some(entry) = &mut self.entry {
             locked(&self.state.limiter).log_in(entry);
         }
         self.state.pool.metrics.logins.add(1);
         self.buffers.logged_in.notify_one();
         Auth::Accept
+    }
+
+    /// Returns whether the holder of a key may lead; `None` if the key lets no one in.
+    fn key_holder(&self, user: &str, key: &PublicKey) -> Option<bool> {
+        let setup = self.state.setup();
+        let settings = &setup.settings;
+        let has = |keys: &Option<Vec<PublicKey>>| {
+            keys.as_ref().map(|keys| keys.iter().any(|known| known.key_data() == key.key_data()))
+        };
+        let may_lead = has(&settings.leaders) == Some(true);
+        // The next key of a user who wants to lead may be the right one.
+        let is_wanted = has(&settings.authorized_keys).unwrap_or(settings.leaders.is_none() || user != LEADER);
+        (may_lead || is_wanted).then_some(may_lead)
     }
 
     /// Starts the visit that the client's first request asks for, and refuses later requests.
@@ -78,6 +105,7 @@ impl Client {
             buffers: Arc::clone(&self.buffers),
             closer: self.closer.clone(),
             from: std::mem::take(&mut self.from),
+            user: self.user.clone(),
             sent: Counter::default(),
             handle: session.handle(),
             channel,
@@ -98,16 +126,38 @@ impl Client {
 impl Handler for Client {
     type Error = Error;
 
-    async fn auth_none(&mut self, _user: &str) -> Result<Auth, Error> {
-        Ok(if self.state.setup().settings.authorized_keys.is_none() { self.log_in() } else { Auth::reject() })
+    async fn auth_none(&mut self, user: &str) -> Result<Auth, Error> {
+        let setup = self.state.setup();
+        Ok(if setup.settings.authorized_keys.is_some() {
+            Auth::reject()
+        } else if setup.settings.leaders.is_some() && user == LEADER {
+            let methods = MethodSet::from(&[MethodKind::PublicKey, MethodKind::KeyboardInteractive][..]);
+            Auth::Reject { proceed_with_methods: Some(methods), partial_success: false }
+        } else {
+            self.log_in(user, false)
+        })
     }
 
-    async fn auth_publickey(&mut self, _user: &str, key: VerifiedPublicKey<'_>) -> Result<Auth, Error> {
-        let known = |keys: &Vec<_>| {
-            keys.iter().any(|known: &russh::keys::PublicKey| known.key_data() == key.public_key.key_data())
-        };
-        let accepts = self.state.setup().settings.authorized_keys.as_ref().is_none_or(known);
-        Ok(if accepts { self.log_in() } else { Auth::reject() })
+    /// Refuses keys of no use before the client signs, for which it may ask its user for a
+    /// passphrase.
+    async fn auth_publickey_offered(&mut self, user: &str, offer: PublicKeyOffer<'_>) -> Result<Auth, Error> {
+        Ok(if self.key_holder(user, offer.public_key).is_some() { Auth::Accept } else { Auth::reject() })
+    }
+
+    async fn auth_publickey(&mut self, user: &str, key: VerifiedPublicKey<'_>) -> Result<Auth, Error> {
+        let holder = self.key_holder(user, key.public_key);
+        Ok(holder.map_or_else(Auth::reject, |may_lead| self.log_in(user, may_lead)))
+    }
+
+    /// Lets everybody in without a question, unless a key is needed.
+    async fn auth_keyboard_interactive<'a>(
+        &'a mut self,
+        user: &str,
+        _submethods: &str,
+        _response: Option<Response<'a>>,
+    ) -> Result<Auth, Error> {
+        let needs_key = self.state.setup().settings.authorized_keys.is_some();
+        Ok(if needs_key { Auth::reject() } else { self.log_in(user, false) })
     }
 
     async fn authentication_banner(&mut self) -> Result<Option<String>, Error> {

@@ -2,12 +2,15 @@
 //!
 //! Pure: the time is a parameter.
 
-use super::Settings;
+use super::guide::{Guide, GuideView};
+use super::{HostedScene, Settings};
 use crate::camera::Camera;
 use crate::camera_path::{CameraPath, PathError};
 use crate::capabilities::Capabilities;
 use crate::grid::Size;
+use crate::maps::Map;
 use crate::scene::Scene;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// The number of pictures per second.
@@ -20,9 +23,10 @@ const TICK_MILLIS: u64 = 1000 / FRAMES_PER_SECOND as u64;
 // All cameras are computed when the server starts, so that none of them is found to be invalid during the tour.
 const MAX_SECONDS: f64 = 3600.0;
 
-/// The window and the capabilities of the terminals that get the same bytes of the tour.
+/// The guide of viewers who get the same bytes, and the window and capabilities of their terminals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct AudienceClass {
+    pub(super) guide: Guide,
     /// The size of the picture in cells.
     pub(super) size: Size,
     pub(super) capabilities: Capabilities,
@@ -31,13 +35,35 @@ pub(super) struct AudienceClass {
 /// A tour through the first scene of the server.
 #[derive(Debug)]
 pub(super) struct Tour {
+    /// The name of the scene.
+    name: Arc<str>,
     scene: Scene,
     /// The camera at each tick. There is at least one.
     cameras: Vec<Camera>,
+}
+
+/// The limits on the frames of an audience.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct AudienceLimits {
     /// The most bytes per second for one follower.
     max_rate: Option<u32>,
     /// The shortest time between two frames.
     interval: Duration,
+}
+
+impl AudienceLimits {
+    /// Returns the limits of a server with these settings.
+    pub(super) fn new(settings: &Settings) -> Self {
+        // A tenth less, so that a limit of as many frames as there are ticks skips none of them.
+        Self { max_rate: settings.max_rate, interval: Duration::from_secs_f64(0.9 / f64::from(settings.max_frames)) }
+    }
+
+    /// Returns the time of the frame after one at `now` that takes `bytes`.
+    pub(super) fn next_frame_at(self, now: Duration, bytes: usize) -> Duration {
+        let next_tick = Duration::from_millis((Tour::tick_at(now) + 1).saturating_mul(TICK_MILLIS));
+        let seconds = self.max_rate.map_or(0.0, |rate| bytes as f64 / f64::from(rate));
+        next_tick.max(now + self.interval).max(now + Duration::from_secs_f64(seconds))
+    }
 }
 
 impl Tour {
@@ -45,13 +71,11 @@ impl Tour {
     ///
     /// # Errors
     /// If a camera of the path is invalid.
-    pub(super) fn new(path: &CameraPath, scene: &Scene, settings: &Settings) -> Result<Self, PathError> {
+    pub(super) fn new(path: &CameraPath, HostedScene { name, scene, .. }: &HostedScene) -> Result<Self, PathError> {
         let seconds = path.seconds().min(MAX_SECONDS);
         let frames = ((seconds * f64::from(FRAMES_PER_SECOND)).round() as usize).max(1);
         let cameras = path.cameras(frames, FRAMES_PER_SECOND)?;
-        // A tenth less, so that a limit of as many frames as there are ticks skips none of them.
-        let interval = Duration::from_secs_f64(0.9 / f64::from(settings.max_frames));
-        Ok(Self { scene: scene.clone(), cameras, max_rate: settings.max_rate, interval })
+        Ok(Self { name: name.as_str().into(), scene: scene.clone(), cameras })
     }
 
     /// Returns the number of the tick that contains a time.
@@ -59,20 +83,18 @@ impl Tour {
         u64::try_from(now.as_millis()).unwrap_or(u64::MAX) / TICK_MILLIS
     }
 
+    /// Returns the view at a tick.
+    pub(super) fn view(&self, tick: u64) -> GuideView {
+        GuideView { name: Arc::clone(&self.name), scene: self.scene(tick), camera: self.camera(tick), map: Map::Shaded }
+    }
+
     /// Returns the camera at a tick. After the end of the path, the tour starts again.
-    pub(super) fn camera(&self, tick: u64) -> Camera {
+    fn camera(&self, tick: u64) -> Camera {
         self.cameras[(tick % self.cameras.len() as u64) as usize]
     }
 
-    /// Returns the time of the frame after one at `now` that takes `bytes`.
-    pub(super) fn next_frame_at(&self, now: Duration, bytes: usize) -> Duration {
-        let next_tick = Duration::from_millis((Self::tick_at(now) + 1).saturating_mul(TICK_MILLIS));
-        let seconds = self.max_rate.map_or(0.0, |rate| bytes as f64 / f64::from(rate));
-        next_tick.max(now + self.interval).max(now + Duration::from_secs_f64(seconds))
-    }
-
     /// Returns the scene at a tick.
-    pub(super) fn scene(&self, tick: u64) -> Scene {
+    fn scene(&self, tick: u64) -> Scene {
         self.scene.clone().at_time(tick as f64 / f64::from(FRAMES_PER_SECOND))
     }
 }
@@ -83,17 +105,19 @@ mod tests {
 
     const MS: Duration = Duration::from_millis(1);
 
-    fn tour(change: impl FnOnce(&mut Settings)) -> Tour {
-        let scene = Scene::from_ron("x.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))").expect("a scene");
-        let path = CameraPath::orbit(*scene.camera(), 2.0);
+    fn limits(change: impl FnOnce(&mut Settings)) -> AudienceLimits {
         let mut settings = Settings::new("key".into());
         change(&mut settings);
-        Tour::new(&path, &scene, &settings).expect("a tour")
+        AudienceLimits::new(&settings)
     }
 
     #[test]
     fn a_tour_starts_again_at_its_end() {
-        let tour = tour(|_| {});
+        let scene = Scene::from_ron("x.ron", "(camera: (eye: (0, 0, 5), target: (0, 0, 0)))").expect("a scene");
+        let path = CameraPath::orbit(*scene.camera(), 2.0);
+        let [name, file, title] = ["x", "x.ron", ""].map(str::to_owned);
+        let hosted = HostedScene { name, file, title, scene, orbits: false };
+        let tour = Tour::new(&path, &hosted).expect("a tour");
         assert_eq!((Tour::tick_at(1999 * MS), Tour::tick_at(2000 * MS)), (19, 20));
         assert_eq!(tour.camera(0), tour.camera(20));
         assert_ne!(tour.camera(0), tour.camera(10));
@@ -102,14 +126,14 @@ mod tests {
 
     #[test]
     fn frames_follow_at_ticks_and_within_the_limits() {
-        let usual = tour(|_| {});
+        let usual = limits(|_| {});
         assert_eq!(usual.next_frame_at(1000 * MS, 3000), 1100 * MS);
         assert_eq!(usual.next_frame_at(1050 * MS, 3000), 1100 * MS);
         // 100 kB at 200 kB per second.
         assert_eq!(usual.next_frame_at(1000 * MS, 100_000), 1500 * MS);
-        let unlimited = tour(|settings| settings.max_rate = None);
+        let unlimited = limits(|settings| settings.max_rate = None);
         assert_eq!(unlimited.next_frame_at(1000 * MS, 100_000), 1100 * MS);
-        let slow = tour(|settings| settings.max_frames = 2.0);
+        let slow = limits(|settings| settings.max_frames = 2.0);
         assert_eq!(slow.next_frame_at(1000 * MS, 0), 1450 * MS);
     }
 }

@@ -2,14 +2,20 @@
 //!
 //! Pure: the time and the function that traces are parameters, and the bytes to send are returned.
 
+mod guidance;
+
 use super::HostedScene;
-use super::run_queue::{AfterTurn, WorkKind};
+use super::guide::Guide;
+use super::leave_reason::LeaveReason;
+use super::run_queue::{AfterTurn, SessionId, WorkKind};
 use super::tour::{AudienceClass, Tour};
 use crate::grid::Window;
 use crate::memory::OutOfMemory;
 use crate::protocol::{FENCE, TerminalMode, TerminalModes};
 use crate::viewer::{DriverState, Frame, Job, Options, Request, Viewer, ViewerStep};
 use base64::Engine;
+pub(super) use guidance::Company;
+use guidance::{Following, left_text, over_text};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
@@ -23,65 +29,6 @@ const LONG_REST: Duration = Duration::from_secs(1);
 /// The largest number of steps of the viewer in one turn, such as tracing a frame and drawing it.
 // Most turns have two steps, a trace and a draw. The limit ends the turn of a viewer that never waits.
 const MAX_STEPS: usize = 8;
-
-/// The reason why a viewer leaves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum LeaveReason {
-    /// The user quit.
-    Quit,
-    /// No key was pressed for too long.
-    Idle,
-    /// The visit has lasted for the longest time that is allowed.
-    TimeOver,
-    /// The server ends.
-    Drained,
-    /// There is not enough memory for the window.
-    OutOfMemory,
-    /// A turn has panicked.
-    Fault,
-}
-
-impl LeaveReason {
-    /// Returns the note with the seconds that are left until the viewer has to leave for this
-    /// reason.
-    fn countdown_text(self, seconds: u64) -> String {
-        let what = match self {
-            Self::Idle => "no key for a while: any key stays, else you leave",
-            Self::TimeOver => "your time is over: you leave",
-            _ => "the server restarts: you leave",
-        };
-        format!("{what} in {seconds} s")
-    }
-
-    /// Returns the name of the reason in the log.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Quit => "quit",
-            Self::Idle => "idle",
-            Self::TimeOver => "time_over",
-            Self::Drained => "drained",
-            Self::OutOfMemory => "out_of_memory",
-            Self::Fault => "fault",
-        }
-    }
-
-    /// Returns the exit status of a view that ends for this reason.
-    pub(super) fn exit_status(self) -> u32 {
-        u32::from(matches!(self, Self::OutOfMemory | Self::Fault))
-    }
-
-    /// Returns the sentence that is printed on leaving; empty if the user chose to leave.
-    fn farewell(self) -> &'static str {
-        match self {
-            Self::Quit => "",
-            Self::Idle => "no key for a while; come back at any time\r\n",
-            Self::TimeOver => "your time was over; come back at any time\r\n",
-            Self::Drained => "the server restarts; come back soon\r\n",
-            Self::OutOfMemory => "there is not enough memory for a window of this size\r\n",
-            Self::Fault => "a fault of the server ended this view\r\n",
-        }
-    }
-}
 
 /// The limits on the duration of a visit.
 #[derive(Clone, Copy, Debug)]
@@ -107,10 +54,20 @@ pub(super) struct PendingInput {
     pub(super) tour: Option<Arc<Tour>>,
 }
 
+/// The parts of a new session that depend on the client and the settings.
+pub(super) struct SessionOptions {
+    pub(super) viewer: Options,
+    pub(super) link: Option<String>,
+    /// Whether the viewer starts in the tour.
+    pub(super) follows_tour: bool,
+    /// Whether the viewer may lead the tour.
+    pub(super) may_lead: bool,
+}
+
 /// A change of what a viewer's screen shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum AudienceChange {
-    /// The frames of the tour for terminals of this class.
+    /// The frames for the audience of this class.
     Follow(AudienceClass),
     /// The view of the viewer's own camera.
     Leave,
@@ -127,17 +84,25 @@ pub(super) struct ViewerSession {
     modes: TerminalModes,
     scenes: Arc<[HostedScene]>,
     shown: usize,
+    /// The name of the shown scene, for the other viewers.
+    name: Arc<str>,
     link: Option<String>,
     limits: VisitLimits,
-    began: Duration,
     drain_deadline: Option<Duration>,
     /// The seconds in the last note of the countdown; `None` before the countdown.
     counted: Option<u64>,
     /// The time at which the viewer began to leave and its terminal was restored, and the reason;
     /// `None` before.
     leaving: Option<(Duration, LeaveReason)>,
-    /// The time since which the viewer follows the tour; `None` in a view of their own camera.
-    following: Option<Duration>,
+    /// The guide that the viewer follows; `None` in a view of their own camera.
+    following: Option<Following>,
+    /// The time at which the viewer last stopped to follow, from which the idle time counts.
+    own_since: Duration,
+    may_lead: bool,
+    /// Whether the viewer leads the tour, as far as they know.
+    leads: bool,
+    /// The sessions that have to be told of what this one has done.
+    told: Vec<SessionId>,
     /// The class of the viewer's audience at the last call of `take_audience_change`.
     audience: Option<AudienceClass>,
     /// The time at which the last turn ended.
@@ -147,20 +112,22 @@ pub(super) struct ViewerSession {
 }
 
 impl ViewerSession {
-    /// Returns a session that shows the scene with index `shown`, or the tour if `follows`, and
-    /// appends its first bytes to `out`.
+    /// Returns a session that shows the scene with index `shown`, or the tour.
+    ///
+    /// Appends its first bytes to `out`.
     ///
     /// # Errors
     /// If there is not enough memory for the window.
     pub(super) fn new(
         scenes: Arc<[HostedScene]>,
         shown: usize,
-        (options, link, follows): (Options, Option<String>, bool),
+        options: SessionOptions,
         window: Window,
         limits: VisitLimits,
         now: Duration,
         out: &mut Vec<u8>,
     ) -> Result<Self, OutOfMemory> {
+        let SessionOptions { viewer: options, link, follows_tour, may_lead } = options;
         let mut viewer = Viewer::new(options, window)?;
         viewer.set_names(scenes.iter().map(|scene| scene.name.clone()).collect());
         let mut modes = TerminalModes::default();
@@ -168,19 +135,23 @@ impl ViewerSession {
             modes.switch_on(mode, out);
         }
         out.extend(viewer.queries(now));
-        let (began, drain_deadline, counted, leaving) = (now, None, None, None);
+        let (drain_deadline, counted, leaving) = (None, None, None);
         let mut session = Self {
             viewer,
             modes,
             scenes,
             shown,
+            name: Arc::default(),
             link,
             limits,
-            began,
             drain_deadline,
             counted,
             leaving,
-            following: follows.then_some(now),
+            following: follows_tour.then_some(Following { guide: Guide::Tour, since: now }),
+            own_since: now,
+            may_lead,
+            leads: false,
+            told: Vec::new(),
             audience: None,
             latest: now,
             drawn: 0,
@@ -192,6 +163,7 @@ impl ViewerSession {
     fn show(&mut self, index: usize) {
         if let Some(scene) = self.scenes.get(index) {
             self.viewer.show(scene.scene.clone(), index, scene.orbits);
+            self.name = scene.name.as_str().into();
             self.shown = index;
         }
     }
@@ -217,7 +189,7 @@ impl ViewerSession {
     /// At most one frame of a new view is traced.
     pub(super) fn take_turn(
         &mut self,
-        input: &PendingInput,
+        (input, company): (&PendingInput, &Company<'_>),
         (sending, kind): (bool, WorkKind),
         clock: &dyn Fn() -> Duration,
         trace: &mut Trace<'_>,
@@ -231,39 +203,51 @@ impl ViewerSession {
         let tour = input.tour.as_deref();
         // A lone ESC becomes a key without further bytes.
         let may_have_key = !input.bytes.is_empty() || self.viewer.receiver().sequence_times_out_at(now).is_some();
-        if let Some(tour) = tour.filter(|_| self.following.is_some() && may_have_key) {
-            // A key that leaves the tour moves the camera from where the tour is, which is in the first scene.
-            if self.shown != 0 {
-                self.show(0);
-            }
-            self.viewer.set_camera(tour.camera(Tour::tick_at(now)), now);
+        let view_of = |guide| company.roster.view(guide, tour, now);
+        if let Some(view) = self.following.filter(|_| may_have_key).and_then(|following| view_of(following.guide)) {
+            // A key that leaves a guide moves the camera from where the guide is.
+            self.stand_at(&view, now);
         }
         if self.apply_input(input, now, out).is_err() {
             return self.leave(LeaveReason::OutOfMemory, now, out);
         }
-        if self.carry_out_requests(tour.is_some(), now, out).is_break() {
+        if self.carry_out_requests(company, tour, now, out).is_break() {
             return self.leave(LeaveReason::Quit, now, out);
         }
-        let has_key = |since| self.viewer.last_input_time() > since;
-        if self.following.is_some_and(|since| tour.is_none() || has_key(since)) {
-            let is_over = tour.is_none();
-            self.leave_tour(if is_over { "the tour has ended" } else { "you have left the tour; T goes back to it" });
+        if self.leads && company.roster.leader() != Some(company.id) {
+            self.leads = false;
+            self.viewer.show_note("another viewer leads the tour now");
+        }
+        if let Some(Following { guide, since }) = self.following {
+            if self.viewer.last_press_time() > since {
+                self.leave_guide(company, &left_text(guide), now);
+            } else if view_of(guide).is_none() {
+                if let Some(view) = company.roster.last_view(guide) {
+                    self.stand_at(&view, now);
+                }
+                self.leave_guide(company, &over_text(guide), now);
+            }
         }
         let (end, reason) = self.next_end();
         if now >= end {
             return self.leave(reason, now, out);
         }
         let counted = self.count_down(end, reason, now);
-        if self.following.is_some() && self.counted.is_some() {
-            // The tour's frames have no room for the countdown of one viewer.
-            self.leave_tour(&reason.countdown_text(self.counted.unwrap_or(0)));
+        if let (Some(Following { guide, .. }), Some(seconds)) = (self.following, self.counted) {
+            if let Some(view) = view_of(guide) {
+                self.stand_at(&view, now);
+            }
+            // The frames of an audience have no room for the countdown of one viewer.
+            self.leave_guide(company, &reason.countdown_text(seconds), now);
         }
+        self.show_to_others(company);
         if self.following.is_some() {
             self.latest = clock();
             let sequence = self.viewer.receiver().sequence_times_out_at(now);
             return AfterTurn::Sleep(sequence.into_iter().chain([counted]).min());
         }
-        let next = self.carry_out_steps((sending, kind), clock, trace, out);
+        let next = self.carry_out_steps(company, (sending, kind), clock, trace, out);
+        self.show_to_others(company);
         self.latest = clock();
         match next {
             AfterTurn::Sleep(until) => AfterTurn::Sleep(until.into_iter().chain([counted]).min()),
@@ -292,11 +276,12 @@ impl ViewerSession {
     /// Returns the time at which the visit ends if no key is pressed, and the reason: an idle user,
     /// the limit of the visit, or the end of the server.
     fn next_end(&self) -> (Duration, LeaveReason) {
-        // Before the first key press, the idle time counts from the beginning of the visit.
-        let idle = (self.viewer.last_input_time().max(self.began) + self.limits.idle, LeaveReason::Idle);
+        // Before the first key press, the idle time counts from the beginning of the visit, or from the end of a tour.
+        let since = self.viewer.last_input_time().max(self.own_since);
+        let idle = (since + self.limits.idle, LeaveReason::Idle);
         let time_over = (self.limits.ends, LeaveReason::TimeOver);
         let drained = self.drain_deadline.map(|at| (at, LeaveReason::Drained));
-        // A follower of the tour presses no key.
+        // A follower presses no key.
         let idle = Some(idle).filter(|_| self.following.is_none());
         drained.into_iter().chain(idle).fold(time_over, |first, end| if end.0 < first.0 { end } else { first })
     }
@@ -323,6 +308,7 @@ impl ViewerSession {
     /// Carries out steps of the viewer, at most two of which trace a frame, until the turn ends.
     fn carry_out_steps(
         &mut self,
+        company: &Company<'_>,
         (mut sending, kind): (bool, WorkKind),
         clock: &dyn Fn() -> Duration,
         trace: &mut Trace<'_>,
@@ -340,6 +326,9 @@ impl ViewerSession {
                 }
                 ViewerStep::CancelRefinement => {}
                 ViewerStep::Draw => {
+                    if self.viewer.shows_others() {
+                        self.viewer.set_others(&self.others(company));
+                    }
                     let mut bytes = Vec::new();
                     self.viewer.draw(clock(), &mut bytes);
                     self.viewer.add_frame_queries(&mut bytes, clock());
@@ -370,19 +359,13 @@ impl ViewerSession {
         AfterTurn::Turn(kind)
     }
 
-    /// Shows the view of this viewer's own camera again, which is where the tour was.
-    fn leave_tour(&mut self, note: &str) {
-        self.following = None;
-        self.viewer.take_screen_back();
-        self.viewer.show_note(note);
-    }
-
     /// Returns what the viewer's screen shows from now on, if that has changed since the last call.
     pub(super) fn take_audience_change(&mut self) -> Option<AudienceChange> {
-        let class = self
-            .following
-            .filter(|_| self.leaving.is_none())
-            .map(|_| AudienceClass { size: self.viewer.picture_size(), capabilities: *self.viewer.capabilities() });
+        let class = self.following.filter(|_| self.leaving.is_none()).map(|Following { guide, .. }| AudienceClass {
+            guide,
+            size: self.viewer.picture_size(),
+            capabilities: *self.viewer.capabilities(),
+        });
         let has_changed = std::mem::replace(&mut self.audience, class) != class;
         has_changed.then(|| class.map_or(AudienceChange::Leave, AudienceChange::Follow))
     }
@@ -390,7 +373,13 @@ impl ViewerSession {
     /// Carries out the viewer's requests; breaks if the user leaves.
     ///
     /// Requests to write to the server's disk, to turn a mesh or to suspend do nothing; no key is bound to them.
-    fn carry_out_requests(&mut self, has_tour: bool, now: Duration, out: &mut Vec<u8>) -> ControlFlow<()> {
+    fn carry_out_requests(
+        &mut self,
+        company: &Company<'_>,
+        tour: Option<&Tour>,
+        now: Duration,
+        out: &mut Vec<u8>,
+    ) -> ControlFlow<()> {
         let mut copied = None;
         while let Some(request) = self.viewer.next_request() {
             match request {
@@ -406,13 +395,25 @@ impl ViewerSession {
                     };
                     self.viewer.show_note(note);
                 }
-                Request::Tour if has_tour && self.following.is_none() => {
-                    // The tour goes through the first scene, in which its camera is valid.
-                    if self.shown != 0 {
-                        self.show(0);
-                    }
-                    self.following = Some(now);
+                Request::Tour if self.following.is_some_and(|following| following.guide == Guide::Tour) => {}
+                Request::Tour if self.leads => self.viewer.show_note("you lead the tour; G ends that"),
+                Request::Tour if company.roster.view(Guide::Tour, tour, now).is_none() => {
+                    self.viewer.show_note("there is no tour now");
                 }
+                Request::Tour => self.follow(company, Guide::Tour, now),
+                Request::Lead if self.may_lead => self.toggle_lead(company, now),
+                Request::ListViewers => {
+                    let others = self.others(company);
+                    self.viewer.turn_viewer_list(others);
+                }
+                Request::MarkViewers => {
+                    let others = self.others(company);
+                    self.viewer.toggle_other_eyes(others);
+                }
+                Request::Follow(digit) => match self.viewer.listed_viewer(digit) {
+                    Some(number) => self.follow(company, Guide::Viewer(number), now),
+                    None => self.viewer.show_note(format!("the list has no viewer {digit}")),
+                },
                 Request::ShowMetadata => self.viewer.show_metadata(self.scenes[self.shown].name.clone()),
                 // Only the last text is sent, because only that stays on the clipboard; sending all of them would take
                 // many bytes for a few keys.

@@ -1,15 +1,17 @@
 //! One visit of a client, from the wait for a viewer's place to the last byte.
 
 use super::client_terminal::ClientTerminal;
+use super::leave_reason::LeaveReason;
 use super::log_line::LogLine;
 use super::metrics::Counter;
 use super::run_queue::SessionId;
 use super::session_buffers::{Outgoing, ScreenSource, SessionBuffers};
 use super::shared_state::{Setup, SharedState, ViewerSlot};
 use super::socket::SocketCloser;
-use super::viewer_session::{LeaveReason, ViewerSession, VisitLimits};
+use super::viewer_session::{SessionOptions, ViewerSession, VisitLimits};
 use crate::grid::{Size, Window};
 use crate::text::visible;
+use bytes::Bytes;
 use russh::ChannelId;
 use russh::server::Handle;
 use std::sync::Arc;
@@ -23,6 +25,15 @@ const CLOSING_TIME: Duration = Duration::from_secs(2);
 /// The keys that leave the waiting room: q, Ctrl-C, Ctrl-D.
 const LEAVING: &[u8] = b"q\x03\x04";
 
+/// The user who has logged in.
+#[derive(Clone, Debug, Default)]
+pub(super) struct User {
+    /// The login name that other viewers see, if the server shows names.
+    pub(super) name: Option<Arc<str>>,
+    /// Whether the user may lead the tour.
+    pub(super) may_lead: bool,
+}
+
 /// One visit: the connection, and the client's channel.
 pub(super) struct Visit {
     pub(super) state: Arc<SharedState>,
@@ -32,6 +43,7 @@ pub(super) struct Visit {
     pub(super) closer: SocketCloser,
     /// The network that the client's address is in, for the log.
     pub(super) from: String,
+    pub(super) user: User,
     /// The bytes that the client has taken.
     pub(super) sent: Counter,
     pub(super) handle: Handle,
@@ -48,16 +60,21 @@ impl Visit {
         let (state, now) = (&self.state, self.state.pool.now());
         let Setup { settings, scenes, .. } = &*self.setup;
         let limits = VisitLimits { idle: settings.idle, ends: now + settings.session_max };
-        let options = state.viewer_options(&self.setup, terminal, window.size.columns);
+        let User { name: user, may_lead } = self.user.clone();
         let mut first = Vec::new();
-        let follows = self.setup.tour.is_some() && scene == 0;
-        let options = (options, settings.link.clone(), follows);
+        let has_tour = self.setup.tour.is_some() || state.pool.roster.leader().is_some();
+        let options = SessionOptions {
+            viewer: state.viewer_options(&self.setup, terminal, window.size.columns, may_lead),
+            link: settings.link.clone(),
+            follows_tour: has_tour && scene == 0,
+            may_lead,
+        };
         let session = ViewerSession::new(Arc::clone(scenes), scene, options, window, limits, now, &mut first);
         let Ok(session) = session else {
             return self.refuse("there is not enough memory for a window of this size").await;
         };
         self.buffers.send(first, None, None);
-        let id = state.pool.add(session, Arc::clone(&self.buffers));
+        let id = state.pool.add(session, Arc::clone(&self.buffers), user);
         self.buffers.set_session(id);
         if let Some(at) = state.drain_deadline() {
             self.buffers.set_drain_deadline(at);
@@ -96,16 +113,18 @@ impl Visit {
                 ScreenSource::Session => self.buffers.outgoing().await,
                 ScreenSource::Tour(follower) => match either(self.buffers.outgoing(), follower.next_bytes()).await {
                     Either::First(outgoing) => outgoing,
-                    Either::Second(bytes) if self.send(&bytes).await => {
+                    Either::Second(bytes) => {
+                        if !self.send(bytes).await {
+                            return None;
+                        }
                         self.state.pool.metrics.tour_sent.add(1);
                         continue;
                     }
-                    Either::Second(_) => return None,
                 },
             };
             let Outgoing { bytes, source: next_source, ended } = outgoing?;
             source = next_source.unwrap_or(source);
-            if !self.send(&bytes).await {
+            if !self.send(bytes).await {
                 return None;
             }
             self.buffers.record_sent();
@@ -122,7 +141,7 @@ impl Visit {
     async fn wait_for_place(&self, window: &mut Window) -> Option<ViewerSlot> {
         let mut changes = self.state.changes.subscribe();
         let Some(visitor) = self.state.queue_up() else {
-            self.send(b"full, and many wait; come back later\r\n").await;
+            self.send(&b"full, and many wait; come back later\r\n"[..]).await;
             return None;
         };
         let mut told = None;
@@ -131,13 +150,13 @@ impl Visit {
             // below.
             changes.mark_unchanged();
             if self.state.drain_deadline().is_some() {
-                self.send(b"\r\x1b[Kthe server restarts; come back soon\r\n").await;
+                self.send(&b"\r\x1b[Kthe server restarts; come back soon\r\n"[..]).await;
                 return None;
             }
             let ahead = match visitor.take_place() {
                 Ok(place) => {
                     if told.is_some() {
-                        self.send(b"\r\x1b[K").await;
+                        self.send(&b"\r\x1b[K"[..]).await;
                     }
                     return Some(place);
                 }
@@ -147,13 +166,13 @@ impl Visit {
             // the number.
             if told.replace(ahead) != Some(ahead) {
                 let text = format!("\r\x1b[Kfull, {ahead} ahead of you; q leaves");
-                self.send(text.as_bytes()).await;
+                self.send(text).await;
             }
             either(changes.changed(), self.buffers.wait_for_wake()).await;
             let input = self.buffers.take_input();
             *window = input.window.unwrap_or(*window);
             if self.buffers.is_hung_up() || input.bytes.iter().any(|byte| LEAVING.contains(byte)) {
-                self.send(b"\r\x1b[K").await;
+                self.send(&b"\r\x1b[K"[..]).await;
                 return None;
             }
         }
@@ -161,7 +180,7 @@ impl Visit {
 
     /// Prints a text and ends the visit.
     pub(super) async fn print(&self, text: &str) {
-        self.send(text.as_bytes()).await;
+        self.send(text.to_owned()).await;
         self.end(0).await;
     }
 
@@ -177,20 +196,23 @@ impl Visit {
     ///
     /// A client is disconnected if its SSH window has no room for the bytes for too long. (A client that does not read
     /// its socket at all is noticed by `Socket`.)
-    async fn send(&self, bytes: &[u8]) -> bool {
-        let (state, patience) = (&self.state, self.setup.settings.patience);
-        for message in bytes.chunks(state.max_message()) {
-            let wait = state.reserve_wait(message.len());
+    async fn send(&self, bytes: impl Into<Bytes>) -> bool {
+        let (state, patience, mut bytes) = (&self.state, self.setup.settings.patience, bytes.into());
+        while !bytes.is_empty() {
+            // The parts share the memory of the whole.
+            let message = bytes.split_to(bytes.len().min(state.max_message()));
+            let length = message.len();
+            let wait = state.reserve_wait(length);
             if !wait.is_zero() {
                 sleep(wait).await;
             }
-            let sent = timeout(patience, self.handle.data(self.channel, message.to_vec())).await;
+            let sent = timeout(patience, self.handle.data(self.channel, message)).await;
             if !matches!(sent, Ok(Ok(()))) {
                 self.closer.close();
                 return false;
             }
-            self.sent.add(message.len() as u64);
-            state.pool.metrics.bytes.add(message.len() as u64);
+            self.sent.add(length as u64);
+            state.pool.metrics.bytes.add(length as u64);
         }
         true
     }

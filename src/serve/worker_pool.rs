@@ -4,13 +4,16 @@
 //! take as long as tracing it. Each thread is a rayon pool of its own, so that parallel functions stay on that thread.
 
 use super::HostedScene;
-use super::audience::{Audience, Drawing, Follower};
+use super::audience::{Audience, Drawing, Follower, GuideLine};
+use super::leave_reason::LeaveReason;
+use super::lock::locked;
 use super::metrics::Metrics;
 use super::pictures::{Pictures, is_worth_sharing};
+use super::roster::Roster;
 use super::run_queue::{AfterTurn, RunQueue, SessionId, WorkKind};
-use super::session_buffers::{ScreenSource, SessionBuffers, locked};
-use super::tour::{AudienceClass, Tour};
-use super::viewer_session::{AudienceChange, LeaveReason, PendingInput, ViewerSession};
+use super::session_buffers::{ScreenSource, SessionBuffers};
+use super::tour::{AudienceClass, AudienceLimits, Tour};
+use super::viewer_session::{AudienceChange, Company, PendingInput, ViewerSession};
 use crate::app::Tracer;
 use crate::progress::Cancellation;
 use crate::viewer::{FIRST_FRAME_MOTION, Frame, Job};
@@ -23,11 +26,12 @@ use std::time::{Duration, Instant};
 
 /// A session, and the buffers between it and its connection.
 struct PooledSession {
+    id: SessionId,
     session: Mutex<ViewerSession>,
     buffers: Arc<SessionBuffers>,
 }
 
-/// An audience of the tour, and the drawing of its frames.
+/// An audience, and the drawing of its frames.
 struct PooledAudience {
     audience: Audience,
     drawing: Mutex<Drawing>,
@@ -47,7 +51,10 @@ struct PoolState {
     /// The audiences, whose numbers are those of no session.
     audiences: HashMap<SessionId, Arc<PooledAudience>>,
     tour: Option<Arc<Tour>>,
+    limits: AudienceLimits,
     next_id: SessionId,
+    /// The number of audiences so far, whose numbers are counted from the largest one down.
+    audience_count: u64,
     /// The number of threads that wait for work.
     resting: usize,
     /// The token that cancels the refinements in progress; it is replaced when it is used.
@@ -63,6 +70,8 @@ pub(super) struct WorkerPool {
     start: Instant,
     threads: usize,
     pub(super) metrics: Metrics,
+    /// The viewers as they see one another.
+    pub(super) roster: Roster,
     /// The cache of pictures that several viewers see.
     pictures: Mutex<Pictures>,
     /// The byte of input at which a turn panics, for a test.
@@ -81,6 +90,7 @@ impl WorkerPool {
             start: Instant::now(),
             threads,
             metrics: Metrics::default(),
+            roster: Roster::default(),
             pictures: Mutex::default(),
             #[cfg(feature = "test-hooks")]
             panics: std::sync::OnceLock::new(),
@@ -100,12 +110,18 @@ impl WorkerPool {
         FIRST_FRAME_MOTION + self.start.elapsed()
     }
 
-    /// Adds a session.
-    pub(super) fn add(&self, session: ViewerSession, buffers: Arc<SessionBuffers>) -> SessionId {
+    /// Adds a session, of a viewer with this login name if the server shows names.
+    pub(super) fn add(
+        &self,
+        mut session: ViewerSession,
+        buffers: Arc<SessionBuffers>,
+        name: Option<Arc<str>>,
+    ) -> SessionId {
         let mut state = locked(&self.state);
         let id = state.next_id;
         state.next_id += 1;
-        state.sessions.insert(id, Arc::new(PooledSession { session: Mutex::new(session), buffers }));
+        session.enter(&Company { roster: &self.roster, id }, name);
+        state.sessions.insert(id, Arc::new(PooledSession { id, session: Mutex::new(session), buffers }));
         state.queue.add(id);
         self.metrics.visits.add(1);
         self.wake_or_preempt(&mut state);
@@ -143,14 +159,15 @@ impl WorkerPool {
         locked(&self.state).sessions.len()
     }
 
-    /// Returns the number of sessions that follow the tour.
+    /// Returns the number of sessions that follow the tour or a viewer.
     pub(super) fn follower_count(&self) -> usize {
         locked(&self.state).audiences.values().map(|pooled| pooled.audience.len()).sum()
     }
 
-    /// Sets the tour that the server gives.
-    pub(super) fn set_tour(&self, tour: Option<Arc<Tour>>) {
-        locked(&self.state).tour = tour;
+    /// Sets the path of the tour that the server gives, and the limits of all audiences.
+    pub(super) fn set_tour(&self, tour: Option<Arc<Tour>>, limits: AudienceLimits) {
+        let mut state = locked(&self.state);
+        (state.tour, state.limits) = (tour, limits);
     }
 
     /// Adds a follower to the audience of a class.
@@ -161,8 +178,8 @@ impl WorkerPool {
         }
         let (audience, drawing) = (Audience::new(class), Mutex::new(Drawing::new(&class)));
         let follower = audience.follow();
-        let id = state.next_id;
-        state.next_id += 1;
+        let id = SessionId::MAX - state.audience_count;
+        state.audience_count += 1;
         state.audiences.insert(id, Arc::new(PooledAudience { audience, drawing }));
         state.queue.add(id);
         self.wake_or_preempt(&mut state);
@@ -173,6 +190,14 @@ impl WorkerPool {
     pub(super) fn close(&self) {
         locked(&self.state).closed = true;
         self.ready.notify_all();
+    }
+
+    /// Makes sessions ready, because others have done what they have to be told.
+    fn wake_all(&self, state: &mut PoolState, ids: Vec<SessionId>) {
+        for id in ids {
+            state.queue.wake(id);
+            self.wake_or_preempt(state);
+        }
     }
 
     /// Wakes a resting thread; if there is none, interrupts the refinements.
@@ -221,7 +246,9 @@ impl WorkerPool {
             let next = if sharers == 0 { AfterTurn::End } else { next };
             state.queue.finish(id, cost / u32::try_from(sharers.max(1)).unwrap_or(u32::MAX), next);
             if next == AfterTurn::End {
-                state.sessions.remove(&id);
+                if state.sessions.remove(&id).is_some() {
+                    self.wake_all(&mut state, self.roster.leave(id));
+                }
                 state.audiences.remove(&id);
             }
         }
@@ -284,8 +311,14 @@ impl WorkerPool {
         );
         // If every ready session has a thread, the turn may refine: that delays no picture of another viewer.
         let kind = if load <= self.threads { WorkKind::Refinement } else { WorkKind::Picture };
-        let next = session.take_turn(&input, (buffers.is_sending(), kind), &|| self.now(), &mut trace, &mut out);
+        let company = Company { roster: &self.roster, id: pooled.id };
+        let state = (buffers.is_sending(), kind);
+        let next = session.take_turn((&input, &company), state, &|| self.now(), &mut trace, &mut out);
         self.metrics.frames.add(session.take_drawn());
+        let told = session.take_told();
+        if !told.is_empty() {
+            self.wake_all(&mut locked(&self.state), told);
+        }
         let source = session.take_audience_change().map(|change| match change {
             AudienceChange::Follow(class) => ScreenSource::Tour(self.follow(class)),
             AudienceChange::Leave => ScreenSource::Session,
@@ -298,12 +331,18 @@ impl WorkerPool {
         locked(&self.state).tour.clone()
     }
 
-    /// Draws the next frame of the tour for an audience.
-    fn draw_for(&self, pooled: &PooledAudience) -> AfterTurn {
-        let Some(tour) = self.tour() else { return AfterTurn::End };
-        let line = format!(" tour, {} watching: any key leaves it ", self.session_count());
-        self.metrics.tour_drawn.add(1);
-        AfterTurn::Sleep(Some(locked(&pooled.drawing).draw(&pooled.audience, &tour, &line, self.now())))
+    /// Draws the next frame of a guide's view for an audience.
+    fn draw_for(&self, PooledAudience { audience, drawing }: &PooledAudience) -> AfterTurn {
+        let (guide, now) = (audience.class.guide, self.now());
+        let (tour, limits, watching) = {
+            let state = locked(&self.state);
+            (state.tour.clone(), state.limits, state.sessions.len())
+        };
+        let Some(view) = self.roster.view(guide, tour.as_deref(), now) else { return AfterTurn::End };
+        let line = GuideLine { title: self.roster.title(guide), watching };
+        let (next, has_drawn) = locked(drawing).draw(audience, (view, line), limits, now);
+        self.metrics.tour_drawn.add(has_drawn.into());
+        AfterTurn::Sleep(Some(next))
     }
 
     /// Returns the picture of a job, or `None` if it is cancelled.

@@ -8,8 +8,9 @@ use crate::cli::scene_source::SceneSource;
 use crate::cli::settings::{parse_fps, read_as_flags};
 use crate::cli::shipped::ShippedScene;
 use clap::{ArgMatches, Args, FromArgMatches};
+use listenfd::ListenFd;
 use std::io;
-use std::net::SocketAddr;
+use std::net::{SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -39,6 +40,9 @@ ends at once. SIGHUP reads the scenes and the settings again.";
 // columns.
 const MAX_LINK: usize = 57;
 const MAX_BANNER: u64 = 4096;
+
+/// The name of a passed socket in messages.
+const SOCKET: &str = "the socket of systemd";
 
 #[derive(Args)]
 #[command(after_long_help = EXAMPLES)]
@@ -83,6 +87,13 @@ pub(in crate::cli) struct ServeArgs {
     /// Only let in those who have one of the public keys in this file
     #[arg(long, value_name = "FILE")]
     authorized_keys: Option<PathBuf>,
+    /// Let the user `leader` with one of the public keys in this file lead the tour
+    #[arg(long, value_name = "FILE")]
+    leaders: Option<PathBuf>,
+    /// Show viewers the login names of one another
+    #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    #[arg(hide_possible_values = true, hide_short_help = true)]
+    show_names: Option<bool>,
     /// Text that is printed before the login
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     banner: Option<PathBuf>,
@@ -105,8 +116,11 @@ pub(in crate::cli) struct ServeArgs {
 
 /// Runs the server until a signal ends it.
 pub(in crate::cli) fn run(_args: ServeArgs, given: &ArgMatches) -> CommandResult {
-    let first = read(given)?;
-    let mut read_again = || read(given).map_err(|failure| failure.to_string());
+    let socket = socket_of_systemd()?;
+    let address = socket.as_ref().map(TcpListener::local_addr).transpose();
+    let address = address.map_err(|error| Failure::runtime(SOCKET, reason(&error)))?;
+    let first = read(given, address)?;
+    let mut read_again = || read(given, address).map_err(|failure| failure.to_string());
     let mut signals = Signals::catch_for_server().map_err(|error| Failure::runtime("signals", reason(&error)))?;
     let log: serve::Log = Arc::new(|line: &str| print_error(&format!("{}\n", visible(line))));
     let started = |address: SocketAddr, fingerprint: &str| {
@@ -115,15 +129,27 @@ pub(in crate::cli) fn run(_args: ServeArgs, given: &ArgMatches) -> CommandResult
         // The server also runs if the reader of its output has gone.
         let _ = write_stdout(line.as_bytes());
     };
-    let ended = serve::run_until_drained(first, &mut read_again, &mut signals, &log, started);
+    let ended = serve::run_until_drained(socket, first, &mut read_again, &mut signals, &log, started);
     if let Some(signal) = ended.map_err(|error| Failure::Runtime(reason(&error)))? {
         die_of(signal);
     }
     Ok(())
 }
 
+/// Returns the socket that systemd has passed, if there is one.
+fn socket_of_systemd() -> Result<Option<TcpListener>, Failure> {
+    let mut passed = ListenFd::from_env();
+    match passed.len() {
+        0 => Ok(None),
+        1 => passed.take_tcp_listener(0).map_err(|error| Failure::runtime(SOCKET, reason(&error))),
+        count => Err(Failure::Runtime(format!("{SOCKET}: {count} sockets were passed, and one is wanted"))),
+    }
+}
+
 /// Reads the scenes and the settings from the files that the command line names.
-fn read(given: &ArgMatches) -> Result<(Vec<HostedScene>, Settings), Failure> {
+///
+/// `address` is that of the socket that systemd has passed, if there is one.
+fn read(given: &ArgMatches, address: Option<SocketAddr>) -> Result<(Vec<HostedScene>, Settings), Failure> {
     let mut args = ServeArgs::from_arg_matches(given).map_err(usage)?;
     if let Some(path) = args.config.take() {
         let command = ServeArgs::augment_args(clap::Command::new("serve").no_binary_name(true));
@@ -131,22 +157,23 @@ fn read(given: &ArgMatches) -> Result<(Vec<HostedScene>, Settings), Failure> {
         // Flags of the command line override the settings of the file.
         args.update_from_arg_matches(given).map_err(usage)?;
     }
-    let (mut settings, scenes) = (settings(&args)?, scenes(&args.scenes)?);
+    let (mut settings, scenes) = (settings(&args, address)?, scenes(&args.scenes)?);
     if let Some((path, first)) = args.tour.as_ref().zip(scenes.first()) {
         settings.tour = Some(CameraPath::load(path, first.scene.camera()).map_err(usage)?);
     }
     Ok((scenes, settings))
 }
 
-fn settings(args: &ServeArgs) -> Result<Settings, Failure> {
+fn settings(args: &ServeArgs, address: Option<SocketAddr>) -> Result<Settings, Failure> {
     let host_key = args.host_key.clone().or_else(default_host_key).ok_or_else(|| {
         Failure::Usage("there is no home folder for the host key; --host-key names a file for it".to_owned())
     })?;
     let mut settings = Settings::new(host_key);
-    settings.listen = args.listen.unwrap_or(settings.listen);
+    settings.listen = address.or(args.listen).unwrap_or(settings.listen);
     if !settings.listen.ip().is_loopback() && args.public != Some(true) {
+        let what = if address.is_some() { SOCKET } else { "--listen" };
         return Err(Failure::Usage(format!(
-            "--listen {}: other machines can reach this address; --public allows that",
+            "{what} {}: other machines can reach this address; --public allows that",
             settings.listen
         )));
     }
@@ -171,6 +198,10 @@ fn settings(args: &ServeArgs) -> Result<Settings, Failure> {
     if let Some(path) = &args.authorized_keys {
         settings.authorized_keys = Some(serve::authorized_keys(path).map_err(|error| named(path, &error))?);
     }
+    if let Some(path) = &args.leaders {
+        settings.leaders = Some(serve::authorized_keys(path).map_err(|error| named(path, &error))?);
+    }
+    settings.show_names = args.show_names == Some(true);
     if let Some(path) = &args.banner {
         settings.banner = Some(banner(path).map_err(|error| named(path, &error))?);
     }

@@ -1,8 +1,10 @@
 use super::*;
 use crate::app::Tracer;
 use crate::capabilities::Hints;
+use crate::control::{Command, Key, KeyMode};
 use crate::progress::Cancellation;
 use crate::scene::Scene;
+use crate::serve::roster::Roster;
 use std::cell::Cell;
 
 const SECOND: Duration = Duration::from_secs(1);
@@ -10,6 +12,7 @@ const LIMITS: VisitLimits = VisitLimits { idle: Duration::from_secs(100), ends: 
 
 /// A session in a terminal of 20x6 cells that answers queries, with a clock that the test sets.
 struct Harness {
+    roster: Roster,
     session: ViewerSession,
     tracer: Tracer,
     now: Cell<Duration>,
@@ -35,21 +38,24 @@ impl Harness {
     fn new(limits: VisitLimits) -> Self {
         let window = crate::serve::client_terminal::window([20, 6, 0, 0]);
         let variable = |name: &str| (name == "TERM").then(|| "xterm-256color".to_owned());
-        let options = (Options::new(Hints::gather(&variable, &|_| None)), None, false);
+        let mut viewer = Options::new(Hints::gather(&variable, &|_| None));
+        viewer.keymap.bind(KeyMode::Always, Key::letter('T'), Some(Command::Tour));
+        let options = SessionOptions { viewer, link: None, follows_tour: false, may_lead: false };
         let mut bytes = Vec::new();
         let session =
             ViewerSession::new(scenes(), 0, options, window, limits, SECOND, &mut bytes).expect("there is memory");
-        Self { session, tracer: Tracer::default(), now: Cell::new(SECOND), traced: 0, bytes }
+        Self { roster: Roster::default(), session, tracer: Tracer::default(), now: Cell::new(SECOND), traced: 0, bytes }
     }
 
     fn turn_for(&mut self, kind: WorkKind, input: &PendingInput) -> AfterTurn {
-        let Self { session, tracer, now, traced, bytes } = self;
+        let Self { roster, session, tracer, now, traced, bytes } = self;
+        let company = Company { roster, id: 0 };
         let mut trace = |job: &Job, may_interrupt: bool| {
             assert!(job.refines || !may_interrupt, "the frame of a new view is lost if it is interrupted");
             *traced += 1;
             tracer.trace_for_any_viewer(job, &Cancellation::default()).ok()
         };
-        session.take_turn(input, (false, kind), &|| now.get(), &mut trace, bytes)
+        session.take_turn((input, &company), (false, kind), &|| now.get(), &mut trace, bytes)
     }
 
     fn turn(&mut self, input: &[u8]) -> AfterTurn {
@@ -252,4 +258,28 @@ fn a_reply_counts_from_its_arrival() {
     };
     let [early, late] = [1, 300].map(|time| bytes_if_replies_arrive_after(Duration::from_millis(time)));
     assert!(early > 2 * late, "{early} bytes with early replies, {late} with late ones");
+}
+
+/// Returns a session in a tour that another viewer leads, in a terminal that reports releases.
+fn in_a_tour() -> Harness {
+    let mut harness = Harness::new(LIMITS);
+    Harness::new(LIMITS).session.enter(&Company { roster: &harness.roster, id: 1 }, None);
+    harness.session.enter(&Company { roster: &harness.roster, id: 0 }, None);
+    harness.roster.lead(1);
+    harness.turn(b"\x1b[?11u\x1b[?62c");
+    harness.now.set(2 * SECOND);
+    harness.turn(b"\x1b[116:84;2u");
+    assert!(matches!(harness.session.take_audience_change(), Some(AudienceChange::Follow(_))));
+    harness
+}
+
+#[test]
+fn the_release_of_a_key_leaves_no_tour() {
+    let mut harness = in_a_tour();
+    harness.now.set(3 * SECOND);
+    harness.turn(b"\x1b[116:84;2:3u");
+    assert_eq!(harness.session.take_audience_change(), None);
+    harness.now.set(4 * SECOND);
+    harness.turn(b"\x1b[119u");
+    assert_eq!(harness.session.take_audience_change(), Some(AudienceChange::Leave));
 }
