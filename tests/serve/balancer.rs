@@ -2,9 +2,11 @@
 
 use crate::abuse::dial_from;
 use crate::guest::{Anybody, Guest};
-use crate::program::termtrace;
-use crate::{Hosting, run, until};
+use crate::program::{Program, termtrace};
+use crate::{Hosting, Place, run, until};
 use russh::client;
+use std::net::SocketAddr;
+use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
@@ -150,4 +152,114 @@ fn networks_are_checked() {
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(message.contains("network"), "{message}");
     }
+}
+
+/// A running `haproxy`; it is ended when it is dropped.
+struct Haproxy {
+    child: Child,
+    address: SocketAddr,
+}
+
+impl Haproxy {
+    /// Starts `haproxy` before these replicas; `None` if it is not installed.
+    ///
+    /// Its settings are those of `docs/serve.md` but for addresses and times.
+    fn start(folder: &std::path::Path, replicas: &[&Program]) -> Option<Self> {
+        if Command::new("haproxy").arg("-v").output().is_err() {
+            eprintln!("skipped: there is no haproxy");
+            return None;
+        }
+        let documented = include_str!("../../docs/serve.md").split("```text\nfrontend visitors").nth(1);
+        let documented = documented.and_then(|rest| rest.split("```").next()).expect("an example");
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+        let address = listener.local_addr().expect("an address");
+        let [one, two] = [0, 1].map(|at| replicas[at].address().to_string());
+        let config = format!("frontend visitors{documented}").replace(":22\n", &format!("{address}\n"));
+        let config = config.replace("10.0.0.11:2222", &one).replace("10.0.0.12:2222", &two);
+        let config = config.replace("inter 2s", "inter 100ms");
+        let path = folder.join("haproxy.cfg");
+        std::fs::write(&path, config).expect("a file");
+        // The port is free again, for HAProxy.
+        drop(listener);
+        let mut command = Command::new("haproxy");
+        command.arg("-db").arg("-f").arg(path).stdout(Stdio::null()).stderr(Stdio::null());
+        Some(Self { child: command.spawn().expect("it runs"), address })
+    }
+}
+
+impl Drop for Haproxy {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Place for Haproxy {
+    fn address(&self) -> SocketAddr {
+        self.address
+    }
+}
+
+/// Returns the number of views that a replica has opened.
+fn views(replica: &Program) -> usize {
+    replica.errors().lines().filter(|line| line.starts_with("event=view ")).count()
+}
+
+/// Waits until a replica can be reached through `haproxy`.
+async fn until_up(haproxy: &Haproxy) {
+    for _ in 0..500 {
+        if let Ok(mut stream) = TcpStream::connect(haproxy.address).await {
+            let mut greeting = [0; 8];
+            if stream.read_exact(&mut greeting).await.is_ok() {
+                return;
+            }
+        }
+        tokio::time::sleep(std::time::Duration::from_millis(20)).await;
+    }
+    panic!("no replica can be reached");
+}
+
+#[test]
+fn one_replica_behind_haproxy_drains_while_viewers_stay_on_the_other() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["three_spheres", "--listen", "127.0.0.1:0", "--proxy-protocol", "127.0.0.0/8"];
+    let arguments = [&arguments[..], &["--max-per-address", "100"]].concat();
+    let first = Program::start_in("exec", &arguments);
+    // The second one gets a copy of the first one's host key, whose path is its fourth argument.
+    let second = Program::start_in(&format!("cp -p {} \"$4\"; exec", first.key().display()), &arguments);
+    let Some(haproxy) = Haproxy::start(folder.path(), &[&first, &second]) else { return };
+    run(async {
+        until_up(&haproxy).await;
+        // Some on each, as they come.
+        let (mut on_first, mut on_second) = (Vec::new(), Vec::new());
+        while on_first.len() < 2 || on_second.len() < 2 {
+            let before = views(&first);
+            let mut guest = Guest::enter(&haproxy).await;
+            guest.see_picture().await;
+            if views(&first) > before { &mut on_first } else { &mut on_second }.push(guest);
+        }
+        first.terminate();
+        for guest in &mut on_first {
+            guest.see_text("the server restarts: you leave in").await;
+        }
+        // New visitors get in at once, on the other one.
+        let before = views(&second);
+        for _ in 0..4 {
+            Guest::enter(&haproxy).await.see_picture().await;
+        }
+        until("they are on the second one", || views(&second) == before + 4).await;
+        // Those of the first one leave in their time, and those of the second one notice nothing.
+        for mut guest in on_first {
+            guest.send(b"q").await;
+            assert_eq!(guest.leave().await, Some(0));
+            guest.assert_clean();
+        }
+        for guest in &mut on_second {
+            guest.send(b"i").await;
+            guest.see_text("q quit").await;
+            assert!(!guest.has("restarts"));
+        }
+    });
+    let hosts = |program: &Program| std::fs::read(program.key()).expect("a key");
+    assert_eq!(hosts(&first), hosts(&second));
 }

@@ -12,6 +12,7 @@ mod program;
 #[path = "../pty/mod.rs"]
 mod pty;
 mod sharing;
+mod together;
 mod tour;
 mod viewing;
 

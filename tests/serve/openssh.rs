@@ -1,10 +1,14 @@
 //! With OpenSSH's client, if it is installed.
 
+use crate::operator::key;
 use crate::program::Program;
 use crate::pty::{SOON, Size, Start};
 use crate::{Hosting, Place};
+use russh::keys::ssh_key::LineEnding;
 use std::io::{Read, Write};
 use std::net::TcpStream;
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
@@ -72,7 +76,7 @@ fn row_01_02_03_all_else_is_refused() {
 }
 
 /// Returns a port of this machine that nothing listens at.
-fn free_port() -> u16 {
+pub(crate) fn free_port() -> u16 {
     std::net::TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port").port()
 }
 
@@ -186,4 +190,58 @@ fn row_06_too_many_open_files_end_nothing() {
     assert_eq!(&name, b"SSH-2.0");
     program.terminate();
     assert!(program.child.wait().expect("it ends").success(), "without viewers it ends at once");
+}
+
+/// Writes a private key into a file that only its owner can read.
+fn write_key(path: &Path, seed: u8) {
+    let text = key(seed).to_openssh(LineEnding::LF).expect("a key");
+    let mut file = std::fs::OpenOptions::new().write(true).create_new(true).mode(0o600).open(path).expect("a new file");
+    file.write_all(text.as_bytes()).expect("it is written");
+}
+
+#[test]
+fn row_32_a_leader_logs_in_by_key_and_nobody_is_asked_a_question() {
+    let hosting = Hosting::start(|settings| settings.leaders = Some(vec![key(1).public_key().clone()]));
+    let Some(options) = options(&hosting) else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name);
+    write_key(&file("leader"), 1);
+    write_key(&file("stranger"), 9);
+    // The client would ask for the passphrase of this one.
+    let mut make = Command::new("ssh-keygen");
+    make.args(["-q", "-t", "ed25519", "-N", "secret", "-f"]).arg(file("locked"));
+    assert!(make.status().expect("ssh-keygen runs").success());
+    let visits = [
+        ("anybody", &["stranger", "locked"][..], false),
+        ("leader", &[], false),
+        ("leader", &["stranger", "locked"], false),
+        ("leader", &["locked", "stranger", "leader"], true),
+    ];
+    for (user, keys, leads) in visits {
+        let start = ["-l", user, "-o", "BatchMode=no", "-o", "IdentitiesOnly=yes"];
+        let start = start.iter().fold(Start::new("ssh"), Start::arg);
+        // Without any, the client has those of its own folder, which is not that of the test.
+        let files = if keys.is_empty() { vec![file("none")] } else { keys.iter().map(|name| file(name)).collect() };
+        let start = files.iter().fold(start, |start, file| start.arg("-i").arg(file.to_str().expect("UTF-8")));
+        let start = options.iter().fold(start, Start::arg);
+        let mut session = start.arg("-tt").arg("127.0.0.1").size(Size::cells(80, 24)).spawn();
+        session.wait_for_text("? all keys, q quits");
+        session.send(b"G");
+        if leads {
+            session.wait_for_text("you lead the tour; G ends that");
+        }
+        session.send(b"?");
+        session.wait_for_text("list of viewers");
+        session.send(b"qq");
+        assert!(session.wait_exit(SOON).success(), "{user} {keys:?}");
+        let seen = session.seen();
+        let asked = ["assword", "assphrase", "nteractive"].into_iter().find(|word| seen.has(word.as_bytes()));
+        assert_eq!(asked, None, "{user} {keys:?}");
+        assert_eq!(seen.has(b"lead the tour"), leads, "{user} {keys:?}");
+    }
+    // Nor is anyone turned away who cannot be asked.
+    let list = ssh(&hosting, &["127.0.0.1", "--", "--list"]).expect("ssh is there");
+    assert!(String::from_utf8_lossy(&list.stdout).contains("corridor"), "{list:?}");
+    let log = hosting.log();
+    assert!(log.iter().any(|line| line.starts_with("event=leave viewer=3 reason=quit")), "{log:?}");
 }

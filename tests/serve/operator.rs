@@ -2,6 +2,7 @@
 
 use crate::counter::{Counter, run_all};
 use crate::guest::{Anybody, Guest, connect, connect_as};
+use crate::openssh::free_port;
 use crate::program::{Program, termtrace};
 use crate::pty::Start;
 use crate::{Hosting, Place, run, until};
@@ -72,7 +73,7 @@ fn a_file_has_settings_and_flags_go_before_it() {
     }
 }
 
-fn key(seed: u8) -> PrivateKey {
+pub(crate) fn key(seed: u8) -> PrivateKey {
     let keys = Ed25519Keypair::from_seed(&[seed; 32]);
     PrivateKey::new(KeypairData::Ed25519(keys), "a visitor").expect("a key")
 }
@@ -371,6 +372,14 @@ fn row_17_the_unit_gives_the_server_no_rights() {
         return eprintln!("skipped: there is no systemd-analyze");
     };
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+    // With this program in the place of an installed one.
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("a file");
+    write("termtrace.service", &unit.replace("/usr/local/bin/termtrace", env!("CARGO_BIN_EXE_termtrace")));
+    write("termtrace.socket", include_str!("../../docs/termtrace.socket"));
+    let units = ["termtrace.socket", "termtrace.service"].map(|name| folder.path().join(name));
+    let output = Command::new("systemd-analyze").args(["verify", "--man=no"]).args(units).output().expect("it runs");
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
 }
 
 #[test]
@@ -454,4 +463,41 @@ fn row_17_the_server_runs_with_few_rights() {
     });
     let children = fs::read_to_string(format!("/proc/{0}/task/{0}/children", program.child.id())).unwrap_or_default();
     assert!(children.is_empty(), "it has started {children}");
+}
+
+/// Starts the server as systemd does with a socket unit.
+#[test]
+fn systemd_passes_a_socket() {
+    if Command::new("systemd-socket-activate").arg("--version").output().is_err() {
+        eprintln!("skipped: there is no systemd-socket-activate");
+        return;
+    }
+    let port = free_port();
+    let folder = tempfile::tempdir().expect("a folder");
+    let address = format!("127.0.0.1:{port}");
+    let mut command = Command::new("systemd-socket-activate");
+    command.args(["-l", &address, env!("CARGO_BIN_EXE_termtrace"), "serve", "three_spheres", "--host-key"]);
+    command.arg(folder.path().join("key")).stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::null());
+    let mut child = command.spawn().expect("it starts");
+    let place = At(address.parse().expect("an address"));
+    // The first connection starts the server, which then says where it listens: at the socket that it was given.
+    run(async {
+        until("the socket is there", || TcpStream::connect(place.0).is_ok()).await;
+        Guest::enter(&place).await.see_picture().await;
+    });
+    let mut first = String::new();
+    let mut output = std::io::BufReader::new(child.stdout.take().expect("a pipe"));
+    std::io::BufRead::read_line(&mut output, &mut first).expect("a line");
+    assert_eq!(first, format!("listening on {address}: ssh -p {port} 127.0.0.1\n"));
+    let pid = rustix::process::Pid::from_child(&child);
+    rustix::process::kill_process(pid, Signal::TERM).expect("it runs");
+    assert!(child.wait().expect("it ends").success());
+}
+
+struct At(std::net::SocketAddr);
+
+impl Place for At {
+    fn address(&self) -> std::net::SocketAddr {
+        self.0
+    }
 }

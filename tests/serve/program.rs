@@ -4,6 +4,7 @@ use crate::Place;
 use rustix::process::Signal;
 use std::io::{BufRead, BufReader};
 use std::net::SocketAddr;
+use std::path::PathBuf;
 use std::process::{Child, ChildStdout, Command, Output, Stdio};
 use tempfile::TempDir;
 
@@ -51,6 +52,11 @@ impl Program {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).ok()?;
         let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
         line.split_whitespace().next()?.parse().ok()
+    }
+
+    /// Returns the file of the host key.
+    pub(crate) fn key(&self) -> PathBuf {
+        self.folder.path().join("key")
     }
 
     /// Returns the lines of standard error.

@@ -17,7 +17,7 @@ const MOVES_AND_RESTS: &str = "(keyframes: [
     (time: 2, eye: (0, 2.1, 6.3), target: (0, 0.9, 0)),
 ])";
 
-fn path() -> CameraPath {
+pub(crate) fn path() -> CameraPath {
     let scenes = scenes();
     let camera = scenes.first().map(|scene| scene.scene.camera()).expect("a scene");
     CameraPath::from_ron("tour.ron", MOVES_AND_RESTS, camera).expect("a path")
