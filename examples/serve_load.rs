@@ -11,6 +11,9 @@
 //! `--followers N` visitors follow the tour of the server (`--tour`, and `--moving 0`), in `--classes N` kinds of terminals
 //! (up to 8: four sizes, two numbers of colours). One more leaves the tour and comes back twice a second.
 //!
+//! `--at-once true` lets all followers press a key at the same time at the end, and come back by another one. `--drain true`
+//! then ends the server (`--pid`), and counts the visitors who are told before their sessions end.
+//!
 //! `--odd KIND:N` adds visitors of another kind, whose frames are not counted: `big` ones turn in windows of 500x200
 //! cells, `late` ones turn and answer after 400 ms, `slow` ones press keys behind a link of 50 KB/s with a round trip of
 //! 200 ms, `slow-turning` ones turn behind such a link. `--seed N` makes visitors come, go, stall and resize, and prints
@@ -25,7 +28,7 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream};
+use tokio::io::{AsyncReadExt, AsyncWriteExt, BufReader, DuplexStream};
 use tokio::net::TcpStream;
 use tokio::sync::mpsc;
 use tokio::task::LocalSet;
@@ -58,6 +61,14 @@ struct Measured {
     entered: Vec<f64>,
     /// Frames of each moving visitor or follower while all are there.
     frames: Vec<u32>,
+    /// Whether all followers are to press a key.
+    at_once: bool,
+    /// From that key to a view of their own, and from the key that enters the tour to its frame.
+    left_at_once: Vec<f64>,
+    entered_at_once: Vec<f64>,
+    /// The sessions that ended with and without a notice before.
+    told: usize,
+    untold: usize,
     bytes: u64,
     /// Bytes that came for those who only look.
     idle_bytes: u64,
@@ -86,6 +97,8 @@ struct Arguments {
     pid: Option<u32>,
     odd: Option<(Odd, usize)>,
     seed: Option<u64>,
+    at_once: bool,
+    drain: bool,
 }
 
 fn arguments() -> Option<Arguments> {
@@ -101,6 +114,8 @@ fn arguments() -> Option<Arguments> {
         pid: None,
         odd: None,
         seed: None,
+        at_once: false,
+        drain: false,
     };
     while let (Some(flag), Some(value)) = (words.next(), words.next()) {
         match flag.as_str() {
@@ -109,6 +124,8 @@ fn arguments() -> Option<Arguments> {
             "--followers" => arguments.followers = value.parse().ok()?,
             "--classes" => arguments.classes = value.parse().ok().filter(|classes| (1..=8).contains(classes))?,
             "--seconds" => arguments.seconds = value.parse().ok()?,
+            "--at-once" => arguments.at_once = value.parse().ok()?,
+            "--drain" => arguments.drain = value.parse().ok()?,
             "--seed" => arguments.seed = Some(value.parse().ok()?),
             "--odd" => {
                 let (kind, count) = value.split_once(':')?;
@@ -153,7 +170,7 @@ fn main() {
     let Some(arguments) = arguments() else {
         println!(
             "serve_load ADDRESS:PORT [--viewers N] [--moving N] [--followers N] [--classes N] [--seconds S] [--size COLUMNSxROWS] [--pid SERVER] \
-             [--odd big|late|slow|slow-turning:N] [--seed N]"
+             [--odd big|late|slow|slow-turning:N] [--at-once true] [--drain true] [--seed N]"
         );
         return;
     };
@@ -175,9 +192,12 @@ async fn load(arguments: Arguments) {
     for number in 0..all {
         let (of_all, all_measured) = (Rc::clone(&arguments), Rc::clone(&measured));
         tokio::task::spawn_local(async move {
-            if visit(number, &of_all, &all_measured).await.is_none() {
-                all_measured.borrow_mut().failed += 1;
-            }
+            let mut is_told = false;
+            let has_failed = visit(number, &of_all, &all_measured, &mut is_told).await.is_none();
+            let measured = &mut *all_measured.borrow_mut();
+            measured.failed += usize::from(has_failed);
+            let ended = if is_told { &mut measured.told } else { &mut measured.untold };
+            *ended += 1;
         });
         // Sixteen at a time.
         while number >= 15 + measured.borrow().first.len() + measured.borrow().failed {
@@ -207,6 +227,33 @@ async fn load(arguments: Arguments) {
     let seconds = counted.elapsed().as_secs_f64();
     let cpu = [cpu_of(arguments.pid) - before.0, own_cpu() - before.1].map(|time| 100.0 * time / seconds);
     report(&arguments, &mut measured.borrow_mut(), up, seconds, cpu);
+    if arguments.at_once {
+        measured.borrow_mut().at_once = true;
+        let _ = timeout(Duration::from_secs(60), async {
+            while measured.borrow().entered_at_once.len() < arguments.followers {
+                sleep(Duration::from_millis(10)).await;
+            }
+        })
+        .await;
+        let Measured { left_at_once, entered_at_once, .. } = &mut *measured.borrow_mut();
+        for (what, times) in [("left", left_at_once), ("came back", entered_at_once)] {
+            println!("| {} {what} at once, p50, p95, max | {} ms |", times.len(), Shares::of(times));
+        }
+    }
+    if let Some(pid) = arguments.pid.filter(|_| arguments.drain) {
+        let (told, untold) = (measured.borrow().told, measured.borrow().untold);
+        let pid = i32::try_from(pid).ok().and_then(rustix::process::Pid::from_raw).expect("a process");
+        rustix::process::kill_process(pid, rustix::process::Signal::TERM).expect("it runs");
+        let all = || measured.borrow().told + measured.borrow().untold >= all;
+        let _ = timeout(Duration::from_secs(60), async {
+            while !all() {
+                sleep(Duration::from_millis(10)).await;
+            }
+        })
+        .await;
+        let Measured { told: after, untold: without, .. } = *measured.borrow();
+        println!("| ended after a notice, without one | {}, {} |", after - told, without - untold);
+    }
 }
 
 fn report(arguments: &Arguments, measured: &mut Measured, up: Duration, seconds: f64, [server, client]: [f64; 2]) {
@@ -228,6 +275,8 @@ fn report(arguments: &Arguments, measured: &mut Measured, up: Duration, seconds:
             "| bytes a second, one viewer | {:.0} |",
             measured.bytes as f64 / seconds / arguments.counted() as f64
         );
+        let frames: u64 = measured.frames.iter().map(|&frames| u64::from(frames)).sum();
+        println!("| bytes a frame | {:.0} |", measured.bytes as f64 / frames.max(1) as f64);
     }
     println!("| bytes for those at rest | {} |", measured.idle_bytes);
     if !measured.keys.is_empty() {
@@ -272,7 +321,9 @@ impl std::fmt::Display for Shares {
 }
 
 /// Enters, and reads for ever.
-async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured>) -> Option<()> {
+///
+/// Sets `is_told` when the server tells that it ends.
+async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured>, is_told: &mut bool) -> Option<()> {
     let odd = arguments.odd.map(|(kind, _)| kind).filter(|_| number >= arguments.viewers);
     let is_counted = number < arguments.counted();
     let is_leaving = arguments.followers > 0 && number == arguments.counted();
@@ -290,6 +341,7 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
     let (mut channel, _session, asked) = enter(&arguments.address, size, (slow, has_all_colors)).await?;
     let mut is_following = true;
     let (mut tail, mut frames, mut pressed, mut next_key, mut painted) = (Vec::new(), 0_u32, None, asked, false);
+    let (mut at_once, mut has_left) = (None::<(bool, Instant)>, false);
     let (mut owed, mut opens) = (VecDeque::<(Instant, Vec<u8>)>::new(), false);
     loop {
         if is_leaving && painted && Instant::now() >= next_key && pressed.is_none() {
@@ -314,6 +366,28 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
         let wait = owed.front().map_or(wait, |(due, _)| due.saturating_duration_since(Instant::now()).min(wait));
         let Ok(message) = timeout(wait, channel.wait()).await else { continue };
         let ChannelMsg::Data { data } = message? else { continue };
+        *is_told |= arguments.drain && has(&data, b"the server restarts");
+        let pressed_at_once = at_once.filter(|_| is_counted && arguments.at_once && arguments.followers > 0);
+        match pressed_at_once {
+            Some((is_back, pressed)) if has(&data, if is_back { &b"watching"[..] } else { b"left the tour" }) => {
+                let time = 1e3 * Instant::elapsed(&pressed).as_secs_f64();
+                if is_back {
+                    measured.borrow_mut().entered_at_once.push(time);
+                } else {
+                    measured.borrow_mut().left_at_once.push(time);
+                }
+                at_once = (!is_back).then(|| (true, Instant::now()));
+                if !is_back {
+                    channel.data(&b"T"[..]).await.ok()?;
+                }
+            }
+            None if is_counted && !has_left && measured.borrow().at_once => {
+                has_left = true;
+                channel.data(&b"w"[..]).await.ok()?;
+                at_once = Some((false, Instant::now()));
+            }
+            _ => {}
+        }
         tail.extend_from_slice(&data);
         let (ended, replies) = answer(&mut tail);
         if !replies.is_empty() {
@@ -361,7 +435,11 @@ async fn enter(
     let mut session = if slow {
         client::connect_stream(config, link_to(address).await?, Anybody).await.ok()?
     } else {
-        client::connect(config, address, Anybody).await.ok()?
+        let stream = TcpStream::connect(address).await.ok()?;
+        stream.set_nodelay(true).ok()?;
+        // `russh` reads the length of a packet and the packet by themselves, each with a system call. With a buffer both
+        // come at once, which leaves more of the machine to the server.
+        client::connect_stream(config, BufReader::with_capacity(16 * 1024, stream), Anybody).await.ok()?
     };
     session.authenticate_none("load").await.ok()?.success().then_some(())?;
     let channel = session.channel_open_session().await.ok()?;
