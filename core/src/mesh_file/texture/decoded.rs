@@ -1,16 +1,19 @@
 //! Decoding of texture files: PNG and JPEG here, other formats in modules of their own.
 //!
-//! The crate `image` is taken for BMP, GIF, WebP, DDS (DXT1, DXT3 and DXT5) and TGA only. Its TIFF decoder turns on the
-//! SIMD of `zune-jpeg`, with which JPEG textures might have other bits on other CPUs. `tiff` alone is taken instead,
-//! without JPEG inside TIFF.
+//! Each format has a small crate of its own, or is read here. The crate `image` was tried: with its colour management
+//! system, which is never called, a clean build took 26 s longer. Its TIFF decoder also turns on the SIMD of `zune-jpeg`, with which JPEG
+//! textures might have other bits on other CPUs; `tiff` is taken without JPEG.
 
-mod other;
+mod bmp;
+mod dds;
+mod gif;
 mod samples;
+mod tga;
 mod tiff;
+mod webp;
 
 pub(in crate::mesh_file) use samples::TexelBudget;
 
-use self::other::OtherFormat;
 use self::samples::{check_plausible, checked_texture, texels_of};
 use super::{Sampler, Texture, TexturePlacement};
 use crate::mesh_file::limits::MAX_TEXELS;
@@ -30,17 +33,29 @@ impl TexturePlacement {
     }
 }
 
+/// Decodes a picture, or returns a message without its subject.
+type Decode = fn(&[u8], &mut TexelBudget) -> Result<Texture, String>;
+
+/// Returns whether a file's first bytes are those of a format.
+type Recognises = fn(&[u8]) -> bool;
+
+/// The formats, each with the test of a file's first bytes. TGA is last, because it has no signature.
+const FORMATS: [(Recognises, Decode); 8] = [
+    (|bytes| bytes.starts_with(b"\x89PNG"), decode_png),
+    (|bytes| bytes.starts_with(b"\xff\xd8"), decode_jpeg),
+    (tiff::is_tiff, tiff::decode),
+    (bmp::is_bmp, bmp::decode),
+    (gif::is_gif, gif::decode),
+    (webp::is_webp, webp::decode),
+    (dds::is_dds, dds::decode),
+    (tga::is_tga, tga::decode),
+];
+
 /// Decodes an image. An `Err` is a message without its subject, such as "is a PNG picture that is
 /// cut short".
 pub(in crate::mesh_file) fn decode(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, String> {
-    if bytes.starts_with(b"\x89PNG") {
-        decode_png(bytes, budget)
-    } else if bytes.starts_with(b"\xff\xd8") {
-        decode_jpeg(bytes, budget)
-    } else if tiff::is_tiff(bytes) {
-        tiff::decode(bytes, budget)
-    } else if let Some(format) = OtherFormat::recognised(bytes) {
-        format.decode(bytes, budget)
+    if let Some((_, decode)) = FORMATS.iter().find(|(recognises, _)| recognises(bytes)) {
+        decode(bytes, budget)
     } else if bytes.starts_with(b"version https://git-lfs") {
         Err("is only a pointer of Git LFS to the file: fetch it with `git lfs pull`".to_owned())
     } else {

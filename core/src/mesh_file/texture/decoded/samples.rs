@@ -44,6 +44,17 @@ pub(super) fn texels_of(samples: &[u8], channels: usize) -> Vec<Srgb8> {
     }
 }
 
+/// Red, green, blue and the opacity of a texel.
+pub(super) type Rgba = [u8; 4];
+
+/// Reverses the order of the rows of a picture.
+pub(super) fn flip(texels: &mut [Rgba], width: usize) {
+    let rows = texels.len() / width;
+    let (upper, lower) = texels.split_at_mut(rows / 2 * width);
+    let lower = &mut lower[rows % 2 * width..];
+    upper.chunks_exact_mut(width).zip(lower.chunks_exact_mut(width).rev()).for_each(|(a, b)| a.swap_with_slice(b));
+}
+
 pub(super) fn cut_short(format: &str) -> String {
     format!("is a {format} picture that is cut short")
 }
