@@ -72,6 +72,12 @@ impl Bounds {
         let [min, max] = crossed([Vector::splat(self.min), Vector::splat(self.max)], &probe.rays);
         Interval { min, max }
     }
+
+    /// Returns whether the line of a ray, in both directions, may pass through the box.
+    pub(crate) fn is_crossed(&self, probe: &Probe) -> bool {
+        let Interval { min, max } = self.crossed(probe);
+        min <= max
+    }
 }
 
 /// Computes [`Bounds::crossed`] for one ray or eight and one box or eight.

@@ -287,8 +287,10 @@ pub trait SoaLeaf: Clone {
     /// The type of one surface.
     type Shape: Surface + Clone + Sync;
 
-    /// The type that implements the crossing formula.
-    type Of<N: Lanes>: Crossable<N> + AtCrossing<N>;
+    /// The type that implements the crossing formula, for surfaces of the leaf.
+    type Of<'l, N: Lanes>: Crossable<N> + AtCrossing<N>
+    where
+        Self: 'l;
 
     /// Whether the formula needs the [shear](Rays::shear) of rays.
     const NEED_SHEAR: bool = false;
@@ -297,17 +299,19 @@ pub trait SoaLeaf: Clone {
     fn of(shapes: &[Self::Shape]) -> Self;
 
     /// Returns the up to eight surfaces, one per lane, for tests against one ray in all lanes.
-    fn one_per_lane<N: Lanes>(&self) -> Self::Of<N>;
+    fn one_per_lane<N: Lanes>(&self) -> Self::Of<'_, N>;
 
     /// Returns the surface of `lane` in all lanes, for tests against eight rays.
-    fn splat<N: Lanes>(&self, lane: usize) -> Self::Of<N>;
+    fn splat<N: Lanes>(&self, lane: usize) -> Self::Of<'_, N>;
 
     /// Returns in each lane the surface selected by the lowest three bits of `lanes`, as
     /// [`Lanes::gather`] does.
-    fn gather<N: Lanes>(&self, lanes: N) -> Self::Of<N>;
+    fn gather<N: Lanes>(&self, lanes: N) -> Self::Of<'_, N>;
 
     /// Returns `yes` where the mask is set, else `no`.
-    fn select<N: Lanes>(mask: N::Mask, yes: Self::Of<N>, no: Self::Of<N>) -> Self::Of<N>;
+    fn select<'l, N: Lanes>(mask: N::Mask, yes: Self::Of<'l, N>, no: Self::Of<'l, N>) -> Self::Of<'l, N>
+    where
+        Self: 'l;
 
     /// Whether [`edge_functions`](Self::edge_functions) may return `Some`.
     const HAVE_EDGE_FUNCTIONS: bool = false;

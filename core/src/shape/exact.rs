@@ -11,8 +11,8 @@ use super::placement::{AffineMap, Placeable, Placement, shape_line};
 use super::{Points, Shape, Surface, SurfacePoint, flat_footprint};
 use crate::bounds::Bounds;
 use crate::formula::Line;
-use crate::lanes::{Number, Vector};
-use crate::ray::{Interval, Probe, Ray, clamp_keeping_nan};
+use crate::lanes::{F32x8, Number, Vector, set_bits};
+use crate::ray::{EightRays, Interval, Probe, Ray, clamp_keeping_nan};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
@@ -154,7 +154,7 @@ impl Crossings {
     }
 
     /// Returns the crossings.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = Crossing> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Crossing> + use<> {
         self.found.into_iter().take(self.count)
     }
 }
@@ -258,6 +258,41 @@ pub(super) fn crossings<S: Exact>(surface: &S, ray: &Ray) -> Crossings {
     crossings
 }
 
+/// Returns the first of a line's crossings, in ascending order, that a ray may reach.
+///
+/// It is moved into the interval of the surface's box. Crossings are only computed if that interval has a part within
+/// the ray's.
+pub(super) fn first_in_box<I: Iterator<Item = f64>>(
+    Interval { min, max }: Interval,
+    within: Interval,
+    crossings: impl FnOnce() -> I,
+) -> Option<f32> {
+    if !(min <= max && within.min <= max && min <= within.max) {
+        return None;
+    }
+    let finite = crossings().filter(|t| t.is_finite());
+    finite.map(|t| clamp_keeping_nan(min, max, t as f32)).find(|&t| within.contains(t))
+}
+
+/// Computes [`first_in_box`] for the active rays, and returns the mask of those with a crossing.
+pub(super) fn first_in_boxes<I: Iterator<Item = f64>>(
+    rays: &EightRays,
+    inside: &[F32x8; 2],
+    within: &[F32x8; 2],
+    crossings: impl Fn(&Ray) -> I,
+) -> (u32, F32x8) {
+    let (mut crosses, mut t) = (0, F32x8::ZERO);
+    let interval = |[min, max]: &[F32x8; 2], lane: usize| Interval { min: min.0[lane], max: max.0[lane] };
+    for lane in set_bits(rays.active) {
+        let of_lane = || crossings(&rays.ray(lane));
+        if let Some(crossing) = first_in_box(interval(inside, lane), interval(within, lane), of_lane) {
+            crosses |= 1 << lane;
+            t.0[lane] = crossing;
+        }
+    }
+    (crosses, t)
+}
+
 /// Returns the axes of patterns, for dot products with vectors of the scene.
 fn pattern_axes_in_scene<S: Exact>(surface: &S, normal: Vec3) -> Option<[Vec3; 2]> {
     let Some(map) = &surface.placed_bounds().map else { return surface.pattern_axes(normal) };
@@ -286,13 +321,12 @@ impl<S: Exact> Surface for S {
     }
 
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let Interval { min, max } = self.placed_bounds().bounds().crossed(probe);
-        if !(min <= max && within.min <= max && min <= within.max) {
-            return None;
-        }
-        let found = crossings(self, &probe.ray);
-        let in_box = found.iter().filter(|crossing| crossing.t.is_finite());
-        in_box.map(|crossing| clamp_keeping_nan(min, max, crossing.t as f32)).find(|&t| within.contains(t))
+        let in_box = self.placed_bounds().bounds().crossed(probe);
+        first_in_box(in_box, within, || crossings(self, &probe.ray).iter().map(|crossing| crossing.t))
+    }
+
+    fn closest_crossings(&self, rays: &EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8) {
+        first_in_boxes(rays, inside, within, |ray| crossings(self, ray).iter().map(|crossing| crossing.t))
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {

@@ -6,98 +6,108 @@ use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Vector, set_bits};
 use crate::ray::{EightRays, Rays};
 use glam::Vec3;
 use std::array::from_fn;
+use std::ptr;
 use std::sync::Arc;
 
 /// A leaf with up to eight surfaces of any type, each tested against all rays of its lanes at once.
-///
-/// A lane holds only the index of its surface, so surfaces of any size in memory fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScalarLeaf<S> {
-    // Reference-counted, because `splat` and `gather` return a new leaf with the same surfaces for each test.
+    /// The surfaces, one per lane from the first lane on.
     surfaces: Arc<[S]>,
-    /// The index of each lane's surface; an unused lane has an index beyond `surfaces`.
-    lanes: [u8; LANES],
+    /// The boxes of the surfaces. Unused lanes have an inverted infinite box, which no ray hits.
+    boxes: [Vector<F32x8>; 2],
 }
 
 impl<S> ScalarLeaf<S> {
-    /// Returns a leaf with the same surfaces; `surface_of` returns the index of the surface for a
-    /// lane.
-    fn with_lanes(&self, surface_of: impl FnMut(usize) -> u8) -> Self {
-        Self { surfaces: Arc::clone(&self.surfaces), lanes: from_fn(surface_of) }
-    }
-
     /// Replaces all surfaces by others with the same bounds.
     pub(crate) fn replace(&mut self, by: impl Fn(&S) -> S) {
         self.surfaces = self.surfaces.iter().map(by).collect();
     }
+}
 
-    /// Returns the mask of the active rays that cross their lanes' surfaces, and the t of each.
-    fn crossings(&self, mut rays: EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8)
+impl<S: Surface + Clone + Send + Sync> SoaLeaf for ScalarLeaf<S> {
+    type Shape = S;
+    type Of<'l, N: Lanes>
+        = ScalarLanes<'l, S, N>
     where
-        S: Surface,
+        S: 'l;
+
+    fn of(shapes: &[S]) -> Self {
+        let bounds = |lane: usize| shapes.get(lane).and_then(Surface::bounds);
+        let min = from_fn(|lane| bounds(lane).map_or(Vec3::INFINITY, |bounds| bounds.min));
+        let max = from_fn(|lane| bounds(lane).map_or(Vec3::NEG_INFINITY, |bounds| bounds.max));
+        Self { surfaces: shapes.into(), boxes: [Vector::of(min), Vector::of(max)] }
+    }
+
+    #[inline(always)]
+    fn one_per_lane<N: Lanes>(&self) -> ScalarLanes<'_, S, N> {
+        ScalarLanes { surfaces: from_fn(|lane| self.surfaces.get(lane)), boxes: self.boxes.map(|corner| corner.load()) }
+    }
+
+    #[inline(always)]
+    fn splat<N: Lanes>(&self, lane: usize) -> ScalarLanes<'_, S, N> {
+        ScalarLanes {
+            surfaces: [self.surfaces.get(lane); LANES],
+            boxes: self.boxes.map(|corner| Vector::splat(corner.of_lane(lane))),
+        }
+    }
+
+    #[inline(always)]
+    fn gather<N: Lanes>(&self, lanes: N) -> ScalarLanes<'_, S, N> {
+        let index = lanes.store();
+        ScalarLanes {
+            surfaces: from_fn(|lane| self.surfaces.get(index.0[lane].to_bits() as usize % LANES)),
+            boxes: self.boxes.map(|corner| corner.load().gather(lanes)),
+        }
+    }
+
+    #[inline(always)]
+    fn select<'l, N: Lanes>(
+        mask: N::Mask,
+        yes: ScalarLanes<'l, S, N>,
+        no: ScalarLanes<'l, S, N>,
+    ) -> ScalarLanes<'l, S, N>
+    where
+        Self: 'l,
     {
+        let bits = mask.bits();
+        let of_two = |corner: usize| Vector::select(mask, yes.boxes[corner], no.boxes[corner]);
+        ScalarLanes {
+            surfaces: from_fn(|lane| if bits >> lane & 1 == 1 { yes.surfaces[lane] } else { no.surfaces[lane] }),
+            boxes: [of_two(0), of_two(1)],
+        }
+    }
+}
+
+/// Surfaces of [`ScalarLeaf`]s, one per lane.
+// References to the surfaces: a reference count instead, which each test of a surface increased, made two threads wait for
+// each other's cache line.
+pub struct ScalarLanes<'l, S, N: Lanes> {
+    /// The surface of each lane; `None` if the lane is unused.
+    surfaces: [Option<&'l S>; LANES],
+    boxes: [Vector<N>; 2],
+}
+
+impl<S: Surface, N: Lanes> ScalarLanes<'_, S, N> {
+    /// Returns the mask of the active rays that cross their lanes' surfaces, and the t of each.
+    fn crossings(&self, mut rays: EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8) {
         let (mut crosses, mut t, mut left) = (0, F32x8::ZERO, rays.active);
         while let Some(first) = set_bits(left).next() {
             // Tests all active lanes with the same surface together.
-            let is_same = |lane: &usize| self.lanes[*lane] == self.lanes[first];
-            rays.active = set_bits(left).filter(is_same).fold(0, |lanes, lane| lanes | 1 << lane);
+            let same = |lane: usize| self.surfaces[lane].map(ptr::from_ref);
+            rays.active =
+                set_bits(left).filter(|&lane| same(lane) == same(first)).fold(0, |lanes, lane| lanes | 1 << lane);
             left &= !rays.active;
-            // Unused lanes have no surface.
-            let Some(surface) = self.surface(first) else { continue };
+            let Some(surface) = self.surfaces[first] else { continue };
             let (found, crossings) = surface.closest_crossings(&rays, inside, within);
             set_bits(found).for_each(|lane| t.0[lane] = crossings.0[lane]);
             crosses |= found;
         }
         (crosses, t)
     }
-
-    /// Returns the surface that the leaf holds in `lane`, or `None` if the lane is unused.
-    fn surface(&self, lane: usize) -> Option<&S> {
-        self.surfaces.get(usize::from(self.lanes[lane]))
-    }
 }
 
-impl<S: Surface + Clone + Send + Sync> SoaLeaf for ScalarLeaf<S> {
-    type Shape = S;
-    type Of<N: Lanes> = Self;
-
-    fn of(shapes: &[S]) -> Self {
-        Self { surfaces: shapes.into(), lanes: from_fn(|lane| lane as u8) }
-    }
-
-    #[inline(always)]
-    fn one_per_lane<N: Lanes>(&self) -> Self {
-        self.clone()
-    }
-
-    #[inline(always)]
-    fn splat<N: Lanes>(&self, lane: usize) -> Self {
-        self.with_lanes(|_| self.lanes[lane])
-    }
-
-    #[inline(always)]
-    fn gather<N: Lanes>(&self, lanes: N) -> Self {
-        let lanes = lanes.store();
-        self.with_lanes(|lane| self.lanes[lanes.0[lane].to_bits() as usize % LANES])
-    }
-
-    /// Returns a new leaf with the surface of `yes` where the mask is set, else that of `no`.
-    #[inline(always)]
-    fn select<N: Lanes>(mask: N::Mask, yes: Self, no: Self) -> Self {
-        let bits = mask.bits();
-        let of_lane = |lane: usize| if bits >> lane & 1 == 1 { yes.surface(lane) } else { no.surface(lane) };
-        let (mut surfaces, mut lanes) = (Vec::new(), [u8::MAX; LANES]);
-        for (lane, index) in lanes.iter_mut().enumerate() {
-            if let Some(surface) = of_lane(lane) {
-                *index = surfaces.len() as u8;
-                surfaces.push(surface.clone());
-            }
-        }
-        Self { surfaces: surfaces.into(), lanes }
-    }
-}
-
-impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
+impl<S: Surface, N: Lanes> Crossable<N> for ScalarLanes<'_, S, N> {
     #[inline(always)]
     fn first_crossing(&self, rays: &Rays<N>, min: N) -> Option<(N::Mask, N)> {
         self.first_crossing_with_hint(rays, [min, N::splat(f32::MAX)])
@@ -107,7 +117,7 @@ impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
     // box.
     #[inline(always)]
     fn first_crossing_with_hint(&self, rays: &Rays<N>, [min, max]: [N; 2]) -> Option<(N::Mask, N)> {
-        let [enters, leaves] = crossed(Crossable::<N>::boxes(self), rays);
+        let [enters, leaves] = crossed(self.boxes, rays);
         let active = enters.max(min).le(leaves.min(max)).bits();
         if active == 0 {
             return None;
@@ -119,21 +129,17 @@ impl<S: Surface, N: Lanes> Crossable<N> for ScalarLeaf<S> {
 
     #[inline(always)]
     fn boxes(&self) -> [Vector<N>; 2] {
-        let bounds = |lane: usize| self.surface(lane).and_then(Surface::bounds);
-        // Unused lanes have an inverted infinite box, which no ray hits.
-        let min = from_fn(|lane| bounds(lane).map_or(Vec3::INFINITY, |bounds| bounds.min));
-        let max = from_fn(|lane| bounds(lane).map_or(Vec3::NEG_INFINITY, |bounds| bounds.max));
-        [Vector::of(min).load(), Vector::of(max).load()]
+        self.boxes
     }
 }
 
-impl<S: Surface, N: Lanes> AtCrossing<N> for ScalarLeaf<S> {
+impl<S: Surface, N: Lanes> AtCrossing<N> for ScalarLanes<'_, S, N> {
     #[inline(always)]
     fn points_at(&self, rays: &Rays<N>, t: N) -> Points<N> {
         let (t, rays) =
             (t.store(), EightRays { origin: rays.origin.store(), direction: rays.direction.store(), active: 0 });
         let points = from_fn::<_, LANES, _>(|lane| {
-            let surface = self.surface(lane)?;
+            let surface = self.surfaces[lane]?;
             Some(surface.at_crossing(&rays.ray(lane), t.0[lane]))
         });
         Points::of_lanes(&points)

@@ -13,7 +13,8 @@ use super::{
 };
 use crate::bounds::Bounds;
 use crate::checks::Message;
-use crate::ray::{Interval, Probe, Ray, clamp_keeping_nan};
+use crate::lanes::F32x8;
+use crate::ray::{EightRays, Interval, Probe, Ray};
 use crate::scene_text::{Span, SyntaxNode};
 use crate::written::{Fields, InSceneFile, NodeReader, Spanned, Validator};
 use glam::Vec3;
@@ -60,6 +61,15 @@ impl Operation {
             Self::Union => inside != 0,
             Self::Intersection => inside.count_ones() as usize == parts,
             Self::Difference => inside == 1,
+        }
+    }
+
+    /// Returns whether a solid has only points of the part of this number.
+    fn needs(self, number: usize) -> bool {
+        match self {
+            Self::Union => false,
+            Self::Intersection => true,
+            Self::Difference => number == 0,
         }
     }
 
@@ -120,54 +130,71 @@ impl<'s> Boundaries<'s> {
         self.found[..self.count].iter().copied().flatten()
     }
 
-    /// Returns the boundaries of a shape that is not a solid.
-    fn of_shape(shape: &'s Shape, ray: &Ray) -> Self {
-        let crossings = match shape {
-            Shape::Plane(plane) => return Self::of_half_space(shape, plane, ray),
-            Shape::Sphere(sphere) => sphere_crossings(sphere, ray),
-            Shape::Cuboid(shape) => exact::crossings(shape, ray),
-            Shape::Cylinder(shape) => exact::crossings(shape, ray),
-            Shape::Cone(shape) => exact::crossings(shape, ray),
-            Shape::Capsule(shape) => exact::crossings(shape, ray),
-            Shape::Ellipsoid(shape) => exact::crossings(shape, ray),
-            Shape::Torus(torus) => return Self::of_torus(shape, torus, ray),
-            _ => Crossings::NONE,
-        };
-        let mut boundaries = Self::new(false);
-        for crossing in crossings.iter() {
-            let enters = boundaries.count % 2 == 0;
-            boundaries.push(Boundary { t: crossing.t, shape, enters });
-        }
-        boundaries
+    /// Returns the t of each boundary.
+    fn ts(self) -> impl Iterator<Item = f64> {
+        self.found.into_iter().flatten().map(|boundary| boundary.t)
     }
+}
 
-    /// Returns the boundaries of a torus, without the points at which a line only touches it.
-    fn of_torus(shape: &'s Shape, torus: &Torus, ray: &Ray) -> Self {
-        let crossings = exact::crossings(torus, ray);
-        let mut crossings = crossings.iter().map(|crossing| crossing.t).peekable();
-        let (mut boundaries, mut is_inside) = (Self::new(false), false);
-        while let Some(t) = crossings.next() {
-            let enters = crossings.peek().is_some_and(|next| torus.contains_at(ray, 0.5 * (t + next)));
-            if enters != is_inside {
-                is_inside = enters;
-                boundaries.push(Boundary { t, shape, enters });
-            }
+/// Calls `add` with the boundaries of a part of a solid along the line of a ray, in ascending order.
+///
+/// Returns whether the line begins inside the part, at t = -infinity.
+fn add_boundaries<'s>(part: &'s Shape, probe: &Probe, mut add: impl FnMut(Boundary<'s>)) -> bool {
+    let ray = &probe.ray;
+    let crossings = match part {
+        Shape::Solid(solid) => {
+            let boundaries = solid.boundaries(probe);
+            boundaries.iter().for_each(add);
+            return boundaries.begins_inside;
         }
-        boundaries
+        Shape::Plane(plane) => return add_boundary_of_half_space(part, plane, ray, add),
+        Shape::Torus(torus) => {
+            add_boundaries_of_torus(part, torus, ray, add);
+            return false;
+        }
+        Shape::Sphere(sphere) => sphere_crossings(sphere, ray),
+        Shape::Cuboid(shape) => exact::crossings(shape, ray),
+        Shape::Cylinder(shape) => exact::crossings(shape, ray),
+        Shape::Cone(shape) => exact::crossings(shape, ray),
+        Shape::Capsule(shape) => exact::crossings(shape, ray),
+        Shape::Ellipsoid(shape) => exact::crossings(shape, ray),
+        _ => Crossings::NONE,
+    };
+    for (number, crossing) in crossings.iter().enumerate() {
+        add(Boundary { t: crossing.t, shape: part, enters: number % 2 == 0 });
     }
+    false
+}
 
-    /// Returns the boundary of all that is behind a plane.
-    fn of_half_space(shape: &'s Shape, plane: &Plane, ray: &Ray) -> Self {
-        let [point, normal] = [plane.point(), plane.normal()].map(Vec3::as_dvec3);
-        let height = (ray.origin.as_dvec3() - point).dot(normal);
-        let change = ray.direction.as_dvec3().dot(normal);
-        if change == 0.0 {
-            return Self::new(height < 0.0);
+/// Adds the boundaries of a torus, without the points at which a line only touches it.
+fn add_boundaries_of_torus<'s>(shape: &'s Shape, torus: &Torus, ray: &Ray, mut add: impl FnMut(Boundary<'s>)) {
+    let crossings = exact::crossings(torus, ray);
+    let mut crossings = crossings.iter().map(|crossing| crossing.t).peekable();
+    let mut is_inside = false;
+    while let Some(t) = crossings.next() {
+        let enters = crossings.peek().is_some_and(|next| torus.contains_at(ray, 0.5 * (t + next)));
+        if enters != is_inside {
+            is_inside = enters;
+            add(Boundary { t, shape, enters });
         }
-        let mut boundaries = Self::new(change > 0.0);
-        boundaries.push(Boundary { t: -height / change, shape, enters: change < 0.0 });
-        boundaries
     }
+}
+
+/// Adds the boundary of all that is behind a plane, and returns whether the line begins there.
+fn add_boundary_of_half_space<'s>(
+    shape: &'s Shape,
+    plane: &Plane,
+    ray: &Ray,
+    mut add: impl FnMut(Boundary<'s>),
+) -> bool {
+    let [point, normal] = [plane.point(), plane.normal()].map(Vec3::as_dvec3);
+    let height = (ray.origin.as_dvec3() - point).dot(normal);
+    let change = ray.direction.as_dvec3().dot(normal);
+    if change == 0.0 {
+        return height < 0.0;
+    }
+    add(Boundary { t: -height / change, shape, enters: change < 0.0 });
+    change > 0.0
 }
 
 /// Returns the crossings of a sphere, computed in f64.
@@ -195,19 +222,24 @@ impl Solid {
     }
 
     /// Returns where the line of a ray enters and leaves the solid.
-    fn boundaries(&self, ray: &Ray) -> Boundaries<'_> {
+    fn boundaries(&self, probe: &Probe) -> Boundaries<'_> {
         let (mut events, mut count) = ([(0.0, 0, None); MAX_BOUNDARIES], 0);
         let mut inside = 0_u32;
         for (number, part) in self.parts.iter().enumerate() {
-            let of_part = match part {
-                Shape::Solid(solid) => solid.boundaries(ray),
-                shape => Boundaries::of_shape(shape, ray),
-            };
-            inside |= u32::from(of_part.begins_inside) << number;
-            for boundary in of_part.iter().filter(|boundary| !boundary.t.is_nan()) {
-                events[count.min(MAX_BOUNDARIES - 1)] = (boundary.t, number, Some(boundary));
-                count = (count + 1).min(MAX_BOUNDARIES);
+            // Most lines miss most parts: in the scene `dice`, the test of their boxes saves half of the time.
+            if part.bounds().is_some_and(|bounds| !bounds.is_crossed(probe)) {
+                if self.operation.needs(number) {
+                    return Boundaries::new(false);
+                }
+                continue;
             }
+            let begins_inside = add_boundaries(part, probe, |boundary| {
+                if !boundary.t.is_nan() {
+                    events[count.min(MAX_BOUNDARIES - 1)] = (boundary.t, number, Some(boundary));
+                    count = (count + 1).min(MAX_BOUNDARIES);
+                }
+            });
+            inside |= u32::from(begins_inside) << number;
         }
         let events = &mut events[..count];
         // A stable sort, so that boundaries at one t keep the order of the parts.
@@ -276,19 +308,17 @@ impl Surface for Solid {
     }
 
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let Interval { min, max } = self.bounds.crossed(probe);
-        if !(min <= max && within.min <= max && min <= within.max) {
-            return None;
-        }
-        let boundaries = self.boundaries(&probe.ray);
-        let finite = boundaries.iter().filter(|boundary| boundary.t.is_finite());
-        finite.map(|boundary| clamp_keeping_nan(min, max, boundary.t as f32)).find(|&t| within.contains(t))
+        exact::first_in_box(self.bounds.crossed(probe), within, || self.boundaries(probe).ts())
+    }
+
+    fn closest_crossings(&self, rays: &EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8) {
+        exact::first_in_boxes(rays, inside, within, |ray| self.boundaries(&Probe::new(*ray)).ts())
     }
 
     /// Returns the point on the part that the boundary belongs to; its side is that of the solid.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
         let off = |boundary: &Boundary<'_>| (boundary.t as f32 - t).abs();
-        let boundaries = self.boundaries(ray);
+        let boundaries = self.boundaries(&Probe::new(*ray));
         let nearest = boundaries.iter().min_by(|one, other| off(one).total_cmp(&off(other)));
         let (shape, t, enters) =
             nearest.map_or((&self.parts[0], t, true), |Boundary { t, shape, enters }| (shape, t as f32, enters));
@@ -314,7 +344,7 @@ impl Described for Solid {
 
     /// Returns the boundaries of the solid, without the equations of its parts.
     fn equation(&self, ray: &Ray) -> Equation {
-        let boundaries = self.boundaries(ray);
+        let boundaries = self.boundaries(&Probe::new(*ray));
         let mut roots: Vec<_> = boundaries.iter().map(|boundary| boundary.t).collect();
         // Two are shown, preferably in front of the eye.
         let behind = roots.iter().filter(|&&root| root < 0.0).count();

@@ -153,7 +153,7 @@ impl<N: Number> AtCrossing<N> for SphereN<N> {
 
 impl SoaLeaf for SphereN<F32x8> {
     type Shape = Sphere;
-    type Of<N: Lanes> = SphereN<N>;
+    type Of<'l, N: Lanes> = SphereN<N>;
 
     fn of(shapes: &[Sphere]) -> Self {
         let sphere = |lane: usize| shapes.get(lane).copied().unwrap_or(NEVER_HIT);
@@ -180,7 +180,10 @@ impl SoaLeaf for SphereN<F32x8> {
     }
 
     #[inline(always)]
-    fn select<N: Lanes>(mask: N::Mask, yes: SphereN<N>, no: SphereN<N>) -> SphereN<N> {
+    fn select<'l, N: Lanes>(mask: N::Mask, yes: SphereN<N>, no: SphereN<N>) -> SphereN<N>
+    where
+        Self: 'l,
+    {
         SphereN { center: Vector::select(mask, yes.center, no.center), radius: N::select(mask, yes.radius, no.radius) }
     }
 }

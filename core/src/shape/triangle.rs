@@ -264,7 +264,7 @@ impl<N: Number> Crossable<N> for TriangleN<N> {
 
 impl SoaLeaf for TriangleN<F32x8> {
     type Shape = Triangle;
-    type Of<N: Lanes> = TriangleN<N>;
+    type Of<'l, N: Lanes> = TriangleN<N>;
 
     const NEED_SHEAR: bool = true;
 
@@ -299,11 +299,14 @@ impl SoaLeaf for TriangleN<F32x8> {
     }
 
     #[inline(always)]
-    fn select<N: Lanes>(
+    fn select<'l, N: Lanes>(
         mask: N::Mask,
         TriangleN([a, b, c]): TriangleN<N>,
         TriangleN(no): TriangleN<N>,
-    ) -> TriangleN<N> {
+    ) -> TriangleN<N>
+    where
+        Self: 'l,
+    {
         let of_two = |yes, no| Vector::select(mask, yes, no);
         TriangleN([of_two(a, no[0]), of_two(b, no[1]), of_two(c, no[2])])
     }

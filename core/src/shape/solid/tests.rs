@@ -11,7 +11,7 @@ fn solid(text: &str) -> Shape {
 fn crossings(shape: &Shape, origin: [f32; 3], direction: [f32; 3]) -> Vec<f32> {
     let ray = Ray { origin: origin.into(), direction: direction.into() };
     let Shape::Solid(solid) = shape else { panic!("a solid") };
-    solid.boundaries(&ray).iter().map(|boundary| boundary.t as f32).collect()
+    solid.boundaries(&Probe::new(ray)).iter().map(|boundary| boundary.t as f32).collect()
 }
 
 const FROM_LEFT: ([f32; 3], [f32; 3]) = ([-5.0, 0.25, 0.0], [1.0, 0.0, 0.0]);
@@ -110,7 +110,7 @@ proptest! {
         let (origin, target) = (Vec3::from(from), Vec3::from(to));
         prop_assume!(origin.distance(target) > 0.1);
         let ray = Ray { origin, direction: target - origin };
-        let boundaries = solid.boundaries(&ray);
+        let boundaries = solid.boundaries(&Probe::new(ray));
         for step in -200..400 {
             let t = 0.01 * f64::from(step) + 0.003;
             let near = |boundary: Boundary<'_>| (boundary.t - t).abs() < 1e-3;
