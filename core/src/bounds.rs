@@ -73,6 +73,12 @@ impl Bounds {
         Interval { min, max }
     }
 
+    /// Returns the box whose faces lie one step of f32 farther out.
+    pub(crate) fn one_step_larger(self) -> Self {
+        let [min, max] = [self.min.to_array().map(f32::next_down), self.max.to_array().map(f32::next_up)];
+        Self { min: min.into(), max: max.into() }
+    }
+
     /// Returns whether the line of a ray, in both directions, may pass through the box.
     pub(crate) fn is_crossed(&self, probe: &Probe) -> bool {
         let Interval { min, max } = self.crossed(probe);

@@ -128,8 +128,8 @@ fn a_balancer_without_a_header_is_refused() {
 fn row_29_an_address_that_is_no_balancer_cannot_claim_another_one() {
     let hosting = behind_balancer(1);
     run(async {
-        // The first client sends nothing, so that it keeps the address's only place: the server would close a connection
-        // whose greeting is a header, and admit another one.
+        // The first client sends nothing, so that it keeps the address's only place: the server would close a
+        // connection whose greeting is a header, and admit another one.
         let mut first = dial_from([127, 0, 8, 1], &hosting).await;
         first.read_exact(&mut [0; 17]).await.expect("a greeting");
         for client in 1..=2 {

@@ -2,7 +2,7 @@
 //!
 //! cargo run --release [-- WIDTH HEIGHT SAMPLES ROUNDS]
 //!
-//! Prints the primary rays per second of both, and their ratio: medians of the rounds, which alternate.
+//! Prints the median primary rays per second of each, and the ratio of the medians. The rounds alternate.
 
 use atanor::render::{self, Camera, Framebuffer};
 use glam_of_atanor::Vec3;
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let each = NonZeroU32::new(samples.into()).ok_or("at least one sample")?;
 
     let mut seconds = [const { Vec::new() }; 2];
-    for _ in 0..rounds {
+    for _ in 0..rounds.max(1) {
         let start = Instant::now();
         render::render(&theirs, &camera, &mut framebuffer, samples.into());
         seconds[0].push(start.elapsed().as_secs_f64());

@@ -13,6 +13,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScalarLeaf<S> {
     /// The surfaces, one per lane from the first lane on.
+    // Reference-counted, so that a copy of the tree shares them.
     surfaces: Arc<[S]>,
     /// The boxes of the surfaces. Unused lanes have an inverted infinite box, which no ray hits.
     boxes: [Vector<F32x8>; 2],
@@ -80,8 +81,8 @@ impl<S: Surface + Clone + Send + Sync> SoaLeaf for ScalarLeaf<S> {
 }
 
 /// Surfaces of [`ScalarLeaf`]s, one per lane.
-// References to the surfaces: a reference count instead, which each test of a surface increased, made two threads wait for
-// each other's cache line.
+// References, because a reference count that each test of a surface increased made threads wait for each other's cache
+// line.
 pub struct ScalarLanes<'l, S, N: Lanes> {
     /// The surface of each lane; `None` if the lane is unused.
     surfaces: [Option<&'l S>; LANES],
@@ -94,11 +95,11 @@ impl<S: Surface, N: Lanes> ScalarLanes<'_, S, N> {
         let (mut crosses, mut t, mut left) = (0, F32x8::ZERO, rays.active);
         while let Some(first) = set_bits(left).next() {
             // Tests all active lanes with the same surface together.
-            let same = |lane: usize| self.surfaces[lane].map(ptr::from_ref);
-            rays.active =
-                set_bits(left).filter(|&lane| same(lane) == same(first)).fold(0, |lanes, lane| lanes | 1 << lane);
+            let surface = self.surfaces[first];
+            let is_same = |lane: &usize| self.surfaces[*lane].map(ptr::from_ref) == surface.map(ptr::from_ref);
+            rays.active = set_bits(left).filter(is_same).fold(0, |lanes, lane| lanes | 1 << lane);
             left &= !rays.active;
-            let Some(surface) = self.surfaces[first] else { continue };
+            let Some(surface) = surface else { continue };
             let (found, crossings) = surface.closest_crossings(&rays, inside, within);
             set_bits(found).for_each(|lane| t.0[lane] = crossings.0[lane]);
             crosses |= found;

@@ -64,7 +64,9 @@ impl Operation {
         }
     }
 
-    /// Returns whether a solid has only points of the part of this number.
+    /// Returns whether the solid lies inside the part with this number.
+    ///
+    /// A line that misses the part misses the solid then.
     fn needs(self, number: usize) -> bool {
         match self {
             Self::Union => false,
@@ -92,6 +94,8 @@ impl Operation {
 pub struct Solid {
     operation: Operation,
     parts: Arc<[Shape]>,
+    /// A box around each part, which no point of the part is outside of; `None` for half spaces.
+    boxes: Arc<[Option<Bounds>]>,
     bounds: Bounds,
 }
 
@@ -130,13 +134,13 @@ impl<'s> Boundaries<'s> {
         self.found[..self.count].iter().copied().flatten()
     }
 
-    /// Returns the t of each boundary.
+    /// Returns the t of each boundary, in ascending order.
     fn ts(self) -> impl Iterator<Item = f64> {
         self.found.into_iter().flatten().map(|boundary| boundary.t)
     }
 }
 
-/// Calls `add` with the boundaries of a part of a solid along the line of a ray, in ascending order.
+/// Calls `add` with the boundaries of a part along the line of a ray, in ascending order.
 ///
 /// Returns whether the line begins inside the part, at t = -infinity.
 fn add_boundaries<'s>(part: &'s Shape, probe: &Probe, mut add: impl FnMut(Boundary<'s>)) -> bool {
@@ -218,16 +222,18 @@ impl Solid {
         if !bounds.min.cmplt(bounds.max).all() {
             return Err("the parts have no volume in common; nothing is left of the intersection".into());
         }
-        Ok(Self { operation, parts: parts.into(), bounds })
+        // The box of a sphere is rounded to the nearest numbers, and may cut off the outermost points.
+        let boxes = parts.iter().map(|part| part.bounds().map(Bounds::one_step_larger)).collect();
+        Ok(Self { operation, parts: parts.into(), boxes, bounds })
     }
 
     /// Returns where the line of a ray enters and leaves the solid.
     fn boundaries(&self, probe: &Probe) -> Boundaries<'_> {
         let (mut events, mut count) = ([(0.0, 0, None); MAX_BOUNDARIES], 0);
         let mut inside = 0_u32;
-        for (number, part) in self.parts.iter().enumerate() {
-            // Most lines miss most parts: in the scene `dice`, the test of their boxes saves half of the time.
-            if part.bounds().is_some_and(|bounds| !bounds.is_crossed(probe)) {
+        for (number, (part, bounds)) in self.parts.iter().zip(&*self.boxes).enumerate() {
+            // Most lines miss most parts. No crossing is lost (`culling.md`, 3).
+            if bounds.is_some_and(|bounds| !bounds.is_crossed(probe)) {
                 if self.operation.needs(number) {
                     return Boundaries::new(false);
                 }

@@ -1,8 +1,8 @@
 //! Decoding of texture files: PNG and JPEG here, other formats in modules of their own.
 //!
-//! Each format has a small crate of its own, or is read here. The crate `image` was tried: with its colour management
-//! system, which is never called, a clean build took 26 s longer. Its TIFF decoder also turns on the SIMD of `zune-jpeg`, with which JPEG
-//! textures might have other bits on other CPUs; `tiff` is taken without JPEG.
+//! Each format has a small crate of its own, or is read here. The crate `image` would read all of them, but brings a
+//! colour management system, which made a clean build 26 s longer. Its TIFF decoder also turns on the SIMD of
+//! `zune-jpeg`, with which JPEG textures might have other bits on other CPUs; `tiff` is taken without JPEG.
 
 mod bmp;
 mod dds;
@@ -39,7 +39,8 @@ type Decode = fn(&[u8], &mut TexelBudget) -> Result<Texture, String>;
 /// Returns whether a file's first bytes are those of a format.
 type Recognises = fn(&[u8]) -> bool;
 
-/// The formats, each with the test of a file's first bytes. TGA is last, because it has no signature.
+/// The formats, each with the test of a file's first bytes.
+// TGA is last, because it has no signature.
 const FORMATS: [(Recognises, Decode); 8] = [
     (|bytes| bytes.starts_with(b"\x89PNG"), decode_png),
     (|bytes| bytes.starts_with(b"\xff\xd8"), decode_jpeg),

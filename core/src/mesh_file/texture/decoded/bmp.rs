@@ -1,9 +1,9 @@
 //! Decoding of BMP pictures: of 1 to 32 bits per pixel, also with runs of equal pixels.
 //!
-//! Our own: the crate `zune-bmp` 0.5.2 refused pictures of one pixel and took the wrong colours of one bit, and `image`
-//! brings all of its other formats and a colour management system, which the build of the tracer would wait for.
+//! Read here, because the crate `zune-bmp` 0.5.2 refused pictures of one pixel and took the wrong colours for one bit
+//! per pixel, and `image` makes a clean build much longer.
 
-use super::samples::{Rgba, TexelBudget, check_plausible, checked_texture, cut_short, flip, texels_of};
+use super::samples::{Rgba, TexelBudget, check_plausible, checked_texture, cut_short, flip, samples_of, texels_of};
 use crate::mesh_file::texture::Texture;
 
 /// The compressions that are read, by their numbers in the header.
@@ -21,7 +21,9 @@ mod compression {
 
 /// The bytes before the second header, which has one of several sizes.
 const FILE_HEADER: usize = 14;
-/// The size of the second header in its oldest form, with sizes of 16 bits and three bytes per colour of the palette.
+/// The size of the second header in its oldest form.
+///
+/// It has sizes of 16 bits, and the palette three bytes per colour.
 const OLDEST: usize = 12;
 /// The size of the second header from which on it holds the masks itself.
 const WITH_MASKS: usize = 52;
@@ -49,27 +51,28 @@ pub(super) fn decode(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, 
     let header = Header::read(bytes)?;
     let Header { width, height, bits, compression, .. } = header;
     budget.spend(width, height)?;
-    // A run of equal pixels takes two bytes and has at most 255 pixels.
-    check_plausible(width * height, bytes, 128, "BMP")?;
+    // At most eight pixels per byte; or many more, as a mark of two bytes leaves out the rest of a row.
+    let most_per_byte = if matches!(compression, compression::RUNS_8 | compression::RUNS_4) { 1 << 16 } else { 8 };
+    check_plausible(width * height, bytes, most_per_byte, "BMP")?;
     let pixels = bytes.get(header.pixels_at..).ok_or_else(|| cut_short("BMP"))?;
     let mut texels = match (compression, bits) {
         (compression::NONE, 1 | 2 | 4 | 8) => {
-            let of_row = |row: &[u8]| (0..width).map(|x| header.color(index(row, x, bits))).collect();
-            rows_of(pixels, &header, of_row)?
+            rows_of(pixels, &header, |row, to| to.extend((0..width).map(|x| header.color(index(row, x, bits)))))?
         }
         (compression::NONE, 16 | 24 | 32) | (compression::MASKS | compression::FOUR_MASKS, 16 | 32) => {
-            let of_row = |row: &[u8]| row.chunks_exact(bits / 8).take(width).map(|p| header.masked(p)).collect();
-            rows_of(pixels, &header, of_row)?
+            rows_of(pixels, &header, |row, to| to.extend(row.chunks_exact(bits / 8).map(|pixel| header.masked(pixel))))?
         }
         (compression::RUNS_8, 8) | (compression::RUNS_4, 4) => {
-            expanded_runs(pixels, &header).into_iter().map(|index| header.color(index)).collect()
+            expanded_runs(pixels, &header)?.into_iter().map(|index| header.color(index)).collect()
         }
         _ => return Err(format!("is a BMP picture of a kind that is not read ({bits} bits, kind {compression})")),
     };
     if !header.downwards {
         flip(&mut texels, width);
     }
-    checked_texture(width as u32, height as u32, texels_of(texels.as_flattened(), 4), "BMP") // checked by the budget
+    let channels = if header.masks[3] == 0 { 3 } else { 4 };
+    // The budget is below 2^32.
+    checked_texture(width as u32, height as u32, texels_of(&samples_of(&texels, channels), channels), "BMP")
 }
 
 impl Header {
@@ -89,37 +92,42 @@ impl Header {
         // A field that the header is too short for is 0.
         let field = |at: usize| if at + 4 <= FILE_HEADER + size { number(at) } else { Ok(0) };
         let compression = if oldest { 0 } else { field(30)? };
-        // The masks of short headers follow them.
         let after_header = match compression {
             compression::MASKS if size < WITH_MASKS => 12,
             compression::FOUR_MASKS if size < WITH_MASKS => 16,
             _ => 0,
         };
+        // The masks of short headers follow them.
+        let masks_at = if size < WITH_MASKS { FILE_HEADER + size } else { 54 };
+        let mask = |index: usize| number(masks_at + 4 * index);
         let masks = match (compression, bits) {
-            (compression::MASKS, _) if size <= WITH_MASKS => [number(54)?, number(58)?, number(62)?, 0],
-            (compression::MASKS | compression::FOUR_MASKS, _) => [number(54)?, number(58)?, number(62)?, number(66)?],
+            (compression::MASKS, _) if size <= WITH_MASKS => [mask(0)?, mask(1)?, mask(2)?, 0],
+            (compression::MASKS | compression::FOUR_MASKS, _) => [mask(0)?, mask(1)?, mask(2)?, mask(3)?],
             (_, 16) => [0x7c00, 0x03e0, 0x001f, 0],
             _ => [0x00ff_0000, 0x0000_ff00, 0x0000_00ff, 0],
         };
+        let pixels_at = number(10)? as usize;
         let used = if oldest { 0 } else { field(46)? as usize };
         let most = if bits <= 8 { 1 << bits } else { 0 };
-        let entries = if used == 0 { most } else { used.min(most) };
         let palette_at = FILE_HEADER + size + after_header;
         let entry_size = if oldest { 3 } else { 4 };
+        // Some files have fewer colours than they claim: the pixels begin earlier.
+        let room = pixels_at.saturating_sub(palette_at) / entry_size;
+        let entries = if used == 0 { most } else { used.min(most) }.min(room);
         let palette = bytes.get(palette_at..palette_at + entries * entry_size).ok_or_else(|| cut_short("BMP"))?;
         Ok(Self {
             width: width as usize,
             height: height.cast_signed().unsigned_abs() as usize,
-            downwards: !oldest && height.cast_signed() < 0,
+            downwards: height.cast_signed() < 0,
             bits,
             compression,
             masks,
             palette: palette.chunks_exact(entry_size).map(|entry| [entry[2], entry[1], entry[0], 255]).collect(),
-            pixels_at: number(10)? as usize,
+            pixels_at,
         })
     }
 
-    /// Returns a colour of the palette; black if it has fewer.
+    /// Returns the colour of the palette at an index, or black beyond its end.
     fn color(&self, index: u8) -> Rgba {
         self.palette.get(usize::from(index)).copied().unwrap_or([0, 0, 0, 255])
     }
@@ -139,22 +147,30 @@ impl Header {
 }
 
 /// Returns the colours of all rows, each of which takes a multiple of four bytes.
-fn rows_of(pixels: &[u8], header: &Header, of_row: impl Fn(&[u8]) -> Vec<Rgba>) -> Result<Vec<Rgba>, String> {
+fn rows_of(pixels: &[u8], header: &Header, add_row: impl Fn(&[u8], &mut Vec<Rgba>)) -> Result<Vec<Rgba>, String> {
     let row_size = (header.width * header.bits).div_ceil(32) * 4;
     // The last row may lack the bytes that fill it.
     let used = (header.width * header.bits).div_ceil(8);
-    let row = |y: usize| pixels.get(y * row_size..y * row_size + used).map(&of_row).ok_or_else(|| cut_short("BMP"));
-    Ok((0..header.height).map(row).collect::<Result<Vec<_>, _>>()?.concat())
+    let mut colors = Vec::with_capacity(header.width * header.height);
+    for y in 0..header.height {
+        let row = pixels.get(y * row_size..y * row_size + used).ok_or_else(|| cut_short("BMP"))?;
+        add_row(row, &mut colors);
+    }
+    Ok(colors)
 }
 
-/// Returns pixel `x` of a row, of up to eight bits; the first pixel has the highest bits of its byte.
+/// Returns pixel `x` of a row, of up to eight bits.
+///
+/// The first pixel has the highest bits of its byte.
 fn index(row: &[u8], x: usize, bits: usize) -> u8 {
     let shift = 8 - bits - x * bits % 8;
-    row[x * bits / 8] >> shift & (0xff_u16 >> (8 - bits)) as u8
+    row[x * bits / 8] >> shift & (0xff >> (8 - bits))
 }
 
-/// Returns the pixels of runs, upwards; those that no run covers are 0.
-fn expanded_runs(bytes: &[u8], header: &Header) -> Vec<u8> {
+/// Returns the indices of all pixels, from the lowest row upwards.
+///
+/// Those that no run covers are 0.
+fn expanded_runs(bytes: &[u8], header: &Header) -> Result<Vec<u8>, String> {
     let Header { width, height, bits, .. } = *header;
     let mut pixels = vec![0; width * height];
     let (mut x, mut y) = (0, 0);
@@ -164,11 +180,16 @@ fn expanded_runs(bytes: &[u8], header: &Header) -> Vec<u8> {
             pixels[y * width + x] = index;
         }
     };
-    // A picture that is cut short keeps its rows.
-    while let (Some(count), Some(value)) = (bytes.next(), bytes.next()) {
-        let count = usize::from(count);
-        let nibble = |byte: u8, at: usize| if bits == 8 { byte } else { byte >> (4 - at % 2 * 4) & 15 };
-        match (count, value) {
+    let nibble = |byte: u8, at: usize| if bits == 8 { byte } else { byte >> (4 - at % 2 * 4) & 15 };
+    while y < height {
+        let (Some(count), Some(value)) = (bytes.next(), bytes.next()) else {
+            // The mark of the end may be missing after the last pixel.
+            if y + 1 == height && x >= width {
+                break;
+            }
+            return Err(cut_short("BMP"));
+        };
+        match (usize::from(count), value) {
             (0, 0) => (x, y) = (0, y + 1),
             (0, 1) => break,
             (0, 2) => {
@@ -179,21 +200,19 @@ fn expanded_runs(bytes: &[u8], header: &Header) -> Vec<u8> {
                 let count = usize::from(count);
                 // The stored pixels take a multiple of two bytes.
                 let stored: Vec<_> = bytes.by_ref().take((count * bits).div_ceil(16) * 2).collect();
-                for at in 0..count.min(stored.len() * 8 / bits) {
+                let count = count.min(stored.len() * 8 / bits);
+                for at in 0..count {
                     set(x + at, y, nibble(stored[at * bits / 8], at));
                 }
                 x += count;
             }
-            _ => {
+            (count, value) => {
                 for at in 0..count {
                     set(x + at, y, nibble(value, at));
                 }
                 x += count;
             }
         }
-        if y >= height {
-            break;
-        }
     }
-    pixels
+    Ok(pixels)
 }

@@ -38,16 +38,18 @@ pub(super) fn decode(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, 
     check_plausible(width * height, bytes, 2, "DDS")?;
     let (columns, rows) = (width.div_ceil(SIDE), height.div_ceil(SIDE));
     let blocks = blocks.get(..columns * rows * block_size).ok_or_else(|| cut_short("DDS"))?;
-    let pitch = columns * SIDE * CHANNELS;
-    let mut strip = vec![0; SIDE * pitch];
-    let mut samples = Vec::with_capacity(width * height * CHANNELS);
-    for (row, blocks) in blocks.chunks_exact(columns * block_size).enumerate() {
+    let row_size = width * CHANNELS;
+    let mut samples = vec![0; height * row_size];
+    for (strip, blocks) in samples.chunks_mut(SIDE * row_size).zip(blocks.chunks_exact(columns * block_size)) {
         for (column, block) in blocks.chunks_exact(block_size).enumerate() {
-            decode_block(block, &mut strip[column * SIDE * CHANNELS..], pitch);
-        }
-        // The last blocks may reach beyond the picture.
-        for texels in strip.chunks_exact(pitch).take(height - row * SIDE) {
-            samples.extend_from_slice(&texels[..width * CHANNELS]);
+            let mut texels = [0; SIDE * SIDE * CHANNELS];
+            decode_block(block, &mut texels, SIDE * CHANNELS);
+            // The last blocks may reach beyond the picture.
+            let from = column * SIDE * CHANNELS;
+            let to = row_size.min(from + SIDE * CHANNELS);
+            for (row, texels) in strip.chunks_exact_mut(row_size).zip(texels.chunks_exact(SIDE * CHANNELS)) {
+                row[from..to].copy_from_slice(&texels[..to - from]);
+            }
         }
     }
     checked_texture(width as u32, height as u32, texels_of(&samples, CHANNELS), "DDS")

@@ -47,6 +47,11 @@ pub(super) fn texels_of(samples: &[u8], channels: usize) -> Vec<Srgb8> {
 /// Red, green, blue and the opacity of a texel.
 pub(super) type Rgba = [u8; 4];
 
+/// Returns the samples of the first three or all four channels of each texel.
+pub(super) fn samples_of(texels: &[Rgba], channels: usize) -> Vec<u8> {
+    texels.iter().flat_map(|texel| &texel[..channels]).copied().collect()
+}
+
 /// Reverses the order of the rows of a picture.
 pub(super) fn flip(texels: &mut [Rgba], width: usize) {
     let rows = texels.len() / width;

@@ -29,14 +29,18 @@ fn a_palette_that_is_cut_short_is_a_fault() {
     assert_eq!(fault.as_deref(), Some("is a PNG picture whose palette has a colour of less than 3 bytes"));
 }
 
-/// Returns the texels of a picture, row after row from its upper left corner, as hexadecimal colours.
+/// Returns the texels of a picture as hexadecimal colours.
+///
+/// They are in rows from the upper left corner.
 fn texels(picture: &[u8]) -> Vec<String> {
     let texture = decode(picture, &mut TexelBudget::default()).expect("a picture");
     texture.texels.iter().map(|texel| format!("{:02x}{:02x}{:02x}", texel.r, texel.g, texel.b)).collect()
 }
 
-/// Returns a TGA picture: its palette's kind, its own kind, the palette's first index, length and bits per entry, the
-/// width, height and bits per pixel, the order of its pixels, and what follows the header.
+/// Returns a TGA picture.
+///
+/// `kinds` are those of its palette and its own; `palette` has the first index, the length and the bits per entry, and
+/// `size` the width, the height and the bits per pixel; `rest` follows the header.
 fn tga(kinds: [u8; 2], palette: [u8; 3], size: [u8; 3], order: u8, rest: &[u8]) -> Vec<u8> {
     let [first, length, entry_bits] = palette;
     let [width, height, bits] = size;
@@ -107,7 +111,7 @@ fn a_gif_frame_may_lie_inside_its_picture() {
     assert_eq!(texels(picture), ["000000", "000000", "000000", "000000", "000000", "ff0000"]);
 }
 
-/// Returns a BMP picture with a header of 40 bytes: its size, bits per pixel and compression, and what follows.
+/// Returns a BMP picture with a header of 40 bytes, which `rest` follows.
 fn bmp(size: [i32; 2], bits: u8, compression: u8, colors: u8, rest: &[u8]) -> Vec<u8> {
     let mut bytes = b"BM".to_vec();
     bytes.resize(54, 0);
@@ -142,6 +146,12 @@ fn masks_of_bmp_pictures_choose_the_bits() {
     let masks = [0x0000_ff00_u32, 0x00ff_0000, 0x0700_0000].map(u32::to_le_bytes).concat();
     let picture = bmp([1, 1], 32, 3, 0, &[&masks[..], &[0xff, 0x12, 0x34, 0x07]].concat());
     assert_eq!(texels(&picture), ["1234ff"]);
+    // The masks of a longer header lie at the same place.
+    let mut long = picture.clone();
+    long[14] = 56;
+    long[10] = 70;
+    long.splice(66..66, [0; 4]);
+    assert_eq!(texels(&long), ["1234ff"]);
     // Masks without bits make black, and no division by zero.
     let empty = bmp([1, 1], 32, 3, 0, &[[0; 12], [0xff; 12]].concat());
     assert_eq!(texels(&empty), ["000000"]);
@@ -156,7 +166,32 @@ fn runs_of_bmp_pictures_are_expanded() {
     assert_eq!(texels(&picture)[..4], [red, red, red, blue]);
     assert_eq!(texels(&picture)[4..8], [blue, red, blue, red]);
     assert_eq!(texels(&picture)[8..], [blue, blue, red, red]);
+    let cut = decode(&picture[..picture.len() - 2], &mut TexelBudget::default()).err();
+    assert_eq!(cut.as_deref(), Some("is a BMP picture that is cut short"));
     // A run of two alternating pixels of four bits, longer than its row.
     let picture = bmp([2, 1], 4, 2, 2, &[&RED_BLUE[..], &[200, 0x10]].concat());
     assert_eq!(texels(&picture), [blue, red]);
+}
+
+#[test]
+fn gif_frames_are_cropped_to_their_picture() {
+    // One pixel, and a frame of two from there on to the right: red and black.
+    let picture = b"GIF89a\x01\0\x01\0\x80\0\0\xff\0\0\0\0\0,\0\0\0\0\x02\0\x01\0\0\x02\x02\x44\x0a\0;";
+    assert_eq!(texels(picture), ["ff0000"]);
+}
+
+#[test]
+fn a_webp_frame_of_another_size_is_refused() {
+    // An animation of one pixel, with a frame of one pixel: an opacity, and colours that are no key frame, on which the
+    // crate `image-webp` panics.
+    let chunk = |name: &[u8; 4], content: &[u8]| {
+        let mut chunk = [&name[..], &(content.len() as u32).to_le_bytes(), content].concat();
+        chunk.resize(chunk.len().next_multiple_of(2), 0);
+        chunk
+    };
+    let frame = [vec![0; 16], chunk(b"ALPH", &[0, 255]), chunk(b"VP8 ", &[1, 0, 0, 0, 0, 0, 0, 0, 0, 0])].concat();
+    let parts = [chunk(b"VP8X", &[0x12, 0, 0, 0, 0, 0, 0, 0, 0, 0]), chunk(b"ANIM", &[0; 6]), chunk(b"ANMF", &frame)];
+    let picture = chunk(b"RIFF", &[b"WEBP".to_vec(), parts.concat()].concat());
+    let fault = decode(&picture, &mut TexelBudget::default()).err();
+    assert_eq!(fault.as_deref(), Some("is a WebP picture that states two sizes"));
 }

@@ -1,9 +1,9 @@
 //! Decoding of TGA pictures.
 //!
-//! Our own: the crate `tinytga` brings a graphics library for small devices, and `image` all of its other formats and a
-//! colour management system, which the build of the tracer would wait for.
+//! Read here, because the crate `tinytga` brings a graphics library for small devices, and `image` makes a clean build
+//! much longer.
 
-use super::samples::{Rgba, TexelBudget, check_plausible, checked_texture, cut_short, flip, texels_of};
+use super::samples::{Rgba, TexelBudget, check_plausible, checked_texture, cut_short, flip, samples_of, texels_of};
 use crate::mesh_file::texture::Texture;
 
 const HEADER: usize = 18;
@@ -77,13 +77,9 @@ pub(super) fn decode(bytes: &[u8], budget: &mut TexelBudget) -> Result<Texture, 
     if header[17] & 0x20 == 0 {
         flip(&mut texels, width);
     }
-    // Without bits for it, the fourth byte is no opacity.
-    if header[17].trailing_zeros() >= 4 {
-        for texel in &mut texels {
-            texel[3] = 255;
-        }
-    }
-    checked_texture(width as u32, height as u32, texels_of(texels.as_flattened(), 4), "TGA")
+    // The four lowest bits tell how many bits of a pixel are its opacity.
+    let channels = if header[17] % 16 == 0 { 3 } else { 4 };
+    checked_texture(width as u32, height as u32, texels_of(&samples_of(&texels, channels), channels), "TGA")
 }
 
 /// Returns the pixels of runs and of literal pieces, at most `most` of them.
@@ -107,7 +103,9 @@ fn expanded_runs(mut bytes: &[u8], pixel_size: usize, most: usize) -> Vec<u8> {
     pixels
 }
 
-/// Returns the colour of two, three or four bytes: 5 bits per channel, or blue, green, red and the opacity.
+/// Returns the colour of a pixel of two, three or four bytes.
+///
+/// Two bytes have 5 bits per channel; others are blue, green, red and the opacity.
 fn color(bytes: &[u8]) -> Rgba {
     match *bytes {
         [low, high] => {
