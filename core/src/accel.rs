@@ -7,10 +7,8 @@ use crate::bounds::Bounds;
 use crate::bvh::Bvh;
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes};
 use crate::progress::{Cancelled, Progress, Reporter, Work};
-use crate::shape::{Endless, Mesh, Primitive, Scalar, ScalarLeaf, Shape, SoaLeaf, Surface, surfaces_in_parts};
+use crate::shape::{Endless, Mesh, Scalar, ScalarLeaf, Shape, SoaLeaf, surfaces_in_parts};
 use crate::simd;
-use crate::threads;
-use std::array::from_fn;
 use std::convert::Infallible;
 use std::fmt;
 use std::sync::Arc;
@@ -19,8 +17,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 #[cfg(all(test, unit_tests))]
 mod builds;
 mod instances;
+mod tree_builder;
 
 pub(crate) use instances::{Instance, Instances};
+use tree_builder::TreeBuilder;
 
 /// The id of a primitive of a scene.
 ///
@@ -109,7 +109,7 @@ macro_rules! by_group {
     (list of $kept:ty) => { List<$kept> };
     (tree of $kept:ty) => { Tree<$kept> };
     (list from $surface:ident) => { Vec<(PrimitiveId, crate::shape::$surface)> };
-    (tree from $surface:ident) => { TreeBuilder<crate::shape::$surface> };
+    (tree from $surface:ident) => { TreeBuilder<'s, crate::shape::$surface> };
     (list in list $($then:tt)*) => { $($then)* };
     (tree in tree $($then:tt)*) => { $($then)* };
     ($one:ident in $other:ident $($then:tt)*) => {};
@@ -174,36 +174,36 @@ macro_rules! accelerator {
 
         /// The primitives of all shapes, by kind and in the order of the scene, before the build.
         #[derive(Default)]
-        struct PrimitiveLists {
+        struct PrimitiveLists<'s> {
             $($(#[$on])* $name: by_group!($group from $surface),)*
-            scalars: TreeBuilder<Scalar>,
+            scalars: TreeBuilder<'s, Scalar>,
             /// The instances of meshes, with the indices of their objects.
             instances: Vec<(u32, Arc<Mesh>)>,
         }
 
-        impl PrimitiveLists {
-            fn push(&mut self, id: PrimitiveId, primitive: Primitive<'_>) {
-                match primitive {
-                    $($(#[$on])* Primitive::$surface(surface) => {
+        impl<'s> PrimitiveLists<'s> {
+            fn push(&mut self, object: u32, shape: &'s Shape) {
+                let id = PrimitiveId { object, index: 0 };
+                match shape {
+                    $($(#[$on])* Shape::$surface(surface) => {
                         by_group! { list in $group self.$name.push((id, *surface)); }
                         by_group! { tree in $group self.$name.push(id, surface.clone()); }
                     })*
-                    $($(#[$also_on])* Primitive::$shared(surface) => self.scalars.push(id, surface.clone().into()),)*
-                    Primitive::Facet(facet) => self.triangles.push(id, *facet.triangle()),
+                    $($(#[$also_on])* Shape::$shared(surface) => self.scalars.push(id, surface.clone().into()),)*
+                    Shape::Mesh(mesh) if mesh.is_instance() => self.instances.push((object, Arc::clone(mesh))),
+                    Shape::Mesh(mesh) => self.triangles.push_mesh(object, mesh),
                 }
             }
 
-            /// Returns the boxes of all bounded primitives except those of instances.
-            fn boxes(&self) -> impl Iterator<Item = &Bounds> {
-                let mut boxes: Vec<&[Bounds]> = Vec::new();
-                $($(#[$on])* { by_group! { tree in $group boxes.push(&self.$name.boxes); } })*
-                boxes.push(&self.scalars.boxes);
-                boxes.into_iter().flatten()
+            /// Returns the number of all bounded primitives except those of instances.
+            fn bounded_count(&self) -> usize {
+                let mut count = self.scalars.len();
+                $($(#[$on])* { by_group! { tree in $group count += self.$name.len(); } })*
+                count
             }
 
             fn build<E: Send>(self, report: &(dyn Fn(usize) -> Result<(), E> + Sync)) -> Result<Accelerator, E> {
-                let bounds = self.boxes().copied().reduce(|all, next| all.union(&next));
-                let (mut built, mut end) = (Accelerator { bounds, ..Accelerator::default() }, 0);
+                let (mut built, mut end) = (Accelerator::default(), 0);
                 $($(#[$on])* { by_group! { list in $group
                     built.$name = List { first: end, primitives: self.$name };
                     end = built.$name.end_index();
@@ -213,10 +213,12 @@ macro_rules! accelerator {
                 $($(#[$on])* { by_group! { tree in $group
                     built.$name = self.$name.build(end, report)?;
                     end = built.$name.end_index();
+                    built.add_bounds(built.$name.bvh.bounds());
                 } })*
                 built.scalars = self.scalars.build(end, report)?;
+                built.add_bounds(built.scalars.bvh.bounds());
                 built.instances = Instances::build(self.instances, built.scalars.end_index(), report)?;
-                built.bounds = [built.bounds, built.instances.bounds].into_iter().flatten().reduce(|a, b| a.union(&b));
+                built.add_bounds(built.instances.bvh.bounds());
                 Ok(built)
             }
         }
@@ -327,19 +329,11 @@ impl Accelerator {
         for (object, shape) in (0..).zip(shapes) {
             has_smooth |= matches!(shape, Shape::Mesh(mesh) if mesh.is_smooth());
             depends_on_time |= shape.moves();
-            if let Shape::Mesh(mesh) = shape
-                && mesh.is_instance()
-            {
-                lists.instances.push((object, Arc::clone(mesh)));
-                continue;
-            }
-            for index in 0..shape.primitive_count() {
-                lists.push(PrimitiveId { object, index }, shape.primitive(index));
-            }
+            lists.push(object, shape);
         }
         // Primitives are counted over all trees, as the user sees one progress for the scene.
         let (done, total) =
-            (AtomicUsize::new(0), lists.boxes().count() + Instances::distinct_triangle_count(&lists.instances));
+            (AtomicUsize::new(0), lists.bounded_count() + Instances::distinct_triangle_count(&lists.instances));
         let report_more = |more| {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
             report(Progress { work: Work::Building, done, total })
@@ -358,6 +352,11 @@ impl Accelerator {
         let mut moved = self.clone();
         moved.scalars.leaves.iter_mut().for_each(|leaf| leaf.replace(|surface| surface.at_time(seconds)));
         moved
+    }
+
+    /// Includes a box in the bounds.
+    fn add_bounds(&mut self, bounds: Option<Bounds>) {
+        self.bounds = [self.bounds, bounds].into_iter().flatten().reduce(|a, b| a.union(&b));
     }
 
     /// Returns the smallest box around all bounded primitives, if there are any.
@@ -492,53 +491,5 @@ impl<S> Tree<S> {
         let id = move |lane| self.ids[leaf].id(lane);
         let end = (1..LANES).find(|&at| id(at) == id(at - 1));
         (0..end.unwrap_or(LANES)).map(id)
-    }
-}
-
-/// The number of leaves from which on a tree's leaves are filled in parallel.
-// For fewer leaves the start of rayon's pool is not worth its time: it would add 0.15 ms to the first picture of four
-// spheres, which are one leaf.
-const MIN_PARALLEL_LEAVES: usize = 1024;
-
-/// The bounded primitives of one kind, in the order of the scene, before the build.
-struct TreeBuilder<T> {
-    ids: Vec<PrimitiveId>,
-    shapes: Vec<T>,
-    boxes: Vec<Bounds>,
-}
-
-impl<T> Default for TreeBuilder<T> {
-    fn default() -> Self {
-        Self { ids: Vec::new(), shapes: Vec::new(), boxes: Vec::new() }
-    }
-}
-
-impl<T: Surface + Clone + Sync> TreeBuilder<T> {
-    fn push(&mut self, id: PrimitiveId, shape: T) {
-        if let Some(bounds) = shape.bounds() {
-            self.ids.push(id);
-            self.boxes.push(bounds);
-            self.shapes.push(shape);
-        }
-    }
-
-    fn build<S: SoaLeaf<Shape = T> + Send, E: Send>(
-        self,
-        first: u32,
-        report: &(dyn Fn(usize) -> Result<(), E> + Sync),
-    ) -> Result<Tree<S>, E> {
-        let (bvh, places) = Bvh::new_or_cancel(&self.boxes, report)?;
-        let leaf = |leaf: usize| {
-            let numbers = places.boxes(leaf);
-            // Unused lanes repeat the last primitive's id.
-            let number = |lane: usize| numbers[lane.min(numbers.len() - 1)] as usize;
-            let shapes: [T; LANES] = from_fn(|lane| self.shapes[number(lane)].clone());
-            (S::of(&shapes[..numbers.len()]), PrimitiveIds::of(from_fn(|lane| self.ids[number(lane)])))
-        };
-        let single_leaf_count = if bvh.is_leaf() { self.ids.len() } else { 0 };
-        let count = places.leaf_count();
-        let (leaves, ids) =
-            if count < MIN_PARALLEL_LEAVES { (0..count).map(leaf).unzip() } else { threads::unzip(count, leaf) };
-        Ok(Tree { bvh, leaves, ids, first, single_leaf_count })
     }
 }

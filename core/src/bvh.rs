@@ -8,6 +8,7 @@ use crate::bounds::Bounds;
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Mask, Number, Vector, set_bits};
 use crate::ray::{Interval, Rays};
 use crate::simd;
+use crate::threads;
 use glam::Vec3;
 use std::convert::Infallible;
 use std::ops::{ControlFlow, Range};
@@ -25,6 +26,7 @@ pub use packet::{GROUPS, Packet, PacketVisitor};
 pub struct Bvh {
     nodes: Vec<Node>,
     root: Option<Child>,
+    bounds: Option<Bounds>,
 }
 
 /// The indices of a tree's boxes, leaf by leaf.
@@ -204,7 +206,25 @@ impl Bvh {
         boxes: &[Bounds],
         report: &(dyn Fn(usize) -> Result<(), E> + Sync),
     ) -> Result<(Self, Leaves), E> {
-        build::build(boxes, report)
+        Self::of_boxes(boxes.len(), |number| boxes[number], report)
+    }
+
+    /// Builds as [`new_or_cancel`](Self::new_or_cancel) does, over boxes that are computed by their
+    /// indices.
+    pub(crate) fn of_boxes<E: Send>(
+        count: usize,
+        box_of: impl Fn(usize) -> Bounds + Send + Sync,
+        report: &(dyn Fn(usize) -> Result<(), E> + Sync),
+    ) -> Result<(Self, Leaves), E> {
+        assert!(count < 1 << 31, "there are fewer than 2^31 boxes");
+        let item = |number: usize| build::item((number as u32, &box_of(number)));
+        let items = if count < MIN_TASK_ITEMS { (0..count).map(item).collect() } else { threads::map(count, item) };
+        build::build(items, report)
+    }
+
+    /// Returns the smallest box around all boxes, if there are any.
+    pub(crate) fn bounds(&self) -> Option<Bounds> {
+        self.bounds
     }
 
     /// Returns whether the tree has no nodes: it is one leaf, or empty, and culls nothing.

@@ -80,6 +80,7 @@ pub struct Reporter<'w> {
     on_dependency: Option<&'w (dyn Fn(&Path) + Sync)>,
     on_warning: Option<&'w (dyn Fn(String) + Sync)>,
     is_strict: bool,
+    is_parallel: bool,
     cancellation: Cancellation,
 }
 
@@ -91,6 +92,7 @@ impl<'w> Reporter<'w> {
             on_dependency: None,
             on_warning: None,
             is_strict: false,
+            is_parallel: true,
             cancellation: Cancellation::default(),
         }
     }
@@ -113,6 +115,19 @@ impl<'w> Reporter<'w> {
     /// Returns the reporter with warnings turned into errors. Notices stay notices.
     pub fn strict(&self) -> Self {
         Self { is_strict: true, cancellation: self.cancellation.clone(), ..*self }
+    }
+
+    /// Returns the reporter for reading on the calling thread only, and not on the threads of the
+    /// current rayon pool.
+    ///
+    /// Trees are built in the pool nevertheless.
+    pub fn on_this_thread(&self) -> Self {
+        Self { is_parallel: false, cancellation: self.cancellation.clone(), ..*self }
+    }
+
+    /// Returns whether files may be parsed on all threads of the current rayon pool.
+    pub fn is_parallel(&self) -> bool {
+        self.is_parallel
     }
 
     /// Returns the reporter with a token that cancels the work.

@@ -12,6 +12,7 @@ use crate::scene::{Draft, Scene};
 use crate::terminal::{self, Waker};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::any::Any;
+use std::cell::OnceCell;
 use std::collections::VecDeque;
 use std::io;
 use std::ops::ControlFlow;
@@ -154,7 +155,7 @@ impl<E: Send + 'static> LoadWorker<E> {
 
     /// Loads scenes until the queue is closed or another thread has taken over.
     fn load_all(self) {
-        let mut pool = None;
+        let pool = OnceCell::new();
         loop {
             let request = self.queue.lock().unwrap_or_else(PoisonError::into_inner).recv();
             let Ok(request) = request else { return };
@@ -170,7 +171,8 @@ impl<E: Send + 'static> LoadWorker<E> {
                     is_handed_over.store(self.start_another().is_ok(), Ordering::Relaxed);
                 }
             };
-            request.process(&self.waker, &hand_over_queue, || pool.get_or_insert_with(|| self.build_pool()).as_ref());
+            let pool = || pool.get_or_init(|| self.build_pool()).as_ref();
+            request.process(&self.waker, &hand_over_queue, &pool);
             if is_handed_over.into_inner() {
                 return;
             }
@@ -200,7 +202,7 @@ impl<E: Send> LoadRequest<E> {
         self,
         waker: &Mutex<Waker>,
         hand_over_queue: &(dyn Fn() + Sync),
-        pool: impl FnOnce() -> Option<&'p ThreadPool>,
+        pool: &dyn Fn() -> Option<&'p ThreadPool>,
     ) {
         let Self { source, events: sender, cancellation } = self;
         let events = EventSender { events: sender, waker, last_progress: Mutex::new(None) };
@@ -248,7 +250,7 @@ fn load<'p, E: Send>(
     cancellation: &Cancellation,
     events: &EventSender<'_, E>,
     hand_over_queue: &(dyn Fn() + Sync),
-    pool: impl FnOnce() -> Option<&'p ThreadPool>,
+    pool: &dyn Fn() -> Option<&'p ThreadPool>,
 ) {
     let on_progress = |progress| {
         events.send_progress(progress);
@@ -272,7 +274,11 @@ fn load<'p, E: Send>(
     };
     let reporter = Reporter::new(&on_progress).with_dependencies(&on_dependency).cancelled_by(cancellation);
     let reporter = reporter.with_warnings(&on_warning);
-    let read = source.read(&reporter);
+    // In a pool, a reader takes all of its threads.
+    let read = match source.is_large().then(pool).flatten() {
+        Some(pool) => pool.install(|| source.read(&reporter)),
+        None => source.read(&reporter.on_this_thread()),
+    };
     let needed = needed.lock().map(|mut needed| std::mem::take(&mut *needed)).unwrap_or_default();
     // Sent after an error too, so that the files are watched and a correction is noticed.
     events.send(LoadEvent::Dependencies(needed));

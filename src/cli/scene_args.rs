@@ -107,7 +107,7 @@ impl CameraArgs {
     pub(super) fn load_scene(&self, source: &SceneSource) -> Result<Scene, Failure> {
         let on_warning = |warning: String| warn(warning);
         let reporter = Reporter::silent().with_warnings(&on_warning);
-        let draft = self.load_without_camera_flags(source, self.mesh_up, &reporter)?;
+        let draft = on_threads(self.threads, || self.load_without_camera_flags(source, self.mesh_up, &reporter))??;
         if let Some(mesh) = draft.mesh().filter(|mesh| mesh.is_guess && mesh.up != UpAxis::Y) {
             let (up, format) = (mesh.up.name(), mesh.format);
             warn(format!(

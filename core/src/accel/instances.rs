@@ -1,10 +1,9 @@
 //! The instances of meshes: a tree over their boxes, and one tree for each mesh that they share.
 
 use super::{PrimitiveId, Tree, TreeBuilder};
-use crate::bounds::Bounds;
 use crate::bvh::{Bvh, Prefetch};
 use crate::lanes::{F32x8, LANES, Vector};
-use crate::shape::{Mesh, Triangle, TriangleN};
+use crate::shape::{Mesh, TriangleN};
 use crate::simd;
 use glam::Vec3;
 use std::array::from_fn;
@@ -23,7 +22,6 @@ pub(crate) struct Instances {
     pub(crate) leaves: Vec<InstanceLeaf>,
     /// The instances, in the order of the scene.
     all: Vec<Instance>,
-    pub(crate) bounds: Option<Bounds>,
 }
 
 /// Up to eight instances: their boxes and their numbers.
@@ -75,7 +73,6 @@ impl Instances {
             first = end;
         }
         let boxes: Vec<_> = all.iter().map(|instance| *instance.mesh.bounds()).collect();
-        let bounds = boxes.iter().copied().reduce(|all, next| all.union(&next));
         let (bvh, places) = Bvh::new_or_cancel(&boxes, &|_| report(0))?;
         let leaf = |leaf: usize| {
             let numbers = places.boxes(leaf);
@@ -86,7 +83,7 @@ impl Instances {
             InstanceLeaf { boxes: [Vector::of(min), Vector::of(max)], numbers }
         };
         let leaves = (0..places.leaf_count()).map(leaf).collect();
-        Ok(Self { bvh, leaves, all, bounds })
+        Ok(Self { bvh, leaves, all })
     }
 
     /// Returns the number of triangles in the trees of all meshes that `instances` share.
@@ -140,9 +137,7 @@ fn tree_of<E: Send>(
     report: &(dyn Fn(usize) -> Result<(), E> + Sync),
 ) -> Result<Tree<TriangleN<F32x8>>, E> {
     let mut builder = TreeBuilder::default();
-    for index in 0..mesh.triangle_count() {
-        builder.push(PrimitiveId { object: 0, index }, Triangle::unchecked(mesh.file_corners(index)));
-    }
+    builder.push_mesh(0, mesh);
     builder.build(0, report)
 }
 

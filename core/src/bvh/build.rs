@@ -1,10 +1,10 @@
 //! The build of the tree: a binary tree from the root down, which is then collapsed into nodes with
 //! eight children.
 
-use super::cut::{CutSides, Item, ItemBounds, cut, item};
+pub(super) use super::cut::item;
+use super::cut::{CutSides, Item, ItemBounds, cut};
 use super::wide::{BinaryNode, WideBuilder};
 use super::{Bvh, Leaves};
-use crate::bounds::Bounds;
 use crate::threads;
 
 /// The number of items below which a subtree is built on one thread.
@@ -13,19 +13,19 @@ pub const MIN_TASK_ITEMS: usize = 8192;
 
 type ProgressReport<'r, E> = &'r (dyn Fn(usize) -> Result<(), E> + Sync);
 
-pub(super) fn build<E: Send>(boxes: &[Bounds], report: ProgressReport<'_, E>) -> Result<(Bvh, Leaves), E> {
-    assert!(boxes.len() < 1 << 31, "there are fewer than 2^31 boxes");
-    if boxes.is_empty() {
+pub(super) fn build<E: Send>(mut items: Vec<Item>, report: ProgressReport<'_, E>) -> Result<(Bvh, Leaves), E> {
+    if items.is_empty() {
         return Ok((Bvh::default(), Leaves::default()));
     }
-    let mut items: Vec<Item> = (0..).zip(boxes).map(item).collect();
     let bounds = ItemBounds::of(&items);
     let pairs = build_subtree(&mut items, &bounds, NodePosition { first: 0, depth: 0 }, report)?;
-    let mut wide = WideBuilder::from_binary(&pairs);
-    let root = Some(wide.append_node(0));
     // The items were partitioned in place, so they are in the order of the leaves.
     let order = items.iter().map(|item| item.min[3].to_bits()).collect();
-    Ok((Bvh { nodes: wide.nodes, root }, Leaves { order, ranges: wide.leaves }))
+    drop(items);
+    let mut wide = WideBuilder::from_binary(&pairs);
+    let root = Some(wide.append_node(0));
+    let bvh = Bvh { nodes: wide.nodes, root, bounds: Some(bounds.boxes.bounds()) };
+    Ok((bvh, Leaves { order, ranges: wide.leaves }))
 }
 
 /// The position of a binary node: the index of its first item, and the number of nodes above it.

@@ -142,7 +142,7 @@ impl<'p, N: Lanes, const ANY: bool> PacketRays<'p, N, ANY> {
     /// Finds the packet's hits with instances of meshes, by single rays.
     #[inline(always)]
     fn trace_instances(&mut self, instances: &'p Instances, stack: &mut RayStack) {
-        let Some(bounds) = instances.bounds else { return };
+        let Some(bounds) = instances.bvh.bounds() else { return };
         let node_box = [Vector::splat(bounds.min), Vector::splat(bounds.max)];
         for group in 0..self.rays.len() {
             let waiting = split::NodeRays::hit_mask(&NodeRays { rays: self, node_box }, group);

@@ -11,12 +11,23 @@ use super::polygon;
 use super::text::TextCursor;
 use crate::color::{LinearRgb, Srgb8};
 use crate::progress::Meter;
+use crate::threads;
 use glam::Vec3;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Size of the header in bytes: 80 arbitrary ones, and 4 for the number of triangles.
 const HEADER: usize = 84;
 /// Size of a triangle in bytes: a normal, three corners, two attribute bytes.
 const FACET: usize = 50;
+/// The offsets of the corners in a facet: it begins with its normal, and each has 12 bytes.
+const OFFSETS: [usize; 3] = [12, 24, 36];
+
+/// The number of facets from which on a binary file is read on several threads.
+// Fewer are read in a millisecond or two, for which no threads need to be started.
+const MIN_PARALLEL_FACETS: usize = 1 << 16;
+
+/// The number of facets that are read in one go: 256 KiB, after which progress is reported.
+const BLOCK_FACETS: usize = (256 << 10) / FACET + 1;
 
 /// Returns the size in bytes that a binary file should have, by the number of triangles in its
 /// header.
@@ -60,28 +71,41 @@ pub(super) fn read_binary(
     }
     // Equal corners are not merged: the tracer needs no shared vertices.
     let mut mesh = MeshBuilder { positions: Vec::with_capacity(3 * facets.len()), ..MeshBuilder::default() };
-    let coloring = Coloring::of(bytes);
-    for (i, facet) in facets.enumerate() {
-        meter.advance_to(HEADER + i * FACET)?;
-        if let Some(coloring) = &coloring {
-            mesh.colors.values_mut().extend([coloring.color(facet); 3]);
-        }
-        for corner in 0..3 {
-            // The facet begins with its normal, which has 12 bytes.
-            let at = 12 + 12 * corner;
-            match vertex_from(&facet[at..at + 12], HEADER + i * FACET + at) {
-                Ok(vertex) => mesh.positions.push(vertex),
-                Err(fault) => {
-                    left_out.leave_out(fault)?;
-                    mesh.positions.push(Vec3::NAN);
-                }
+    let (coloring, has_faults) = (Coloring::of(bytes), AtomicBool::new(false));
+    let is_parallel = meter.is_parallel() && facets.len() >= MIN_PARALLEL_FACETS;
+    let offset = |corner: usize| HEADER + corner / 3 * FACET + OFFSETS[corner % 3];
+    for block in (0..facets.len()).step_by(BLOCK_FACETS) {
+        meter.advance_to(HEADER + block * FACET)?;
+        let count = BLOCK_FACETS.min(facets.len() - block);
+        let corner = |i: usize| {
+            let vertex = vertex_at(bytes, offset(3 * block + i));
+            if !vertex.is_finite() {
+                has_faults.store(true, Ordering::Relaxed);
             }
+            vertex
+        };
+        if is_parallel {
+            threads::extend(&mut mesh.positions, 3 * count, corner);
+        } else {
+            mesh.positions.extend((0..3 * count).map(corner));
+        }
+        if let Some(coloring) = &coloring {
+            let facets = facets.clone().skip(block).take(count);
+            mesh.colors.values_mut().extend(facets.flat_map(|facet| [coloring.color(facet); 3]));
+        }
+    }
+    if has_faults.into_inner() {
+        for (corner, position) in mesh.positions.iter_mut().enumerate().filter(|(_, position)| !position.is_finite()) {
+            left_out.leave_out(fault_of_vertex(*position, offset(corner)))?;
+            *position = Vec3::NAN;
         }
     }
     if coloring.is_some() {
         mesh.colors = Attribute::of_positions(std::mem::take(mesh.colors.values_mut()));
     }
-    mesh.triangles = (0..mesh.positions.len() as u32).step_by(3).map(|first| [first, first + 1, first + 2]).collect();
+    let triangle = |i: usize| [0, 1, 2].map(|corner| (3 * i + corner) as u32); // at most three times MAX_TRIANGLES
+    let count = facets.len();
+    mesh.triangles = if is_parallel { threads::map(count, triangle) } else { (0..count).map(triangle).collect() };
     mesh.finish("its count is 0", left_out)
 }
 
@@ -132,17 +156,19 @@ fn attribute(facet: &[u8]) -> u16 {
     u16::from_le_bytes([facet[FACET - 2], facet[FACET - 1]])
 }
 
-/// Returns the vertex in twelve bytes. `offset` is their offset in the file, for the message of a
-/// fault.
-fn vertex_from(bytes: &[u8], offset: usize) -> Result<Vec3, MeshFault> {
+/// Returns the vertex in the twelve bytes from `offset` on.
+fn vertex_at(bytes: &[u8], offset: usize) -> Vec3 {
+    let bytes = &bytes[offset..offset + 12];
     let coordinate = |axis: usize| f32::from_le_bytes(std::array::from_fn(|i| bytes[4 * axis + i]));
-    let vertex = Vec3::new(coordinate(0), coordinate(1), coordinate(2));
-    if vertex.is_finite() {
-        return Ok(vertex);
-    }
+    Vec3::new(coordinate(0), coordinate(1), coordinate(2))
+}
+
+/// Returns the fault of a vertex that is not finite. `offset` is its offset in the file.
+#[cold]
+fn fault_of_vertex(vertex: Vec3, offset: usize) -> MeshFault {
     // The index of the first coordinate that is not finite.
     let axis = usize::from(vertex.x.is_finite()) * (1 + usize::from(vertex.y.is_finite()));
-    Err(MeshFault::at_byte(offset + 4 * axis, format!("{} is not a finite number", coordinate(axis))))
+    MeshFault::at_byte(offset + 4 * axis, format!("{} is not a finite number", vertex[axis]))
 }
 
 /// Reads a text STL file, of one or several solids.
@@ -224,3 +250,6 @@ impl TextReader<'_> {
         Ok(())
     }
 }
+
+#[cfg(all(test, unit_tests))]
+mod tests;

@@ -32,6 +32,12 @@ impl<'a> Meter<'a> {
         if position < self.next { Ok(()) } else { self.report(position, self.total) }
     }
 
+    /// Returns whether the file may be parsed on all threads of the current rayon pool.
+    #[cfg(feature = "mesh")]
+    pub(crate) fn is_parallel(&self) -> bool {
+        self.reporter.is_parallel()
+    }
+
     /// Reports progress without a position, for a parser that reads its file in any order.
     ///
     /// # Errors

@@ -379,7 +379,7 @@ fn draft_around_mesh(
         "PLY" => Some(UpAxis::Y),
         _ => None,
     };
-    let guess = usual.filter(|_| up.is_none()).map(|usual| mesh_file::guessed(&mesh, usual));
+    let guess = usual.filter(|_| up.is_none()).map(|usual| mesh_file::guessed(&mesh, usual, reporter.is_parallel()));
     let origin = MeshOrigin { format, up: up.or(guess).unwrap_or_default(), is_guess: guess.is_some() };
     Draft::around_mesh(mesh, origin).ok_or_else(|| LoadError::Unseen { path: path.to_owned() }.into())
 }

@@ -12,6 +12,16 @@ pub(crate) fn join<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: i
     (first(), second())
 }
 
+/// Returns the results of `make` for all numbers below `count`, in their order.
+pub(crate) fn map<T: Send>(count: usize, make: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
+    (0..count).map(make).collect()
+}
+
+/// Appends the results of `make` for all numbers below `count` to `list`, in their order.
+pub(crate) fn extend<T: Send>(list: &mut Vec<T>, count: usize, make: impl Fn(usize) -> T + Send + Sync) {
+    list.extend((0..count).map(make));
+}
+
 /// Calls `make` for each number below `count`, and returns the first and the second parts of the
 /// results.
 pub(crate) fn unzip<A: Send, B: Send>(count: usize, make: impl Fn(usize) -> (A, B) + Send + Sync) -> (Vec<A>, Vec<B>) {

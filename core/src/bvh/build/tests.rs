@@ -1,4 +1,5 @@
 use super::*;
+use crate::bounds::Bounds;
 use crate::bvh::Child;
 use glam::Vec3;
 

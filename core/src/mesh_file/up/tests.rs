@@ -22,18 +22,18 @@ fn cup(axis: usize) -> MeshFile {
 #[test]
 fn a_thing_stands_on_its_flat_end() {
     for usual in [UpAxis::Y, UpAxis::Z] {
-        assert_eq!(guessed(&cup(1), usual), UpAxis::Y);
-        assert_eq!(guessed(&cup(2), usual), UpAxis::Z);
+        assert_eq!(guessed(&cup(1), usual, false), UpAxis::Y);
+        assert_eq!(guessed(&cup(2), usual, false), UpAxis::Z);
         // A cup that lies on its side gives no evidence for either axis.
-        assert_eq!(guessed(&cup(0), usual), usual);
+        assert_eq!(guessed(&cup(0), usual, false), usual);
     }
 }
 
 #[test]
 fn a_flat_mesh_is_no_reason_to_turn() {
     let square = MeshFile::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]).expect("a mesh");
-    assert_eq!(guessed(&square, UpAxis::Z), UpAxis::Z);
-    assert_eq!(guessed(&square, UpAxis::Y), UpAxis::Y);
+    assert_eq!(guessed(&square, UpAxis::Z, false), UpAxis::Z);
+    assert_eq!(guessed(&square, UpAxis::Y, false), UpAxis::Y);
 }
 
 #[test]
