@@ -8,6 +8,7 @@ use crate::framebuffer::Resolution;
 use crate::lanes::Vector;
 use crate::light::Light;
 use crate::scene::{Background, Object, Scene};
+use crate::scene_text::clipped;
 use crate::shape::Shape;
 use crate::text::listed;
 use glam::{Vec2, Vec3};
@@ -50,6 +51,7 @@ pub fn describe(name: &str, scene: &Scene, camera: &Camera, resolution: Resoluti
         description.hidden_objects(resolution),
         description.background(),
         description.lights(),
+        description.views(),
     ] {
         if !part.is_empty() {
             text += "\n";
@@ -99,6 +101,20 @@ impl Description<'_> {
             point_text(target),
             number(degrees)
         )
+    }
+
+    /// Names the views of a mesh file, with their keys in the live view.
+    fn views(&self) -> String {
+        let name = |(at, name): (usize, &String)| match name.as_str() {
+            "" => at.to_string(),
+            name => format!("{at} \"{}\"", clipped(name)),
+        };
+        let names: Vec<_> = (1..).zip(self.scene.view_names()).map(name).collect();
+        if names.is_empty() {
+            String::new()
+        } else {
+            format!("Cameras of the file, by their keys: {}.\n", listed(&names))
+        }
     }
 
     /// Describes the objects in the picture, those with the most pixels first.

@@ -62,6 +62,7 @@ mod format;
 mod left_out;
 mod limits;
 #[cfg(feature = "mesh")]
+mod staging;
 mod marks;
 #[cfg_attr(not(feature = "mesh"), allow(dead_code, reason = "only mesh files are turned"))]
 mod up;
@@ -91,6 +92,7 @@ pub use mesh_error::{FilePosition, MeshError};
 #[cfg(feature = "mesh")]
 pub use read::{format_name, is_mesh};
 pub use texture::{Sampler, Texture, TexturePlacement, Wrap};
+pub use staging::{FileCamera, FileLight, FileLightKind, FilePlace, Staging};
 #[cfg(all(feature = "ron", not(feature = "mesh")))]
 pub use unread::{format_name, is_mesh};
 pub use up::UpAxis;
@@ -131,6 +133,8 @@ pub struct MeshFile {
     /// index of the run's material in `materials`.
     material_runs: Vec<(u32, Option<u32>)>,
 }
+    /// The cameras and lights.
+    staging: Staging,
 
 /// The material of a triangle as in its file.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,6 +158,7 @@ impl MeshFile {
             materials: Vec::new(),
             material_runs: Vec::new(),
         };
+            staging: Staging::default(),
         mesh.is_valid().then_some(mesh)
     }
 
@@ -188,7 +193,11 @@ impl MeshFile {
     /// exceeds the range of f32.
     pub fn with_axis_up(self, up: UpAxis) -> Option<Self> {
         // A mesh that is not turned keeps the bits of its normals: `transformed` would normalise them once more.
-        if up == UpAxis::Y { Some(self) } else { self.transformed(Vec3::ONE, up.turn(), Vec3::ZERO) }
+        if up == UpAxis::Y {
+            return Some(self);
+        }
+        let staging = self.staging.clone().turned(up.turn());
+        self.transformed(Vec3::ONE, up.turn(), Vec3::ZERO).map(|mesh| Self { staging, ..mesh })
     }
 
     /// Returns whether the mesh has colours of its own: of materials, vertices or a texture.
@@ -267,6 +276,11 @@ impl MeshFile {
     }
 
     /// Checks the invariants of the type.
+    /// Returns the cameras and lights of the file.
+    pub fn staging(&self) -> &Staging {
+        &self.staging
+    }
+
     fn is_valid(&self) -> bool {
         let in_range = |index: u32| (index as usize) < self.positions.len();
         !self.triangles.is_empty()

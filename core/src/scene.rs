@@ -13,6 +13,7 @@ mod draft;
 #[cfg(feature = "ron")]
 mod load;
 mod of_mesh;
+mod staging;
 #[cfg(feature = "mesh")]
 mod sketch;
 #[cfg(feature = "ron")]
@@ -71,6 +72,7 @@ impl fmt::Debug for Scene {
             mesh,
             camera,
             views,
+            view_names,
             background,
             ambient,
             lights,
@@ -84,6 +86,9 @@ impl fmt::Debug for Scene {
         } = &*self.checked;
         let mut scene = f.debug_struct("Scene");
         scene.field("caption", caption).field("mesh", mesh).field("camera", camera).field("views", views);
+        if !view_names.is_empty() {
+            scene.field("view_names", view_names);
+        }
         // A colour takes one line even with `{:#?}`, because a line per channel would make the output hard to read.
         scene.field("background", &format_args!("{background:?}")).field("ambient", &format_args!("{ambient:?}"));
         scene.field("lights", lights).field("shadows", shadows);
@@ -113,6 +118,8 @@ struct Checked {
     mesh: Option<MeshOrigin>,
     camera: Camera,
     views: Vec<Camera>,
+    /// The names of the views of a mesh file; empty for a scene file, whose views have none.
+    view_names: Vec<String>,
     background: Background,
     ambient: LinearRgb,
     lights: Vec<Light>,
@@ -162,6 +169,7 @@ impl Checked {
             mesh: None,
             camera,
             views: Vec::new(),
+            view_names: Vec::new(),
             background: Background::Color(LinearRgb::BLACK),
             ambient: LinearRgb::BLACK,
             lights: Vec::new(),
@@ -307,6 +315,12 @@ impl Scene {
     /// Returns further views of the scene, in the order of the scene file.
     pub fn views(&self) -> &[Camera] {
         &self.checked.views
+    }
+
+    /// Returns the names of the views of a mesh file, some of them empty; none for a scene file.
+    #[doc(hidden)]
+    pub fn view_names(&self) -> &[String] {
+        &self.checked.view_names
     }
 
     /// Returns the light along rays that hit no object.

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use termtrace::LinearRgb;
 use termtrace::glam::{Vec2, Vec3};
-use termtrace::internals::mesh_file::MeshFile;
+use termtrace::internals::mesh_file::{FileCamera, FileLight, FilePlace, MeshFile};
 use termtrace::internals::progress::Reporter;
 
 fn folder() -> PathBuf {
@@ -47,7 +47,24 @@ fn contents_of(mesh: &MeshFile) -> String {
     let (least, most) = places.fold((Vec3::MAX, Vec3::MIN), |(least, most), p| (least.min(p), most.max(p)));
     let colors: BTreeSet<_> = (0..mesh.triangles().len()).map(|triangle| color_of(mesh, triangle)).collect();
     let colors = colors.into_iter().collect::<Vec<_>>().join(", ");
-    format!("{} triangles from {least} to {most}, {colors}", mesh.triangles().len())
+    format!("{} triangles from {least} to {most}, {colors}{}", mesh.triangles().len(), staging_of(mesh))
+}
+
+/// Returns a line for each camera and light.
+fn staging_of(mesh: &MeshFile) -> String {
+    let at = |place: &FilePlace| {
+        let FilePlace { position, forward, up } = place;
+        format!("at {position} towards {forward}, up {up}")
+    };
+    let cameras = mesh.staging().cameras.iter().map(|camera| {
+        let FileCamera { name, place, vertical_fov, aspect_ratio } = camera;
+        format!("\ncamera {name:?} {}, {vertical_fov} {aspect_ratio:?}", at(place))
+    });
+    let lights = mesh.staging().lights.iter().map(|light| {
+        let FileLight { place, intensity: LinearRgb { r, g, b }, kind } = light;
+        format!("\nlight {kind:?} {r} {g} {b} {}", at(place))
+    });
+    cameras.chain(lights).collect()
 }
 
 /// Returns the colour at a triangle's first corner.

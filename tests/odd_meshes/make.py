@@ -545,6 +545,67 @@ about["count"] = 3 << 20
 mesh.write("b14_meshopt_claim.gltf")
 about["mode"] = "ZIP"
 mesh.write("b14_meshopt_mode.gltf")
+
+
+def staged():
+    """A white square from (0, 0, 0) to (1, 1, 0), for cameras and lights."""
+    mesh = Gltf()
+    mesh.primitive["attributes"]["POSITION"] = mesh.floats("VEC3", [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0])
+    mesh.primitive["indices"] = mesh.accessor("SCALAR", 5121, "B", [0, 1, 2, 0, 2, 3])
+    mesh.primitive["material"] = 0
+    mesh.json["materials"] = [{}]
+    return mesh
+
+
+def place(mesh, **node):
+    mesh.json["nodes"].append(node)
+    mesh.json["scenes"][0]["nodes"].append(len(mesh.json["nodes"]) - 1)
+
+
+def shine(mesh, lights):
+    mesh.json["extensionsUsed"] = ["KHR_lights_punctual"]
+    mesh.json["extensions"] = {"KHR_lights_punctual": {"lights": lights}}
+
+
+HALF = 0.5**0.5
+mesh = staged()
+mesh.json["cameras"] = [
+    {"name": "Front", "type": "perspective", "perspective": {"yfov": 0.5, "aspectRatio": 1.5, "znear": 0.1}},
+    {"type": "perspective", "perspective": {"yfov": 1, "aspectRatio": 0}},
+    {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "zfar": 9, "znear": 0}},
+    {"name": "no node", "type": "perspective", "perspective": {"yfov": 1}},
+]
+place(mesh, camera=0, translation=[0.5, 0.5, 3], scale=[2, 2, 2])
+# Turned by 90 degrees about y: it looks along -x.
+place(mesh, camera=1, name="Side\u0007", translation=[4, 0.5, 0], rotation=[0, HALF, 0, HALF])
+place(mesh, camera=2)
+place(mesh, camera=1, translation=[0, 2e9, 0])
+mesh.write("s2_cameras.gltf")
+mesh.json["cameras"][0]["perspective"]["yfov"] = 3.2
+mesh.write("s2_wide.gltf")
+mesh = staged()
+mesh.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1}}]
+for x in range(11):
+    place(mesh, camera=0, name=str(x), translation=[x, 0, 5])
+mesh.write("s2_many.gltf")
+for name, lights in [
+    ("point", [{"type": "point", "intensity": 100, "color": [1, 0.5, 0]}]),
+    ("two", [{"type": "directional", "intensity": 300}, {"type": "spot", "intensity": 100, "spot": {}}]),
+    ("unused", [{"type": "directional"}, {"type": "point", "name": "no node"}]),
+    ("kind", [{"type": "area"}]),
+    ("cone", [{"type": "spot", "spot": {"innerConeAngle": 1, "outerConeAngle": 0.5}}]),
+    ("negative", [{"type": "point", "intensity": -1}, {"type": "point", "color": [0, 0, 1]}]),
+]:
+    mesh = staged()
+    shine(mesh, lights)
+    for i in range(1 if name == "unused" else len(lights)):
+        place(mesh, translation=[0.5, 0.5, 2], extensions={"KHR_lights_punctual": {"light": i}})
+    mesh.write(f"s3_{name}.gltf")
+mesh = staged()
+shine(mesh, [{"type": "point"}])
+for x in range(65):
+    place(mesh, translation=[x, 0, 5], extensions={"KHR_lights_punctual": {"light": 0}})
+mesh.write("s3_many.gltf")
 mesh = Gltf()
 mesh.json["extensionsUsed"] = mesh.json["extensionsRequired"] = ["ACME_wonder"]
 mesh.write("b14_unknown.gltf")

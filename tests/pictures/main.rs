@@ -16,5 +16,6 @@ mod properties;
 mod rasterized;
 mod sampling;
 mod shapes;
+mod staging;
 mod tilted;
 mod triangles;

@@ -5,6 +5,7 @@ use super::fault::MeshFault;
 use super::left_out::LeftOut;
 use super::limits::MAX_TRIANGLES;
 use super::marks::{BYTES_PER_MARK, MAX_MARKS, Mark, MarkEnd, MarkStyle};
+use super::staging::Staging;
 use super::{MeshFile, MeshMaterial, is_flat};
 use crate::color::LinearRgb;
 use crate::memory;
@@ -25,6 +26,8 @@ pub(super) struct MeshBuilder {
     pub(super) not_shown: Vec<(u32, &'static str)>,
     /// Points and lines.
     pub(super) marks: Vec<Mark>,
+    /// The cameras and lights.
+    pub(super) staging: Staging,
     /// Whether the file has faces or surfaces. In a file without them, and without marks, all
     /// vertices are points.
     pub(super) has_faces: bool,
@@ -185,7 +188,16 @@ impl MeshBuilder {
     pub(super) fn into_mesh(mut self) -> Option<MeshFile> {
         self.shrink_to_fit();
         let Self { positions, triangles, normals, texture_coordinates, colors, materials, material_runs, .. } = self;
-        let mesh = MeshFile { positions, triangles, normals, texture_coordinates, colors, materials, material_runs };
+        let mesh = MeshFile {
+            positions,
+            triangles,
+            normals,
+            texture_coordinates,
+            colors,
+            materials,
+            material_runs,
+            staging: self.staging,
+        };
         mesh.is_valid().then_some(mesh)
     }
 

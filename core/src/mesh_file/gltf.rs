@@ -2,7 +2,7 @@
 //! with normals, colours, base colours and base-colour textures, moved by their skins and morph targets.
 //! Meshopt compression is decoded.
 //!
-//! Not read: animations, cameras and lights, and other properties of materials than the base colour.
+//! Not read: animations, orthographic cameras, and other properties of materials than the base colour.
 
 mod accessor;
 mod buffers;
@@ -14,6 +14,7 @@ mod pose;
 mod primitives;
 mod tree;
 
+mod staging;
 use super::MeshFile;
 use super::fault::{MeshFault, shown};
 use super::left_out::LeftOut;
@@ -187,9 +188,5 @@ fn check_extensions(root: Json<'_>, left_out: &mut LeftOut<'_>) -> Result<(), Me
         }
     }
     left_out.not_shown("animation", root.list_len("animations")?);
-    left_out.not_shown("camera", root.list_len("cameras")?);
-    if let Some(lights) = root.extension("KHR_lights_punctual")? {
-        left_out.not_shown("light", lights.list_len("lights")?);
-    }
     Ok(())
 }

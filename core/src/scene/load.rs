@@ -415,6 +415,11 @@ impl shape::Meshes for Meshes<'_> {
             MeshFile::read_whole(&path, Accepted::Files, self.reporter)
         };
         let mesh = Arc::new(mesh.map_err(|unfinished| unfinished.map(|error| error.to_string()))?);
+        if !mesh.staging().is_empty() {
+            // A scene file has its own.
+            let name = visible(&path.to_string_lossy());
+            self.reporter.notify_if_possible(|| format!("{name}: not shown: cameras and lights"));
+        }
         self.read.insert(path, Arc::clone(&mesh));
         Ok(mesh)
     }

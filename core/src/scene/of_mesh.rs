@@ -2,7 +2,7 @@
 
 #[cfg(feature = "ron")]
 use super::written_camera::{number_text as number, vector_text as vector};
-use super::{Background, Checked, Draft, Object, Scene};
+use super::{Background, Checked, Draft, Object, Scene, staging};
 use crate::bounds::Bounds;
 use crate::camera::{Camera, FRAMED_SHARE, Pose, ViewRectangle, framing_distance};
 use crate::color::LinearRgb;
@@ -96,10 +96,9 @@ impl Scene {
             return None;
         };
         let color = |color: LinearRgb| vector(Vec3::new(color.r, color.g, color.b));
-        let lights = self.lights().iter().filter_map(|light| {
-            let (position, color) = (vector(light.position()?), color(light.color()));
-            Some(format!("        Point(position: {position}, color: {color}, intensity: 1, falloff: None),\n"))
-        });
+        let written = &shape.file().staging().lights;
+        let lights = self.lights().iter().enumerate();
+        let lights = lights.map(|(i, light)| format!("        {},\n", staging::light_to_ron(light, written.get(i))));
         let turn = match origin.up.degrees() {
             [0, 0, 0] => String::new(),
             [x, y, z] => format!(", rotate: ({x}, {y}, {z})"),
@@ -108,6 +107,13 @@ impl Scene {
             if shape.file().has_colors() { String::new() } else { format!(", material: Diffuse({})", color(CLAY)) };
         let [[bottom, top], [a, b]] = [BACKGROUND, FLOOR].map(|colors| colors.map(color));
         let size = number(SQUARE * 0.5 * Bounds::of(shape.file().positions().iter().copied()).extent().length());
+        let about_lights = if written.is_empty() {
+            "    // A warm light, a blue one, and one from behind, each as bright everywhere.\n"
+        } else {
+            "    // The lights of the file, dimmed together.\n"
+        };
+        let views: Vec<_> = self.views().iter().map(|view| format!("        {},\n", view.value_to_ron())).collect();
+        let views = if views.is_empty() { String::new() } else { format!("    views: [\n{}    ],\n", views.concat()) };
         let (camera, ambient, point) = (camera.to_ron(), color(self.ambient()), vector(plane.point()));
         Some(format!(
             "// {}, on a floor. Edit this file while termtrace shows it: each save is seen at once.
@@ -115,8 +121,7 @@ impl Scene {
     {camera},
     background: Gradient(bottom: {bottom}, top: {top}),
     ambient: {ambient},
-    // A warm light, a blue one, and one from behind, each as bright everywhere.
-    lights: [
+{views}{about_lights}    lights: [
 {}    ],
     objects: [
         Mesh(path: {name:?}{turn}{clay}),
@@ -153,15 +158,26 @@ impl Draft {
         let squares = Material::checker(FLOOR[0], FLOOR[1], SQUARE * radius).ok()?;
         let material = if mesh.has_colors() { Material::Own } else { Material::diffuse(CLAY).ok()? };
         // The scene has a floor because the shadows on it show the shape and the height of the mesh.
+        let staging = mesh.staging().clone();
         let objects = vec![Object::new(Mesh::of_checked(mesh), material), Object::new(floor, squares)];
         let [bottom, top] = BACKGROUND;
-        // The lights are placed relative to the mesh's radius, so that all meshes are lit alike.
-        let lights = LIGHTS.map(|(towards, color)| light(middle + radius * towards, color));
+        let middle_and_radius = (middle, radius);
+        let mut lights = staging::lights(&staging.lights, middle_and_radius);
+        if lights.is_empty() {
+            // The lights are placed relative to the mesh's radius, so that all meshes are lit alike.
+            lights = LIGHTS
+                .into_iter()
+                .map(|(towards, color)| light(middle + radius * towards, color))
+                .collect::<Option<_>>()?;
+        }
+        let (views, view_names) = staging::views(&staging.cameras, middle_and_radius).into_iter().unzip();
         Some(Self::new(Checked {
             mesh: Some(origin),
+            views,
+            view_names,
             background: Background::Gradient { bottom, top },
             ambient: ambient(),
-            lights: lights.into_iter().collect::<Option<_>>()?,
+            lights,
             ..Checked::new(camera(&bounds, middle)?, objects)
         }))
     }

@@ -1,16 +1,18 @@
-//! The node tree of a glTF file, whose nodes transform meshes.
+//! The node tree of a glTF file, whose nodes transform meshes, cameras and lights.
 
 use super::buffers::Buffers;
 use super::json::Json;
 use super::pose::Globals;
 use super::primitives::Primitives;
+use super::staging::StagingReader;
 use super::tree::{IndexedNode, local_transform, nodes_in};
 use crate::mesh_file::MeshFile;
 use crate::mesh_file::fault::MeshFault;
 use crate::progress::Meter;
 use glam::DMat4;
 
-/// Reads the triangles of all meshes in the default scene, transformed by their nodes.
+/// Reads the triangles of all meshes, the cameras and the lights in the default scene, transformed
+/// by their nodes.
 pub(super) fn read<'a>(
     root: Json<'a>,
     buffers: &mut Buffers<'a, '_>,
@@ -19,6 +21,7 @@ pub(super) fn read<'a>(
     let mut is_visited = vec![false; root.list_len("nodes")?];
     let globals = Globals::of(root)?;
     let mut primitives = Primitives::new(buffers)?;
+    let mut staging = StagingReader::default();
     // An explicit stack, because a file may nest its nodes a million deep. Nodes are pushed in reverse, so that they
     // are popped, and their triangles added, in the order of the file.
     let mut open: Vec<_> = roots(root)?.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
@@ -30,6 +33,7 @@ pub(super) fn read<'a>(
             return Err(node.fault("this node is reached twice: nodes must form a tree"));
         }
         let transform = parent * local_transform(node)?;
+        staging.add(node, root, &transform, primitives.left_out())?;
         if let Some(mesh) = node.field("mesh")? {
             let (_, mesh) = mesh.item_of(root, "meshes")?;
             primitives.add_mesh(mesh, node, transform, &globals)?;
@@ -37,7 +41,8 @@ pub(super) fn read<'a>(
         let children = nodes_in(node, "children", root)?;
         open.extend(children.into_iter().rev().map(|child| (child, transform)));
     }
-    primitives.finish()
+    let staging = staging.finish(root, primitives.left_out())?;
+    primitives.finish(staging)
 }
 
 /// Returns the roots of the default scene, or of the first one; in a file without scenes, all nodes

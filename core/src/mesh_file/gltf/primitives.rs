@@ -9,7 +9,9 @@ use crate::color::LinearRgb;
 use crate::mesh_file::MeshFile;
 use crate::mesh_file::builder::{MeshBuilder, TriangleIndices};
 use crate::mesh_file::fault::MeshFault;
+use crate::mesh_file::left_out::LeftOut;
 use crate::mesh_file::marks::{Mark, MarkEnd};
+use crate::mesh_file::staging::Staging;
 use glam::{DMat3, DMat4, Vec2};
 use std::collections::HashMap;
 
@@ -66,7 +68,13 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         })
     }
 
-    pub(super) fn finish(self) -> Result<MeshFile, MeshFault> {
+    pub(super) fn left_out(&mut self) -> &mut LeftOut<'b> {
+        self.buffers.left_out()
+    }
+
+    /// Returns the mesh, with the cameras and lights of the file.
+    pub(super) fn finish(mut self, staging: Staging) -> Result<MeshFile, MeshFault> {
+        self.mesh.staging = staging;
         self.mesh.finish("its scene shows no mesh of triangles", self.buffers.left_out())
     }
 
