@@ -67,7 +67,7 @@
 //! | `ron` | scene files and camera paths, and the plain files beside them | 5 |
 //! | `parallel` | tracing, toning and building trees on all threads of the current rayon pool; the same bits | 11 |
 //! | `ron`, `parallel` | both: the minimum for tracing a scene file on all cores | 11 |
-//! | `mesh` | OBJ, STL, PLY and glTF files with their textures; includes `ron` | 43 |
+//! | `mesh` | OBJ, STL, PLY and glTF files with their textures; includes `ron` | 38 |
 //! | `png` | PNG files | 15 |
 //! | `gif` | films as GIF | 8 |
 //! | `cast` | films as asciicast | 10 |
@@ -76,9 +76,10 @@
 //! | `backend` | the encoder as a backend of ratatui; includes `ratatui` | 34 |
 //! | `scrolling-regions` | the same beside ratatui's feature of this name; includes `backend` | 34 |
 //! | `serde` | cameras, colours, sizes, maps and samplings in the formats of serde, checked when they are read | 12 |
-//! | `live` | the live view, on Linux and macOS; includes all of the above but `gif` and the last four | 108 |
-//! | `serve` | the server of the live view over SSH, for the program; includes `live`; needs Rust 1.89 | 216 |
-//! | `cli` | the program `termtrace`, by default | 121 |
+//! | `live` | the live view, on Linux and macOS; includes all of the above but `gif` and the last four | 103 |
+//! | `serve` | the server of the live view over SSH, for the program; includes `live`; needs Rust 1.89 | 212 |
+//! | `draco` | Draco compression in glTF files; includes `mesh` | 42 |
+//! | `cli` | the program `termtrace`, by default; includes `live`, `gif` and `draco` | 120 |
 //!
 //! A program that uses only the library turns the default features off:
 //! `termtrace = { version = "0.1", default-features = false, features = ["ron", "parallel"] }`.

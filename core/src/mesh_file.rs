@@ -13,8 +13,9 @@
 //!   hundred is faulty; contents that no picture shows, such as lines, are counted. `left_out` makes notices of both.
 //! - Any bytes give a mesh or an error in linear time. Memory is not reserved for a claimed count that the file could
 //!   not hold, so that it stays within a small multiple of the file's size (40 times the JSON of a glTF file that names
-//!   nothing but empty meshes, at most 16 times elsewhere), besides 1 KiB for each of up to 1 Mi points and lines. At
-//!   most [`MAX_MESH_BYTES`] are read, [`MAX_TRIANGLES`] made, and [`MAX_TEXELS`] decoded.
+//!   nothing but empty meshes, 200 times a primitive that Draco compresses, at most 16 times elsewhere), besides 1 KiB
+//!   for each of up to 1 Mi points and lines. At most [`MAX_MESH_BYTES`] are read, [`MAX_TRIANGLES`] made, and
+//!   [`MAX_TEXELS`] decoded.
 //!
 //! Side files (MTL files, textures, buffers of glTF) are requested by their path relative to the mesh through a
 //! function passed in; no URL and no absolute path is ever requested: of an absolute path only the last part is. A
@@ -61,8 +62,8 @@ mod format;
 #[cfg(feature = "mesh")]
 mod left_out;
 mod limits;
-#[cfg(feature = "mesh")]
 mod staging;
+#[cfg(feature = "mesh")]
 mod marks;
 #[cfg_attr(not(feature = "mesh"), allow(dead_code, reason = "only mesh files are turned"))]
 mod up;
@@ -91,8 +92,8 @@ pub use limits::{MAX_MESH_BYTES, MAX_TEXELS, MAX_TRIANGLES};
 pub use mesh_error::{FilePosition, MeshError};
 #[cfg(feature = "mesh")]
 pub use read::{format_name, is_mesh};
-pub use texture::{Sampler, Texture, TexturePlacement, Wrap};
 pub use staging::{FileCamera, FileLight, FileLightKind, FilePlace, Staging};
+pub use texture::{Sampler, Texture, TexturePlacement, Wrap};
 #[cfg(all(feature = "ron", not(feature = "mesh")))]
 pub use unread::{format_name, is_mesh};
 pub use up::UpAxis;
@@ -132,9 +133,9 @@ pub struct MeshFile {
     /// Runs of consecutive triangles with one material: the first triangle of each run, and the
     /// index of the run's material in `materials`.
     material_runs: Vec<(u32, Option<u32>)>,
-}
     /// The cameras and lights.
     staging: Staging,
+}
 
 /// The material of a triangle as in its file.
 #[derive(Clone, Debug, PartialEq)]
@@ -157,8 +158,8 @@ impl MeshFile {
             colors: Attribute::default(),
             materials: Vec::new(),
             material_runs: Vec::new(),
-        };
             staging: Staging::default(),
+        };
         mesh.is_valid().then_some(mesh)
     }
 
@@ -275,12 +276,12 @@ impl MeshFile {
         material.map(|index| index as usize)
     }
 
-    /// Checks the invariants of the type.
     /// Returns the cameras and lights of the file.
     pub fn staging(&self) -> &Staging {
         &self.staging
     }
 
+    /// Checks the invariants of the type.
     fn is_valid(&self) -> bool {
         let in_range = |index: u32| (index as usize) < self.positions.len();
         !self.triangles.is_empty()

@@ -606,6 +606,56 @@ shine(mesh, [{"type": "point"}])
 for x in range(65):
     place(mesh, translation=[x, 0, 5], extensions={"KHR_lights_punctual": {"light": 0}})
 mesh.write("s3_many.gltf")
+
+# A grid of 4 by 4 vertices at (x / 3, y / 3, 0.2 sin(3 x) cos(7 y / 3)), compressed by Google's library (DracoPy 2.2.0,
+# levels 7 and 0): with colours, texture coordinates and normals, and without.
+DRACO = (
+    "RFJBQ08CAgEBAAAAEBIDEgMABt/Tp1p9Cv8BEf8Ca0H/AmtB/wJrQQQAAAABAAACAAD/AAABAgIDAQABAQMJAgEBAAEBCQMAAgABAAkDAAMCAQ"
+    "EBAQPJAQE4//+frQJVAa0Cb1UBBwCwUel4r4sAAAAA/wAAAKuqKj+rqio/q6qqPquqqj6rqio/q6qqPquqqj4AAAAAAAAAAAAAAAAAAAAAq6qq"
+    "Pquqqj6rqio/q6oqPwAAgD8AAIA/AACAPwAAgD+rqio/AACAP6uqqj6rqio/AAAAAAAAgD8AAAAAq6qqPgAAgD8AAAAAq6oqPwAAAAAAAIA/AA"
+    "AAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/"
+    "AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAI"
+    "A/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AQEBAA8jAQQBDAEMARQBBAEMBwB6SIIgbpGr6qrqeaSqqeq0oKoCAHAHAACAAQCAegAAgMMAAGAl"
+    "AABAAwIAAGgzAADAiQMAAKQtAACQVAAAAKwjAACAJgIAAPEHAIBwAQAAAAD/PwAAAAAAAAAAAACCNGm9AACAPw4="
+)
+DRACO_PLAIN = (
+    "RFJBQ08CAgEAAAASEAEAAQUABQQBAgYBBgUCAwcCBwYEBQkECQgFBgoFCgkGBwsGCwoICQ0IDQwJCg4JDg0KCw8KDw4BAQAJAwAAAgABAQAMHw"
+    "EEBwE8AwAgiwAA6lQFgBysCoCrUBUANhIAVZ9CVQA8waoAcAdVAXAYAVhVHVQFQAGsCgAIUBUAGRAAVSFAVQBYwaoAGAhVAcAaAAAAAP8HAAAA"
+    "AAAAAAAAAII0ab0AAIA/Cw=="
+)
+
+
+def draco(data, attributes):
+    mesh = Gltf()
+    mesh.primitive["material"] = 0
+    mesh.json["materials"] = [{}]
+    view = mesh.view(data)
+    kinds = {"POSITION": ("VEC3", 5126), "NORMAL": ("VEC3", 5126), "TEXCOORD_0": ("VEC2", 5126), "COLOR_0": ("VEC3", 5121)}
+    mesh.primitive["attributes"] = {}
+    for name in attributes:
+        kind, component = kinds[name]
+        about = {"componentType": component, "type": kind, "count": 16, "normalized": component == 5121}
+        mesh.primitive["attributes"][name] = len(mesh.accessors)
+        mesh.accessors.append(about)
+    mesh.primitive["indices"] = len(mesh.accessors)
+    mesh.accessors.append({"componentType": 5123, "type": "SCALAR", "count": 54})
+    mesh.primitive["extensions"] = {"KHR_draco_mesh_compression": {"bufferView": view, "attributes": attributes}}
+    mesh.json["extensionsUsed"] = mesh.json["extensionsRequired"] = ["KHR_draco_mesh_compression"]
+    return mesh
+
+
+data = base64.b64decode(DRACO)
+attributes = {"COLOR_0": 0, "TEXCOORD_0": 1, "NORMAL": 2, "POSITION": 3}
+draco(data, attributes).write("s5_draco.gltf")
+draco(base64.b64decode(DRACO_PLAIN), {"POSITION": 0}).write_binary("s5_draco.glb")
+draco(data[:-40], attributes).write("s5_cut.gltf")
+draco(data, attributes | {"POSITION": 4}).write("s5_id.gltf")
+# The texture coordinates have two numbers.
+draco(data, {"POSITION": 1}).write("s5_width.gltf")
+mesh = draco(data, attributes)
+# Both primitives are the same part of the file.
+mesh.json["meshes"][0]["primitives"].append(mesh.primitive)
+mesh.write("s5_twice.gltf")
 mesh = Gltf()
 mesh.json["extensionsUsed"] = mesh.json["extensionsRequired"] = ["ACME_wonder"]
 mesh.write("b14_unknown.gltf")

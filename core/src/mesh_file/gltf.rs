@@ -1,26 +1,31 @@
 //! glTF 2.0, as JSON and as GLB: the triangles of the default scene, transformed by their nodes,
 //! with normals, colours, base colours and base-colour textures, moved by their skins and morph targets.
-//! Meshopt compression is decoded.
+//!
+//! Meshopt compression is decoded, and Draco with the feature `draco`. Perspective cameras and the lights of
+//! `KHR_lights_punctual` are read.
 //!
 //! Not read: animations, orthographic cameras, and other properties of materials than the base colour.
 
 mod accessor;
 mod buffers;
+#[cfg(feature = "draco")]
+mod draco;
 mod json;
 mod materials;
 mod meshopt;
 mod nodes;
 mod pose;
 mod primitives;
+mod staging;
 mod tree;
 
-mod staging;
 use super::MeshFile;
 use super::fault::{MeshFault, shown};
 use super::left_out::LeftOut;
 use super::side_files::SideFiles;
 use crate::progress::Meter;
 use crate::scene_text::clipped;
+use accessor::DRACO;
 use buffers::Buffers;
 use json::Json;
 use serde_json::Value;
@@ -164,6 +169,10 @@ const SHOWN_EXTENSIONS: [&str; 14] = [
     "KHR_xmp_json_ld",
 ];
 
+fn is_shown(extension: &str) -> bool {
+    SHOWN_EXTENSIONS.contains(&extension) || cfg!(feature = "draco") && extension == DRACO
+}
+
 /// Refuses a file that requires an unsupported extension, because it would be drawn wrong.
 ///
 /// An unsupported extension that is used but not required is counted as not shown.
@@ -172,9 +181,9 @@ fn check_extensions(root: Json<'_>, left_out: &mut LeftOut<'_>) -> Result<(), Me
         let name = extension.string()?;
         // Extensions of materials change how light is reflected, not the shape: without them a picture is still useful.
         // Textures that cannot be read are reported where a material names them.
-        if !name.starts_with("KHR_materials_") && !SHOWN_EXTENSIONS.contains(&name) {
+        if !name.starts_with("KHR_materials_") && !is_shown(name) {
             let what = match name {
-                "KHR_draco_mesh_compression" => "its triangles are compressed with Draco",
+                DRACO => "its triangles are compressed with Draco",
                 _ => "it may not be drawn without it",
             };
             let name = shown(name.as_bytes());
@@ -183,7 +192,7 @@ fn check_extensions(root: Json<'_>, left_out: &mut LeftOut<'_>) -> Result<(), Me
     }
     for extension in root.list("extensionsUsed")? {
         let name = extension.string()?;
-        if !SHOWN_EXTENSIONS.contains(&name) {
+        if !is_shown(name) {
             left_out.not_shown(format!("extension ({})", clipped(name)), 1);
         }
     }

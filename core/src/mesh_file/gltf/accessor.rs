@@ -4,6 +4,9 @@ use super::buffers::{BufferView, Buffers};
 use super::json::Json;
 use crate::mesh_file::fault::MeshFault;
 
+/// The extension that compresses primitives.
+pub(super) const DRACO: &str = "KHR_draco_mesh_compression";
+
 /// A glTF accessor: `count` elements, each with `width` components.
 pub(super) struct Accessor<'a> {
     json: Json<'a>,
@@ -154,6 +157,32 @@ impl<'a> Accessor<'a> {
             None => None,
         };
         Ok(Self { json, component, width, count, normalized: json.is_true("normalized")?, elements, sparse })
+    }
+
+    /// Returns the accessor of a primitive's attribute `name`, whose elements may be compressed.
+    #[cfg_attr(not(feature = "draco"), allow(unused_variables, reason = "only Draco compresses primitives"))]
+    pub(super) fn of_attribute(
+        primitive: Json<'a>,
+        name: &'static str,
+        index: Json<'a>,
+        buffers: &mut Buffers<'a, '_>,
+    ) -> Result<Self, MeshFault> {
+        #[cfg(feature = "draco")]
+        if let Some(compressed) = primitive.extension(DRACO)?
+            && let Some(id) = compressed.required("attributes")?.field(name)?
+        {
+            // Decoded first, as the size of what is decoded limits the number of elements.
+            let decoded = buffers.primitive(compressed)?;
+            let accessor = Self::read(index, buffers)?;
+            let attribute = u32::try_from(id.index()?).ok().and_then(|id| decoded.attribute(id));
+            let (bytes, stride) = attribute.ok_or_else(|| id.fault("the compressed data has no such attribute"))?;
+            if stride != accessor.width * accessor.component.size() {
+                return Err(accessor.fault(format!("elements of {stride} bytes were decompressed")));
+            }
+            let elements = Elements { view: BufferView::of(bytes), offset: 0, stride };
+            return Ok(Self { elements: Some(elements), count: decoded.vertex_count(), sparse: None, ..accessor });
+        }
+        Self::read(index, buffers)
     }
 
     /// Returns a fault whose message starts with this accessor's path.

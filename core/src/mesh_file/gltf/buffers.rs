@@ -1,8 +1,12 @@
 //! The buffers of a glTF file: in the GLB file, in side files, or in `data:` URIs.
 
+#[cfg(feature = "draco")]
+use super::draco::{self, Decoded};
 use super::json::Json;
 use super::meshopt::{self, Elements, Filter, Mode};
 use crate::memory;
+#[cfg(feature = "draco")]
+use crate::mesh_file::MAX_MESH_BYTES;
 use crate::mesh_file::MAX_TRIANGLES;
 use crate::mesh_file::fault::{MeshFault, shown, shown_path};
 use crate::mesh_file::left_out::LeftOut;
@@ -23,6 +27,9 @@ pub(super) struct Buffers<'a, 'b> {
     /// The decoded bytes of compressed buffer views, and their total number.
     decompressed: HashMap<usize, Rc<[u8]>>,
     decompressed_size: usize,
+    /// The primitives that are compressed with Draco, by their buffer views.
+    #[cfg(feature = "draco")]
+    primitives: HashMap<usize, Rc<Decoded>>,
     /// Total number of bytes of the JSON, and of the buffers and images read or decoded so far, for
     /// [`max_elements`](Self::max_elements).
     size: usize,
@@ -66,6 +73,12 @@ pub(super) struct BufferView<'a> {
 }
 
 impl BufferView<'_> {
+    /// Returns a view of all these bytes.
+    #[cfg(feature = "draco")]
+    pub(super) fn of(bytes: Vec<u8>) -> Self {
+        Self { start: 0, end: bytes.len(), buffer: Bytes::Read(bytes.into()), stride: None }
+    }
+
     pub(super) fn bytes(&self) -> &[u8] {
         &self.buffer[self.start..self.end]
     }
@@ -84,6 +97,8 @@ impl<'a, 'b> Buffers<'a, 'b> {
             files: HashMap::new(),
             decompressed: HashMap::new(),
             decompressed_size: 0,
+            #[cfg(feature = "draco")]
+            primitives: HashMap::new(),
             size,
         }
     }
@@ -171,6 +186,27 @@ impl<'a, 'b> Buffers<'a, 'b> {
         let bytes: Rc<[u8]> = bytes.into();
         self.decompressed.insert(number, Rc::clone(&bytes));
         Ok(Bytes::Read(bytes))
+    }
+
+    /// Returns a primitive that is compressed with Draco. `compressed` is the extension's value.
+    #[cfg(feature = "draco")]
+    pub(super) fn primitive(&mut self, compressed: Json<'a>) -> Result<Rc<Decoded>, MeshFault> {
+        let index = compressed.required("bufferView")?;
+        let (number, _) = index.item_of(self.root, "bufferViews")?;
+        if let Some(decoded) = self.primitives.get(&number) {
+            return Ok(Rc::clone(decoded));
+        }
+        let view = self.view(index)?;
+        // Views may overlap, so that each byte could be decoded many times.
+        let most = draco::MAX_RATIO.saturating_mul(self.size - self.decompressed_size);
+        let left = most.saturating_add(1 << 20).saturating_sub(self.decompressed_size).min(MAX_MESH_BYTES);
+        let decoded = Decoded::new(view.bytes(), left)
+            .map_err(|what| compressed.fault(format!("this part of the file cannot be decompressed: {what}")))?;
+        self.decompressed_size += decoded.size();
+        self.size += decoded.size();
+        let decoded = Rc::new(decoded);
+        self.primitives.insert(number, Rc::clone(&decoded));
+        Ok(decoded)
     }
 
     fn buffer(&mut self, index: Json<'a>) -> Result<Bytes<'a>, MeshFault> {

@@ -142,11 +142,13 @@ impl<'a> Pose<'a> {
         // glTF: the joints alone place a vertex with a skin; the transform of its node is ignored.
         let mut sums = vec![(DMat4::ZERO, 0.0); count];
         for [joints, weights] in JOINTS {
+            let names = [joints, weights];
             let (Some(joints), Some(weights)) = (attributes.field(joints)?, attributes.field(weights)?) else {
                 continue;
             };
-            let indices = Accessor::read(joints, buffers)?;
-            let (numbers, shares) = (indices.vectors::<4>()?, Accessor::read(weights, buffers)?.vectors::<4>()?);
+            let indices = Accessor::of_attribute(primitive, names[0], joints, buffers)?;
+            let shares = Accessor::of_attribute(primitive, names[1], weights, buffers)?.vectors::<4>()?;
+            let numbers = indices.vectors::<4>()?;
             if numbers.len() != count || shares.len() != count {
                 return Err(
                     attributes.fault(format!("{count} vertices have {} joints", numbers.len().min(shares.len())))

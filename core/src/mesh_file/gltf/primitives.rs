@@ -1,6 +1,6 @@
 //! The primitives of glTF meshes, read as triangles and transformed by their node.
 
-use super::accessor::Accessor;
+use super::accessor::{Accessor, DRACO};
 use super::buffers::Buffers;
 use super::json::Json;
 use super::materials;
@@ -30,10 +30,13 @@ pub(super) struct Primitives<'r, 'a, 'b> {
     colors: Ranges,
 }
 
-/// The range of each accessor that was read, by the accessor's index.
+/// The range of each accessor that was read.
 ///
 /// Primitives often share accessors: a mesh that is split by material may keep one list of vertices.
-type Ranges = HashMap<usize, Range>;
+type Ranges = HashMap<RangeKey, Range>;
+
+/// The index of an accessor, and that of the buffer view of its compressed elements, if they are.
+type RangeKey = (usize, Option<usize>);
 
 /// The range of an accessor's elements in the mesh's list of positions, normals, texture
 /// coordinates or colours.
@@ -110,14 +113,15 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
             self.positions.clear();
             self.normals.clear();
         }
-        let mode = primitive.index_or("mode", 4)?;
+        // Compressed primitives are separate triangles, whatever they were before.
+        let mode = if compressed(primitive)?.is_some() { 4 } else { primitive.index_or("mode", 4)? };
         let material = primitive.field("material")?.map(|index| index.item_of(self.buffers.root(), "materials"));
         let material = material.transpose()?.map(|(index, _)| index);
         let attributes = primitive.required("attributes")?;
         let positions = self.positions(primitive, attributes, pose)?;
         let normals = self.normals(primitive, attributes, pose)?;
-        let texture_coordinates = self.texture_coordinates(attributes, material)?;
-        let colors = self.colors(attributes)?;
+        let texture_coordinates = self.texture_coordinates(primitive, attributes, material)?;
+        let colors = self.colors(primitive, attributes)?;
         for range in [normals, texture_coordinates, colors].into_iter().flatten() {
             if range.count != positions.count {
                 let (count, other) = (positions.count, range.count);
@@ -157,6 +161,12 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         self.check_size(primitive)
     }
 
+    fn range_key(&self, primitive: Json<'a>, index: Json<'a>) -> Result<RangeKey, MeshFault> {
+        let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
+        let view = compressed(primitive)?.map(|compressed| compressed.required("bufferView")?.index());
+        Ok((number, view.transpose()?))
+    }
+
     fn check_size(&self, json: Json<'_>) -> Result<(), MeshFault> {
         let most = self.buffers.max_elements();
         let counts = [self.mesh.triangles.len(), self.mesh.positions.len(), self.mesh.marks.len()];
@@ -170,11 +180,11 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
 
     fn positions(&mut self, primitive: Json<'a>, attributes: Json<'a>, pose: &Pose<'a>) -> Result<Range, MeshFault> {
         let index = attributes.required("POSITION")?;
-        let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
+        let number = self.range_key(primitive, index)?;
         if let Some(&range) = self.positions.get(&number) {
             return Ok(range);
         }
-        let vectors = Accessor::read(index, self.buffers)?.vectors::<3>()?;
+        let vectors = Accessor::of_attribute(primitive, "POSITION", index, self.buffers)?.vectors::<3>()?;
         let range = range_after(self.mesh.positions.len(), vectors.len());
         self.mesh.positions.extend(pose.placed(primitive, "POSITION", vectors, self.buffers)?);
         if !self.mesh.positions[range.start as usize..].iter().all(|position| position.is_finite()) {
@@ -193,11 +203,11 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         pose: &Pose<'a>,
     ) -> Result<Option<Range>, MeshFault> {
         let Some(index) = attributes.field("NORMAL")? else { return Ok(None) };
-        let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
+        let number = self.range_key(primitive, index)?;
         if let Some(&range) = self.normals.get(&number) {
             return Ok(Some(range));
         }
-        let vectors = Accessor::read(index, self.buffers)?.vectors::<3>()?;
+        let vectors = Accessor::of_attribute(primitive, "NORMAL", index, self.buffers)?.vectors::<3>()?;
         let normals = pose.placed(primitive, "NORMAL", vectors, self.buffers)?;
         let values = self.mesh.normals.values_mut();
         let range = range_after(values.len(), normals.len());
@@ -208,6 +218,7 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
 
     fn texture_coordinates(
         &mut self,
+        primitive: Json<'a>,
         attributes: Json<'a>,
         material: Option<usize>,
     ) -> Result<Option<Range>, MeshFault> {
@@ -216,11 +227,11 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
             return Err(attributes.fault(format!("the material wants TEXCOORD_{set}; only 0 to 7 are read")));
         };
         let Some(index) = attributes.field(name)? else { return Ok(None) };
-        let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
+        let number = self.range_key(primitive, index)?;
         if let Some(&range) = self.texture_coordinates.get(&number) {
             return Ok(Some(range));
         }
-        let vectors = Accessor::read(index, self.buffers)?.vectors::<2>()?;
+        let vectors = Accessor::of_attribute(primitive, name, index, self.buffers)?.vectors::<2>()?;
         let values = self.mesh.texture_coordinates.values_mut();
         let range = range_after(values.len(), vectors.len());
         values.extend(vectors.into_iter().map(Vec2::from));
@@ -228,14 +239,14 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         Ok(Some(range))
     }
 
-    fn colors(&mut self, attributes: Json<'a>) -> Result<Option<Range>, MeshFault> {
+    fn colors(&mut self, primitive: Json<'a>, attributes: Json<'a>) -> Result<Option<Range>, MeshFault> {
         // The attribute has three or four components; the fourth is an opacity, which is not shown.
         let Some(index) = attributes.field("COLOR_0")? else { return Ok(None) };
-        let (number, _) = index.item_of(self.buffers.root(), "accessors")?;
+        let number = self.range_key(primitive, index)?;
         if let Some(&range) = self.colors.get(&number) {
             return Ok(Some(range));
         }
-        let vectors = Accessor::read(index, self.buffers)?.vectors::<3>()?;
+        let vectors = Accessor::of_attribute(primitive, "COLOR_0", index, self.buffers)?.vectors::<3>()?;
         let values = self.mesh.colors.values_mut();
         let range = range_after(values.len(), vectors.len());
         values.extend(vectors.into_iter().map(|channels| {
@@ -249,16 +260,32 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
     /// Returns the vertex indices of a primitive, each below `count`; `None` if the primitive has
     /// no index list.
     fn indices(&mut self, primitive: Json<'a>, count: usize) -> Result<Option<Vec<u32>>, MeshFault> {
+        #[cfg(feature = "draco")]
+        if let Some(compressed) = compressed(primitive)? {
+            let indices = self.buffers.primitive(compressed)?.indices();
+            return checked_indices(compressed, indices, count).map(Some);
+        }
         let Some(index) = primitive.field("indices")? else { return Ok(None) };
         let accessor = Accessor::read(index, self.buffers)?;
         let indices = accessor.indices()?;
-        match indices.iter().position(|&index| index as usize >= count) {
-            Some(i) => {
-                let message = format!("index {} (number {i}) is out of range: there are {count} vertices", indices[i]);
-                Err(accessor.fault(message))
-            }
-            None => Ok(Some(indices)),
+        let (_, json) = index.item_of(self.buffers.root(), "accessors")?;
+        checked_indices(json, indices, count).map(Some)
+    }
+}
+
+/// Returns the part of a primitive that is compressed with Draco.
+fn compressed(primitive: Json<'_>) -> Result<Option<Json<'_>>, MeshFault> {
+    if cfg!(feature = "draco") { primitive.extension(DRACO) } else { Ok(None) }
+}
+
+/// Returns indices that are all below `count`; `json` is where they are from.
+fn checked_indices(json: Json<'_>, indices: Vec<u32>, count: usize) -> Result<Vec<u32>, MeshFault> {
+    match indices.iter().position(|&index| index as usize >= count) {
+        Some(i) => {
+            let message = format!("index {} (number {i}) is out of range: there are {count} vertices", indices[i]);
+            Err(json.fault(message))
         }
+        None => Ok(indices),
     }
 }
 
