@@ -93,7 +93,11 @@ pub use mesh_error::{FilePosition, MeshError};
 #[cfg(feature = "mesh")]
 pub use read::{format_name, is_mesh};
 pub use staging::{FileCamera, FileLight, FileLightKind, FilePlace, Staging};
+#[cfg(feature = "mesh")]
+pub(crate) use texture::TextureDecoder;
 pub use texture::{Sampler, Texture, TexturePlacement, Wrap};
+#[cfg(all(feature = "ron", not(feature = "mesh")))]
+pub(crate) use unread::TextureDecoder;
 #[cfg(all(feature = "ron", not(feature = "mesh")))]
 pub use unread::{format_name, is_mesh};
 pub use up::UpAxis;

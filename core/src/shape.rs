@@ -15,6 +15,7 @@ use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
 pub mod capsule;
+pub mod chart;
 pub mod cone;
 #[cfg(all(test, unit_tests))]
 pub mod cube;
@@ -42,6 +43,7 @@ pub mod triangle;
 mod written;
 
 pub use capsule::Capsule;
+pub use chart::ChartPoint;
 pub use cone::Cone;
 #[cfg(all(test, unit_tests))]
 pub use cube::Cube;
@@ -68,7 +70,7 @@ pub use triangle::{EdgeFunctions, Triangle, TriangleN};
 #[cfg(feature = "ron")]
 pub(crate) use written::OBJECT_REFERENCE;
 pub use written::{CheckedShape, Meshes, WrittenShape};
-pub(crate) use written::{without_coordinates, without_inside};
+pub(crate) use written::{without_chart, without_coordinates, without_inside};
 
 /// A surface that rays can cross.
 pub trait Surface {
@@ -121,6 +123,13 @@ pub trait Surface {
         _direction_steps: [Vec3; 2],
     ) -> [N; 2] {
         [N::splat(0.0); 2]
+    }
+
+    /// Returns the coordinates of a picture at a point of the surface, as [`chart`] describes them.
+    ///
+    /// `None` if no picture can be laid on the surface.
+    fn chart(&self, _point: &ChartPoint) -> Option<Vec2> {
+        None
     }
 }
 
@@ -526,6 +535,13 @@ macro_rules! shapes {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.at_crossing(ray, t),)*
                     Self::Facet(facet) => facet.at_crossing(ray, t),
+                }
+            }
+
+            fn chart(&self, point: &ChartPoint) -> Option<Vec2> {
+                match self {
+                    $($(#[$on])* Self::$surface(surface) => surface.chart(point),)*
+                    Self::Facet(facet) => facet.chart(point),
                 }
             }
         }

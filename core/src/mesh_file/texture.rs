@@ -1,8 +1,10 @@
-//! Textures of meshes.
+//! Textures of meshes, and pictures on other surfaces.
 
 #[cfg(feature = "mesh")]
 mod decoded;
 
+#[cfg(feature = "mesh")]
+pub(crate) use decoded::TextureDecoder;
 #[cfg(feature = "mesh")]
 pub(super) use decoded::{TexelBudget, decode};
 
@@ -11,12 +13,14 @@ use glam::{Vec2, Vec3};
 use std::fmt;
 use std::sync::Arc;
 
-/// A decoded image: 8-bit sRGB texels, without transparency.
+/// A decoded image: 8-bit sRGB texels, with or without an opacity each.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Texture {
     width: u32,
     height: u32,
     texels: Vec<Srgb8>,
+    /// The opacities of the texels, from 0 to 255; empty if the image has none.
+    opacities: Vec<u8>,
 }
 
 /// The colour of an image beyond one of its edges.
@@ -65,6 +69,11 @@ impl TexturePlacement {
     pub fn color_at(&self, uv: Vec2) -> LinearRgb {
         self.texture.sample(self.at(uv), self.sampler)
     }
+
+    /// Returns the opacity for the mesh's texture coordinates, from 0 to 1.
+    pub fn opacity_at(&self, uv: Vec2) -> f32 {
+        self.texture.sample_opacity(self.at(uv), self.sampler)
+    }
 }
 
 impl Texture {
@@ -84,24 +93,60 @@ impl Texture {
         self.sample(at, Sampler::default())
     }
 
-    fn sample(&self, at: Vec2, Sampler { wrap, is_nearest }: Sampler) -> LinearRgb {
+    /// Returns the colour at image coordinates as linear light, found in the way of `sampler`.
+    pub(crate) fn sample(&self, at: Vec2, sampler: Sampler) -> LinearRgb {
+        let Neighbours { texels, right, down } = self.neighbours(at, sampler);
+        let [top, bottom] = texels.map(|row| {
+            let [left, next] = row.map(|texel| LinearRgb::from_srgb8(self.texels[texel]));
+            left.lerp(next, right)
+        });
+        top.lerp(bottom, down)
+    }
+
+    /// Returns the opacity at image coordinates, from 0 to 1, found in the way of `sampler`.
+    pub(crate) fn sample_opacity(&self, at: Vec2, sampler: Sampler) -> f32 {
+        if self.opacities.is_empty() {
+            return 1.0;
+        }
+        let Neighbours { texels, right, down } = self.neighbours(at, sampler);
+        let lerp = |from: f32, to: f32, share: f32| from * (1.0 - share) + to * share;
+        let [top, bottom] = texels.map(|row| {
+            let [left, next] = row.map(|texel| f32::from(self.opacities[texel]) / 255.0);
+            lerp(left, next, right)
+        });
+        lerp(top, bottom, down)
+    }
+
+    /// Returns the four texels whose centres are around image coordinates.
+    fn neighbours(&self, at: Vec2, Sampler { wrap, is_nearest }: Sampler) -> Neighbours {
         let place = |coordinate: f32, length: u32, wrap: Wrap| {
             let (texels, share) = wrap.texels(coordinate, length);
             (texels, if is_nearest { f32::from(u8::from(share >= 0.5)) } else { share })
         };
         let (columns, right) = place(at.x, self.width, wrap[0]);
         let (rows, down) = place(at.y, self.height, wrap[1]);
-        let row = |y: u32| {
-            let [left, next] = columns.map(|x| LinearRgb::from_srgb8(self.texels[(y * self.width + x) as usize]));
-            left.lerp(next, right)
-        };
-        row(rows[0]).lerp(row(rows[1]), down)
+        let texels = rows.map(|y| columns.map(|x| (y * self.width + x) as usize));
+        Neighbours { texels, right, down }
+    }
+
+    /// Returns whether any texel has an opacity below 1.
+    pub fn is_transparent(&self) -> bool {
+        !self.opacities.is_empty()
     }
 
     /// Returns the texels row by row, from the top left one.
     pub fn texels(&self) -> &[Srgb8] {
         &self.texels
     }
+}
+
+/// Four texels around a point, by their indices, and the point's place between them.
+struct Neighbours {
+    /// The upper and the lower row, each from left to right.
+    texels: [[usize; 2]; 2],
+    /// The share of the right column, and of the lower row.
+    right: f32,
+    down: f32,
 }
 
 impl Wrap {

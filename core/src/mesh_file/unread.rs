@@ -1,7 +1,7 @@
 //! Stand-in for the readers when the feature `mesh` is off: mesh files are recognised, and reading
 //! one is an error.
 
-use super::{MeshError, MeshFile};
+use super::{MeshError, MeshFile, Texture};
 use crate::named_file::Accepted;
 use crate::progress::{Reporter, Unfinished};
 use std::path::Path;
@@ -21,6 +21,17 @@ impl MeshFile {
     ) -> Result<Self, Unfinished<MeshError>> {
         let message = "meshes are read with the feature `mesh` of the crate termtrace, which is off in this program";
         Err(Unfinished::Failed(MeshError::of_file(&path.to_string_lossy(), message)))
+    }
+}
+
+/// A decoder that refuses every picture.
+#[derive(Default)]
+pub(crate) struct TextureDecoder;
+
+impl TextureDecoder {
+    /// Always fails.
+    pub(crate) fn decode(&mut self, _: &[u8]) -> Result<Texture, String> {
+        Err("is read with the feature `mesh` of the crate termtrace, which is off in this program".to_owned())
     }
 }
 

@@ -2,12 +2,12 @@
 
 use super::described::size_in_words;
 use super::exact::{self, Crossings, Exact, Inside, PlacedBounds};
-use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape, chart};
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::scene_text::Span;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// The surface of an axis-aligned box from `min` to `max`. Scene files call it `Box`.
 #[doc(hidden)]
@@ -69,6 +69,22 @@ impl Exact for Cuboid {
     fn pattern_axes(&self, normal: Vec3) -> Option<[Vec3; 2]> {
         let axis = |along: f32, other: Vec3| if along.abs() > 0.5 { Vec3::Z } else { other };
         Some([axis(normal.x, Vec3::X), axis(normal.y, Vec3::Y)])
+    }
+
+    /// Returns coordinates with the picture upright on the four sides, and with its lower edge at
+    /// the front (+z) on top and at the back below.
+    fn chart_at(&self, at: DVec3, normal: DVec3) -> Option<Vec2> {
+        let DVec3 { x, y, z } = at / (self.max - self.min);
+        let normal = normal.abs();
+        // The side is that of the point, as the normal may be on either side.
+        let from = |side: f64, across: f64| if side < 0.0 { -across } else { across };
+        Some(chart::on_face(if normal.y > normal.x.max(normal.z) {
+            [x, from(y, z)]
+        } else if normal.x > normal.z {
+            [-from(x, z), -y]
+        } else {
+            [from(z, x), -y]
+        }))
     }
 }
 

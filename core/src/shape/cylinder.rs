@@ -2,11 +2,12 @@
 
 use super::described::length_in_words;
 use super::exact::{self, Crossings, Exact, Inside, PlacedBounds, reach_of_circle};
-use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
+use super::plane::pattern_axis;
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape, chart};
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Axis, Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// The parts of a cylinder or cone: the side, and the caps at both ends.
 pub(super) const SIDE: u8 = 0;
@@ -91,6 +92,20 @@ impl Exact for Cylinder {
     fn normal(&self, part: u8, at: DVec3) -> DVec3 {
         if part == SIDE { self.axis.across(at) } else { self.axis.normal_of_cap(part) }
     }
+
+    /// Returns coordinates with the picture once around the side, its upper edge at the end `to`,
+    /// and on each cap in the square around it.
+    fn chart_at(&self, at: DVec3, normal: DVec3) -> Option<Vec2> {
+        let (axis, along) = (self.axis.direction, at.dot(self.axis.direction));
+        let right = pattern_axis(axis.as_vec3()).as_dvec3();
+        let (right, front) = (at.dot(right), at.dot(right.cross(axis)));
+        if normal.dot(axis).abs() > 0.5 {
+            let down = if along < 0.0 { -front } else { front };
+            return Some(chart::on_face([right, down].map(|across| across / (2.0 * self.radius))));
+        }
+        let down = 0.5 - 0.5 * along / self.axis.half_length;
+        Some(Vec2::new(chart::around(right, front), down as f32))
+    }
 }
 
 impl Described for Cylinder {
@@ -154,6 +169,8 @@ impl InSceneFile for Cylinder {
 }
 
 impl CheckedShape for Cylinder {
+    const HAS_CHART: bool = true;
+
     fn check(written: &WrittenCylinder, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
         let axis = validator.axis(written.ends);
         let radius = written.radius.and_then(|radius| validator.length("radius", radius));

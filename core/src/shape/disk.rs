@@ -3,11 +3,11 @@
 use super::described::length_in_words;
 use super::exact::{self, Crossing, Crossings, Exact, PlacedBounds, reach_of_circle};
 use super::plane::{self, pattern_axis};
-use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape, chart};
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// A disk: all points x with (x - c).n = 0 and |x - c| <= r. It is visible from both sides.
 #[doc(hidden)]
@@ -68,6 +68,11 @@ impl Exact for Disk {
 
     fn pattern_axes(&self, _: Vec3) -> Option<[Vec3; 2]> {
         Some(self.axes)
+    }
+
+    /// Returns coordinates in the square around the disk.
+    fn chart_at(&self, at: DVec3, _: DVec3) -> Option<Vec2> {
+        Some(chart::on_face(self.axes.map(|axis| axis.as_dvec3().dot(at) / (2.0 * self.radius))))
     }
 }
 

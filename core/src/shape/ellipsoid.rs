@@ -2,11 +2,11 @@
 
 use super::described::size_in_words;
 use super::exact::{self, Crossings, Exact, Inside, PlacedBounds};
-use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape};
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape, chart};
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// An ellipsoid: all points x with |(x - c) / r|^2 = 1, where r is the radius along each axis.
 #[doc(hidden)]
@@ -48,6 +48,11 @@ impl Exact for Ellipsoid {
 
     fn normal(&self, _: u8, at: DVec3) -> DVec3 {
         at / self.radii / self.radii
+    }
+
+    /// Returns the coordinates on the ball that the ellipsoid is before it is scaled by its radii.
+    fn chart_at(&self, at: DVec3, _: DVec3) -> Option<Vec2> {
+        Some(chart::on_ball(at / self.radii))
     }
 }
 
@@ -106,6 +111,8 @@ impl InSceneFile for Ellipsoid {
 }
 
 impl CheckedShape for Ellipsoid {
+    const HAS_CHART: bool = true;
+
     fn check(written: &WrittenEllipsoid, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
         let center = written.center.and_then(|center| validator.coordinates(center));
         let radii = written.radii?.map(|radius| validator.length("radius", radius));

@@ -8,12 +8,12 @@
 use super::described::length_in_words;
 use super::equation::{Equation, EquationStep};
 use super::placement::{AffineMap, Placeable, Placement, shape_line};
-use super::{Points, Shape, Surface, SurfacePoint, flat_footprint};
+use super::{ChartPoint, Points, Shape, Surface, SurfacePoint, flat_footprint};
 use crate::bounds::Bounds;
 use crate::formula::Line;
 use crate::lanes::{F32x8, Number, Vector, set_bits};
 use crate::ray::{EightRays, Interval, Probe, Ray, clamp_keeping_nan};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::sync::Arc;
 
 /// The largest number of crossings of a line and a surface: a torus has up to four.
@@ -59,6 +59,11 @@ pub(crate) trait Exact {
 
     /// Returns the axes u and v of patterns at points with a given normal; `None` without patterns.
     fn pattern_axes(&self, _normal: Vec3) -> Option<[Vec3; 2]> {
+        None
+    }
+
+    /// Returns the coordinates of a picture at a point with a unit normal on either side.
+    fn chart_at(&self, _at: DVec3, _normal: DVec3) -> Option<Vec2> {
         None
     }
 }
@@ -351,6 +356,12 @@ impl<S: Exact> Surface for S {
             position.abs().max_element().max(RELATIVE_ERROR * self.placed_bounds().bounds().extent().max_element());
         let rays = Probe::new(*ray).rays;
         Points::seen_by(&rays, Vector::splat(position), Vector::splat(normal), size, uv.unwrap_or_default()).point()
+    }
+
+    fn chart(&self, &ChartPoint { position, normal, .. }: &ChartPoint) -> Option<Vec2> {
+        let (placed, normal) = (self.placed_bounds(), normal.as_dvec3());
+        let normal = placed.map.as_ref().map_or(normal, |map| map.shape_normal(normal));
+        self.chart_at(placed.scene_to_shape(position) - self.center(), normal)
     }
 
     /// Computes lane by lane, because this code is compiled once for each vector type, and stays

@@ -2,7 +2,7 @@
 
 use super::instance::{CornerCells, Passage};
 use super::placement::{AffineMap, Placeable, Placement};
-use super::{CheckedShape, Meshes, Shape, Surface, SurfacePoint, Triangle};
+use super::{ChartPoint, CheckedShape, Meshes, Shape, Surface, SurfacePoint, Triangle};
 use crate::bounds::Bounds;
 use crate::checks::{self, SceneFault};
 use crate::color::LinearRgb;
@@ -164,6 +164,12 @@ impl Mesh {
         self.file.triangles().len() as u32
     }
 
+    /// Returns whether the file has texture coordinates, which are the mesh's chart.
+    #[cfg(feature = "ron")]
+    pub(crate) fn has_chart(&self) -> bool {
+        !self.file.texture_coordinates().values().is_empty()
+    }
+
     /// Returns whether any triangle has normals at its corners.
     pub(crate) fn is_smooth(&self) -> bool {
         self.file.has_normals()
@@ -216,6 +222,12 @@ impl Surface for Facet<'_> {
             Some((position, shading_normal)) => SurfacePoint { position, shading_normal, ..point },
             None => point,
         }
+    }
+
+    /// Returns the texture coordinates of the file.
+    fn chart(&self, point: &ChartPoint) -> Option<Vec2> {
+        let corners = self.mesh.file.texture_coordinates_of(self.index as usize)?;
+        Some(interpolate(self.mesh.in_order(corners), point.uv))
     }
 }
 
@@ -333,6 +345,8 @@ impl InSceneFile for Mesh {
 }
 
 impl CheckedShape for Mesh {
+    const HAS_CHART: bool = true;
+
     fn brings_colors(_: &WrittenMesh) -> bool {
         true
     }

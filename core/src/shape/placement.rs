@@ -7,7 +7,7 @@ use crate::formula::Line;
 use crate::ray::Ray;
 use crate::scene_text::{SyntaxNode, Value};
 use crate::written::{Fields, NodeReader, Validator, WrittenVector};
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec3, Mat3, Vec3};
 
 /// A scale along the axes, then a rotation, then a translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +54,11 @@ impl Placement {
     pub(super) fn uniform_scale(&self) -> Option<f64> {
         let DVec3 { x, y, z } = self.scale.abs();
         (x == y && y == z).then_some(x)
+    }
+
+    /// Returns the rotation from the scene to a ball under the placement, which may also mirror it.
+    pub(crate) fn turn_of_ball(&self) -> Mat3 {
+        (DMat3::from_diagonal(self.scale.signum()) * self.turn.transpose()).as_mat3()
     }
 
     /// Returns the affine map.

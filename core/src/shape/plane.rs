@@ -3,8 +3,8 @@
 use super::equation::finite_quotient;
 use super::placement::{Placeable, Placement};
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Endless, Equation, EquationStep, Meshes, Points, Shape, Surface,
-    SurfacePoint, flat_footprint,
+    AtCrossing, ChartPoint, CheckedShape, Crossable, Described, Endless, Equation, EquationStep, Meshes, Points, Shape,
+    Surface, SurfacePoint, flat_footprint,
 };
 use crate::bounds::Bounds;
 use crate::checks::{self, SceneFault};
@@ -12,7 +12,7 @@ use crate::formula::Line;
 use crate::lanes::{Lanes, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays};
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// A plane: all points x with (x - a).n = 0. It is unbounded, and visible from both sides.
 ///
@@ -125,6 +125,12 @@ impl Surface for Plane {
     ) -> [N; 2] {
         let [normal, u, v] = [self.normal, self.u, self.v].map(Vector::splat);
         flat_footprint(direction, t, normal, [u, v], direction_steps)
+    }
+
+    /// Returns the coordinates of patterns, in which the picture has a side of 1: u is to the
+    /// right, and v down.
+    fn chart(&self, point: &ChartPoint) -> Option<Vec2> {
+        Some(point.uv)
     }
 }
 

@@ -2,12 +2,12 @@
 
 use super::described::length_in_words;
 use super::exact::{self, Crossing, Crossings, Exact, PlacedBounds};
-use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape, plane};
+use super::{CheckedShape, Described, Equation, EquationStep, Meshes, Shape, chart, plane};
 use crate::formula::Line;
 use crate::ray::Ray;
 use crate::scene_text::Span;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenVector};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// The fraction of an edge's length by which a quad is extended beyond each of its sides.
 // Without the extension, a ray through a common edge of two quads could miss both, because each quad computes the
@@ -79,6 +79,12 @@ impl Exact for Quad {
     fn pattern_axes(&self, _: Vec3) -> Option<[Vec3; 2]> {
         let axis = |at: usize| (self.shares[at] * self.edges[at].length()).as_vec3();
         Some([axis(0), axis(1)])
+    }
+
+    /// Returns coordinates with the picture's lower left corner at the corner, and its lower edge
+    /// along the first edge.
+    fn chart_at(&self, at: DVec3, _: DVec3) -> Option<Vec2> {
+        Some(chart::on_face([self.shares[0].dot(at), -self.shares[1].dot(at)]))
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::placement::{Placeable, Placement};
 use super::{
-    AtCrossing, CheckedShape, Crossable, Described, Ellipsoid, Equation, EquationStep, Meshes, Points, Shape, SoaLeaf,
-    Surface, SurfacePoint,
+    AtCrossing, ChartPoint, CheckedShape, Crossable, Described, Ellipsoid, Equation, EquationStep, Meshes, Points,
+    Shape, SoaLeaf, Surface, SurfacePoint, chart,
 };
 use crate::bounds::{Bounds, crossed};
 use crate::checks::{self, SceneFault};
@@ -11,7 +11,7 @@ use crate::lanes::{F32x8, Lanes, Mask, Number, Vector};
 use crate::ray::{Interval, Probe, Ray, Rays, clamp_keeping_nan};
 use crate::text::number;
 use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenNumber, WrittenVector};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::array::from_fn;
 
 /// The distance from a ray's origin to the center, in radii, from which on a Newton step refines
@@ -206,6 +206,13 @@ impl Surface for Sphere {
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
         self.as_one_lane().points_at(&Probe::new(*ray).rays, t).point()
     }
+
+    /// Returns the coordinates of the point in the direction of the normal, which has more digits
+    /// than the position far from the origin.
+    fn chart(&self, &ChartPoint { position, normal, turn, .. }: &ChartPoint) -> Option<Vec2> {
+        let outward = if (position - self.center).dot(normal) < 0.0 { -normal } else { normal };
+        Some(chart::on_ball((turn * outward).as_dvec3()))
+    }
 }
 
 impl Described for Sphere {
@@ -273,6 +280,8 @@ impl InSceneFile for Sphere {
 }
 
 impl CheckedShape for Sphere {
+    const HAS_CHART: bool = true;
+
     fn check(written: &WrittenSphere, validator: &mut Validator<'_>, _: &mut dyn Meshes) -> Option<Shape> {
         let center = written.center.and_then(|center| validator.point(center));
         let radius = written.radius.and_then(|radius| validator.length("radius", radius));

@@ -14,6 +14,9 @@ pub trait CheckedShape: InSceneFile {
     /// Whether the surface has coordinates, on which patterns are laid out.
     const HAS_COORDINATES: bool = false;
 
+    /// Whether the surface has a [chart](super::chart), on which pictures are laid out.
+    const HAS_CHART: bool = Self::HAS_COORDINATES;
+
     /// Whether the surface has an inside, also an endless one, through which glass refracts light.
     const HAS_INSIDE: bool = true;
 
@@ -137,6 +140,19 @@ macro_rules! written {
                 }
             }
 
+            /// Returns the names, with articles, of surfaces that have a chart for pictures.
+            pub(crate) fn with_chart() -> Vec<&'static str> {
+                let all = [$($(#[$on])* (super::$surface::HAS_CHART, super::$surface::OWNER),)*];
+                all.into_iter().filter_map(|(has_chart, owner)| has_chart.then_some(owner)).collect()
+            }
+
+            /// Returns whether the shape has a chart for pictures.
+            pub(crate) fn has_chart(&self) -> bool {
+                match self {
+                    $($(#[$on])* Self::$surface(_) => super::$surface::HAS_CHART,)*
+                }
+            }
+
             /// Returns whether the shape has an inside.
             pub(crate) fn has_inside(&self) -> bool {
                 match self {
@@ -208,5 +224,12 @@ pub(crate) fn without_inside(shape: &str) -> String {
 /// [`PATTERN`](crate::material::Reflecting::PATTERN).
 pub(crate) fn without_coordinates((material, pattern): (&str, &str), shape: &str) -> String {
     let wanted = text::any_of(&WrittenShape::with_coordinates());
+    format!("{material} needs {wanted}, on which {pattern} are laid out; this is {shape}")
+}
+
+/// Returns the message for a picture on a shape without a chart, as [`without_coordinates`].
+#[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have pictures"))]
+pub(crate) fn without_chart((material, pattern): (&str, &str), shape: &str) -> String {
+    let wanted = text::any_of(&WrittenShape::with_chart());
     format!("{material} needs {wanted}, on which {pattern} are laid out; this is {shape}")
 }

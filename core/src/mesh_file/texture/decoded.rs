@@ -26,6 +26,19 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
+/// A decoder of the pictures of one scene, which limits the texels of all together.
+#[derive(Default)]
+pub(crate) struct TextureDecoder {
+    budget: TexelBudget,
+}
+
+impl TextureDecoder {
+    /// Decodes an image. An `Err` is a message without its subject, as of [`decode`].
+    pub(crate) fn decode(&mut self, bytes: &[u8]) -> Result<Texture, String> {
+        decode(bytes, &mut self.budget)
+    }
+}
+
 impl TexturePlacement {
     /// Returns a placement that takes the mesh's texture coordinates unchanged.
     pub(in crate::mesh_file) fn plain(texture: Arc<Texture>) -> Self {

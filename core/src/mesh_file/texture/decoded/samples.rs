@@ -35,13 +35,23 @@ pub(super) fn check_plausible(texels: usize, bytes: &[u8], most_per_byte: usize,
     if texels / most_per_byte > bytes.len() { Err(cut_short(format)) } else { Ok(()) }
 }
 
+/// The texels of a picture, and their opacities; none if all are opaque.
+pub(super) struct Texels {
+    colors: Vec<Srgb8>,
+    opacities: Vec<u8>,
+}
+
 /// Returns the texels of samples with one or two (grey), three or four (RGB) channels, of which the
 /// second and the fourth are opacities.
-pub(super) fn texels_of(samples: &[u8], channels: usize) -> Vec<Srgb8> {
-    match channels {
-        1 | 2 => samples.chunks_exact(channels).map(|s| Srgb8::new(s[0], s[0], s[0])).collect(),
-        _ => samples.chunks_exact(channels).map(|s| Srgb8::new(s[0], s[1], s[2])).collect(),
-    }
+pub(super) fn texels_of(samples: &[u8], channels: usize) -> Texels {
+    let texels = samples.chunks_exact(channels);
+    let colors = match channels {
+        1 | 2 => texels.clone().map(|s| Srgb8::new(s[0], s[0], s[0])).collect(),
+        _ => texels.clone().map(|s| Srgb8::new(s[0], s[1], s[2])).collect(),
+    };
+    let has_opacities = channels.is_multiple_of(2) && texels.clone().any(|s| s[channels - 1] < u8::MAX);
+    let opacities = if has_opacities { texels.map(|s| s[channels - 1]).collect() } else { Vec::new() };
+    Texels { colors, opacities }
 }
 
 /// Red, green, blue and the opacity of a texel.
@@ -66,9 +76,10 @@ pub(super) fn cut_short(format: &str) -> String {
 
 /// Returns the texture, after checking that the decoder returned `width * height` texels: indexing
 /// relies on it.
-pub(super) fn checked_texture(width: u32, height: u32, texels: Vec<Srgb8>, format: &str) -> Result<Texture, String> {
-    if texels.len() != width as usize * height as usize {
+pub(super) fn checked_texture(width: u32, height: u32, texels: Texels, format: &str) -> Result<Texture, String> {
+    let Texels { colors, opacities } = texels;
+    if colors.len() != width as usize * height as usize {
         return Err(cut_short(format));
     }
-    Ok(Texture { width, height, texels })
+    Ok(Texture { width, height, texels: colors, opacities })
 }
