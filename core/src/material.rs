@@ -4,17 +4,20 @@
 //! the same colour from every viewpoint.
 //!
 //! Each material is a file under `material/`. To add one, write that file with implementations of [`Reflecting`] and
-//! [`InSceneFile`], and add a line to the table `materials` here.
+//! [`InSceneFile`], and add a line to the table `materials` here. An [`Image`] is not in the table: its texels cannot be
+//! copied into each object, and are found lane by lane.
 
 use crate::checks::SceneFault;
 use crate::color::{LinearRgb, Srgb8};
 use crate::lanes::Number;
 use crate::scene_text::SyntaxNode;
 use crate::written::{InSceneFile, NodeReader, ReferenceEntry, Validator, WrittenColor};
+use std::sync::Arc;
 
 mod checker;
 mod diffuse;
 mod gradient;
+mod image;
 mod noise;
 mod stripes;
 mod waves;
@@ -22,6 +25,7 @@ mod waves;
 pub use checker::{Checker, WrittenChecker};
 pub use diffuse::Diffuse;
 pub use gradient::{Gradient, WrittenGradient};
+pub use image::{Image, Images, WrittenImage};
 pub use noise::{Noise, WrittenNoise};
 pub use stripes::{Stripes, WrittenStripes};
 
@@ -64,10 +68,10 @@ macro_rules! materials {
         #[non_exhaustive]
         pub enum Material {
             $(#[doc = $of] #[doc(hidden)] $material($material),)*
-            /// The colours and textures of a mesh's file, or the colours that the formulas of an
-            /// implicit surface give.
+            /// The colours and textures of a mesh's file, the colours that the formulas of an
+            /// implicit surface give, or the picture that a scene file lays on the shape.
             ///
-            /// If the shape has none, a diffuse light grey.
+            /// If there are none, a diffuse light grey.
             Own,
         }
 
@@ -110,15 +114,18 @@ macro_rules! materials {
         #[derive(Clone, Debug, PartialEq)]
         pub enum WrittenMaterial {
             $(#[doc = $of] $material(<$material as InSceneFile>::Written),)*
+            /// A picture from a file.
+            Image(WrittenImage),
         }
 
         #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written values"))]
         impl WrittenMaterial {
             /// The reference of all materials.
-            pub(crate) const REFERENCE: &'static [ReferenceEntry] = &[$(ReferenceEntry::of::<$material>(),)*];
+            pub(crate) const REFERENCE: &'static [ReferenceEntry] =
+                &[$(ReferenceEntry::of::<$material>(),)* ReferenceEntry::of::<Image>()];
 
             /// The names of all materials in scene files.
-            pub(crate) const NAMES: &'static [&'static str] = &[$($material::NAME,)*];
+            pub(crate) const NAMES: &'static [&'static str] = &[$($material::NAME,)* Image::NAME];
 
             /// Reads the material called `name`.
             ///
@@ -127,14 +134,20 @@ macro_rules! materials {
                 $(if name == $material::NAME {
                     return $material::read_node(reader, node).map(Self::$material);
                 })*
+                if name == Image::NAME {
+                    return Image::read_node(reader, node).map(Self::Image);
+                }
                 None
             }
 
-            /// Returns the checked material, or `None` after a fault has been reported to
+            /// Returns the checked colours, or `None` after a fault has been reported to
             /// `validator`.
-            pub(crate) fn check(&self, validator: &mut Validator<'_>) -> Option<Material> {
+            pub(crate) fn check(&self, validator: &mut Validator<'_>, images: &mut dyn Images) -> Option<Coloring> {
                 match self {
-                    $(Self::$material(written) => $material::check(written, validator).map(Material::from),)*
+                    $(Self::$material(written) => {
+                        $material::check(written, validator).map(|checked| Material::from(checked).into())
+                    })*
+                    Self::Image(written) => Image::check(written, validator, images).map(Coloring::from),
                 }
             }
 
@@ -142,6 +155,7 @@ macro_rules! materials {
             pub(crate) fn material_and_pattern_names(&self) -> Option<(&'static str, &'static str)> {
                 match self {
                     $(Self::$material(_) => $material::PATTERN.map(|pattern| ($material::OWNER, pattern)),)*
+                    Self::Image(_) => Some((Image::OWNER, Image::PATTERN)),
                 }
             }
         }
@@ -154,6 +168,27 @@ materials! {
     Stripes, "Stripes of two reflectances in turn.";
     Gradient, "Reflectances from one to another and back.";
     Noise, "Irregular spots of two reflectances.";
+}
+
+/// The colours of an object: its material, or the picture on it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coloring {
+    /// The material; [`Material::Own`] if there is a picture.
+    pub material: Material,
+    /// The picture.
+    pub image: Option<Arc<Image>>,
+}
+
+impl From<Material> for Coloring {
+    fn from(material: Material) -> Self {
+        Self { material, image: None }
+    }
+}
+
+impl From<Image> for Coloring {
+    fn from(image: Image) -> Self {
+        Self { material: Material::Own, image: Some(image.into()) }
+    }
 }
 
 /// Returns the material of an object without one: a diffuse light grey.

@@ -12,6 +12,7 @@ mod checked;
 mod draft;
 #[cfg(feature = "ron")]
 mod load;
+mod object;
 mod of_mesh;
 mod staging;
 #[cfg(feature = "mesh")]
@@ -25,6 +26,7 @@ pub use builder::SceneBuilder;
 pub use draft::Draft;
 #[cfg(feature = "ron")]
 pub use load::LoadError;
+pub use object::{Object, OwnPoint};
 pub use of_mesh::MeshOrigin;
 #[cfg(feature = "ron")]
 pub use written_view::{count_views, with_view};
@@ -38,7 +40,6 @@ use crate::color::LinearRgb;
 use crate::finish::Finish;
 use crate::fog::Fog;
 use crate::light::Light;
-use crate::material::Material;
 use crate::shape::Shape;
 use std::collections::HashSet;
 use std::fmt;
@@ -144,6 +145,8 @@ struct ShadingNeeds {
     transparency: bool,
     /// Whether an object has highlights.
     highlights: bool,
+    /// Whether an object has holes that its picture or its mesh's file makes.
+    holes: bool,
 }
 
 impl ShadingNeeds {
@@ -152,6 +155,7 @@ impl ShadingNeeds {
             bounces: !objects.iter().all(Object::is_matte),
             transparency: objects.iter().any(|object| object.opacity < 1.0),
             highlights: objects.iter().any(|object| matches!(object.finish, Finish::Shiny { .. })),
+            holes: objects.iter().any(Object::has_holes),
         }
     }
 }
@@ -385,6 +389,11 @@ impl Scene {
         self.checked.needs.highlights
     }
 
+    /// Returns whether an object has holes, which rays pass.
+    pub(crate) fn has_holes(&self) -> bool {
+        self.checked.needs.holes
+    }
+
     /// Returns whether the light of a sample depends on its number in the pixel, and not only on
     /// its ray.
     pub(crate) fn is_sampled(&self) -> bool {
@@ -495,74 +504,6 @@ impl Scene {
         // Copies the values only if a clone shares them.
         change(Arc::make_mut(&mut self.checked));
         self
-    }
-}
-
-/// A surface and its material.
-///
-/// ```
-/// use termtrace::Scene;
-///
-/// let text = "(camera: (eye: (0, 0, 5), target: (0, 0, 0)), objects: [Sphere(center: (0, 0, 0), radius: 1)])";
-/// let scene = Scene::from_ron("ball.ron", text)?;
-/// assert!(scene.objects().iter().all(|object| object.material == termtrace::Material::default()));
-/// # Ok::<(), termtrace::SceneError>(())
-/// ```
-#[derive(Clone, PartialEq)]
-pub struct Object {
-    /// The surface of the object.
-    pub shape: Shape,
-    /// The material of the object.
-    pub material: Material,
-    /// The finish of the object: mirrors, glass and the like.
-    #[doc(hidden)]
-    pub finish: Finish,
-    /// The part of the light that does not pass straight through the surface, from 0 to 1.
-    #[doc(hidden)]
-    pub opacity: f32,
-}
-
-/// Shows the finish unless it is matte, as most are, and the opacity unless it is 1.
-impl fmt::Debug for Object {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { shape, material, finish, opacity } = self;
-        let mut object = f.debug_struct("Object");
-        object.field("shape", shape).field("material", material);
-        if !finish.is_matte() {
-            object.field("finish", finish);
-        }
-        if *opacity < 1.0 {
-            object.field("opacity", opacity);
-        }
-        object.finish()
-    }
-}
-
-impl Object {
-    /// Returns an object with the given shape and material.
-    #[doc(hidden)]
-    pub fn new(shape: impl Into<Shape>, material: impl Into<Material>) -> Self {
-        Self { shape: shape.into(), material: material.into(), finish: Finish::Matte, opacity: 1.0 }
-    }
-
-    /// Returns the object with another finish.
-    #[doc(hidden)]
-    pub fn with_finish(self, finish: Finish) -> Self {
-        Self { finish, ..self }
-    }
-
-    /// Returns the object with another opacity.
-    ///
-    /// # Errors
-    /// If the opacity is not within 0 and 1.
-    #[doc(hidden)]
-    pub fn with_opacity(self, opacity: f32) -> Result<Self, SceneFault> {
-        Ok(Self { opacity: checks::checked_number("opacity", opacity, checks::opacity)?, ..self })
-    }
-
-    /// Returns whether the surface only reflects diffusely, so that it makes no further rays.
-    pub(crate) fn is_matte(&self) -> bool {
-        self.finish.is_matte() && self.opacity == 1.0
     }
 }
 

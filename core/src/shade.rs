@@ -111,12 +111,11 @@ impl Reflect<'_> {
         let points = &self.points[at];
         match (&object.material, &object.shape) {
             // The colours of a mesh differ by triangle and come from textures, those of an implicit surface come from
-            // formulas, so both are computed lane by lane.
-            (Material::Own, shape) => {
+            // formulas, those of a picture from its texels, so all are computed lane by lane.
+            (Material::Own, _) => {
                 let mut channels = [F32x8::ZERO; 3];
                 for lane in set_bits(own) {
-                    let (index, position) = (points.ids.id(lane).index, points.position.of_lane(lane));
-                    let reflectance = shape.primitive(index).own_reflectance(position, points.uv(lane));
+                    let reflectance = object.own_reflectance(points.ids.id(lane).index, &points.own_point(lane));
                     let LinearRgb { r, g, b } = reflectance.unwrap_or(Material::DEFAULT_REFLECTANCE);
                     [channels[0].0[lane], channels[1].0[lane], channels[2].0[lane]] = [r, g, b];
                 }

@@ -8,6 +8,7 @@ mod describe;
 mod explain;
 mod goldens;
 mod hashes;
+mod images;
 mod instances;
 mod maps;
 mod odd;

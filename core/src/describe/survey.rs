@@ -8,7 +8,7 @@ use crate::hit::closest_hit;
 use crate::material::Material;
 use crate::ray::Ray;
 use crate::render::{Executor, GBufferSample, Sampling, TraceDepth, trace_g_buffer_partial};
-use crate::scene::Scene;
+use crate::scene::{OwnPoint, Scene};
 use std::collections::BTreeMap;
 use std::num::NonZeroU32;
 
@@ -149,7 +149,7 @@ impl Survey {
 
 fn pixel_content(scene: &Scene, sample: &GBufferSample) -> Option<PixelContent> {
     let (hit, surface) = (sample.hit?, sample.surface(scene)?);
-    let own = hit.surface(scene).own_reflectance(surface.position, surface.uv);
+    let own = scene.objects()[hit.object as usize].own_reflectance(hit.primitive, &OwnPoint::from(&surface));
     Some(PixelContent {
         object: hit.object,
         // The unit of t is the length of the direction, which is not normalised.

@@ -10,25 +10,29 @@ use super::{Background, Checked, Draft, Object, ToneCurve, caption};
 use crate::checks::{self, Message, SceneFault};
 use crate::color::{LinearRgb, Srgb8};
 use crate::finish::{Finish, WrittenFinish};
-use crate::material::{Material, WrittenMaterial};
+use crate::material::{Coloring, Image, Images, Material, WrittenMaterial};
 use crate::mesh_file::MeshFile;
 use crate::progress::Reporter;
 use crate::scene_file::{MaterialUse, NamedMaterial, SceneFile, WrittenBackground, WrittenObject, WrittenToneCurve};
 use crate::scene_text::{Faults, quoted};
 use crate::shape::{
-    CornerCells, Mesh, Meshes, Placement, Shape, WrittenMesh, WrittenShape, without_coordinates, without_inside,
+    CornerCells, Mesh, Meshes, Placement, Shape, WrittenMesh, WrittenShape, without_chart, without_coordinates,
+    without_inside,
 };
 use crate::text::{closest, listed};
 use crate::written::{Spanned, Validator};
 use std::collections::HashMap;
 use std::sync::Arc;
 
+/// A source of the files that a scene names.
+pub(super) trait SideFiles: Meshes + Images {}
+
 /// Returns the checked scene, or `None` after all faults have been added to `faults`.
 ///
 /// If the reporter is cancelled, objects may be missing.
 pub(super) fn check(
     file: &SceneFile,
-    meshes: &mut dyn Meshes,
+    side_files: &mut dyn SideFiles,
     reporter: &Reporter<'_>,
     faults: &mut Faults,
 ) -> Option<Draft> {
@@ -42,7 +46,7 @@ pub(super) fn check(
     let exposure = file.exposure.and_then(|written| validator.accept(written.span, checks::exposure(written.value)));
     let bounces = file.bounces.and_then(|written| validator.accept(written.span, checks::bounces(written.value)));
     let fog = file.fog.and_then(|fog| fog.check(&mut validator));
-    let objects = validator.objects(file, meshes, reporter);
+    let objects = validator.objects(file, side_files, reporter);
     if !faults.is_empty() {
         return None;
     }
@@ -80,34 +84,39 @@ impl Validator<'_> {
 
     // Objects -------------------------------------------------------------------------------------------------------
 
-    fn objects(&mut self, file: &SceneFile, meshes: &mut dyn Meshes, reporter: &Reporter<'_>) -> Vec<Object> {
+    fn objects(&mut self, file: &SceneFile, side_files: &mut dyn SideFiles, reporter: &Reporter<'_>) -> Vec<Object> {
         // Each named material is checked once, although thousands of objects may use it.
         let mut materials = HashMap::new();
         for NamedMaterial { name, material } in &file.materials {
-            let checked = material.as_ref().map(|written| CheckedMaterial { written, material: written.check(self) });
+            let checked =
+                material.as_ref().map(|written| CheckedMaterial { written, coloring: written.check(self, side_files) });
             materials.insert(&**name, checked);
         }
         let (mut objects, mut sharing) = (Vec::new(), MeshSharing::of(file));
         for written in file.objects.iter().take_while(|_| !reporter.is_cancelled()) {
-            let (shape, material) = (written.shape.check(self, meshes), self.material_of(written, file, &materials));
+            let shape = written.shape.check(self, side_files);
+            let coloring = self.coloring_of(written, shape.as_ref(), file, &materials, side_files);
             let finish = written.finish.map_or(Some(Finish::Matte), |finish| self.finish_of(finish, written));
             let opacity =
                 written.opacity.map_or(Some(1.0), |opacity| self.accept(opacity.span, checks::opacity(opacity.value)));
             let placements = written.placement.as_ref().map(|placement| placement.check(self));
             // All parts have been checked by now, so that the faults of each are reported.
-            let (Some(shape), Some(material), Some(finish), Some(opacity)) = (shape, material, finish, opacity) else {
+            let (Some(shape), Some(coloring), Some(finish), Some(opacity)) = (shape, coloring, finish, opacity) else {
                 continue;
             };
+            let Coloring { material, image } = coloring;
+            let object = |shape, image| Object { shape, material, finish, opacity, image };
             match placements {
                 Some(None) => {}
                 // The coordinates of a mesh are checked as it is placed.
-                None if !matches!(shape, Shape::Mesh(_)) => objects.push(Object { shape, material, finish, opacity }),
+                None if !matches!(shape, Shape::Mesh(_)) => objects.push(object(shape, image)),
                 placements => {
                     let placements = placements.flatten().unwrap_or_else(|| vec![Placement::NONE]);
                     let placed = |placement| sharing.placed(written, &shape, placement);
                     let placed: Result<Vec<_>, _> = placements.iter().map(placed).collect();
                     let shapes = self.accept(written.span, placed).unwrap_or_default();
-                    objects.extend(shapes.into_iter().map(|shape| Object { shape, material, finish, opacity }));
+                    let image = image.map(|image| image_on(&shape, image, placements.first()));
+                    objects.extend(shapes.into_iter().map(|shape| object(shape, image.clone())));
                 }
             }
         }
@@ -123,33 +132,55 @@ impl Validator<'_> {
         Some(checked)
     }
 
-    /// Returns the material of an object: the one written in place or named, or the default of its
-    /// shape.
-    fn material_of(
+    /// Returns the colours of an object: those of the material written in place or named, or the
+    /// default of its shape.
+    fn coloring_of(
         &mut self,
         object: &WrittenObject,
+        shape: Option<&Shape>,
         file: &SceneFile,
         materials: &HashMap<&str, Option<CheckedMaterial<'_>>>,
-    ) -> Option<Material> {
+        images: &mut dyn Images,
+    ) -> Option<Coloring> {
         let Some(Spanned { value, span }) = &object.material else {
-            return Some(if object.shape.brings_colors() { Material::Own } else { Material::DEFAULT });
+            return Some(if object.shape.brings_colors() { Material::Own } else { Material::DEFAULT }.into());
         };
-        let CheckedMaterial { written, material } = match value {
-            MaterialUse::Inline(written) => CheckedMaterial { written, material: written.check(self) },
+        let CheckedMaterial { written, coloring } = match value {
+            MaterialUse::Inline(written) => CheckedMaterial { written, coloring: written.check(self, images) },
             MaterialUse::Named(name) => match materials.get(&**name) {
-                Some(&checked) => checked?,
+                Some(checked) => checked.clone()?,
                 // An entry of `materials` whose name could not be read may have this name, so it is not reported as
                 // unknown.
                 None if !file.materials_complete => return None,
                 None => return self.fault(*span, || unknown_material_message(name, file)),
             },
         };
-        if let Some(pattern) = written.material_and_pattern_names()
-            && !object.shape.has_coordinates()
-        {
-            return self.fault(*span, || without_coordinates(pattern, object.shape.owner()));
+        let owner = object.shape.owner();
+        match (written, written.material_and_pattern_names()) {
+            (WrittenMaterial::Image(_), Some(pattern)) => {
+                if !object.shape.has_chart() {
+                    return self.fault(*span, || without_chart(pattern, owner));
+                }
+                if matches!(shape, Some(Shape::Mesh(mesh)) if !mesh.has_chart()) {
+                    let message = "the file of this Mesh has no texture coordinates, on which an Image is laid out";
+                    return self.fault(*span, || message.to_owned());
+                }
+            }
+            (_, Some(pattern)) if !object.shape.has_coordinates() => {
+                return self.fault(*span, || without_coordinates(pattern, owner));
+            }
+            _ => {}
         }
-        material
+        coloring
+    }
+}
+
+/// Returns the picture on a shape; that on a ball is turned as the ball is placed.
+fn image_on(shape: &Shape, image: Arc<Image>, placement: Option<&Placement>) -> Arc<Image> {
+    match (shape, placement) {
+        // All copies are turned in the same way.
+        (Shape::Sphere(_), Some(placement)) => Arc::new(Image::clone(&image).turned(placement.turn_of_ball())),
+        _ => image,
     }
 }
 
@@ -200,11 +231,11 @@ impl<'f> MeshSharing<'f> {
 }
 
 /// A checked material, with the material as written in the file.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct CheckedMaterial<'f> {
     written: &'f WrittenMaterial,
     /// `None` if the material has a fault.
-    material: Option<Material>,
+    coloring: Option<Coloring>,
 }
 
 /// Returns the message about an unknown material, with the name or colour that was probably meant.

@@ -4,13 +4,14 @@ use super::caption::leading_comment;
 use super::{Draft, MeshOrigin, Scene, checked};
 use crate::camera::Camera;
 use crate::camera_path::CameraPath;
+use crate::material::Images;
 use crate::memory;
-use crate::mesh_file::{self, MeshError, MeshFile, UpAxis};
+use crate::mesh_file::{self, MeshError, MeshFile, Texture, TextureDecoder, UpAxis};
 use crate::named_file::{self, Accepted};
 use crate::progress::{Progress, Reporter, Unfinished};
 use crate::scene_file::{PathFile, SceneFile};
 use crate::scene_text::{MAX_TEXT_BYTES, SceneError, read, read_or_cancel, text_from};
-use crate::shape;
+use crate::shape::Meshes;
 use crate::text::{Notice, visible};
 use std::collections::HashMap;
 use std::fmt;
@@ -118,18 +119,18 @@ impl Draft {
         Self::from_embedded(name, bytes, &[], reporter)
     }
 
-    /// Reads as [`Draft::from_bytes`] does, with mesh files from memory: `meshes` are their names
-    /// and bytes.
+    /// Reads as [`Draft::from_bytes`] does, with the files that the scene names from memory: `files`
+    /// are their names and bytes.
     ///
     /// # Errors
     /// As [`Scene::from_bytes`], and if the reporter cancels.
     pub fn from_embedded(
         name: &str,
         bytes: &[u8],
-        meshes: &[(&str, &[u8])],
+        files: &[(&str, &[u8])],
         reporter: &Reporter<'_>,
     ) -> Result<Self, Unfinished<SceneError>> {
-        parse_draft(name, text_from(name, bytes).map_err(Unfinished::Failed)?, meshes, reporter)
+        parse_draft(name, text_from(name, bytes).map_err(Unfinished::Failed)?, files, reporter)
     }
 
     /// Reads as [`Scene::load`] does, without building trees, unless the reporter cancels it.
@@ -203,13 +204,13 @@ fn parse_draft(
     embedded: &[(&str, &[u8])],
     reporter: &Reporter<'_>,
 ) -> Result<Draft, Unfinished<SceneError>> {
-    let mut meshes = Meshes::in_folder_of(Path::new(name), embedded, reporter);
+    let mut side_files = SceneSideFiles::in_folder_of(Path::new(name), embedded, reporter);
     read_or_cancel(name, text, SMALLEST_SCENE, reporter, |root, faults| {
         let mut file = SceneFile::read(&root, reporter, faults);
         file.caption = file.caption.or_else(|| leading_comment(text));
         // Freeing the tree before the checks lowers the peak for 400,000 spheres from 462 to 394 MB.
         drop(root);
-        checked::check(&file, &mut meshes, reporter, faults)
+        checked::check(&file, &mut side_files, reporter, faults)
     })
 }
 
@@ -384,30 +385,77 @@ fn draft_around_mesh(
     Draft::around_mesh(mesh, origin).ok_or_else(|| LoadError::Unseen { path: path.to_owned() }.into())
 }
 
-/// The meshes that a scene names.
+/// The meshes and pictures that a scene names.
 ///
 /// Each file is read once, because several objects may use it, with different transforms.
-struct Meshes<'w> {
+struct SceneSideFiles<'w> {
     folder: PathBuf,
-    /// The names and bytes of mesh files in memory, which are used instead of files in the folder.
+    /// The names and bytes of files in memory, which are used instead of files in the folder.
     embedded: &'w [(&'w str, &'w [u8])],
-    read: HashMap<PathBuf, Arc<MeshFile>>,
+    meshes: HashMap<PathBuf, Arc<MeshFile>>,
+    /// The pictures, or the messages about those that cannot be shown.
+    images: HashMap<PathBuf, Result<Arc<Texture>, String>>,
+    decoder: TextureDecoder,
     reporter: &'w Reporter<'w>,
 }
 
-impl<'w> Meshes<'w> {
+/// Limit on the bytes of a picture: 256 MiB, four for each of the texels that may be decoded.
+const MAX_IMAGE_BYTES: usize = 4 * mesh_file::MAX_TEXELS;
+
+impl<'w> SceneSideFiles<'w> {
     fn in_folder_of(scene: &Path, embedded: &'w [(&'w str, &'w [u8])], reporter: &'w Reporter<'w>) -> Self {
-        Self { folder: scene.parent().unwrap_or(Path::new("")).to_owned(), embedded, read: HashMap::new(), reporter }
+        let folder = scene.parent().unwrap_or(Path::new("")).to_owned();
+        let decoder = TextureDecoder::default();
+        Self { folder, embedded, meshes: HashMap::new(), images: HashMap::new(), decoder, reporter }
+    }
+
+    /// Returns the bytes of a file in memory.
+    fn embedded_bytes(&self, name: &str) -> Option<&'w [u8]> {
+        self.embedded.iter().find(|(embedded, _)| *embedded == name).map(|&(_, bytes)| bytes)
+    }
+
+    /// Reads and decodes a picture.
+    fn read_image(&mut self, name: &str, path: &Path) -> Result<Arc<Texture>, String> {
+        let shown = visible(&path.to_string_lossy());
+        let read;
+        let bytes = match self.embedded_bytes(name) {
+            Some(bytes) => bytes,
+            None => {
+                self.reporter.report_dependency(path);
+                // As for meshes, pipes are not accepted.
+                read = named_file::read(path, Accepted::Files, |_| MAX_IMAGE_BYTES, self.reporter)
+                    .map_err(|error| format!("{shown}: {}", named_file::reason(&error)))?;
+                &read
+            }
+        };
+        self.decoder.decode(bytes).map(Arc::new).map_err(|what| format!("{shown} {what}"))
     }
 }
 
-impl shape::Meshes for Meshes<'_> {
+impl checked::SideFiles for SceneSideFiles<'_> {}
+
+impl Images for SceneSideFiles<'_> {
+    fn image(&mut self, name: &str) -> Result<Arc<Texture>, Unfinished<String>> {
+        let path = self.folder.join(name);
+        if !self.images.contains_key(&path) {
+            let image = self.read_image(name, &path);
+            // A cancelled read returns an I/O error, which must not be shown as a fault of the file.
+            if self.reporter.is_cancelled() {
+                return Err(Unfinished::Cancelled);
+            }
+            self.images.insert(path.clone(), image);
+        }
+        self.images[&path].clone().map_err(Unfinished::Failed)
+    }
+}
+
+impl Meshes for SceneSideFiles<'_> {
     fn mesh(&mut self, name: &str) -> Result<Arc<MeshFile>, Unfinished<String>> {
         let path = self.folder.join(name);
-        if let Some(mesh) = self.read.get(&path) {
+        if let Some(mesh) = self.meshes.get(&path) {
             return Ok(Arc::clone(mesh));
         }
-        let mesh = if let Some((_, bytes)) = self.embedded.iter().find(|(embedded, _)| *embedded == name) {
+        let mesh = if let Some(bytes) = self.embedded_bytes(name) {
             MeshFile::of_file(&path, None, bytes, self.reporter)
         } else {
             self.reporter.report_dependency(&path);
@@ -420,7 +468,7 @@ impl shape::Meshes for Meshes<'_> {
             let name = visible(&path.to_string_lossy());
             self.reporter.notify_if_possible(|| format!("{name}: not shown: cameras and lights"));
         }
-        self.read.insert(path, Arc::clone(&mesh));
+        self.meshes.insert(path, Arc::clone(&mesh));
         Ok(mesh)
     }
 }

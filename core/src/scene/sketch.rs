@@ -31,7 +31,7 @@ impl Draft {
             Some(mesh) => {
                 let file = decimated.entry(Arc::as_ptr(mesh.shared_file()));
                 let file = file.or_insert_with(|| mesh.file().decimated(details as u32).map(Arc::new));
-                Some(Object::new(mesh.with_file(Arc::clone(file.as_ref()?)), object.material))
+                Some(Object { shape: mesh.with_file(Arc::clone(file.as_ref()?)).into(), ..object.clone() })
             }
             None => Some(object.clone()),
         };

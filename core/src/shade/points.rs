@@ -7,7 +7,7 @@ use crate::accel::{Accelerator, Instances, List, ListVisitor, PrimitiveId, Primi
 use crate::hit::EightHits;
 use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Vector, set_bits};
 use crate::ray::{EightRays, Rays};
-use crate::scene::Scene;
+use crate::scene::{OwnPoint, Scene};
 use crate::shape::{AtCrossing, Endless, Points, Primitive, SoaLeaf, SurfacePoint};
 use crate::simd::{self, SimdKernel};
 use glam::Vec2;
@@ -39,9 +39,15 @@ impl EightPoints {
         uv: [F32x8::ZERO; 2],
     };
 
+    /// Returns the point whose colours are those of its own object.
+    pub(super) fn own_point(&self, lane: usize) -> OwnPoint {
+        let (position, normal) = (self.position.of_lane(lane), self.geometric_normal.of_lane(lane));
+        OwnPoint { position, normal, uv: self.uv(lane) }
+    }
+
     /// Returns the surface coordinates of a point.
     #[inline(always)]
-    pub(super) fn uv(&self, lane: usize) -> Vec2 {
+    fn uv(&self, lane: usize) -> Vec2 {
         Vec2::new(self.uv[0].0[lane], self.uv[1].0[lane])
     }
 

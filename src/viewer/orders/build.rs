@@ -7,7 +7,7 @@ use crate::hit::{Hit, any_hit};
 use crate::material::Material;
 use crate::rasterize::{Comparison, ObjectSteps};
 use crate::ray::Ray;
-use crate::scene::Scene;
+use crate::scene::{OwnPoint, Scene};
 use crate::shade;
 use crate::shape::Surface;
 use crate::tone::tone;
@@ -139,8 +139,11 @@ fn light_along(scene: &Scene, ray: &Ray, hit: Hit) -> LinearRgb {
             arriving += incidence.light;
         }
     }
-    let reflectance = match &scene.objects()[hit.object as usize].material {
-        Material::Own => surface.own_reflectance(point.position, point.uv).unwrap_or(Material::DEFAULT_REFLECTANCE),
+    let object = &scene.objects()[hit.object as usize];
+    let reflectance = match &object.material {
+        Material::Own => {
+            object.own_reflectance(hit.primitive, &OwnPoint::from(&point)).unwrap_or(Material::DEFAULT_REFLECTANCE)
+        }
         material => {
             let [r, g, b] = material.reflectance(point.uv.to_array(), [0.0; 2]);
             LinearRgb::new(r, g, b)
