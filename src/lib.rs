@@ -114,7 +114,7 @@
 //! - `bvh`: the bounding volume hierarchy, eight boxes to a node
 //! - `shape`: surfaces f(p) = 0, their intersections with rays, their normals
 //! - `accel`: the trees over all shapes of a scene, built once
-//! - `material`: diffuse reflectance
+//! - `material`: diffuse reflectance: one colour, patterns, pictures
 //! - `light`: point lights, spots, suns, luminous balls and panels
 //! - `finish`: highlights, mirrors, glass and glowing surfaces: Snell's law and Fresnel's equations
 //! - `fog`: the light that air absorbs and adds

@@ -16,11 +16,12 @@ use crate::hit::{self, Hit, Observer, PrimitiveTest};
 use crate::light::Light;
 use crate::ray::Ray;
 use crate::render::{PixelTrace, trace_pixel};
-use crate::scene::{Object, Scene, ToneCurve};
+use crate::scene::{OwnPoint, Scene, ToneCurve};
 use crate::shade::{self, Incidence};
 use crate::shape::{Surface, SurfacePoint};
 use crate::tone::{tone, tone_mapped};
 use glam::{Vec2, Vec3};
+use std::collections::HashSet;
 
 /// An explanation of a pixel's first sample, whose ray passes through the pixel's centre.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +72,8 @@ pub struct TestedSurface {
     pub name: SurfaceName,
     /// The t of the first crossing in front of the eye; `None` if there is none.
     pub t: Option<f32>,
+    /// Whether the ray passes the surface through a hole.
+    pub is_hole: bool,
     /// The lecture's equation for crossings, with its values.
     pub equation: Equation,
 }
@@ -98,6 +101,9 @@ pub struct ShadedHit {
     /// The part of the light that does not pass straight through the surface.
     #[doc(hidden)]
     pub opacity: f32,
+    /// The light that the surface sends out by the file of its mesh.
+    #[doc(hidden)]
+    pub emission: LinearRgb,
 }
 
 /// The contribution of one light.
@@ -207,7 +213,8 @@ pub fn explain(scene: &Scene, camera: &Camera, resolution: Resolution, pixel: [u
 /// `arriving` returns the light that arrives there in another scene.
 fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit, arriving: &dyn Fn(&Scene) -> LinearRgb) -> ShadedHit {
     let point = hit.surface(scene).at_crossing(&trace.ray, hit.t);
-    let Object { finish, opacity, .. } = scene.objects()[hit.object as usize];
+    let object = &scene.objects()[hit.object as usize];
+    let (finish, own_point) = (object.finish, OwnPoint::from(&point));
     ShadedHit {
         hit,
         name: SurfaceName::of_primitive(scene, hit.object, hit.primitive),
@@ -217,7 +224,8 @@ fn shaded_hit(scene: &Scene, trace: &PixelTrace, hit: Hit, arriving: &dyn Fn(&Sc
         arriving: trace.arriving,
         reflectance: trace.reflectance,
         finish: (finish, finish.mirrored_part(&trace.ray, point.shading_normal)),
-        opacity,
+        opacity: if scene.has_transparent() { object.opacity_at(hit.primitive, &own_point) } else { 1.0 },
+        emission: if scene.has_emission() { object.emission_at(hit.primitive, &own_point) } else { LinearRgb::BLACK },
     }
 }
 
@@ -268,14 +276,27 @@ impl Observer for TestRecorder {
 impl TestRecorder {
     /// Returns the tested surfaces, in the order of [`Explanation::tested`].
     fn tested_surfaces(self, scene: &Scene, ray: &Ray) -> Vec<TestedSurface> {
-        let mut tests = self.tests;
+        let (mut tests, mut holes) = (self.tests, HashSet::new());
         let order = |test: &PrimitiveTest| (test.object, test.primitive);
         let t = |test: &PrimitiveTest| test.t.unwrap_or(f32::INFINITY);
+        if scene.has_holes() {
+            for test in &mut tests {
+                let &mut PrimitiveTest { object, primitive, t } = test;
+                if t.is_some_and(|t| hit::is_hole(scene, ray, Hit { t, object, primitive })) {
+                    test.t = None;
+                    holes.insert(order(test));
+                }
+            }
+            // Behind a hole, surfaces are tested again, of which the first crossing counts.
+            tests.sort_by(|a, b| order(a).cmp(&order(b)).then(t(a).total_cmp(&t(b))));
+            tests.dedup_by_key(|test| order(test));
+        }
         // Surfaces that the ray misses come last, in the order of the scene.
         tests.sort_by(|a, b| t(a).total_cmp(&t(b)).then(order(a).cmp(&order(b))));
         let tested = |PrimitiveTest { object, primitive, t }| {
             let equation = scene.objects()[object as usize].shape.primitive(primitive).equation(ray);
-            TestedSurface { name: SurfaceName::of_primitive(scene, object, primitive), t, equation }
+            let is_hole = t.is_none() && holes.contains(&(object, primitive));
+            TestedSurface { name: SurfaceName::of_primitive(scene, object, primitive), t, is_hole, equation }
         };
         tests.into_iter().map(tested).collect()
     }

@@ -12,7 +12,7 @@ use crate::shape::{Primitive, Surface};
 use crate::simd::{self, SimdKernel};
 use holes::PassHoles;
 use packet::PacketRays;
-use single::SingleRay;
+use single::{ANY, CLOSEST, SingleRay};
 
 mod packet;
 mod single;
@@ -21,6 +21,7 @@ mod holes;
 mod split;
 mod observer;
 
+pub(crate) use holes::is_hole;
 pub use observer::{Observer, PrimitiveTest, TestCount};
 
 /// The closest intersection of a ray with a scene, in front of the ray's origin.
@@ -248,11 +249,6 @@ impl Kernel {
         }
     }
 }
-
-// The values of the const parameter `ANY`. It is a parameter, not a field, so that each traversal is compiled without
-// the other's branches: the one for any hit needs no sorting, no culling by edge functions and no t.
-const CLOSEST: bool = false;
-const ANY: bool = true;
 
 /// The SIMD kernel of [`closest_hits`].
 struct ClosestHits<'w> {

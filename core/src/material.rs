@@ -4,8 +4,8 @@
 //! the same colour from every viewpoint.
 //!
 //! Each material is a file under `material/`. To add one, write that file with implementations of [`Reflecting`] and
-//! [`InSceneFile`], and add a line to the table `materials` here. An [`Image`] is not in the table: its texels cannot be
-//! copied into each object, and are found lane by lane.
+//! [`InSceneFile`], and add a line to the table `materials` here. An [`Image`] is not in the table, as its texels
+//! cannot be copied into each object; they are found lane by lane.
 
 use crate::checks::SceneFault;
 use crate::color::{LinearRgb, Srgb8};

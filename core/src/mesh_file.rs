@@ -7,7 +7,8 @@
 //!   into fans.
 //! - Numbers are finite and correctly rounded to single precision. Coordinates stay as written, whichever axis is up.
 //! - Colours become linear light. Vertex colours of PLY and OBJ are sRGB, as the programs that write them mean it;
-//!   reflectances (`Kd` of MTL, base colours and vertex colours of glTF) are linear already. Everything is opaque.
+//!   reflectances (`Kd` of MTL, base colours and vertex colours of glTF) are linear already. Opacities of vertices are
+//!   not read.
 //! - The first fault ends the reading. It is a [`MeshError`]: one line with the position. For a caller that takes
 //!   notices, faulty lines, faces and facets are left out instead, unless no triangle remains or more than one in a
 //!   hundred is faulty; contents that no picture shows, such as lines, are counted. `left_out` makes notices of both.
@@ -65,6 +66,7 @@ mod limits;
 mod staging;
 #[cfg(feature = "mesh")]
 mod marks;
+mod material;
 #[cfg_attr(not(feature = "mesh"), allow(dead_code, reason = "only mesh files are turned"))]
 mod up;
 #[cfg(feature = "mesh")]
@@ -89,6 +91,8 @@ mod unread;
 
 pub use attribute::Attribute;
 pub use limits::{MAX_MESH_BYTES, MAX_TEXELS, MAX_TRIANGLES};
+use material::MeshMaterials;
+pub use material::{Emission, MeshMaterial, Opacity};
 pub use mesh_error::{FilePosition, MeshError};
 #[cfg(feature = "mesh")]
 pub use read::{format_name, is_mesh};
@@ -133,21 +137,12 @@ pub struct MeshFile {
     normals: Attribute<Vec3>,
     texture_coordinates: Attribute<Vec2>,
     colors: Attribute<LinearRgb>,
-    materials: Vec<MeshMaterial>,
+    materials: MeshMaterials,
     /// Runs of consecutive triangles with one material: the first triangle of each run, and the
     /// index of the run's material in `materials`.
     material_runs: Vec<(u32, Option<u32>)>,
     /// The cameras and lights.
     staging: Staging,
-}
-
-/// The material of a triangle as in its file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MeshMaterial {
-    /// The diffuse reflectance, linear, each channel in 0..=1.
-    pub reflectance: LinearRgb,
-    /// The texture that the reflectance is multiplied by.
-    pub texture: Option<TexturePlacement>,
 }
 
 impl MeshFile {
@@ -160,7 +155,7 @@ impl MeshFile {
             normals: Attribute::default(),
             texture_coordinates: Attribute::default(),
             colors: Attribute::default(),
-            materials: Vec::new(),
+            materials: MeshMaterials::default(),
             material_runs: Vec::new(),
             staging: Staging::default(),
         };
@@ -207,7 +202,22 @@ impl MeshFile {
 
     /// Returns whether the mesh has colours of its own: of materials, vertices or a texture.
     pub(crate) fn has_colors(&self) -> bool {
-        !self.materials.is_empty() || !self.colors.values().is_empty()
+        !self.materials().is_empty() || !self.colors.values().is_empty()
+    }
+
+    /// Returns whether a material has holes.
+    pub(crate) fn has_holes(&self) -> bool {
+        self.materials.has_holes
+    }
+
+    /// Returns whether a material is blended with what is behind it.
+    pub(crate) fn is_blended(&self) -> bool {
+        self.materials.is_blended
+    }
+
+    /// Returns whether a material sends out light.
+    pub(crate) fn has_emission(&self) -> bool {
+        self.materials.has_emission
     }
 
     /// Returns the positions of the vertices.
@@ -267,7 +277,7 @@ impl MeshFile {
     /// Returns the materials of the file, to which [`material_of`](Self::material_of) refers by
     /// index.
     pub fn materials(&self) -> &[MeshMaterial] {
-        &self.materials
+        self.materials.all()
     }
 
     /// Returns the material of a triangle as an index of [`materials`](Self::materials); `None` if
@@ -295,8 +305,8 @@ impl MeshFile {
             && self.normals.is_valid(&self.triangles, |n| *n == Vec3::ZERO || (n.length_squared() - 1.0).abs() < 1e-5)
             && self.texture_coordinates.is_valid(&self.triangles, |uv| uv.is_finite())
             && self.colors.is_valid(&self.triangles, |&color| is_reflectance(color))
-            && self.materials.iter().all(|material| is_reflectance(material.reflectance))
-            && self.material_runs.iter().all(|(_, m)| m.is_none_or(|m| (m as usize) < self.materials.len()))
+            && self.materials().iter().all(MeshMaterial::is_valid)
+            && self.material_runs.iter().all(|(_, m)| m.is_none_or(|m| (m as usize) < self.materials().len()))
     }
 }
 

@@ -5,7 +5,7 @@
 //! Triangles are filled by their edge functions. All other primitives are intersected with the eye rays of the pixels
 //! in their rectangle. A depth buffer keeps the nearest object of each pixel. Spheres and triangles are projected eight
 //! at a time, and drawn eight pixels at a time. Nothing is shaded: as with eye rays, only the visible objects are
-//! found.
+//! found. Holes, which a picture or a mesh's file makes, are drawn as if the surface were whole.
 
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;

@@ -82,6 +82,7 @@ impl fmt::Debug for Scene {
             tone_curve,
             bounces,
             fog,
+            lecture: _,
             objects,
             needs,
         } = &*self.checked;
@@ -130,6 +131,8 @@ struct Checked {
     /// The most reflections and refractions of a ray.
     bounces: u32,
     fog: Option<Fog>,
+    /// Whether surfaces only reflect diffusely and are opaque, whatever the files of meshes say.
+    lecture: bool,
     /// The objects, in an `Arc` so that a scene with other lights does not copy a million of them.
     objects: Arc<[Object]>,
     /// The steps of shading that the objects need.
@@ -147,15 +150,18 @@ struct ShadingNeeds {
     highlights: bool,
     /// Whether an object has holes that its picture or its mesh's file makes.
     holes: bool,
+    /// Whether an object sends out light by the file of its mesh.
+    emission: bool,
 }
 
 impl ShadingNeeds {
     fn of(objects: &[Object]) -> Self {
         Self {
             bounces: !objects.iter().all(Object::is_matte),
-            transparency: objects.iter().any(|object| object.opacity < 1.0),
+            transparency: objects.iter().any(|object| object.opacity < 1.0 || object.is_blended()),
             highlights: objects.iter().any(|object| matches!(object.finish, Finish::Shiny { .. })),
             holes: objects.iter().any(Object::has_holes),
+            emission: objects.iter().any(Object::has_emission),
         }
     }
 }
@@ -182,6 +188,7 @@ impl Checked {
             tone_curve: ToneCurve::None,
             bounces: Self::DEFAULT_BOUNCES,
             fog: None,
+            lecture: false,
             objects: objects.into(),
             needs: ShadingNeeds::default(),
         }
@@ -189,7 +196,7 @@ impl Checked {
 
     /// Returns the values without what the lecture's model of light does not have.
     fn in_lecture(mut self) -> Self {
-        self.fog = None;
+        (self.fog, self.lecture) = (None, true);
         self.lights.iter_mut().for_each(|light| *light = light.as_in_lecture());
         let plain = |object: &Object| Object { finish: Finish::Matte, opacity: 1.0, ..object.clone() };
         if !self.objects.iter().all(Object::is_matte) {
@@ -392,6 +399,11 @@ impl Scene {
     /// Returns whether an object has holes, which rays pass.
     pub(crate) fn has_holes(&self) -> bool {
         self.checked.needs.holes
+    }
+
+    /// Returns whether an object sends out light by the file of its mesh.
+    pub(crate) fn has_emission(&self) -> bool {
+        self.checked.needs.emission
     }
 
     /// Returns whether the light of a sample depends on its number in the pixel, and not only on

@@ -14,6 +14,7 @@
 //! All steps work on groups of eight rays. Lanes without a hit are computed as well, because branches would cost more
 //! than they save; no later step reads these lanes.
 
+use crate::accel::PrimitiveId;
 use crate::color::LinearRgb;
 use crate::fog::Fog;
 use crate::hit::EightHits;
@@ -61,6 +62,22 @@ pub fn reflected_light(
 ) {
     lights.clear();
     simd::dispatch(Reflect { scene, rays, direction_steps, hits, points, arriving, lights });
+}
+
+/// Adds the light that surfaces send out by the files of their meshes to the light along the rays.
+pub fn add_emission(scene: &Scene, points: &[EightPoints], lights: &mut [EightLights]) {
+    for (points, lights) in points.iter().zip(lights) {
+        for lane in set_bits(points.hit_mask) {
+            let PrimitiveId { object, index } = points.ids.id(lane);
+            let object = &scene.objects()[object as usize];
+            if object.has_emission() {
+                let light = object.emission_at(index, &points.own_point(lane));
+                for (sum, more) in lights.iter_mut().zip([light.r, light.g, light.b]) {
+                    sum.0[lane] += more;
+                }
+            }
+        }
+    }
 }
 
 /// The SIMD kernel of [`reflected_light`].

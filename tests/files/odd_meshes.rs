@@ -9,7 +9,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use termtrace::LinearRgb;
 use termtrace::glam::{Vec2, Vec3};
-use termtrace::internals::mesh_file::{FileCamera, FileLight, FilePlace, MeshFile};
+use termtrace::internals::mesh_file::{
+    Emission, FileCamera, FileLight, FilePlace, MeshFile, MeshMaterial, Opacity,
+};
 use termtrace::internals::progress::Reporter;
 
 fn folder() -> PathBuf {
@@ -80,8 +82,28 @@ fn color_of(mesh: &MeshFile, triangle: usize) -> String {
     let color = material.map_or(white, |material| material.reflectance)
         * own.unwrap_or(white)
         * uv.and_then(texel).unwrap_or(white);
-    let [r, g, b] = [color.r, color.g, color.b].map(|channel| (channel * 1e3).round() / 1e3);
-    format!("rgb {r} {g} {b}")
+    let looks = material.map_or_else(String::new, |material| looks_of(material, uv));
+    format!("rgb {}{looks}", channels(color))
+}
+
+/// Returns what a material shows besides its colour: holes, opacity and light.
+fn looks_of(material: &MeshMaterial, uv: Option<Vec2>) -> String {
+    let opacity_at = |opacity: &Opacity| {
+        let texel = opacity.texture.as_ref().zip(uv).map_or(1.0, |(texture, uv)| texture.opacity_at(uv));
+        (opacity.factor * texel * 1e3).round() / 1e3
+    };
+    let holes = material.holes.iter().map(|(opacity, cutoff)| format!(", {} of cutoff {cutoff}", opacity_at(opacity)));
+    let blended = material.blended.iter().map(|opacity| format!(", opacity {}", opacity_at(opacity)));
+    let emission = material.emission.iter().map(|Emission { light, texture }| {
+        let texel = texture.as_ref().zip(uv).map_or(LinearRgb::grey(1.0), |(texture, uv)| texture.color_at(uv));
+        format!(", light {}", channels(*light * texel))
+    });
+    holes.chain(blended).chain(emission).collect()
+}
+
+fn channels(LinearRgb { r, g, b }: LinearRgb) -> String {
+    let [r, g, b] = [r, g, b].map(|channel| (channel * 1e3).round() / 1e3);
+    format!("{r} {g} {b}")
 }
 
 #[test]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the pictures of this folder, which the tests of images lay on shapes."""
+"""Writes the pictures of this folder, which the tests of images lay on shapes, and meshes that name them."""
 
 import pathlib
 import struct
@@ -34,6 +34,19 @@ FILES = {
     "giant.png": png(32768, 32768, RGB, []),
     "cut.png": GRID[:-20],
     "nonsense.png": b"This is no picture.\n",
+    "square.mtl": b"""newmtl leaf
+map_Kd holes.png
+map_d holes.png
+newmtl veil
+Kd 0.5 0.5 0.5
+d 0.25
+newmtl lamp
+Kd 0.5 0.5 0.5
+Ke 0.25 0.5 2
+""",
 }
+CORNERS = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+for name in ["leaf", "veil", "lamp"]:
+    FILES[f"{name}.obj"] = f"mtllib square.mtl\nusemtl {name}\n{CORNERS}f 1/1 2/2 3/3 4/4\n".encode()
 for name, content in FILES.items():
     (FOLDER / name).write_bytes(content)

@@ -24,11 +24,12 @@ def beside(name, content):
 
 
 def png(rgb):
+    """Returns a picture of one pixel: red, green, blue, and its opacity if there is one."""
     def chunk(kind, data):
         body = kind + data
         return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
 
-    head = struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0)
+    head = struct.pack(">IIBBBBB", 1, 1, 8, 2 if len(rgb) == 3 else 6, 0, 0, 0)
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(b"\0" + bytes(rgb))) + chunk(b"IEND", b"")
 
 
@@ -53,6 +54,16 @@ for name in ["None", "(null)", "null"]:
 obj("a1_undefined", VERTICES + "usemtl None\nf 1 2 3\n", mtl="newmtl x\nKd 1 0 0\n")
 obj("a5", VERTICES + "usemtl x\nf 1 2 3\n", mtl="newmtl x\nKd 0 0 0\nKe 1 0 0\nnewmtl unused\nKe 1 1 1\n")
 obj("a9", VERTICES + "usemtl x\nf 1 2 3\n", mtl="newmtl x\nKd 0 0 1\nd 0.2\nmap_d t.png\n")
+obj("a5_map", TEXTURED, mtl="newmtl a\nKd 0 0 0\nmap_Ke t.png\n")
+obj("a5_bright", TEXTURED, mtl="newmtl a\nmap_Ke t.png\nKe 2 1 1\n")
+obj("a9_map", TEXTURED, mtl="newmtl a\nmap_d grey.png\n")
+obj("a9_whole", TEXTURED, mtl="newmtl a\nmap_d whole.png\n")
+beside("grey.png", png((64, 64, 64)))
+beside("whole.png", png((64, 64, 64, 255)))
+beside("half.png", png((255, 0, 0, 128)))
+for name, lines in {"tr": "Tr 0.75", "tr_one": "Tr 1", "d_tr": "d 0.5\nTr 1", "tr_d": "Tr 0.25\nd 1"}.items():
+    obj(f"a9_{name}", TEXTURED, mtl=f"newmtl a\n{lines}\n")
+obj("a9_gone", TEXTURED, mtl="newmtl a\nKd 0 1 0\nmap_d gone.png\n")
 obj("a10", SQUARE + "l 1 2 3\nl 3 4\np 1 2 3\np -1\ncurv 0 1 1 2\n")
 obj("a11", VERTICES + "f 1 1 2\nf 3 3 3\n")
 # B: what is missing or cannot be read
@@ -319,6 +330,19 @@ mesh.json["materials"] = [{"alphaMode": "MASK"}]
 mesh.write("a9_mask.gltf")
 mesh.json["materials"] = [{"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 1, 0.2]}}]
 mesh.write("a9_blend.gltf")
+mesh.primitive["attributes"]["TEXCOORD_0"] = mesh.floats("VEC2", [0, 0] * 3)
+mesh.json |= {"images": [{"uri": "beside/half.png"}], "textures": [{"source": 0}]}
+color = {"baseColorTexture": {"index": 0}, "baseColorFactor": [1, 1, 1, 0.5]}
+mesh.json["materials"] = [{"alphaMode": "MASK", "alphaCutoff": 0.3, "pbrMetallicRoughness": color}]
+mesh.write("a9_texture.gltf")
+mesh.json["materials"] = [{"alphaMode": "OPAQUE", "pbrMetallicRoughness": color}]
+mesh.write("a9_opaque.gltf")
+strength = {"KHR_materials_emissive_strength": {"emissiveStrength": 4}}
+glow = {"emissiveFactor": [0.5, 1, 1], "emissiveTexture": {"index": 0}, "extensions": strength}
+mesh.json["materials"] = [glow]
+mesh.write("a5_texture.gltf")
+mesh.json["materials"] = [glow | {"pbrMetallicRoughness": color, "emissiveTexture": {"index": 0, "texCoord": 1}}]
+mesh.write("a5_other_set.gltf")
 mesh = Gltf()
 mesh.json["meshes"][0]["primitives"] += [dict(mesh.primitive, mode=mode) for mode in range(4)]
 mesh.write("a10.gltf")

@@ -8,7 +8,7 @@ use std::num::NonZeroU32;
 use termtrace::internals::hit::{Kernel, any_hit, any_hits, closest_hit, closest_hit_observed, closest_hits};
 use termtrace::internals::hit::{TestCount, any_hit_observed};
 use termtrace::internals::ray::{EightRays, Interval, Ray};
-use termtrace::{LinearRgb, Resolution, Scene, Srgb8, render};
+use termtrace::{LinearRgb, Resolution, Scene, Srgb8, explain, render};
 
 /// Returns a scene in the folder of the pictures, lit equally from everywhere.
 fn scene(fields: &str, objects: &str) -> Scene {
@@ -198,6 +198,67 @@ fn the_far_side_of_a_ball_is_seen_through_its_holes() {
     assert!(near(t([2, 1], 0.0), 4.0), "a hole: {:?}", t([2, 1], 0.0));
 }
 
+/// The opacities of an MTL file's `map_d` make holes, unless the mesh has another material.
+#[test]
+fn meshes_have_the_holes_of_their_files() {
+    let wall = "Plane(point: (0, 0, -1), normal: (0, 0, 1), material: Diffuse(0.25))";
+    let [own, red] = ["", ", material: Diffuse((1, 0, 0))"]
+        .map(|material| scene("", &format!("Mesh(path: \"leaf.obj\"{material}), {wall}")));
+    let (whole, hole) = (Vec3::new(0.5, 3.5, 0.0), Vec3::new(1.5, 3.5, 0.0));
+    let found = light_at(&own, whole, Vec3::Z);
+    assert!((found.r - texel([0, 0]).r).abs() < 1e-6, "{found:?}");
+    assert_eq!(light_at(&own, hole, Vec3::Z), LinearRgb::grey(0.25));
+    assert_eq!(light_at(&red, hole, Vec3::Z), LinearRgb::new(1.0, 0.0, 0.0));
+    let down = |x: f32| Ray { origin: Vec3::new(x, 3.5, 1.0), direction: -Vec3::Z };
+    let near = Interval { min: 0.0, max: 1.5 };
+    assert!(any_hit(&own, &down(0.5), near) && !any_hit(&own, &down(1.5), near) && any_hit(&red, &down(1.5), near));
+}
+
+/// Of the light from behind, 1 - d passes: to the eye, and to a floor.
+#[test]
+fn meshes_are_as_transparent_as_their_files_say() {
+    let seen = |fields: &str, objects: &str| light_at(&scene(fields, objects), Vec3::new(1.0, 1.0, 0.0), Vec3::Z).r;
+    let (veil, wall) =
+        ("Mesh(path: \"veil.obj\")", "Plane(point: (0, 0, -1), normal: (0, 0, 1), material: Diffuse(1))");
+    let through = seen("", &format!("{veil}, {wall}"));
+    assert!((through - (0.25 * 0.5 + 0.75)).abs() < 1e-6, "{through}");
+    assert_eq!(seen("lecture: true,", &format!("{veil}, {wall}")), 0.5);
+    // The eye is between the veil and the wall, which the light reaches through the veil.
+    let lit = |objects: &str| {
+        let text = format!(
+            "(camera: (eye: (0, 0, 9), target: (0, 0, 0)), lights: [Sun(direction: (0, 0, 1))], objects: [{objects}])"
+        );
+        let scene = Scene::from_ron("tests/images/scene.ron", &text).expect("a scene");
+        light_at(&scene, Vec3::new(1.0, 1.0, -1.0), Vec3::Z * 0.5).r
+    };
+    let share = lit(&format!("{veil}, {wall}")) / lit(wall);
+    assert!((share - 0.75).abs() < 1e-6, "{share}");
+}
+
+/// Emitted light is added to reflected light, also in a mirror, and lights nothing else.
+#[test]
+fn meshes_send_out_the_light_of_their_files() {
+    let lamp = "Mesh(path: \"lamp.obj\")";
+    let at = |scene: &Scene| light_at(scene, Vec3::new(1.0, 1.0, 0.0), Vec3::Z);
+    assert_eq!(at(&scene("", lamp)), LinearRgb::new(0.75, 1.0, 2.5));
+    assert_eq!(at(&scene("lecture: true,", lamp)), LinearRgb::grey(0.5));
+    let mirror = "Quad(corner: (-9, -9, 1), edges: [(18, 0, 0), (0, 18, 0)], material: Diffuse(1), finish: Metal)";
+    let text = format!(
+        "(camera: (eye: (0, 0, 9), target: (0, 0, 0)), objects: [{lamp}, {mirror}, \
+            Plane(point: (0, -0.01, 0), normal: (0, 1, 0))])"
+    );
+    let dark = Scene::from_ron("tests/images/scene.ron", &text).expect("a scene");
+    let light = LinearRgb::new(0.25, 0.5, 2.0);
+    assert_eq!(light_at(&dark, Vec3::new(1.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 0.5)), light);
+    assert_eq!(light_at(&dark, Vec3::new(1.0, 1.0, 1.0), Vec3::new(0.0, 0.0, -0.5)), light);
+    assert_eq!(light_at(&dark, Vec3::new(1.0, -0.01, 0.1), Vec3::Y), LinearRgb::BLACK);
+    let lines = explain(&dark, dark.camera(), Resolution::square(9, 9), [4, 4]).lines().join("\n");
+    assert!(!lines.contains("L_o"), "the middle shows the mirror: {lines}");
+    let lit = scene("", lamp);
+    let lines = explain(&lit, lit.camera(), Resolution::square(9, 9), [5, 3]).lines().join("\n");
+    assert!(lines.contains("L_o        0.2500   0.5000   2.0000"), "{lines}");
+}
+
 /// Rays over many objects with holes, some of them far away, from many directions.
 #[test]
 fn all_kernels_see_the_same_through_holes() {
@@ -208,6 +269,7 @@ fn all_kernels_see_the_same_through_holes() {
             "Sphere(center: (0, 0, 0), radius: 1, {image}, copies: (count: (4, 3, 2), step: (2, 2, -3))),
             Box(min: (-2, -2, -9), max: (9, 9, -8), {image}), Plane(point: (0, -3, 0), normal: (0, 1, 0), {image}),
             Sphere(center: (900, 0, -2000), radius: 300, {image}), Mesh(path: \"../meshes/square.obj\", {image}),
+            Mesh(path: \"leaf.obj\", translate: (-2, -1, 2)),
             Cylinder(from: (-3, -3, 0), to: (-3, 3, -1), radius: 0.7, {image}, copies: (count: (1, 1, 12), \
                 step: (0, 0, -2)))"
         ),

@@ -196,6 +196,10 @@ impl Explanation {
             }
         }
         lines.push(light_line("R", shaded.reflectance));
+        if shaded.emission != LinearRgb::BLACK {
+            lines.push("and light of its own: L = L + L_o".to_owned());
+            lines.push(light_line("L_o", shaded.emission));
+        }
         if shaded.opacity < 1.0 {
             lines.push("of opacity a: L = a L + (1 - a) L_p".to_owned());
             lines.push(format!("a    {}", padded_number(shaded.opacity)));
@@ -219,7 +223,7 @@ impl Explanation {
 /// Formats the roots of a tested surface's equation, with the tracer's t in the place of the root
 /// of the crossing.
 // The equation is solved in f64, so its root may differ slightly from the t of the tracer, which the picture shows.
-fn root_values(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
+fn root_values(TestedSurface { t, is_hole, equation, .. }: &TestedSurface) -> String {
     let Equation { roots, without_root, is_outside, .. } = equation;
     if roots.is_empty() {
         return format!("  {without_root}");
@@ -230,8 +234,12 @@ fn root_values(TestedSurface { t, equation, .. }: &TestedSurface) -> String {
         let own = roots.iter().position(|&root| root >= 0.0).unwrap_or(roots.len() - 1);
         shown[own] = t;
     }
-    let outside = if t.is_none() && *is_outside { "  outside" } else { "" };
-    shown.into_iter().map(padded_number).collect::<String>() + outside
+    let remark = match t {
+        None if *is_hole => "  hole",
+        None if *is_outside => "  outside",
+        _ => "",
+    };
+    shown.into_iter().map(padded_number).collect::<String>() + remark
 }
 
 fn add_equation(equation: &Equation, lines: &mut Vec<String>) {

@@ -1,10 +1,10 @@
 //! Holes: the parts of surfaces that rays pass, because a picture or a mesh's file leaves them out.
 //!
-//! Rays are traced as if there were no holes. Those that meet one are then traced again singly, from behind the hole on.
+//! Rays are traced as if there were no holes. Those that meet one are then traced again, singly, from behind the hole.
 //! So scenes without holes cost nothing, and all kernels find the same hits.
 
-use super::single::SingleRay;
-use super::{CLOSEST, EightHits, Hit};
+use super::single::{CLOSEST, SingleRay};
+use super::{EightHits, Hit};
 use crate::accel::PrimitiveId;
 use crate::bvh::RayStack;
 use crate::lanes::{Lanes, set_bits};
@@ -26,7 +26,7 @@ pub(super) fn behind(t: f32, within: Interval) -> Interval {
 }
 
 /// Returns whether a ray meets a hole at a hit.
-pub(super) fn is_hole(scene: &Scene, ray: &Ray, hit: Hit) -> bool {
+pub(crate) fn is_hole(scene: &Scene, ray: &Ray, hit: Hit) -> bool {
     let object = &scene.objects()[hit.object as usize];
     object.has_holes() && object.has_hole(hit.primitive, &OwnPoint::from(&hit.surface(scene).at_crossing(ray, hit.t)))
 }

@@ -9,6 +9,13 @@ use crate::ray::{Interval, Rays};
 use crate::shape::{Crossable, Endless, SoaLeaf};
 use std::ops::ControlFlow;
 
+// The values of the const parameter `ANY`. It is a parameter, not a field, so that each traversal is compiled without
+// the other's branches: the one for any hit needs no sorting, no culling by edge functions and no t.
+/// The value for closest hits.
+pub(super) const CLOSEST: bool = false;
+/// The value for any hit.
+pub(super) const ANY: bool = true;
+
 /// A single ray in traversal, and its hit so far.
 pub(super) struct SingleRay<'p, N: Lanes, const ANY: bool, W = Unobserved> {
     accel: &'p Accelerator,

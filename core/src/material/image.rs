@@ -84,8 +84,10 @@ impl Image {
             Err(Unfinished::Cancelled) => return None,
             Err(Unfinished::Failed(message)) => return validator.fault(path.span, || message),
         };
+        // A picture without transparent pixels makes no holes, for which rays would have to be examined.
+        let cutoff = cutoff?.filter(|_| texture.is_transparent());
         let sampler = Sampler { wrap: [written.wrap.unwrap_or_default(); 2], is_nearest: written.is_nearest };
-        Some(Self { texture, repeat: repeat?.into(), sampler, cutoff: cutoff?, turn: None })
+        Some(Self { texture, repeat: repeat?.into(), sampler, cutoff, turn: None })
     }
 }
 

@@ -194,7 +194,7 @@ impl MeshBuilder {
             normals,
             texture_coordinates,
             colors,
-            materials,
+            materials: materials.into(),
             material_runs,
             staging: self.staging,
         };

@@ -23,7 +23,7 @@ impl MeshFile {
     /// Keeping some of the triangles, enlarged, would be simpler, but would leave holes and distort large triangles.
     pub fn decimated(&self, cubes: u32) -> Option<Self> {
         let (corner_of, positions) = self.clusters(cubes.clamp(1, 256));
-        let mut mesh = MeshBuilder { positions, materials: self.materials.clone(), ..MeshBuilder::default() };
+        let mut mesh = MeshBuilder { positions, materials: self.materials().to_vec(), ..MeshBuilder::default() };
         let mut seen = HashSet::new();
         for (index, corners) in self.triangles.iter().enumerate() {
             let corners = corners.map(|corner| corner_of[corner as usize]);

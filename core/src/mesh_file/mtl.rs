@@ -1,12 +1,14 @@
-//! MTL, the materials of OBJ files: `newmtl`, `Kd` and `map_Kd`.
+//! MTL, the materials of OBJ files: diffuse colours, opacities, emitted light, and their textures.
 //!
-//! Features such as transparency and normal maps are counted as not shown. All other lines are skipped.
+//! Read are `newmtl`, `Kd` and `map_Kd`, `d`, `Tr` and `map_d`, `Ke` and `map_Ke`.
+//! Normal maps are counted as not shown. All other lines are skipped.
 
 use super::fault::{MeshFault, shown_path};
+use super::material::MAX_EMISSION;
 use super::side_files::{SideFiles, side_file_path};
 use super::text::TextCursor;
 use super::texture::{self, Sampler, TexelBudget, Texture, TexturePlacement, Wrap};
-use super::{CLAY, MeshMaterial};
+use super::{CLAY, Emission, MeshMaterial, Opacity};
 use crate::color::LinearRgb;
 use glam::Vec3;
 use std::collections::{HashMap, HashSet};
@@ -63,7 +65,8 @@ pub(super) fn read(
     library.files.insert(path.to_owned());
     let folder = path.parent().unwrap_or(Path::new(""));
     let name = side_files.name_of(path);
-    let mut reader = MtlReader { text: TextCursor::new(bytes), folder, side_files, library, has_reflectance: false };
+    let text = TextCursor::new(bytes);
+    let mut reader = MtlReader { text, folder, side_files, library, has_reflectance: false, has_dissolve: false };
     while reader.text.go_to_statement() {
         let start = reader.text.at();
         if let Err(fault) = reader.statement() {
@@ -76,6 +79,11 @@ pub(super) fn read(
     Ok(())
 }
 
+/// Returns the opacity of a material; `None` if it is opaque.
+fn blended(opacity: f32) -> Option<Opacity> {
+    (opacity < 1.0).then(|| Opacity { factor: opacity.max(0.0), texture: None })
+}
+
 struct MtlReader<'a, 'b> {
     text: TextCursor<'a>,
     folder: &'a Path,
@@ -83,7 +91,12 @@ struct MtlReader<'a, 'b> {
     library: &'a mut Library,
     /// Whether the last material has a `Kd`.
     has_reflectance: bool,
+    /// Whether the last material has a `d`, which counts more than a `Tr`.
+    has_dissolve: bool,
 }
+
+/// The opacity in a texture of opacity below which there is a hole.
+const CUTOFF: f32 = 0.5;
 
 /// The reflectance of a material with neither `Kd` nor a texture: light grey. With a texture but no
 /// `Kd` the reflectance is 1, which keeps the texture's colours.
@@ -95,7 +108,7 @@ impl MtlReader<'_, '_> {
         let at = self.text.at() - word.len();
         match word {
             b"newmtl" => {
-                self.has_reflectance = false;
+                (self.has_reflectance, self.has_dissolve) = (false, false);
                 self.new_material();
             }
             b"Kd" => {
@@ -114,10 +127,36 @@ impl MtlReader<'_, '_> {
                 }
                 material.texture = texture?;
             }
-            b"d" if self.text.number().is_ok_and(|opacity| opacity < 1.0) => self.not_shown("transparent material"),
-            b"map_d" => self.not_shown("texture of opacity"),
-            b"Ke" if self.color().is_ok_and(|color| color != LinearRgb::BLACK) => self.not_shown("glowing material"),
-            b"map_Ke" => self.not_shown("texture of light"),
+            b"d" => {
+                if let Ok(opacity) = self.text.number() {
+                    self.last_material(at)?.blended = blended(opacity);
+                    self.has_dissolve = true;
+                }
+            }
+            b"Tr" if !self.has_dissolve => {
+                // Some programs write 1 for opaque. A surface that is not there would be no use to write.
+                if let Some(transparency) = self.text.number().ok().filter(|&transparency| transparency < 1.0) {
+                    self.last_material(at)?.blended = blended(1.0 - transparency);
+                }
+            }
+            b"map_d" => {
+                self.last_material(at)?;
+                if let Some(placement) = self.texture()? {
+                    let texture = Some(TexturePlacement { texture: placement.texture.as_mask(), ..placement });
+                    let opacity = Opacity { factor: 1.0, texture };
+                    self.last_material(at)?.holes = opacity.may_be_below(CUTOFF).then_some((opacity, CUTOFF));
+                }
+            }
+            b"Ke" => {
+                let light = self.channels(MAX_EMISSION)?;
+                self.set_emission(at, |emission| emission.light = light)?;
+            }
+            b"map_Ke" => {
+                self.last_material(at)?;
+                if let Some(texture) = self.texture()? {
+                    self.set_emission(at, |emission| emission.texture = Some(texture))?;
+                }
+            }
             b"map_Bump" | b"map_bump" | b"bump" | b"norm" => self.not_shown("normal map"),
             _ => {}
         }
@@ -138,7 +177,22 @@ impl MtlReader<'_, '_> {
         let name = self.text.rest_of_line();
         let index = self.library.materials.len() as u32; // fewer than the file's bytes
         self.library.by_name.insert(name.into(), index);
-        self.library.materials.push(MeshMaterial { reflectance: DEFAULT_REFLECTANCE, texture: None });
+        self.library.materials.push(MeshMaterial::opaque(DEFAULT_REFLECTANCE, None));
+    }
+
+    /// Changes the light of the last material.
+    ///
+    /// A texture of light without a `Ke`, or with a black one, is shown as it is.
+    fn set_emission(&mut self, at: usize, change: impl FnOnce(&mut Emission)) -> Result<(), MeshFault> {
+        let material = self.last_material(at)?;
+        let none = Emission { light: LinearRgb::BLACK, texture: None };
+        let mut emission = material.emission.take().unwrap_or(none);
+        change(&mut emission);
+        if emission.texture.is_some() && emission.light == LinearRgb::BLACK {
+            emission.light = LinearRgb::grey(1.0);
+        }
+        material.emission = (emission.light != LinearRgb::BLACK).then_some(emission);
+        Ok(())
     }
 
     fn last_material(&mut self, at: usize) -> Result<&mut MeshMaterial, MeshFault> {
@@ -149,11 +203,16 @@ impl MtlReader<'_, '_> {
     /// Reads `Kd r g b`, or `Kd r` for a grey. Values are clamped to 0..=1, not refused, as other
     /// programs do.
     fn color(&mut self) -> Result<LinearRgb, MeshFault> {
-        let r = self.text.number()?.clamp(0.0, 1.0);
+        self.channels(1.0)
+    }
+
+    /// Reads one or three channels, and clamps them to 0..=`most`.
+    fn channels(&mut self, most: f32) -> Result<LinearRgb, MeshFault> {
+        let r = self.text.number()?.clamp(0.0, most);
         if self.text.is_at_line_end() {
             return Ok(LinearRgb::grey(r));
         }
-        Ok(LinearRgb::new(r, self.text.number()?.clamp(0.0, 1.0), self.text.number()?.clamp(0.0, 1.0)))
+        Ok(LinearRgb::new(r, self.text.number()?.clamp(0.0, most), self.text.number()?.clamp(0.0, most)))
     }
 
     /// Reads the options and the name of a texture, then its file. `None` if the file is missing.

@@ -92,7 +92,7 @@ fn materials(header: &Header<'_>, side_files: &mut SideFiles<'_>) -> Result<Vec<
                 (CLAY, None)
             }
         };
-        materials.push(MeshMaterial { reflectance, texture });
+        materials.push(MeshMaterial::opaque(reflectance, texture));
     }
     Ok(materials)
 }

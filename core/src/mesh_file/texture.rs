@@ -21,6 +21,8 @@ pub struct Texture {
     texels: Vec<Srgb8>,
     /// The opacities of the texels, from 0 to 255; empty if the image has none.
     opacities: Vec<u8>,
+    /// Whether the file of the image has opacities, be they all 1.
+    has_opacities: bool,
 }
 
 /// The colour of an image beyond one of its edges.
@@ -132,6 +134,19 @@ impl Texture {
     /// Returns whether any texel has an opacity below 1.
     pub fn is_transparent(&self) -> bool {
         !self.opacities.is_empty()
+    }
+
+    /// Returns the image whose opacities this image gives: its own, or else the lightnesses of its
+    /// texels.
+    #[cfg(feature = "mesh")]
+    pub(super) fn as_mask(self: &Arc<Self>) -> Arc<Self> {
+        if self.has_opacities {
+            return Arc::clone(self);
+        }
+        let lightness =
+            |&Srgb8 { r, g, b }: &Srgb8| ((54 * u32::from(r) + 183 * u32::from(g) + 19 * u32::from(b)) >> 8) as u8;
+        let opacities = self.texels.iter().map(lightness).collect();
+        Arc::new(Self { opacities, has_opacities: true, ..Self::clone(self) })
     }
 
     /// Returns the texels row by row, from the top left one.

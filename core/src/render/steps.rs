@@ -97,6 +97,9 @@ impl Buffers {
         }
         if last_stage >= Stage::Reflected {
             self.compute_reflected_light(job, batch);
+            if scene.has_emission() {
+                shade::add_emission(scene, &self.points, &mut self.lights);
+            }
             if !scene.is_all_matte() {
                 traced += self.add_bounced_light(job, batch);
             }

@@ -19,6 +19,9 @@ pub struct Draft {
 impl Draft {
     pub(super) fn new(mut checked: Checked) -> Self {
         checked.needs = ShadingNeeds::of(&checked.objects);
+        if checked.lecture {
+            checked.needs = ShadingNeeds { holes: checked.needs.holes, ..ShadingNeeds::default() };
+        }
         Self { checked: checked.into() }
     }
 

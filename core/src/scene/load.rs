@@ -119,8 +119,9 @@ impl Draft {
         Self::from_embedded(name, bytes, &[], reporter)
     }
 
-    /// Reads as [`Draft::from_bytes`] does, with the files that the scene names from memory: `files`
-    /// are their names and bytes.
+    /// Reads as [`Draft::from_bytes`] does, with the files that the scene names from memory.
+    ///
+    /// `files` are their names and bytes.
     ///
     /// # Errors
     /// As [`Scene::from_bytes`], and if the reporter cancels.

@@ -5,7 +5,8 @@ use crate::checks;
 use crate::color::LinearRgb;
 use crate::finish::Finish;
 use crate::material::{Image, Material};
-use crate::shape::{ChartPoint, Shape, Surface, SurfacePoint};
+use crate::mesh_file::MeshMaterial;
+use crate::shape::{ChartPoint, Mesh, Shape, Surface, SurfacePoint};
 use glam::{Vec2, Vec3};
 use std::fmt;
 use std::sync::Arc;
@@ -93,18 +94,64 @@ impl Object {
 
     /// Returns whether the surface may have holes.
     pub(crate) fn has_holes(&self) -> bool {
-        self.image.as_ref().is_some_and(|image| image.has_holes())
+        match &self.image {
+            Some(image) => image.has_holes(),
+            None => self.mesh_in_own_colors().is_some_and(|mesh| mesh.file().has_holes()),
+        }
     }
 
     /// Returns whether the surface has a hole at a point of a primitive.
     pub(crate) fn has_hole(&self, primitive: u32, point: &OwnPoint) -> bool {
-        let Some(image) = self.image.as_ref().filter(|image| image.has_holes()) else { return false };
-        self.shape.primitive(primitive).chart(&point.on_chart(image)).is_some_and(|at| image.has_hole(at))
+        match &self.image {
+            Some(image) => {
+                self.shape.primitive(primitive).chart(&point.on_chart(image)).is_some_and(|at| image.has_hole(at))
+            }
+            None => self.in_mesh_material(primitive, point, MeshMaterial::has_hole).unwrap_or(false),
+        }
+    }
+
+    /// Returns whether the file of the mesh makes the surface transparent.
+    pub(crate) fn is_blended(&self) -> bool {
+        self.mesh_in_own_colors().is_some_and(|mesh| mesh.file().is_blended())
+    }
+
+    /// Returns the part of the light that does not pass straight through the surface at a point.
+    pub(crate) fn opacity_at(&self, primitive: u32, point: &OwnPoint) -> f32 {
+        self.opacity * self.in_mesh_material(primitive, point, MeshMaterial::opacity).unwrap_or(1.0)
+    }
+
+    /// Returns whether the surface sends out light by the file of its mesh.
+    pub(crate) fn has_emission(&self) -> bool {
+        self.mesh_in_own_colors().is_some_and(|mesh| mesh.file().has_emission())
+    }
+
+    /// Returns the light that the surface sends out at a point by the file of its mesh.
+    pub(crate) fn emission_at(&self, primitive: u32, point: &OwnPoint) -> LinearRgb {
+        self.in_mesh_material(primitive, point, MeshMaterial::emitted).unwrap_or(LinearRgb::BLACK)
+    }
+
+    /// Returns the mesh, if its colours are those of its file.
+    fn mesh_in_own_colors(&self) -> Option<&Mesh> {
+        match (&self.shape, self.material, &self.image) {
+            (Shape::Mesh(mesh), Material::Own, None) => Some(mesh),
+            _ => None,
+        }
+    }
+
+    /// Returns a value of the material of a triangle at a point, by the texture coordinates there.
+    fn in_mesh_material<T>(
+        &self,
+        triangle: u32,
+        point: &OwnPoint,
+        value: fn(&MeshMaterial, Option<Vec2>) -> T,
+    ) -> Option<T> {
+        let facet = self.mesh_in_own_colors()?.facet(triangle);
+        Some(value(facet.file_material()?, facet.texture_coordinates(point.uv)))
     }
 
     /// Returns whether the surface only reflects diffusely, so that it makes no further rays.
     pub(crate) fn is_matte(&self) -> bool {
-        self.finish.is_matte() && self.opacity == 1.0
+        self.finish.is_matte() && self.opacity == 1.0 && !self.is_blended()
     }
 }
 

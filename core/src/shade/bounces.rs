@@ -5,12 +5,13 @@
 
 use super::light_parts::PartShifts;
 use super::{EightArriving, EightLights, EightPoints, ShadowRays, Surfaces};
+use crate::accel::PrimitiveId;
 use crate::color::LinearRgb;
 use crate::finish::{self, Finish};
 use crate::hit::{self, EightHits, Kernel};
 use crate::lanes::{F32x8, LANES, Number};
 use crate::ray::{EightRays, Ray};
-use crate::scene::{Object, Scene};
+use crate::scene::Scene;
 use glam::Vec3;
 
 /// The smallest weight of a ray that is followed.
@@ -146,6 +147,9 @@ impl Bounces {
         let surfaces = Surfaces { rays, points, samples };
         let traced = current.len() as u64 + super::arriving_light(scene, &surfaces, shadows, arriving);
         super::reflected_light(scene, rays, direction_steps, hits, points, arriving, diffuse);
+        if scene.has_emission() {
+            super::add_emission(scene, points, diffuse);
+        }
         reflectances.find(scene, direction_steps, &Generation { rays, hits, points, arriving, shadows, samples });
         next.clear();
         for (at, ray) in current.iter().enumerate() {
@@ -189,11 +193,11 @@ struct Surface {
 
 impl Surface {
     fn of(scene: &Scene, points: &EightPoints, lane: usize, t: f32, reflectance: LinearRgb) -> Self {
-        let object = points.ids.id(lane).object;
-        let Object { finish, opacity, .. } = scene.objects()[object as usize];
+        let PrimitiveId { object, index } = points.ids.id(lane);
+        let of_scene = &scene.objects()[object as usize];
         Self {
-            finish,
-            opacity,
+            finish: of_scene.finish,
+            opacity: of_scene.opacity_at(index, &points.own_point(lane)),
             object,
             position: points.position.of_lane(lane),
             shading_normal: points.shading_normal.of_lane(lane),

@@ -1,6 +1,7 @@
 //! Shadow rays in scenes with transparent objects, which let a part of the light through.
 
 use super::{EightLights, EightPoints, count};
+use crate::accel::PrimitiveId;
 use crate::hit::{self, EightHits, Kernel};
 use crate::lanes::{F32x8, LANES, set_bits};
 use crate::light::Light;
@@ -89,7 +90,8 @@ impl TransparentShadows {
                 continue;
             }
             let part = &mut self.parts[group].0[lane];
-            *part *= 1.0 - scene.objects()[points.ids.id(lane).object as usize].opacity;
+            let PrimitiveId { object, index } = points.ids.id(lane);
+            *part *= 1.0 - scene.objects()[object as usize].opacity_at(index, &points.own_point(lane));
             if *part < MIN_PART {
                 blocked |= 1 << lane;
                 continue;

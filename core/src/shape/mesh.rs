@@ -6,7 +6,7 @@ use super::{ChartPoint, CheckedShape, Meshes, Shape, Surface, SurfacePoint, Tria
 use crate::bounds::Bounds;
 use crate::checks::{self, SceneFault};
 use crate::color::LinearRgb;
-use crate::mesh_file::{MAX_TRIANGLES, MeshFile};
+use crate::mesh_file::{MAX_TRIANGLES, MeshFile, MeshMaterial};
 use crate::progress::Unfinished;
 use crate::ray::{Interval, Probe, Ray};
 use crate::written::{Fields, InSceneFile, NodeReader, Spanned, Validator};
@@ -226,8 +226,7 @@ impl Surface for Facet<'_> {
 
     /// Returns the texture coordinates of the file.
     fn chart(&self, point: &ChartPoint) -> Option<Vec2> {
-        let corners = self.mesh.file.texture_coordinates_of(self.index as usize)?;
-        Some(interpolate(self.mesh.in_order(corners), point.uv))
+        self.texture_coordinates(point.uv)
     }
 }
 
@@ -292,16 +291,27 @@ impl Facet<'_> {
         interpolate([above(a, normals[0]), above(b, normals[1]), above(c, normals[2])], uv)
     }
 
+    /// Returns the material of the triangle in the file.
+    pub(crate) fn file_material(&self) -> Option<&MeshMaterial> {
+        let file = &self.mesh.file;
+        file.material_of(self.index as usize).map(|index| &file.materials()[index])
+    }
+
+    /// Returns the texture coordinates at a point, if the triangle has any.
+    pub(crate) fn texture_coordinates(&self, uv: Vec2) -> Option<Vec2> {
+        let corners = self.mesh.file.texture_coordinates_of(self.index as usize)?;
+        Some(interpolate(self.mesh.in_order(corners), uv))
+    }
+
     /// Returns the product of the file's colours at a point: those of the material, texture and
     /// corners.
     pub(super) fn file_reflectance(&self, uv: Vec2) -> Option<LinearRgb> {
         let (file, index) = (&self.mesh.file, self.index as usize);
-        let material = file.material_of(index).map(|index| &file.materials()[index]);
+        let material = self.file_material();
         let colors = file.colors_of(index).map(|colors| interpolate(self.mesh.in_order(colors), uv));
         let textured = material.and_then(|material| {
             let texture = material.texture.as_ref()?;
-            let at = interpolate(self.mesh.in_order(file.texture_coordinates_of(index)?), uv);
-            Some(texture.color_at(at))
+            Some(texture.color_at(self.texture_coordinates(uv)?))
         });
         let own = [material.map(|material| material.reflectance), textured, colors];
         own.into_iter().flatten().reduce(|a, b| a * b)

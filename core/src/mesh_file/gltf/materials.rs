@@ -1,11 +1,12 @@
-//! The materials of a glTF file: base colours and their textures.
+//! The materials of a glTF file: base colours, opacities, emitted light, and their textures.
 
 use super::buffers::{Buffers, shown_image_name};
 use super::json::Json;
 use crate::color::LinearRgb;
 use crate::mesh_file::fault::MeshFault;
+use crate::mesh_file::material::MAX_EMISSION;
 use crate::mesh_file::texture::{self, Sampler, TexelBudget, Texture, TexturePlacement, Wrap};
-use crate::mesh_file::{CLAY, MeshMaterial};
+use crate::mesh_file::{CLAY, Emission, MeshMaterial, Opacity};
 use glam::Vec3;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -21,14 +22,6 @@ pub(super) struct Material {
 /// Returns the names of the features of a material that are not shown.
 fn not_shown(json: Json<'_>) -> Result<Vec<&'static str>, MeshFault> {
     let mut names = Vec::new();
-    match json.field("alphaMode")?.map(Json::string).transpose()? {
-        Some("MASK") => names.push("material with holes"),
-        Some("BLEND") => names.push("transparent material"),
-        _ => {}
-    }
-    if json.numbers::<3>("emissiveFactor")?.is_some_and(|factor| factor != [0.0; 3]) {
-        names.push("glowing material");
-    }
     if json.field("normalTexture")?.is_some() {
         names.push("normal map");
     }
@@ -56,32 +49,68 @@ impl<'a> MaterialReader<'_, 'a, '_> {
             None => (json.field("pbrMetallicRoughness")?, "baseColorFactor", "baseColorTexture"),
         };
         let white = LinearRgb::grey(1.0);
-        let mut material = Material {
-            colors: MeshMaterial { reflectance: white, texture: None },
-            texture_coordinates: 0,
-            not_shown: not_shown(json)?,
-        };
-        let Some(base) = base else { return Ok(material) };
-        if let Some([r, g, b, _]) = base.numbers::<4>(factor)? {
-            let [r, g, b] = [r, g, b].map(|channel| channel.clamp(0.0, 1.0) as f32);
-            material.colors.reflectance = LinearRgb::new(r, g, b);
-        }
-        if let Some(info) = base.field(texture)? {
-            let placement = match self.placement(info) {
-                Ok(placement) => placement,
-                Err(fault) => self.buffers.warn_of(fault).map(|()| None)?,
-            };
-            let Some((placement, set)) = placement else {
-                // A white factor was meant for the missing texture, and is not the colour of the surface.
-                if material.colors.reflectance == white {
+        let mut material =
+            Material { colors: MeshMaterial::opaque(white, None), texture_coordinates: 0, not_shown: not_shown(json)? };
+        let mut opacity = 1.0;
+        if let Some(base) = base {
+            if let Some([r, g, b, a]) = base.numbers::<4>(factor)? {
+                let [r, g, b, a] = [r, g, b, a].map(|channel| channel.clamp(0.0, 1.0) as f32);
+                material.colors.reflectance = LinearRgb::new(r, g, b);
+                opacity = a;
+            }
+            if let Some(info) = base.field(texture)? {
+                if let Some((placement, set)) = self.placement_or_warning(info)? {
+                    material.colors.texture = Some(placement);
+                    material.texture_coordinates = set;
+                } else if material.colors.reflectance == white {
+                    // A white factor was meant for the missing texture, and is not the colour of the surface.
                     material.colors.reflectance = CLAY;
                 }
-                return Ok(material);
-            };
-            material.colors.texture = Some(placement);
-            material.texture_coordinates = set;
+            }
         }
+        let opacity = Opacity { factor: opacity, texture: material.colors.texture.clone() };
+        match json.field("alphaMode")?.map(Json::string).transpose()? {
+            Some("MASK") => {
+                let cutoff = json.field("alphaCutoff")?.map_or(Ok(0.5), Json::number)? as f32;
+                material.colors.holes =
+                    (cutoff.is_finite() && opacity.may_be_below(cutoff)).then_some((opacity, cutoff));
+            }
+            Some("BLEND") => material.colors.blended = opacity.may_be_below(1.0).then_some(opacity),
+            _ => {}
+        }
+        self.read_emission(json, &mut material)?;
         Ok(material)
+    }
+
+    /// Reads the light that a material sends out.
+    fn read_emission(&mut self, json: Json<'a>, material: &mut Material) -> Result<(), MeshFault> {
+        let Some(factor) = json.numbers::<3>("emissiveFactor")?.filter(|&factor| factor != [0.0; 3]) else {
+            return Ok(());
+        };
+        let strength = match json.extension("KHR_materials_emissive_strength")? {
+            Some(extension) => extension.field("emissiveStrength")?.map_or(Ok(1.0), Json::number)?,
+            None => 1.0,
+        };
+        let [r, g, b] = factor.map(|channel| (channel * strength).clamp(0.0, MAX_EMISSION.into()) as f32);
+        let mut texture = None;
+        if let Some(info) = json.field("emissiveTexture")? {
+            let placement = self.placement_or_warning(info)?;
+            // Vertices keep the texture coordinates of one set only, those of the base colour.
+            let has_set = |set: usize| material.colors.texture.is_none() || material.texture_coordinates == set;
+            let Some((placement, set)) = placement.filter(|&(_, set)| has_set(set)) else {
+                // Most of such textures are black, so that the factor alone would be too bright.
+                material.not_shown.push("texture of light");
+                return Ok(());
+            };
+            (texture, material.texture_coordinates) = (Some(placement), set);
+        }
+        material.colors.emission = Some(Emission { light: LinearRgb::new(r, g, b), texture });
+        Ok(())
+    }
+
+    /// Returns [`placement`](Self::placement), or `None` after a warning of its fault.
+    fn placement_or_warning(&mut self, info: Json<'a>) -> Result<Option<(TexturePlacement, usize)>, MeshFault> {
+        self.placement(info).or_else(|fault| self.buffers.warn_of(fault).map(|()| None))
     }
 
     /// Returns the texture that `info`, a glTF textureInfo, names, with its placement, and the

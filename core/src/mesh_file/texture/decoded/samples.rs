@@ -39,6 +39,7 @@ pub(super) fn check_plausible(texels: usize, bytes: &[u8], most_per_byte: usize,
 pub(super) struct Texels {
     colors: Vec<Srgb8>,
     opacities: Vec<u8>,
+    has_opacities: bool,
 }
 
 /// Returns the texels of samples with one or two (grey), three or four (RGB) channels, of which the
@@ -49,9 +50,10 @@ pub(super) fn texels_of(samples: &[u8], channels: usize) -> Texels {
         1 | 2 => texels.clone().map(|s| Srgb8::new(s[0], s[0], s[0])).collect(),
         _ => texels.clone().map(|s| Srgb8::new(s[0], s[1], s[2])).collect(),
     };
-    let has_opacities = channels.is_multiple_of(2) && texels.clone().any(|s| s[channels - 1] < u8::MAX);
-    let opacities = if has_opacities { texels.map(|s| s[channels - 1]).collect() } else { Vec::new() };
-    Texels { colors, opacities }
+    let has_opacities = channels.is_multiple_of(2);
+    let is_transparent = has_opacities && texels.clone().any(|s| s[channels - 1] < u8::MAX);
+    let opacities = if is_transparent { texels.map(|s| s[channels - 1]).collect() } else { Vec::new() };
+    Texels { colors, opacities, has_opacities }
 }
 
 /// Red, green, blue and the opacity of a texel.
@@ -77,9 +79,9 @@ pub(super) fn cut_short(format: &str) -> String {
 /// Returns the texture, after checking that the decoder returned `width * height` texels: indexing
 /// relies on it.
 pub(super) fn checked_texture(width: u32, height: u32, texels: Texels, format: &str) -> Result<Texture, String> {
-    let Texels { colors, opacities } = texels;
+    let Texels { colors, opacities, has_opacities } = texels;
     if colors.len() != width as usize * height as usize {
         return Err(cut_short(format));
     }
-    Ok(Texture { width, height, texels: colors, opacities })
+    Ok(Texture { width, height, texels: colors, opacities, has_opacities })
 }
