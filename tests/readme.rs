@@ -73,6 +73,7 @@ fn every_kind_of_item_is_shown() {
         "Gradient(bottom",
         "Gradient(from",
         "Noise(",
+        "Image(",
         "focal_length",
         "vertical_fov",
         "shift",

@@ -72,7 +72,7 @@ impl SceneSource {
             }
             Self::Stdin(text, _) => Draft::from_bytes(STDIN, text, reporter).map_err(scene_failure),
             Self::Shipped(scene) => {
-                Draft::from_embedded(scene.name, scene.text.as_bytes(), scene.meshes, reporter).map_err(scene_failure)
+                Draft::from_embedded(scene.name, scene.text.as_bytes(), scene.files, reporter).map_err(scene_failure)
             }
             Self::Formula(text) => Draft::from_bytes(FORMULA, text.as_bytes(), reporter).map_err(scene_failure),
         }

@@ -14,18 +14,18 @@ pub(super) struct ShippedScene {
     pub(super) name: &'static str,
     /// The text of the scene file.
     pub(super) text: &'static str,
-    /// Names and bytes of the mesh files that the scene refers to.
-    pub(super) meshes: &'static [(&'static str, &'static [u8])],
+    /// Names and bytes of the meshes and pictures that the scene refers to.
+    pub(super) files: &'static [(&'static str, &'static [u8])],
 }
 
-/// Defines the table `SHIPPED`. Each row is a scene's name and the mesh files that it refers to.
+/// Defines the table `SHIPPED`. Each row is a scene's name and the files that it refers to.
 macro_rules! shipped {
-    ($($name:literal $([$($mesh:literal),+])?),+ $(,)?) => {
+    ($($name:literal $([$($file:literal),+])?),+ $(,)?) => {
         /// All shipped scenes, in the order of the tour; the first is the default scene.
         static SHIPPED: &[ShippedScene] = &[$(ShippedScene {
             name: $name,
             text: include_str!(concat!("../../scenes/", $name, ".ron")),
-            meshes: &[$($(($mesh, include_bytes!(concat!("../../scenes/", $mesh))),)+)?],
+            files: &[$($(($file, include_bytes!(concat!("../../scenes/", $file))),)+)?],
         }),+];
     };
 }
@@ -56,6 +56,7 @@ shipped! {
     "lantern",
     "studio",
     "misty_columns",
+    "globe" ["world.png", "planks.png", "leaves.png"],
     "teapots" ["teapot.obj"],
     "crowd" ["teapot.obj"],
 }
