@@ -14,6 +14,8 @@ mod draft;
 mod load;
 mod object;
 mod of_mesh;
+#[cfg(feature = "ron")]
+mod side_files;
 mod staging;
 #[cfg(feature = "mesh")]
 mod sketch;
@@ -141,6 +143,7 @@ struct Checked {
 
 /// The steps of shading that the objects of a scene need besides diffuse reflection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each stands for a step of its own")]
 struct ShadingNeeds {
     /// Whether an object is not [matte](Object::is_matte), so that rays bounce.
     bounces: bool,
