@@ -9,9 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use termtrace::LinearRgb;
 use termtrace::glam::{Vec2, Vec3};
-use termtrace::internals::mesh_file::{
-    Emission, FileCamera, FileLight, FilePlace, MeshFile, MeshMaterial, Opacity,
-};
+use termtrace::internals::mesh_file::{Emission, FileCamera, FileLight, FilePlace, MeshFile, MeshMaterial, Opacity};
 use termtrace::internals::progress::Reporter;
 
 fn folder() -> PathBuf {

@@ -84,6 +84,7 @@ impl Object {
     /// or the [shape's own](crate::shape::Primitive::own_reflectance).
     ///
     /// `None` if there is neither.
+    #[doc(hidden)]
     pub fn own_reflectance(&self, primitive: u32, point: &OwnPoint) -> Option<LinearRgb> {
         let surface = self.shape.primitive(primitive);
         match &self.image {
