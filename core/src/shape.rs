@@ -69,8 +69,10 @@ pub use torus::Torus;
 pub use triangle::{EdgeFunctions, Triangle, TriangleN};
 #[cfg(feature = "ron")]
 pub(crate) use written::OBJECT_REFERENCE;
+#[cfg(feature = "ron")]
+pub(crate) use written::without_chart;
 pub use written::{CheckedShape, Meshes, WrittenShape};
-pub(crate) use written::{without_chart, without_coordinates, without_inside};
+pub(crate) use written::{without_coordinates, without_inside};
 
 /// A surface that rays can cross.
 pub trait Surface {
