@@ -2,7 +2,11 @@
 
 use super::buffers::{BufferView, Buffers};
 use super::json::Json;
+#[cfg(feature = "draco")]
+use crate::memory;
 use crate::mesh_file::fault::MeshFault;
+#[cfg(feature = "draco")]
+use draco_core::DataType;
 
 /// The extension that compresses primitives.
 pub(super) const DRACO: &str = "KHR_draco_mesh_compression";
@@ -46,6 +50,19 @@ enum Component {
 }
 
 impl Component {
+    /// Returns the type of the same numbers in Draco.
+    #[cfg(feature = "draco")]
+    fn draco_type(self) -> DataType {
+        match self {
+            Self::I8 => DataType::Int8,
+            Self::U8 => DataType::Uint8,
+            Self::I16 => DataType::Int16,
+            Self::U16 => DataType::Uint16,
+            Self::U32 => DataType::Uint32,
+            Self::F32 => DataType::Float32,
+        }
+    }
+
     fn read(json: Json<'_>) -> Result<Self, MeshFault> {
         let field = json.required("componentType")?;
         Ok(match field.index()? {
@@ -174,11 +191,17 @@ impl<'a> Accessor<'a> {
             // Decoded first, as the size of what is decoded limits the number of elements.
             let decoded = buffers.primitive(compressed)?;
             let accessor = Self::read(index, buffers)?;
-            let attribute = u32::try_from(id.index()?).ok().and_then(|id| decoded.attribute(id));
-            let (bytes, stride) = attribute.ok_or_else(|| id.fault("the compressed data has no such attribute"))?;
-            if stride != accessor.width * accessor.component.size() {
-                return Err(accessor.fault(format!("elements of {stride} bytes were decompressed")));
+            let missing = || id.fault("the compressed data has no such attribute, or not for every vertex");
+            let attribute = u32::try_from(id.index()?).ok().and_then(|id| decoded.attribute(id)).ok_or_else(missing)?;
+            let stride = attribute.value_size();
+            if stride != accessor.width * accessor.component.size()
+                || attribute.data_type() != accessor.component.draco_type()
+            {
+                return Err(accessor.fault("the compressed elements are of another type than the accessor"));
             }
+            // Many vertices may share a value, which the limits of the decoder count once.
+            memory::check(decoded.vertex_count().saturating_mul(stride)).map_err(|error| accessor.fault(error))?;
+            let bytes = attribute.bytes().ok_or_else(missing)?;
             let elements = Elements { view: BufferView::of(bytes), offset: 0, stride };
             return Ok(Self { elements: Some(elements), count: decoded.vertex_count(), sparse: None, ..accessor });
         }

@@ -202,6 +202,8 @@ impl<'a, 'b> Buffers<'a, 'b> {
         let left = most.saturating_add(1 << 20).saturating_sub(self.decompressed_size).min(MAX_MESH_BYTES);
         let decoded = Decoded::new(view.bytes(), left)
             .map_err(|what| compressed.fault(format!("this part of the file cannot be decompressed: {what}")))?;
+        // The attributes are copied, vertex by vertex.
+        memory::check(decoded.size().saturating_mul(2)).map_err(|error| compressed.fault(error))?;
         self.decompressed_size += decoded.size();
         self.size += decoded.size();
         let decoded = Rc::new(decoded);

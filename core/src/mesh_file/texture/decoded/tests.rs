@@ -166,7 +166,9 @@ fn runs_of_bmp_pictures_are_expanded() {
     assert_eq!(texels(&picture)[..4], [red, red, red, blue]);
     assert_eq!(texels(&picture)[4..8], [blue, red, blue, red]);
     assert_eq!(texels(&picture)[8..], [blue, blue, red, red]);
-    let cut = decode(&picture[..picture.len() - 2], &mut TexelBudget::default()).err();
+    // Without the last run. The mark of the end alone may be missing.
+    let cut = decode(&picture[..picture.len() - 4], &mut TexelBudget::default()).err();
+    assert!(decode(&picture[..picture.len() - 2], &mut TexelBudget::default()).is_ok());
     assert_eq!(cut.as_deref(), Some("is a BMP picture that is cut short"));
     // A run of two alternating pixels of four bits, longer than its row.
     let picture = bmp([2, 1], 4, 2, 2, &[&RED_BLUE[..], &[200, 0x10]].concat());
