@@ -8,6 +8,11 @@ mod alone;
 mod pool;
 
 #[cfg(not(feature = "parallel"))]
-pub(crate) use alone::{count, extend, for_each_chunk, in_pool_of, join, map, map_one_by_one, unzip};
+pub(crate) use alone::{count, for_each_chunk, in_pool_of, join, map, map_one_by_one, unzip};
 #[cfg(feature = "parallel")]
-pub(crate) use pool::{count, extend, for_each_chunk, in_pool_of, join, map, map_one_by_one, unzip};
+pub(crate) use pool::{count, for_each_chunk, in_pool_of, join, map, map_one_by_one, unzip};
+
+#[cfg(all(feature = "mesh", not(feature = "parallel")))]
+pub(crate) use alone::extend;
+#[cfg(all(feature = "mesh", feature = "parallel"))]
+pub(crate) use pool::extend;

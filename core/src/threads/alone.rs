@@ -18,6 +18,7 @@ pub(crate) fn map<T: Send>(count: usize, make: impl Fn(usize) -> T + Send + Sync
 }
 
 /// Appends the results of `make` for all numbers below `count` to `list`, in their order.
+#[cfg(feature = "mesh")]
 pub(crate) fn extend<T: Send>(list: &mut Vec<T>, count: usize, make: impl Fn(usize) -> T + Send + Sync) {
     list.extend((0..count).map(make));
 }
