@@ -61,8 +61,9 @@ impl Scene {
         Self::from_ron(name, text_from(name, bytes)?)
     }
 
-    /// Loads a scene file, or a mesh file with default lights, a floor and a view of the whole
-    /// mesh.
+    /// Loads a scene file, or a mesh file with lights, a floor and a view of the whole mesh.
+    ///
+    /// The lights are those of the mesh file, or default ones if it has none.
     ///
     /// ```standalone_crate
     /// use std::path::Path;

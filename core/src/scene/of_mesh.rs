@@ -76,9 +76,10 @@ pub struct MeshOrigin {
 impl Scene {
     /// Returns a scene with the mesh on a floor, all of it visible from the front and above.
     ///
-    /// A warm light comes from the left, a weak blue one from the right, and one from behind. A mesh without colours is
-    /// drawn in the colour of clay. Up is +y. Returns `None` if the mesh has no extent, is too small for its distance
-    /// from the origin, or exceeds ±1e9. A scene file can move or scale such a mesh.
+    /// The lights are those of the file. If it has none, a warm light comes from the left, a weak blue one from the
+    /// right, and one from behind. The cameras of the file are the views. A mesh without colours is drawn in the colour
+    /// of clay. Up is +y. Returns `None` if the mesh has no extent, is too small for its distance from the origin, or
+    /// exceeds ±1e9. A scene file can move or scale such a mesh.
     #[doc(hidden)]
     pub fn of_mesh(mesh: MeshFile) -> Option<Self> {
         Draft::of_mesh(mesh).map(Draft::finish)
