@@ -608,6 +608,20 @@ mesh.write("s2_cameras.gltf")
 mesh.json["cameras"][0]["perspective"]["yfov"] = 3.2
 mesh.write("s2_wide.gltf")
 mesh = staged()
+mesh.json["cameras"] = [{"name": "", "type": "perspective", "perspective": {"yfov": 1}}]
+place(mesh, camera=0, name="near", translation=[0.5, 0.5, 3])
+# It looks away from the mesh, to a point beyond 1e9.
+place(mesh, camera=0, name="far", translation=[0.5, 0.5, 1e9], rotation=[0, 1, 0, 0])
+mesh.write("s2_range.gltf")
+mesh = staged()
+mesh.json["cameras"] = {}
+shine(mesh, 5)
+place(mesh, camera=0, extensions={"KHR_lights_punctual": {"light": 0}})
+mesh.write("s2_no_lists.gltf")
+mesh = staged()
+place(mesh, extensions={"KHR_lights_punctual": {"light": 0}})
+mesh.write("s3_no_lights.gltf")
+mesh = staged()
 mesh.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1}}]
 for x in range(11):
     place(mesh, camera=0, name=str(x), translation=[x, 0, 5])
@@ -630,6 +644,28 @@ shine(mesh, [{"type": "point"}])
 for x in range(65):
     place(mesh, translation=[x, 0, 5], extensions={"KHR_lights_punctual": {"light": 0}})
 mesh.write("s3_many.gltf")
+LIGHT = [{"KHR_lights_punctual": {"light": i}} for i in range(3)]
+# Far away, a point source and a spot that shines away from the mesh; near, a spot.
+mesh = staged()
+shine(mesh, [{"type": kind, "intensity": candela} for kind, candela in [("point", 1e14), ("spot", 9e14), ("spot", 100)]])
+place(mesh, translation=[0.5, 0.5, 2e6], extensions=LIGHT[0])
+place(mesh, translation=[0.5, 0.5, 3e6], rotation=[0, 1, 0, 0], extensions=LIGHT[1])
+place(mesh, translation=[0.5, 0.5, 2], extensions=LIGHT[2])
+mesh.write("s3_far.gltf")
+# Two lights with intensities beyond 1e12 in the scene.
+mesh = staged()
+mesh.json["nodes"][0]["scale"] = [1e6, 1e6, 1e6]
+shine(mesh, [{"type": "point", "intensity": 4e12}, {"type": "spot", "intensity": 4e12}])
+for i in range(2):
+    place(mesh, translation=[5e5, 5e5, 2e6], extensions=LIGHT[i])
+mesh.write("s3_huge.gltf")
+# A point source needs no direction, a directional light no position, and a spot both.
+mesh = staged()
+shine(mesh, [{"type": "directional"}, {"type": "point"}, {"type": "spot"}])
+for i in range(3):
+    place(mesh, translation=[0.5, 0.5, 2], scale=[0, 0, 0], extensions=LIGHT[i])
+    place(mesh, translation=[0, 0, 2e9], extensions=LIGHT[i])
+mesh.write("s3_places.gltf")
 
 # A grid of 4 by 4 vertices at (x / 3, y / 3, 0.2 sin(3 x) cos(7 y / 3)), compressed by Google's library (DracoPy 2.2.0,
 # levels 7 and 0): with colours, texture coordinates and normals, and without.
@@ -680,6 +716,9 @@ mesh = draco(data, attributes)
 # Both primitives are the same part of the file.
 mesh.json["meshes"][0]["primitives"].append(mesh.primitive)
 mesh.write("s5_twice.gltf")
+mesh = draco(data, attributes)
+mesh.primitive["mode"] = 6
+mesh.write("s5_mode.gltf")
 mesh = Gltf()
 mesh.json["extensionsUsed"] = mesh.json["extensionsRequired"] = ["ACME_wonder"]
 mesh.write("b14_unknown.gltf")

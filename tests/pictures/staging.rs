@@ -11,12 +11,19 @@ use std::sync::Mutex;
 use termtrace::internals::mesh_file::UpAxis;
 use termtrace::internals::progress::Reporter;
 use termtrace::internals::scene::Draft;
-use termtrace::{Camera, LinearRgb, Pose, Resolution, Scene, describe, render};
+use termtrace::{Camera, Falloff, Light, LinearRgb, Pose, Resolution, Scene, describe, render};
+
+/// Returns the draft around a mesh, and the notices.
+fn draft_and_notices(name: &str, up: UpAxis) -> (Draft, Vec<String>) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/odd_meshes").join(name);
+    let notices = Mutex::new(Vec::new());
+    let on_notice = |notice: String| notices.lock().expect("no thread panicked").push(notice);
+    let draft = Draft::load_turned(&path, Some(up), &Reporter::silent().with_warnings(&on_notice));
+    (draft.expect("it can be read"), notices.into_inner().expect("no thread panicked"))
+}
 
 fn draft(name: &str, up: UpAxis) -> Draft {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/odd_meshes").join(name);
-    let on_notice = |_: String| {};
-    Draft::load_turned(&path, Some(up), &Reporter::silent().with_warnings(&on_notice)).expect("it can be read")
+    draft_and_notices(name, up).0
 }
 
 fn scene(name: &str) -> Scene {
@@ -63,6 +70,40 @@ fn lux_and_candela_of_a_file_keep_their_ratio_and_a_spot_its_cone() {
 }
 
 #[test]
+fn distant_lights_of_a_file_are_suns_where_they_reach_the_mesh() {
+    let scene = scene("s3_far.gltf");
+    let [Light::Sun(_), Light::Sun(_), Light::Spot(_)] = scene.lights() else { panic!("{:?}", scene.lights()) };
+    // 1e14 candela at distance 2e6 are 25 lux, 9e14 at 3e6 are 100, and 100 at 2 are 25. The second light, which counts,
+    // shines away from the mesh.
+    let factor = 1.0 / 150.0;
+    assert_close(light_at(&scene, 0.5, 0.5), [factor * 50.0; 3]);
+    let cosine = 2.0 / 4.25_f64.sqrt();
+    let inside = (cosine - libm::cos(FRAC_PI_4)) / (1.0 - libm::cos(FRAC_PI_4));
+    let share = inside * inside * (3.0 - 2.0 * inside);
+    assert_close(light_at(&scene, 0.999_999, 0.5), [factor * (25.0 + 100.0 / 4.25 * cosine * share); 3]);
+}
+
+#[test]
+fn lights_of_a_file_beyond_the_range_of_intensities_have_no_falloff() {
+    let scene = scene("s3_huge.gltf");
+    let [Light::Point(point), Light::Spot(spot)] = scene.lights() else { panic!("{:?}", scene.lights()) };
+    let position = Vec3::new(5e5, 5e5, 2e6);
+    assert_eq!((point.position(), point.falloff()), (position, Falloff::None));
+    let half = |LinearRgb { r, g, b }: LinearRgb| [r, g, b].iter().all(|channel| (channel - 0.5).abs() < 1e-5);
+    assert!(half(point.intensity()) && half(Light::Spot(*spot).color()), "{:?}", scene.lights());
+    let text = scene.around_mesh_to_ron("x.gltf", scene.camera()).expect("it is around a mesh");
+    assert_eq!(text.matches("falloff: None").count(), 2, "{text}");
+}
+
+#[test]
+fn cameras_out_of_range_are_told() {
+    let (draft, notices) = draft_and_notices("s2_range.gltf", UpAxis::Y);
+    assert_eq!(draft.finish().views().len(), 1);
+    let [notice] = &notices[..] else { panic!("{notices:?}") };
+    assert!(notice.ends_with("s2_range.gltf: not shown: 1 camera (out of range)"), "{notice}");
+}
+
+#[test]
 fn a_file_without_lights_has_the_three_default_ones() {
     assert_eq!(scene("s2_cameras.gltf").lights().len(), 3);
     assert_eq!(scene("s3_unused.gltf").lights().len(), 1);
@@ -100,7 +141,7 @@ fn cameras_and_lights_turn_with_the_mesh() {
 /// The text of a scene around a mesh has the cameras and lights of the mesh's file.
 #[test]
 fn a_saved_scene_keeps_the_lights_and_views_of_the_file() {
-    for name in ["s3_two.gltf", "s3_point.gltf", "s2_cameras.gltf", "a3.gltf"] {
+    for name in ["s3_two.gltf", "s3_point.gltf", "s3_far.gltf", "s3_huge.gltf", "s2_cameras.gltf", "a3.gltf"] {
         let scene = scene(name);
         let text = scene.around_mesh_to_ron(name, scene.camera()).expect("it is around a mesh");
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/odd_meshes/saved.ron");
@@ -110,6 +151,8 @@ fn a_saved_scene_keeps_the_lights_and_views_of_the_file() {
         let saved = Draft::from_bytes(&path.to_string_lossy(), text.as_bytes(), &reporter).expect("a scene").finish();
         assert_eq!(saved.views(), scene.views(), "{text}");
         assert_eq!(saved.lights().len(), scene.lights().len(), "{text}");
+        let kinds = |scene: &Scene| scene.lights().iter().map(std::mem::discriminant).collect::<Vec<_>>();
+        assert_eq!(kinds(&saved), kinds(&scene), "{text}");
         for (x, y) in [(0.5, 0.5), (0.9, 0.2)] {
             assert_close(light_at(&saved, x, y), light_at(&scene, x, y));
         }

@@ -25,6 +25,8 @@ pub struct SpotLight {
 struct Cone {
     /// The angle of the whole cone in degrees.
     degrees: f32,
+    /// The share of half the angle over which the light fades.
+    softness: f32,
     /// 1 minus the cosine of half the angle.
     outer: f32,
     /// The difference of 1 minus the cosine over which the light fades, up to `outer`.
@@ -44,7 +46,7 @@ impl Cone {
             2.0 * sine * sine
         };
         let (outer, inner) = (below_one(half_angle), below_one(half_angle * (1.0 - f64::from(softness))));
-        Self { degrees, outer: outer as f32, fade: (outer - inner) as f32 }
+        Self { degrees, softness, outer: outer as f32, fade: (outer - inner) as f32 }
     }
 }
 
@@ -106,6 +108,19 @@ fn axis(position: DVec3, target: DVec3) -> Result<Vec3, Message> {
     let away = position - target;
     let length = checks::distance("position", "target", away.length())?;
     Ok((away / length).as_vec3())
+}
+
+#[cfg(feature = "ron")]
+impl SpotLight {
+    /// Returns the unit vector from the target to the position.
+    pub(crate) fn axis(&self) -> Vec3 {
+        self.axis
+    }
+
+    /// Returns the angle of the whole cone in degrees, and its softness.
+    pub(crate) fn cone(&self) -> [f32; 2] {
+        [self.cone.degrees, self.cone.softness]
+    }
 }
 
 impl LightSource for SpotLight {

@@ -32,6 +32,14 @@ impl Sun {
     }
 }
 
+#[cfg(feature = "ron")]
+impl Sun {
+    /// Returns the unit vector to the light.
+    pub(crate) fn direction(&self) -> Vec3 {
+        self.direction
+    }
+}
+
 impl LightSource for Sun {
     /// An object blocks the light at any distance.
     const BLOCKING_INTERVAL: Interval = Interval { min: f32::MIN_POSITIVE, max: f32::INFINITY };

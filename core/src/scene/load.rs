@@ -381,7 +381,15 @@ fn draft_around_mesh(
     };
     let guess = usual.filter(|_| up.is_none()).map(|usual| mesh_file::guessed(&mesh, usual, reporter.is_parallel()));
     let origin = MeshOrigin { format, up: up.or(guess).unwrap_or_default(), is_guess: guess.is_some() };
-    Draft::around_mesh(mesh, origin).ok_or_else(|| LoadError::Unseen { path: path.to_owned() }.into())
+    let camera_count = mesh.staging().cameras.len();
+    let draft = Draft::around_mesh(mesh, origin).ok_or_else(|| LoadError::Unseen { path: path.to_owned() })?;
+    let unshown = camera_count - draft.checked.views.len();
+    if unshown > 0 {
+        let plural = if unshown == 1 { "" } else { "s" };
+        let notice = || format!("{}: not shown: {unshown} camera{plural} (out of range)", path.display());
+        reporter.notify_if_possible(|| visible(&notice()));
+    }
+    Ok(draft)
 }
 
 /// The largest memory in bytes per byte of a scene file, including the trees of its objects.

@@ -97,9 +97,7 @@ impl Scene {
             return None;
         };
         let color = |color: LinearRgb| vector(Vec3::new(color.r, color.g, color.b));
-        let written = &shape.file().staging().lights;
-        let lights = self.lights().iter().enumerate();
-        let lights = lights.map(|(i, light)| format!("        {},\n", staging::light_to_ron(light, written.get(i))));
+        let lights = self.lights().iter().map(|light| format!("        {},\n", staging::light_to_ron(light)));
         let turn = match origin.up.degrees() {
             [0, 0, 0] => String::new(),
             [x, y, z] => format!(", rotate: ({x}, {y}, {z})"),
@@ -108,10 +106,10 @@ impl Scene {
             if shape.file().has_colors() { String::new() } else { format!(", material: Diffuse({})", color(CLAY)) };
         let [[bottom, top], [a, b]] = [BACKGROUND, FLOOR].map(|colors| colors.map(color));
         let size = number(SQUARE * 0.5 * Bounds::of(shape.file().positions().iter().copied()).extent().length());
-        let about_lights = if written.is_empty() {
+        let about_lights = if shape.file().staging().lights.is_empty() {
             "    // A warm light, a blue one, and one from behind, each as bright everywhere.\n"
         } else {
-            "    // The lights of the file, dimmed together.\n"
+            "    // The lights of the file, all times one factor.\n"
         };
         let views: Vec<_> = self.views().iter().map(|view| format!("        {},\n", view.value_to_ron())).collect();
         let views = if views.is_empty() { String::new() } else { format!("    views: [\n{}    ],\n", views.concat()) };

@@ -41,7 +41,7 @@ pub(super) fn read<'a>(
         let children = nodes_in(node, "children", root)?;
         open.extend(children.into_iter().rev().map(|child| (child, transform)));
     }
-    let staging = staging.finish(root, primitives.left_out())?;
+    let staging = staging.finish(root, primitives.left_out());
     primitives.finish(staging)
 }
 

@@ -113,8 +113,14 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
             self.positions.clear();
             self.normals.clear();
         }
-        // Compressed primitives are separate triangles, whatever they were before.
-        let mode = if compressed(primitive)?.is_some() { 4 } else { primitive.index_or("mode", 4)? };
+        let mut mode = primitive.index_or("mode", 4)?;
+        if compressed(primitive)?.is_some() {
+            if ![4, 5].contains(&mode) {
+                return Err(primitive.fault(format!("Draco compresses triangles (mode 4 or 5), found mode {mode}")));
+            }
+            // A strip is stored as separate triangles, too.
+            mode = 4;
+        }
         let material = primitive.field("material")?.map(|index| index.item_of(self.buffers.root(), "materials"));
         let material = material.transpose()?.map(|(index, _)| index);
         let attributes = primitive.required("attributes")?;

@@ -6,7 +6,7 @@ use crate::color::LinearRgb;
 use crate::mesh_file::fault::MeshFault;
 use crate::mesh_file::left_out::LeftOut;
 use crate::mesh_file::staging::{FileCamera, FileLight, FileLightKind, FilePlace, Staging};
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, Vec3};
 use std::collections::HashSet;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
@@ -49,8 +49,9 @@ impl StagingReader {
                 Err(what) => left_out.not_shown(what, 1),
             }
         }
-        if let (Some(light), Some(lights)) = (node.extension(LIGHTS)?, root.extension(LIGHTS)?) {
-            let index = light.required("light").and_then(|light| light.item_of(lights, "lights"));
+        if let Some(light) = node.extension(LIGHTS)? {
+            let lights = root.required("extensions").and_then(|extensions| extensions.required(LIGHTS));
+            let index = lights.and_then(|lights| light.required("light")?.item_of(lights, "lights"));
             let light = index.and_then(|(index, light)| {
                 self.lights.insert(index);
                 light_at(light, transform)
@@ -64,12 +65,14 @@ impl StagingReader {
         Ok(())
     }
 
-    /// Returns the cameras and lights, and counts those that no node places.
-    pub(super) fn finish(self, root: Json<'_>, left_out: &mut LeftOut<'_>) -> Result<Staging, MeshFault> {
-        let lights = root.extension(LIGHTS)?.map_or(Ok(0), |lights| lights.list_len("lights"))?;
-        left_out.not_shown("camera (without a node)", root.list_len("cameras")? - self.cameras.len());
-        left_out.not_shown("light (without a node)", lights - self.lights.len());
-        Ok(self.staging)
+    /// Returns the cameras and lights, and counts those that no node of the scene places.
+    pub(super) fn finish(self, root: Json<'_>, left_out: &mut LeftOut<'_>) -> Staging {
+        // A faulty list has no cameras or lights. Its fault was counted at each node that names one of them.
+        let cameras = root.list_len("cameras").unwrap_or(0);
+        let lights = root.extension(LIGHTS).and_then(|lights| lights.map_or(Ok(0), |lights| lights.list_len("lights")));
+        left_out.not_shown("camera (not in the scene)", cameras.saturating_sub(self.cameras.len()));
+        left_out.not_shown("light (not in the scene)", lights.unwrap_or(0).saturating_sub(self.lights.len()));
+        self.staging
     }
 }
 
@@ -94,8 +97,11 @@ fn camera_at(
     if aspect_ratio.is_some_and(|ratio| !checks::is_ratio_within_range(ratio)) {
         return Err(perspective.fault("the aspectRatio is not within 1e-6 and 1e6"));
     }
-    let name = [camera.field("name")?, node.field("name")?].into_iter().flatten().find_map(|name| name.string().ok());
-    let Some(place) = place_of(transform) else { return Ok(Err("camera (too far away, or without a direction)")) };
+    let names = [camera.field("name")?, node.field("name")?].into_iter().flatten();
+    let name = names.filter_map(|name| name.string().ok()).find(|name| !name.is_empty());
+    let Some(place) = place_of_camera(transform) else {
+        return Ok(Err("camera (too far away, or without a direction)"));
+    };
     let name = name.unwrap_or_default().to_owned();
     Ok(Ok(FileCamera { name, place, vertical_fov, aspect_ratio: aspect_ratio.map(|ratio| ratio as f32) }))
 }
@@ -114,7 +120,9 @@ fn light_at(light: Json<'_>, transform: &DMat4) -> Result<Result<FileLight, &'st
     if !(0.0..=1e30).contains(&intensity) {
         return Err(light.fault("the intensity is not within 0 and 1e30"));
     }
-    let Some(place) = place_of(transform) else { return Ok(Err("light (too far away, or without a direction)")) };
+    let Some(place) = place_of_light(kind, transform) else {
+        return Ok(Err("light (too far away, or without a direction)"));
+    };
     let [r, g, b] = [r, g, b].map(|channel| (channel * intensity) as f32);
     Ok(Ok(FileLight { place, intensity: LinearRgb::new(r, g, b), kind }))
 }
@@ -132,21 +140,45 @@ fn cone_of(light: Json<'_>) -> Result<[f64; 2], MeshFault> {
     Ok(angles)
 }
 
-/// Returns the place of a node, which looks along its -z axis, with +y up.
+/// Returns the place of a camera at a node, which looks along the node's -z axis, with +y up.
 ///
 /// `None` if its axes have no directions, or the position is not within ±1e9.
-fn place_of(transform: &DMat4) -> Option<FilePlace> {
-    let axis = |axis: DVec3| {
-        let direction = transform.transform_vector3(axis);
-        (direction / direction.abs().max_element()).try_normalize()
+fn place_of_camera(transform: &DMat4) -> Option<FilePlace> {
+    let forward = direction_of(transform, DVec3::NEG_Z)?;
+    let up = up_of(transform, forward)?;
+    Some(FilePlace { position: position_of(transform)?, forward: forward.as_vec3(), up: up.as_vec3() })
+}
+
+/// Returns the place of a light at a node, which shines along the node's -z axis.
+///
+/// `None` if the axis has no direction, or the position is not within ±1e9. A point source needs no direction, and a
+/// directional light no position; for these any will do.
+fn place_of_light(kind: FileLightKind, transform: &DMat4) -> Option<FilePlace> {
+    let (position, forward) = (position_of(transform), direction_of(transform, DVec3::NEG_Z));
+    let (position, forward) = match kind {
+        FileLightKind::Directional => (position.unwrap_or_default(), forward?),
+        FileLightKind::Point => (position?, forward.unwrap_or(DVec3::NEG_Z)),
+        FileLightKind::Spot { .. } => (position?, forward?),
     };
-    let (forward, up) = (axis(DVec3::NEG_Z)?, axis(DVec3::Y)?);
-    // Scaled parents of rotated nodes may have made the axes oblique.
-    let up = (up - forward * up.dot(forward)).try_normalize()?;
+    let up = up_of(transform, forward).unwrap_or_else(|| forward.any_orthonormal_vector());
+    Some(FilePlace { position, forward: forward.as_vec3(), up: up.as_vec3() })
+}
+
+/// Returns the position of a node; `None` if it is not within ±1e9.
+fn position_of(transform: &DMat4) -> Option<Vec3> {
     let position = transform.transform_point3(DVec3::ZERO);
-    checks::is_within_range(position).then(|| FilePlace {
-        position: position.as_vec3(),
-        forward: forward.as_vec3(),
-        up: up.as_vec3(),
-    })
+    (position.is_finite() && checks::is_within_range(position)).then(|| position.as_vec3())
+}
+
+/// Returns the unit vector along an axis of a node; `None` if the axis has no direction.
+fn direction_of(transform: &DMat4, axis: DVec3) -> Option<DVec3> {
+    let direction = transform.transform_vector3(axis);
+    (direction / direction.abs().max_element()).try_normalize()
+}
+
+/// Returns the unit vector perpendicular to `forward` that is nearest to the +y axis of a node.
+fn up_of(transform: &DMat4, forward: DVec3) -> Option<DVec3> {
+    let up = direction_of(transform, DVec3::Y)?;
+    // Scaled parents of rotated nodes may have made the axes oblique.
+    (up - forward * up.dot(forward)).try_normalize()
 }
