@@ -25,6 +25,8 @@ pub(super) struct Library {
     /// Whether an MTL file is missing, so that a material's name may be unknown.
     is_incomplete: bool,
     textures: HashMap<PathBuf, Arc<Texture>>,
+    /// The masks, by the addresses of the textures that they are made of, which `textures` keeps.
+    masks: HashMap<usize, Arc<Texture>>,
     budget: TexelBudget,
 }
 
@@ -142,7 +144,8 @@ impl MtlReader<'_, '_> {
             b"map_d" => {
                 self.last_material(at)?;
                 if let Some(placement) = self.texture()? {
-                    let texture = Some(TexturePlacement { texture: placement.texture.as_mask(), ..placement });
+                    let texture = self.mask(at, &placement.texture)?;
+                    let texture = Some(TexturePlacement { texture, ..placement });
                     let opacity = Opacity { factor: 1.0, texture };
                     self.last_material(at)?.holes = opacity.may_be_below(CUTOFF).then_some((opacity, CUTOFF));
                 }
@@ -161,6 +164,18 @@ impl MtlReader<'_, '_> {
             _ => {}
         }
         Ok(())
+    }
+
+    /// Returns the mask that a texture gives, made once for all materials.
+    fn mask(&mut self, at: usize, texture: &Arc<Texture>) -> Result<Arc<Texture>, MeshFault> {
+        let Library { masks, budget, .. } = &mut *self.library;
+        let address = Arc::as_ptr(texture).addr();
+        if let Some(mask) = masks.get(&address) {
+            return Ok(Arc::clone(mask));
+        }
+        let mask = texture.as_mask(budget).map_err(|what| MeshFault::in_text(at, format!("the mask {what}")))?;
+        masks.insert(address, Arc::clone(&mask));
+        Ok(mask)
     }
 
     /// Records a feature of the last material that is not shown.

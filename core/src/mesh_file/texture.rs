@@ -138,15 +138,22 @@ impl Texture {
 
     /// Returns the image whose opacities this image gives: its own, or else the lightnesses of its
     /// texels.
+    ///
+    /// # Errors
+    /// If the budget has too few texels for a copy; the error is a message without its subject.
     #[cfg(feature = "mesh")]
-    pub(super) fn as_mask(self: &Arc<Self>) -> Arc<Self> {
+    pub(super) fn as_mask(self: &Arc<Self>, budget: &mut TexelBudget) -> Result<Arc<Self>, String> {
         if self.has_opacities {
-            return Arc::clone(self);
+            return Ok(Arc::clone(self));
         }
+        budget.spend(self.width as usize, self.height as usize)?;
         let lightness =
             |&Srgb8 { r, g, b }: &Srgb8| ((54 * u32::from(r) + 183 * u32::from(g) + 19 * u32::from(b)) >> 8) as u8;
-        let opacities = self.texels.iter().map(lightness).collect();
-        Arc::new(Self { opacities, has_opacities: true, ..Self::clone(self) })
+        let mut opacities: Vec<_> = self.texels.iter().map(lightness).collect();
+        if opacities.iter().all(|&opacity| opacity == u8::MAX) {
+            opacities.clear();
+        }
+        Ok(Arc::new(Self { opacities, has_opacities: true, ..Self::clone(self) }))
     }
 
     /// Returns the texels row by row, from the top left one.
@@ -168,6 +175,8 @@ impl Wrap {
     /// Returns the two texels of a row or column of `length` texels whose centres are nearest to a
     /// coordinate, and the share of the second one.
     fn texels(self, coordinate: f32, length: u32) -> ([u32; 2], f32) {
+        // Beyond the range of numbers there are no texels to tell apart, and infinity less infinity is no colour.
+        let coordinate = if coordinate.is_finite() { coordinate } else { 0.0 };
         let within = match self {
             Self::Repeat => coordinate - coordinate.floor(),
             // The distance to the nearest even number, of which the image begins.

@@ -118,6 +118,9 @@ impl Object {
 
     /// Returns the part of the light that does not pass straight through the surface at a point.
     pub(crate) fn opacity_at(&self, primitive: u32, point: &OwnPoint) -> f32 {
+        if !self.is_blended() {
+            return self.opacity;
+        }
         self.opacity * self.in_mesh_material(primitive, point, MeshMaterial::opacity).unwrap_or(1.0)
     }
 

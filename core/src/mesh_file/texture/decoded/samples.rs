@@ -14,7 +14,7 @@ impl Default for TexelBudget {
 }
 
 impl TexelBudget {
-    pub(super) fn spend(&mut self, width: usize, height: usize) -> Result<(), String> {
+    pub(in crate::mesh_file) fn spend(&mut self, width: usize, height: usize) -> Result<(), String> {
         if width == 0 || height == 0 {
             return Err("is a picture without pixels".to_owned());
         }
