@@ -59,6 +59,13 @@ impl Audience {
         self.frames.receiver_count()
     }
 
+    /// Starts again with a key frame, because the drawing of the frames so far is lost.
+    pub(super) fn start_again(&self) {
+        self.needs_key.store(true, Ordering::Relaxed);
+        // A number is left out, so that no follower takes the next frame for a change of the one on its screen.
+        self.frames.send_modify(|frame| *frame = TourFrame { number: frame.number + 2, ..TourFrame::default() });
+    }
+
     /// Adds a follower.
     pub(super) fn follow(&self) -> Follower {
         self.needs_key.store(true, Ordering::Relaxed);

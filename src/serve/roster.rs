@@ -11,10 +11,6 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-/// The longest chain of viewers who follow one another.
-// Two viewers who choose each other at the same time would follow each other for ever.
-const MAX_CHAIN: usize = 16;
-
 /// The longest login name that is shown, in characters.
 const MAX_NAME: usize = 16;
 
@@ -32,7 +28,7 @@ struct Entry {
 struct Entries {
     viewers: BTreeMap<SessionId, Entry>,
     leader: Option<SessionId>,
-    /// The last view of the leader before, if the tour has no leader now.
+    /// The last view of the leader before, for followers of a tour without a leader and a path.
     left_by_leader: Option<GuideView>,
 }
 
@@ -41,22 +37,42 @@ struct Entries {
 pub(super) struct Roster(Mutex<Entries>);
 
 impl Entries {
+    fn guide_of(&self, id: SessionId) -> Option<Guide> {
+        self.viewers.get(&id)?.follows
+    }
+
+    /// Returns the viewers through whose views a guide shows its own, the nearest one first.
+    fn chain(&self, guide: Guide) -> impl Iterator<Item = SessionId> {
+        let viewer = |guide| match guide {
+            Guide::Tour => self.leader,
+            Guide::Viewer(id) => Some(id),
+        };
+        // There are no rings, because `follow` refuses them. The limit ends the walk even if there were one.
+        std::iter::successors(viewer(guide), move |&id| viewer(self.guide_of(id)?)).take(self.viewers.len() + 1)
+    }
+
     /// Returns the viewer whose own camera a guide shows; `None` if it is the tour's path.
     fn source(&self, guide: Guide) -> Option<SessionId> {
-        let mut guide = guide;
-        let mut id = None;
-        for _ in 0..MAX_CHAIN {
-            let next = match guide {
-                Guide::Tour => self.leader?,
-                Guide::Viewer(id) => id,
-            };
-            id = Some(next);
-            match self.viewers.get(&next).and_then(|entry| entry.follows) {
-                Some(follows) => guide = follows,
-                None => break,
-            }
+        self.chain(guide).last().filter(|&id| self.guide_of(id).is_none())
+    }
+
+    /// Returns whether a guide is there: the entry of a viewer who has left lasts for the last view
+    /// only.
+    fn is_present(&self, guide: Guide) -> bool {
+        match guide {
+            Guide::Tour => true,
+            Guide::Viewer(id) => self.viewers.get(&id).is_some_and(|entry| entry.is_present),
         }
-        id
+    }
+
+    /// Sets the guide of a viewer, and drops what was kept for the followers of the guide before.
+    fn set_guide(&mut self, id: SessionId, guide: Option<Guide>) {
+        let Some(entry) = self.viewers.get_mut(&id) else { return };
+        match std::mem::replace(&mut entry.follows, guide) {
+            Some(Guide::Viewer(before)) => self.drop_if_unused(before),
+            Some(Guide::Tour) if self.followers(Guide::Tour).next().is_none() => self.left_by_leader = None,
+            Some(Guide::Tour) | None => {}
+        }
     }
 
     /// Returns the viewers who have chosen a guide.
@@ -72,9 +88,10 @@ impl Entries {
         }
     }
 
-    /// Ends the lead of the tour, and keeps its last view.
-    fn end_lead(&mut self) {
-        let shown = self.source(Guide::Tour).and_then(|id| self.viewers.get(&id));
+    /// Ends the lead of the tour, and keeps its last view for its followers if no path goes on.
+    fn end_lead(&mut self, has_path: bool) {
+        let needs_view = !has_path && self.followers(Guide::Tour).next().is_some();
+        let shown = self.source(Guide::Tour).filter(|_| needs_view).and_then(|id| self.viewers.get(&id));
         self.left_by_leader = shown.map(|entry| entry.view.clone());
         self.leader = None;
     }
@@ -92,26 +109,28 @@ impl Roster {
 
     /// Sets the view of a viewer's own camera.
     pub(super) fn set_view(&self, id: SessionId, view: GuideView) {
-        if let Some(entry) = locked(&self.0).viewers.get_mut(&id).filter(|entry| entry.is_present) {
-            entry.view = view;
-        }
+        let mut entries = locked(&self.0);
+        let Some(entry) = entries.viewers.get_mut(&id).filter(|entry| entry.is_present) else { return };
+        let before = std::mem::replace(&mut entry.view, view);
+        // This may free the last copy of a scene, which takes too long under a lock that all viewers need.
+        drop(entries);
+        drop(before);
     }
 
-    /// Removes a viewer, and returns the viewers who have to be told: those who follow them.
-    pub(super) fn leave(&self, id: SessionId) -> Vec<SessionId> {
+    /// Removes a viewer of a server that has a path of a tour, or none.
+    ///
+    /// Returns the viewers who have to be told: those who follow this one.
+    pub(super) fn leave(&self, id: SessionId, has_path: bool) -> Vec<SessionId> {
         let mut entries = locked(&self.0);
         let mut told: Vec<_> = entries.followers(Guide::Viewer(id)).collect();
         if entries.leader == Some(id) {
             told.extend(entries.followers(Guide::Tour));
-            entries.end_lead();
+            entries.end_lead(has_path);
         }
         let Some(entry) = entries.viewers.get_mut(&id) else { return told };
         entry.is_present = false;
-        let followed = entry.follows.take();
+        entries.set_guide(id, None);
         entries.drop_if_unused(id);
-        if let Some(Guide::Viewer(followed)) = followed {
-            entries.drop_if_unused(followed);
-        }
         told
     }
 
@@ -125,34 +144,42 @@ impl Roster {
             if other == id {
                 return Err("this is you".to_owned());
             }
-            if !entries.viewers.get(&other).is_some_and(|entry| entry.is_present) {
+            if !entries.is_present(Guide::Viewer(other)) {
                 return Err(format!("viewer {other} has left"));
             }
         }
-        if guide.is_some_and(|guide| entries.source(guide) == Some(id)) {
+        if guide.is_some_and(|guide| entries.chain(guide).any(|through| through == id)) {
             return Err("the view you chose is your own".to_owned());
         }
-        let Some(entry) = entries.viewers.get_mut(&id) else { return Ok(()) };
-        if let Some(Guide::Viewer(before)) = std::mem::replace(&mut entry.follows, guide) {
-            entries.drop_if_unused(before);
-        }
+        entries.set_guide(id, guide);
         Ok(())
     }
 
-    /// Returns the view of a guide at `now`, of a server with this path of a tour; `None` if it has
-    /// none any more.
+    /// Returns whether a viewer is there.
+    pub(super) fn has(&self, id: SessionId) -> bool {
+        locked(&self.0).is_present(Guide::Viewer(id))
+    }
+
+    /// Returns whether a guide shows a view, of a server that has a path of a tour, or none.
+    pub(super) fn shows(&self, guide: Guide, has_path: bool) -> bool {
+        let entries = locked(&self.0);
+        entries.is_present(guide) && (has_path || entries.source(guide).is_some())
+    }
+
+    /// Returns the view of a guide at `now`, of a server with this path of a tour.
+    ///
+    /// `None` if the guide shows nothing any more.
     pub(super) fn view(&self, guide: Guide, tour: Option<&Tour>, now: Duration) -> Option<GuideView> {
         let entries = locked(&self.0);
-        // The entry of a viewer who has left lasts for the last view only.
-        if let Guide::Viewer(id) = guide
-            && !entries.viewers.get(&id).is_some_and(|entry| entry.is_present)
-        {
+        if !entries.is_present(guide) {
             return None;
         }
-        match entries.source(guide) {
-            None => tour.map(|tour| tour.view(Tour::tick_at(now))),
-            Some(id) => entries.viewers.get(&id).map(|entry| entry.view.clone()),
+        if let Some(id) = entries.source(guide) {
+            return entries.viewers.get(&id).map(|entry| entry.view.clone());
         }
+        // A view of the path is a new copy of the scene, which takes too long under a lock that all viewers need.
+        drop(entries);
+        tour.map(|tour| tour.view(Tour::tick_at(now)))
     }
 
     /// Returns the last view of a guide that shows nothing any more.
@@ -168,16 +195,20 @@ impl Roster {
     pub(super) fn lead(&self, id: SessionId) -> Option<SessionId> {
         let mut entries = locked(&self.0);
         entries.left_by_leader = None;
+        // A leader who followed one of the followers of the tour would close a ring.
+        entries.set_guide(id, None);
         entries.leader.replace(id).filter(|&before| before != id)
     }
 
-    /// Ends the lead of a viewer. Returns the viewers who have to be told.
-    pub(super) fn stop_leading(&self, id: SessionId) -> Vec<SessionId> {
+    /// Ends the lead of a viewer, of a server that has a path of a tour, or none.
+    ///
+    /// Returns the viewers who have to be told.
+    pub(super) fn stop_leading(&self, id: SessionId, has_path: bool) -> Vec<SessionId> {
         let mut entries = locked(&self.0);
         if entries.leader != Some(id) {
             return Vec::new();
         }
-        entries.end_lead();
+        entries.end_lead(has_path);
         entries.followers(Guide::Tour).collect()
     }
 

@@ -76,7 +76,7 @@ impl Client {
         Auth::Accept
     }
 
-    /// Returns whether the holder of a key may lead; `None` if the key lets no one in.
+    /// Returns whether the holder of a key may lead; `None` if the key does not let its holder in.
     fn key_holder(&self, user: &str, key: &PublicKey) -> Option<bool> {
         let setup = self.state.setup();
         let settings = &setup.settings;
@@ -84,8 +84,9 @@ impl Client {
             keys.as_ref().map(|keys| keys.iter().any(|known| known.key_data() == key.key_data()))
         };
         let may_lead = has(&settings.leaders) == Some(true);
-        // The next key of a user who wants to lead may be the right one.
-        let is_wanted = has(&settings.authorized_keys).unwrap_or(settings.leaders.is_none() || user != LEADER);
+        // Another key does not let a user in who wants to lead: the next key of the client may be the right one.
+        let wants_lead = settings.leaders.is_some() && user == LEADER;
+        let is_wanted = !wants_lead && has(&settings.authorized_keys).unwrap_or(true);
         (may_lead || is_wanted).then_some(may_lead)
     }
 
@@ -149,7 +150,7 @@ impl Handler for Client {
         Ok(holder.map_or_else(Auth::reject, |may_lead| self.log_in(user, may_lead)))
     }
 
-    /// Lets everybody in without a question, unless a key is needed.
+    /// Accepts any user without a question, unless a key is needed.
     async fn auth_keyboard_interactive<'a>(
         &'a mut self,
         user: &str,

@@ -96,7 +96,7 @@ pub(super) struct ViewerSession {
     leaving: Option<(Duration, LeaveReason)>,
     /// The guide that the viewer follows; `None` in a view of their own camera.
     following: Option<Following>,
-    /// The time at which the viewer last stopped to follow, from which the idle time counts.
+    /// The time at which the viewer last stopped following a guide; the idle time counts from it.
     own_since: Duration,
     may_lead: bool,
     /// Whether the viewer leads the tour, as far as they know.
@@ -105,6 +105,8 @@ pub(super) struct ViewerSession {
     told: Vec<SessionId>,
     /// The class of the viewer's audience at the last call of `take_audience_change`.
     audience: Option<AudienceClass>,
+    /// The time from which the viewer may join another audience.
+    joins_from: Duration,
     /// The time at which the last turn ended.
     latest: Duration,
     /// The number of frames drawn since the last call of `take_drawn`.
@@ -153,6 +155,7 @@ impl ViewerSession {
             leads: false,
             told: Vec::new(),
             audience: None,
+            joins_from: now,
             latest: now,
             drawn: 0,
         };
@@ -211,7 +214,7 @@ impl ViewerSession {
         if self.apply_input(input, now, out).is_err() {
             return self.leave(LeaveReason::OutOfMemory, now, out);
         }
-        if self.carry_out_requests(company, tour, now, out).is_break() {
+        if self.carry_out_requests(company, tour.is_some(), now, out).is_break() {
             return self.leave(LeaveReason::Quit, now, out);
         }
         if self.leads && company.roster.leader() != Some(company.id) {
@@ -221,11 +224,11 @@ impl ViewerSession {
         if let Some(Following { guide, since }) = self.following {
             if self.viewer.last_press_time() > since {
                 self.leave_guide(company, &left_text(guide), now);
-            } else if view_of(guide).is_none() {
+            } else if !company.roster.shows(guide, tour.is_some()) {
                 if let Some(view) = company.roster.last_view(guide) {
                     self.stand_at(&view, now);
                 }
-                self.leave_guide(company, &over_text(guide), now);
+                self.leave_guide(company, &over_text(guide, company.roster), now);
             }
         }
         let (end, reason) = self.next_end();
@@ -244,7 +247,8 @@ impl ViewerSession {
         if self.following.is_some() {
             self.latest = clock();
             let sequence = self.viewer.receiver().sequence_times_out_at(now);
-            return AfterTurn::Sleep(sequence.into_iter().chain([counted]).min());
+            let joins = Some(self.joins_from).filter(|&at| at > self.latest && self.audience_class() != self.audience);
+            return AfterTurn::Sleep(sequence.into_iter().chain(joins).chain([counted]).min());
         }
         let next = self.carry_out_steps(company, (sending, kind), clock, trace, out);
         self.show_to_others(company);
@@ -359,24 +363,13 @@ impl ViewerSession {
         AfterTurn::Turn(kind)
     }
 
-    /// Returns what the viewer's screen shows from now on, if that has changed since the last call.
-    pub(super) fn take_audience_change(&mut self) -> Option<AudienceChange> {
-        let class = self.following.filter(|_| self.leaving.is_none()).map(|Following { guide, .. }| AudienceClass {
-            guide,
-            size: self.viewer.picture_size(),
-            capabilities: *self.viewer.capabilities(),
-        });
-        let has_changed = std::mem::replace(&mut self.audience, class) != class;
-        has_changed.then(|| class.map_or(AudienceChange::Leave, AudienceChange::Follow))
-    }
-
     /// Carries out the viewer's requests; breaks if the user leaves.
     ///
     /// Requests to write to the server's disk, to turn a mesh or to suspend do nothing; no key is bound to them.
     fn carry_out_requests(
         &mut self,
         company: &Company<'_>,
-        tour: Option<&Tour>,
+        has_path: bool,
         now: Duration,
         out: &mut Vec<u8>,
     ) -> ControlFlow<()> {
@@ -397,11 +390,11 @@ impl ViewerSession {
                 }
                 Request::Tour if self.following.is_some_and(|following| following.guide == Guide::Tour) => {}
                 Request::Tour if self.leads => self.viewer.show_note("you lead the tour; G ends that"),
-                Request::Tour if company.roster.view(Guide::Tour, tour, now).is_none() => {
+                Request::Tour if !company.roster.shows(Guide::Tour, has_path) => {
                     self.viewer.show_note("there is no tour now");
                 }
                 Request::Tour => self.follow(company, Guide::Tour, now),
-                Request::Lead if self.may_lead => self.toggle_lead(company, now),
+                Request::Lead if self.may_lead => self.toggle_lead(company, has_path, now),
                 Request::ListViewers => {
                     let others = self.others(company);
                     self.viewer.turn_viewer_list(others);

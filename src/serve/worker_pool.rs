@@ -24,6 +24,9 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+/// The time for which an audience rests after a panic.
+const AFTER_PANIC: Duration = Duration::from_secs(1);
+
 /// A session, and the buffers between it and its connection.
 struct PooledSession {
     id: SessionId,
@@ -117,10 +120,14 @@ impl WorkerPool {
         buffers: Arc<SessionBuffers>,
         name: Option<Arc<str>>,
     ) -> SessionId {
-        let mut state = locked(&self.state);
-        let id = state.next_id;
-        state.next_id += 1;
+        let id = {
+            let mut state = locked(&self.state);
+            state.next_id += 1;
+            state.next_id - 1
+        };
+        // Without the lock of the pool, which all threads need, because this may copy a scene.
         session.enter(&Company { roster: &self.roster, id }, name);
+        let mut state = locked(&self.state);
         state.sessions.insert(id, Arc::new(PooledSession { id, session: Mutex::new(session), buffers }));
         state.queue.add(id);
         self.metrics.visits.add(1);
@@ -226,28 +233,38 @@ impl WorkerPool {
                 Err(_) => turn(),
             }));
             let next = turned.unwrap_or_else(|_| {
-                // The panic hook has already printed the message. Only this viewer ends, with a clean terminal. The
-                // tracer is replaced, because the panic may have left it in an invalid state.
+                // The panic hook has already printed the message. The tracer is replaced, because the panic may have
+                // left it in an invalid state.
                 tracer = Tracer::default();
                 self.metrics.panics.add(1);
-                if let TurnOwner::Session(pooled) = &owner {
-                    let mut out = Vec::new();
-                    locked(&pooled.session).abandon(&mut out);
-                    pooled.buffers.send(out, Some(ScreenSource::Session), Some(LeaveReason::Fault));
+                match &owner {
+                    // Only this viewer ends, with a clean terminal.
+                    TurnOwner::Session(pooled) => {
+                        let mut out = Vec::new();
+                        locked(&pooled.session).abandon(&mut out);
+                        pooled.buffers.send(out, Some(ScreenSource::Session), Some(LeaveReason::Fault));
+                        AfterTurn::End
+                    }
+                    // The followers stay. A later view may be drawn without a panic.
+                    TurnOwner::Audience(pooled) => {
+                        *locked(&pooled.drawing) = Drawing::new(&pooled.audience.class);
+                        pooled.audience.start_again();
+                        AfterTurn::Sleep(Some(self.now() + AFTER_PANIC))
+                    }
                 }
-                AfterTurn::End
             });
             let cost = cpu_time().saturating_sub(started);
             self.metrics.turn_micros.add(u64::try_from(cost.as_micros()).unwrap_or(0));
             let mut state = locked(&self.state);
             // All followers pay for the frames of their audience together.
             let sharers = if let TurnOwner::Audience(pooled) = &owner { pooled.audience.len() } else { 1 };
-            // A follower may have come since the turn ended.
+            // An audience ends with its last follower, and only here, under the lock under which one joins.
             let next = if sharers == 0 { AfterTurn::End } else { next };
             state.queue.finish(id, cost / u32::try_from(sharers.max(1)).unwrap_or(u32::MAX), next);
             if next == AfterTurn::End {
                 if state.sessions.remove(&id).is_some() {
-                    self.wake_all(&mut state, self.roster.leave(id));
+                    let told = self.roster.leave(id, state.tour.is_some());
+                    self.wake_all(&mut state, told);
                 }
                 state.audiences.remove(&id);
             }
@@ -333,12 +350,19 @@ impl WorkerPool {
 
     /// Draws the next frame of a guide's view for an audience.
     fn draw_for(&self, PooledAudience { audience, drawing }: &PooledAudience) -> AfterTurn {
+        if audience.len() == 0 {
+            // A follower who changes the size of the window leaves audiences behind, which cost no picture.
+            return AfterTurn::Turn(WorkKind::Picture);
+        }
         let (guide, now) = (audience.class.guide, self.now());
         let (tour, limits, watching) = {
             let state = locked(&self.state);
             (state.tour.clone(), state.limits, state.sessions.len())
         };
-        let Some(view) = self.roster.view(guide, tour.as_deref(), now) else { return AfterTurn::End };
+        let Some(view) = self.roster.view(guide, tour.as_deref(), now) else {
+            // The guide may show something again; if not, the followers leave by themselves.
+            return AfterTurn::Sleep(Some(limits.next_frame_at(now, 0)));
+        };
         let line = GuideLine { title: self.roster.title(guide), watching };
         let (next, has_drawn) = locked(drawing).draw(audience, (view, line), limits, now);
         self.metrics.tour_drawn.add(has_drawn.into());

@@ -36,6 +36,8 @@ fn a_guide_shows_what_its_viewer_sees_through_a_chain() {
     assert!(roster.follow(1, Some(Guide::Viewer(9))).is_err());
     assert_eq!(shows(&roster, Guide::Tour), None);
     assert_eq!(roster.lead(3), None);
+    assert_eq!(shows(&roster, Guide::Tour), Some(3.0), "who begins to lead leaves a guide");
+    assert_eq!(roster.follow(3, Some(Guide::Viewer(2))), Ok(()));
     assert_eq!(shows(&roster, Guide::Tour), Some(1.0));
     assert!(roster.follow(1, Some(Guide::Tour)).is_err(), "the tour shows this viewer");
     assert_eq!(roster.title(Guide::Tour), "tour led by viewer 3");
@@ -46,7 +48,7 @@ fn followers_are_told_and_have_the_last_view_until_they_leave_it() {
     let roster = roster(4);
     roster.follow(1, Some(Guide::Viewer(0))).expect("it is there");
     roster.follow(2, Some(Guide::Viewer(0))).expect("it is there");
-    assert_eq!(roster.leave(0), [1, 2]);
+    assert_eq!(roster.leave(0, false), [1, 2]);
     assert_eq!(shows(&roster, Guide::Viewer(0)), None);
     let last = |guide| roster.last_view(guide).map(|view| view.camera.pose().eye.x);
     assert_eq!(last(Guide::Viewer(0)), Some(0.0));
@@ -55,7 +57,7 @@ fn followers_are_told_and_have_the_last_view_until_they_leave_it() {
     roster.set_view(0, view("one", 9.0));
     roster.follow(1, None).expect("nothing is refused");
     assert_eq!(last(Guide::Viewer(0)), Some(0.0));
-    assert!(roster.leave(2).is_empty());
+    assert!(roster.leave(2, false).is_empty());
     assert_eq!(last(Guide::Viewer(0)), None, "the last follower has left");
 }
 
@@ -66,12 +68,12 @@ fn the_lead_ends_with_the_leader_or_the_next_one() {
     roster.follow(2, Some(Guide::Tour)).expect("there is a leader");
     assert_eq!((roster.lead(1), roster.lead(1)), (Some(0), None));
     assert_eq!((roster.leader(), roster.seen_by(1).followers), (Some(1), 1));
-    assert!(roster.stop_leading(0).is_empty(), "another one leads");
-    assert_eq!(roster.leave(1), [2]);
+    assert!(roster.stop_leading(0, false).is_empty(), "another one leads");
+    assert_eq!(roster.leave(1, false), [2]);
     assert_eq!((shows(&roster, Guide::Tour), roster.leader()), (None, None));
     assert_eq!(roster.last_view(Guide::Tour).map(|view| view.camera.pose().eye.x), Some(1.0));
     roster.lead(3);
-    assert_eq!((roster.stop_leading(3), roster.leader()), (vec![2], None));
+    assert_eq!((roster.stop_leading(3, false), roster.leader()), (vec![2], None));
 }
 
 #[test]
@@ -100,4 +102,36 @@ fn names_are_short_and_plain() {
     assert_eq!(shown("\u{1b}[2J \u{202e}x\u{7f}"), Some("2Jx".to_owned()));
     assert_eq!(shown(&"x".repeat(10_000)), Some("x".repeat(16)));
     assert_eq!((shown(""), shown("\u{e4}\u{200b} ()")), (None, None));
+}
+
+#[test]
+fn a_long_chain_shows_its_first_viewer_and_closes_no_ring() {
+    let roster = roster(40);
+    for id in 1..40 {
+        roster.follow(id, Some(Guide::Viewer(id - 1))).expect("this is no ring");
+    }
+    assert_eq!(shows(&roster, Guide::Viewer(39)), Some(0.0));
+    assert!(roster.follow(0, Some(Guide::Viewer(39))).is_err(), "this is a ring");
+    // One in the middle, who follows another viewer already.
+    assert!(roster.follow(20, Some(Guide::Viewer(39))).is_err(), "this is a ring");
+    assert_eq!(shows(&roster, Guide::Viewer(39)), Some(0.0));
+    assert_eq!(roster.follow(39, Some(Guide::Tour)), Ok(()));
+    roster.lead(20);
+    assert_eq!(shows(&roster, Guide::Viewer(39)), Some(20.0), "a leader follows no viewer");
+}
+
+#[test]
+fn the_last_view_of_a_leader_is_kept_for_followers_without_a_path() {
+    for (has_path, kept) in [(true, false), (false, true)] {
+        let roster = roster(3);
+        roster.follow(1, Some(Guide::Tour)).expect("the tour needs no viewer");
+        roster.lead(0);
+        assert_eq!(roster.stop_leading(0, has_path), [1]);
+        assert_eq!(roster.last_view(Guide::Tour).is_some(), kept);
+        roster.follow(1, None).expect("nothing is refused");
+        assert_eq!(roster.last_view(Guide::Tour), None, "the last follower has left");
+        roster.lead(2);
+        assert!(roster.leave(2, has_path).is_empty());
+        assert_eq!(roster.last_view(Guide::Tour), None, "the tour has no follower");
+    }
 }

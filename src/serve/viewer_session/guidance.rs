@@ -1,12 +1,17 @@
 //! A session's relations to the other viewers: following a guide, leading the tour, being seen.
 
-use super::ViewerSession;
+use super::{AudienceChange, ViewerSession};
 use crate::serve::guide::{Guide, GuideView};
 use crate::serve::roster::Roster;
 use crate::serve::run_queue::SessionId;
+use crate::serve::tour::AudienceClass;
 use crate::viewer::OtherViewers;
 use std::sync::Arc;
 use std::time::Duration;
+
+/// The shortest time between two audiences of a viewer, such as those of two sizes of the window.
+// Each new audience costs a picture and a key frame.
+const SHORTEST_STAY: Duration = Duration::from_millis(100);
 
 /// The viewers of the server, and the number of this one among them.
 pub(in crate::serve) struct Company<'a> {
@@ -31,9 +36,10 @@ pub(super) fn left_text(guide: Guide) -> String {
 }
 
 /// Returns the note for a viewer whose guide shows nothing any more.
-pub(super) fn over_text(guide: Guide) -> String {
+pub(super) fn over_text(guide: Guide, roster: &Roster) -> String {
     match guide {
         Guide::Tour => "the tour has ended".to_owned(),
+        Guide::Viewer(id) if roster.has(id) => format!("viewer {id} shows nothing any more"),
         Guide::Viewer(id) => format!("viewer {id} has left"),
     }
 }
@@ -80,14 +86,42 @@ impl ViewerSession {
         self.viewer.show_note(note);
     }
 
+    /// Returns the class of the viewer's audience; `None` if they follow no guide.
+    pub(super) fn audience_class(&self) -> Option<AudienceClass> {
+        self.following.filter(|_| self.leaving.is_none()).map(|Following { guide, .. }| AudienceClass {
+            guide,
+            size: self.viewer.picture_size(),
+            capabilities: *self.viewer.capabilities(),
+        })
+    }
+
+    /// Returns what the viewer's screen shows from the end of the last turn on, if that has changed
+    /// since the last call.
+    ///
+    /// A viewer who has just joined an audience joins another one after [`SHORTEST_STAY`] only.
+    pub(in crate::serve) fn take_audience_change(&mut self) -> Option<AudienceChange> {
+        let class = self.audience_class();
+        if class == self.audience || class.is_some() && self.latest < self.joins_from {
+            return None;
+        }
+        self.audience = class;
+        Some(match class {
+            Some(class) => {
+                self.joins_from = self.latest + SHORTEST_STAY;
+                AudienceChange::Follow(class)
+            }
+            None => AudienceChange::Leave,
+        })
+    }
+
     /// Begins or ends the lead of the tour.
-    pub(super) fn toggle_lead(&mut self, company: &Company<'_>, now: Duration) {
+    pub(super) fn toggle_lead(&mut self, company: &Company<'_>, has_path: bool, now: Duration) {
         self.leads = company.roster.leader() != Some(company.id);
         let note = if self.leads {
             self.told.extend(company.roster.lead(company.id));
             "you lead the tour; G ends that"
         } else {
-            self.told.extend(company.roster.stop_leading(company.id));
+            self.told.extend(company.roster.stop_leading(company.id, has_path));
             "you no longer lead the tour"
         };
         if self.following.is_some() {
@@ -106,7 +140,9 @@ impl ViewerSession {
     /// Writes this viewer's own view into the roster.
     pub(super) fn show_to_others(&self, company: &Company<'_>) {
         // The own view of a follower does not move.
-        if let Some(view) = self.own_view().filter(|_| self.following.is_none()) {
+        if self.following.is_none()
+            && let Some(view) = self.own_view()
+        {
             company.roster.set_view(company.id, view);
         }
     }

@@ -283,3 +283,33 @@ fn the_release_of_a_key_leaves_no_tour() {
     harness.turn(b"\x1b[119u");
     assert_eq!(harness.session.take_audience_change(), Some(AudienceChange::Leave));
 }
+
+/// A new audience costs a picture and a key frame.
+#[test]
+fn a_follower_who_resizes_on_and_on_joins_few_audiences() {
+    let mut harness = in_a_tour();
+    let (mut joined, mut last) = (0, None);
+    for step in 1..=100_u64 {
+        harness.now.set(2 * SECOND + Duration::from_millis(10 * step));
+        let window = Some(crate::serve::client_terminal::window([20 + step as u32, 6, 0, 0]));
+        harness.turn_for(WorkKind::Picture, &PendingInput { window, ..PendingInput::default() });
+        if let Some(change) = harness.session.take_audience_change() {
+            (joined, last) = (joined + 1, Some(change));
+        }
+    }
+    assert_eq!(joined, 10);
+    // The last size is that of the next audience, for which the session wakes.
+    let window = Some(crate::serve::client_terminal::window([60, 20, 0, 0]));
+    let next = harness.turn_for(WorkKind::Picture, &PendingInput { window, ..PendingInput::default() });
+    assert_eq!(harness.session.take_audience_change(), None);
+    let AfterTurn::Sleep(Some(at)) = next else { panic!("it sleeps: {next:?}") };
+    assert!(at <= harness.now.get() + Duration::from_millis(100));
+    harness.now.set(at);
+    harness.turn(&[]);
+    let change = harness.session.take_audience_change();
+    assert!(matches!(change, Some(AudienceChange::Follow(class)) if class.size.columns == 60), "{change:?}");
+    assert_ne!(change, last);
+    // Leaving needs no wait.
+    harness.turn(b"\x1b[119u");
+    assert_eq!(harness.session.take_audience_change(), Some(AudienceChange::Leave));
+}
