@@ -333,6 +333,23 @@ impl Painter {
         self.grid_of(&traced.expect("only a token cancels, and the pool has none"))
     }
 
+    /// Traces a view as [`trace`](Self::trace) does, until a token is cancelled.
+    ///
+    /// # Errors
+    /// If it was cancelled.
+    #[cfg(feature = "serve")]
+    pub(crate) fn trace_until(
+        &mut self,
+        token: &crate::progress::Cancellation,
+        (map, scene, camera): (Map, &Scene, &Camera),
+        resolution: Resolution,
+        sampling: Sampling,
+    ) -> Result<Grid, Cancelled> {
+        let executor = Executor::Cancellable(token);
+        let traced = self.mode.trace_for_glyphs(map, executor, scene, camera, resolution, sampling)?;
+        Ok(self.grid_of(&traced))
+    }
+
     /// Fills a grid as [`grid`](Self::grid) does, reusing its memory.
     ///
     /// If the kind of glyphs shows geometry and `geometry` is `None`, the picture is drawn as a single surface.

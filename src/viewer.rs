@@ -142,7 +142,7 @@ pub(crate) enum Request {
     ProposeView(Camera),
     /// Enter or leave the tour.
     Tour,
-    /// Begin or stop to lead the tour.
+    /// Start or stop leading the tour.
     Lead,
     /// Call [`Viewer::turn_viewer_list`] with the viewers of the server.
     ListViewers,

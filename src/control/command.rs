@@ -47,7 +47,7 @@ pub enum Command {
     ///
     /// No key is bound to it by default.
     Tour,
-    /// Begins or stops to lead the tour of a server.
+    /// Starts or stops leading the tour of a server.
     ///
     /// No key is bound to it by default.
     Lead,

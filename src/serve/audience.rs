@@ -12,6 +12,7 @@ use crate::cell::{self, Painter};
 use crate::encode::Encoder;
 use crate::grid::Grid;
 use crate::overlay;
+use crate::progress::Cancellation;
 use crate::render::Sampling;
 use bytes::Bytes;
 use ratatui_core::buffer::Buffer;
@@ -113,10 +114,23 @@ pub(super) struct Drawing {
     encoder: Encoder,
     /// The tick of the last frame.
     tick: Option<u64>,
-    /// The view and the title of the last frame.
-    shown: Option<(GuideView, String)>,
-    /// Whether the last frame has all samples of a picture at rest.
+    shown: Option<Shown>,
+}
+
+/// The last frame.
+struct Shown {
+    view: GuideView,
+    title: String,
+    /// The picture, without the line.
+    picture: Grid,
+    /// Whether the picture has all its samples.
     is_refined: bool,
+}
+
+impl Shown {
+    fn has_picture_of(&self, view: &GuideView) -> bool {
+        self.view.scene.is_copy_of(&view.scene) && self.view.camera == view.camera && self.view.map == view.map
+    }
 }
 
 /// The line in the lowest row of an audience's frames.
@@ -136,12 +150,14 @@ impl Drawing {
             .with_colors(mode.colors != cell::Colors::None)
             .with_synchronized_output(capabilities.synchronized_output);
         let painter = Painter::new(mode).with_light_background(capabilities.light_background);
-        Self { painter, encoder, tick: None, shown: None, is_refined: false }
+        Self { painter, encoder, tick: None, shown: None }
     }
 
     /// Draws the frame of the tick at `now`.
     ///
     /// Returns the time of the next frame, and whether a frame was drawn.
+    ///
+    /// A picture at rest is refined if `refine` is given, until that token is cancelled.
     ///
     /// Draws nothing if that tick's frame has been drawn, or if it shows the same as the last one and no follower needs
     /// it.
@@ -149,35 +165,24 @@ impl Drawing {
         &mut self,
         audience: &Audience,
         (view, line): (GuideView, GuideLine),
-        limits: AudienceLimits,
-        now: Duration,
+        (limits, now): (AudienceLimits, Duration),
+        refine: Option<&Cancellation>,
     ) -> (Duration, bool) {
         let (tick, skipped) = (Tour::tick_at(now), (limits.next_frame_at(now, 0), false));
         if self.tick.replace(tick) == Some(tick) {
             return skipped;
         }
-        let is_same_picture = |(shown, _): &(GuideView, String)| {
-            shown.scene.is_copy_of(&view.scene) && shown.camera == view.camera && shown.map == view.map
-        };
-        let rests = self.shown.as_ref().is_some_and(is_same_picture);
-        let is_same = rests && self.shown.as_ref().is_some_and(|(_, title)| *title == line.title);
-        if is_same && self.is_refined && !audience.needs_key.load(Ordering::Relaxed) {
+        let before = self.shown.take();
+        let is_same_as = |shown: &Shown| shown.title == line.title && shown.has_picture_of(&view);
+        let was_refined = before.as_ref().filter(|shown| is_same_as(shown)).map(|shown| shown.is_refined);
+        let Some(shown) = self.picture(audience.class, before, (view, line.title), refine) else { return skipped };
+        if was_refined == Some(shown.is_refined) && !audience.needs_key.load(Ordering::Relaxed) {
+            self.shown = Some(shown);
             return skipped;
         }
-        let AudienceClass { size, capabilities, .. } = audience.class;
-        let Ok(resolution) = cell::resolution(capabilities.cell_mode, size, capabilities.cell_aspect) else {
-            return skipped;
-        };
-        let is_smooth = view.map.refines() && resolution.pixel_count() as u64 <= MAX_SAMPLED_PIXELS;
-        let sampling = match (is_smooth, rests) {
-            (false, _) => Sampling::Each(NonZeroU32::MIN),
-            (true, false) => Sampling::Each(SAMPLES),
-            (true, true) => Sampling::BEST,
-        };
-        self.is_refined = rests || !is_smooth;
-        let mut grid = self.painter.trace(view.map, &view.scene, &view.camera, resolution, sampling);
-        write_line(&mut grid, &format!(" {}, {} watching: any key leaves it ", line.title, line.watching));
-        self.shown = Some((view, line.title));
+        let mut grid = shown.picture.clone();
+        write_line(&mut grid, &format!(" {}, {} watching: any key leaves it ", shown.title, line.watching));
+        self.shown = Some(shown);
         let mut delta = Vec::new();
         self.encoder.encode(&grid, &mut delta);
         let key = audience.needs_key.swap(false, Ordering::Relaxed).then(|| {
@@ -197,6 +202,35 @@ impl Drawing {
         // Key frames do not count, so that followers who join or fall behind do not slow the others.
         (limits.next_frame_at(now, length), true)
     }
+
+    /// Returns the picture of a view, which is traced if the last frame does not have it, and
+    /// refined if it rests.
+    ///
+    /// `None` if it is too large.
+    fn picture(
+        &mut self,
+        AudienceClass { size, capabilities, .. }: AudienceClass,
+        before: Option<Shown>,
+        (view, title): (GuideView, String),
+        refine: Option<&Cancellation>,
+    ) -> Option<Shown> {
+        let resolution = cell::resolution(capabilities.cell_mode, size, capabilities.cell_aspect).ok()?;
+        let GuideView { scene, camera, map, .. } = &view;
+        let Some(shown) = before.filter(|shown| shown.has_picture_of(&view)) else {
+            let is_smooth = map.refines() && resolution.pixel_count() as u64 <= MAX_SAMPLED_PIXELS;
+            let sampling = Sampling::Each(if is_smooth { SAMPLES } else { NonZeroU32::MIN });
+            let picture = self.painter.trace(*map, scene, camera, resolution, sampling);
+            return Some(Shown { view, title, picture, is_refined: !is_smooth });
+        };
+        // Without the refinement, the next tick tries again.
+        let token = refine.filter(|_| !shown.is_refined);
+        let refined = token
+            .and_then(|token| self.painter.trace_until(token, (*map, scene, camera), resolution, Sampling::BEST).ok());
+        Some(match refined {
+            Some(picture) => Shown { title, picture, is_refined: true, ..shown },
+            None => Shown { title, ..shown },
+        })
+    }
 }
 
 /// Writes a line into the lowest row.
@@ -207,3 +241,6 @@ fn write_line(grid: &mut Grid, line: &str) {
     buffer.set_stringn(area.x, area.y, line, usize::from(area.width), Style::default());
     overlay::lay_over(grid, &buffer);
 }
+
+#[cfg(all(test, unit_tests))]
+mod tests;

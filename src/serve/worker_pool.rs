@@ -226,7 +226,7 @@ impl WorkerPool {
             let started = cpu_time();
             let mut turn = || match &owner {
                 TurnOwner::Session(pooled) => self.take_turn(pooled, load, &token, &mut tracer),
-                TurnOwner::Audience(pooled) => self.draw_for(pooled),
+                TurnOwner::Audience(pooled) => self.draw_for(pooled, load, &token),
             };
             let turned = catch_unwind(AssertUnwindSafe(|| match &rayon_pool {
                 Ok(pool) => pool.install(&mut turn),
@@ -349,7 +349,12 @@ impl WorkerPool {
     }
 
     /// Draws the next frame of a guide's view for an audience.
-    fn draw_for(&self, PooledAudience { audience, drawing }: &PooledAudience) -> AfterTurn {
+    fn draw_for(
+        &self,
+        PooledAudience { audience, drawing }: &PooledAudience,
+        load: usize,
+        token: &Cancellation,
+    ) -> AfterTurn {
         if audience.len() == 0 {
             // A follower who changes the size of the window leaves audiences behind, which cost no picture.
             return AfterTurn::Turn(WorkKind::Picture);
@@ -364,7 +369,9 @@ impl WorkerPool {
             return AfterTurn::Sleep(Some(limits.next_frame_at(now, 0)));
         };
         let line = GuideLine { title: self.roster.title(guide), watching };
-        let (next, has_drawn) = locked(drawing).draw(audience, (view, line), limits, now);
+        // A refinement waits for a time at which it delays no viewer, as those of sessions do.
+        let refine = Some(token).filter(|_| load <= self.threads);
+        let (next, has_drawn) = locked(drawing).draw(audience, (view, line), (limits, now), refine);
         self.metrics.tour_drawn.add(has_drawn.into());
         AfterTurn::Sleep(Some(next))
     }

@@ -13,8 +13,12 @@ use glam::Vec3;
 use ratatui_core::layout::Rect;
 
 /// The most marks on a screen.
-// More of them would hide the picture, and each takes a ray.
+// More of them would hide the picture.
 const MAX_MARKS: usize = 50;
+
+/// The most cameras for which a ray tests whether a surface hides them.
+// Hidden cameras have no mark, but take a ray, too.
+const MAX_TESTED: usize = 200;
 
 /// The length of the line in the direction of a camera, as a share of the distance to its target.
 const LINE_LENGTH: f32 = 0.15;
@@ -46,11 +50,16 @@ impl OtherEyes {
         let (part, _) = frame.part_at([0, 0]);
         let eye = camera.pose().eye;
         let mut marks = Vec::new();
+        let mut tested = 0;
         let mut lines = Plot::new(canvas, camera, part, 0).hidden_by(&frame.scene);
         for other in &self.viewers.others {
             let Some(theirs) = other.camera else { continue };
             let place = theirs.pose().eye;
             let Some(cell) = picture.cell_of(&camera, place).filter(|&cell| picture.contains(cell)) else { continue };
+            if tested == MAX_TESTED {
+                break;
+            }
+            tested += 1;
             if any_hit(&frame.scene, &Ray { origin: eye, direction: place - eye }, HIDING_INTERVAL) {
                 continue;
             }
