@@ -340,6 +340,7 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
     let slow = matches!(odd, Some(Odd::Slow | Odd::SlowTurning));
     let (mut channel, _session, asked) = enter(&arguments.address, size, (slow, has_all_colors)).await?;
     let mut is_following = true;
+    let mut kept = Vec::new();
     let (mut tail, mut frames, mut pressed, mut next_key, mut painted) = (Vec::new(), 0_u32, None, asked, false);
     let (mut at_once, mut has_left) = (None::<(bool, Instant)>, false);
     let (mut owed, mut opens) = (VecDeque::<(Instant, Vec<u8>)>::new(), false);
@@ -366,10 +367,15 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
         let wait = owed.front().map_or(wait, |(due, _)| due.saturating_duration_since(Instant::now()).min(wait));
         let Ok(message) = timeout(wait, channel.wait()).await else { continue };
         let ChannelMsg::Data { data } = message? else { continue };
-        *is_told |= arguments.drain && has(&data, b"the server restarts");
+        // A text may begin in the message before.
+        let has_notice = |text: &[u8]| {
+            let before = &kept[kept.len().saturating_sub(text.len() - 1)..];
+            has(&[before, &data[..]].concat(), text)
+        };
+        *is_told |= arguments.drain && has_notice(b"the server restarts");
         let pressed_at_once = at_once.filter(|_| is_counted && arguments.at_once && arguments.followers > 0);
         match pressed_at_once {
-            Some((is_back, pressed)) if has(&data, if is_back { &b"watching"[..] } else { b"left the tour" }) => {
+            Some((is_back, pressed)) if has_notice(if is_back { &b"watching"[..] } else { b"left the tour" }) => {
                 let time = 1e3 * Instant::elapsed(&pressed).as_secs_f64();
                 if is_back {
                     measured.borrow_mut().entered_at_once.push(time);
@@ -388,6 +394,8 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
             }
             _ => {}
         }
+        kept.extend_from_slice(&data);
+        kept.drain(..kept.len().saturating_sub(MAX_KEPT));
         tail.extend_from_slice(&data);
         let (ended, replies) = answer(&mut tail);
         if !replies.is_empty() {
@@ -451,6 +459,9 @@ async fn enter(
     channel.request_shell(false).await.ok()?;
     Some((channel, session, asked))
 }
+
+/// The bytes of earlier messages in which a notice may begin: more than any notice has.
+const MAX_KEPT: usize = 32;
 
 fn has(data: &[u8], text: &[u8]) -> bool {
     data.windows(text.len()).any(|window| window == text)

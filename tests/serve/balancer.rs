@@ -236,6 +236,7 @@ fn one_replica_behind_haproxy_drains_while_viewers_stay_on_the_other() {
         // Some on each, as they come.
         let (mut on_first, mut on_second) = (Vec::new(), Vec::new());
         while on_first.len() < 2 || on_second.len() < 2 {
+            assert!(on_first.len() + on_second.len() < 20, "all visitors come to one replica");
             let before = views(&first);
             let mut guest = Guest::enter(&haproxy).await;
             guest.see_picture().await;

@@ -200,7 +200,7 @@ fn write_key(path: &Path, seed: u8) {
 }
 
 #[test]
-fn row_32_a_leader_logs_in_by_key_and_nobody_is_asked_a_question() {
+fn row_32_a_leader_logs_in_by_key_and_no_visitor_is_asked_a_question() {
     let hosting = Hosting::start(|settings| settings.leaders = Some(vec![key(1).public_key().clone()]));
     let Some(options) = options(&hosting) else { return };
     let folder = tempfile::tempdir().expect("a folder");

@@ -12,7 +12,8 @@ use rustix::process::Signal;
 use std::fs;
 use std::io::{Read, Write};
 use std::net::TcpStream;
-use std::process::Command;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
 use tempfile::TempDir;
@@ -472,32 +473,59 @@ fn systemd_passes_a_socket() {
         eprintln!("skipped: there is no systemd-socket-activate");
         return;
     }
-    let port = free_port();
     let folder = tempfile::tempdir().expect("a folder");
-    let address = format!("127.0.0.1:{port}");
-    let mut command = Command::new("systemd-socket-activate");
-    command.args(["-l", &address, env!("CARGO_BIN_EXE_termtrace"), "serve", "three_spheres", "--host-key"]);
-    command.arg(folder.path().join("key")).stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::null());
-    let mut child = command.spawn().expect("it starts");
-    let place = At(address.parse().expect("an address"));
-    // The first connection starts the server, which then says where it listens: at the socket that it was given.
-    run(async {
-        until("the socket is there", || TcpStream::connect(place.0).is_ok()).await;
-        Guest::enter(&place).await.see_picture().await;
-    });
+    // Another program may take the port first.
+    let started = (0..10).find_map(|_| Activated::start(&folder.path().join("key")));
+    let mut activated = started.expect("it has a port");
+    let address = activated.address;
+    run(async { Guest::enter(&activated).await.see_picture().await });
     let mut first = String::new();
-    let mut output = std::io::BufReader::new(child.stdout.take().expect("a pipe"));
+    let mut output = std::io::BufReader::new(activated.child.stdout.take().expect("a pipe"));
     std::io::BufRead::read_line(&mut output, &mut first).expect("a line");
-    assert_eq!(first, format!("listening on {address}: ssh -p {port} 127.0.0.1\n"));
-    let pid = rustix::process::Pid::from_child(&child);
+    assert_eq!(first, format!("listening on {address}: ssh -p {} 127.0.0.1\n", address.port()));
+    let pid = rustix::process::Pid::from_child(&activated.child);
     rustix::process::kill_process(pid, Signal::TERM).expect("it runs");
-    assert!(child.wait().expect("it ends").success());
+    assert!(activated.child.wait().expect("it ends").success());
 }
 
-struct At(std::net::SocketAddr);
+/// A server that is started by `systemd-socket-activate`; it is ended when it is dropped.
+struct Activated {
+    child: Child,
+    address: std::net::SocketAddr,
+}
 
-impl Place for At {
+impl Activated {
+    /// Starts it; `None` if its port is not free any more.
+    ///
+    /// The first connection starts the server, which then says where it listens: at the socket that it was given.
+    fn start(key: &Path) -> Option<Self> {
+        let address = std::net::SocketAddr::from(([127, 0, 0, 1], free_port()));
+        let mut command = Command::new("systemd-socket-activate");
+        command.args(["-l", &address.to_string(), env!("CARGO_BIN_EXE_termtrace"), "serve", "three_spheres"]);
+        command.arg("--host-key").arg(key).stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut activated = Self { child: command.spawn().expect("it starts"), address };
+        for _ in 0..2000 {
+            if activated.child.try_wait().expect("it is a child").is_some() {
+                return None;
+            }
+            if TcpStream::connect(address).is_ok() {
+                return Some(activated);
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        panic!("the socket is not there");
+    }
+}
+
+impl Drop for Activated {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Place for Activated {
     fn address(&self) -> std::net::SocketAddr {
-        self.0
+        self.address
     }
 }

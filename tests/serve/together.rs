@@ -6,7 +6,7 @@ use crate::tour::path;
 use crate::{Hosting, Place, run, until};
 use russh::keys::PrivateKeyWithHashAlg;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use termtrace::internals::serve::Settings;
 
 fn hosting(change: impl FnOnce(&mut Settings)) -> Hosting {
@@ -51,6 +51,11 @@ async fn see_the_same(first: &mut Guest, second: &mut Guest) {
     panic!("the pictures differ: {:#?} {:#?}", first.text(), second.text());
 }
 
+/// Returns the row and column of a text on the screen.
+fn place_of(guest: &Guest, text: &str) -> Option<(usize, usize)> {
+    guest.text().iter().enumerate().find_map(|(row, line)| Some((row, line.find(text)?)))
+}
+
 /// Reads until nothing has come for a while.
 async fn rest(guest: &mut Guest) {
     for _ in 0..100 {
@@ -61,6 +66,26 @@ async fn rest(guest: &mut Guest) {
         }
     }
     panic!("it does not rest: {:#?}", guest.text());
+}
+
+/// Reads until the server has made no picture for two seconds, for any of its viewers.
+async fn rest_of_all(hosting: &Hosting, guests: &mut [&mut Guest]) {
+    let made = || {
+        let counts = counts(hosting);
+        ["{from=\"tracer\"}", "{from=\"memory\"}"]
+            .map(|from| value(&counts, &format!("termtrace_pictures_total{from}")))
+    };
+    let (mut before, mut since) = (made(), Instant::now());
+    assert!(before.iter().all(Option::is_some), "{before:?}");
+    while since.elapsed() < Duration::from_secs(2) {
+        for guest in &mut *guests {
+            guest.read_for(Duration::from_millis(50)).await;
+        }
+        let now = made();
+        if now != before {
+            (before, since) = (now, Instant::now());
+        }
+    }
 }
 
 /// Returns the flags of the command that shows the guest's view at home.
@@ -105,12 +130,14 @@ fn the_list_has_the_others_and_a_digit_follows_one() {
         first.send(b"1").await;
         first.see_text("the view you chose is your own").await;
 
-        second.send(b"w").await;
+        // The list closes in the view of the second one's own, which the key does not move.
+        second.send(b"u").await;
         second.see_text("you no longer follow viewer 0; u lists the viewers").await;
+        second.send(b"\x1b").await;
         second.see_picture().await;
-        until("nobody follows", || value(&counts(&hosting), "termtrace_followers") == Some(0.0)).await;
-        // The scene is that of the first one, where the second one has moved on from.
-        assert_ne!(camera_of(first).await, camera_of(second).await);
+        until("no viewer follows", || value(&counts(&hosting), "termtrace_followers") == Some(0.0)).await;
+        // The view is the first one's.
+        assert_eq!(camera_of(first).await, camera_of(second).await);
     });
 }
 
@@ -221,7 +248,7 @@ fn a_chain_of_followers_ends_at_one_who_moves() {
 }
 
 #[test]
-fn row_31_nobody_is_redrawn_because_another_one_moves() {
+fn row_31_no_viewer_is_redrawn_because_another_one_moves() {
     let hosting = hosting(|_| {});
     run(async {
         let mut first = Guest::enter(&hosting).await;
@@ -237,10 +264,12 @@ fn row_31_nobody_is_redrawn_because_another_one_moves() {
         first.send(b"U").await;
         first.see_text("2 watching").await;
         first.see_text("(1)").await;
-        rest(&mut first).await;
-        let (before, cells) = (first.bytes.len(), first.cells());
-        second.send(b"t").await;
+        // Later bytes are for others only if the first one's own picture has all its samples.
+        rest_of_all(&hosting, &mut [&mut first, &mut second]).await;
+        let (before, mark) = (first.bytes.len(), place_of(&first, "(1)"));
+        assert!(mark.is_some(), "{:#?}", first.text());
         let moving = second.cells();
+        second.send(b"t").await;
         second.see("a turn", |guest| guest.cells() != moving).await;
         let mut third = Guest::enter(&hosting).await;
         third.see_picture().await;
@@ -249,7 +278,7 @@ fn row_31_nobody_is_redrawn_because_another_one_moves() {
         // The next frame for the first one's own reasons shows where they are now.
         first.send(b"i").await;
         first.see_text("3 watching").await;
-        assert_ne!(first.cells(), cells);
+        assert_ne!(place_of(&first, "(1)"), mark, "the second one has turned: {:#?}", first.text());
         first.send(b"U").await;
         first.see("no marks", |guest| !guest.text().iter().any(|row| row.contains("watching"))).await;
     });
@@ -298,9 +327,9 @@ fn the_holder_of_a_key_leads_the_tour() {
         let mut guest = enter_as(&hosting, "anybody", None).await;
         guest.see_picture().await;
         // There is no leader yet, and this viewer may not lead.
+        guest.send(b"G").await;
         guest.send(b"T").await;
         guest.see_text("there is no tour now").await;
-        guest.send(b"G").await;
         leader.send(b"G").await;
         leader.see_text("you lead the tour; G ends that").await;
         guest.send(b"T").await;
@@ -345,6 +374,7 @@ fn a_leader_who_disconnects_in_mid_tour_leaves_the_path_or_views_of_ones_own() {
             rest(&mut leader).await;
             see_the_same(&mut leader, &mut guest).await;
             let seen = picture(&leader);
+            assert_eq!(picture(&guest), seen);
             // The connection breaks off, without a key.
             drop(leader);
             if has_path {
@@ -360,7 +390,7 @@ fn a_leader_who_disconnects_in_mid_tour_leaves_the_path_or_views_of_ones_own() {
 }
 
 #[test]
-fn row_32_only_the_key_of_a_leader_leads_and_nobody_is_turned_away() {
+fn row_32_only_the_key_of_a_leader_leads_and_no_visitor_is_turned_away() {
     let hosting = with_leaders(|_| {});
     run(async {
         // A key that is no leader's is refused, and no question follows.
@@ -378,5 +408,34 @@ fn row_32_only_the_key_of_a_leader_leads_and_nobody_is_turned_away() {
         guest.send(b"G?").await;
         guest.see_text("list of viewers").await;
         assert!(!guest.text().iter().any(|row| row.contains("lead the tour")), "{:#?}", guest.text());
+    });
+}
+
+#[test]
+fn with_keys_for_all_a_leader_leads_by_a_leaders_key_only() {
+    let hosting = with_leaders(|settings| settings.authorized_keys = Some(vec![key(3).public_key().clone()]));
+    run(async {
+        let mut session = connect(&hosting).await;
+        let mut is_let_in = async |user: &str, seed| {
+            let key = PrivateKeyWithHashAlg::new(Arc::new(key(seed)), None);
+            session.authenticate_publickey(user, key).await.expect("an answer").success()
+        };
+        assert!(!is_let_in("anybody", 9).await && !is_let_in("leader", 9).await, "a stranger is refused");
+        // The client of a leader may offer another key first, which lets in, but does not lead.
+        assert!(!is_let_in("leader", 3).await, "a leader's key is wanted");
+        assert!(is_let_in("leader", 1).await);
+        let mut leader = Guest::on(session, (80, 24)).await;
+        leader.channel.request_pty(true, "xterm-256color", 80, 24, 0, 0, &[]).await.expect("a terminal");
+        leader.ask(None).await;
+        leader.see_picture().await;
+        let mut guest = enter_as(&hosting, "anybody", Some(3)).await;
+        guest.see_picture().await;
+        guest.send(b"G").await;
+        guest.send(b"T").await;
+        guest.see_text("there is no tour now").await;
+        leader.send(b"G").await;
+        leader.see_text("you lead the tour; G ends that").await;
+        guest.send(b"T").await;
+        guest.see_text("tour led by viewer 0").await;
     });
 }

@@ -142,7 +142,7 @@ fn each_window_and_colour_depth_has_an_audience() {
 }
 
 #[test]
-fn row_27_a_follower_who_falls_behind_delays_nobody_and_catches_up() {
+fn row_27_a_follower_who_falls_behind_delays_no_other_one_and_catches_up() {
     let hosting = with_tour(|settings| settings.max_rate = None);
     run(async {
         let mut slow = Guest::enter_with_little_room(&hosting).await;
