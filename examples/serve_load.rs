@@ -339,11 +339,10 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
     let size = if odd == Some(Odd::Big) { (500, 200) } else { size };
     let slow = matches!(odd, Some(Odd::Slow | Odd::SlowTurning));
     let (mut channel, _session, asked) = enter(&arguments.address, size, (slow, has_all_colors)).await?;
-    let mut is_following = true;
-    let mut kept = Vec::new();
     let (mut tail, mut frames, mut pressed, mut next_key, mut painted) = (Vec::new(), 0_u32, None, asked, false);
     let (mut at_once, mut has_left) = (None::<(bool, Instant)>, false);
-    let (mut owed, mut opens) = (VecDeque::<(Instant, Vec<u8>)>::new(), false);
+    let (mut owed, mut opens, mut is_following, mut kept) =
+        (VecDeque::<(Instant, Vec<u8>)>::new(), false, true, Vec::new());
     loop {
         if is_leaving && painted && Instant::now() >= next_key && pressed.is_none() {
             next_key = Instant::now() + pause;
@@ -367,15 +366,10 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
         let wait = owed.front().map_or(wait, |(due, _)| due.saturating_duration_since(Instant::now()).min(wait));
         let Ok(message) = timeout(wait, channel.wait()).await else { continue };
         let ChannelMsg::Data { data } = message? else { continue };
-        // A text may begin in the message before.
-        let has_notice = |text: &[u8]| {
-            let before = &kept[kept.len().saturating_sub(text.len() - 1)..];
-            has(&[before, &data[..]].concat(), text)
-        };
-        *is_told |= arguments.drain && has_notice(b"the server restarts");
+        *is_told |= arguments.drain && has_across(&kept, &data, b"the server restarts");
         let pressed_at_once = at_once.filter(|_| is_counted && arguments.at_once && arguments.followers > 0);
         match pressed_at_once {
-            Some((is_back, pressed)) if has_notice(if is_back { &b"watching"[..] } else { b"left the tour" }) => {
+            Some((is_back, pressed)) if has_across(&kept, &data, notice(is_back)) => {
                 let time = 1e3 * Instant::elapsed(&pressed).as_secs_f64();
                 if is_back {
                     measured.borrow_mut().entered_at_once.push(time);
@@ -394,10 +388,8 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
             }
             _ => {}
         }
-        kept.extend_from_slice(&data);
-        kept.drain(..kept.len().saturating_sub(MAX_KEPT));
-        tail.extend_from_slice(&data);
-        let (ended, replies) = answer(&mut tail);
+        keep(&mut kept, &data);
+        let (ended, replies) = answer(&mut tail, &data);
         if !replies.is_empty() {
             owed.push_back((Instant::now() + delay, replies));
         }
@@ -413,7 +405,7 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
         let mut measured = measured.borrow_mut();
         let shows = if slow { has(&data, b"three_spheres") } else { ended > 0 };
         if is_leaving {
-            let shown: &[u8] = if is_following { b"left the tour" } else { b"watching" };
+            let shown = notice(!is_following);
             if let Some(pressed) = pressed.take_if(|_| has(&data, shown)) {
                 let time = 1e3 * Instant::elapsed(&pressed).as_secs_f64();
                 let Measured { left, entered, .. } = &mut *measured;
@@ -462,6 +454,22 @@ async fn enter(
 
 /// The bytes of earlier messages in which a notice may begin: more than any notice has.
 const MAX_KEPT: usize = 32;
+
+/// Returns a text that a viewer sees after coming back to the tour, or after leaving it.
+fn notice(is_back: bool) -> &'static [u8] {
+    if is_back { b"watching" } else { b"left the tour" }
+}
+
+fn keep(kept: &mut Vec<u8>, data: &[u8]) {
+    kept.extend_from_slice(data);
+    kept.drain(..kept.len().saturating_sub(MAX_KEPT));
+}
+
+/// Returns whether the data has a text, which may begin in the bytes that were kept.
+fn has_across(kept: &[u8], data: &[u8], text: &[u8]) -> bool {
+    let before = &kept[kept.len().saturating_sub(text.len() - 1)..];
+    has(&[before, data].concat(), text)
+}
 
 fn has(data: &[u8], text: &[u8]) -> bool {
     data.windows(text.len()).any(|window| window == text)
@@ -581,8 +589,7 @@ async fn short_visit(arguments: &Arguments, random: &mut Random) -> Option<()> {
             continue;
         };
         let ChannelMsg::Data { data } = message? else { continue };
-        tail.extend_from_slice(&data);
-        let (_, replies) = answer(&mut tail);
+        let (_, replies) = answer(&mut tail, &data);
         if !replies.is_empty() {
             channel.data(&*replies).await.ok()?;
         }
@@ -594,9 +601,10 @@ async fn short_visit(arguments: &Arguments, random: &mut Random) -> Option<()> {
     Some(())
 }
 
-/// Returns how many frames end in the bytes that have come, and the replies to the queries in them.
-fn answer(tail: &mut Vec<u8>) -> (u32, Vec<u8>) {
+/// Returns how many frames end in `tail` and `data`, and the replies to the queries in them.
+fn answer(tail: &mut Vec<u8>, data: &[u8]) -> (u32, Vec<u8>) {
     const QUERIES: [(&[u8], &[u8]); 2] = [(b"\x1b[c", b"\x1b[?62;22c"), (b"\x1b[?2026$p", b"\x1b[?2026;2$y")];
+    tail.extend_from_slice(data);
     let (mut ended, mut replies, mut at) = (0, Vec::new(), 0);
     while let Some(next) = tail[at..].iter().position(|&byte| byte == 0x1b) {
         at += next;
