@@ -112,12 +112,15 @@ impl<E> Source<E> {
         &self.named
     }
 
-    /// Returns whether the scene's file is so large that it is parsed on several threads.
+    /// Returns whether the scene's file is an STL file that is parsed on several threads.
+    // Other files are parsed on one thread wherever they are read. In the pool they would only leave memory to more
+    // threads.
     pub(super) fn is_large(&self) -> bool {
         /// The least size of such a file in bytes: 4 MiB, which take about 10 ms on one thread.
         const MIN_SIZE: u64 = 4 << 20;
-        let size = self.named.file.as_ref().and_then(|file| file.metadata().ok()).map_or(0, |file| file.len());
-        size >= MIN_SIZE
+        let is_stl = |file: &&PathBuf| file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("stl"));
+        let file = self.named.file.as_ref().filter(is_stl).and_then(|file| file.metadata().ok());
+        file.is_some_and(|file| file.len() >= MIN_SIZE)
     }
 
     /// Reads the scene.
