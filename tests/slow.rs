@@ -309,7 +309,14 @@ fn saved(times: usize) -> [f64; 2] {
 #[cfg(target_os = "linux")]
 #[test]
 fn many_saves_take_the_memory_of_one() {
-    let (one, many) = (saved(1), saved(30));
+    // The least of three, because the allocator keeps memory for each thread that has worked: by chance up to 1.9 times
+    // as much stayed in one session as in another one with as many saves.
+    let least = |times| {
+        let of_two =
+            |[most, now]: [f64; 2], [other_most, other_now]: [f64; 2]| [most.min(other_most), now.min(other_now)];
+        (0..3).map(|_| saved(times)).reduce(of_two).expect("three sessions")
+    };
+    let (one, many) = (least(1), least(30));
     println!("kB at most and afterwards: {one:?} for one save, {many:?} for 30");
     // 1.2 times is promised for what stays, and .88 measured for 12 MB of text; as everywhere here, three times that
     // excess. (Of a scene this small the allocator's own share varies: 1.21 was seen.)
