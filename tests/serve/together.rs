@@ -334,7 +334,7 @@ fn the_holder_of_a_key_leads_the_tour() {
         leader.see_text("you lead the tour; G ends that").await;
         guest.send(b"T").await;
         guest.see_text("tour led by viewer 0, 2 watching: any key leaves it").await;
-        // Who comes now starts in the tour.
+        // A new viewer starts in the tour.
         let mut late = enter_as(&hosting, "anybody", None).await;
         late.see_text("tour led by viewer 0, 3 watching").await;
         leader.send(b"nt").await;
