@@ -56,17 +56,22 @@ fn a_point_light_of_a_file_weakens_with_the_square_of_its_distance() {
     assert_close(light_at(&scene, 0.999_999, 0.999_999), [share / luminance, 0.5 * share / luminance, 0.0]);
 }
 
+/// Returns the cosine times the share of a spot's light at (1, 0.5), 0.5 beside the axis.
+///
+/// The spot is at distance 2, and its cone ends at 45 degrees.
+fn beside_axis() -> f64 {
+    let cosine = 2.0 / 4.25_f64.sqrt();
+    let inside = (cosine - libm::cos(FRAC_PI_4)) / (1.0 - libm::cos(FRAC_PI_4));
+    cosine * inside * inside * (3.0 - 2.0 * inside)
+}
+
 #[test]
 fn lux_and_candela_of_a_file_keep_their_ratio_and_a_spot_its_cone() {
     let scene = scene("s3_two.gltf");
     // 300 lux, and 100 candela at distance 2, which are 25.
     let factor = 1.0 / (300.0 + 100.0 / 4.0);
     assert_close(light_at(&scene, 0.5, 0.5), [1.0; 3]);
-    // At (1, 0.5), 0.5 beside the axis: the cosine is 2 / sqrt(4.25), and the cone ends at 45 degrees.
-    let cosine = 2.0 / 4.25_f64.sqrt();
-    let inside = (cosine - libm::cos(FRAC_PI_4)) / (1.0 - libm::cos(FRAC_PI_4));
-    let share = inside * inside * (3.0 - 2.0 * inside);
-    assert_close(light_at(&scene, 0.999_999, 0.5), [factor * (300.0 + 100.0 / 4.25 * cosine * share); 3]);
+    assert_close(light_at(&scene, 0.999_999, 0.5), [factor * (300.0 + 100.0 / 4.25 * beside_axis()); 3]);
 }
 
 #[test]
@@ -77,10 +82,7 @@ fn distant_lights_of_a_file_are_suns_where_they_reach_the_mesh() {
     // shines away from the mesh.
     let factor = 1.0 / 150.0;
     assert_close(light_at(&scene, 0.5, 0.5), [factor * 50.0; 3]);
-    let cosine = 2.0 / 4.25_f64.sqrt();
-    let inside = (cosine - libm::cos(FRAC_PI_4)) / (1.0 - libm::cos(FRAC_PI_4));
-    let share = inside * inside * (3.0 - 2.0 * inside);
-    assert_close(light_at(&scene, 0.999_999, 0.5), [factor * (25.0 + 100.0 / 4.25 * cosine * share); 3]);
+    assert_close(light_at(&scene, 0.999_999, 0.5), [factor * (25.0 + 100.0 / 4.25 * beside_axis()); 3]);
 }
 
 #[test]

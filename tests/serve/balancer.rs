@@ -2,11 +2,10 @@
 
 use crate::abuse::dial_from;
 use crate::guest::{Anybody, Guest};
-use crate::program::{Program, termtrace};
+use crate::program::{ListeningProcess, Program, termtrace};
 use crate::{Hosting, Place, run, until};
 use russh::client;
-use std::net::SocketAddr;
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
@@ -157,50 +156,29 @@ fn networks_are_checked() {
     }
 }
 
-/// A running `haproxy`; it is ended when it is dropped.
-struct Haproxy {
-    child: Child,
-    address: SocketAddr,
-}
-
-impl Haproxy {
-    /// Starts `haproxy` before these replicas; `None` if it is not installed.
-    ///
-    /// Its settings are those of `docs/serve.md` but for addresses and times.
-    fn start(folder: &std::path::Path, replicas: &[&Program]) -> Option<Self> {
-        if Command::new("haproxy").arg("-v").output().is_err() {
-            eprintln!("skipped: there is no haproxy");
-            return None;
-        }
-        let documented = include_str!("../../docs/serve.md").split("```text\nfrontend visitors").nth(1);
-        let documented = documented.and_then(|rest| rest.split("```").next()).expect("an example");
-        let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
-        let address = listener.local_addr().expect("an address");
-        let [one, two] = [0, 1].map(|at| replicas[at].address().to_string());
-        let config = format!("frontend visitors{documented}").replace(":22\n", &format!("{address}\n"));
-        let config = config.replace("10.0.0.11:2222", &one).replace("10.0.0.12:2222", &two);
-        let config = config.replace("inter 2s", "inter 100ms");
-        let path = folder.join("haproxy.cfg");
-        std::fs::write(&path, config).expect("a file");
-        // The port is free again, for HAProxy.
-        drop(listener);
-        let mut command = Command::new("haproxy");
-        command.arg("-db").arg("-f").arg(path).stdout(Stdio::null()).stderr(Stdio::null());
-        Some(Self { child: command.spawn().expect("it runs"), address })
+/// Starts `haproxy` before these replicas; `None` if it is not installed.
+///
+/// Its settings are those of `docs/serve.md` but for addresses and times.
+fn haproxy(folder: &std::path::Path, replicas: &[&Program]) -> Option<ListeningProcess> {
+    if Command::new("haproxy").arg("-v").output().is_err() {
+        eprintln!("skipped: there is no haproxy");
+        return None;
     }
-}
-
-impl Drop for Haproxy {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-impl Place for Haproxy {
-    fn address(&self) -> SocketAddr {
-        self.address
-    }
+    let documented = include_str!("../../docs/serve.md").split("```text\nfrontend visitors").nth(1);
+    let documented = documented.and_then(|rest| rest.split("```").next()).expect("an example");
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = listener.local_addr().expect("an address");
+    let [one, two] = [0, 1].map(|at| replicas[at].address().to_string());
+    let config = format!("frontend visitors{documented}").replace(":22\n", &format!("{address}\n"));
+    let config = config.replace("10.0.0.11:2222", &one).replace("10.0.0.12:2222", &two);
+    let config = config.replace("inter 2s", "inter 100ms");
+    let path = folder.join("haproxy.cfg");
+    std::fs::write(&path, config).expect("a file");
+    // The port is free again, for HAProxy.
+    drop(listener);
+    let mut command = Command::new("haproxy");
+    command.arg("-db").arg("-f").arg(path).stdout(Stdio::null()).stderr(Stdio::null());
+    Some(ListeningProcess { child: command.spawn().expect("it runs"), address })
 }
 
 /// Returns the number of views that a replica has opened.
@@ -209,7 +187,7 @@ fn views(replica: &Program) -> usize {
 }
 
 /// Waits until a replica can be reached through `haproxy`.
-async fn until_up(haproxy: &Haproxy) {
+async fn until_up(haproxy: &ListeningProcess) {
     for _ in 0..500 {
         if let Ok(mut stream) = TcpStream::connect(haproxy.address).await {
             let mut greeting = [0; 8];
@@ -230,7 +208,7 @@ fn one_replica_behind_haproxy_drains_while_viewers_stay_on_the_other() {
     let first = Program::start_in("exec", &arguments);
     // The second one gets a copy of the first one's host key, whose path is its fourth argument.
     let second = Program::start_in(&format!("cp -p {} \"$4\"; exec", first.key().display()), &arguments);
-    let Some(haproxy) = Haproxy::start(folder.path(), &[&first, &second]) else { return };
+    let Some(haproxy) = haproxy(folder.path(), &[&first, &second]) else { return };
     run(async {
         until_up(&haproxy).await;
         // Some on each, as they come.

@@ -189,7 +189,7 @@ fn row_06_too_many_open_files_end_nothing() {
     Read::read_exact(&mut stream, &mut name).expect("it greets");
     assert_eq!(&name, b"SSH-2.0");
     program.terminate();
-    assert!(program.child.wait().expect("it ends").success(), "without viewers it ends at once");
+    assert!(program.process.child.wait().expect("it ends").success(), "without viewers it ends at once");
 }
 
 /// Writes a private key into a file that only its owner can read.

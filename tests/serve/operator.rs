@@ -3,7 +3,7 @@
 use crate::counter::{Counter, run_all};
 use crate::guest::{Anybody, Guest, connect, connect_as};
 use crate::openssh::free_port;
-use crate::program::{Program, termtrace};
+use crate::program::{ListeningProcess, Program, termtrace};
 use crate::pty::Start;
 use crate::{Hosting, Place, run, until};
 use russh::keys::ssh_key::private::{Ed25519Keypair, KeypairData};
@@ -13,7 +13,7 @@ use std::fs;
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
 use tempfile::TempDir;
@@ -332,7 +332,7 @@ fn row_18_a_signal_drains_and_a_second_one_ends_at_once() {
         assert_eq!(guest.leave().await, Some(0));
         guest.assert_clean();
     });
-    assert!(program.child.wait().expect("it ends").success());
+    assert!(program.process.child.wait().expect("it ends").success());
 
     let mut program = Program::start(&["three_spheres"]);
     run(async {
@@ -343,7 +343,7 @@ fn row_18_a_signal_drains_and_a_second_one_ends_at_once() {
         program.terminate();
         guest.leave().await;
     });
-    let status = program.child.wait().expect("it ends");
+    let status = program.process.child.wait().expect("it ends");
     assert_eq!(std::os::unix::process::ExitStatusExt::signal(&status), Some(15), "{status}");
 }
 
@@ -462,7 +462,8 @@ fn row_17_the_server_runs_with_few_rights() {
         guest.send(b"q").await;
         assert_eq!(guest.leave().await, Some(0));
     });
-    let children = fs::read_to_string(format!("/proc/{0}/task/{0}/children", program.child.id())).unwrap_or_default();
+    let children =
+        fs::read_to_string(format!("/proc/{0}/task/{0}/children", program.process.child.id())).unwrap_or_default();
     assert!(children.is_empty(), "it has started {children}");
 }
 
@@ -475,7 +476,7 @@ fn systemd_passes_a_socket() {
     }
     let folder = tempfile::tempdir().expect("a folder");
     // Another program may take the port first.
-    let started = (0..10).find_map(|_| Activated::start(&folder.path().join("key")));
+    let started = (0..10).find_map(|_| activated(&folder.path().join("key")));
     let mut activated = started.expect("it has a port");
     let address = activated.address;
     run(async { Guest::enter(&activated).await.see_picture().await });
@@ -488,44 +489,23 @@ fn systemd_passes_a_socket() {
     assert!(activated.child.wait().expect("it ends").success());
 }
 
-/// A server that is started by `systemd-socket-activate`; it is ended when it is dropped.
-struct Activated {
-    child: Child,
-    address: std::net::SocketAddr,
-}
-
-impl Activated {
-    /// Starts it; `None` if its port is not free any more.
-    ///
-    /// The first connection starts the server, which then says where it listens: at the socket that it was given.
-    fn start(key: &Path) -> Option<Self> {
-        let address = std::net::SocketAddr::from(([127, 0, 0, 1], free_port()));
-        let mut command = Command::new("systemd-socket-activate");
-        command.args(["-l", &address.to_string(), env!("CARGO_BIN_EXE_termtrace"), "serve", "three_spheres"]);
-        command.arg("--host-key").arg(key).stdout(Stdio::piped()).stderr(Stdio::null());
-        let mut activated = Self { child: command.spawn().expect("it starts"), address };
-        for _ in 0..2000 {
-            if activated.child.try_wait().expect("it is a child").is_some() {
-                return None;
-            }
-            if TcpStream::connect(address).is_ok() {
-                return Some(activated);
-            }
-            std::thread::sleep(Duration::from_millis(10));
+/// Starts a server by `systemd-socket-activate`; `None` if its port is not free any more.
+///
+/// The first connection starts the server, which then says where it listens: at the socket that it was given.
+fn activated(key: &Path) -> Option<ListeningProcess> {
+    let address = std::net::SocketAddr::from(([127, 0, 0, 1], free_port()));
+    let mut command = Command::new("systemd-socket-activate");
+    command.args(["-l", &address.to_string(), env!("CARGO_BIN_EXE_termtrace"), "serve", "three_spheres"]);
+    command.arg("--host-key").arg(key).stdout(Stdio::piped()).stderr(Stdio::null());
+    let mut activated = ListeningProcess { child: command.spawn().expect("it starts"), address };
+    for _ in 0..2000 {
+        if activated.child.try_wait().expect("it is a child").is_some() {
+            return None;
         }
-        panic!("the socket is not there");
+        if TcpStream::connect(address).is_ok() {
+            return Some(activated);
+        }
+        std::thread::sleep(Duration::from_millis(10));
     }
-}
-
-impl Drop for Activated {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-impl Place for Activated {
-    fn address(&self) -> std::net::SocketAddr {
-        self.address
-    }
+    panic!("the socket is not there");
 }

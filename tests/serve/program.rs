@@ -13,12 +13,30 @@ pub(crate) fn termtrace(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_termtrace")).arg("serve").args(arguments).output().expect("it runs")
 }
 
+/// A running process that listens; it is ended when it is dropped.
+pub(crate) struct ListeningProcess {
+    pub(crate) child: Child,
+    pub(crate) address: SocketAddr,
+}
+
+impl Drop for ListeningProcess {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Place for ListeningProcess {
+    fn address(&self) -> SocketAddr {
+        self.address
+    }
+}
+
 /// A running `termtrace serve`; it is ended when it is dropped.
 pub(crate) struct Program {
-    pub(crate) child: Child,
+    pub(crate) process: ListeningProcess,
     /// Its standard output, which is open for as long as it runs.
     _output: std::io::Lines<BufReader<ChildStdout>>,
-    address: SocketAddr,
     folder: TempDir,
 }
 
@@ -44,12 +62,12 @@ impl Program {
         if address.ip().is_unspecified() {
             address.set_ip([127, 0, 0, 1].into());
         }
-        Self { child, _output: lines, address, folder }
+        Self { process: ListeningProcess { child, address }, _output: lines, folder }
     }
 
     /// Returns the memory of the process in kilobytes; `None` on systems without `/proc`.
     pub(crate) fn memory(&self) -> Option<u64> {
-        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).ok()?;
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.process.child.id())).ok()?;
         let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
         line.split_whitespace().next()?.parse().ok()
     }
@@ -75,20 +93,13 @@ impl Program {
     }
 
     fn signal(&self, signal: Signal) {
-        let pid = rustix::process::Pid::from_child(&self.child);
+        let pid = rustix::process::Pid::from_child(&self.process.child);
         rustix::process::kill_process(pid, signal).expect("it runs");
-    }
-}
-
-impl Drop for Program {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
     }
 }
 
 impl Place for Program {
     fn address(&self) -> SocketAddr {
-        self.address
+        self.process.address
     }
 }
