@@ -377,8 +377,6 @@ pub fn run_until_drained(
         let _ = poll(&mut [PollFd::from_borrowed_fd(signals.wake_pipe(), PollFlags::IN)], None);
         signals.drain();
         let reloads = signals.take_reload();
-        // These signals do not ask the server to end: its own terminal was resized, or it was stopped and continued.
-        let is_other = signals.take_resized() | signals.take_continued() | reloads;
         if server.has_ended() {
             server.join();
             return Ok(None);
@@ -389,8 +387,9 @@ pub fn run_until_drained(
                 Err(error) => server.state.log(&LogLine::event("reload_failed").with("error", error)),
             }
         }
-        match signals.deadly() {
-            Some(signal) if draining && !is_other => return Ok(Some(signal)),
+        // Taken, as the loop also wakes for signals that do not ask the server to end, or twice for one signal.
+        match signals.take_deadly() {
+            Some(signal) if draining => return Ok(Some(signal)),
             Some(_) if !draining => {
                 draining = true;
                 server.drain();

@@ -186,7 +186,13 @@ impl Signals {
     /// Returns the signal that asked the program to end, if any.
     #[doc(hidden)]
     pub fn deadly(&self) -> Option<i32> {
-        signal_in(&self.deadly)
+        signal_of(self.deadly.load(Ordering::SeqCst))
+    }
+
+    /// Returns the signal that has asked the program to end since the last call, if any.
+    #[cfg(feature = "serve")]
+    pub(crate) fn take_deadly(&self) -> Option<i32> {
+        signal_of(self.deadly.swap(0, Ordering::SeqCst))
     }
 
     /// Returns whether SIGHUP has asked since the last call to read files again.
@@ -194,9 +200,11 @@ impl Signals {
     /// That is only so after [`catch_for_server`](Self::catch_for_server). If the terminal of the process has been
     /// closed, which sends SIGHUP too, the signal asks the program to end.
     #[doc(hidden)]
-    pub fn take_reload(&self) -> bool {
+    pub fn take_reload(&mut self) -> bool {
         let reloads = self.reload.swap(false, Ordering::SeqCst);
         if reloads && self.had_terminal && !has_controlling_terminal() {
+            // A closed terminal asks once, although it may send the signal again.
+            self.had_terminal = false;
             self.deadly.store(SIGHUP as usize, Ordering::SeqCst);
             return false;
         }
@@ -266,12 +274,9 @@ fn catch_deadly(signals: &[i32], ignored: u64, deadly: &Arc<AtomicUsize>, wake: 
     Ok(())
 }
 
-/// Returns the signal in `deadly`, in which 0 means none.
-fn signal_in(deadly: &AtomicUsize) -> Option<i32> {
-    match deadly.load(Ordering::SeqCst) {
-        0 => None,
-        signal => i32::try_from(signal).ok(),
-    }
+/// Returns the signal of a number, of which 0 means none.
+fn signal_of(number: usize) -> Option<i32> {
+    i32::try_from(number).ok().filter(|&signal| signal != 0)
 }
 
 /// Installs handlers that run `last_act` before a signal ends the process, for commands without a
@@ -288,7 +293,7 @@ pub fn before_death(last_act: impl FnOnce() + Send + 'static) -> io::Result<()> 
     let caught = Arc::clone(&deadly);
     let wait = move || {
         // A read error means that no handler could be installed.
-        if let (Ok(()), Some(signal)) = (read.read_exact(&mut [0]), signal_in(&caught)) {
+        if let (Ok(()), Some(signal)) = (read.read_exact(&mut [0]), signal_of(caught.load(Ordering::SeqCst))) {
             last_act();
             die_of(signal);
         }
