@@ -713,6 +713,10 @@ draco(data, attributes | {"POSITION": 4}).write("s5_id.gltf")
 # The texture coordinates have two numbers.
 draco(data, {"POSITION": 1}).write("s5_width.gltf")
 mesh = draco(data, attributes)
+# The positions are floats.
+mesh.accessors[mesh.primitive["attributes"]["POSITION"]]["componentType"] = 5125
+mesh.write("s5_type.gltf")
+mesh = draco(data, attributes)
 # Both primitives are the same part of the file.
 mesh.json["meshes"][0]["primitives"].append(mesh.primitive)
 mesh.write("s5_twice.gltf")
