@@ -38,6 +38,12 @@ const FINER_LEVEL_SHARE: f64 = 0.8;
 // An eighth of a second at 60 frames per second: a finer level this much later goes unnoticed, but an attempt that
 // fails costs a late frame.
 const FRAMES_BEFORE_FINER: u32 = 8;
+/// Greatest number of such frames, after attempts that failed.
+// Each failed attempt doubles the number. With 8 frames always, a fifth of 200 viewers of a busy server alternated
+// between two levels, twice a second, because all attempts together made the frames of all of them late.
+const MAX_FRAMES_BEFORE_FINER: u32 = 512;
+/// Number of frames after which an attempt at a finer level has not failed.
+const FRAMES_OF_SUCCESS: u32 = 64;
 /// Number of late frames in a row before a coarser level is chosen.
 // A single frame may be late because another process had the core. A frame that is very late counts at once.
 const LATE_FRAMES_BEFORE_COARSER: u32 = 2;
@@ -55,6 +61,10 @@ pub(super) struct QualityControl {
     cost_ratios: [f64; MAX_MOTION_LEVEL + 1],
     /// Number of pictures in a row that were fast enough for a finer level.
     frames_with_room: u32,
+    /// Number of such pictures before a finer level is tried.
+    frames_before_finer: u32,
+    /// Number of pictures since the level last rose.
+    frames_since_rise: u32,
     /// Number of late pictures in a row.
     late_frames: u32,
 }
@@ -68,6 +78,8 @@ impl QualityControl {
             last: None,
             cost_ratios: INITIAL_COST_RATIOS,
             frames_with_room: 0,
+            frames_before_finer: FRAMES_BEFORE_FINER,
+            frames_since_rise: FRAMES_OF_SUCCESS,
             late_frames: 0,
         }
     }
@@ -120,16 +132,26 @@ impl QualityControl {
         if self.late_frames >= LATE_FRAMES_BEFORE_COARSER || is_very_late {
             // The level may fall by several at once, because each late frame is visible.
             self.level = fits;
-        } else if self.frames_with_room >= FRAMES_BEFORE_FINER {
+            if self.frames_since_rise < FRAMES_OF_SUCCESS {
+                self.frames_before_finer = (2 * self.frames_before_finer).min(MAX_FRAMES_BEFORE_FINER);
+                self.frames_since_rise = FRAMES_OF_SUCCESS;
+            }
+        } else if self.frames_with_room >= self.frames_before_finer {
             // The level rises by one at a time, because the predicted time of a level that was not tried is a guess.
             self.level += 1;
-            self.frames_with_room = 0;
+            (self.frames_with_room, self.frames_since_rise) = (0, 0);
+        } else if self.frames_since_rise < FRAMES_OF_SUCCESS {
+            self.frames_since_rise += 1;
+            if self.frames_since_rise == FRAMES_OF_SUCCESS {
+                self.frames_before_finer = FRAMES_BEFORE_FINER;
+            }
         }
     }
 
     /// Forgets the last picture's time, because that of another scene or size is not comparable.
     pub(super) fn forget_last(&mut self) {
         self.last = None;
+        self.frames_before_finer = FRAMES_BEFORE_FINER;
     }
 
     /// Updates the cost ratio of two neighbouring levels if the last two pictures had these levels.

@@ -86,6 +86,27 @@ fn no_level_flickers() {
 
 /// A single late frame may have been delayed by another process, so it does not change the level.
 #[test]
+fn attempts_at_a_finer_level_that_fail_become_rare() {
+    let mut control = QualityControl::new(None);
+    // One sample per pixel is soon too slow each time, but the first coarse frame afterwards hides how much slower.
+    let (mut last, mut frames_there) = (0, 0);
+    let levels = simulate_motion(&mut control, 2_000, |_, level| {
+        frames_there = if level == last { frames_there + 1 } else { 0 };
+        last = level;
+        match (level, frames_there) {
+            (0, 0) => 8.0,
+            (0, _) => 2.0,
+            (_, 0..4) => 9.0,
+            _ => 20.0,
+        }
+    });
+    assert!((6..=24).contains(&changes(&levels)), "{} changes: {levels:?}", changes(&levels));
+    // An attempt that succeeds is followed by the next one as soon as by the first one.
+    simulate_motion(&mut control, 2_000, |_, level| frame_time_by_level(2.5)(level));
+    assert_eq!((control.level, control.frames_before_finer), (2, FRAMES_BEFORE_FINER));
+}
+
+#[test]
 fn one_late_frame_changes_nothing() {
     let mut control = QualityControl::new(None);
     simulate_motion(&mut control, 100, |_, level| frame_time_by_level(1.0)(level));
