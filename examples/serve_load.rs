@@ -9,9 +9,11 @@
 //! to the end of the next frame is taken; the rest only looks. All answer the queries that a terminal answers.
 //!
 //! `--followers N` visitors follow the tour of the server (`--tour`, and `--moving 0`), in `--classes N` kinds of terminals
-//! (up to 8: four sizes, two numbers of colours). One more leaves the tour and comes back twice a second.
+//! (up to 8: four sizes, of which that of `--size` is the largest, and two numbers of colours). One more, in a window of
+//! 80x24 cells, leaves the tour and comes back twice a second.
 //!
-//! `--at-once true` lets all followers press a key at the same time at the end, and come back by another one. `--drain true`
+//! `--at-once true` lets all followers press a key at the same time at the end, and come back by another one; windows of
+//! 40 columns have room for the notices by which both are seen. `--drain true`
 //! then ends the server (`--pid`), and counts the visitors who are told before their sessions end.
 //!
 //! `--odd KIND:N` adds visitors of another kind, whose frames are not counted: `big` ones turn in windows of 500x200
@@ -157,12 +159,16 @@ impl Arguments {
 
     /// Returns the size of a visitor's window, and whether it has all colours.
     fn terminal(&self, number: usize) -> ((u32, u32), bool) {
-        if !(self.moving..self.counted()).contains(&number) {
+        if self.followers > 0 && number >= self.counted() {
+            // Its notices have to fit into a row.
+            return ((80, 24), true);
+        }
+        if number < self.moving {
             return (self.size, true);
         }
         let class = number % self.classes;
-        let size = [self.size, (100, 30), (120, 40), (60, 20)][class % 4];
-        (size, class < 4)
+        let ((columns, rows), smaller) = (self.size, class as u32 % 4);
+        ((columns.saturating_sub(smaller / 2), rows.saturating_sub(smaller % 2)), class < 4)
     }
 }
 

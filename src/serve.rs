@@ -43,6 +43,7 @@ use worker_pool::WorkerPool;
 mod audience;
 mod client_command;
 mod client_terminal;
+mod frame_window;
 mod guide;
 mod host_key;
 mod leave_reason;

@@ -245,7 +245,20 @@ pub(super) fn frame_of(
             .to_vec(),
         None => shot.layout.legends(&scene, &shot.camera),
     };
-    Ok(Frame { scene, shot, picture, geometry, parts, sampling, legends, orders, refines, cost, trace })
+    Ok(Frame {
+        scene,
+        shot,
+        picture,
+        geometry,
+        parts,
+        sampling,
+        legends,
+        orders,
+        refines,
+        cost,
+        trace,
+        interval: trace,
+    })
 }
 
 /// Traces a frame with one sample per pixel on the calling thread.

@@ -87,6 +87,9 @@ pub(crate) struct Frame {
     pub(crate) cost: Cost,
     /// The wall-clock time that tracing took.
     pub(crate) trace: Duration,
+    /// The time for the choice of the next frames' sampling: that of tracing, or on a busy server that between two
+    /// frames of this viewer.
+    pub(crate) interval: Duration,
 }
 
 impl Frame {

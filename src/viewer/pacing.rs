@@ -75,7 +75,7 @@ impl Pacing {
     pub(super) fn record_frame(&mut self, frame: &Frame) {
         // A refinement reuses the samples of the frame before, so its time says little about that of a new picture.
         if !frame.refines {
-            self.quality.adapt_level(frame.sampling, frame.trace, self.link.min_frame_interval());
+            self.quality.adapt_level(frame.sampling, frame.interval, self.link.min_frame_interval());
         }
     }
 

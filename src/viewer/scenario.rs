@@ -190,6 +190,7 @@ impl Driver {
             refines,
             cost,
             trace,
+            interval: trace,
         };
         self.viewer.take_frame(frame);
     }

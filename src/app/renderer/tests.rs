@@ -41,6 +41,7 @@ fn frame(refines: bool) -> Frame {
         refines,
         cost: Cost::default(),
         trace: Duration::ZERO,
+        interval: Duration::ZERO,
     }
 }
 

@@ -49,6 +49,7 @@ fn frame() -> Frame {
         sampling: Sampling::Each(NonZeroU32::MIN),
         refines: false,
         trace: Duration::ZERO,
+        interval: Duration::ZERO,
     }
 }
 

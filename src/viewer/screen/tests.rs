@@ -46,6 +46,7 @@ fn the_order_is_the_links() {
         sampling: Sampling::Each(NonZeroU32::MIN),
         refines: false,
         trace: Duration::ZERO,
+        interval: Duration::ZERO,
     };
     let grid = export::frame_grid(&scene, capabilities.cell_mode, size, 2.0);
     let slow = Some(Limit { rate: Some(1e5), max_bytes: usize::MAX });
