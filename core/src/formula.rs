@@ -2,18 +2,22 @@
 //!
 //! `parse` reads the text into a `tape`, a list of operations in which equal terms are shared. `point` evaluates the
 //! tape in f64; `model` encloses its values on a piece of a ray by a quadratic polynomial and a bound of its error.
-//! `roots` walks along eight rays at once with these enclosures, so that no sign change is stepped over; `packet`
-//! computes the enclosures of eight rays in f32. `bracket` narrows sign changes down to the roots.
+//! `models` holds eight of them in f32, and `packet` computes those of a tape. `forecast` tells from an enclosure where the
+//! sign may change; with it, `walks` go along eight rays at once, so that no sign change is stepped over. `bracket`
+//! narrows sign changes down to the `roots`.
 
 mod bracket;
 mod check;
 mod elementary;
+mod forecast;
 mod model;
+mod models;
 mod packet;
 mod parse;
 mod point;
 mod roots;
 mod tape;
+mod walks;
 
 pub(crate) use parse::{FormulaFault, is_free_name};
 pub(crate) use roots::{Line, Searches, Solver};
