@@ -1,84 +1,97 @@
 //! The last steps to the roots of eight rays: brackets, narrowed down to two neighbouring f32.
 
-use super::packet::{EightValues, PacketValues};
+use super::packet::EightValues;
+use super::values::PacketValues;
 use crate::lanes::{F32x8, LANES, Lanes, SimdKernel};
 use std::array::from_fn;
 
-/// The relative distance of two t up to which the secant between them may be mere rounding error.
-const CLOSE: f64 = 16.0 * f32::EPSILON as f64;
+/// The distance of the first two t from the middle of the bracket, relative to its length.
+const APART: f64 = 0.125;
 
 /// A range of t from `low` to `high` with the first root, and the sign of f in front of it.
 pub(super) struct Root {
     pub(super) low: f64,
     pub(super) high: f64,
     pub(super) sign: f64,
-    /// An estimate of the root.
-    pub(super) guess: f64,
-    /// The slope of f's model at the root; 0 if there is no model.
-    pub(super) slope: f64,
 }
 
 /// Brackets of eight rays: pairs of t between which f changes its sign, narrowed step by step.
 ///
-/// All values of t are f32 numbers, held as f64.
+/// After [`start`](Self::start), all values of t are f32 numbers, held as f64.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Brackets {
     before: EightValues,
     pub(super) after: EightValues,
     /// The sign of f in front of the root.
     sign: EightValues,
-    /// The slope of f times the sign, below 0; 0 if it is not known yet.
+    /// The slope of f times the sign, below 0; NaN if it is not known yet.
     slope: EightValues,
-    /// The t at which f is to be evaluated next.
-    next: EightValues,
-    /// The t that were evaluated last, and the values of f there times the signs.
-    last: [EightValues; 2],
+    /// The two t at which f is to be evaluated next.
+    next: [EightValues; 2],
 }
 
 impl Brackets {
     pub(super) const NONE: Self = {
         let none = [0.0; LANES];
-        Self { before: none, after: none, sign: none, slope: none, next: none, last: [none; 2] }
+        Self { before: none, after: none, sign: none, slope: [f64::NAN; LANES], next: [none; 2] }
     };
 
-    pub(super) fn add(&mut self, lane: usize, Root { low, high, sign, guess, slope }: Root) {
-        let (before, after) = (f64::from(at_most(low)), f64::from(at_least(high)));
-        let slope = (sign * slope).min(0.0);
-        let next = if slope < 0.0 { guess } else { 0.5 * (before + after) };
-        (self.before[lane], self.after[lane], self.sign[lane], self.slope[lane]) = (before, after, sign, slope);
-        self.next[lane] = f64::from(next as f32).max(before).min(after);
+    pub(super) fn add(&mut self, lane: usize, Root { low, high, sign }: Root) {
+        (self.before[lane], self.after[lane], self.sign[lane]) = (low, high, sign);
+    }
+
+    /// Rounds the ends of all brackets to f32, away from the root, and sets the first two t.
+    #[inline(always)]
+    fn start(&mut self) {
+        for lane in 0..LANES {
+            let (before, after) = (at_most(self.before[lane]), at_least(self.after[lane]));
+            (self.before[lane], self.after[lane]) = (before, after);
+            // The root is mostly near the middle, as the error of one model extends the bracket on both sides.
+            let (middle, apart) = (0.5 * (before + after), APART * (after - before));
+            self.set_next(lane, [middle - apart, middle + apart].map(|t| f64::from(t as f32)));
+        }
+    }
+
+    /// Sets the two t of a lane, moved into the bracket.
+    #[inline(always)]
+    fn set_next(&mut self, lane: usize, [one, other]: [f64; 2]) {
+        let (least, most) = (next_f32_above(self.before[lane]), next_f32_below(self.after[lane]));
+        let one = one.max(least).min(most);
+        self.next[0][lane] = one;
+        self.next[1][lane] = other.max(next_f32_above(one)).min(most);
     }
 
     /// Takes the values of f at `next`; returns the lanes whose brackets are two neighbouring f32.
     ///
     /// `count` is the number of earlier calls.
     #[inline(always)]
-    fn take_values(&mut self, values: &EightValues, count: u32) -> u32 {
+    fn take_values(&mut self, values: &[EightValues; 2], count: u32) -> u32 {
         let mut is_narrow = [false; LANES];
-        let in_turn = count > 2 && count.is_multiple_of(2);
+        let in_turn = count % 3 == 2;
         for lane in 0..LANES {
-            let (t, value) = (self.next[lane], values[lane] * self.sign[lane]);
-            let is_before = value > 0.0;
+            let [one, other] = [self.next[0][lane], self.next[1][lane]];
+            let [at_one, at_other] = [values[0][lane] * self.sign[lane], values[1][lane] * self.sign[lane]];
             // The values of f at the ends of the bracket are not kept, because their signs, which are known, suffice.
-            let before = if is_before { t.max(self.before[lane]) } else { self.before[lane] };
-            let after = if is_before { self.after[lane] } else { t.min(self.after[lane]) };
-            let (least, most) = (next_f32_above(before), next_f32_below(after));
-            let distance = t - self.last[0][lane];
-            let secant = (value - self.last[1][lane]) / distance;
-            // A secant that is NaN is not used, and neither is one between two t so close that rounding errors would
-            // decide it.
-            let is_steeper = count > 0 && secant < 0.0 && distance.abs() > CLOSE * t.abs();
-            let slope = if is_steeper { secant } else { self.slope[lane] };
-            // The next t is one f32 beyond the root by Newton's method, so that the root is soon enclosed from both
-            // sides; later, every second t is the middle of the bracket.
-            let root = f64::from((t - value / slope) as f32);
-            let beyond = if is_before { next_f32_above(root) } else { next_f32_below(root) };
+            let is_before = (at_one > 0.0) || (one <= self.before[lane]);
+            let is_other_before = (at_other > 0.0) || (other <= self.before[lane]);
+            let before = if is_before { one.max(self.before[lane]) } else { self.before[lane] };
+            let before = if is_before && is_other_before { other.max(before) } else { before };
+            let after = if is_other_before { self.after[lane] } else { other.min(self.after[lane]) };
+            let after = if is_before { after } else { one.min(after) };
+            let distance = other - one;
+            let secant = (at_other - at_one) / distance;
+            let slope = if secant < 0.0 { secant } else { self.slope[lane] };
+            let root = one - at_one / slope;
+            // The root is enclosed by the two f32 beside it; in every third turn, the bracket is cut in three. Negated,
+            // so that NaN is far, too.
             let is_far = in_turn || !(root.abs() < f64::INFINITY);
-            let next = if is_far { f64::from((0.5 * (before + after)) as f32) } else { beyond };
+            let third = (after - before) * (1.0 / 3.0);
+            let below = at_most(root);
+            let near = [below, next_f32_above(below)];
+            let far = [f64::from((before + third) as f32), f64::from((after - third) as f32)];
             (self.before[lane], self.after[lane], self.slope[lane]) = (before, after, slope);
-            (self.last[0][lane], self.last[1][lane]) = (t, value);
-            self.next[lane] = next.max(least).min(most);
-            is_narrow[lane] = least > most;
+            self.set_next(lane, if is_far { far } else { near });
+            is_narrow[lane] = next_f32_above(before) >= after;
         }
         (0..LANES).fold(0, |lanes, lane| lanes | u32::from(is_narrow[lane]) << lane)
     }
@@ -98,6 +111,7 @@ impl SimdKernel for Narrowing<'_> {
     fn run<N: Lanes>(self) -> F32x8 {
         let Self { mut values, brackets, mut lanes } = self;
         let mut count = 0;
+        brackets.start();
         while lanes != 0 {
             lanes &= !brackets.take_values(&values.at(&brackets.next), count);
             count += 1;
@@ -107,15 +121,16 @@ impl SimdKernel for Narrowing<'_> {
 }
 
 /// Returns the largest f32 that is not above `t`.
-fn at_most(t: f64) -> f32 {
-    let rounded = t as f32;
-    if f64::from(rounded) > t { rounded.next_down() } else { rounded }
+#[inline(always)]
+fn at_most(t: f64) -> f64 {
+    let rounded = f64::from(t as f32);
+    if rounded > t { next_f32_below(rounded) } else { rounded }
 }
 
 /// Returns the least f32 that is not below `t`.
-fn at_least(t: f64) -> f32 {
-    let rounded = t as f32;
-    if f64::from(rounded) < t { rounded.next_up() } else { rounded }
+#[inline(always)]
+fn at_least(t: f64) -> f64 {
+    -at_most(-t)
 }
 
 /// Returns the next f32 above a finite f32.

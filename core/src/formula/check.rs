@@ -19,11 +19,11 @@ impl Formula {
             return Some("f has no zero inside the bounds: nothing is seen");
         }
         let tape = self.moving.as_deref().unwrap_or(&self.tape);
-        let last = tape.operations().len() - 1;
-        if tape.is_non_negative(last) {
-            return Some("f is never negative: without a change of its sign there is no surface");
+        match tape.known_signs() {
+            [true, _] => Some("f is never negative: without a change of its sign there is no surface"),
+            [_, true] => Some("f is never positive: without a change of its sign there is no surface"),
+            _ => None,
         }
-        tape.is_non_positive(last).then_some("f is never positive: without a change of its sign there is no surface")
     }
 
     /// Returns whether enclosures show that f has the same sign in the whole box.

@@ -1,9 +1,8 @@
-//! Sine, cosine and the exponential function in f64: the same bits for one number and for eight.
+//! Sine, cosine and the exponential function in f64: the same bits for one number and for several.
 //!
-//! They are written without branches, so that loops over eight numbers become vector instructions: with `libm` they
+//! They are written without branches, so that loops over several numbers become vector instructions: with `libm` they
 //! took most of the time of the last steps to a root. For large arguments `libm` is called.
 
-use crate::lanes::LANES;
 use std::f64::consts::{FRAC_2_PI, LOG2_E};
 
 /// 1.5 * 2^52: the low bits of its sum with a small number are that number, rounded to a whole one.
@@ -60,18 +59,20 @@ fn polynomial(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().fold(0.0, |sum, c| sum * x + c)
 }
 
-/// Returns the sine or cosine of an angle up to [`LARGEST_ANGLE`].
+/// Returns the sine and the cosine of an angle up to [`LARGEST_ANGLE`].
 #[inline(always)]
-fn sin_or_cos_in_range(x: f64, is_cosine: bool) -> f64 {
+fn sin_and_cos_in_range(x: f64) -> [f64; 2] {
     let shifted = x * FRAC_2_PI + TO_WHOLE;
     let quarters = shifted - TO_WHOLE;
     let r = x - quarters * QUARTER[0] - quarters * QUARTER[1] - quarters * QUARTER[2];
     let squared = r * r;
     let sin = r + r * squared * polynomial(&SINE, squared);
     let cos = 1.0 - (0.5 * squared - squared * squared * polynomial(&COSINE, squared));
-    let turn = shifted.to_bits() + u64::from(is_cosine);
-    let value = if turn & 1 == 0 { sin } else { cos };
-    f64::from_bits(value.to_bits() ^ ((turn & 2) << 62))
+    let turn = shifted.to_bits();
+    [turn, turn + 1].map(|turn| {
+        let value = if turn & 1 == 0 { sin } else { cos };
+        f64::from_bits(value.to_bits() ^ ((turn & 2) << 62))
+    })
 }
 
 /// Returns e^x, for x up to [`LARGEST_EXPONENT`] in magnitude.
@@ -85,35 +86,39 @@ fn exp_in_range(x: f64) -> f64 {
 }
 
 pub(super) fn sin(x: f64) -> f64 {
-    if x.abs() <= LARGEST_ANGLE { sin_or_cos_in_range(x, false) } else { libm::sin(x) }
+    if x.abs() <= LARGEST_ANGLE { sin_and_cos_in_range(x)[0] } else { libm::sin(x) }
 }
 
 pub(super) fn cos(x: f64) -> f64 {
-    if x.abs() <= LARGEST_ANGLE { sin_or_cos_in_range(x, true) } else { libm::cos(x) }
+    if x.abs() <= LARGEST_ANGLE { sin_and_cos_in_range(x)[1] } else { libm::cos(x) }
 }
 
 pub(super) fn exp(x: f64) -> f64 {
     if x.abs() <= LARGEST_EXPONENT { exp_in_range(x) } else { libm::exp(x) }
 }
 
-/// Computes the sine or cosine of each number.
+/// Computes the sine and the cosine of each number.
 #[inline(always)]
-pub(super) fn sin_or_cos_of_each(x: &[f64; LANES], to: &mut [f64; LANES], is_cosine: bool) {
-    for (to, &x) in to.iter_mut().zip(x) {
-        *to = sin_or_cos_in_range(x, is_cosine);
+pub(super) fn sin_and_cos_of_each<const COUNT: usize>(
+    x: &[f64; COUNT],
+    sines: &mut [f64; COUNT],
+    cosines: &mut [f64; COUNT],
+) {
+    for at in 0..COUNT {
+        [sines[at], cosines[at]] = sin_and_cos_in_range(x[at]);
     }
     if !x.iter().all(|x| x.abs() <= LARGEST_ANGLE) {
-        (0..LANES).for_each(|lane| to[lane] = if is_cosine { cos(x[lane]) } else { sin(x[lane]) });
+        (0..COUNT).for_each(|at| (sines[at], cosines[at]) = (sin(x[at]), cos(x[at])));
     }
 }
 
 /// Computes e to the power of each number.
 #[inline(always)]
-pub(super) fn exp_of_each(x: &[f64; LANES], to: &mut [f64; LANES]) {
+pub(super) fn exp_of_each<const COUNT: usize>(x: &[f64; COUNT], to: &mut [f64; COUNT]) {
     for (to, &x) in to.iter_mut().zip(x) {
         *to = exp_in_range(x);
     }
     if !x.iter().all(|x| x.abs() <= LARGEST_EXPONENT) {
-        (0..LANES).for_each(|lane| to[lane] = exp(x[lane]));
+        (0..COUNT).for_each(|at| to[at] = exp(x[at]));
     }
 }

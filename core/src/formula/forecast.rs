@@ -1,11 +1,8 @@
 //! Forecasts: the sign of a formula at the start of a piece, and where on the piece it may change.
 
-use super::bracket::Root;
 use super::model::{Continuity, Model};
-#[cfg(all(test, unit_tests))]
-use super::models::model_of_lane;
-use super::models::{EPSILON, Models, StoredModels};
-use crate::lanes::{F32x8, LaneMask, Lanes, Mask};
+use super::models::{EPSILON, Models};
+use crate::lanes::{F32x8, LaneMask, Lanes};
 
 /// The error of a model, relative to the value of f, for which the lengths of pieces are chosen.
 pub(super) const TARGET: f32 = 0.3;
@@ -16,7 +13,6 @@ const BLUR: f32 = 1.0 / 16.0;
 /// The models of the whole formula on eight pieces, and which lanes may jump or have a certain
 /// sign.
 pub(super) struct SignForecasts {
-    models: StoredModels,
     pub(super) may_jump: u32,
     pub(super) is_undefined: u32,
     /// `near`, `far` and `blur` of each lane's [`SignForecast`].
@@ -35,8 +31,6 @@ pub(super) struct SignForecasts {
 /// The sign of a model at the start of a piece, and where the sign may change.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SignForecast {
-    /// The coefficients of u and u^2.
-    pub(super) c: [f64; 2],
     /// The sign at the start, 1 or -1; 0 if it is uncertain.
     pub(super) sign: f64,
     /// Whether the sign is the same on the whole piece.
@@ -51,11 +45,6 @@ pub(super) struct SignForecast {
 }
 
 impl SignForecasts {
-    #[cfg(all(test, unit_tests))]
-    pub(super) fn model(&self, lane: usize) -> Model {
-        model_of_lane(&self.models, lane)
-    }
-
     pub(super) fn continuity(&self, lane: usize) -> Continuity {
         Continuity { may_jump: self.may_jump >> lane & 1 == 1, is_undefined: self.is_undefined >> lane & 1 == 1 }
     }
@@ -79,8 +68,7 @@ impl SignForecasts {
     pub(super) fn forecast(&self, lane: usize) -> SignForecast {
         let [near, far, blur] = self.shares.map(|share| f64::from(share.0[lane]));
         let sign = if self.is_certain >> lane & 1 == 1 { self.sign_at_start(lane) } else { 0.0 };
-        let c = [1, 2].map(|power: usize| f64::from(self.models[power].0[lane]));
-        SignForecast { c, sign, has_no_zero: self.has_no_zero(lane), near, far, blur }
+        SignForecast { sign, has_no_zero: self.has_no_zero(lane), near, far, blur }
     }
 }
 
@@ -106,7 +94,6 @@ impl<N: Lanes> Models<N> {
         let has_no_zero = error.lt(least);
         let (is_certain, has_small_error) = (error.lt(first), error.lt(n(BLUR) * (c1.abs() + c2.abs())));
         let mut forecasts = SignForecasts {
-            models: self.store(),
             may_jump,
             is_undefined,
             shares: [F32x8::ZERO, F32x8::ZERO, (error / N::select(has_no_zero, least, first.abs())).store()],
@@ -146,14 +133,15 @@ fn at_share<N: Lanes>([c0, c1, c2]: [N; 3], share: N) -> N {
 /// Returns the first positive zero of a quadratic polynomial that is positive at 0, or infinity.
 #[inline(always)]
 fn first_zero<N: Lanes>(start: N, slope: N, curvature: N) -> N {
-    let (zero, none) = (N::splat(0.0), N::splat(f32::INFINITY));
+    let zero = N::splat(0.0);
     let root = (slope * slope - N::splat(4.0) * curvature * start).sqrt();
-    // `root` gets the sign with which it does not cancel against the slope.
-    let sum = slope - N::select(slope.lt(zero), root, -root);
-    let (one, other) = (N::splat(-0.5) * sum / curvature, N::splat(-2.0) * start / sum);
-    N::select(zero.lt(one), one, none).min(N::select(zero.lt(other), other, none))
+    // Of the two forms of the same zero, the one in which `root` does not cancel against the slope.
+    let falls = slope.lt(zero);
+    let numerator = N::select(falls, N::splat(2.0) * start, slope + root);
+    let denominator = N::select(falls, root - slope, N::splat(-2.0) * curvature);
+    let share = numerator / denominator;
+    N::select(zero.lt(share), share, N::splat(f32::INFINITY))
 }
-
 impl SignForecast {
     /// Returns the forecast from a model in f64.
     pub(super) fn of(&Model { c: [c0, c1, c2], error }: &Model) -> Self {
@@ -168,7 +156,7 @@ impl SignForecast {
         let near = (0.999 * (first - error) / -steepest).clamp(0.0, 1.0);
         let far = first_below([first, middle, last], -error).unwrap_or(2.0);
         let blur = error / if has_no_zero { first.min(middle).min(last) } else { b[0].abs() };
-        Self { c: [c1, c2], sign, has_no_zero, near, far, blur }
+        Self { sign, has_no_zero, near, far, blur }
     }
 
     /// Returns the next piece's length relative to this piece's, limited to `least..=most`.
@@ -176,12 +164,6 @@ impl SignForecast {
     /// It is a cube root, because the error grows with the cube of the length.
     pub(super) fn length_factor(&self, least: f64, most: f64) -> f64 {
         cube_root(TARGET / self.blur as f32).max(least).min(most)
-    }
-
-    /// Returns the bracket from `low` to `high` of a root that lies in a piece of length `width`.
-    pub(super) fn root(&self, [low, high]: [f64; 2], sign: f64, width: f64) -> Root {
-        let (u, [c1, c2]) = (self.near + self.far - 1.0, self.c);
-        Root { low, high, sign, guess: 0.5 * (low + high), slope: 2.0 * (c1 + 2.0 * u * c2) / width }
     }
 }
 

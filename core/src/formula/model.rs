@@ -6,7 +6,7 @@
 //! be written so that NaN decides nothing.
 
 use super::elementary;
-use super::tape::{Binary, Index, Operation, Tape, Unary};
+use super::tape::{Binary, Index, Operation, Steps, Tape, Unary};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Twice the largest relative rounding error of an f64 operation.
@@ -143,7 +143,7 @@ impl Evaluation<'_> {
         Model::ANYTHING
     }
 
-    pub(super) fn unary(&mut self, function: Unary, a: Model, is_non_negative: bool) -> Model {
+    pub(super) fn unary(&mut self, function: Unary, a: Model) -> Model {
         let [low, high] = a.range();
         // Negated, so that the branch is also taken if a bound is NaN.
         if !(high - low < f64::INFINITY) {
@@ -160,7 +160,8 @@ impl Evaluation<'_> {
             Unary::Negate => a.negate(),
             Unary::Abs => absolute(a),
             Unary::Square => square(a),
-            Unary::Sqrt => self.square_root(a, is_non_negative),
+            Unary::Sqrt => self.square_root(a, false),
+            Unary::SqrtOfNonNegative => self.square_root(a, true),
             Unary::Cbrt => cube_root(a),
             // 5.9 instead of 6, and below 2.9, 15.9 and 1.01 instead of 3, 16 and 1: room for the rounding of the bound
             // itself.
@@ -264,11 +265,11 @@ impl Evaluation<'_> {
         let ([low_x, high_x], [low_y, high_y]) = (x.range(), y.range());
         if low_x > 0.0 {
             let quotient = self.quotient(y, x);
-            self.unary(Unary::Atan, quotient, false)
+            self.unary(Unary::Atan, quotient)
         } else if low_y > 0.0 || high_y < 0.0 {
             let quotient = self.quotient(x, y);
             let quarter = Model::constant(FRAC_PI_2.copysign(low_y));
-            quarter.minus(self.unary(Unary::Atan, quotient, false))
+            quarter.minus(self.unary(Unary::Atan, quotient))
         } else {
             self.0.may_jump = true;
             self.0.is_undefined |= (low_x, high_x, low_y, high_y) == (0.0, 0.0, 0.0, 0.0);
@@ -333,21 +334,37 @@ impl Tape {
     ///
     /// `models` is scratch memory.
     pub(super) fn model(&self, coordinates: [Model; 3], models: &mut Vec<Model>) -> (Model, Continuity) {
+        self.model_of_steps(self.steps(), 0, coordinates, models)
+    }
+
+    /// Returns the model and the continuity of the result of some steps, for the choices of a lane.
+    pub(super) fn model_of_steps(
+        &self,
+        steps: Steps<'_>,
+        lane: usize,
+        coordinates: [Model; 3],
+        models: &mut Vec<Model>,
+    ) -> (Model, Continuity) {
         models.clear();
+        models.extend(coordinates);
+        models.push(Model::ANYTHING);
         let mut continuity = Continuity::default();
         let mut evaluation = Evaluation(&mut continuity);
-        for &operation in self.operations() {
-            let of = |index: Index| models[usize::from(index)];
+        let of = |models: &[Model], index: Index| match self.constant(index) {
+            Some(value) => Model::constant(value),
+            None => models[usize::from(index)],
+        };
+        for (at, &operation) in steps.operations.iter().enumerate() {
+            let [is_first, is_second] = steps.chosen(at).map(|lanes| lanes >> lane & 1 == 1);
             let model = match operation {
-                Operation::Constant(bits) => Model::constant(f64::from_bits(bits)),
-                Operation::Coordinate(axis) => coordinates[usize::from(axis)],
-                Operation::Unary(function, a) => {
-                    evaluation.unary(function, of(a), self.is_non_negative(usize::from(a)))
-                }
-                Operation::Binary(function, a, b) => evaluation.binary(function, of(a), of(b)),
+                Operation::Unary(_, a) if is_first => of(models, a),
+                Operation::Binary(_, a, _) if is_first => of(models, a),
+                Operation::Binary(_, _, b) if is_second => of(models, b),
+                Operation::Unary(function, a) => evaluation.unary(function, of(models, a)),
+                Operation::Binary(function, a, b) => evaluation.binary(function, of(models, a), of(models, b)),
             };
             models.push(model);
         }
-        (models.last().copied().unwrap_or(Model::ANYTHING), continuity)
+        (of(models, steps.result), continuity)
     }
 }

@@ -3,13 +3,12 @@
 //! They are the models of [`model`](super::model) with the rounding of f32.
 
 use super::model::Model;
-use super::tape::Index;
+use super::tape::{Index, Tape};
 use crate::lanes::{F32x8, Lanes, Mask};
 use std::f64::consts::FRAC_2_PI;
 
 /// Twice the largest relative rounding error of an f32 operation.
 pub(super) const EPSILON: f32 = f32::EPSILON;
-
 /// A bound of the absolute error of the polynomials for sine and cosine.
 // The largest measured error, at every 37th float up to 8000, is 9.3e-8.
 const SINE_ERROR: f32 = 2.0 * EPSILON;
@@ -25,7 +24,6 @@ const LARGEST_ANGLE: f32 = 8000.0;
 /// Eight Taylor models in memory, one per lane: the three coefficients of the quadratic polynomial,
 /// then the largest distance from it.
 pub(super) type StoredModels = [F32x8; 4];
-
 /// Returns the model of one lane.
 pub(super) fn model_of_lane(models: &StoredModels, lane: usize) -> Model {
     let [c0, c1, c2, error] = models.map(|numbers| f64::from(numbers.0[lane]));
@@ -61,10 +59,13 @@ impl<N: Lanes> Models<N> {
         Self { c: [N::load(&c0), N::load(&c1), N::load(&c2)], error: N::load(&error) }
     }
 
-    /// Returns the models of the operation at `index`.
+    /// Returns the models of the constant, coordinate or operation at `index`.
     #[inline(always)]
-    pub(super) fn of_operation(known: &[StoredModels], index: Index) -> Self {
-        Self::load(&known[usize::from(index)])
+    pub(super) fn of_index(tape: &Tape, known: &[StoredModels], index: Index) -> Self {
+        match tape.constant(index) {
+            Some(value) => Self::constant(value),
+            None => Self::load(&known[usize::from(index)]),
+        }
     }
 
     #[inline(always)]
@@ -126,8 +127,9 @@ impl<N: Lanes> Models<N> {
     #[inline(always)]
     pub(super) fn plus(self, other: Self) -> Self {
         let ([a0, a1, a2], [b0, b1, b2]) = (self.c, other.c);
-        let rounding = N::splat(EPSILON) * (self.coefficient_abs_sum() + other.coefficient_abs_sum());
-        Self::with_enlarged_error([a0 + b0, a1 + b1, a2 + b2], self.error + other.error + rounding)
+        let [c0, c1, c2] = [a0 + b0, a1 + b1, a2 + b2];
+        let rounding = N::splat(EPSILON) * (c0.abs() + c1.abs() + c2.abs());
+        Self::with_enlarged_error([c0, c1, c2], self.error + other.error + rounding)
     }
 
     #[inline(always)]
@@ -151,9 +153,10 @@ impl<N: Lanes> Models<N> {
     /// Returns the sum with a number; the error allows for a number that was rounded to f32.
     #[inline(always)]
     pub(super) fn shifted(self, term: N) -> Self {
-        let [c0, c1, c2] = self.c;
-        let rounding = N::splat(EPSILON) * (c0.abs() + term.abs());
-        Self::with_enlarged_error([c0 + term, c1, c2], self.error + rounding)
+        let ([c0, c1, c2], size) = (self.c, term.abs());
+        let shifted = c0 + term;
+        let rounding = N::splat(EPSILON) * (shifted.abs() + size);
+        Self::with_enlarged_error([shifted, c1, c2], self.error + rounding)
     }
 
     /// Returns a function of these models: its Taylor polynomial, or `hull` if that is narrower.
@@ -226,18 +229,32 @@ impl<N: Lanes> Models<N> {
         Self::select(high.le(zero), self, Self::select(zero.le(low), other, blend))
     }
 
-    /// Returns the sines, or the cosines.
+    /// Returns the first operand in the lanes of the first mask, the second one in those of the
+    /// second mask, and else these models.
     #[inline(always)]
-    pub(super) fn sin_or_cos(self, is_cosine: bool) -> Self {
-        let (c0, one) = (self.c[0], N::splat(1.0));
-        let [sin, cos] = sin_cos(c0);
-        let [value, slope] = if is_cosine { [cos, -sin] } else { [sin, cos] };
-        let taylor = Taylor {
-            at: [value, slope, N::splat(-0.5) * value],
-            third: N::splat(1.0 / 5.9),
-            off: N::select(c0.abs().le(N::splat(LARGEST_ANGLE)), N::splat(SINE_ERROR), N::splat(f32::INFINITY)),
-        };
-        self.function(taylor, Self::hull(-one, one))
+    pub(super) fn chosen(self, chosen: [u8; 2], [first, second]: [Self; 2]) -> Self {
+        if chosen == [0; 2] {
+            return self;
+        }
+        let of_second = Self::select(N::mask_from_bits(u32::from(chosen[1])), second, self);
+        Self::select(N::mask_from_bits(u32::from(chosen[0])), first, of_second)
+    }
+
+    /// Returns the sines and the cosines.
+    #[inline(always)]
+    pub(super) fn sin_and_cos(self) -> [Self; 2] {
+        let c0 = self.c[0];
+        let ([sin, cos], one) = (sin_cos(c0), N::splat(1.0));
+        let off = N::select(c0.abs().le(N::splat(LARGEST_ANGLE)), N::splat(SINE_ERROR), N::splat(f32::INFINITY));
+        let hull = Self::hull(-one, one);
+        [self.sine([sin, cos, off], hull), self.sine([cos, -sin, off], hull)]
+    }
+
+    /// Returns the sines or cosines from their values and slopes at c0, and the error of both.
+    #[inline(always)]
+    pub(super) fn sine(self, [value, slope, off]: [N; 3], hull: Self) -> Self {
+        let at = [value, slope, N::splat(-0.5) * value];
+        self.function(Taylor { at, third: N::splat(1.0 / 5.9), off }, hull)
     }
 
     /// Returns e to the quantity by its Taylor polynomial.
@@ -273,20 +290,26 @@ impl<N: Lanes> Models<N> {
     }
 }
 
+/// Returns a number in all lanes.
+// Not a closure, which would be compiled without the kernel's target features.
+#[inline(always)]
+fn number<N: Lanes>(value: f64) -> N {
+    N::splat(value as f32)
+}
+
 /// Returns sine and cosine, off by at most [`SINE_ERROR`] up to [`LARGEST_ANGLE`].
 #[inline(always)]
 fn sin_cos<N: Lanes>(x: N) -> [N; 2] {
-    let number = |value: f64| N::splat(value as f32);
-    let (one, two, half) = (number(1.0), number(2.0), number(0.5));
-    let quarters = (x * number(FRAC_2_PI) + half).floor();
+    let (one, two, half) = (number::<N>(1.0), number::<N>(2.0), number::<N>(0.5));
+    let quarters = (x * number::<N>(FRAC_2_PI) + half).floor();
     // A quarter turn in three parts, of which the products with the first two are exact (Cody and Waite; Cephes).
-    let r = x - quarters * number(1.570_312_5) - quarters * number(4.837_512_969_970_703e-4);
-    let r = r - quarters * number(7.549_789_948_768_648e-8);
+    let r = x - quarters * number::<N>(1.570_312_5) - quarters * number::<N>(4.837_512_969_970_703e-4);
+    let r = r - quarters * number::<N>(7.549_789_948_768_648e-8);
     let r2 = r * r;
-    let odd_part = number(8.332_160_873_6e-3) - r2 * number(1.951_529_589_1e-4);
-    let sin = r + r * r2 * (r2 * odd_part - number(1.666_665_461_1e-1));
-    let even_part = r2 * number(2.443_315_711_809_948e-5) - number(1.388_731_625_493_765e-3);
-    let cos = one - half * r2 + r2 * r2 * (r2 * even_part + number(4.166_664_568_298_827e-2));
+    let odd_part = number::<N>(8.332_160_873_6e-3) - r2 * number::<N>(1.951_529_589_1e-4);
+    let sin = r + r * r2 * (r2 * odd_part - number::<N>(1.666_665_461_1e-1));
+    let even_part = r2 * number::<N>(2.443_315_711_809_948e-5) - number::<N>(1.388_731_625_493_765e-3);
+    let cos = one - half * r2 + r2 * r2 * (r2 * even_part + number::<N>(4.166_664_568_298_827e-2));
     let halves = (quarters * half).floor();
     let odd = quarters - two * halves;
     let turned = halves - two * (halves * half).floor();
@@ -300,14 +323,15 @@ fn sin_cos<N: Lanes>(x: N) -> [N; 2] {
 /// Below -87 and above 88, it returns the value at that limit.
 #[inline(always)]
 fn exp<N: Lanes>(x: N) -> N {
-    let number = |value: f64| N::splat(value as f32);
     // Beyond these limits, `scale` would be subnormal or infinite.
-    let x = x.max(number(-87.0)).min(number(88.0));
+    let x = x.max(number::<N>(-87.0)).min(number::<N>(88.0));
     // ln 2 is split in two, so that `power` times the first part is exact. The polynomial is that of Cephes.
-    let power = (x * number(std::f64::consts::LOG2_E) + number(0.5)).floor();
-    let r = x - power * number(0.693_359_375) + power * number(2.121_944_4e-4);
-    let polynomial = [1.398_199_950_7e-3, 8.333_451_907_3e-3, 4.166_579_589_4e-2, 1.666_666_545_9e-1, 0.5];
-    let sum = polynomial.iter().fold(number(1.987_569_150_0e-4), |sum, &c| sum * r + number(c));
+    let power = (x * number::<N>(std::f64::consts::LOG2_E) + number::<N>(0.5)).floor();
+    let r = x - power * number::<N>(0.693_359_375) + power * number::<N>(2.121_944_4e-4);
+    let mut sum = number::<N>(1.987_569_150_0e-4);
+    for c in [1.398_199_950_7e-3, 8.333_451_907_3e-3, 4.166_579_589_4e-2, 1.666_666_545_9e-1, 0.5] {
+        sum = sum * r + number::<N>(c);
+    }
     let [scale] = N::map_lanes([power], |[power]| [f32::from_bits(((power as i32 + 127) as u32) << 23)]);
-    (sum * r * r + r + number(1.0)) * scale
+    (sum * r * r + r + number::<N>(1.0)) * scale
 }

@@ -3,12 +3,11 @@
 //! They are the models of [`model`](super::model) with the rounding of f32. The frequent operations have a vector form
 //! here; all others are computed lane by lane in f64. The bits of a lane do not depend on the other lanes.
 
-use super::elementary::{exp_of_each, sin_or_cos_of_each};
 use super::forecast::SignForecasts;
 use super::model::{Continuity, EPSILON as EPSILON_64, Evaluation, Model};
 use super::models::{EPSILON, Models, StoredModels, Taylor, enlarged, model_of_lane};
-use super::tape::{Binary, Index, Operation, Tape, Unary};
-use crate::lanes::{F32x8, LANES, LaneMask, Lanes, Mask, SimdKernel, set_bits};
+use super::tape::{Binary, COORDINATES, Operation, Steps, Tape, Unary};
+use crate::lanes::{F32x8, LANES, LaneMask, Lanes, SimdKernel, set_bits};
 
 /// The origins of eight lines, then their directions, axis by axis.
 pub(super) type Lines = [[[f64; LANES]; 3]; 2];
@@ -16,9 +15,10 @@ pub(super) type Lines = [[[f64; LANES]; 3]; 2];
 /// Eight values, one per lane.
 pub(super) type EightValues = [f64; LANES];
 
-/// The kernel that computes the models of a tape on eight pieces, for the lanes in `lanes`.
+/// The kernel that computes the models of a formula on eight pieces, for the lanes in `lanes`.
 pub(super) struct PacketModels<'a> {
     pub(super) tape: &'a Tape,
+    pub(super) steps: Steps<'a>,
     pub(super) lines: &'a Lines,
     /// The starts of the pieces, then their ends.
     pub(super) pieces: &'a [[f64; LANES]; 2],
@@ -31,120 +31,137 @@ impl SimdKernel for PacketModels<'_> {
 
     #[inline(always)]
     fn run<N: Lanes>(self) -> Self::Output {
-        let Self { tape, lines, pieces, lanes, scratch } = self;
-        let coordinates = coordinates(lines, pieces);
-        let mut evaluation = PacketEvaluation { lanes, may_jump: 0, is_undefined: 0 };
-        let operations = tape.operations();
-        scratch.resize(operations.len(), [F32x8::ZERO; 4]);
-        for (index, &operation) in operations.iter().enumerate() {
-            let (known, rest) = scratch.split_at_mut(index);
-            let models = match operation {
-                Operation::Constant(bits) => Models::constant(f64::from_bits(bits)),
-                Operation::Coordinate(axis) => Models::load(&coordinates[usize::from(axis)]),
-                Operation::Unary(function, a) => {
-                    evaluation.unary(function, Models::of_operation(known, a), tape.is_non_negative(usize::from(a)))
-                }
-                Operation::Binary(function, a, b) => match (function, tape.constant_as_f32(a), tape.constant_as_f32(b))
-                {
-                    (Binary::Multiply, Some(factor), _) => Models::of_operation(known, b).scaled(N::splat(factor)),
-                    (Binary::Multiply, _, Some(factor)) => Models::of_operation(known, a).scaled(N::splat(factor)),
-                    (Binary::Add, Some(term), _) => Models::of_operation(known, b).shifted(N::splat(term)),
-                    (Binary::Add, _, Some(term)) => Models::of_operation(known, a).shifted(N::splat(term)),
-                    (Binary::Subtract, Some(term), _) => {
-                        Models::of_operation(known, b).negate().shifted(N::splat(term))
-                    }
-                    (Binary::Subtract, _, Some(term)) => Models::of_operation(known, a).shifted(N::splat(-term)),
-                    _ => evaluation.binary(function, Models::of_operation(known, a), Models::of_operation(known, b)),
-                },
-            };
-            rest[0] = models.store();
-        }
-        let last = scratch.last().copied().unwrap_or(Models::<N>::anything().store());
-        let PacketEvaluation { may_jump, is_undefined, .. } = evaluation;
-        Models::<N>::load(&last).sign_forecasts(lanes, may_jump, is_undefined)
+        let (tape, steps, lanes) = (self.tape, self.steps, self.lanes);
+        let (models, [may_jump, is_undefined]) = self.models::<N>();
+        Models::<N>::of_index(tape, models, steps.result).sign_forecasts(lanes, may_jump, is_undefined)
     }
 }
 
-/// An evaluator of a tape at one point on each of eight lines.
-pub(super) struct PacketValues<'a> {
-    pub(super) tape: &'a Tape,
-    pub(super) lines: &'a Lines,
-    pub(super) scratch: &'a mut Vec<EightValues>,
-}
-
-impl PacketValues<'_> {
-    /// Returns the values at `t` on each line.
-    ///
-    /// They have the same bits as [`Tape::value`] for each lane, whatever the instruction set.
+impl<'a> PacketModels<'a> {
+    /// Returns the models of coordinates and operations, and the lanes that may jump, and that are
+    /// undefined.
     #[inline(always)]
-    pub(super) fn at(&mut self, t: &EightValues) -> EightValues {
-        let Self { tape, lines: [origins, directions], scratch } = self;
-        let operations = tape.operations();
-        scratch.resize(operations.len(), [0.0; LANES]);
-        for (index, &operation) in operations.iter().enumerate() {
-            let (known, rest) = scratch.split_at_mut(index);
-            let (of, to) = (|index: Index| &known[usize::from(index)], &mut rest[0]);
+    pub(super) fn models<N: Lanes>(self) -> (&'a [StoredModels], [u32; 2]) {
+        let Self { tape, steps, lines, pieces, lanes, scratch } = self;
+        let count = COORDINATES + steps.operations.len();
+        if scratch.len() < count {
+            scratch.resize(count, [F32x8::ZERO; 4]);
+        }
+        let all = &mut scratch[..count];
+        let ([from, to], mut spans) = (pieces, [[0.0; LANES]; 2]);
+        for lane in 0..LANES {
+            (spans[0][lane], spans[1][lane]) = (0.5 * (from[lane] + to[lane]), 0.5 * (to[lane] - from[lane]));
+        }
+        for (to, (origins, directions)) in all.iter_mut().zip(lines[0].iter().zip(&lines[1])) {
+            // Inlined three times, the compiler would compute the axes side by side, with gathers and scatters.
+            N::call_no_inline(CoordinateModels { origins, directions, pieces: &spans, to });
+        }
+        let mut evaluation = PacketEvaluation { lanes, may_jump: 0, is_undefined: 0 };
+        // Each operation stores its own result, and all but the most frequent ones are functions of their own: with the
+        // results merged in registers, moving them took a third of the time.
+        for (at, &operation) in steps.operations.iter().enumerate() {
+            let (known, rest) = all.split_at_mut(COORDINATES + at);
             match operation {
-                Operation::Constant(bits) => *to = [f64::from_bits(bits); LANES],
-                Operation::Coordinate(axis) => {
-                    let (o, d) = (&origins[usize::from(axis)], &directions[usize::from(axis)]);
-                    (0..LANES).for_each(|lane| to[lane] = o[lane] + d[lane] * t[lane]);
+                Operation::Unary(Unary::Square, a) => {
+                    rest[0] = Models::<N>::of_index(tape, known, a).squared().store();
                 }
-                Operation::Unary(function, a) => unary_of_each(function, of(a), to),
-                Operation::Binary(function, a, b) => binary_of_each(function, of(a), of(b), to),
+                // Sums and products have their constant last.
+                Operation::Binary(Binary::Add, a, b) => {
+                    let a = Models::<N>::of_index(tape, known, a);
+                    match tape.constant_as_f32(b) {
+                        Some(term) => rest[0] = a.shifted(N::splat(term)).store(),
+                        None => rest[0] = a.plus(Models::<N>::of_index(tape, known, b)).store(),
+                    }
+                }
+                Operation::Binary(Binary::Multiply, a, b) => {
+                    let a = Models::<N>::of_index(tape, known, a);
+                    match tape.constant_as_f32(b) {
+                        Some(factor) => rest[0] = a.scaled(N::splat(factor)).store(),
+                        None => rest[0] = a.times(Models::<N>::of_index(tape, known, b)).store(),
+                    }
+                }
+                Operation::Binary(Binary::Subtract, a, b) => {
+                    let a = Models::<N>::of_index(tape, known, a);
+                    match tape.constant_as_f32(b) {
+                        Some(term) => rest[0] = a.shifted(N::splat(-term)).store(),
+                        None => rest[0] = a.plus(Models::<N>::of_index(tape, known, b).negate()).store(),
+                    }
+                }
+                // Computed together with the sine.
+                Operation::Unary(Unary::Cos, _) if at > 0 && Some(steps.operations[at - 1]) == operation.twin() => {}
+                _ => {
+                    let with_next = steps.operations.get(at + 1) == operation.twin().as_ref();
+                    let (chosen, evaluation) = (steps.chosen(at), &mut evaluation);
+                    N::call_no_inline(RareOperation { tape, operation, with_next, chosen, known, rest, evaluation });
+                }
             }
         }
-        scratch.last().copied().unwrap_or([f64::NAN; LANES])
+        (all, [evaluation.may_jump, evaluation.is_undefined])
     }
 }
 
-/// Computes a function of each value.
-///
-/// Frequent functions have a loop of their own, which becomes vector instructions.
-#[inline(always)]
-fn unary_of_each(function: Unary, a: &EightValues, to: &mut EightValues) {
-    match function {
-        Unary::Negate => (0..LANES).for_each(|lane| to[lane] = -a[lane]),
-        Unary::Abs => (0..LANES).for_each(|lane| to[lane] = a[lane].abs()),
-        Unary::Square => (0..LANES).for_each(|lane| to[lane] = a[lane] * a[lane]),
-        Unary::Sqrt => (0..LANES).for_each(|lane| to[lane] = a[lane].sqrt()),
-        Unary::Sin => sin_or_cos_of_each(a, to, false),
-        Unary::Cos => sin_or_cos_of_each(a, to, true),
-        Unary::Exp => exp_of_each(a, to),
-        _ => (0..LANES).for_each(|lane| to[lane] = function.at(a[lane])),
+/// The kernel that computes the models of an operation.
+struct RareOperation<'a> {
+    tape: &'a Tape,
+    operation: Operation,
+    /// Whether the next operation is the cosine of the same angle.
+    with_next: bool,
+    chosen: [u8; 2],
+    known: &'a [StoredModels],
+    /// The models of the operation and those behind it.
+    rest: &'a mut [StoredModels],
+    evaluation: &'a mut PacketEvaluation,
+}
+
+impl SimdKernel for RareOperation<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        let Self { tape, operation, with_next, chosen, known, rest, evaluation } = self;
+        let [a, b] = operation.operands();
+        let (a, b) = (Models::<N>::of_index(tape, known, a), Models::<N>::of_index(tape, known, b));
+        let models = match operation {
+            Operation::Unary(Unary::Sin, _) if with_next => {
+                let [sine, cosine] = a.sin_and_cos();
+                rest[1] = cosine.store();
+                sine
+            }
+            Operation::Unary(function, _) => evaluation.unary(function, a),
+            Operation::Binary(function, ..) => evaluation.binary(function, a, b),
+        };
+        rest[0] = models.chosen(chosen, [a, b]).store();
     }
 }
 
-/// Computes a function of two values in each lane; see [`unary_of_each`].
-#[inline(always)]
-fn binary_of_each(function: Binary, a: &EightValues, b: &EightValues, to: &mut EightValues) {
-    match function {
-        Binary::Add => (0..LANES).for_each(|lane| to[lane] = a[lane] + b[lane]),
-        Binary::Subtract => (0..LANES).for_each(|lane| to[lane] = a[lane] - b[lane]),
-        Binary::Multiply => (0..LANES).for_each(|lane| to[lane] = a[lane] * b[lane]),
-        Binary::Divide => (0..LANES).for_each(|lane| to[lane] = a[lane] / b[lane]),
-        Binary::Min => (0..LANES).for_each(|lane| to[lane] = Binary::Min.at(a[lane], b[lane])),
-        Binary::Max => (0..LANES).for_each(|lane| to[lane] = Binary::Max.at(a[lane], b[lane])),
-        Binary::Atan2 => (0..LANES).for_each(|lane| to[lane] = function.at(a[lane], b[lane])),
-    }
+/// The kernel that computes the models of one coordinate: see [`Model::coordinate`].
+struct CoordinateModels<'a> {
+    origins: &'a EightValues,
+    directions: &'a EightValues,
+    /// The middles of the pieces, then half their lengths.
+    pieces: &'a [EightValues; 2],
+    to: &'a mut StoredModels,
 }
 
-/// Returns the models of the coordinates on eight pieces, see [`Model::coordinate`].
-#[inline(always)]
-fn coordinates([origins, directions]: &Lines, [from, to]: &[[f64; LANES]; 2]) -> [StoredModels; 3] {
-    let mut models = [[F32x8::ZERO; 4]; 3];
-    for (axis, [c0, c1, _, error]) in models.iter_mut().enumerate() {
-        let (o, d) = (&origins[axis], &directions[axis]);
+impl SimdKernel for CoordinateModels<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        let Self { origins: o, directions: d, pieces: [middles, halves], to } = self;
+        let [mut c0, mut c1, mut of_origin] = [[0.0; LANES]; 3];
         for lane in 0..LANES {
-            let (middle, half) = (0.5 * (from[lane] + to[lane]), 0.5 * (to[lane] - from[lane]));
-            let (at_middle, slope) = (middle * d[lane], half * d[lane]);
-            let of_f64 = o[lane].abs() + at_middle.abs() + (from[lane].abs() + to[lane].abs()) * d[lane].abs();
-            (c0.0[lane], c1.0[lane]) = ((o[lane] + at_middle) as f32, slope as f32);
-            let rounding = EPSILON * (c0.0[lane].abs() + c1.0[lane].abs()) + (4.0 * EPSILON_64 * of_f64) as f32;
-            error.0[lane] = enlarged(rounding);
+            (c0[lane], c1[lane]) = ((o[lane] + middles[lane] * d[lane]) as f32, (halves[lane] * d[lane]) as f32);
+            of_origin[lane] = o[lane] as f32;
         }
+        let [c0, c1, of_origin] = [c0, c1, of_origin].map(F32x8);
+        let (c0, c1) = (N::load(&c0), N::load(&c1));
+        // The rounding errors in f64 are at most 16 `EPSILON_64` of |o|, |c0| and |c1|. Those of |c0| and |c1| are
+        // covered by `EPSILON`, which is twice the rounding error in f32.
+        let of_origin = N::splat((16.0 * EPSILON_64) as f32) * N::load(&of_origin).abs();
+        let rounding = N::splat(EPSILON) * (c0.abs() + c1.abs()) + of_origin;
+        *to = Models::with_enlarged_error([c0, c1, N::splat(0.0)], rounding).store();
     }
-    models
 }
 
 /// The evaluation of operations, which records the lanes in which they may jump or are undefined.
@@ -156,16 +173,17 @@ struct PacketEvaluation {
 
 impl PacketEvaluation {
     #[inline(always)]
-    fn unary<N: Lanes>(&mut self, function: Unary, a: Models<N>, is_non_negative: bool) -> Models<N> {
+    fn unary<N: Lanes>(&mut self, function: Unary, a: Models<N>) -> Models<N> {
         match function {
             Unary::Negate => a.negate(),
             Unary::Abs => a.absolute(),
             Unary::Square => a.squared(),
-            Unary::Sin => a.sin_or_cos(false),
-            Unary::Cos => a.sin_or_cos(true),
+            Unary::Sin => a.sin_and_cos()[0],
+            Unary::Cos => a.sin_and_cos()[1],
             Unary::Exp => a.exponential(),
-            Unary::Sqrt => self.square_root(a, is_non_negative),
-            _ => self.lane_by_lane([a, a], |evaluation, [a, _]| evaluation.unary(function, a, is_non_negative)),
+            Unary::Sqrt => self.square_root(a, false),
+            Unary::SqrtOfNonNegative => self.square_root(a, true),
+            _ => self.lane_by_lane([a, a], |evaluation, [a, _]| evaluation.unary(function, a)),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::Formula;
 use super::elementary;
-use super::tape::{Binary, Index, Operation, Tape, Unary};
+use super::tape::{Binary, COORDINATES, Index, Operation, Tape, Unary};
 use glam::DVec3;
 
 impl Unary {
@@ -12,7 +12,7 @@ impl Unary {
             Self::Negate => -a,
             Self::Abs => a.abs(),
             Self::Square => a * a,
-            Self::Sqrt => a.sqrt(),
+            Self::Sqrt | Self::SqrtOfNonNegative => a.sqrt(),
             Self::Cbrt => libm::cbrt(a),
             Self::Exp => elementary::exp(a),
             Self::Ln => libm::log(a),
@@ -33,7 +33,7 @@ impl Unary {
             Self::Negate => -1.0,
             Self::Abs => 1.0_f64.copysign(a),
             Self::Square => 2.0 * a,
-            Self::Sqrt => 0.5 / value,
+            Self::Sqrt | Self::SqrtOfNonNegative => 0.5 / value,
             Self::Cbrt => 1.0 / (3.0 * value * value),
             Self::Exp => value,
             Self::Ln => 1.0 / a,
@@ -96,18 +96,18 @@ impl Binary {
 impl Tape {
     /// Returns the value at a point. `values` is scratch memory.
     pub(super) fn value(&self, point: DVec3, values: &mut Vec<f64>) -> f64 {
+        let [x, y, z] = point.to_array();
         values.clear();
+        values.extend([x, y, z, f64::NAN]);
         for &operation in self.operations() {
-            let of = |index: Index| values[usize::from(index)];
+            let of = |index: Index| self.constant(index).unwrap_or_else(|| values[usize::from(index)]);
             let value = match operation {
-                Operation::Constant(bits) => f64::from_bits(bits),
-                Operation::Coordinate(axis) => point[usize::from(axis)],
                 Operation::Unary(function, a) => function.at(of(a)),
                 Operation::Binary(function, a, b) => function.at(of(a), of(b)),
             };
             values.push(value);
         }
-        values.last().copied().unwrap_or(f64::NAN)
+        self.constant(self.result()).unwrap_or_else(|| values[usize::from(self.result())])
     }
 }
 
@@ -119,26 +119,30 @@ impl Formula {
 
     /// Returns f and its gradient at a point, by forward differentiation.
     pub(crate) fn gradient(&self, point: DVec3) -> (f64, DVec3) {
-        let mut values: Vec<(f64, DVec3)> = Vec::with_capacity(self.tape.operations().len());
-        for &operation in self.tape.operations() {
-            let of = |index: Index| values[usize::from(index)];
+        let tape = &self.tape;
+        let mut values: Vec<(f64, DVec3)> = Vec::with_capacity(COORDINATES + tape.operations().len());
+        values.extend(point.to_array().into_iter().zip(DVec3::AXES));
+        values.push((f64::NAN, DVec3::ZERO));
+        let of = |values: &[(f64, DVec3)], index: Index| match tape.constant(index) {
+            Some(value) => (value, DVec3::ZERO),
+            None => values[usize::from(index)],
+        };
+        for &operation in tape.operations() {
             let value = match operation {
-                Operation::Constant(bits) => (f64::from_bits(bits), DVec3::ZERO),
-                Operation::Coordinate(axis) => (point[usize::from(axis)], DVec3::AXES[usize::from(axis)]),
                 Operation::Unary(function, a) => {
-                    let (a, slope) = of(a);
+                    let (a, slope) = of(&values, a);
                     let value = function.at(a);
                     (value, scaled(slope, function.slope(a, value)))
                 }
                 Operation::Binary(function, a, b) => {
-                    let ((a, slope_a), (b, slope_b)) = (of(a), of(b));
+                    let ((a, slope_a), (b, slope_b)) = (of(&values, a), of(&values, b));
                     let [by_a, by_b] = function.slopes(a, b);
                     (function.at(a, b), scaled(slope_a, by_a) + scaled(slope_b, by_b))
                 }
             };
             values.push(value);
         }
-        values.last().copied().unwrap_or((f64::NAN, DVec3::NAN))
+        of(&values, tape.result())
     }
 }
 

@@ -1,8 +1,8 @@
 //! The first root of a formula along a ray: the first sign change across which it is continuous.
 //!
-//! Eight [`walks`](super::walks) go side by side, one per ray: their pieces are enclosed together, in f32. A sign change
-//! may be lost if it is undone within [`MIN_PIECE`](super::walks::MIN_PIECE) of the range, or behind [`MAX_PIECES`]
-//! pieces.
+//! Eight [`walks`](super::walks) go side by side, one per ray: their pieces are enclosed together, in f32. A sign
+//! change may be lost if it is undone within [`MIN_PIECE`](super::walks::MIN_PIECE) of the range, or behind
+//! [`MAX_PIECES`] pieces.
 //!
 //! A sign change at a jump is no root, and neither is a zero without a sign change.
 
@@ -11,9 +11,10 @@ use super::bracket::{Brackets, Narrowing};
 use super::forecast::{SignForecast, SignForecasts};
 use super::model::Model;
 use super::models::StoredModels;
-use super::packet::{EightValues, Lines, PacketModels, PacketValues};
-use super::tape::Tape;
-use super::walks::{StepOutcome, Walk, Walks, bits};
+use super::packet::{EightValues, Lines, PacketModels};
+use super::tape::{Steps, Tape};
+use super::values::{PacketValues, PairedValues};
+use super::walks::{StepOutcome, Walks};
 use crate::lanes::{F32x8, LANES, Lanes, SimdKernel, set_bits};
 use crate::simd;
 use glam::DVec3;
@@ -40,7 +41,7 @@ thread_local! {
 struct SearchScratch {
     models: Vec<Model>,
     packets: Vec<StoredModels>,
-    values: Vec<EightValues>,
+    values: Vec<PairedValues>,
 }
 
 /// The search for roots of a formula along up to eight lines at once.
@@ -52,54 +53,32 @@ pub(crate) struct Solver<'f> {
 /// Up to eight searches: each lane's line, its range of t, and the t after which no root is needed.
 #[derive(Clone, Debug)]
 pub(crate) struct Searches {
-    lines: Lines,
-    walks: Walks,
-    ends: EightValues,
-    until: EightValues,
-    /// The lanes that still search.
-    lanes: u32,
+    pub(crate) lines: Lines,
+    /// The starts of the ranges, then their ends.
+    pub(crate) ranges: [F32x8; 2],
+    pub(crate) until: F32x8,
+    /// The mask of the lanes that search.
+    pub(crate) lanes: u32,
 }
 
 impl Searches {
     /// No search in any lane.
-    pub(crate) const NONE: Self = {
-        let none = [0.0; LANES];
-        Self { lines: [[none; 3]; 2], walks: Walks::NONE, ends: none, until: none, lanes: 0 }
-    };
+    pub(crate) const NONE: Self =
+        Self { lines: [[[0.0; LANES]; 3]; 2], ranges: [F32x8::ZERO; 2], until: F32x8::ZERO, lanes: 0 };
 
-    /// Adds a lane, unless its range is empty: see [`Solver::first_root`].
+    /// Adds a lane: see [`Solver::first_root`].
     pub(crate) fn add(&mut self, lane: usize, line: &Line, [start, end]: [f32; 2], until: f32) {
-        let (from, to) = (f64::from(start), f64::from(end));
-        let range = to - from;
-        // Rejects a range that is NaN, too.
-        if !(range > 0.0 && range < f64::INFINITY) {
-            return;
-        }
+        self.set_line(lane, line);
+        (self.ranges[0].0[lane], self.ranges[1].0[lane], self.until.0[lane]) = (start, end, until);
+        self.lanes |= 1 << lane;
+    }
+
+    pub(crate) fn set_line(&mut self, lane: usize, line: &Line) {
         for (lines, vector) in self.lines.iter_mut().zip([line.origin, line.direction]) {
             for (numbers, number) in lines.iter_mut().zip(vector.to_array()) {
                 numbers[lane] = number;
             }
         }
-        self.walks.set_walk(lane, &Walk::new(from, to));
-        (self.ends[lane], self.until[lane]) = (to, f64::from(until));
-        self.lanes |= 1 << lane;
-    }
-
-    pub(crate) fn is_empty(&self) -> bool {
-        self.lanes == 0
-    }
-
-    /// Returns the start and end of each lane's next piece, and drops lanes whose search is over.
-    #[inline(always)]
-    fn next_pieces(&mut self) -> [EightValues; 2] {
-        let (mut ends, mut is_on_the_way) = ([0.0; LANES], [false; LANES]);
-        for lane in 0..LANES {
-            let (t, to) = (self.walks.t[lane], self.ends[lane]);
-            is_on_the_way[lane] = t < to && t <= self.until[lane];
-            ends[lane] = (t + self.walks.length[lane]).min(to);
-        }
-        self.lanes &= bits(is_on_the_way);
-        [self.walks.t, ends]
     }
 }
 
@@ -116,13 +95,13 @@ impl<'f> Solver<'f> {
     pub(crate) fn first_root(self, line: &Line, range: [f32; 2], until: f32) -> Option<f32> {
         let mut searches = Searches::NONE;
         searches.add(0, line, range, until);
-        let (lanes, roots) = self.first_roots(&mut searches);
+        let (lanes, roots) = self.first_roots(&searches);
         (lanes != 0).then_some(roots.0[0])
     }
 
     /// Returns the lanes with a root, and their first roots, none of which depends on the other
     /// lanes.
-    pub(crate) fn first_roots(self, searches: &mut Searches) -> (u32, F32x8) {
+    pub(crate) fn first_roots(self, searches: &Searches) -> (u32, F32x8) {
         SCRATCH.with_borrow_mut(|scratch| simd::dispatch(RootSearch { tape: &self.formula.tape, searches, scratch }))
     }
 }
@@ -130,7 +109,7 @@ impl<'f> Solver<'f> {
 /// The search for the first roots along up to eight lines.
 struct RootSearch<'a> {
     tape: &'a Tape,
-    searches: &'a mut Searches,
+    searches: &'a Searches,
     scratch: &'a mut SearchScratch,
 }
 
@@ -139,63 +118,78 @@ impl SimdKernel for RootSearch<'_> {
 
     #[inline(always)]
     fn run<N: Lanes>(self) -> (u32, F32x8) {
-        let Self { tape, searches, scratch } = self;
-        let (mut found, mut brackets) = (0, Brackets::NONE);
+        let Self { tape, searches, scratch: SearchScratch { models, packets, values } } = self;
+        let Searches { lines, ranges, until, lanes } = searches;
+        let mut walks = Walks::new(ranges, until, *lanes);
+        if walks.lanes == 0 {
+            return (0, F32x8::ZERO);
+        }
+        let (mut found, mut brackets, steps) = (0, Brackets::NONE, tape.steps());
         for _ in 0..MAX_PIECES {
-            let pieces = searches.next_pieces();
-            let Searches { lines, walks, lanes, .. } = &mut *searches;
-            let lines = &*lines;
-            if *lanes == 0 {
+            let pieces = walks.next_pieces();
+            let lanes = walks.lanes;
+            if lanes == 0 {
                 break;
             }
-            let packet = PacketModels { tape, lines, pieces: &pieces, lanes: *lanes, scratch: &mut scratch.packets };
-            let forecasts = packet.run::<N>();
-            let [done, arrived] = walks.advance_frequent(&forecasts, &pieces, *lanes, &mut brackets);
-            let rest = *lanes & !done;
-            let ended =
-                arrived | advance_one_by_one(tape, (lines, &pieces), rest, &forecasts, walks, &mut brackets, scratch);
+            let forecasts =
+                PacketModels { tape, steps, lines, pieces: &pieces, lanes, scratch: &mut *packets }.run::<N>();
+            let [done, arrived] = walks.advance_frequent(&forecasts, &pieces, lanes, &mut brackets);
+            let (rest, mut ended) = (lanes & !done, arrived);
+            if rest != 0 {
+                let course = Course { tape, steps, lines, pieces: &pieces };
+                ended |= course.advance_one_by_one(rest, &forecasts, &mut walks, &mut brackets, models);
+            }
             found |= ended;
-            *lanes &= !ended;
+            walks.lanes &= !ended;
         }
         // The root is narrowed down to the first f32 of the other sign, so that it does not depend on the pieces of the
         // walk: without this step up to 61 of 24,000 depths did.
-        let values = PacketValues { tape, lines: &searches.lines, scratch: &mut scratch.values };
+        let values = PacketValues { tape, steps, lines, scratch: values };
         (found, Narrowing { values, brackets: &mut brackets, lanes: found }.run::<N>())
     }
 }
 
-/// Advances the walks of `lanes` one by one.
-///
-/// Returns the lanes whose first root is now in a bracket.
-#[inline(never)]
-fn advance_one_by_one(
-    tape: &Tape,
-    (lines, pieces): (&Lines, &[EightValues; 2]),
-    lanes: u32,
-    forecasts: &SignForecasts,
-    walks: &mut Walks,
-    brackets: &mut Brackets,
-    scratch: &mut SearchScratch,
-) -> u32 {
-    let mut found = 0;
-    for lane in set_bits(lanes) {
-        let (mut walk, piece) = (walks.walk(lane), [pieces[0][lane], pieces[1][lane]]);
-        let (mut forecast, mut continuity) = (forecasts.forecast(lane), forecasts.continuity(lane));
-        // In f32, the model of a short piece may be little more than its rounding errors.
-        if forecasts.has_large_error(lane) && walk.is_short_for_f32(piece) {
-            let line = line_in_lane(lines, lane);
-            let (o, d) = (line.origin.to_array(), line.direction.to_array());
-            let coordinates = [0, 1, 2].map(|axis| Model::coordinate(o[axis], d[axis], piece));
-            let (model, of_model) = tape.model(coordinates, &mut scratch.models);
-            (forecast, continuity) = (SignForecast::of(&model), of_model);
+/// The pieces that eight searches examine next.
+struct Course<'a> {
+    tape: &'a Tape,
+    steps: Steps<'a>,
+    lines: &'a Lines,
+    pieces: &'a [EightValues; 2],
+}
+
+impl Course<'_> {
+    /// Advances the walks of `lanes` one by one.
+    ///
+    /// Returns the lanes whose first root is now in a bracket.
+    #[inline(never)]
+    fn advance_one_by_one(
+        &self,
+        lanes: u32,
+        forecasts: &SignForecasts,
+        walks: &mut Walks,
+        brackets: &mut Brackets,
+        models: &mut Vec<Model>,
+    ) -> u32 {
+        let mut found = 0;
+        for lane in set_bits(lanes) {
+            let (mut walk, piece) = (walks.walk(lane), [self.pieces[0][lane], self.pieces[1][lane]]);
+            let (mut forecast, mut continuity) = (forecasts.forecast(lane), forecasts.continuity(lane));
+            // In f32, the model of a short piece may be little more than its rounding errors.
+            if forecasts.has_large_error(lane) && walk.is_short_for_f32(piece) {
+                let line = line_in_lane(self.lines, lane);
+                let (o, d) = (line.origin.to_array(), line.direction.to_array());
+                let coordinates = [0, 1, 2].map(|axis| Model::coordinate(o[axis], d[axis], piece));
+                let (model, of_model) = self.tape.model_of_steps(self.steps, lane, coordinates, models);
+                (forecast, continuity) = (SignForecast::of(&model), of_model);
+            }
+            if let StepOutcome::Root(root) = walk.advance(&forecast, continuity, piece) {
+                brackets.add(lane, root);
+                found |= 1 << lane;
+            }
+            walks.set_walk(lane, &walk);
         }
-        if let StepOutcome::Root(root) = walk.advance(&forecast, continuity, piece) {
-            brackets.add(lane, root);
-            found |= 1 << lane;
-        }
-        walks.set_walk(lane, &walk);
+        found
     }
-    found
 }
 
 /// Returns the line of one lane, for models that are computed in f64.

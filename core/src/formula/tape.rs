@@ -3,22 +3,28 @@
 use std::collections::HashMap;
 
 /// The largest number of operations of a formula.
-// The models of a packet take 128 bytes for each operation: at most half a megabyte in each thread.
+// Models and values take 256 bytes for each operation: at most a megabyte in each thread.
 pub(super) const MAX_OPERATIONS: usize = 4096;
 
-/// The index of the time as a coordinate; tapes with it are evaluated only after [`Tape::at_time`].
+/// The number of slots for x, y, z and the time, in front of those of the operations.
+pub(super) const COORDINATES: usize = 4;
+
+/// The slot of the time; tapes with it are evaluated only after [`Tape::at_time`].
 pub(super) const TIME: u8 = 3;
 
-/// The index of an operation in its tape.
+/// The index of a value: first the coordinates, then the operations; constants start at
+/// [`FIRST_CONSTANT`].
+///
+/// While a tape is built, it is the index of a term.
 pub(super) type Index = u16;
 
+/// The index of the first constant, which is above that of each operation.
+const FIRST_CONSTANT: Index = 1 << 13;
+
 /// An operation of a tape.
+// 6 bytes: with its constants, the longest formula that moves takes 58 KB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Operation {
-    /// A number, by its bits, so that operations can be compared and hashed.
-    Constant(u64),
-    /// x, y or z: 0, 1 or 2; or the [`TIME`].
-    Coordinate(u8),
     Unary(Unary, Index),
     Binary(Binary, Index, Index),
 }
@@ -30,6 +36,8 @@ pub(super) enum Unary {
     Abs,
     Square,
     Sqrt,
+    /// The square root of an operand that is known to be at least 0.
+    SqrtOfNonNegative,
     Cbrt,
     Exp,
     Ln,
@@ -55,56 +63,156 @@ pub(super) enum Binary {
     Atan2,
 }
 
-/// The operations of a formula in the order of evaluation; the last one is the result.
+/// The operations of a formula in the order of evaluation.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tape {
-    operations: Vec<Operation>,
-    /// For each operation, whether its values are known to be at least 0, and to be at most 0.
-    signs: Vec<[bool; 2]>,
+    constants: Box<[f64]>,
+    operations: Box<[Operation]>,
+    result: Index,
+}
+
+/// The operations to evaluate: all of a tape, or a part of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Steps<'t> {
+    pub(super) operations: &'t [Operation],
+    /// For each operation the lanes in which it is its first operand, and those in which it is its
+    /// second operand; empty if there are no such lanes.
+    pub(super) chosen: &'t [[u8; 2]],
+    /// The index of the result.
+    pub(super) result: Index,
+}
+
+/// The part of a term on which the sign of the result depends.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Need {
+    Nothing,
+    Sign,
+    Value,
+}
+
+impl Operation {
+    /// Returns whether the sign depends on the signs of the operands only.
+    fn combines_signs(self) -> bool {
+        matches!(self, Self::Unary(Unary::Negate, _) | Self::Binary(Binary::Min | Binary::Max, ..))
+    }
+
+    /// Returns the cosine for the sine of an angle, and the sine for the cosine.
+    pub(super) fn twin(self) -> Option<Self> {
+        match self {
+            Self::Unary(Unary::Sin, a) => Some(Self::Unary(Unary::Cos, a)),
+            Self::Unary(Unary::Cos, a) => Some(Self::Unary(Unary::Sin, a)),
+            _ => None,
+        }
+    }
+
+    /// Returns the operation with its constant last, if it is a sum or product with one.
+    fn with_constant_last(self) -> Self {
+        match self {
+            Self::Binary(function @ (Binary::Add | Binary::Multiply), a, b) if a >= FIRST_CONSTANT => {
+                Self::Binary(function, b, a)
+            }
+            _ => self,
+        }
+    }
+
+    /// Returns the operands; a unary operation's operand twice.
+    pub(super) fn operands(self) -> [Index; 2] {
+        match self {
+            Self::Unary(_, a) => [a, a],
+            Self::Binary(_, a, b) => [a, b],
+        }
+    }
+
+    /// Returns the operation with other operands.
+    pub(super) fn with_operands(self, mut place: impl FnMut(Index) -> Index) -> Self {
+        match self {
+            Self::Unary(function, a) => Self::Unary(function, place(a)),
+            Self::Binary(function, a, b) => Self::Binary(function, place(a), place(b)),
+        }
+    }
+}
+
+impl Steps<'_> {
+    /// Returns whether a lane is known to have the value of the first operand, and of the second.
+    #[inline(always)]
+    pub(super) fn chosen(&self, operation: usize) -> [u8; 2] {
+        self.chosen.get(operation).copied().unwrap_or_default()
+    }
 }
 
 impl Tape {
+    /// Returns all operations.
+    pub(super) fn steps(&self) -> Steps<'_> {
+        Steps { operations: &self.operations, chosen: &[], result: self.result }
+    }
+
     pub(super) fn operations(&self) -> &[Operation] {
         &self.operations
     }
 
-    /// Returns the value of a constant operation, rounded to f32, if that is a normal number.
+    pub(super) fn result(&self) -> Index {
+        self.result
+    }
+
+    /// Returns the value at an index, if it is a constant.
+    #[inline(always)]
+    pub(super) fn constant(&self, index: Index) -> Option<f64> {
+        let at = index.checked_sub(FIRST_CONSTANT)?;
+        self.constants.get(usize::from(at)).copied()
+    }
+
+    /// Returns a constant rounded to f32, if that is a normal number.
+    #[inline(always)]
     pub(super) fn constant_as_f32(&self, index: Index) -> Option<f32> {
-        let Operation::Constant(bits) = self.operations[usize::from(index)] else { return None };
-        Some(f64::from_bits(bits) as f32).filter(|rounded| rounded.is_normal())
+        self.constant(index).map(|value| value as f32).filter(|rounded| rounded.is_normal())
     }
 
     /// Returns whether the value of the formula depends on the time.
     pub(super) fn moves(&self) -> bool {
-        self.operations.contains(&Operation::Coordinate(TIME))
+        let is_time = |index: Index| index == Index::from(TIME);
+        is_time(self.result) || self.operations.iter().any(|operation| operation.operands().into_iter().any(is_time))
     }
 
     /// Returns the tape with the time replaced by the constant `seconds`.
     pub(super) fn at_time(&self, seconds: f64) -> Self {
         let (mut builder, mut places) = (TapeBuilder::default(), Vec::with_capacity(self.operations.len()));
-        for &operation in &self.operations {
-            let of = |operand: Index| places[usize::from(operand)];
-            let place = match operation {
-                Operation::Coordinate(TIME) => builder.constant(seconds),
-                Operation::Unary(function, a) => builder.unary(function, of(a)),
-                Operation::Binary(function, a, b) => builder.binary(function, of(a), of(b)),
-                leaf => builder.push(leaf),
+        // No operation becomes more than one, so the tape does not become too long.
+        let leaf = |builder: &mut TapeBuilder, places: &[Index], index: Index| {
+            let place = match (self.constant(index), index as u8) {
+                (Some(value), _) => builder.constant(value),
+                _ if usize::from(index) >= COORDINATES => Ok(places[usize::from(index) - COORDINATES]),
+                (_, TIME) => builder.constant(seconds),
+                (_, axis) => builder.coordinate(axis),
             };
-            // No operation becomes more than one, so the tape does not become too long.
+            place.unwrap_or_default()
+        };
+        for &operation in &self.operations {
+            let place = match operation {
+                Operation::Unary(function, a) => {
+                    let a = leaf(&mut builder, &places, a);
+                    builder.unary(if function == Unary::SqrtOfNonNegative { Unary::Sqrt } else { function }, a)
+                }
+                Operation::Binary(function, a, b) => {
+                    let (a, b) = (leaf(&mut builder, &places, a), leaf(&mut builder, &places, b));
+                    builder.binary_in_order(function, a, b)
+                }
+            };
             places.push(place.unwrap_or_default());
         }
-        let result = places.last().copied().unwrap_or_default();
+        let result = leaf(&mut builder, &places, self.result);
         builder.finish(result)
     }
 
-    /// Returns whether the operation at `index` can be shown to have no negative value.
-    pub(super) fn is_non_negative(&self, index: usize) -> bool {
-        self.signs[index][0]
+    /// Returns whether the values of the formula are known to be at least 0, and to be at most 0.
+    pub(super) fn known_signs(&self) -> [bool; 2] {
+        let signs = signs(&self.operations, &self.constants);
+        sign_at(&signs, &self.constants, self.result)
     }
 
-    /// Returns whether the operation at `index` can be shown to have no positive value.
-    pub(super) fn is_non_positive(&self, index: usize) -> bool {
-        self.signs[index][1]
+    /// Returns the number of bytes that the tape takes.
+    #[cfg(all(test, unit_tests))]
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self) + size_of_val(&*self.constants) + size_of_val(&*self.operations)
     }
 }
 
@@ -112,57 +220,75 @@ impl Tape {
 #[derive(Debug)]
 pub(super) struct TooLong;
 
-/// A tape under construction, which folds constants and adds equal operations only once.
+/// A term of a formula: a leaf or an operation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Term {
+    /// A number, by its bits, so that terms can be compared and hashed.
+    Constant(u64),
+    /// x, y or z: 0, 1 or 2; or the [`TIME`].
+    Coordinate(u8),
+    Operation(Operation),
+}
+
+/// A tape under construction, which folds constants and adds equal terms only once.
 #[derive(Default)]
 pub(super) struct TapeBuilder {
-    operations: Vec<Operation>,
-    indices: HashMap<Operation, Index>,
+    terms: Vec<Term>,
+    indices: HashMap<Term, Index>,
 }
 
 impl TapeBuilder {
-    fn push(&mut self, operation: Operation) -> Result<Index, TooLong> {
-        if let Some(&index) = self.indices.get(&operation) {
+    fn push(&mut self, term: Term) -> Result<Index, TooLong> {
+        if let Some(&index) = self.indices.get(&term) {
             return Ok(index);
         }
-        if self.operations.len() >= MAX_OPERATIONS {
+        if self.terms.len() >= MAX_OPERATIONS {
             return Err(TooLong);
         }
-        let index = self.operations.len() as Index;
-        self.operations.push(operation);
-        self.indices.insert(operation, index);
+        let index = self.terms.len() as Index;
+        self.terms.push(term);
+        self.indices.insert(term, index);
         Ok(index)
     }
 
     /// Adds a number.
     pub(super) fn constant(&mut self, value: f64) -> Result<Index, TooLong> {
         // -0 and 0 are one constant.
-        self.push(Operation::Constant((value + 0.0).to_bits()))
+        self.push(Term::Constant((value + 0.0).to_bits()))
     }
 
     pub(super) fn coordinate(&mut self, axis: u8) -> Result<Index, TooLong> {
-        self.push(Operation::Coordinate(axis))
+        self.push(Term::Coordinate(axis))
     }
 
-    /// Returns the value of an operation that is a constant.
+    /// Returns the value of a term that is a constant.
     pub(super) fn value(&self, index: Index) -> Option<f64> {
-        match self.operations[usize::from(index)] {
-            Operation::Constant(bits) => Some(f64::from_bits(bits)),
+        match self.terms[usize::from(index)] {
+            Term::Constant(bits) => Some(f64::from_bits(bits)),
             _ => None,
         }
     }
 
     pub(super) fn unary(&mut self, function: Unary, operand: Index) -> Result<Index, TooLong> {
-        match (self.value(operand), self.operations[usize::from(operand)]) {
+        match (self.value(operand), self.terms[usize::from(operand)]) {
             (Some(value), _) => self.constant(function.at(value)),
-            (_, Operation::Unary(Unary::Negate, inner)) if function == Unary::Negate => Ok(inner),
-            (_, Operation::Unary(Unary::Negate | Unary::Abs, inner)) if function == Unary::Square => {
+            (_, Term::Operation(Operation::Unary(Unary::Negate, inner))) if function == Unary::Negate => Ok(inner),
+            (_, Term::Operation(Operation::Unary(Unary::Negate | Unary::Abs, inner))) if function == Unary::Square => {
                 self.unary(function, inner)
             }
-            _ => self.push(Operation::Unary(function, operand)),
+            _ => self.push(Term::Operation(Operation::Unary(function, operand))),
         }
     }
 
     pub(super) fn binary(&mut self, function: Binary, a: Index, b: Index) -> Result<Index, TooLong> {
+        let is_commutative = matches!(function, Binary::Add | Binary::Multiply | Binary::Min | Binary::Max);
+        let (a, b) = if is_commutative { (a.min(b), a.max(b)) } else { (a, b) };
+        self.binary_in_order(function, a, b)
+    }
+
+    /// Adds an operation without sorting its operands.
+    // Where the operands of a minimum are equal, their order decides which gradient it has.
+    fn binary_in_order(&mut self, function: Binary, a: Index, b: Index) -> Result<Index, TooLong> {
         if let (Some(a), Some(b)) = (self.value(a), self.value(b)) {
             return self.constant(function.at(a, b));
         }
@@ -176,9 +302,7 @@ impl TapeBuilder {
             (Binary::Multiply, ..) if a == b => return self.unary(Unary::Square, a),
             _ => {}
         }
-        let is_commutative = matches!(function, Binary::Add | Binary::Multiply | Binary::Min | Binary::Max);
-        let (a, b) = if is_commutative { (a.min(b), a.max(b)) } else { (a, b) };
-        self.push(Operation::Binary(function, a, b))
+        self.push(Term::Operation(Operation::Binary(function, a, b)))
     }
 
     /// Returns `base` to a whole power, by squaring.
@@ -202,48 +326,97 @@ impl TapeBuilder {
 
     /// Returns the tape of the operations on which `result` depends.
     pub(super) fn finish(self, result: Index) -> Tape {
-        let count = usize::from(result) + 1;
-        let mut is_used = vec![false; count];
-        is_used[count - 1] = true;
-        // Marking goes from the result backwards, and operands come first; so one pass in reverse order is enough.
-        for index in (0..count).rev() {
-            if is_used[index] {
-                mark_operands(self.operations[index], &mut is_used);
+        let needs = self.needs(result);
+        let order = self.order(&needs);
+        let (mut constants, mut places) = (Vec::new(), vec![0; needs.len()]);
+        for ((&term, &need), place) in self.terms.iter().zip(&needs).zip(&mut places) {
+            match term {
+                Term::Constant(bits) if need > Need::Nothing => {
+                    *place = FIRST_CONSTANT + constants.len() as Index;
+                    constants.push(f64::from_bits(bits));
+                }
+                Term::Coordinate(axis) => *place = Index::from(axis),
+                _ => {}
             }
         }
-        let (mut operations, mut places) = (Vec::new(), vec![0; count]);
-        for index in (0..count).filter(|&index| is_used[index]) {
-            places[index] = operations.len() as Index;
-            let place = |operand: Index| places[usize::from(operand)];
-            operations.push(match self.operations[index] {
-                Operation::Unary(function, a) => Operation::Unary(function, place(a)),
-                Operation::Binary(function, a, b) => Operation::Binary(function, place(a), place(b)),
-                leaf => leaf,
-            });
+        let mut operations = Vec::with_capacity(order.len());
+        for (index, operation) in order {
+            places[usize::from(index)] = (COORDINATES + operations.len()) as Index;
+            let operation = operation.with_operands(|operand| places[usize::from(operand)]);
+            operations.push(operation.with_constant_last());
         }
-        let signs = signs(&operations);
-        Tape { operations, signs }
+        let signs = signs(&operations, &constants);
+        for operation in &mut operations {
+            if let Operation::Unary(function @ Unary::Sqrt, a) = operation
+                && sign_at(&signs, &constants, *a)[0]
+            {
+                *function = Unary::SqrtOfNonNegative;
+            }
+        }
+        let result = places[usize::from(result)];
+        let (constants, operations) = (constants.into_boxed_slice(), operations.into_boxed_slice());
+        Tape { constants, operations, result }
     }
-}
 
-fn mark_operands(operation: Operation, is_used: &mut [bool]) {
-    match operation {
-        Operation::Unary(_, a) => is_used[usize::from(a)] = true,
-        Operation::Binary(_, a, b) => (is_used[usize::from(a)], is_used[usize::from(b)]) = (true, true),
-        Operation::Constant(_) | Operation::Coordinate(_) => {}
+    /// Returns for each term up to `result` what of it the sign of the result depends on.
+    fn needs(&self, result: Index) -> Vec<Need> {
+        let mut needs = vec![Need::Nothing; usize::from(result) + 1];
+        needs[usize::from(result)] = Need::Sign;
+        // Goes from the result backwards, and operands come first; so one pass in reverse order is enough.
+        for index in (0..needs.len()).rev() {
+            let Term::Operation(operation) = self.terms[index] else { continue };
+            let need = match needs[index] {
+                Need::Nothing => continue,
+                Need::Sign if operation.combines_signs() => Need::Sign,
+                _ => Need::Value,
+            };
+            for operand in operation.operands() {
+                needs[usize::from(operand)] = needs[usize::from(operand)].max(need);
+            }
+        }
+        needs
+    }
+
+    /// Returns the operations in the order of evaluation: last those that combine signs.
+    fn order(&self, needs: &[Need]) -> Vec<(Index, Operation)> {
+        let (mut order, mut combining) = (Vec::new(), Vec::new());
+        for (index, &need) in needs.iter().enumerate() {
+            let (index, Term::Operation(operation)) = (index as Index, self.terms[index]) else { continue };
+            if need == Need::Nothing {
+                continue;
+            }
+            if need == Need::Sign && operation.combines_signs() {
+                combining.push((index, operation));
+                continue;
+            }
+            // Sine and cosine of one angle are computed together if they follow each other.
+            let twin = operation.twin().and_then(|twin| {
+                let other = *self.indices.get(&Term::Operation(twin))?;
+                let is_needed = needs.get(usize::from(other)).is_some_and(|&need| need > Need::Nothing);
+                is_needed.then_some((other, twin))
+            });
+            match (operation, twin) {
+                (_, Some((other, _))) if other < index => {}
+                (Operation::Unary(Unary::Sin, _), Some(cosine)) => order.extend([(index, operation), cosine]),
+                (_, Some(sine)) => order.extend([sine, (index, operation)]),
+                (_, None) => order.push((index, operation)),
+            }
+        }
+        order.append(&mut combining);
+        order
     }
 }
 
 /// Returns for each operation whether its values are known to be at least 0, and to be at most 0.
-fn signs(operations: &[Operation]) -> Vec<[bool; 2]> {
+fn signs(operations: &[Operation], constants: &[f64]) -> Vec<[bool; 2]> {
     let mut known: Vec<[bool; 2]> = Vec::with_capacity(operations.len());
     for &operation in operations {
-        let of = |index: Index| known[usize::from(index)];
+        let of = |index: Index| sign_at(&known, constants, index);
         let signs = match operation {
-            Operation::Constant(bits) => [f64::from_bits(bits) >= 0.0, f64::from_bits(bits) <= 0.0],
-            Operation::Coordinate(_) => [false; 2],
             Operation::Unary(function, a) => match function {
-                Unary::Abs | Unary::Square | Unary::Sqrt | Unary::Exp | Unary::Step => [true, false],
+                Unary::Abs | Unary::Square | Unary::Sqrt | Unary::SqrtOfNonNegative | Unary::Exp | Unary::Step => {
+                    [true, false]
+                }
                 Unary::Negate => [of(a)[1], of(a)[0]],
                 Unary::Cbrt | Unary::Floor | Unary::Atan | Unary::Asin => [of(a)[0], false],
                 Unary::Ln | Unary::Sin | Unary::Cos | Unary::Tan => [false; 2],
@@ -263,4 +436,13 @@ fn signs(operations: &[Operation]) -> Vec<[bool; 2]> {
         known.push(signs);
     }
     known
+}
+
+/// Returns whether the values at an index are known to be at least 0, and to be at most 0.
+fn sign_at(of_operations: &[[bool; 2]], constants: &[f64], index: Index) -> [bool; 2] {
+    if let Some(at) = index.checked_sub(FIRST_CONSTANT) {
+        let value = constants[usize::from(at)];
+        return [value >= 0.0, value <= 0.0];
+    }
+    usize::from(index).checked_sub(COORDINATES).map_or([false; 2], |at| of_operations[at])
 }

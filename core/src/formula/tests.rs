@@ -1,4 +1,7 @@
-use super::packet::{PacketModels, PacketValues};
+use super::forecast::SignForecasts;
+use super::models::{Models, StoredModels, model_of_lane};
+use super::packet::{EightValues, Lines, PacketModels};
+use super::values::PacketValues;
 use super::*;
 use crate::lanes::{ALL, LANES, Lanes, SimdKernel};
 use crate::simd;
@@ -125,11 +128,20 @@ fn values_follow_the_grammar() {
 #[test]
 fn equal_terms_are_computed_once() {
     let length = |text: &str| formula(text).tape.operations().len();
-    assert_eq!(length("(x + y)*(y + x)"), 4);
-    assert_eq!(length("2*3 + x - 0*1"), 3);
-    assert_eq!(length("a = sin(x); y"), 1);
-    assert_eq!(length("x^8"), 4);
-    assert!(size_of::<tape::Operation>() <= 16, "4096 operations take at most 64 KiB");
+    assert_eq!(length("(x + y)*(y + x)"), 2);
+    assert_eq!(length("2*3 + x - 0*1"), 1);
+    assert_eq!(length("a = sin(x); y"), 0);
+    assert_eq!(length("x^8"), 3);
+}
+
+/// Constants take the most memory of all: 8 bytes each, beside operations of 6 bytes.
+#[test]
+fn the_longest_formula_takes_less_than_64_kib() {
+    let terms = (0..2046).map(|at| format!(" + 1.{at:04}")).collect::<Vec<_>>().concat();
+    let longest = formula(&format!("x + time{terms}"));
+    assert!(longest.moves() && Formula::parse(&format!("x + time{terms} + 2"), &[]).is_err());
+    let bytes = longest.tape.bytes() + longest.moving.as_ref().map_or(0, |moving| moving.bytes());
+    assert!(bytes < 64 << 10, "{bytes} bytes");
 }
 
 #[test]
@@ -272,32 +284,34 @@ fn a_root_is_the_first_number_of_the_other_sign() {
 #[test]
 fn dense_sampling_finds_no_nearer_root() {
     const SEED: u64 = 0x5eed_0002;
+    let mut random = Random(SEED);
+    let roots = (0..2000).filter(|_| has_nearest_root(&random.formula(3), &mut random, SEED)).count();
+    assert!(roots > 300, "{roots} formulas have roots");
+}
+
+/// Returns whether a formula has a root on a random line, after a check that no root is nearer.
+fn has_nearest_root(text: &str, random: &mut Random, seed: u64) -> bool {
     let steps = number("FORMULA_STEPS", 5000);
-    let (mut random, mut count) = (Random(SEED), 0);
-    for _ in 0..2000 {
-        let text = random.formula(3);
-        let Ok(formula) = Formula::parse(&text, &[]) else { continue };
-        let line = Line { origin: random.point(2.0), direction: random.point(1.0) };
-        let root = Solver::new(&formula).first_root(&line, [0.0, 4.0], 4.0);
-        let value = |t: f64| formula.value(line.origin + line.direction * t);
-        let end = root.map_or(4.0, f64::from);
-        let samples = (0..=steps).map(|step| step as f64 * 4.0 / steps as f64).take_while(|&t| t < end - 1e-3);
-        let samples: Vec<_> = samples.map(|t| (t, value(t))).collect();
-        for pair in samples.windows(2) {
-            let [(low, a), (high, b)] = [pair[0], pair[1]];
-            if a * b < 0.0 {
-                let at = line.origin + line.direction * change(&value, low, high);
-                assert!(has_gap(&formula, at), "{text}: lost at {at}, {root:?}, {line:?}, seed {SEED:#x}");
-            }
-        }
-        if let Some(root) = root {
-            count += 1;
-            let around = [value(f64::from(root)), value(f64::from(root.next_down()))];
-            let is_change = around[0].signum() != around[1].signum() || around[0] == 0.0;
-            assert!(is_change, "{text}: false root {root}, {around:?}, {line:?}, seed {SEED:#x}");
+    let Ok(formula) = Formula::parse(text, &[]) else { return false };
+    let line = Line { origin: random.point(2.0), direction: random.point(1.0) };
+    let root = Solver::new(&formula).first_root(&line, [0.0, 4.0], 4.0);
+    let value = |t: f64| formula.value(line.origin + line.direction * t);
+    let end = root.map_or(4.0, f64::from);
+    let samples = (0..=steps).map(|step| step as f64 * 4.0 / steps as f64).take_while(|&t| t < end - 1e-3);
+    let samples: Vec<_> = samples.map(|t| (t, value(t))).collect();
+    for pair in samples.windows(2) {
+        let [(low, a), (high, b)] = [pair[0], pair[1]];
+        if a * b < 0.0 {
+            let at = line.origin + line.direction * change(&value, low, high);
+            assert!(has_gap(&formula, at), "{text}: lost at {at}, {root:?}, {line:?}, seed {seed:#x}");
         }
     }
-    assert!(count > 300, "{count} formulas have roots");
+    if let Some(root) = root {
+        let around = [value(f64::from(root)), value(f64::from(root.next_down()))];
+        let is_change = around[0].signum() != around[1].signum() || around[0] == 0.0;
+        assert!(is_change, "{text}: false root {root}, {around:?}, {line:?}, seed {seed:#x}");
+    }
+    root.is_some()
 }
 
 /// Returns the place of a sign change between two numbers, by bisection.
@@ -319,10 +333,10 @@ fn has_gap(formula: &Formula, point: DVec3) -> bool {
     let mut values = Vec::new();
     let result = formula.tape.value(point, &mut values);
     let is_gap = |&operation: &Operation| {
-        let of = |index: u16| values[usize::from(index)];
+        let of = |index: u16| formula.tape.constant(index).unwrap_or_else(|| values[usize::from(index)]);
         match operation {
             Operation::Unary(Unary::Floor, a) => (of(a) - of(a).round()).abs() < NEAR * (1.0 + of(a).abs()),
-            Operation::Unary(Unary::Step | Unary::Sqrt | Unary::Ln, a) => of(a).abs() < NEAR,
+            Operation::Unary(Unary::Step | Unary::Sqrt | Unary::SqrtOfNonNegative | Unary::Ln, a) => of(a).abs() < NEAR,
             Operation::Unary(Unary::Asin, a) => of(a).abs() > 1.0 - NEAR,
             Operation::Unary(Unary::Tan, a) => libm::tan(of(a)).abs() > 1.0 / NEAR,
             Operation::Binary(Binary::Divide, a, b) => of(b).abs() < NEAR || (of(a) / of(b)).abs() > 1.0 / NEAR,
@@ -426,17 +440,15 @@ fn models_of_eight_pieces_enclose_all_values() {
         });
         let by_axis = [0, 1].map(|end: usize| [0, 1, 2].map(|axis: usize| lines.map(|line| line[end][axis])));
         let ends = [0, 1].map(|end: usize| pieces.map(|piece: [f64; 2]| piece[end]));
-        let tape = &formula.tape;
-        let packet = PacketModels { tape, lines: &by_axis, pieces: &ends, lanes: ALL, scratch: &mut scratch };
-        let forecasts = simd::dispatch(packet);
-        let packet = PacketModels { tape, lines: &by_axis, pieces: &ends, lanes: ALL, scratch: &mut scratch };
-        let of_arrays = simd::run_scalar(packet);
+        let (models, forecasts) = simd::dispatch(WithModels(packet(&formula, &by_axis, &ends, &mut scratch)));
+        let (same_models, of_arrays) = simd::run_scalar(WithModels(packet(&formula, &by_axis, &ends, &mut scratch)));
         for lane in 0..LANES {
-            let (model, [o, d], [from, to]) = (forecasts.model(lane), lines[lane], pieces[lane]);
+            let (model, [o, d], [from, to]) = (model_of_lane(&models, lane), lines[lane], pieces[lane]);
+            let same = model_of_lane(&same_models, lane);
             let [c0, c1, c2] = model.c;
-            let (bits, same) = (model_bits(&model), model_bits(&of_arrays.model(lane)));
-            let is_same = (bits, forecasts.has_no_zero(lane)) == (same, of_arrays.has_no_zero(lane));
-            assert!(is_same, "{text}: {model:?}, {:?}, seed {SEED:#x}", of_arrays.model(lane));
+            let of_one = (model_bits(&model), forecasts.has_no_zero(lane));
+            let is_same = of_one == (model_bits(&same), of_arrays.has_no_zero(lane));
+            assert!(is_same, "{text}: {model:?}, {same:?}, seed {SEED:#x}");
             let (continuity, forecast) = (forecasts.continuity(lane), forecasts.forecast(lane));
             let has_shares =
                 forecast.sign != 0.0 && !forecast.has_no_zero && continuity == model::Continuity::default();
@@ -469,6 +481,30 @@ fn models_of_eight_pieces_enclose_all_values() {
     }
 }
 
+/// The kernel that returns the models of the formula besides the forecasts.
+struct WithModels<'a>(PacketModels<'a>);
+
+impl SimdKernel for WithModels<'_> {
+    type Output = (StoredModels, SignForecasts);
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) -> Self::Output {
+        let PacketModels { tape, steps, lanes, .. } = self.0;
+        let (models, [may_jump, is_undefined]) = self.0.models::<N>();
+        let result = Models::<N>::of_index(tape, models, steps.result);
+        (result.store(), result.sign_forecasts(lanes, may_jump, is_undefined))
+    }
+}
+
+fn packet<'a>(
+    Formula { tape, .. }: &'a Formula,
+    lines: &'a Lines,
+    pieces: &'a [EightValues; 2],
+    scratch: &'a mut Vec<StoredModels>,
+) -> PacketModels<'a> {
+    PacketModels { tape, steps: tape.steps(), lines, pieces, lanes: ALL, scratch }
+}
+
 /// Returns the bits of a model, which are the same for all NaN, and for 0 and -0.
 fn model_bits(model: &model::Model) -> [u64; 4] {
     let bits = |number: f64| if number.is_nan() { u64::MAX } else { (number + 0.0).to_bits() };
@@ -476,11 +512,11 @@ fn model_bits(model: &model::Model) -> [u64; 4] {
     [c0, c1, c2, model.error].map(bits)
 }
 
-/// The kernel that evaluates a tape at a t on each of eight lines.
-struct ValuesAt<'a>(PacketValues<'a>, [f64; LANES]);
+/// The kernel that evaluates a tape at two t on each of eight lines.
+struct ValuesAt<'a>(PacketValues<'a>, [EightValues; 2]);
 
 impl SimdKernel for ValuesAt<'_> {
-    type Output = [f64; LANES];
+    type Output = [EightValues; 2];
 
     #[inline(always)]
     fn run<N: Lanes>(mut self) -> Self::Output {
@@ -488,9 +524,9 @@ impl SimdKernel for ValuesAt<'_> {
     }
 }
 
-/// Eight values have the same bits as values computed one by one, with all instruction sets.
+/// Values of a packet have the same bits as values computed one by one, with all instruction sets.
 #[test]
-fn eight_values_are_those_of_single_points() {
+fn values_of_packets_are_those_of_single_points() {
     const SEED: u64 = 0x5eed_0007;
     let (mut random, mut scratch, mut values) = (Random(SEED), Vec::new(), Vec::new());
     for _ in 0..1000 {
@@ -498,14 +534,16 @@ fn eight_values_are_those_of_single_points() {
         let Ok(formula) = Formula::parse(&text, &[]) else { continue };
         let lines: [[DVec3; 2]; LANES] = from_fn(|_| [random.point(2.0), random.point(1.0)]);
         let by_axis = [0, 1].map(|end: usize| [0, 1, 2].map(|axis: usize| lines.map(|line| line[end][axis])));
-        let t = from_fn(|_| random.between(0.0, 4.0));
-        let tape = &formula.tape;
-        let eight = simd::dispatch(ValuesAt(PacketValues { tape, lines: &by_axis, scratch: &mut scratch }, t));
-        let of_arrays = simd::run_scalar(ValuesAt(PacketValues { tape, lines: &by_axis, scratch: &mut scratch }, t));
-        for lane in 0..LANES {
-            let alone = tape.value(lines[lane][0] + lines[lane][1] * t[lane], &mut values);
+        let t = from_fn(|_| from_fn(|_| random.between(0.0, 4.0)));
+        let (tape, steps) = (&formula.tape, formula.tape.steps());
+        let eight = simd::dispatch(ValuesAt(PacketValues { tape, steps, lines: &by_axis, scratch: &mut scratch }, t));
+        let of_arrays =
+            simd::run_scalar(ValuesAt(PacketValues { tape, steps, lines: &by_axis, scratch: &mut scratch }, t));
+        for (at, lane) in (0..2).flat_map(|at| (0..LANES).map(move |lane| (at, lane))) {
+            let alone = tape.value(lines[lane][0] + lines[lane][1] * t[at][lane], &mut values);
             let is_same = |value: f64| value.to_bits() == alone.to_bits() || value.is_nan() && alone.is_nan();
-            assert!(is_same(eight[lane]) && is_same(of_arrays[lane]), "{text}: {eight:?}, {alone}, seed {SEED:#x}");
+            let is_same = is_same(eight[at][lane]) && is_same(of_arrays[at][lane]);
+            assert!(is_same, "{text}: {eight:?}, {alone}, seed {SEED:#x}");
         }
     }
 }
@@ -521,7 +559,7 @@ fn eight_searches_find_what_each_finds_alone() {
         let lines: [Line; LANES] = from_fn(|_| Line { origin: random.point(2.0), direction: random.point(1.0) });
         let mut searches = Searches::NONE;
         lines.iter().enumerate().for_each(|(lane, line)| searches.add(lane, line, [0.0, 4.0], 4.0));
-        let (found, roots) = Solver::new(&formula).first_roots(&mut searches);
+        let (found, roots) = Solver::new(&formula).first_roots(&searches);
         for (lane, line) in lines.iter().enumerate() {
             let root = (found >> lane & 1 == 1).then_some(roots.0[lane]);
             assert_eq!(root, Solver::new(&formula).first_root(line, [0.0, 4.0], 4.0), "{text}, seed {SEED:#x}");

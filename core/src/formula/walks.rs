@@ -1,9 +1,9 @@
 //! Walks along eight rays, in pieces on which models enclose f.
 //!
-//! A walk goes forward in pieces of the ray. A piece without a root is passed. Otherwise the walk advances to the first t
-//! that may be a root. The next piece then ends where the model shows that the sign is certainly the other one, or is
-//! shorter if the model shows no such t. So thin parts are not stepped over. The error of a model grows with the cube of
-//! the length, from which the length of the next piece follows.
+//! A walk goes forward in pieces of the ray. A piece without a root is passed. Otherwise the walk advances to the first
+//! t that may be a root. The next piece then ends where the model shows that the sign is certainly the other one, or is
+//! shorter if the model shows no such t. So thin parts are not stepped over. The error of a model grows with the cube
+//! of the length, from which the length of the next piece follows.
 //!
 //! Frequent outcomes are handled together, the others walk by walk.
 
@@ -11,7 +11,7 @@ use super::bracket::{Brackets, Root};
 use super::forecast::{SignForecast, SignForecasts, TARGET, cube_root};
 use super::model::Continuity;
 use super::packet::EightValues;
-use crate::lanes::{LANES, set_bits};
+use crate::lanes::{F32x8, LANES, set_bits};
 
 /// The length of the shortest piece, relative to the range.
 // With this length, the nearer of two sheets 3e-7 apart was always found. Pieces this short need t and lengths in f64.
@@ -43,7 +43,7 @@ pub(super) struct Walks {
     /// The starts of the next pieces.
     pub(super) t: EightValues,
     /// The lengths of the next pieces.
-    pub(super) length: EightValues,
+    length: EightValues,
     /// The last certain signs, 1 or -1; 0 if there is none since the last jump.
     sign: EightValues,
     /// The largest t at which `sign` was certain.
@@ -58,6 +58,12 @@ pub(super) struct Walks {
     shortest: EightValues,
     /// The lengths of the whole ranges.
     range: EightValues,
+    /// The ends of the ranges.
+    pub(super) ends: EightValues,
+    /// The t after which no root is needed.
+    until: EightValues,
+    /// The lanes that still search.
+    pub(super) lanes: u32,
 }
 
 /// The place that one search has reached: see [`Walks`].
@@ -82,25 +88,41 @@ pub(super) enum StepOutcome {
 
 /// Returns the mask of the lanes that are true.
 #[inline(always)]
-pub(super) fn bits(lanes: [bool; LANES]) -> u32 {
+fn bits(lanes: [bool; LANES]) -> u32 {
     (0..LANES).fold(0, |bits, lane| bits | u32::from(lanes[lane]) << lane)
 }
 
 impl Walks {
-    pub(super) const NONE: Self = {
-        let none = [0.0; LANES];
-        Self {
-            t: none,
-            length: none,
-            sign: none,
-            since: none,
-            undecided: none,
-            stride: none,
-            skipped: none,
-            shortest: none,
-            range: none,
+    /// Returns the walks at the starts of the ranges, without lanes whose range is empty.
+    #[inline(always)]
+    pub(super) fn new([starts, ends]: &[F32x8; 2], until: &F32x8, lanes: u32) -> Self {
+        let (none, [t, ends, until]) = ([0.0; LANES], [starts, ends, until].map(|numbers| numbers.0.map(f64::from)));
+        let (mut range, mut shortest, mut is_range) = (none, none, [false; LANES]);
+        for lane in 0..LANES {
+            let (from, to) = (t[lane], ends[lane]);
+            range[lane] = to - from;
+            // In a shorter piece, the end could be rounded to the start.
+            shortest[lane] = (MIN_PIECE * range[lane]).max(16.0 * f64::EPSILON * from.abs().max(to.abs()));
+            // Rejects a range that is NaN, too.
+            is_range[lane] = (range[lane] > 0.0) && (range[lane] < f64::INFINITY);
         }
-    };
+        let (length, lanes) = (range, lanes & bits(is_range));
+        let [sign, undecided, skipped] = [none; 3];
+        Self { t, length, sign, since: t, undecided, stride: shortest, skipped, shortest, range, ends, until, lanes }
+    }
+
+    /// Returns the start and end of each lane's next piece, and drops lanes whose search is over.
+    #[inline(always)]
+    pub(super) fn next_pieces(&mut self) -> [EightValues; 2] {
+        let (mut ends, mut is_on_the_way) = ([0.0; LANES], [false; LANES]);
+        for lane in 0..LANES {
+            let (t, to) = (self.t[lane], self.ends[lane]);
+            is_on_the_way[lane] = (t < to) && (t <= self.until[lane]);
+            ends[lane] = (t + self.length[lane]).min(to);
+        }
+        self.lanes &= bits(is_on_the_way);
+        [self.t, ends]
+    }
 
     pub(super) fn walk(&self, lane: usize) -> Walk {
         Walk {
@@ -133,7 +155,7 @@ impl Walks {
         lanes: u32,
         brackets: &mut Brackets,
     ) -> [u32; 2] {
-        let gaps = forecasts.may_jump | forecasts.is_undefined;
+        let (gaps, usual) = (forecasts.may_jump | forecasts.is_undefined, lanes & !forecasts.is_undefined);
         let has_large_error = !(forecasts.has_small_error | forecasts.has_no_zero);
         let [nears, fars, blurs] = &forecasts.shares;
         let (mut done, mut arrived, mut starts, mut ends) =
@@ -143,16 +165,15 @@ impl Walks {
             let (from, to) = (pieces[0][lane], pieces[1][lane]);
             let (width, stride, shortest) = (to - from, self.stride[lane], self.shortest[lane]);
             let sign = if is_in(forecasts.is_negative) { -1.0 } else { 1.0 };
-            let is_same = self.skipped[lane] == 0.0 && self.sign[lane] * sign >= 0.0;
+            let is_same = (self.skipped[lane] == 0.0) && (self.sign[lane] * sign >= 0.0);
             let (is_certain, has_no_zero) = (is_in(forecasts.is_certain), is_in(forecasts.has_no_zero));
             let (near, far) = (f64::from(nears.0[lane]), f64::from(fars.0[lane]));
             let (start, end) = (from + near * width, (from + far * width).min(to));
-            let has_end = !has_no_zero && far <= 1.0;
-            let is_long = has_no_zero || has_end || width > 1.5 * shortest;
+            let has_end = !has_no_zero && (far <= 1.0);
+            let is_long = has_no_zero || has_end || (width > 1.5 * shortest);
             let is_short = width < SHORT * self.range[lane];
             let is_frequent = if is_certain { is_same && is_long && !is_in(gaps) } else { width > 1.5 * stride };
-            let is_done =
-                is_in(lanes) && is_frequent && !is_in(forecasts.is_undefined) && !(is_in(has_large_error) && is_short);
+            let is_done = is_in(usual) && is_frequent && !(is_in(has_large_error) && is_short);
             let factor = cube_root(TARGET / blurs.0[lane]);
             let passed = (factor.clamp(1.0, 4.0) * width).max(shortest);
             let halved = (factor.clamp(0.25, 0.75) * (to - start)).max(shortest);
@@ -168,26 +189,17 @@ impl Walks {
             self.undecided[lane] = if moves { 0.0 } else { self.undecided[lane] };
             self.stride[lane] = if moves { shortest } else { stride };
             (starts[lane], ends[lane], done[lane]) = (start, end, is_done);
-            arrived[lane] = moves && has_end && end - start <= BRACKET * self.range[lane];
+            arrived[lane] = moves && has_end && (end - start <= BRACKET * self.range[lane]);
         }
         let arrived = bits(arrived);
         for lane in set_bits(arrived) {
-            let (forecast, width) = (forecasts.forecast(lane), pieces[1][lane] - pieces[0][lane]);
-            brackets.add(lane, forecast.root([starts[lane], ends[lane]], self.sign[lane], width));
+            brackets.add(lane, Root { low: starts[lane], high: ends[lane], sign: self.sign[lane] });
         }
         [bits(done), arrived]
     }
 }
 
 impl Walk {
-    pub(super) fn new(from: f64, to: f64) -> Self {
-        let range = to - from;
-        // In a shorter piece, the end could be rounded to the start.
-        let shortest = (MIN_PIECE * range).max(16.0 * f64::EPSILON * from.abs().max(to.abs()));
-        let [sign, undecided, skipped] = [0.0; 3];
-        Self { t: from, length: range, sign, since: from, undecided, stride: shortest, skipped, shortest, range }
-    }
-
     pub(super) fn is_short_for_f32(&self, [from, to]: [f64; 2]) -> bool {
         to - from < SHORT * self.range
     }
@@ -213,7 +225,7 @@ impl Walk {
         }
         (self.undecided, self.stride) = (0.0, self.shortest);
         if self.sign != 0.0 && sign != self.sign && from - self.since <= MAX_STRETCH * self.range {
-            return StepOutcome::Root(Root { low: self.since, high: from, sign: self.sign, guess: from, slope: 0.0 });
+            return StepOutcome::Root(Root { low: self.since, high: from, sign: self.sign });
         }
         (self.sign, self.since) = (sign, from);
         if forecast.has_no_zero {
@@ -285,7 +297,7 @@ impl Walk {
         if far <= 1.0 {
             let end = (from + far * width).min(to);
             if end - start <= BRACKET * self.range {
-                return StepOutcome::Root(forecast.root([start, end], self.sign, width));
+                return StepOutcome::Root(Root { low: start, high: end, sign: self.sign });
             }
             // The next piece is at least a quarter shorter than this one, so that the search comes to an end.
             (self.t, self.length) = (start, (end - start).min(0.75 * width));

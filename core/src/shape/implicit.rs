@@ -168,20 +168,28 @@ impl Surface for Implicit {
     /// The rays are searched together. `inside` has the intervals of t in which they are in the box around the surface,
     /// `within` those in which a root counts.
     fn closest_crossings(&self, rays: &EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8) {
-        let mut searches = Searches::NONE;
-        for lane in set_bits(rays.active) {
-            let [of_box, within] = [inside, within].map(|[min, max]| Interval { min: min.0[lane], max: max.0[lane] });
-            let line = self.line_of_ray(&rays.ray(lane));
-            let inside = self.within_bounds(&line, of_box);
-            let start = inside.min.max(within.min);
-            if start <= within.max {
-                searches.add(lane, &line, [start, inside.max], within.max);
+        let [[enters, leaves], [min, max]] = [inside, within];
+        let mut searches = Searches { ranges: [*enters, *leaves], until: *max, ..Searches::NONE };
+        searches.lines =
+            [&rays.origin, &rays.direction].map(|Vector { x, y, z }| [x, y, z].map(|numbers| numbers.0.map(f64::from)));
+        if self.0.map.is_some() || self.0.ball.is_some() {
+            for lane in set_bits(rays.active) {
+                let line = self.line_of_ray(&rays.ray(lane));
+                let of_box = Interval { min: enters.0[lane], max: leaves.0[lane] };
+                let Interval { min, max } = self.within_bounds(&line, of_box);
+                searches.set_line(lane, &line);
+                (searches.ranges[0].0[lane], searches.ranges[1].0[lane]) = (min, max);
             }
         }
-        if searches.is_empty() {
+        for (start, min) in searches.ranges[0].0.iter_mut().zip(min.0) {
+            *start = start.max(min);
+        }
+        let starts_within = |lane: &usize| searches.ranges[0].0[*lane] <= max.0[*lane];
+        searches.lanes = set_bits(rays.active).filter(starts_within).fold(0, |lanes, lane| lanes | 1 << lane);
+        if searches.lanes == 0 {
             return (0, F32x8::ZERO);
         }
-        let (found, t) = Solver::new(&self.0.formula).first_roots(&mut searches);
+        let (found, t) = Solver::new(&self.0.formula).first_roots(&searches);
         let is_within = |lane: &usize| within[0].0[*lane] <= t.0[*lane] && t.0[*lane] <= within[1].0[*lane];
         (set_bits(found).filter(is_within).fold(0, |lanes, lane| lanes | 1 << lane), t)
     }
