@@ -118,6 +118,17 @@ impl<N: Lanes> Models<N> {
         [c0 - c1.abs() + c2.min(zero) - slack, c0 + c1.abs() + c2.max(zero) + slack]
     }
 
+    /// Returns narrower bounds than [`range`](Self::range), by the polynomial's extremum.
+    #[inline(always)]
+    pub(super) fn tight_range(self) -> [N; 2] {
+        let (Self { c: [c0, c1, c2], error }, two) = (self, N::splat(2.0));
+        let (size, slack) = (c1.abs(), error + N::splat(8.0 * EPSILON) * self.coefficient_abs_sum());
+        let extremum = c0 - c1 * c1 / (N::splat(4.0) * c2);
+        let low = N::select(size.lt(two * c2), extremum, c0 - size + c2);
+        let high = N::select(size.lt(-(two * c2)), extremum, c0 + size + c2);
+        [low - slack, high + slack]
+    }
+
     #[inline(always)]
     pub(super) fn negate(self) -> Self {
         let [c0, c1, c2] = self.c;

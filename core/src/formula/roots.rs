@@ -8,6 +8,7 @@
 
 use super::Formula;
 use super::bracket::{Brackets, Narrowing};
+use super::choices::ShorterTape;
 use super::forecast::{SignForecast, SignForecasts};
 use super::model::Model;
 use super::models::StoredModels;
@@ -42,6 +43,7 @@ struct SearchScratch {
     models: Vec<Model>,
     packets: Vec<StoredModels>,
     values: Vec<PairedValues>,
+    shorter: ShorterTape,
 }
 
 /// The search for roots of a formula along up to eight lines at once.
@@ -118,13 +120,21 @@ impl SimdKernel for RootSearch<'_> {
 
     #[inline(always)]
     fn run<N: Lanes>(self) -> (u32, F32x8) {
-        let Self { tape, searches, scratch: SearchScratch { models, packets, values } } = self;
+        let Self { tape, searches, scratch: SearchScratch { models, packets, values, shorter } } = self;
         let Searches { lines, ranges, until, lanes } = searches;
         let mut walks = Walks::new(ranges, until, *lanes);
         if walks.lanes == 0 {
             return (0, F32x8::ZERO);
         }
-        let (mut found, mut brackets, steps) = (0, Brackets::NONE, tape.steps());
+        let (mut found, mut brackets, mut steps) = (0, Brackets::NONE, tape.steps());
+        if tape.has_many_choices() {
+            let pieces = [walks.t, walks.ends];
+            let packet =
+                PacketModels { tape, steps, lines, pieces: &pieces, lanes: walks.lanes, scratch: &mut *packets };
+            // A formula with a certain sign on the whole range has no root there.
+            walks.lanes &= !shorter.shorten::<N>(packet);
+            steps = shorter.steps();
+        }
         for _ in 0..MAX_PIECES {
             let pieces = walks.next_pieces();
             let lanes = walks.lanes;

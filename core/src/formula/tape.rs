@@ -21,6 +21,11 @@ pub(super) type Index = u16;
 /// The index of the first constant, which is above that of each operation.
 const FIRST_CONSTANT: Index = 1 << 13;
 
+/// The number of [choices](Tape::has_many_choices) from which on it is worthwhile to shorten the
+/// tape for each search.
+// Shortening takes about as long as one step of the search.
+const MANY_CHOICES: usize = 4;
+
 /// An operation of a tape.
 // 6 bytes: with its constants, the longest formula that moves takes 58 KB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -68,7 +73,11 @@ pub(super) enum Binary {
 pub(super) struct Tape {
     constants: Box<[f64]>,
     operations: Box<[Operation]>,
+    /// The number of operations in front of the last ones, of which only the sign matters.
+    combining: Index,
     result: Index,
+    /// The number of minima, maxima and absolute values.
+    choices: Index,
 }
 
 /// The operations to evaluate: all of a tape, or a part of them.
@@ -91,6 +100,11 @@ enum Need {
 }
 
 impl Operation {
+    /// Returns whether the value is often that of one operand, or its negative.
+    fn is_choice(self) -> bool {
+        matches!(self, Self::Unary(Unary::Abs, _) | Self::Binary(Binary::Min | Binary::Max, ..))
+    }
+
     /// Returns whether the sign depends on the signs of the operands only.
     fn combines_signs(self) -> bool {
         matches!(self, Self::Unary(Unary::Negate, _) | Self::Binary(Binary::Min | Binary::Max, ..))
@@ -150,6 +164,11 @@ impl Tape {
         &self.operations
     }
 
+    /// Returns the number of operations whose value matters; the sign is enough of those behind.
+    pub(super) fn combining(&self) -> usize {
+        usize::from(self.combining)
+    }
+
     pub(super) fn result(&self) -> Index {
         self.result
     }
@@ -165,6 +184,12 @@ impl Tape {
     #[inline(always)]
     pub(super) fn constant_as_f32(&self, index: Index) -> Option<f32> {
         self.constant(index).map(|value| value as f32).filter(|rounded| rounded.is_normal())
+    }
+
+    /// Returns whether there are enough minima, maxima and absolute values to decide them before
+    /// each search.
+    pub(super) fn has_many_choices(&self) -> bool {
+        usize::from(self.choices) >= MANY_CHOICES
     }
 
     /// Returns whether the value of the formula depends on the time.
@@ -207,6 +232,12 @@ impl Tape {
     pub(super) fn known_signs(&self) -> [bool; 2] {
         let signs = signs(&self.operations, &self.constants);
         sign_at(&signs, &self.constants, self.result)
+    }
+
+    /// Returns the tape as one that is evaluated as a whole in each search.
+    #[cfg(all(test, unit_tests))]
+    pub(super) fn never_shortened(&self) -> Self {
+        Self { choices: 0, ..self.clone() }
     }
 
     /// Returns the number of bytes that the tape takes.
@@ -327,7 +358,7 @@ impl TapeBuilder {
     /// Returns the tape of the operations on which `result` depends.
     pub(super) fn finish(self, result: Index) -> Tape {
         let needs = self.needs(result);
-        let order = self.order(&needs);
+        let (order, combining) = self.order(&needs);
         let (mut constants, mut places) = (Vec::new(), vec![0; needs.len()]);
         for ((&term, &need), place) in self.terms.iter().zip(&needs).zip(&mut places) {
             match term {
@@ -339,10 +370,11 @@ impl TapeBuilder {
                 _ => {}
             }
         }
-        let mut operations = Vec::with_capacity(order.len());
+        let (mut operations, mut choices) = (Vec::with_capacity(order.len()), 0);
         for (index, operation) in order {
             places[usize::from(index)] = (COORDINATES + operations.len()) as Index;
             let operation = operation.with_operands(|operand| places[usize::from(operand)]);
+            choices += Index::from(operation.is_choice());
             operations.push(operation.with_constant_last());
         }
         let signs = signs(&operations, &constants);
@@ -355,7 +387,7 @@ impl TapeBuilder {
         }
         let result = places[usize::from(result)];
         let (constants, operations) = (constants.into_boxed_slice(), operations.into_boxed_slice());
-        Tape { constants, operations, result }
+        Tape { constants, operations, combining, result, choices }
     }
 
     /// Returns for each term up to `result` what of it the sign of the result depends on.
@@ -377,8 +409,9 @@ impl TapeBuilder {
         needs
     }
 
-    /// Returns the operations in the order of evaluation: last those that combine signs.
-    fn order(&self, needs: &[Need]) -> Vec<(Index, Operation)> {
+    /// Returns the operations in the order of evaluation, and the number of those in front of the
+    /// ones that combine signs.
+    fn order(&self, needs: &[Need]) -> (Vec<(Index, Operation)>, Index) {
         let (mut order, mut combining) = (Vec::new(), Vec::new());
         for (index, &need) in needs.iter().enumerate() {
             let (index, Term::Operation(operation)) = (index as Index, self.terms[index]) else { continue };
@@ -402,8 +435,9 @@ impl TapeBuilder {
                 (_, None) => order.push((index, operation)),
             }
         }
+        let count = order.len() as Index;
         order.append(&mut combining);
-        order
+        (order, count)
     }
 }
 

@@ -1,3 +1,4 @@
+use super::choices::ShorterTape;
 use super::forecast::SignForecasts;
 use super::models::{Models, StoredModels, model_of_lane};
 use super::packet::{EightValues, Lines, PacketModels};
@@ -61,6 +62,22 @@ impl Random {
             7 | 8 => format!("{}({a}, {})", BINARY[self.below(7) as usize], self.formula(depth - 1)),
             9 => format!("{}({a}, 0.3, 0.8)", ["smin", "clamp", "mix"][self.below(3) as usize]),
             _ => format!("{}({a})", UNARY[self.below(18) as usize]),
+        }
+    }
+}
+
+impl Random {
+    /// Returns a formula with many minima and maxima, whose sign or value matters.
+    fn formula_with_choices(&mut self) -> String {
+        let mut terms = [(); 8].map(|()| format!("{} - {:.2}", self.formula(2), self.between(0.0, 2.0)));
+        for at in [1, 3, 5] {
+            terms[at] = format!("max({}, -({}))", terms[at - 1], terms[at]);
+        }
+        let [_, a, _, b, _, c, d, e] = terms;
+        match self.below(3) {
+            0 => format!("min({a}, {b}, {c}, {d}, {e})"),
+            1 => format!("max(-min({a}, {b}), clamp({c}, -1, 1), |{d}| - 1)"),
+            _ => format!("min({a}, {b}, {c} - 0.5) - 0.1*max({d}, {e}, |{d}|)"),
         }
     }
 }
@@ -289,6 +306,31 @@ fn dense_sampling_finds_no_nearer_root() {
     assert!(roots > 300, "{roots} formulas have roots");
 }
 
+/// Shortening the tape changes no bit of a root.
+#[test]
+fn shorter_tapes_have_the_same_roots() {
+    const SEED: u64 = 0x5eed_0009;
+    let (mut random, mut count) = (Random(SEED), 0);
+    for _ in 0..400 {
+        let text = random.formula_with_choices();
+        let Ok(formula) = Formula::parse(&text, &[]) else { continue };
+        let whole = Formula { tape: formula.tape.never_shortened(), moving: None };
+        assert!(formula.tape.has_many_choices() && !whole.tape.has_many_choices());
+        let (o, d) = (random.point(2.0), random.point(1.0));
+        let mut searches = Searches::NONE;
+        for lane in 0..LANES {
+            let line = Line { origin: o + random.point(0.1), direction: d + random.point(0.1) };
+            searches.add(lane, &line, [0.0, 4.0], 4.0);
+        }
+        let [one, other] = [&formula, &whole].map(|formula| Solver::new(formula).first_roots(&searches));
+        assert_eq!(one.0, other.0, "{text}, {searches:?}, seed {SEED:#x}");
+        let is_same = |lane: usize| one.0 >> lane & 1 == 0 || one.1.0[lane] == other.1.0[lane];
+        assert!((0..LANES).all(is_same), "{text}: {one:?}, {other:?}, {searches:?}, seed {SEED:#x}");
+        count += one.0.count_ones();
+    }
+    assert!(count > 200, "{count} roots");
+}
+
 /// Returns whether a formula has a root on a random line, after a check that no root is nearer.
 fn has_nearest_root(text: &str, random: &mut Random, seed: u64) -> bool {
     let steps = number("FORMULA_STEPS", 5000);
@@ -312,6 +354,38 @@ fn has_nearest_root(text: &str, random: &mut Random, seed: u64) -> bool {
         assert!(is_change, "{text}: false root {root}, {around:?}, {line:?}, seed {seed:#x}");
     }
     root.is_some()
+}
+
+/// Of 64 balls, those that a ray passes at a distance are left out.
+#[test]
+fn distant_balls_are_left_out() {
+    let ball = |at: usize| format!("(x - {})^2 + (y - {})^2 + z^2 - 0.1", at % 8, at / 8);
+    let formula = formula(&format!("min({})", (0..64).map(ball).collect::<Vec<_>>().join(", ")));
+    let (mut shorter, mut models) = (ShorterTape::default(), Vec::new());
+    let mut shorten = |y: [f64; LANES], models: &mut Vec<StoredModels>| {
+        let lines = [[[-1.0; LANES], y, [0.0; LANES]], [[1.0; LANES], [0.0; LANES], [0.0; LANES]]];
+        let packet = packet(&formula, &lines, &[[0.0; LANES], [2.5; LANES]], models);
+        let certain = simd::dispatch(Shorten(&mut shorter, packet));
+        (certain, shorter.steps().operations.len())
+    };
+    assert_eq!(shorten([0.5; LANES], &mut models).0, ALL);
+    let (certain, two_balls) = shorten([3.0; LANES], &mut models);
+    assert!(certain == 0 && two_balls < 16, "{two_balls} operations");
+    let (certain, four_balls) = shorten([3.0, 3.0, 3.5, 4.0, 4.0, 4.0, 4.0, 4.5], &mut models);
+    assert!(certain == 0b1000_0100 && four_balls < 32, "{certain:b}, {four_balls} operations");
+    let roots: Vec<_> = [3.0, 3.2, 3.5, 5.1]
+        .into_iter()
+        .map(|y| {
+            let line = Line { origin: DVec3::new(-1.0, y, 0.0), direction: DVec3::X };
+            Solver::new(&formula).first_root(&line, [0.0, 2.5], 2.5)
+        })
+        .collect();
+    let expected = [Some(0.1_f64), Some(0.1 - 0.04), None, Some(0.1 - 0.01)];
+    for (root, squared) in roots.iter().zip(expected) {
+        let expected = squared.map(|squared| 1.0 - squared.sqrt() as f32);
+        let is_close = root.zip(expected).is_none_or(|(root, expected)| (root - expected).abs() < 1e-6);
+        assert!(root.is_some() == expected.is_some() && is_close, "{root:?} instead of {expected:?}");
+    }
 }
 
 /// Returns the place of a sign change between two numbers, by bisection.
@@ -546,6 +620,60 @@ fn values_of_packets_are_those_of_single_points() {
             assert!(is_same, "{text}: {eight:?}, {alone}, seed {SEED:#x}");
         }
     }
+}
+
+/// The kernel that shortens a tape, and returns the lanes with a certain sign.
+struct Shorten<'a>(&'a mut ShorterTape, PacketModels<'a>);
+
+impl SimdKernel for Shorten<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) -> u32 {
+        self.0.shorten::<N>(self.1)
+    }
+}
+
+/// Within its range, a shorter tape has the sign of the whole one in each lane.
+#[test]
+fn shorter_tapes_have_the_same_signs() {
+    const SEED: u64 = 0x5eed_0008;
+    let (mut random, mut shorter, mut models, mut all) = (Random(SEED), ShorterTape::default(), Vec::new(), Vec::new());
+    let (mut values, mut certain_count, mut kept, mut whole) = (Vec::new(), 0, 0, 0);
+    for _ in 0..2000 {
+        let text = random.formula_with_choices();
+        let Ok(formula) = Formula::parse(&text, &[]) else { continue };
+        let tape = &formula.tape;
+        let (o, d, length) = (random.point(2.0), random.point(1.0), random.between(0.0, 1.0));
+        let lines: [[DVec3; 2]; LANES] = from_fn(|_| [o + random.point(0.1), d + random.point(0.1)]);
+        let by_axis = [0, 1].map(|end: usize| [0, 1, 2].map(|axis: usize| lines.map(|line| line[end][axis])));
+        let pieces = [[0.0; LANES], [length; LANES]];
+        let certain = simd::dispatch(Shorten(&mut shorter, packet(&formula, &by_axis, &pieces, &mut models)));
+        (kept, whole) = (kept + shorter.steps().operations.len(), whole + tape.operations().len());
+        let signs: Vec<[f64; LANES]> = (0..20)
+            .flat_map(|_| {
+                let t = from_fn(|_| from_fn(|_| random.between(0.0, length)));
+                let packet = PacketValues { tape, steps: shorter.steps(), lines: &by_axis, scratch: &mut all };
+                let of_shorter = simd::dispatch(ValuesAt(packet, t));
+                (0..2).map(move |at| (t[at], of_shorter[at])).collect::<Vec<_>>()
+            })
+            .map(|(t, of_shorter)| {
+                from_fn(|lane| {
+                    let value = tape.value(lines[lane][0] + lines[lane][1] * t[lane], &mut values);
+                    let is_same = of_shorter[lane].signum() == value.signum() || value.abs() < 1e-12;
+                    let is_same = is_same || value.is_nan() && of_shorter[lane].is_nan();
+                    assert!(certain >> lane & 1 == 1 || is_same, "{text} at {t:?}: {value}, {of_shorter:?}, {SEED:#x}");
+                    value.signum()
+                })
+            })
+            .collect();
+        for lane in 0..LANES {
+            let is_one_sign = signs.iter().all(|other| other[lane] == signs[0][lane]);
+            assert!(certain >> lane & 1 == 0 || is_one_sign, "{text}: {signs:?}, seed {SEED:#x}");
+            certain_count += certain >> lane & 1;
+        }
+    }
+    assert!(certain_count > 1000 && 5 * kept < 4 * whole, "{certain_count} are certain, {kept} of {whole} are kept");
 }
 
 /// A search returns the same bits as if it ran alone, whatever the other lanes search for.
