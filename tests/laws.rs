@@ -421,9 +421,9 @@ fn ways_back_are_found() {
 /// The modules of rustix with which `named_file` opens files and waits for pipes.
 const FOR_FILES: [&str; 3] = ["rustix::event::", "rustix::fs::", "rustix::io::"];
 
-/// The modules of rustix with which `serve` uses sockets and waits for signals; it also reads CPU
-/// times.
-const FOR_SOCKETS: [&str; 3] = ["rustix::event::", "rustix::net::", "rustix::time::"];
+/// The parts of rustix with which `serve` uses sockets and waits for signals; it also reads CPU
+/// times, and lowers the priority of threads.
+const FOR_SOCKETS: [&str; 4] = ["rustix::event::", "rustix::net::", "rustix::process::nice(", "rustix::time::"];
 
 /// Only the server uses its protocol and its runtime.
 #[test]

@@ -9,8 +9,8 @@ use std::time::Duration;
 
 /// The time for which a session counts after a frame.
 ///
-/// All sessions whose views move draw in this time, even on a server that is far too busy. With 0.2 s, sessions that drew
-/// five frames a second did not count, and did not get the coarser frames that would have made them faster.
+/// All sessions whose views move draw in this time, even on a server that is far too busy. With 0.2 s, sessions that
+/// drew five frames a second did not count, and did not get the coarser frames that would have made them faster.
 const WINDOW: Duration = Duration::from_secs(1);
 
 /// The frames of the last [`WINDOW`], by session.

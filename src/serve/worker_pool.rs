@@ -32,8 +32,8 @@ const AFTER_PANIC: Duration = Duration::from_secs(1);
 /// The niceness of the threads that draw, on systems where each thread has its own.
 ///
 /// The thread of the sockets then runs as soon as it has something to do. Without it, 200 moving views on two cores
-/// delayed frames and replies by up to 20 ms, which was taken for the time of the links, and 408 to 602 viewers a second
-/// could connect, instead of 620 to 930.
+/// delayed frames and replies by up to 20 ms, which was taken for the time of the links, and 408 to 602 viewers a
+/// second could connect, instead of 620 to 930.
 #[cfg(target_os = "linux")]
 const WORKER_NICENESS: i32 = 5;
 
@@ -348,8 +348,8 @@ impl WorkerPool {
             let mut frame = self.picture(job, token, tracer)?;
             let trace = cpu_time().saturating_sub(before);
             traced += trace;
-            // Between two frames of a viewer, all others who draw get as much time. The time is that of whole frames: as
-            // long as tracing alone counted, some of 200 viewers got 30 coarse frames a second, and others 14 fine ones.
+            // Between two frames of a viewer, all others who draw get as much time. The time is that of whole frames:
+            // as long as tracing alone counted, some of 200 viewers got 30 coarse frames a second, others 14 fine ones.
             frame.interval = (trace + untraced).mul_f64(share);
             Some(frame)
         };

@@ -87,8 +87,8 @@ pub(crate) struct Frame {
     pub(crate) cost: Cost,
     /// The wall-clock time that tracing took.
     pub(crate) trace: Duration,
-    /// The time for the choice of the next frames' sampling: that of tracing, or on a busy server that between two
-    /// frames of this viewer.
+    /// The time by which the next frames' sampling is chosen: that of tracing, or on a busy server
+    /// the time between two frames of this viewer.
     pub(crate) interval: Duration,
 }
 
