@@ -25,6 +25,8 @@ use std::ops::RangeInclusive;
 pub struct Capabilities {
     /// The glyph kind and the colours in which pixels are drawn.
     pub cell_mode: CellMode,
+    /// The finer glyphs for a picture at rest, if the terminal is known to show them well.
+    pub resting_glyphs: Option<Glyphs>,
     /// The cell aspect: a cell's height divided by its width, greater than 0.
     pub cell_aspect: f32,
     /// The half blocks that cells may use.
@@ -33,6 +35,15 @@ pub struct Capabilities {
     pub light_background: bool,
     /// Whether the terminal supports synchronized output (DEC private mode 2026).
     pub synchronized_output: bool,
+}
+
+impl Capabilities {
+    /// Returns the capabilities for a picture at rest, which has finer glyphs if there are any.
+    #[cfg(feature = "live")]
+    pub(crate) fn at_rest(self) -> Self {
+        let glyphs = self.resting_glyphs.unwrap_or(self.cell_mode.glyphs);
+        Self { cell_mode: CellMode { glyphs, ..self.cell_mode }, ..self }
+    }
 }
 
 /// The cell aspect of an unknown terminal: monospace fonts have cells of about 1:2.

@@ -28,6 +28,7 @@ use std::time::Duration;
 
 mod activity;
 mod requests;
+mod rest;
 mod axes;
 mod caption;
 mod dialog;
@@ -97,6 +98,7 @@ use pacing::Pacing;
 use playback::Playback;
 use pointer::PointerState;
 use progress::ProgressPanel;
+use rest::Rest;
 #[cfg(all(unit_tests, feature = "test-hooks"))]
 pub use scenario::run_scenario;
 use scene_history::SceneHistory;
@@ -186,6 +188,7 @@ pub(crate) struct Viewer {
     /// Whether captions are shown.
     captions: bool,
     pacing: Pacing,
+    rest: Rest,
     requests: VecDeque<Request>,
     /// The names of the scenes, by the index of the scene.
     names: Vec<String>,
@@ -214,6 +217,7 @@ impl Viewer {
             layout: ViewLayout::single(options.map),
             outside_view: OutsideView::Off,
             pointer: PointerState::default(),
+            rest: Rest::default(),
             requests: VecDeque::new(),
             names: Vec::new(),
             captions: options.tour.is_some(),
@@ -276,6 +280,7 @@ impl Viewer {
     /// If there is not enough memory for the window.
     pub(crate) fn resize(&mut self, window: Window) -> Result<(), OutOfMemory> {
         let before = *self.display.capabilities();
+        self.end_rest();
         self.display.set_window(window);
         // A new font may change the aspect and the height of the cells, and the height decides which half blocks the
         // cells may use.
@@ -448,6 +453,7 @@ impl Viewer {
     /// Accepts a finished frame as the next picture to show.
     pub(crate) fn take_frame(&mut self, frame: Frame) {
         self.pacing.record_frame(&frame);
+        self.use_glyphs_of(&frame);
         // Only frames in motion count for the frame rate: refinements at rest would raise it.
         let moving = self.is_picture_moving().then_some(self.now);
         self.screen.take_frame(frame, moving);
@@ -468,6 +474,7 @@ impl Viewer {
         self.screen.set_picture_moving(self.is_picture_moving());
         self.mark_light();
         self.note_few_colors();
+        self.begin_or_end_rest(busy);
         let fades_at = self.screen.close_faded_note(now);
         let builds_at = self.screen.advance_orders(now);
         match decide(&self.facts(busy), now) {
@@ -522,7 +529,11 @@ impl Viewer {
         let probe = self.pacing.probe(self.now);
         self.receiver.sent(&probe, self.now);
         let sampling = self.pacing.begin_frame(shot, self.is_picture_moving(), self.now);
-        ViewerStep::Trace(probe, Job { scene, shot, sampling: self.layout.sampling(sampling), refines: false })
+        // A picture in finer glyphs is final at once, and cancelled if the view changes: the one in half blocks stays
+        // on the screen meanwhile.
+        let refines = self.rest.is_on();
+        let sampling = if refines { self.options.sampling.unwrap_or(Sampling::BEST) } else { sampling };
+        ViewerStep::Trace(probe, Job { scene, shot, sampling: self.layout.sampling(sampling), refines })
     }
 
     /// Returns the step that traces the next refinement of the last frame.
@@ -684,8 +695,9 @@ impl Viewer {
         self.display.window_size()
     }
 
+    /// Returns the capabilities for which the shown frame was traced.
     pub(crate) fn capabilities(&self) -> &Capabilities {
-        self.display.capabilities()
+        self.screen.capabilities()
     }
 
     /// Returns the camera if the user has moved it.

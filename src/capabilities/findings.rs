@@ -143,6 +143,12 @@ impl Hints {
         self.colors(Some(true)).value != Colors::None
     }
 
+    /// Returns whether the terminal's name is needed, which decides the glyphs of resting pictures.
+    pub fn needs_name_reply(&self) -> bool {
+        let colors = self.colors(None);
+        self.glyphs.is_none() && colors.value == Colors::Truecolor && self.needs_block_width_reply()
+    }
+
     /// Returns whether the values of the sixteen palette colours are needed.
     pub fn needs_palette_reply(&self) -> bool {
         matches!(self.colors(None).value, Colors::Indexed16(_))
@@ -162,6 +168,8 @@ pub struct Findings {
     pub colors: Detected<Colors>,
     /// The glyphs.
     pub glyphs: Detected<Glyphs>,
+    /// The finer glyphs for a picture at rest, if there are any.
+    pub resting_glyphs: Option<Glyphs>,
     /// The cell aspect.
     pub cell_aspect: Detected<f32>,
     /// The half blocks that cells may use.
@@ -189,9 +197,16 @@ impl Findings {
             .filter(|aspect| CELL_ASPECT_RANGE.contains(aspect))
             .map(|value| Detected { value, source: Source::User });
         let by_pixels = window.aspect.map(of_window);
+        let glyphs = with_replied_width(hints.with_clues(None, |clues| glyphs(hints.glyphs, colors, clues)), replies);
+        // The user's choice stays, and few colours are mixed in half blocks only.
+        let has_finer = glyphs.value == Glyphs::Half
+            && glyphs.source != Source::User
+            && colors.value == Colors::Truecolor
+            && replies.is_known_for_block_parts;
         Self {
             colors,
-            glyphs: with_replied_width(hints.with_clues(None, |clues| glyphs(hints.glyphs, colors, clues)), replies),
+            glyphs,
+            resting_glyphs: has_finer.then_some(Glyphs::Blocks),
             cell_aspect: cell_aspect
                 .or(by_pixels)
                 .unwrap_or_else(|| detected_or(replied_aspect(replies), Source::Reply, USUAL_CELL_ASPECT)),
@@ -217,6 +232,7 @@ impl Findings {
     pub fn capabilities(&self) -> Capabilities {
         Capabilities {
             cell_mode: CellMode { glyphs: self.glyphs.value, colors: self.colors.value },
+            resting_glyphs: self.resting_glyphs,
             cell_aspect: self.cell_aspect.value,
             half_blocks: self.half_blocks.value,
             light_background: self.light_background.value,

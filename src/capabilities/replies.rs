@@ -1,6 +1,8 @@
 //! A terminal's replies to queries, as plain values.
 
-use super::known_terminals::{attributes_imply_truecolor, name_implies_truecolor};
+use super::known_terminals::{
+    attributes_imply_block_parts, attributes_imply_truecolor, name_implies_block_parts, name_implies_truecolor,
+};
 use crate::color::{LinearRgb, Srgb8};
 
 /// The replies received so far. A field is `None` or false until the terminal has replied.
@@ -10,6 +12,9 @@ pub struct Replies {
     pub truecolor: Option<bool>,
     /// Whether the terminal identified itself as one that supports truecolor (XTVERSION or DA2).
     pub is_known_for_truecolor: bool,
+    /// Whether the terminal identified itself as one that shows parts of blocks well, by its name
+    /// or DA2.
+    pub is_known_for_block_parts: bool,
     /// Whether the terminal supports synchronized output (DECRQM of mode 2026).
     pub synchronized_output: Option<bool>,
     /// Whether the terminal supports the kitty keyboard protocol.
@@ -59,7 +64,7 @@ impl Replies {
         }
     }
 
-    /// Records whether a device control string shows that the terminal supports truecolor.
+    /// Records what a device control string shows about colours and parts of blocks.
     ///
     /// The string is either the terminal's name, such as `>|kitty(0.26.5)`, or the reported SGR attributes, such as
     /// `1$r0;48:2::1:2:3m`. Attributes that contain [`TEST_COLOR`] show that 24-bit colours are kept.
@@ -69,6 +74,7 @@ impl Replies {
         let Ok(text) = std::str::from_utf8(text) else { return };
         if let Some(name) = text.strip_prefix(">|") {
             self.is_known_for_truecolor |= name_implies_truecolor(name);
+            self.is_known_for_block_parts |= name_implies_block_parts(name);
         }
         let rendition = text.strip_prefix("1$r").and_then(|text| text.strip_suffix('m'));
         if let Some(rendition) = rendition {
@@ -80,9 +86,10 @@ impl Replies {
         }
     }
 
-    /// Records whether the terminal's type and version (DA2) imply truecolor.
+    /// Records whether the terminal's type and version (DA2) imply truecolor or parts of blocks.
     pub fn take_secondary_attributes(&mut self, attributes: &[u16]) {
         self.is_known_for_truecolor |= attributes_imply_truecolor(attributes);
+        self.is_known_for_block_parts |= attributes_imply_block_parts(attributes);
     }
 
     /// Returns whether the terminal supports truecolor; `None` if no reply tells.

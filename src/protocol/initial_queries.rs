@@ -17,19 +17,33 @@ pub struct InitialQueries {
     open: bool,
 }
 
+/// A fact that is not always queried.
+#[derive(Clone, Copy, PartialEq)]
+enum Fact {
+    BlockWidth,
+    Name,
+    Truecolor,
+    Palette,
+}
+
 impl InitialQueries {
     /// Returns the queries for facts that affect the picture and that `hints` leave unknown.
     pub fn needed(hints: &Hints) -> Self {
-        let needed = [hints.needs_truecolor_reply(), hints.needs_palette_reply(), hints.needs_block_width_reply()];
-        Self::batch(hints.safe_queries(), needed)
+        let truecolor = hints.needs_truecolor_reply();
+        Self::batch(hints.safe_queries(), |fact| match fact {
+            Fact::BlockWidth => hints.needs_block_width_reply(),
+            Fact::Name => truecolor || hints.needs_name_reply(),
+            Fact::Truecolor => truecolor,
+            Fact::Palette => hints.needs_palette_reply(),
+        })
     }
 
     /// Returns all queries that the terminal is known to tolerate.
     pub fn all_safe(hints: &Hints) -> Self {
-        Self::batch(hints.safe_queries(), [hints.allows_color(), true, true])
+        Self::batch(hints.safe_queries(), |fact| fact != Fact::Truecolor || hints.allows_color())
     }
 
-    fn batch(safe_queries: SafeQueries, [truecolor, palette, blocks]: [bool; 3]) -> Self {
+    fn batch(safe_queries: SafeQueries, is_needed: impl Fn(Fact) -> bool) -> Self {
         let mut bytes = Vec::new();
         if safe_queries == SafeQueries::None {
             return Self::default();
@@ -37,7 +51,7 @@ impl InitialQueries {
         // The half block is printed first, while nothing else is on the screen; the fence (DA1) is last. GNU screen is
         // only queried for the cursor position, because it passes device control strings on to the outer terminal,
         // which may print them.
-        if blocks {
+        if is_needed(Fact::BlockWidth) {
             bytes.extend_from_slice(BLOCK_WIDTH.as_bytes());
         }
         if safe_queries == SafeQueries::Tmux || safe_queries == SafeQueries::All {
@@ -46,13 +60,15 @@ impl InitialQueries {
             bytes.extend_from_slice(&Tag::FIRST.query());
         }
         if safe_queries == SafeQueries::All {
+            if is_needed(Fact::Name) {
+                bytes.extend_from_slice(IDENTITY);
+            }
             bytes.extend_from_slice(MOUSE_AND_KEYBOARD);
             bytes.extend_from_slice(CELL_PIXELS);
-            if truecolor {
-                bytes.extend_from_slice(IDENTITY);
+            if is_needed(Fact::Truecolor) {
                 bytes.extend(truecolor_query());
             }
-            if palette {
+            if is_needed(Fact::Palette) {
                 bytes.extend((0..16).flat_map(palette_query));
             }
         }

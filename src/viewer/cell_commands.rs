@@ -7,6 +7,7 @@ impl Viewer {
     /// Switches to the next kind of cells that the terminal's locale can encode.
     pub(super) fn change_glyphs(&mut self) {
         let (before, size) = (*self.display.capabilities(), self.picture_size());
+        self.rest.end();
         let shown = before.cell_mode.glyphs;
         let at = Glyphs::ALL.iter().position(|&glyphs| glyphs == shown).unwrap_or(0);
         // The shown kind itself comes last, so that it stays if the terminal can encode no other.

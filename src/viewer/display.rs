@@ -17,6 +17,8 @@ pub(super) struct Display {
     window: Window,
     queries: InitialQueries,
     capabilities: Capabilities,
+    /// Whether cells have the glyphs of a picture at rest.
+    rests: bool,
 }
 
 impl Display {
@@ -25,7 +27,7 @@ impl Display {
         // The first picture does not wait for replies, so capabilities are first concluded without them.
         let queries = InitialQueries::needed(&hints);
         let capabilities = Findings::new(&hints, window.cell, queries.replies()).capabilities();
-        Self { hints, window, queries, capabilities }
+        Self { hints, window, queries, capabilities, rests: false }
     }
 
     pub(super) fn capabilities(&self) -> &Capabilities {
@@ -39,7 +41,23 @@ impl Display {
     /// Sets the kind of glyphs that the user has chosen.
     pub(super) fn choose_glyphs(&mut self, glyphs: Glyphs) {
         self.hints.choose_glyphs(glyphs);
+        self.rests = false;
         self.conclude_capabilities();
+    }
+
+    /// Sets whether cells have the glyphs of a picture at rest, and returns whether they have.
+    ///
+    /// They do not if there are none, if the window is too large for pictures with their pixels, or if memory is short.
+    pub(super) fn set_rests(&mut self, rests: bool) -> bool {
+        let before = self.picture_size();
+        self.rests = rests;
+        self.conclude_capabilities();
+        self.rests &= self.capabilities.resting_glyphs.is_some();
+        if self.rests && (self.picture_size() != before || self.check_memory().is_err()) {
+            self.rests = false;
+            self.conclude_capabilities();
+        }
+        self.rests
     }
 
     /// Returns the size of the whole window.
@@ -85,7 +103,8 @@ impl Display {
 
     fn conclude_capabilities(&mut self) {
         let findings = Findings::new(&self.hints, self.window.cell, self.queries.replies());
-        self.capabilities = findings.capabilities();
+        let capabilities = findings.capabilities();
+        self.capabilities = if self.rests { capabilities.at_rest() } else { capabilities };
     }
 
     /// Checks that there is memory for pictures of the current size.

@@ -79,6 +79,11 @@ impl Pacing {
         }
     }
 
+    /// Returns whether the link was slow when a frame was last sent.
+    pub(super) fn is_link_slow(&self) -> bool {
+        self.link.is_slow()
+    }
+
     /// Returns the least time between two frames.
     pub(super) fn min_frame_interval(&self) -> Duration {
         self.link.min_frame_interval()

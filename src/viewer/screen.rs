@@ -38,6 +38,8 @@ const RESET_ERASE: &[u8] = b"\x1b[m\x1b[2J";
 /// The content of the user's screen, and the encoder that brings the terminal to it.
 pub(super) struct Screen {
     content: Tracked<Content>,
+    /// The capabilities for which the last frame was traced.
+    capabilities: Capabilities,
     painter: Painter,
     encoder: Encoder,
     /// The cells of the frame that is drawn.
@@ -88,6 +90,7 @@ impl Screen {
                 name: String::new(),
                 layers,
             }),
+            capabilities: *capabilities,
             painter: painter(capabilities),
             encoder: encoder(Encoder::new(), capabilities),
             grid: Grid::new(Size::new(0, 0)),
@@ -109,6 +112,7 @@ impl Screen {
     /// Sets the capabilities by which pictures become cells and cells become bytes.
     pub(super) fn set_capabilities(&mut self, capabilities: &Capabilities) {
         let mode = self.painter.mode();
+        self.capabilities = *capabilities;
         self.painter = painter(capabilities);
         self.encoder = encoder(std::mem::take(&mut self.encoder), capabilities);
         self.content.mark_changed();
@@ -117,6 +121,11 @@ impl Screen {
             self.encoder.forget();
         }
         self.encoder.set_half_blocks(capabilities.half_blocks);
+    }
+
+    /// Returns the capabilities by which pictures become cells and cells become bytes.
+    pub(super) fn capabilities(&self) -> &Capabilities {
+        &self.capabilities
     }
 
     /// Replaces the frame. While the view moves, `moving` is the current time, from which the frame

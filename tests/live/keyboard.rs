@@ -245,7 +245,7 @@ fn a_terminal_that_does_not_know_the_protocol_is_not_sent_it() {
     session.wait_for_rest();
     session.send(b"q");
     assert_eq!(session.wait_exit(SOON).code(), Some(0));
-    assert!(!session.seen().has(b"\x1b[>") && !session.seen().has(POP), "{}", session.seen().bytes().len());
+    assert!(!session.seen().has(PUSH) && !session.seen().has(POP), "{}", session.seen().bytes().len());
     session.assert_clean();
 }
 

@@ -5,11 +5,11 @@
 #![cfg(feature = "test-hooks")]
 
 use crate::gravel::gravel;
-use crate::pty::{self, Phases, SOON, Session, Size, Start, shows};
+use crate::pty::{self, Phases, SOON, Seen, Session, Size, Start, shows};
 use std::num::NonZeroU32;
 use std::path::Path;
 use termtrace::internals::grid::HalfBlocks;
-use termtrace::{CellMode, Encoder, Grid, Order, Sampling, Scene};
+use termtrace::{CellMode, Encoder, Glyphs, Grid, Order, Sampling, Scene};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_termtrace");
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
@@ -103,6 +103,85 @@ fn samples_may_be_forced() {
     let mut session = Start::new(PROGRAM).arg(&scene).spawn();
     session.send(b"i");
     session.wait_for_text(" 64 samples ");
+}
+
+/// Starts the program in a terminal that calls itself kitty.
+fn start_in_kitty(start: Start) -> Session {
+    let mut session = start.mute().spawn();
+    session.wait_for("the queries", SOON, |seen| seen.has(b"\x1b[>q") && seen.has(FENCE));
+    let asked = session.seen().bytes().len();
+    session.send(b"\x1bP>|kitty(0.26.5)\x1b\\\x1b[>1;4000;26c\x1b[?62c");
+    session.answer_from(asked);
+    session
+}
+
+/// Returns whether a screen shows a picture with glyphs finer than half blocks.
+fn has_fine_glyphs(seen: &Seen) -> bool {
+    seen.screen().text().concat().contains(['▘', '▝', '▖', '▗', '▌', '▐', '▂', '▆'])
+}
+
+#[test]
+fn a_terminal_known_for_its_blocks_gets_finer_glyphs_at_rest() {
+    let path = Path::new(SCENES).join("three_spheres.ron");
+    // One frame for each key: if many frames a second found the machine busy, the link could be taken for a slow one.
+    let start = Start::new(PROGRAM).arg(&path).arg("--reduced-motion").says_when_it_rests();
+    let mut session = start_in_kitty(start);
+    let scene = Scene::load(&path).unwrap_or_else(|error| panic!("{error}"));
+    let fine = CellMode { glyphs: Glyphs::Blocks, ..CellMode::HALF_BLOCK };
+    let wanted = pty::picture(&scene, fine, termtrace::Size::new(80, 24), 2.0);
+    session.wait_for("the picture in blocks", SOON, |seen| shows(seen.screen(), &wanted));
+    session.wait_for_rest();
+    // A panel is drawn over the fine picture, and nothing is traced again.
+    session.send(b"?");
+    session.wait_for_text("Move");
+    assert!(has_fine_glyphs(session.seen()));
+    session.send(b"q");
+    session.wait_for("the picture in blocks again", SOON, |seen| shows(seen.screen(), &wanted));
+    session.send(b"d");
+    session.wait_for("another view in blocks", SOON, |seen| !shows(seen.screen(), &wanted) && has_fine_glyphs(seen));
+    session.wait_for_rest();
+    assert!(has_fine_glyphs(session.seen()));
+    session.send(b"r");
+    session.wait_for("the first view in blocks", SOON, |seen| shows(seen.screen(), &wanted));
+    // Another window has the picture of its own size.
+    session.resize(Size::cells(60, 20));
+    let wanted = pty::picture(&scene, fine, termtrace::Size::new(60, 20), 2.0);
+    session.wait_for("a smaller picture in blocks", SOON, |seen| shows(seen.screen(), &wanted));
+    // The key for other glyphs chooses once and for all.
+    session.send(b"B");
+    let has_octants = |seen: &Seen| seen.screen().text().concat().contains(|glyph| ('\u{1cd00}'..).contains(&glyph));
+    session.wait_for("octants", SOON, has_octants);
+    session.wait_for_rest();
+    assert!(has_octants(session.seen()));
+}
+
+/// Half blocks take fewer rays.
+#[test]
+fn a_turning_view_has_half_blocks() {
+    let mut session = start_in_kitty(Start::new(PROGRAM).arg(Path::new(SCENES).join("three_spheres.ron")));
+    session.wait_for("a picture in blocks", SOON, has_fine_glyphs);
+    session.send(b"t");
+    session.wait_for("half blocks of a turning view", SOON, |seen| !has_fine_glyphs(seen));
+    let before = session.seen().bytes().len();
+    // Several frames later there are still half blocks.
+    session.wait_for("more frames", SOON, |seen| seen.bytes().len() > before + 100_000);
+    assert!(!has_fine_glyphs(session.seen()));
+}
+
+#[test]
+fn half_blocks_stay_at_rest_if_the_rate_or_the_glyphs_are_given() {
+    for arguments in [["--max-rate", "100k"], ["--glyphs", "half"], ["--color", "256"]] {
+        let start = Start::new(PROGRAM).arg(Path::new(SCENES).join("three_spheres.ron"));
+        let start = arguments.iter().fold(start, Start::arg);
+        let mut session = start.says_when_it_rests().mute().spawn();
+        session.wait_for("the queries", SOON, |seen| seen.has(FENCE));
+        let asked = session.seen().bytes().len();
+        session.send(b"\x1bP>|kitty(0.26.5)\x1b\\\x1b[?62c");
+        session.answer_from(asked);
+        session.wait_for_text("▄");
+        session.wait_for_rest();
+        assert!(!has_fine_glyphs(session.seen()), "{arguments:?}");
+    }
 }
 
 const LARGE: Size = Size { columns: 120, rows: 40, cell: (10, 20) };

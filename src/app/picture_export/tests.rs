@@ -21,6 +21,7 @@ fn the_shown_picture_is_written_in_each_format() {
     let picture = Picture::from_pixels(2, 2, pixels).expect("all pixels are there");
     let capabilities = Capabilities {
         cell_mode: CellMode::HALF_BLOCK,
+        resting_glyphs: None,
         cell_aspect: 2.0,
         half_blocks: HalfBlocks::Lower,
         light_background: false,

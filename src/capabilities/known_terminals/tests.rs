@@ -42,3 +42,26 @@ fn terminals_are_known_by_their_secondary_attributes() {
         assert_eq!(attributes_imply_truecolor(attributes), expected, "{terminal}");
     }
 }
+
+#[test]
+fn terminals_that_show_parts_of_blocks_are_known_by_name_or_attributes() {
+    for (name, expected) in [
+        ("kitty(0.26.5)", true),
+        ("XTerm(379)", true),
+        ("foot(1.13.1)", true),
+        ("alacritty 0.14.0", true),
+        ("xterm.js(5.5.0)", false),
+        ("xtermish 1", false),
+        ("tmux 3.3a", false),
+        ("VTE(7600)", false),
+        ("kitty", false),
+        ("", false),
+    ] {
+        assert_eq!(name_implies_block_parts(name), expected, "{name}");
+    }
+    for (attributes, expected) in
+        [(&[0, 1100, 1][..], true), (&[0, 1000, 1], false), (&[0, 10, 1], false), (&[41, 379, 0], false), (&[], false)]
+    {
+        assert_eq!(attributes_imply_block_parts(attributes), expected, "{attributes:?}");
+    }
+}

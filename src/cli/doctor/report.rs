@@ -91,7 +91,9 @@ impl DoctorReport<'_> {
             self.overridable_row("colours", "color", findings.colors, colors),
             self.locale(),
             self.overridable_row("cells", self.setting_deciding_glyphs(), findings.glyphs, |cells| {
-                cells.title().to_owned() + &self.block_width()
+                let at_rest =
+                    findings.resting_glyphs.map_or_else(String::new, |it| format!("; at rest {}", it.title()));
+                cells.title().to_owned() + &self.block_width() + &at_rest
             }),
             self.overridable_row("cell, height/width", "cell_aspect", findings.cell_aspect, |aspect| {
                 format!("{aspect:.3}{}", self.cell_pixels())

@@ -41,8 +41,13 @@ fn each_terminal_gets_the_queries_that_it_understands() {
 
 #[test]
 fn known_facts_are_not_queried() {
-    let queries = InitialQueries::needed(&hints("xterm", "truecolor"));
-    assert!(!has(&queries, b"$qm") && !has(&queries, b"\x1b[>") && !has(&queries, b"\x1b]4;"));
+    let mut known = hints("xterm", "truecolor");
+    let queries = InitialQueries::needed(&known);
+    assert!(!has(&queries, b"$qm") && !has(&queries, b"\x1b]4;"));
+    // The terminal's name decides the glyphs at rest, unless the user has chosen the glyphs.
+    assert!(has(&queries, b"\x1b[>q"));
+    known.glyphs = Some(crate::capabilities::Glyphs::Half);
+    assert!(!has(&InitialQueries::needed(&known), b"\x1b[>"));
     assert!(has(&InitialQueries::needed(&hints("xterm", "")), b"$qm"));
     assert!(has(&InitialQueries::needed(&hints("xterm-16color", "")), b"\x1b]4;0;?"));
 }

@@ -28,6 +28,7 @@ impl Harness {
     fn new() -> Self {
         let capabilities = Capabilities {
             cell_mode: cell::CellMode::HALF_BLOCK,
+            resting_glyphs: None,
             cell_aspect: USUAL_CELL_ASPECT,
             half_blocks: HalfBlocks::Lower,
             light_background: false,

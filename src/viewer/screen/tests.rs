@@ -16,6 +16,7 @@ fn the_order_is_the_links() {
     let scene = Scene::from_ron("three_spheres.ron", text).expect("the scene is fine");
     let capabilities = Capabilities {
         cell_mode: CellMode::HALF_BLOCK,
+        resting_glyphs: None,
         cell_aspect: 2.0,
         half_blocks: HalfBlocks::Lower,
         light_background: false,
