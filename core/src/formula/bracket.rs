@@ -61,16 +61,19 @@ impl Brackets {
         self.next[1][lane] = other.max(next_f32_above(one)).min(most);
     }
 
-    /// Takes the values of f at `next`; returns the lanes whose brackets are two neighbouring f32.
-    ///
-    /// `count` is the number of earlier calls.
+    /// Returns the values of a lane times the sign in front of its root.
     #[inline(always)]
-    fn take_values(&mut self, values: &[EightValues; 2], count: u32) -> u32 {
+    fn signed(&self, values: &[EightValues; 2], lane: usize) -> [f64; 2] {
+        [values[0][lane] * self.sign[lane], values[1][lane] * self.sign[lane]]
+    }
+
+    /// Takes the values of f at `next`; returns the lanes whose brackets are two neighbouring f32.
+    #[inline(always)]
+    fn take_values(&mut self, values: &[EightValues; 2]) -> u32 {
         let mut is_narrow = [false; LANES];
-        let in_turn = count % 3 == 2;
-        for lane in 0..LANES {
+        for (lane, is_narrow) in is_narrow.iter_mut().enumerate() {
             let [one, other] = [self.next[0][lane], self.next[1][lane]];
-            let [at_one, at_other] = [values[0][lane] * self.sign[lane], values[1][lane] * self.sign[lane]];
+            let [at_one, at_other] = self.signed(values, lane);
             // The values of f at the ends of the bracket are not kept, because their signs, which are known, suffice.
             let is_before = (at_one > 0.0) || (one <= self.before[lane]);
             let is_other_before = (at_other > 0.0) || (other <= self.before[lane]);
@@ -78,22 +81,35 @@ impl Brackets {
             let before = if is_before && is_other_before { other.max(before) } else { before };
             let after = if is_other_before { self.after[lane] } else { other.min(self.after[lane]) };
             let after = if is_before { after } else { one.min(after) };
-            let distance = other - one;
-            let secant = (at_other - at_one) / distance;
+            (self.before[lane], self.after[lane]) = (before, after);
+            *is_narrow = next_f32_above(before) >= after;
+        }
+        (0..LANES).fold(0, |lanes, lane| lanes | u32::from(is_narrow[lane]) << lane)
+    }
+
+    /// Sets the two t at which f is to be evaluated next, from its values at the last two.
+    ///
+    /// `count` is the number of earlier calls.
+    #[inline(always)]
+    fn advance(&mut self, values: &[EightValues; 2], count: u32) {
+        let in_turn = count % 3 == 2;
+        for lane in 0..LANES {
+            let [one, other] = [self.next[0][lane], self.next[1][lane]];
+            let [at_one, at_other] = self.signed(values, lane);
+            let secant = (at_other - at_one) / (other - one);
             let slope = if secant < 0.0 { secant } else { self.slope[lane] };
             let root = one - at_one / slope;
             // The root is enclosed by the two f32 beside it; in every third turn, the bracket is cut in three. Negated,
             // so that NaN is far, too.
             let is_far = in_turn || !(root.abs() < f64::INFINITY);
+            let (before, after) = (self.before[lane], self.after[lane]);
             let third = (after - before) * (1.0 / 3.0);
             let below = at_most(root);
             let near = [below, next_f32_above(below)];
             let far = [f64::from((before + third) as f32), f64::from((after - third) as f32)];
-            (self.before[lane], self.after[lane], self.slope[lane]) = (before, after, slope);
+            self.slope[lane] = slope;
             self.set_next(lane, if is_far { far } else { near });
-            is_narrow[lane] = next_f32_above(before) >= after;
         }
-        (0..LANES).fold(0, |lanes, lane| lanes | u32::from(is_narrow[lane]) << lane)
     }
 }
 
@@ -110,11 +126,17 @@ impl SimdKernel for Narrowing<'_> {
     #[inline(always)]
     fn run<N: Lanes>(self) -> F32x8 {
         let Self { mut values, brackets, mut lanes } = self;
-        let mut count = 0;
+        if lanes == 0 {
+            return F32x8::ZERO;
+        }
         brackets.start();
-        while lanes != 0 {
-            lanes &= !brackets.take_values(&values.at(&brackets.next), count);
-            count += 1;
+        for count in 0.. {
+            let values = values.at(&brackets.next);
+            lanes &= !brackets.take_values(&values);
+            if lanes == 0 {
+                break;
+            }
+            brackets.advance(&values, count);
         }
         F32x8(from_fn(|lane| brackets.after[lane] as f32))
     }

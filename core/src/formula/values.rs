@@ -39,20 +39,28 @@ impl PacketValues<'_> {
         }
         for (at, &operation) in steps.operations.iter().enumerate() {
             let (known, rest) = all.split_at_mut(COORDINATES + at);
-            let mut constants = [[0.0; COUNT]; 2];
-            let [of_a, of_b] = &mut constants;
             match operation {
                 Operation::Unary(Unary::Sin, a) if steps.operations.get(at + 1) == operation.twin().as_ref() => {
-                    let (sines, cosines) = rest.split_at_mut(1);
-                    sin_and_cos_of_each(values_at(tape, known, a, of_a), &mut sines[0], &mut cosines[0]);
+                    let ((sines, cosines), mut constant) = (rest.split_at_mut(1), [0.0; COUNT]);
+                    let a = values_at(tape, known, a, &mut constant);
+                    sin_and_cos_of_each(a, &mut sines[0], &mut cosines[0]);
                 }
                 // Computed together with the sine.
                 Operation::Unary(Unary::Cos, _) if at > 0 && Some(steps.operations[at - 1]) == operation.twin() => {}
                 Operation::Unary(function, a) => {
-                    unary_of_each(function, values_at(tape, known, a, of_a), &mut rest[0]);
+                    unary_of_each(function, values_at(tape, known, a, &mut [0.0; COUNT]), &mut rest[0]);
                 }
                 Operation::Binary(function, a, b) => {
-                    let (a, b) = (values_at(tape, known, a, of_a), values_at(tape, known, b, of_b));
+                    let (mut of_a, mut of_b) = ([0.0; COUNT], [0.0; COUNT]);
+                    let a = values_at(tape, known, a, &mut of_a);
+                    // Sums and products have their constant last.
+                    if matches!(function, Binary::Add | Binary::Subtract | Binary::Multiply)
+                        && let Some(b) = tape.constant(b)
+                    {
+                        with_constant_of_each(function, a, b, &mut rest[0]);
+                        continue;
+                    }
+                    let b = values_at(tape, known, b, &mut of_b);
                     binary_of_each(function, a, b, &mut rest[0]);
                     if matches!(function, Binary::Min | Binary::Max) {
                         choose(steps.chosen(at), [a, b], &mut rest[0]);
@@ -125,5 +133,15 @@ fn binary_of_each(function: Binary, a: &PairedValues, b: &PairedValues, to: &mut
         Binary::Min => (0..COUNT).for_each(|at| to[at] = Binary::Min.at(a[at], b[at])),
         Binary::Max => (0..COUNT).for_each(|at| to[at] = Binary::Max.at(a[at], b[at])),
         Binary::Atan2 => (0..COUNT).for_each(|at| to[at] = function.at(a[at], b[at])),
+    }
+}
+
+/// Computes a sum, difference or product of each value and a constant.
+#[inline(always)]
+fn with_constant_of_each(function: Binary, a: &PairedValues, b: f64, to: &mut PairedValues) {
+    match function {
+        Binary::Add => (0..COUNT).for_each(|at| to[at] = a[at] + b),
+        Binary::Subtract => (0..COUNT).for_each(|at| to[at] = a[at] - b),
+        _ => (0..COUNT).for_each(|at| to[at] = a[at] * b),
     }
 }
