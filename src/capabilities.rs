@@ -6,6 +6,7 @@ mod known_terminals;
 mod replies;
 mod detection;
 mod findings;
+mod shifts;
 #[cfg(feature = "live")]
 mod terminfo;
 
@@ -15,6 +16,7 @@ pub use crate::grid::{CellShape, HalfBlocks};
 pub use detection::{Clues, Detected, GlyphChoice, Source, colors, glyphs};
 pub use findings::{Findings, Hints, SafeQueries, VARIABLES};
 pub use replies::{Replies, TEST_COLOR};
+pub use shifts::Shifts;
 #[cfg(feature = "live")]
 pub use terminfo::terminfo_colors;
 
@@ -35,6 +37,16 @@ pub struct Capabilities {
     pub light_background: bool,
     /// Whether the terminal supports synchronized output (DEC private mode 2026).
     pub synchronized_output: bool,
+    /// Whether and how the terminal shifts shown cells.
+    pub shifts: Shifts,
+}
+
+impl Capabilities {
+    /// Returns the capabilities without shifts of shown cells.
+    #[cfg(feature = "live")]
+    pub(crate) fn without_shifts(self) -> Self {
+        Self { shifts: Shifts::Off, ..self }
+    }
 }
 
 impl Capabilities {

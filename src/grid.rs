@@ -117,6 +117,8 @@ pub struct Window {
     pub cell: CellShape,
     /// A cell's width and height in pixels, if known.
     pub cell_pixels: Option<(u16, u16)>,
+    /// Whether the terminal's window is larger, and this is its upper left part.
+    pub is_part: bool,
 }
 
 /// A colour of a cell: the terminal's default, one of its palette, or an RGB colour.

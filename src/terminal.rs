@@ -97,7 +97,7 @@ impl Terminal {
         let cell = CellShape { aspect, half_blocks: capabilities::half_blocks(rows, window.ws_ypixel) };
         let cell_pixels =
             cell.aspect.and(window.ws_xpixel.checked_div(columns).zip(window.ws_ypixel.checked_div(rows)));
-        Ok(Window { size, cell, cell_pixels })
+        Ok(Window { size, cell, cell_pixels, is_part: false })
     }
 
     /// Sends a frame or queries, in a single write if the terminal accepts all of it.

@@ -1,8 +1,11 @@
 //! The properties of a terminal, combined from all sources: user, environment, window and replies.
 
 use super::detection::{colorterm, is_utf8, locale, refused_or_forced};
+use super::shifts::shifts;
 use super::{CELL_ASPECT_RANGE, USUAL_CELL_ASPECT, colors, glyphs};
-use super::{Capabilities, CellMode, Clues, ColorChoice, Colors, Detected, GlyphChoice, Glyphs, Replies, Source};
+use super::{
+    Capabilities, CellMode, Clues, ColorChoice, Colors, Detected, GlyphChoice, Glyphs, Replies, Shifts, Source,
+};
 use crate::grid::{CellShape, HalfBlocks};
 
 /// The user's choices and environment variables, stored so that detection can be repeated when
@@ -17,6 +20,8 @@ pub struct Hints {
     pub cell_aspect: Option<f32>,
     /// Whether the default background is light, if the user says so.
     pub light_background: Option<bool>,
+    /// Whether the user refuses shifts of shown cells.
+    pub refuses_shifts: bool,
     variables: Vec<(&'static str, String)>,
     terminfo: Option<Colors>,
 }
@@ -154,6 +159,11 @@ impl Hints {
         matches!(self.colors(None).value, Colors::Indexed16(_))
     }
 
+    /// Returns whether the terminal may shift cells, for which its name or type is needed.
+    pub fn may_shift(&self) -> bool {
+        self.allows_color() && !self.refuses_shifts
+    }
+
     /// Returns whether the width of block characters is needed.
     pub fn needs_block_width_reply(&self) -> bool {
         self.glyphs.is_none()
@@ -178,6 +188,8 @@ pub struct Findings {
     pub light_background: Detected<bool>,
     /// Whether the terminal supports synchronized output.
     pub synchronized_output: Detected<bool>,
+    /// Whether and how the terminal shifts shown cells.
+    pub shifts: Detected<Shifts>,
     /// Whether the terminal supports the kitty keyboard protocol.
     pub kitty_keyboard: Detected<bool>,
     /// Whether the terminal supports SGR mouse reports.
@@ -222,6 +234,7 @@ impl Findings {
                 .light_background
                 .map_or_else(|| answered(replies.light_background()), |value| Detected { value, source: Source::User }),
             synchronized_output: answered(replies.synchronized_output),
+            shifts: shifts(hints, replies),
             kitty_keyboard: answered(replies.kitty_keyboard),
             sgr_mouse: answered(replies.sgr_mouse),
             pixel_mouse: answered(replies.pixel_mouse),
@@ -237,6 +250,7 @@ impl Findings {
             half_blocks: self.half_blocks.value,
             light_background: self.light_background.value,
             synchronized_output: self.synchronized_output.value,
+            shifts: self.shifts.value,
         }
     }
 }

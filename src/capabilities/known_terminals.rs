@@ -1,4 +1,4 @@
-//! Terminals that are known to support truecolor or to show parts of blocks well.
+//! Terminals that are known to support truecolor, to show parts of blocks well, or to shift cells.
 //!
 //! They are known by the replies that identify them.
 //!
@@ -23,11 +23,24 @@ const NAMES: [&str; 11] = [
 
 /// Returns whether a terminal with this name and version (XTVERSION) supports truecolor.
 pub(super) fn name_implies_truecolor(name: &str) -> bool {
-    let name = name.to_lowercase();
-    NAMES.iter().any(|known| name.strip_prefix(known).is_some_and(|rest| !rest.starts_with(char::is_alphabetic)))
+    NAMES.iter().any(|known| is_named(name, known))
 }
 
-/// Returns whether a terminal with these secondary device attributes (DA2) supports truecolor.
+/// Returns whether a terminal with this name and version (XTVERSION) shifts cells by ICH, DCH, IL
+/// and DL.
+// The terminfo entries of all of them name these sequences. In xterm, kitty, alacritty and st, shifted pictures were
+// compared with redrawn ones pixel by pixel.
+pub(super) fn name_implies_shifts(name: &str) -> bool {
+    name_implies_truecolor(name) || is_named(name, "xterm")
+}
+
+/// Returns whether a name and version begin with a name in lower case.
+fn is_named(name: &str, known: &str) -> bool {
+    name.to_lowercase().strip_prefix(known).is_some_and(|rest| !rest.starts_with(char::is_alphabetic))
+}
+
+/// Returns whether a terminal with these secondary device attributes (DA2) supports truecolor, and
+/// shifts cells.
 // For terminals that do not reply to XTVERSION. DA2 reports the type, the version and a third number.
 pub(super) fn attributes_imply_truecolor(attributes: &[u16]) -> bool {
     match *attributes {

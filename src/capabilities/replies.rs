@@ -1,7 +1,8 @@
 //! A terminal's replies to queries, as plain values.
 
 use super::known_terminals::{
-    attributes_imply_block_parts, attributes_imply_truecolor, name_implies_block_parts, name_implies_truecolor,
+    attributes_imply_block_parts, attributes_imply_truecolor, name_implies_block_parts, name_implies_shifts,
+    name_implies_truecolor,
 };
 use crate::color::{LinearRgb, Srgb8};
 
@@ -15,6 +16,10 @@ pub struct Replies {
     /// Whether the terminal identified itself as one that shows parts of blocks well, by its name
     /// or DA2.
     pub is_known_for_block_parts: bool,
+    /// Whether the name (XTVERSION) is that of a terminal that shifts cells.
+    pub name_implies_shifts: Option<bool>,
+    /// Whether the terminal's type (DA2) is that of a terminal that shifts cells.
+    pub type_implies_shifts: bool,
     /// Whether the terminal supports synchronized output (DECRQM of mode 2026).
     pub synchronized_output: Option<bool>,
     /// Whether the terminal supports the kitty keyboard protocol.
@@ -64,7 +69,7 @@ impl Replies {
         }
     }
 
-    /// Records what a device control string shows about colours and parts of blocks.
+    /// Records what a device control string shows about colours, parts of blocks and shifts.
     ///
     /// The string is either the terminal's name, such as `>|kitty(0.26.5)`, or the reported SGR attributes, such as
     /// `1$r0;48:2::1:2:3m`. Attributes that contain [`TEST_COLOR`] show that 24-bit colours are kept.
@@ -75,6 +80,7 @@ impl Replies {
         if let Some(name) = text.strip_prefix(">|") {
             self.is_known_for_truecolor |= name_implies_truecolor(name);
             self.is_known_for_block_parts |= name_implies_block_parts(name);
+            self.name_implies_shifts = Some(name_implies_shifts(name));
         }
         let rendition = text.strip_prefix("1$r").and_then(|text| text.strip_suffix('m'));
         if let Some(rendition) = rendition {
@@ -86,10 +92,19 @@ impl Replies {
         }
     }
 
-    /// Records whether the terminal's type and version (DA2) imply truecolor or parts of blocks.
+    /// Records whether the terminal's type and version (DA2) imply truecolor, parts of blocks, or
+    /// shifts of cells.
     pub fn take_secondary_attributes(&mut self, attributes: &[u16]) {
-        self.is_known_for_truecolor |= attributes_imply_truecolor(attributes);
+        let is_known = attributes_imply_truecolor(attributes);
+        self.is_known_for_truecolor |= is_known;
+        self.type_implies_shifts |= is_known;
         self.is_known_for_block_parts |= attributes_imply_block_parts(attributes);
+    }
+
+    /// Returns whether the terminal identified itself as one that shifts cells.
+    // The name decides if there is one: a multiplexer may report the type of another terminal.
+    pub fn is_known_for_shifts(&self) -> bool {
+        self.name_implies_shifts.unwrap_or(self.type_implies_shifts)
     }
 
     /// Returns whether the terminal supports truecolor; `None` if no reply tells.

@@ -32,7 +32,7 @@ impl InitialQueries {
         let truecolor = hints.needs_truecolor_reply();
         Self::batch(hints.safe_queries(), |fact| match fact {
             Fact::BlockWidth => hints.needs_block_width_reply(),
-            Fact::Name => truecolor || hints.needs_name_reply(),
+            Fact::Name => truecolor || hints.needs_name_reply() || hints.may_shift(),
             Fact::Truecolor => truecolor,
             Fact::Palette => hints.needs_palette_reply(),
         })

@@ -66,7 +66,8 @@ pub(super) fn window([columns, rows, width, height]: [u32; 4]) -> Window {
     let aspect = capabilities::cell_aspect(given_columns, given_rows, width, height);
     let cell = CellShape { aspect, half_blocks: capabilities::half_blocks(given_rows, height) };
     let pixels = width.checked_div(given_columns).zip(height.checked_div(given_rows));
-    Window { size, cell, cell_pixels: aspect.and(pixels) }
+    let is_part = columns > MAX_WINDOW.columns.into() || rows > MAX_WINDOW.rows.into();
+    Window { size, cell, cell_pixels: aspect.and(pixels), is_part }
 }
 
 #[cfg(all(test, unit_tests))]

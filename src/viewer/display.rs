@@ -27,7 +27,9 @@ impl Display {
         // The first picture does not wait for replies, so capabilities are first concluded without them.
         let queries = InitialQueries::needed(&hints);
         let capabilities = Findings::new(&hints, window.cell, queries.replies()).capabilities();
-        Self { hints, window, queries, capabilities, rests: false }
+        let mut display = Self { hints, window, queries, capabilities, rests: false };
+        display.conclude_capabilities();
+        display
     }
 
     pub(super) fn capabilities(&self) -> &Capabilities {
@@ -103,8 +105,12 @@ impl Display {
 
     fn conclude_capabilities(&mut self) {
         let findings = Findings::new(&self.hints, self.window.cell, self.queries.replies());
-        let capabilities = findings.capabilities();
-        self.capabilities = if self.rests { capabilities.at_rest() } else { capabilities };
+        let found = findings.capabilities();
+        let found = if self.rests { found.at_rest() } else { found };
+        let covered = extent::covered_size(self.window.size, found.cell_mode);
+        // Shifts move whole rows of the window, of which the picture may cover only a part.
+        let covers_all = covered == self.window.size && !self.window.is_part;
+        self.capabilities = if covers_all { found } else { found.without_shifts() };
     }
 
     /// Checks that there is memory for pictures of the current size.

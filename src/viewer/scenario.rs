@@ -293,7 +293,7 @@ fn queried_mode(query: &[u8]) -> Option<&[u8]> {
 }
 
 fn window(size: Size) -> Window {
-    Window { size, cell: CellShape::default(), cell_pixels: Some((10, 20)) }
+    Window { size, cell: CellShape::default(), cell_pixels: Some((10, 20)), is_part: false }
 }
 
 #[cfg(all(test, unit_tests))]

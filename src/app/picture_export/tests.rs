@@ -1,5 +1,5 @@
 use super::*;
-use crate::capabilities::{Glyphs, HalfBlocks};
+use crate::capabilities::{Glyphs, HalfBlocks, Shifts};
 
 #[test]
 fn names_are_plain_words() {
@@ -26,6 +26,7 @@ fn the_shown_picture_is_written_in_each_format() {
         half_blocks: HalfBlocks::Lower,
         light_background: false,
         synchronized_output: false,
+        shifts: Shifts::Off,
     };
     let written = |format| contents(format, "ball", &picture, None, &capabilities).expect("written");
     assert_eq!(String::from_utf8_lossy(&written(Format::Text)), "@@\n");

@@ -4,7 +4,7 @@ use crate::cli::settings::Settings;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::time::Duration;
-use termtrace::internals::capabilities::{Detected, Findings, HalfBlocks, Hints, Replies, SafeQueries, Source};
+use termtrace::internals::capabilities::{Detected, Findings, HalfBlocks, Hints, Replies, SafeQueries, Shifts, Source};
 use termtrace::internals::text::visible_lines;
 use termtrace::{CellMode, Colors};
 
@@ -101,7 +101,7 @@ impl DoctorReport<'_> {
             self.half_blocks(),
             self.background(),
             self.palette(),
-            self.yes_no_row("synchronized output", findings.synchronized_output),
+            self.synchronized_output(),
             self.yes_no_row("kitty keyboard", findings.kitty_keyboard),
             self.mouse(),
         ]
@@ -184,6 +184,15 @@ impl DoctorReport<'_> {
             return (what, "unknown (assumed no)".to_owned(), self.no_reply().to_owned());
         }
         row(what, found, yes_or_no)
+    }
+
+    // In one row with the moves of cells, which need it, so that the report and its card fit into 24 rows.
+    fn synchronized_output(&self) -> ReportRow {
+        let (what, found) = ("synchronized output", self.findings.synchronized_output);
+        match self.findings.shifts.value {
+            Shifts::Off => self.yes_no_row(what, found),
+            Shifts::Direct | Shifts::ThroughTmux => row(what, found, |_| "yes, and moves cells".to_owned()),
+        }
     }
 
     fn half_blocks(&self) -> ReportRow {

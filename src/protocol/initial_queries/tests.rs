@@ -44,9 +44,11 @@ fn known_facts_are_not_queried() {
     let mut known = hints("xterm", "truecolor");
     let queries = InitialQueries::needed(&known);
     assert!(!has(&queries, b"$qm") && !has(&queries, b"\x1b]4;"));
-    // The terminal's name decides the glyphs at rest, unless the user has chosen the glyphs.
+    // The terminal's name decides the glyphs at rest and shifts, unless the user has decided both.
     assert!(has(&queries, b"\x1b[>q"));
     known.glyphs = Some(crate::capabilities::Glyphs::Half);
+    assert!(has(&InitialQueries::needed(&known), b"\x1b[>q"));
+    known.refuses_shifts = true;
     assert!(!has(&InitialQueries::needed(&known), b"\x1b[>"));
     assert!(has(&InitialQueries::needed(&hints("xterm", "")), b"$qm"));
     assert!(has(&InitialQueries::needed(&hints("xterm-16color", "")), b"\x1b]4;0;?"));

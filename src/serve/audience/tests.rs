@@ -1,7 +1,7 @@
 use super::super::guide::Guide;
 use super::*;
 use crate::camera::Camera;
-use crate::capabilities::{Capabilities, USUAL_CELL_ASPECT};
+use crate::capabilities::{Capabilities, Shifts, USUAL_CELL_ASPECT};
 use crate::grid::{HalfBlocks, Size};
 use crate::maps::Map;
 use crate::scene::Scene;
@@ -33,6 +33,7 @@ impl Harness {
             half_blocks: HalfBlocks::Lower,
             light_background: false,
             synchronized_output: false,
+            shifts: Shifts::Off,
         };
         let class = AudienceClass { guide: Guide::Tour, size: Size::new(40, 12), capabilities };
         Self { audience: Audience::new(class), drawing: Drawing::new(&class), scene: scene(), now: TICK }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::capabilities::CellMode;
+use crate::capabilities::{CellMode, Shifts};
 use crate::export;
 use crate::render::{Cost, Sampling};
 use crate::scene::Scene;
@@ -21,6 +21,7 @@ fn the_order_is_the_links() {
         half_blocks: HalfBlocks::Lower,
         light_background: false,
         synchronized_output: false,
+        shifts: Shifts::Off,
     };
     let size = Size::new(40, 12);
     let resolution = cell::resolution(capabilities.cell_mode, size, 2.0).expect("a small screen");
