@@ -16,9 +16,11 @@
 //! Only escape sequences are used that every terminal and multiplexer understands: CUP, CUF, CHA, CR, BS, LF, and SGR
 //! with `38;2` and `48;2`, 30 to 37 and 40 to 47 for the first eight colours, `7` and `27` (also for spaces in the
 //! pen's glyph colour), and `58:2` for the colour of an underline, which terminals without it ignore. None of them
-//! repeats, erases or scrolls, except for scrolling that ratatui requests from a backend. The terminal has to be in raw
-//! mode, in which a line feed keeps the column.
+//! repeats, erases or scrolls, except for scrolling that ratatui requests from a backend. If the terminal is known to
+//! execute them, shifts use ICH, DCH, IL and DL besides. The terminal has to be in raw mode, in which a line feed keeps
+//! the column.
 
+use crate::capabilities::Shifts;
 use crate::grid::{Grid, HalfBlocks, PackedCell, Size};
 
 #[cfg(feature = "backend")]
@@ -37,6 +39,7 @@ mod numbering;
 mod numbers;
 mod palette;
 mod pen;
+mod shifts;
 mod strokes;
 mod widths;
 
@@ -46,6 +49,7 @@ use change_times::ChangeTimes;
 use differences::Differences;
 use moves::CellPosition;
 pub(crate) use pen::Pen;
+use shifts::{ShiftMemory, ShiftTerms};
 use std::cell::RefCell;
 use std::io::{self, Write};
 use std::mem;
@@ -108,6 +112,7 @@ pub struct Encoder {
     order: Order,
     half_blocks: HalfBlocks,
     synchronized: bool,
+    shifts: Shifts,
     colorless: bool,
     /// The terminal's state; `None` at first and after a resize.
     known: Option<TerminalState>,
@@ -194,6 +199,16 @@ impl Encoder {
         Self { synchronized, ..self }
     }
 
+    /// Sets whether the terminal shifts what it shows, where that takes fewer bytes than writing it
+    /// again.
+    ///
+    /// The grids must be as large as the terminal's window, which has to execute ICH, DCH, IL and DL, and synchronized
+    /// output, without which half-shifted screens would be visible. Only [`Order::Color`] uses shifts.
+    #[doc(hidden)]
+    pub fn with_shifts(self, shifts: Shifts) -> Self {
+        Self { shifts, ..self }
+    }
+
     /// Sets whether sequences that set or reset colours are sent at all.
     #[doc(hidden)]
     pub fn with_colors(self, colors: bool) -> Self {
@@ -253,34 +268,60 @@ impl Encoder {
     fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let Some(caps) = lossy::QualityCaps::for_quality(allowance.quality) else { return self.draw(wanted, bytes) };
         let in_motion = self.change_times.record(wanted, allowance.now);
-        let known = self.take_or_reset_state(wanted.size(), bytes);
+        let mut known = self.take_or_reset_state(wanted.size(), bytes);
         FRAME.with_borrow_mut(|frame| {
             frame.differences.find(&known.shown, wanted);
             // At rest, the cells get their final colours, those with the largest errors first: coarser colours
             // (`draw_capped`) would soon have to be sent again.
             let is_capped = in_motion && frame.differences.appearing <= capped::MAX_APPEARING;
             let cap = allowance.max_bytes.filter(|&max_bytes| is_capped && max_bytes >= capped::LEAST_BYTES);
-            match cap {
-                Some(max_bytes) if self.shortage.is_present() => {
-                    self.draw_capped(wanted, known, (max_bytes, allowance.now), frame, bytes)
-                }
-                _ => self.draw_lossy(wanted, known, (allowance, caps, in_motion, cap), frame, bytes),
+            if let Some(max_bytes) = cap.filter(|_| self.shortage.is_present()) {
+                return self.draw_capped(wanted, known, (max_bytes, allowance.now), frame, bytes);
             }
+            let start = bytes.len();
+            // Below a cap that leaves out cells, vacated ones, which cannot wait, would take the room of others.
+            if is_capped && (cap.is_some() || allowance.max_bytes.is_none()) {
+                self.shift(&mut known.shown, wanted, ShiftTerms::EQUAL, frame, bytes);
+            }
+            self.draw_lossy(wanted, known, (allowance, caps, in_motion, cap), (frame, start), bytes)
         })
+    }
+
+    /// Shifts what the terminal shows, where that is cheaper than writing cells: appends the
+    /// operations, and updates the shown grid and the differences.
+    ///
+    /// Returns whether anything has been shifted. The shown grid before it is then in the frame's memory.
+    fn shift(
+        &self,
+        shown: &mut Grid,
+        wanted: &Grid,
+        terms: ShiftTerms,
+        FrameMemory { before, shifts, differences, .. }: &mut FrameMemory,
+        bytes: &mut Vec<u8>,
+    ) -> bool {
+        let uses_shifts = self.order == Order::Color;
+        let is_shifted = uses_shifts && shifts.shift([shown, before], wanted, (self.shifts, terms), bytes);
+        if is_shifted {
+            differences.find(shown, wanted);
+            differences.mark_vacated(&shifts.vacated);
+        }
+        is_shifted
     }
 
     /// Appends a frame of the allowed quality or, if that exceeds `cap`, one within the cap.
     ///
-    /// Returns the cursor's position after the frame, or `None` if it depends on the terminal.
+    /// The frame begins at `start` of the bytes, with shifts if there are any. Returns the cursor's position after the
+    /// frame, or `None` if it depends on the terminal.
     fn draw_lossy(
         &mut self,
         wanted: &Grid,
         mut known: TerminalState,
         (allowance, caps, in_motion, cap): (Allowance, lossy::QualityCaps, bool, Option<usize>),
-        frame: &mut FrameMemory,
+        (frame, start): (&mut FrameMemory, usize),
         bytes: &mut Vec<u8>,
     ) -> Option<CellPosition> {
-        let FrameMemory { drawn, next, differences } = &mut *frame;
+        let FrameMemory { drawn, next, differences, .. } = &mut *frame;
+        let has_shifts = bytes.len() > start;
         let mut used = self.used_part;
         let inputs = lossy::LossyFrame {
             wanted,
@@ -291,7 +332,7 @@ impl Encoder {
             change_times: &self.change_times,
         };
         let result = lossy::with_plan(inputs, |plan| {
-            self.draw_plan(plan, &known, (allowance, in_motion, cap), &mut used, ([drawn, next], &mut *bytes))
+            self.draw_plan(plan, &known, (allowance, in_motion, cap), &mut used, ([drawn, next], start, &mut *bytes))
         });
         self.used_part = used;
         match result {
@@ -306,6 +347,11 @@ impl Encoder {
             }
             Err(Exceeds { bytes: taken, max_bytes }) => {
                 self.shortage.set_first_rate(taken, max_bytes);
+                if has_shifts {
+                    bytes.truncate(start);
+                    known.shown.clone_from(&frame.before);
+                    frame.differences.find(&known.shown, wanted);
+                }
                 self.draw_capped(wanted, known, (max_bytes, allowance.now), frame, bytes)
             }
         }
@@ -320,7 +366,7 @@ impl Encoder {
         known: &TerminalState,
         (allowance, in_motion, cap): (Allowance, bool, Option<usize>),
         used: &mut lossy::UsedPart,
-        ([drawn, next], bytes): ([&mut Grid; 2], &mut Vec<u8>),
+        ([drawn, next], frame_start, bytes): ([&mut Grid; 2], usize, &mut Vec<u8>),
     ) -> Result<Drawn, Exceeds> {
         let max_bytes = allowance.max_bytes.unwrap_or(usize::MAX);
         let usual = max_bytes.min(TMUX_BYTES_PER_CELL * known.shown.size().cell_count());
@@ -335,12 +381,13 @@ impl Encoder {
             next.clone_from(&known.shown);
             let mut pen = known.pen;
             let cursor = self.write(drawn, next, &mut pen, bytes);
-            let taken = bytes.len() - start + self.synchronized_len();
+            let taken = bytes.len() - frame_start + self.synchronized_len();
             let refines = writes > refines_from;
             let (limit, fewest) = if refines { (usual, refines_from) } else { (max_bytes, plan.min_writes(false)) };
             // At least one cell is written; otherwise all might wait for ever.
             let fewest = fewest.max(1);
-            if taken <= limit || writes <= fewest {
+            // Cells that shifts have vacated need not be written if the frame is drawn without shifts.
+            if taken <= limit || writes <= fewest && (cap.is_none() || frame_start == start) {
                 let is_cut = writes < plan.write_count();
                 // All inexact cells are made exact together, when the last of them is due. When each was sent at its
                 // own time, a dozen frames of a few scattered cells followed each movement: 1.40 full frames of bytes
@@ -373,35 +420,78 @@ impl Encoder {
         wanted: &Grid,
         mut known: TerminalState,
         (max_bytes, now): (usize, Duration),
-        FrameMemory { drawn, differences, .. }: &mut FrameMemory,
+        frame: &mut FrameMemory,
         bytes: &mut Vec<u8>,
     ) -> Option<CellPosition> {
         let start = bytes.len();
         let mut cursor = None;
+        let FrameMemory { drawn, differences, shifts, .. } = &mut *frame;
+        shifts.vacated.clear();
         if differences.has_text(&known.shown, wanted) {
             drawn.clone_from(&known.shown);
             capped::put_text_and_unknown(wanted, differences, drawn);
             cursor = self.write(drawn, &mut known.shown, &mut known.pen, bytes);
         }
-        let (picture, pen) = (bytes.len(), known.pen);
-        let frame = capped::CappedFrame {
-            shown: &mut known.shown,
-            wanted,
-            differences,
-            half_blocks: self.half_blocks,
-            max_bytes: max_bytes.saturating_sub(picture - start + self.synchronized_len()),
-        };
-        let mut shortage = self.shortage;
-        capped::draw(frame, &mut shortage, |grid, changed| {
-            bytes.truncate(picture);
+        let max_bytes = max_bytes.saturating_sub(bytes.len() - start + self.synchronized_len());
+        let (after_text, pen) = (bytes.len(), known.pen);
+        let mut drawn = Err(VacatedExceed);
+        // Vacated cells that do not fit are tried with half of the bytes for shifts, and then without shifts.
+        for divisor in [1, 2] {
+            let terms = ShiftTerms::at_rate(self.shortage.rate(), max_bytes / divisor);
+            if max_bytes < capped::LEAST_BYTES || !self.shift(&mut known.shown, wanted, terms, frame, bytes) {
+                break;
+            }
+            let lens = (max_bytes, bytes.len() - after_text);
+            drawn = self.draw_capped_picture(wanted, &mut known, lens, &frame.differences, bytes);
+            if drawn.is_ok() {
+                break;
+            }
+            bytes.truncate(after_text);
             known.pen = pen;
-            cursor = self.write_changed(grid, changed, &mut known.pen, bytes).or(cursor);
-            bytes.len() - picture
-        });
-        self.shortage = shortage;
-        self.due = differences.inexact_cells(&known.shown).next().map(|_| now);
+            known.shown.clone_from(&frame.before);
+            frame.shifts.vacated.clear();
+            frame.differences.find(&known.shown, wanted);
+        }
+        if drawn.is_err() {
+            drawn = self.draw_capped_picture(wanted, &mut known, (max_bytes, 0), &frame.differences, bytes);
+        }
+        if bytes.len() > after_text {
+            cursor = drawn.ok().flatten();
+        }
+        self.due = frame.differences.inexact_cells(&known.shown).next().map(|_| now);
         self.known = Some(known);
         cursor
+    }
+
+    /// Appends the picture of a frame under a cap, after its text and its shifts.
+    ///
+    /// Returns the cursor's position after the picture, or `None` if it depends on the terminal.
+    fn draw_capped_picture(
+        &mut self,
+        wanted: &Grid,
+        known: &mut TerminalState,
+        (max_bytes, shift_bytes): (usize, usize),
+        differences: &Differences,
+        bytes: &mut Vec<u8>,
+    ) -> Result<Option<CellPosition>, VacatedExceed> {
+        let (start, pen) = (bytes.len(), known.pen);
+        let TerminalState { shown, pen: pen_after } = known;
+        let half_blocks = self.half_blocks;
+        let frame = capped::CappedFrame { shown, wanted, differences, half_blocks, max_bytes, shift_bytes };
+        let mut cursor = None;
+        let mut shortage = self.shortage;
+        let is_whole = capped::draw(frame, &mut shortage, |grid, changed| {
+            bytes.truncate(start);
+            *pen_after = pen;
+            if !changed.is_empty() {
+                cursor = self.write_changed(grid, changed, pen_after, bytes);
+            }
+            bytes.len() - start
+        });
+        if is_whole {
+            self.shortage = shortage;
+        }
+        if is_whole { Ok(cursor) } else { Err(VacatedExceed) }
     }
 
     /// Returns the time at which to encode the last grid again if it has not changed.
@@ -430,6 +520,9 @@ impl Encoder {
     /// Returns the cursor's position after the frame, or `None` if it depends on the terminal.
     fn draw(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) -> Option<CellPosition> {
         let mut known = self.take_or_reset_state(wanted.size(), bytes);
+        if self.shifts != Shifts::Off {
+            FRAME.with_borrow_mut(|frame| self.shift(&mut known.shown, wanted, ShiftTerms::EXACT, frame, bytes));
+        }
         let cursor = self.write(wanted, &mut known.shown, &mut known.pen, bytes);
         self.known = Some(known);
         self.due = None;
@@ -500,12 +593,18 @@ struct Exceeds {
     max_bytes: usize,
 }
 
+/// The failure of a frame with shifts: the cells that they vacate take more bytes than are allowed.
+struct VacatedExceed;
+
 /// The working memory of a lossy frame.
 struct FrameMemory {
     /// The grid to encode: the shown grid with the changes of this frame.
     drawn: Grid,
     /// The grid that the terminal shows after the frame.
     next: Grid,
+    /// The grid that the terminal showed before the shifts of this frame.
+    before: Grid,
+    shifts: ShiftMemory,
     differences: Differences,
 }
 
@@ -522,7 +621,13 @@ thread_local! {
     // Working memory per thread instead of per encoder, because a server has many encoders and few threads.
     static FRAME: RefCell<FrameMemory> = RefCell::new({
         let empty = Grid::new(Size::new(0, 0));
-        FrameMemory { drawn: empty.clone(), next: empty, differences: Differences::default() }
+        FrameMemory {
+            drawn: empty.clone(),
+            next: empty.clone(),
+            before: empty,
+            shifts: ShiftMemory::default(),
+            differences: Differences::default(),
+        }
     });
     static WRITING: RefCell<Writing> = RefCell::default();
 }

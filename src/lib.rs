@@ -296,6 +296,7 @@
 //! - **cell mode**: the kind of glyphs and the number of colours that a picture is drawn with.
 //! - **pen**: the colours and attributes that a terminal uses for the next character.
 //! - **encoder**: turns the difference of two grids into bytes; **quality**: how exactly it does so in motion.
+//! - **shift**: shown cells that the terminal moves itself (`--moves`); the cells left behind are **vacated**.
 //! - **golden frame**: a frame in a file that later frames are compared with.
 //!
 //! Terminal and live view:

@@ -8,7 +8,8 @@
 //!    colours are as far apart as the rate allows.
 //! 2. A [pair](pairs) of these colours is opened, that is, may be used, if it removes more error than the bytes that
 //!    set its two colours are worth. Each cell takes the cheapest open pair, or keeps what it shows.
-//! 3. If the bytes exceed the limit, the pairs that gain the least per byte are given up.
+//! 3. If the bytes exceed the limit, the pairs that gain the least per byte are given up. Cells that a
+//!    [shift](super::shifts) has vacated are not: if they do not fit, the frame is drawn without shifts.
 //!
 //! The picture here is what [`picture_halves`](super::halves::picture_halves) takes for one: half blocks and spaces in
 //! truecolor. All else is text.
@@ -16,7 +17,7 @@
 //! It is facility location (Cornuejols, Nemhauser and Wolsey 1990), solved in one greedy pass, because a full search
 //! gains another tenth of the quality in forty times the time.
 
-use super::differences::Differences;
+use super::differences::{Differences, VACATED};
 use super::halves::{Halves, half_block_cell_with_glyph_of};
 use super::moves::CellPosition;
 use crate::grid::{Grid, HalfBlocks, PackedCell, PackedInk};
@@ -28,7 +29,7 @@ mod colors;
 mod pairs;
 
 /// An exchange rate of a frame: the squared error that each byte has to remove.
-type ExchangeRate = f32;
+pub(super) type ExchangeRate = f32;
 
 /// A cell whose error is large enough to be worth bytes.
 struct ActiveCell {
@@ -38,7 +39,11 @@ struct ActiveCell {
     /// The channels of the wanted halves.
     channels: [Channels; 2],
     /// The error if the cell is not written.
+    ///
+    /// That of a vacated cell, which must be written, is set to be worth any change of the pen.
     stay: f32,
+    /// Whether a shift of this frame has vacated the cell.
+    is_vacated: bool,
     /// The least cost of this cell among the choices tried so far.
     ///
     /// A cost is the error that is left, plus the bytes written times the exchange rate.
@@ -77,6 +82,11 @@ impl Shortage {
         self.rate.is_some()
     }
 
+    /// Returns the exchange rate of the next frame.
+    pub(super) fn rate(self) -> ExchangeRate {
+        self.rate.unwrap_or(LEAST_RATE)
+    }
+
     /// Sets the first rate, after a frame of the allowed quality took `bytes` instead of
     /// `max_bytes`.
     pub(super) fn set_first_rate(&mut self, bytes: usize, max_bytes: usize) {
@@ -96,16 +106,19 @@ impl Shortage {
     }
 }
 
-/// The inputs of a frame under a byte limit, before which all text has been written.
+/// The inputs of a frame under a byte limit, before which text and shifts have been written.
 pub(super) struct CappedFrame<'a> {
     /// The grid that the terminal shows; updated to the grid that it shows after the frame.
     pub(super) shown: &'a mut Grid,
     pub(super) wanted: &'a Grid,
-    /// The differences of `wanted` from the grid that was shown before the text.
+    /// The differences of `wanted` from the shown grid or, without shifts, from the grid that was
+    /// shown before the text.
     pub(super) differences: &'a Differences,
     pub(super) half_blocks: HalfBlocks,
-    /// The largest number of bytes.
+    /// The largest number of bytes of the picture, with its shifts.
     pub(super) max_bytes: usize,
+    /// The bytes of it that shifts have taken.
+    pub(super) shift_bytes: usize,
 }
 
 /// The working memory of a frame, which all encoders of a thread share.
@@ -140,59 +153,73 @@ const MAX_TRIES: usize = 3;
 /// positions of these cells.
 ///
 /// `write` returns the number of bytes. It may be called again, and then replaces what its last call has written.
+///
+/// Returns whether all vacated cells are written: they may take more than the limit.
 pub(super) fn draw(
     mut frame: CappedFrame<'_>,
     shortage: &mut Shortage,
     mut write: impl FnMut(&Grid, &[CellPosition]) -> usize,
-) {
+) -> bool {
     SCRATCH.with_borrow_mut(|scratch| {
         for left in (0..MAX_TRIES).rev() {
-            let rate = shortage.rate.unwrap_or(LEAST_RATE);
-            let bytes = scratch.choose_and_write_fitting(&mut frame, rate, &mut shortage.radius, &mut write);
+            let rate = shortage.rate();
+            let written = scratch.choose_and_write_fitting(&mut frame, rate, &mut shortage.radius, &mut write);
+            let bytes = frame.shift_bytes + written.bytes_of_all;
             if frame.max_bytes < LEAST_BYTES
                 || !shortage.adapt_rate(rate, bytes as f32 / frame.max_bytes as f32)
                 || left == 0
             {
-                break;
+                return written.has_all_vacated;
             }
             scratch.restore(frame.shown);
         }
-    });
+        false
+    })
+}
+
+/// The outcome of choosing and writing cells.
+struct Written {
+    /// The number of bytes that all chosen cells would take.
+    bytes_of_all: usize,
+    /// Whether no vacated cell has been left out.
+    has_all_vacated: bool,
 }
 
 impl CappedScratch {
     /// Chooses the cells at an exchange rate, and writes those that fit.
-    ///
-    /// Returns the number of bytes that all chosen cells would take.
     fn choose_and_write_fitting(
         &mut self,
         frame: &mut CappedFrame<'_>,
         rate: ExchangeRate,
         radius: &mut f32,
         write: &mut impl FnMut(&Grid, &[CellPosition]) -> usize,
-    ) -> usize {
+    ) -> Written {
         let Self { active, palette, pairs, .. } = self;
         find_active(frame.differences, rate, active);
         palette.choose(active, rate, radius);
         let colors = PairColors { palette, rate, half_blocks: frame.half_blocks };
         pairs.choose(active, &colors, frame.wanted.size().columns.into());
         let (mut ranks, mut most_cells) = (pairs.ranks(), usize::MAX);
+        let (has_vacated, max_bytes) = (pairs.has_vacated(), frame.max_bytes.saturating_sub(frame.shift_bytes));
         let mut all = None;
         loop {
             self.pairs.list_cells(&self.active, ranks, &mut self.cells);
             self.cells.truncate(most_cells);
             self.apply(frame);
             let bytes = write(frame.shown, &self.changed);
-            let all = *all.get_or_insert(bytes);
-            if bytes <= frame.max_bytes || self.cells.is_empty() {
-                return all;
+            let bytes_of_all = *all.get_or_insert(bytes);
+            let fits = bytes <= max_bytes || self.cells.is_empty();
+            if fits || ranks == 0 {
+                return Written { bytes_of_all, has_all_vacated: fits };
             }
             self.restore(frame.shown);
             if ranks > 1 {
-                ranks = self.pairs.ranks_within_bytes(ranks, frame.max_bytes as f32 / bytes as f32).max(1);
+                ranks = self.pairs.ranks_within_bytes(ranks, max_bytes as f32 / bytes as f32).max(1);
+            } else if has_vacated {
+                ranks = 0;
             } else {
                 // Not even the cells of one pair fit: the first of them in reading order are written.
-                most_cells = (self.cells.len() * frame.max_bytes / bytes).min(self.cells.len() - 1);
+                most_cells = (self.cells.len() * max_bytes / bytes).min(self.cells.len() - 1);
             }
         }
     }
@@ -251,12 +278,14 @@ fn find_active(differences: &Differences, rate: ExchangeRate, active: &mut Vec<A
     for ((&place, &wanted), &[upper, lower]) in places.iter().zip(wanted).zip(squares) {
         let stay = upper.saturating_add(lower) as f32;
         // Halves that were unknown are shown exactly by now.
+        let is_vacated = [upper, lower] == VACATED;
         if stay > LEAST_GAIN * rate && !is_unknown([upper, lower]) {
             active.push(ActiveCell {
                 at: place as usize,
                 wanted,
                 channels: wanted.map(channels),
                 stay,
+                is_vacated,
                 cost: stay,
                 pair: None,
                 shown: [0; 2],

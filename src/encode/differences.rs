@@ -15,9 +15,12 @@ pub(super) struct Differences {
     pub(super) squares: Vec<[u32; 2]>,
     /// The indices in the grid of the cells that are text in the wanted grid.
     pub(super) text: Vec<u32>,
-    /// The number of cells with unknown halves.
+    /// The number of cells with unknown halves, without vacated ones.
     pub(super) appearing: usize,
 }
+
+/// The squared differences of the halves of a cell that the frame itself has vacated.
+pub(super) const VACATED: [u32; 2] = [u32::MAX - 1; 2];
 
 /// The shown halves of a cell that shows text or is unknown.
 const UNKNOWN: Halves = [PackedInk::DEFAULT; 2];
@@ -58,6 +61,20 @@ impl Differences {
         for (squares, _) in squares.iter_mut().zip(&*shown_halves).filter(|&(_, &shown)| shown == UNKNOWN) {
             *squares = [u32::MAX; 2];
             *appearing += 1;
+        }
+    }
+
+    /// Marks cells, given in reading order, that the frame has vacated by [shifts](super::shifts).
+    ///
+    /// They are unknown, but were the picture before.
+    pub(super) fn mark_vacated(&mut self, vacated: &[u32]) {
+        let mut from = 0;
+        for place in vacated {
+            if let Ok(at) = self.places[from..].binary_search(place) {
+                self.squares[from + at] = VACATED;
+                self.appearing -= 1;
+                from += at + 1;
+            }
         }
     }
 

@@ -136,7 +136,7 @@ impl AlongRow {
 }
 
 /// Appends a CSI sequence with the parameter `number` and the final byte `last`.
-fn write_sequence(bytes: &mut Vec<u8>, number: u16, last: u8) {
+pub(super) fn write_sequence(bytes: &mut Vec<u8>, number: u16, last: u8) {
     bytes.extend_from_slice(b"\x1b[");
     write_number(number, bytes);
     bytes.push(last);

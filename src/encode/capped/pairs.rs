@@ -21,6 +21,10 @@ struct Way {
     next: u32,
 }
 
+/// The number of bytes, beyond those of a glyph, that the gain of a vacated cell is worth: more
+/// than a change of the pen.
+const VACATED_WORTH: f32 = 40.0;
+
 /// The ways to write cells with a pair, and whether the pair is open.
 #[derive(Clone, Copy)]
 struct Pair {
@@ -41,6 +45,8 @@ struct OpenPair {
     /// The error that is removed from the pair's cells.
     gain: f32,
     bytes: f32,
+    /// Whether any of the pair's cells is vacated.
+    has_vacated: bool,
 }
 
 #[derive(Default)]
@@ -65,12 +71,13 @@ impl Pairs {
         self.rank_pairs(active, colors);
     }
 
-    /// Lists the cells of the first `ranks` pairs, each colour the mean of the halves sharing it.
+    /// Lists the cells of the first `ranks` pairs and all vacated cells, each colour the mean of
+    /// the halves sharing it.
     pub(super) fn list_cells(&self, active: &[ActiveCell], ranks: usize, cells: &mut Vec<WrittenCell>) {
         cells.clear();
         let mut sums = [[0_u32; 4]; MAX_COLORS];
-        let is_written = |&key: &u16| usize::from(self.table[usize::from(key)].rank) < ranks;
-        let shown = |cell: &ActiveCell| cell.pair.filter(is_written).map(|_| cell.shown);
+        let is_written = |key: u16| usize::from(self.table[usize::from(key)].rank) < ranks;
+        let shown = |cell: &ActiveCell| cell.pair.filter(|&key| cell.is_vacated || is_written(key)).map(|_| cell.shown);
         for (cell, shown) in active.iter().filter_map(|cell| Some((cell, shown(cell)?))) {
             for (color, wanted) in shown.into_iter().zip(cell.wanted) {
                 let [r, g, b] = wanted.channels();
@@ -87,7 +94,7 @@ impl Pairs {
             let halves = shown.map(|color| PackedInk::rgb(means[usize::from(color)]));
             // The mean is best for all cells that share it, but a single cell may be farther from it than from what it
             // shows, and would raise the error of the frame if the limit left out the others.
-            if error(halves.map(channels), cell.channels) < cell.stay {
+            if cell.is_vacated || error(halves.map(channels), cell.channels) < cell.stay {
                 cells.push(WrittenCell { at: cell.at, halves });
             }
         }
@@ -96,6 +103,11 @@ impl Pairs {
     /// Returns the number of ranks: one for each open pair.
     pub(super) fn ranks(&self) -> usize {
         self.open.len()
+    }
+
+    /// Returns whether any open pair has a vacated cell.
+    pub(super) fn has_vacated(&self) -> bool {
+        self.open.iter().any(|open| open.has_vacated)
     }
 
     /// Returns how many of the best pairs take a share of the bytes of the best `ranks` pairs.
@@ -114,13 +126,13 @@ impl Pairs {
     }
 
     /// Offers each cell the pairs of the colours near its halves.
-    fn collect_ways(&mut self, active: &[ActiveCell], colors: &PairColors<'_>) {
+    fn collect_ways(&mut self, active: &mut [ActiveCell], colors: &PairColors<'_>) {
         self.ways.clear();
         self.table.resize(KEYS, UNUSED);
         for key in self.used.drain(..) {
             self.table[usize::from(key)] = UNUSED;
         }
-        for (at, cell) in active.iter().enumerate() {
+        for (at, cell) in active.iter_mut().enumerate() {
             let [upper, lower] = cell.nearest;
             let near = [upper[0], upper[1], lower[0], lower[1]];
             // Each half's squared difference from each of the four near colours, from which the errors of all pairs
@@ -128,6 +140,13 @@ impl Pairs {
             let near_channels = near.map(|color| colors.palette.color(color));
             let squares = cell.channels.map(|half| near_channels.map(|color| square(color, half)));
             let is_new = |place: usize| !near[..place].contains(&near[place]);
+            if cell.is_vacated {
+                // The cheapest pair of the nearest colours pays for itself.
+                let [a, b] = [upper[0], lower[0]];
+                let key = colors.key(a, b);
+                cell.stay = colors.cheapest(key, cell.channels).0 + colors.rate * (key_len(key) + VACATED_WORTH);
+                cell.cost = cell.stay;
+            }
             for a in 0..4 {
                 if is_new(a) {
                     self.offer(at, cell.stay, colors.key(near[a], near[a]), squares[0][a] + squares[1][a], colors.rate);
@@ -154,7 +173,7 @@ impl Pairs {
 
     /// Adds a way to write a cell, unless it costs more than the error if the cell stays.
     fn offer(&mut self, at: usize, stay: f32, key: u16, error: f32, rate: ExchangeRate) {
-        let cost = error + rate * (glyph_len(key) + move_len(key));
+        let cost = error + rate * key_len(key);
         if cost >= stay {
             return;
         }
@@ -208,17 +227,21 @@ impl Pairs {
             let pair = &mut self.table[usize::from(key)];
             if pair.rank == u16::MAX {
                 pair.rank = self.open.len() as u16;
-                self.open.push(OpenPair { key, gain: 0.0, bytes: pen_len(key) });
+                self.open.push(OpenPair { key, gain: 0.0, bytes: pen_len(key), has_vacated: false });
             }
             let open = &mut self.open[usize::from(pair.rank)];
             open.gain += cell.stay - error;
+            open.has_vacated |= cell.is_vacated;
             open.bytes += (cell.cost - error) / colors.rate;
         }
-        self.open.sort_unstable_by(|a, b| (b.gain * a.bytes).total_cmp(&(a.gain * b.bytes)).then(a.key.cmp(&b.key)));
+        let by_gain = |a: &OpenPair, b: &OpenPair| (b.gain * a.bytes).total_cmp(&(a.gain * b.bytes));
+        self.open
+            .sort_unstable_by(|a, b| b.has_vacated.cmp(&a.has_vacated).then(by_gain(a, b)).then(a.key.cmp(&b.key)));
         for open in &self.open {
             self.table[usize::from(open.key)].rank = u16::MAX;
         }
-        self.open.retain(|open| open.gain >= colors.rate * (open.bytes - 0.2 * pen_len(open.key)));
+        let pays = |open: &OpenPair| open.gain >= colors.rate * (open.bytes - 0.2 * pen_len(open.key));
+        self.open.retain(|open| open.has_vacated || pays(open));
         for (rank, open) in (0..).zip(&self.open) {
             self.table[usize::from(open.key)].rank = rank;
         }
@@ -291,6 +314,11 @@ fn is_flat(key: u16) -> bool {
 fn glyph_len(key: u16) -> f32 {
     // In UTF-8.
     if is_flat(key) { 1.0 } else { 3.0 }
+}
+
+/// Returns the mean number of bytes of a glyph and the move to its cell.
+fn key_len(key: u16) -> f32 {
+    glyph_len(key) + move_len(key)
 }
 
 /// Returns the mean number of bytes of a move to a cell.
