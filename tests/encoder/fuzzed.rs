@@ -5,9 +5,10 @@ use super::screens::{Clusters, glyph_of};
 use super::watched::Watched;
 use arbitrary::{Result, Unstructured};
 use std::time::Duration;
+use termtrace::internals::capabilities::Shifts;
 use termtrace::internals::encode::Allowance;
 use termtrace::internals::grid::{Attributes, HalfBlocks};
-use termtrace::{Cell, Grid, Ink, Order, Quality, Size, Srgb8};
+use termtrace::{Cell, Glyph, Grid, Ink, Order, Quality, Size, Srgb8};
 
 const GLYPHS: [&str; 9] = ["▄", "▀", " ", "a", "@", "é", "│", "世", "🙂"];
 
@@ -23,6 +24,10 @@ fn tell(bytes: &mut Unstructured<'_>) -> Result<()> {
     let half_blocks = if bytes.arbitrary()? { HalfBlocks::Either } else { HalfBlocks::Lower };
     let mut watched = Watched::new(order, half_blocks, grid.size(), Clusters::None)
         .in_pieces(vec![bytes.int_in_range(1..=64)?, bytes.int_in_range(1..=8)?]);
+    // By the length, so that older inputs keep their meaning.
+    if order == Order::Color && bytes.len() % 2 == 1 {
+        watched = watched.with_shifts(Shifts::Direct);
+    }
     let mut now = Duration::ZERO;
     while !bytes.is_empty() {
         match bytes.int_in_range(0..=15)? {
@@ -43,6 +48,7 @@ fn tell(bytes: &mut Unstructured<'_>) -> Result<()> {
                     now += watched.rest(&grid, last).after;
                 }
             }
+            7 => grid = panned(&grid, bytes.arbitrary()?),
             _ => {
                 let place = bytes.int_in_range(0..=grid.cells().len() - 1)?;
                 put_at(&mut grid, place, &cell(bytes)?);
@@ -51,6 +57,15 @@ fn tell(bytes: &mut Unstructured<'_>) -> Result<()> {
     }
     watched.send(&grid);
     Ok(())
+}
+
+/// Returns the grid with its columns one place further, or its rows.
+fn panned(grid: &Grid, by_rows: bool) -> Grid {
+    // What a wide character covers goes with it.
+    let uncovered = |cell: Cell| if cell.glyph == Glyph::Covered { Cell::BLANK } else { cell };
+    let cells: Vec<Cell> = grid.cells().map(uncovered).collect();
+    let count = if by_rows { usize::from(grid.size().columns) } else { 1 };
+    filled(grid.size(), &[&cells[count..], &cells[..count]].concat())
 }
 
 fn size(bytes: &mut Unstructured<'_>) -> Result<Size> {

@@ -19,6 +19,7 @@ mod program;
 mod scenes;
 mod screens;
 mod sequences;
+mod shifted;
 mod watched;
 mod widgets;
 

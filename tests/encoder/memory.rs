@@ -3,6 +3,7 @@
 use super::scenes::{Kind, Sequence};
 use allocation_counter::measure;
 use std::time::Duration;
+use termtrace::internals::capabilities::Shifts;
 use termtrace::internals::cell::Colors;
 use termtrace::internals::encode::Allowance;
 use termtrace::internals::grid::HalfBlocks;
@@ -20,9 +21,14 @@ fn frames(size: Size, colors: Colors) -> Vec<Grid> {
     (0..10).map(|k| painter.grid(&sequence.frame(k, size))).collect()
 }
 
-fn encoder(order: Order) -> Encoder {
-    Encoder::new().with_order(order).with_half_blocks(HalfBlocks::Either).with_synchronized_output(true)
+fn encoder(order: Order, shifts: Shifts) -> Encoder {
+    let encoder = Encoder::new().with_order(order).with_half_blocks(HalfBlocks::Either);
+    encoder.with_synchronized_output(true).with_shifts(shifts)
 }
+
+/// The orders, without shifts and with those that order by colour may have.
+const WAYS: [(Order, Shifts); 3] =
+    [(Order::Raster, Shifts::Off), (Order::Color, Shifts::Off), (Order::Color, Shifts::Direct)];
 
 /// Encodes the frames from a time on, all but the very first within the limit.
 fn send(encoder: &mut Encoder, frames: &[Grid], start: Duration, max_bytes: Option<usize>, bytes: &mut Vec<u8>) {
@@ -38,10 +44,8 @@ fn send(encoder: &mut Encoder, frames: &[Grid], start: Duration, max_bytes: Opti
 fn frames_allocate_nothing_after_the_first_ones() {
     for (size, _) in SIZES {
         let frames = frames(size, Colors::Truecolor);
-        for (order, max_bytes) in
-            [Order::Raster, Order::Color].into_iter().flat_map(|order| LIMITS.map(|max| (order, max)))
-        {
-            let (mut encoder, mut bytes) = (encoder(order), Vec::new());
+        for ((order, shifts), max_bytes) in WAYS.into_iter().flat_map(|way| LIMITS.map(|max| (way, max))) {
+            let (mut encoder, mut bytes) = (encoder(order, shifts), Vec::new());
             // Several times, so that the lists have had to hold the largest frame at the exchange rates that come up.
             let passes = [0, 1, 2, 3, 4, 5].map(|pass| {
                 let start = Duration::from_secs(pass);
@@ -49,7 +53,7 @@ fn frames_allocate_nothing_after_the_first_ones() {
             });
             assert!(
                 passes[1..].contains(&0),
-                "{size:?}, {order:?}, at most {max_bytes:?} bytes: {passes:?} allocations"
+                "{size:?}, {order:?}, {shifts:?}, at most {max_bytes:?} bytes: {passes:?} allocations"
             );
         }
     }
@@ -63,10 +67,11 @@ fn an_encoder_keeps_little() {
             for max_bytes in LIMITS {
                 let mut bytes = Vec::new();
                 // The thread's working memory is not the encoder's.
-                send(&mut encoder(Order::Color), &frames, Duration::ZERO, max_bytes, &mut bytes);
+                let encoder = || encoder(Order::Color, Shifts::Direct);
+                send(&mut encoder(), &frames, Duration::ZERO, max_bytes, &mut bytes);
                 let mut kept = None;
                 let used = measure(|| {
-                    let mut encoder = encoder(Order::Color);
+                    let mut encoder = encoder();
                     send(&mut encoder, &frames, Duration::ZERO, max_bytes, &mut bytes);
                     kept = Some(Box::new(encoder));
                 });

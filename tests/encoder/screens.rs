@@ -95,6 +95,7 @@ impl Screens {
         // Since the last frame something else may have moved the cursor.
         self.model.cursor = None;
         self.model.last = None;
+        self.model.shifted_row = None;
         if let Some(avt) = &mut self.avt {
             for piece in whole_characters(text, lengths) {
                 avt.feed(piece);
@@ -286,12 +287,13 @@ impl Known for Cell {
     }
 }
 
-/// A strict model of a terminal in raw mode. It knows CUP, CUF, CHA, CR, BS, LF, SGR and
-/// characters.
+/// A strict model of a terminal in raw mode. It knows CUP, CUF, CHA, CR, BS, LF, SGR, ICH, DCH, IL,
+/// DL and characters.
 ///
 /// It panics at anything else: erasing, scrolling, going over an edge, moving from beyond the last column (where
-/// terminals disagree), other control characters, and anything but CUP after a cluster (where terminals disagree, too).
-/// A sequence that the encoder begins to use must be added here.
+/// terminals disagree), other control characters, anything but CUP after a cluster (where terminals disagree, too), and
+/// anything but CUP, or CHA in the same row, after cells or rows are inserted or deleted. What comes in is marked, and
+/// what is pushed over the edge of the screen is lost. A sequence that the encoder begins to use must be added here.
 struct Model {
     size: Size,
     cells: Vec<Cell>,
@@ -301,12 +303,17 @@ struct Model {
     cursor: Option<(u16, u16)>,
     /// The position of the last character. The next one may be part of the same cluster.
     last: Option<(u16, u16)>,
+    /// The row in which cells were just inserted or deleted: the cursor may be anywhere in it.
+    shifted_row: Option<u16>,
 }
+
+/// A mark that no frame has, where cells have come in.
+const COME_IN: char = '\u{fffd}';
 
 impl Model {
     fn new(size: Size) -> Self {
         let cells = vec![Cell { glyph: '?'.into(), ..Cell::BLANK }; size.cell_count()];
-        Self { size, cells, pen: Cell::BLANK, cursor: None, last: None }
+        Self { size, cells, pen: Cell::BLANK, cursor: None, last: None, shifted_row: None }
     }
 
     fn index(&self, column: u16, row: u16) -> usize {
@@ -335,6 +342,43 @@ impl Model {
         assert!(column < self.size.columns && row < self.size.rows, "({column}, {row}) is not on the screen");
         self.cursor = Some((column, row));
         self.last = None;
+        self.shifted_row = None;
+    }
+
+    /// Inserts cells at the start of a range, whose end is an edge of the screen, or deletes them
+    /// there.
+    fn shift(&mut self, cells: std::ops::Range<usize>, count: usize, is_inserted: bool) {
+        assert!(count <= cells.len(), "{count} of {} cells", cells.len());
+        let come_in = Cell { glyph: COME_IN.into(), ..Cell::BLANK };
+        let cells = &mut self.cells[cells];
+        if is_inserted {
+            cells.rotate_right(count);
+            cells[..count].fill(come_in);
+        } else {
+            cells.rotate_left(count);
+            let kept = cells.len() - count;
+            cells[kept..].fill(come_in);
+        }
+        self.last = None;
+    }
+
+    /// Inserts or deletes cells at the cursor.
+    fn shift_columns(&mut self, count: u16, is_inserted: bool) {
+        let (column, row) = self.cursor();
+        let (start, end) = (self.index(column, row), self.index(0, row + 1));
+        let is_split = |at: usize| at < end && self.cells[at].glyph == Glyph::Covered;
+        assert!(!is_split(start) && (is_inserted || !is_split(start + usize::from(count))), "a wide character is cut");
+        self.shift(start..end, count.into(), is_inserted);
+        self.cursor = None;
+        self.shifted_row = Some(row);
+    }
+
+    /// Inserts or deletes rows at the cursor.
+    fn shift_rows(&mut self, count: u16, is_inserted: bool) {
+        let (_, row) = self.cursor();
+        let cells_of_rows = usize::from(count) * usize::from(self.size.columns);
+        self.shift(self.index(0, row)..self.cells.len(), cells_of_rows, is_inserted);
+        self.cursor = None;
     }
 
     /// Returns the cluster that a character continues, with its position, if it continues one.
@@ -442,8 +486,10 @@ impl vte::Perform for Model {
                 let (column, row) = self.cursor();
                 self.place(column + columns.max(1), row);
             }
+            ('@' | 'P', &[count]) => self.shift_columns(count.max(1), action == '@'),
+            ('L' | 'M', &[count]) => self.shift_rows(count.max(1), action == 'L'),
             ('G', &[number]) => {
-                let (_, row) = self.cursor();
+                let row = self.shifted_row.unwrap_or_else(|| self.cursor().1);
                 self.place(number.max(1) - 1, row);
             }
             other => panic!("not of the safe core: {other:?}"),
