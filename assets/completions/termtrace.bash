@@ -50,6 +50,7 @@ _termtrace() {
         --max-rate) return ;;
         --mesh-up) _termtrace_words "y z x -y -z -x"; return ;;
         --move-speed) return ;;
+        --moves) _termtrace_words "auto off"; return ;;
         --order) _termtrace_words "color raster"; return ;;
         --path) _termtrace_words "orbit"; _termtrace_files; return ;;
         --pixel) return ;;
@@ -73,8 +74,8 @@ _termtrace() {
     esac
     case $command in
         scenes) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
-        tour) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --background --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order -h --help --compressed-link --quiet"; else :; fi ;;
-        new) if [[ $cur == -* ]]; then _termtrace_words "--formula --color --glyphs --background --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order -h --help --compressed-link --quiet"; else _termtrace_files; :; fi ;;
+        tour) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --background --cell-aspect --map --samples --quality --max-rate --moves --fps --move-speed --turn-speed --reduced-motion --hint --order -h --help --compressed-link --quiet"; else :; fi ;;
+        new) if [[ $cur == -* ]]; then _termtrace_words "--formula --color --glyphs --background --cell-aspect --map --samples --quality --max-rate --moves --fps --move-speed --turn-speed --reduced-motion --hint --order -h --help --compressed-link --quiet"; else _termtrace_files; :; fi ;;
         frame) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --time --size --pixels --cell-aspect --samples --scale --map --color --glyphs --background --format -o --output --check -h --help --strict --lecture --bless"; else _termtrace_words "three_spheres many_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle inside_sphere train temple dice heart tanglecube barth gyroid bare two_lights three_lights glass lantern studio misty_columns globe teapots crowd"; _termtrace_scenes; :; fi ;;
         record) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --time --path --seconds --fps --size --pixels --cell-aspect --samples --scale --map --glyphs --order --quality --max-rate -o --output -h --help --strict --lecture --compressed-link"; else _termtrace_words "three_spheres many_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle inside_sphere train temple dice heart tanglecube barth gyroid bare two_lights three_lights glass lantern studio misty_columns globe teapots crowd"; _termtrace_scenes; :; fi ;;
         explain) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --time --pixel --size --pixels --cell-aspect -h --help --strict --lecture --json"; else _termtrace_words "three_spheres many_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle inside_sphere train temple dice heart tanglecube barth gyroid bare two_lights three_lights glass lantern studio misty_columns globe teapots crowd"; _termtrace_scenes; :; fi ;;
@@ -84,12 +85,12 @@ _termtrace() {
         bench) if [[ $cur == -* ]]; then _termtrace_words "--scene --pixels --samples --threads --kernel --algorithm --rounds -h --help --no-shadow --json"; else _termtrace_words "three_spheres many_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle inside_sphere train temple dice heart tanglecube barth gyroid bare two_lights three_lights glass lantern studio misty_columns globe teapots crowd"; _termtrace_scenes; :; fi ;;
         serve) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
         doctor) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --background --cell-aspect -h --help --no-config --json"; else :; fi ;;
-        config) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --background --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint -h --help --no-config --keys --json"; else :; fi ;;
+        config) if [[ $cur == -* ]]; then _termtrace_words "--color --glyphs --background --cell-aspect --map --samples --quality --max-rate --moves --fps --move-speed --turn-speed --reduced-motion --hint -h --help --no-config --keys --json"; else :; fi ;;
         completions) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "bash elvish fish powershell zsh"; :; fi ;;
         man) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes tour new frame record explain reference check describe bench serve doctor config completions man help version"; :; fi ;;
         help) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else _termtrace_words "scenes tour new frame record explain reference check describe bench serve doctor config completions man help version"; :; fi ;;
         version) if [[ $cur == -* ]]; then _termtrace_words "-h --help"; else :; fi ;;
-        *) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --color --glyphs --background --cell-aspect --map --samples --quality --max-rate --fps --move-speed --turn-speed --reduced-motion --hint --order --strict --lecture --compressed-link --quiet --no-config -h --help -V --version"; else _termtrace_words "three_spheres many_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle inside_sphere train temple dice heart tanglecube barth gyroid bare two_lights three_lights glass lantern studio misty_columns globe teapots crowd"; _termtrace_scenes; :; fi
+        *) if [[ $cur == -* ]]; then _termtrace_words "--eye --target --up --fov --shift --tilt --mesh-up --as --threads --color --glyphs --background --cell-aspect --map --samples --quality --max-rate --moves --fps --move-speed --turn-speed --reduced-motion --hint --order --strict --lecture --compressed-link --quiet --no-config -h --help -V --version"; else _termtrace_words "three_spheres many_spheres corridor near_fov far_fov tilted_up off_centre tilted_rectangle inside_sphere train temple dice heart tanglecube barth gyroid bare two_lights three_lights glass lantern studio misty_columns globe teapots crowd"; _termtrace_scenes; :; fi
             ((COMP_CWORD > 1)) || _termtrace_words "scenes tour new frame record explain reference check describe bench serve doctor config completions man help version" ;;
     esac
 }

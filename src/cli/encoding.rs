@@ -49,6 +49,15 @@ enum OrderArg {
     Raster,
 }
 
+/// Values of `--moves`.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum MovesArg {
+    /// Where the terminal is known to move cells, and shows each frame at once
+    Auto,
+    /// Never: each changed cell is sent
+    Off,
+}
+
 /// Values of `--quality`. A still picture is exact within a second, and text always is.
 #[derive(Clone, Copy, ValueEnum)]
 enum QualityArg {

@@ -85,6 +85,7 @@ impl ViewArgs {
     /// this command line's flags.
     fn options(&self, settings: &SettingArgs, keymap: Keymap, opening: Opening) -> Options {
         let mut options = Options::new(settings.terminal.detection_hints());
+        options.hints.refuses_shifts = settings.refuses_moves();
         options.order = self.order.cell_order();
         options.quality = settings.loss.given_quality();
         options.max_rate = settings.loss.given_max_rate();

@@ -11,7 +11,7 @@ pub(super) mod keys;
 mod values;
 
 use super::cells::CellArgs;
-use super::encoding::LossArgs;
+use super::encoding::{LossArgs, MovesArg};
 use super::map::MapArgs;
 use super::outcome::{CommandResult, Failure, usage};
 use super::picture::{parse_cell_aspect, parse_samples};
@@ -73,6 +73,9 @@ pub(super) struct SettingArgs {
     pub(super) samples: Option<Sampling>,
     #[command(flatten)]
     pub(super) loss: LossArgs,
+    #[arg(long, value_name = "MOVES", help_heading = "Link", hide_short_help = true)]
+    #[arg(help = defaults::help("moves", "Whether the terminal moves cells that it shows on a slow link"))]
+    moves: Option<MovesArg>,
     #[arg(long, value_name = "N", value_parser = parse_fps, hide_short_help = true)]
     #[arg(help = defaults::help("fps", "Frame-rate cap in frames per second"))]
     pub(super) fps: Option<f32>,
@@ -102,6 +105,11 @@ impl SettingArgs {
 
     pub(super) fn key_speed(&self) -> KeySpeed {
         KeySpeed { moving: self.move_speed.unwrap_or(1.0), turning: self.turn_speed.unwrap_or(1.0) }
+    }
+
+    /// Returns whether the terminal must never move cells that it shows.
+    pub(super) fn refuses_moves(&self) -> bool {
+        self.moves == Some(MovesArg::Off)
     }
 
     pub(super) fn reduced_motion(&self) -> bool {

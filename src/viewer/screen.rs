@@ -414,7 +414,10 @@ fn painter(capabilities: &Capabilities) -> Painter {
 
 fn encoder(encoder: Encoder, capabilities: &Capabilities) -> Encoder {
     let has_colors = capabilities.cell_mode.colors != Colors::None;
-    encoder.with_colors(has_colors).with_synchronized_output(capabilities.synchronized_output)
+    encoder
+        .with_colors(has_colors)
+        .with_synchronized_output(capabilities.synchronized_output)
+        .with_shifts(capabilities.shifts)
 }
 
 /// A running mean of the frames shown per second while the view is moving.

@@ -2,13 +2,14 @@
 
 /// Each setting and its default as text for the help. It is text because some defaults depend on
 /// the terminal.
-const DEFAULTS: [(&str, &str); 13] = [
+const DEFAULTS: [(&str, &str); 14] = [
     ("color", "auto"),
     ("glyphs", "auto"),
     ("background", "auto: as the terminal reports, or dark"),
     ("map", "shaded"),
     ("quality", "exact; in casts, and live on a slow link, equal"),
     ("max_rate", "the measured rate of the link"),
+    ("moves", "auto"),
     ("cell_aspect", "as detected, or 2"),
     ("samples", "as many as the time allows; best at rest"),
     ("fps", "60"),
