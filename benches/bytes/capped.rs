@@ -6,18 +6,31 @@ use crate::motions::Motion;
 use crate::seen::{Screen, psnr};
 use crate::send::{Lossy, cpu_time};
 use std::time::Duration;
+use termtrace::internals::capabilities::Shifts;
 use termtrace::{Picture, Quality, Size, Srgb8};
 
 /// The ways to send, each with the PSNR and SSIM, or the bytes, that are wanted at either size.
-const ROWS: [Row; 8] = [
+const ROWS: [Row; 16] = [
     Row { quality: Quality::Exact, ..Row::within(30, usize::MAX) },
+    Row {
+        quality: Quality::Exact,
+        wanted: [Wanted::Bytes(41_500.0), Wanted::Bytes(170_000.0)],
+        ..Row::shifted(15, usize::MAX)
+    },
     Row::within(30, usize::MAX),
-    Row { wanted: [(31.5, 0.98), (0.0, 0.0)], ..Row::within(30, 1_000) },
-    Row { wanted: [(34.0, 0.99), (30.7, 0.95)], ..Row::within(30, 1_667) },
+    Row { wanted: [Wanted::Bytes(15_000.0), Wanted::Bytes(60_000.0)], ..Row::shifted(15, usize::MAX) },
+    Row::within(30, 1_000),
+    Row { wanted: [Wanted::Near(31.5, 0.98), Wanted::Nothing], ..Row::shifted(30, 1_000) },
+    Row::within(30, 1_667),
+    Row { wanted: [Wanted::Near(34.0, 0.99), Wanted::Near(30.7, 0.95)], ..Row::shifted(30, 1_667) },
     Row::within(30, 3_333),
+    Row::shifted(30, 3_333),
     Row::within(15, 1_667),
-    Row { wanted: [(36.0, 0.0), (31.0, 0.0)], ..Row::within(15, 3_333) },
-    Row { wanted: [(40.5, 0.0), (35.7, 0.0)], ..Row::within(15, 8_000) },
+    Row::shifted(15, 1_667),
+    Row { wanted: [Wanted::Near(32.7, 0.0), Wanted::Near(26.5, 0.0)], ..Row::within(15, 3_333) },
+    Row { wanted: [Wanted::Near(36.0, 0.0), Wanted::Near(31.0, 0.0)], ..Row::shifted(15, 3_333) },
+    Row::within(15, 8_000),
+    Row { wanted: [Wanted::Near(40.5, 0.0), Wanted::Near(35.7, 0.0)], ..Row::shifted(15, 8_000) },
 ];
 
 struct Row {
@@ -25,20 +38,37 @@ struct Row {
     quality: Quality,
     /// The limit, or `usize::MAX`.
     max_bytes: usize,
-    wanted: [(f64, f64); 2],
+    shifts: Shifts,
+    wanted: [Wanted; 2],
+}
+
+/// A demand on the mean of four motions.
+#[derive(Clone, Copy)]
+enum Wanted {
+    Nothing,
+    /// At least this PSNR and SSIM.
+    Near(f64, f64),
+    /// At most this number of bytes.
+    Bytes(f64),
 }
 
 impl Row {
     const fn within(rate: usize, max_bytes: usize) -> Self {
-        Self { rate, quality: Quality::Equal, max_bytes, wanted: [(0.0, 0.0); 2] }
+        Self { rate, quality: Quality::Equal, max_bytes, shifts: Shifts::Off, wanted: [Wanted::Nothing; 2] }
+    }
+
+    const fn shifted(rate: usize, max_bytes: usize) -> Self {
+        Self { shifts: Shifts::Direct, ..Self::within(rate, max_bytes) }
     }
 
     fn name(&self) -> String {
-        match (self.max_bytes, self.quality) {
-            (usize::MAX, Quality::Exact) => format!("{}/s, exact", self.rate),
-            (usize::MAX, _) => format!("{}/s, equal", self.rate),
-            (max_bytes, _) => format!("{}/s, {max_bytes} B", self.rate),
-        }
+        let limit = match (self.max_bytes, self.quality) {
+            (usize::MAX, Quality::Exact) => "exact".to_owned(),
+            (usize::MAX, _) => "equal".to_owned(),
+            (max_bytes, _) => format!("{max_bytes} B"),
+        };
+        let shifts = if self.shifts == Shifts::Off { "" } else { ", moves" };
+        format!("{}/s, {limit}{shifts}", self.rate)
     }
 }
 
@@ -87,8 +117,11 @@ pub(crate) fn print(size: Size, frames: usize, rounds: usize, seeds: &[u64]) {
     for limit in &ROWS {
         let all: Vec<Judged> = pictures.iter().map(|frames| judged(frames, limit, rounds)).collect();
         let mean = Judged::mean(&all[..Motion::ALL.len()]);
-        let (psnr, ssim) = limit.wanted[usize::from(size != crate::SIZES[0])];
-        let wanted = if psnr > 0.0 { format!(" ({psnr:.1}, {ssim:.2})") } else { String::new() };
+        let wanted = match limit.wanted[usize::from(size != crate::SIZES[0])] {
+            Wanted::Nothing => String::new(),
+            Wanted::Near(psnr, ssim) => format!(" ({psnr:.1}, {ssim:.2})"),
+            Wanted::Bytes(bytes) => format!(" (at most {bytes} B)"),
+        };
         let cells: Vec<String> = all.iter().map(shown).collect();
         let worst = all[..Motion::ALL.len()].iter().map(|judged| judged.psnr).fold(f64::INFINITY, f64::min);
         println!("| {} | {}{wanted} | {worst:.1} | {} |", limit.name(), shown(&mean), cells.join(" | "));
@@ -105,7 +138,7 @@ fn judged(pictures: &[Picture], limit: &Row, rounds: usize) -> Judged {
     let (mut all, mut least) = (Vec::new(), f64::INFINITY);
     for _ in 0..rounds {
         all.clear();
-        let mut lossy = Lossy::new(limit.quality);
+        let mut lossy = Lossy::new(limit.quality).with_shifts(limit.shifts);
         let mut screen = Screen::new(&pictures[0]);
         for (k, picture) in pictures.iter().enumerate().step_by(every) {
             let start = cpu_time();

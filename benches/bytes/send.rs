@@ -10,6 +10,7 @@ use std::cell::RefCell;
 use std::io::{self, Write};
 use std::rc::Rc;
 use std::time::Duration;
+use termtrace::internals::capabilities::Shifts;
 use termtrace::internals::cell::grid_from_picture;
 use termtrace::internals::encode::Allowance;
 use termtrace::internals::grid::HalfBlocks;
@@ -66,6 +67,11 @@ pub(crate) struct Lossy {
 impl Lossy {
     pub(crate) fn new(quality: Quality) -> Self {
         Self { quality, encoder: encoder(Order::Color), bytes: Vec::new() }
+    }
+
+    /// Lets the terminal shift what it shows.
+    pub(crate) fn with_shifts(self, shifts: Shifts) -> Self {
+        Self { encoder: self.encoder.with_shifts(shifts), ..self }
     }
 
     /// The bytes for that picture at that time.
