@@ -15,6 +15,8 @@ use crate::camera::Camera;
 use crate::capabilities::Capabilities;
 use crate::control::{Command, Keymap};
 use crate::framebuffer::Resolution;
+#[cfg(feature = "serve")]
+use crate::grid::Grid;
 use crate::grid::{Size, Window};
 use crate::memory::OutOfMemory;
 use crate::mesh_file::UpAxis;
@@ -666,12 +668,12 @@ impl Viewer {
         Some((scene, camera, self.layout.maps().next().unwrap_or_default()))
     }
 
-    /// Frees the memory that is only needed while frames are drawn.
+    /// Swaps the grid that frames are drawn in for another one.
     ///
-    /// Most viewers of a server are at rest.
+    /// Viewers of a server whose turns are on one thread share a grid.
     #[cfg(feature = "serve")]
-    pub(crate) fn free_buffers(&mut self) {
-        self.screen.free_buffers();
+    pub(crate) fn swap_grid(&mut self, grid: &mut Grid) {
+        self.screen.swap_grid(grid);
     }
 
     /// Moves the eye to a camera at once.

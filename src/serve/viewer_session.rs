@@ -9,7 +9,7 @@ use super::guide::Guide;
 use super::leave_reason::LeaveReason;
 use super::run_queue::{AfterTurn, SessionId, WorkKind};
 use super::tour::{AudienceClass, Tour};
-use crate::grid::Window;
+use crate::grid::{Grid, Window};
 use crate::memory::OutOfMemory;
 use crate::protocol::{FENCE, TerminalMode, TerminalModes};
 use crate::viewer::{DriverState, Frame, Job, Options, Request, Viewer, ViewerStep};
@@ -24,8 +24,6 @@ use std::time::Duration;
 const COUNTDOWN: Duration = Duration::from_secs(30);
 /// The longest time that a leaving viewer waits for the terminal's last replies.
 const LAST_REPLIES: Duration = Duration::from_secs(1);
-/// The shortest expected wait for the next step for which a viewer's buffers are freed.
-const LONG_REST: Duration = Duration::from_secs(1);
 /// The largest number of steps of the viewer in one turn, such as tracing a frame and drawing it.
 // Most turns have two steps, a trace and a draw. The limit ends the turn of a viewer that never waits.
 const MAX_STEPS: usize = 8;
@@ -323,9 +321,6 @@ impl ViewerSession {
             let now = clock();
             match self.viewer.next_step(DriverState { sending, tracing: None }, now) {
                 ViewerStep::Wait(until) => {
-                    if !sending && until.is_none_or(|at| at > now + LONG_REST) {
-                        self.viewer.free_buffers();
-                    }
                     return AfterTurn::Sleep(until);
                 }
                 ViewerStep::CancelRefinement => {}
@@ -419,6 +414,11 @@ impl ViewerSession {
             out.extend_from_slice(format!("\x1b]52;c;{encoded}\x1b\\").as_bytes());
         }
         ControlFlow::Continue(())
+    }
+
+    /// Swaps the grid that frames are drawn in for another one.
+    pub(super) fn swap_grid(&mut self, grid: &mut Grid) {
+        self.viewer.swap_grid(grid);
     }
 
     /// Returns the number of frames drawn since the last call.

@@ -16,6 +16,7 @@ use super::session_buffers::{ScreenSource, SessionBuffers};
 use super::tour::{AudienceClass, AudienceLimits, Tour};
 use super::viewer_session::{AudienceChange, Company, PendingInput, ViewerSession};
 use crate::app::Tracer;
+use crate::grid::{Grid, Size};
 use crate::progress::Cancellation;
 use crate::viewer::{FIRST_FRAME_MOTION, Frame, Job};
 use std::collections::HashMap;
@@ -66,6 +67,20 @@ struct Load {
     pending: usize,
     /// Those that drew a frame lately.
     drawing: usize,
+}
+
+/// The memory that the turns on one thread share.
+struct Scratch {
+    tracer: Tracer,
+    /// The cells of the frame that is drawn.
+    // Each moving viewer would need 30 kB of 160 for a grid of their own.
+    grid: Grid,
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self { tracer: Tracer::default(), grid: Grid::new(Size::new(0, 0)) }
+    }
 }
 
 #[derive(Default)]
@@ -248,12 +263,12 @@ impl WorkerPool {
         let _ = rustix::process::nice(WORKER_NICENESS);
         // Makes this thread a rayon pool. Without it, each `rayon::join` would run on the global pool.
         let rayon_pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
-        let mut tracer = Tracer::default();
+        let mut scratch = Scratch::default();
         while let Some((id, owner, load, token)) = self.next_turn() {
             // CPU time, because on a busy machine the elapsed time would charge a session for the turns of others.
             let started = cpu_time();
             let mut turn = || match &owner {
-                TurnOwner::Session(pooled) => self.take_turn(pooled, load, &token, &mut tracer),
+                TurnOwner::Session(pooled) => self.take_turn(pooled, load, &token, &mut scratch),
                 TurnOwner::Audience(pooled) => self.draw_for(pooled, load, &token),
             };
             let turned = catch_unwind(AssertUnwindSafe(|| match &rayon_pool {
@@ -261,9 +276,9 @@ impl WorkerPool {
                 Err(_) => turn(),
             }));
             let next = turned.unwrap_or_else(|_| {
-                // The panic hook has already printed the message. The tracer is replaced, because the panic may have
-                // left it in an invalid state.
-                tracer = Tracer::default();
+                // The panic hook has already printed the message. The panic may have left the tracer in an invalid
+                // state.
+                scratch = Scratch::default();
                 self.metrics.panics.add(1);
                 match &owner {
                     // Only this viewer ends, with a clean terminal.
@@ -331,7 +346,7 @@ impl WorkerPool {
         }
     }
 
-    fn take_turn(&self, pooled: &PooledSession, load: Load, token: &Cancellation, tracer: &mut Tracer) -> AfterTurn {
+    fn take_turn(&self, pooled: &PooledSession, load: Load, token: &Cancellation, scratch: &mut Scratch) -> AfterTurn {
         let buffers = &pooled.buffers;
         if buffers.is_hung_up() {
             return AfterTurn::End;
@@ -345,7 +360,7 @@ impl WorkerPool {
         let mut trace = |job: &Job, may_interrupt: bool| -> Option<Frame> {
             let token = if may_interrupt { token } else { &never };
             let before = cpu_time();
-            let mut frame = self.picture(job, token, tracer)?;
+            let mut frame = self.picture(job, token, &mut scratch.tracer)?;
             let trace = cpu_time().saturating_sub(before);
             traced += trace;
             // Between two frames of a viewer, all others who draw get as much time. The time is that of whole frames:
@@ -364,7 +379,9 @@ impl WorkerPool {
         let kind = if load.pending <= self.threads { WorkKind::Refinement } else { WorkKind::Picture };
         let company = Company { roster: &self.roster, id: pooled.id };
         let state = (buffers.is_sending(), kind);
+        session.swap_grid(&mut scratch.grid);
         let next = session.take_turn((&input, &company), state, &|| self.now(), &mut trace, &mut out);
+        session.swap_grid(&mut scratch.grid);
         let drawn = session.take_drawn();
         self.metrics.frames.add(drawn);
         if drawn > 0 {

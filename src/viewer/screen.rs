@@ -153,10 +153,10 @@ impl Screen {
         self.content.wipe
     }
 
-    /// Frees the memory that is only needed while a frame is drawn.
+    /// Swaps the grid that frames are drawn in, whose cells are of no further use, for another one.
     #[cfg(feature = "serve")]
-    pub(super) fn free_buffers(&mut self) {
-        self.grid = Grid::new(Size::new(0, 0));
+    pub(super) fn swap_grid(&mut self, grid: &mut Grid) {
+        std::mem::swap(&mut self.grid, grid);
     }
 
     /// Forgets the last frame. Until the next one nothing is drawn.
