@@ -199,11 +199,12 @@ impl Encoder {
         Self { synchronized, ..self }
     }
 
-    /// Sets whether the terminal shifts what it shows, where that takes fewer bytes than writing it
-    /// again.
+    /// Sets whether and how the terminal shifts shown cells, where that takes fewer bytes than
+    /// writing them.
     ///
     /// The grids must be as large as the terminal's window, which has to execute ICH, DCH, IL and DL, and synchronized
-    /// output, without which half-shifted screens would be visible. Only [`Order::Color`] uses shifts.
+    /// output, without which half-shifted screens would be visible. No scrolling region and no horizontal margins may
+    /// be set. Only [`Order::Color`] uses shifts.
     #[doc(hidden)]
     pub fn with_shifts(self, shifts: Shifts) -> Self {
         Self { shifts, ..self }

@@ -40,7 +40,7 @@ impl ShiftTerms {
     pub(super) const EXACT: Self = Self { limit: 1, bytes_per_cell: 20, max_bytes: usize::MAX };
 
     /// The terms of frames that look equal.
-    // The error of a cell whose channels are all off by two.
+    // Just above the error of a cell whose six channels are all off by two: 24.
     pub(super) const EQUAL: Self = Self { limit: 25, bytes_per_cell: 7, max_bytes: usize::MAX };
 
     /// Returns the terms at an exchange rate: the squared error that each byte has to remove.
@@ -267,7 +267,7 @@ fn farthest(columns: usize) -> usize {
     (columns / 10).clamp(1, 16)
 }
 
-/// Returns the maximal ranges of places that are all good.
+/// Returns the maximal ranges of consecutive places that satisfy `is_good`.
 fn segments(places: Range<usize>, mut is_good: impl FnMut(usize) -> bool) -> impl Iterator<Item = Range<usize>> {
     let Range { start: mut next, end } = places;
     std::iter::from_fn(move || {

@@ -24,7 +24,7 @@ fn tell(bytes: &mut Unstructured<'_>) -> Result<()> {
     let half_blocks = if bytes.arbitrary()? { HalfBlocks::Either } else { HalfBlocks::Lower };
     let mut watched = Watched::new(order, half_blocks, grid.size(), Clusters::None)
         .in_pieces(vec![bytes.int_in_range(1..=64)?, bytes.int_in_range(1..=8)?]);
-    // By the length, so that older inputs keep their meaning.
+    // By the length, which takes no bytes from the input.
     if order == Order::Color && bytes.len() % 2 == 1 {
         watched = watched.with_shifts(Shifts::Direct);
     }

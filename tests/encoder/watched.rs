@@ -127,6 +127,13 @@ impl Watched {
         bytes.len()
     }
 
+    /// Returns the sum of the squared differences of all halves on the screen from those wanted.
+    pub(crate) fn error(&self, wanted: &Grid) -> u64 {
+        let seen = assert_text_is_exact(&self.screens, wanted);
+        let all = (0..wanted.size().cell_count()).filter_map(|at| Some((halves(seen.at(at))?, halves(wanted.at(at))?)));
+        all.map(|(seen, wanted)| u64::from(square(seen[0], wanted[0]) + square(seen[1], wanted[1]))).sum()
+    }
+
     /// Asserts that the encoder believes what the terminals show: to show it exactly takes no
     /// bytes.
     #[track_caller]

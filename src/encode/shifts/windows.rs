@@ -25,7 +25,7 @@ impl Window {
 
 /// The places of a row or column, and their errors if nothing is shifted.
 pub(super) struct Places<'a> {
-    /// The sums of the errors before each place, and at last that of all. Differences count.
+    /// Prefix sums of the errors: the error of a place is the difference of two neighbouring sums.
     pub(super) sums: &'a [i64],
     /// The greatest error of a place, which a vacated one has.
     pub(super) most: i64,

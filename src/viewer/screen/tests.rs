@@ -11,7 +11,7 @@ use std::num::NonZeroU32;
 /// Cells are sent in order of colour while the link is slow, otherwise in raster order, unless the
 /// user chose one.
 #[test]
-fn the_order_is_the_links() {
+fn the_order_is_the_links_and_shifts_have_no_margins() {
     let text = include_str!("../../../scenes/three_spheres.ron");
     let scene = Scene::from_ron("three_spheres.ron", text).expect("the scene is fine");
     let capabilities = Capabilities {
@@ -67,4 +67,17 @@ fn the_order_is_the_links() {
         screen.draw(size, &Keymap::default(), link, Duration::ZERO, &mut bytes);
         assert!(bytes == wanted, "{asked:?} {link:?}");
     }
+    // Margins, which limit shifts, are reset once, and again where another program may have written.
+    let shifting = Capabilities { shifts: Shifts::Direct, ..capabilities };
+    let mut screen = Screen::new(&shifting, None, exact);
+    screen.take_frame(frame(), None);
+    for (link, resets) in [(None, false), (slow, true), (slow, false)] {
+        let mut bytes = Vec::new();
+        screen.draw(size, &Keymap::default(), link, Duration::ZERO, &mut bytes);
+        assert_eq!(bytes.starts_with(RESET_MARGINS), resets, "{link:?}");
+    }
+    screen.forget_shown(HalfBlocks::Lower, false);
+    let mut bytes = Vec::new();
+    screen.draw(size, &Keymap::default(), slow, Duration::ZERO, &mut bytes);
+    assert!(bytes.starts_with(RESET_MARGINS));
 }
