@@ -47,9 +47,7 @@ impl Capabilities {
     pub(crate) fn without_shifts(self) -> Self {
         Self { shifts: Shifts::Off, ..self }
     }
-}
 
-impl Capabilities {
     /// Returns the capabilities for a picture at rest, which has finer glyphs if there are any.
     #[cfg(feature = "live")]
     pub(crate) fn at_rest(self) -> Self {

@@ -528,14 +528,17 @@ impl Viewer {
         let Some((scene, shot)) = self.scene_at_current_time().zip(self.current_shot()) else {
             return ViewerStep::Wait(None);
         };
+        if self.rest.is_on() {
+            // The picture in half blocks stays on the screen until this one is traced, which is final at once, and is
+            // cancelled if the view changes. It measures nothing, since a cancelled frame sends nothing.
+            self.pacing.begin_resting_frame(shot, self.now);
+            let sampling = self.layout.sampling(self.options.sampling.unwrap_or(Sampling::BEST));
+            return ViewerStep::Trace(Vec::new(), Job { scene, shot, sampling, refines: true });
+        }
         let probe = self.pacing.probe(self.now);
         self.receiver.sent(&probe, self.now);
         let sampling = self.pacing.begin_frame(shot, self.is_picture_moving(), self.now);
-        // A picture in finer glyphs is final at once, and cancelled if the view changes: the one in half blocks stays
-        // on the screen meanwhile.
-        let refines = self.rest.is_on();
-        let sampling = if refines { self.options.sampling.unwrap_or(Sampling::BEST) } else { sampling };
-        ViewerStep::Trace(probe, Job { scene, shot, sampling: self.layout.sampling(sampling), refines })
+        ViewerStep::Trace(probe, Job { scene, shot, sampling: self.layout.sampling(sampling), refines: false })
     }
 
     /// Returns the step that traces the next refinement of the last frame.
@@ -697,7 +700,7 @@ impl Viewer {
         self.display.window_size()
     }
 
-    /// Returns the capabilities for which the shown frame was traced.
+    /// Returns the capabilities with which the screen is drawn.
     pub(crate) fn capabilities(&self) -> &Capabilities {
         self.screen.capabilities()
     }
@@ -714,6 +717,13 @@ impl Viewer {
 
     fn resolution(&self) -> Resolution {
         self.display.resolution()
+    }
+
+    /// Returns the size in pixels of the shown picture.
+    ///
+    /// It differs from that of the next one while the glyphs change.
+    fn shown_resolution(&self) -> Resolution {
+        self.screen.frame().map_or_else(|| self.resolution(), Frame::resolution)
     }
 
     pub(crate) fn picture_size(&self) -> Size {

@@ -78,10 +78,10 @@ impl Hints {
         self.with_clues(None, locale)
     }
 
-    /// Sets the user's choice of glyphs.
+    /// Sets the user's choice of glyphs, and returns the choice before.
     #[cfg(feature = "live")]
-    pub(crate) fn choose_glyphs(&mut self, glyphs: Glyphs) {
-        self.glyphs = Some(glyphs);
+    pub(crate) fn choose_glyphs(&mut self, choice: GlyphChoice) -> GlyphChoice {
+        std::mem::replace(&mut self.glyphs, choice)
     }
 
     /// Returns whether the locale can encode the glyphs; without a locale, UTF-8 is assumed.

@@ -1,6 +1,6 @@
 //! Terminals that are known to support truecolor, to show parts of blocks well, or to shift cells.
 //!
-//! They are known by the replies that identify them.
+//! They are recognized by the replies that identify them.
 //!
 //! Over ssh only `TERM` is passed on, whose value most terminals share. Not listed are: tmux and GNU screen, which
 //! reply themselves, and whose configuration decides whether 24-bit colours reach the terminal; xterm, which replies to

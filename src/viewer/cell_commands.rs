@@ -13,10 +13,10 @@ impl Viewer {
         // The shown kind itself comes last, so that it stays if the terminal can encode no other.
         let mut others = Glyphs::ALL.iter().cycle().skip(at + 1).take(Glyphs::ALL.len());
         let Some(&next) = others.find(|glyphs| self.options.hints.can_encode(**glyphs)) else { return };
-        self.display.choose_glyphs(next);
+        let choice = self.display.choose_glyphs(Some(next));
         // Kinds with more pixels per cell need more memory for a picture.
         if let Err(error) = self.display.check_memory() {
-            self.display.choose_glyphs(shown);
+            self.display.choose_glyphs(choice);
             self.show_note(error.to_string());
             return;
         }

@@ -2,7 +2,7 @@
 //! cells.
 
 use super::extent;
-use crate::capabilities::{Capabilities, Findings, Glyphs, Hints};
+use crate::capabilities::{Capabilities, Findings, GlyphChoice, Hints};
 use crate::cell;
 use crate::framebuffer::Resolution;
 use crate::grid::{Size, Window};
@@ -40,16 +40,18 @@ impl Display {
         &self.queries
     }
 
-    /// Sets the kind of glyphs that the user has chosen.
-    pub(super) fn choose_glyphs(&mut self, glyphs: Glyphs) {
-        self.hints.choose_glyphs(glyphs);
+    /// Sets the user's choice of glyphs, and returns the choice before.
+    pub(super) fn choose_glyphs(&mut self, choice: GlyphChoice) -> GlyphChoice {
+        let before = self.hints.choose_glyphs(choice);
         self.rests = false;
         self.conclude_capabilities();
+        before
     }
 
     /// Sets whether cells have the glyphs of a picture at rest, and returns whether they have.
     ///
-    /// They do not if there are none, if the window is too large for pictures with their pixels, or if memory is short.
+    /// They do not if there are none, if the window is too large for pictures with that many pixels, or if memory is
+    /// short.
     pub(super) fn set_rests(&mut self, rests: bool) -> bool {
         let before = self.picture_size();
         self.rests = rests;

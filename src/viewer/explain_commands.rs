@@ -21,11 +21,12 @@ impl Viewer {
     /// Moves the cursor of the explanation by one pixel, or by several if `faster`.
     pub(super) fn point(&mut self, toward: Toward, faster: bool) {
         let pixels = if faster { SHIFT_CURSOR_PIXELS } else { 1 };
+        let [across, down] = self.pixels_per_step();
         let step = match toward {
-            Toward::Left => [-pixels, 0],
-            Toward::Right => [pixels, 0],
-            Toward::Up => [0, -pixels],
-            Toward::Down => [0, pixels],
+            Toward::Left => [-pixels * across, 0],
+            Toward::Right => [pixels * across, 0],
+            Toward::Up => [0, -pixels * down],
+            Toward::Down => [0, pixels * down],
         };
         self.screen.explain(|panel, frame| panel.move_cursor_by(frame, step));
     }

@@ -56,9 +56,8 @@ pub(crate) struct Job {
     pub(crate) scene: Scene,
     pub(crate) shot: Shot,
     pub(crate) sampling: Sampling,
-    /// Whether to add samples to the last frame, which has the same shot, instead of tracing anew.
-    ///
-    /// Only such a job may be cancelled.
+    /// Whether to add samples to the last frame if it has the same shot. Only such a job may be
+    /// cancelled.
     pub(crate) refines: bool,
 }
 
@@ -81,14 +80,14 @@ pub(crate) struct Frame {
     /// The comparison of image order with object order; `None` for a refinement, and unless
     /// `Shot::orders` is set.
     pub(crate) orders: Option<Arc<Comparison>>,
-    /// Whether this frame has the same shot as the frame before, with more samples.
+    /// Whether this frame shows the view of the frame before, with more samples or finer glyphs.
     pub(crate) refines: bool,
     /// The cost of tracing, without the cost of the frame that this frame refines.
     pub(crate) cost: Cost,
     /// The wall-clock time that tracing took.
     pub(crate) trace: Duration,
-    /// The time by which the next frames' sampling is chosen: that of tracing, or on a busy server
-    /// the time between two frames of this viewer.
+    /// The time from which the sampling of the next frames is chosen: that of tracing or, on a
+    /// server, the expected time between two frames of this viewer.
     pub(crate) interval: Duration,
 }
 

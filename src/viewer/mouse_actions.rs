@@ -127,7 +127,7 @@ impl Viewer {
 
     /// Returns the pixel of the picture at a position in shares of the screen.
     fn pixel_at(&self, at: Vec2) -> [u32; 2] {
-        let resolution = self.resolution();
+        let resolution = self.shown_resolution();
         [(at.x * resolution.width() as f32) as u32, (at.y * resolution.height() as f32) as u32]
     }
 

@@ -140,7 +140,7 @@ impl Viewer {
         if self.screen.get::<ExplainPanel>().is_none() {
             self.screen.toggle_explaining();
         }
-        let resolution = self.resolution();
+        let resolution = self.shown_resolution();
         // A quarter of the whole width is the middle of the left picture.
         let middle = [resolution.width() / 4, resolution.height() / 2];
         self.screen.explain(|panel, frame| panel.move_to(frame, middle));

@@ -15,6 +15,8 @@ pub(super) struct Pacing {
     quality: QualityControl,
     /// The last frame that was begun for a new view, as opposed to a refinement.
     begun: Option<Begun>,
+    /// The last shot that a frame was begun for whose time counts.
+    timed: Option<Shot>,
 }
 
 struct Begun {
@@ -27,7 +29,7 @@ struct Begun {
 impl Pacing {
     pub(super) fn new(options: &Options, may_query: bool) -> Self {
         let link = Link::new(options.max_rate, options.max_frames, may_query);
-        Self { link, quality: QualityControl::new(options.sampling), begun: None }
+        Self { link, quality: QualityControl::new(options.sampling), begun: None, timed: None }
     }
 
     /// Forgets the last frame that was begun, so that another one is begun even of the same shot.
@@ -50,13 +52,19 @@ impl Pacing {
     pub(super) fn begin_frame(&mut self, shot: Shot, in_motion: bool, now: Duration) -> Sampling {
         let before = self.begun.replace(Begun { shot, at: now, in_motion });
         // The quality control compares the times of consecutive frames, which is valid only if their shots cost alike.
-        if before.as_ref().is_some_and(|before| !shot.takes_as_long_as(&before.shot)) {
+        if self.timed.replace(shot).is_some_and(|before| !shot.takes_as_long_as(&before)) {
             self.quality.forget_last();
         }
         // On a slow link a frame begins when a reply arrives, and the link is idle while the frame is traced, so the
         // frame gets few samples. Of a link of 50 KB/s, frames used 81 to 84 % with as many samples as time allows, and
         // 84.5 to 85.2 % with one per pixel.
         self.quality.first_sampling(before.is_some_and(|before| before.in_motion) && !self.link.is_slow())
+    }
+
+    /// Records that the frame of a picture at rest in finer glyphs is begun, whose time does not
+    /// count.
+    pub(super) fn begin_resting_frame(&mut self, shot: Shot, now: Duration) {
+        self.begun = Some(Begun { shot, at: now, in_motion: false });
     }
 
     /// Returns the sampling of the next refinement of a picture with this sampling, or `None` if it

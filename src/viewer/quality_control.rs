@@ -41,8 +41,8 @@ const FRAMES_BEFORE_FINER: u32 = 8;
 /// Greatest number of such frames, after attempts that failed.
 // Each failed attempt doubles the number. With 8 frames always, a fifth of 200 viewers of a busy server alternated
 // between two levels, twice a second, because all attempts together made the frames of all of them late.
-const MAX_FRAMES_BEFORE_FINER: u32 = 512;
-/// Number of frames after which an attempt at a finer level has not failed.
+const MAX_FRAMES_BEFORE_FINER: u32 = 128;
+/// Number of frames without a fall after which an attempt at a finer level counts as successful.
 const FRAMES_OF_SUCCESS: u32 = 64;
 /// Number of late frames in a row before a coarser level is chosen.
 // A single frame may be late because another process had the core. A frame that is very late counts at once.
@@ -110,17 +110,16 @@ impl QualityControl {
         self.last.is_some_and(|last| self.predicted_time(last, MAX_MOTION_LEVEL) <= time.as_secs_f64())
     }
 
-    /// Adapts the sampling level of the next pictures to the time that tracing a picture of a new
-    /// view took.
+    /// Adapts the sampling level of the next pictures to the time of a picture of a new view.
     ///
     /// Of `frame_interval`, the time between two frames, tracing may take [`TRACING_SHARE`].
-    pub(super) fn adapt_level(&mut self, sampling: Sampling, trace_time: Duration, frame_interval: Duration) {
+    pub(super) fn adapt_level(&mut self, sampling: Sampling, time: Duration, frame_interval: Duration) {
         let Some(level) = LEVELS.iter().position(|&level| level == sampling).filter(|&level| level <= MAX_MOTION_LEVEL)
         else {
             return;
         };
         let most = TRACING_SHARE * frame_interval.as_secs_f64();
-        let at_last = (level, trace_time.as_secs_f64());
+        let at_last = (level, time.as_secs_f64());
         self.update_cost_ratio(at_last);
         let finest = |limit: f64| {
             (0..=MAX_MOTION_LEVEL).rev().find(|&level| self.predicted_time(at_last, level) <= limit).unwrap_or(0)
@@ -151,7 +150,8 @@ impl QualityControl {
     /// Forgets the last picture's time, because that of another scene or size is not comparable.
     pub(super) fn forget_last(&mut self) {
         self.last = None;
-        self.frames_before_finer = FRAMES_BEFORE_FINER;
+        (self.frames_with_room, self.late_frames) = (0, 0);
+        (self.frames_before_finer, self.frames_since_rise) = (FRAMES_BEFORE_FINER, FRAMES_OF_SUCCESS);
     }
 
     /// Updates the cost ratio of two neighbouring levels if the last two pictures had these levels.

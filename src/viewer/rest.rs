@@ -1,11 +1,10 @@
 //! Finer glyphs for a picture at rest.
 //!
-//! Half blocks need an eighth of the rays of quadrants and eighths, so that in motion more frames are shown and each
-//! key has its effect sooner. Once the picture rests and is final, it is traced once more for the finer glyphs of a
+//! Half blocks have a sixteenth of the pixels of quadrants and eighths, so that in motion more frames are shown and
+//! each key takes effect sooner. Once the picture rests and is final, it is traced once more for the finer glyphs of a
 //! terminal that is known to show them well.
 
 use super::orders::RenderOrdersPanel;
-use super::outside::OutsideView;
 use super::schedule::PictureState;
 use super::{DriverState, Frame, Shot, Viewer};
 
@@ -67,13 +66,22 @@ impl Viewer {
         }
     }
 
+    /// Returns the pixels of the shown picture, across and down, that are as long as one in motion.
+    pub(super) fn pixels_per_step(&self) -> [i32; 2] {
+        let shown = self.shown_resolution();
+        let ratio = |shown: u32, moving: u32| (shown / moving.max(1)).max(1).cast_signed();
+        self.rest.shot.map_or([1, 1], |Shot { resolution, .. }| {
+            [ratio(shown.width(), resolution.width()), ratio(shown.height(), resolution.height())]
+        })
+    }
+
     fn may_rest(&self, busy: DriverState) -> bool {
         let is_free = self.display.capabilities().resting_glyphs.is_some()
             // On slow links only half blocks are sent with fewer bytes at less quality.
             && !self.pacing.is_link_slow()
             && self.options.max_rate.is_none()
             // The second camera depends on the size of the picture, and would end the rest at once.
-            && self.outside_view == OutsideView::Off
+            && self.second_camera().is_none()
             && self.screen.get::<RenderOrdersPanel>().is_none();
         let is_shown = self.screen.has_shown()
             && !self.screen.is_changed(self.display.picture_size())

@@ -31,7 +31,9 @@ fn frame() -> Frame {
         geometry: false,
     };
     let job = Job { scene, shot, sampling: Sampling::Each(NonZeroU32::MIN), refines: false };
-    Tracer::default().trace_for_any_viewer(&job, &Cancellation::default()).ok().expect("nothing cancels it")
+    Tracer::default()
+        .trace_for_any_viewer(&job, &Cancellation::default())
+        .unwrap_or_else(|_| panic!("nothing cancels it"))
 }
 
 /// Returns the rows of text that a layer draws over a frame.
