@@ -269,7 +269,7 @@ impl WorkerPool {
             let started = cpu_time();
             let mut turn = || match &owner {
                 TurnOwner::Session(pooled) => self.take_turn(pooled, load, &token, &mut scratch),
-                TurnOwner::Audience(pooled) => self.draw_for(pooled, load, &token),
+                TurnOwner::Audience(pooled) => self.draw_for(id, pooled, load, &token),
             };
             let turned = catch_unwind(AssertUnwindSafe(|| match &rayon_pool {
                 Ok(pool) => pool.install(&mut turn),
@@ -360,9 +360,12 @@ impl WorkerPool {
         let mut trace = |job: &Job, may_interrupt: bool| -> Option<Frame> {
             let token = if may_interrupt { token } else { &never };
             let before = cpu_time();
-            let mut frame = self.picture(job, token, &mut scratch.tracer)?;
+            let frame = self.picture(job, token, &mut scratch.tracer);
             let trace = cpu_time().saturating_sub(before);
             traced += trace;
+            let mut frame = frame?;
+            // A picture that was traced for another viewer counts as if it had been traced for this one.
+            let trace = trace.max(frame.trace);
             // Between two frames of a viewer, all others who draw get as much time. The time is that of whole frames:
             // as long as tracing alone counted, some of 200 viewers got 30 coarse frames a second, others 14 fine ones.
             frame.interval = (trace + untraced).mul_f64(share);
@@ -408,6 +411,7 @@ impl WorkerPool {
     /// Draws the next frame of a guide's view for an audience.
     fn draw_for(
         &self,
+        id: SessionId,
         PooledAudience { audience, drawing }: &PooledAudience,
         load: Load,
         token: &Cancellation,
@@ -430,6 +434,9 @@ impl WorkerPool {
         let refine = Some(token).filter(|_| load.pending <= self.threads);
         let (next, has_drawn) = locked(drawing).draw(audience, (view, line), (limits, now), refine);
         self.metrics.tour_drawn.add(has_drawn.into());
+        if has_drawn {
+            locked(&self.state).frames.record(id, self.now());
+        }
         AfterTurn::Sleep(Some(next))
     }
 
