@@ -3,8 +3,8 @@
 //! Of `min(a, b)` only one operand is needed where the other one is certainly larger. Where only its sign is needed, as
 //! that of the whole formula, `a` can also be left out where it is certainly positive: of 64 balls most rays need none.
 //!
-//! Each lane has its own choices, and an operation that some lane needs is kept for all, so that the bits of a lane do
-//! not depend on the other lanes.
+//! Each lane has its own choices. An operation that some lane needs is kept for all, but counts only in the lanes that
+//! need it: so the bits of a lane do not depend on the other lanes.
 
 use super::models::{Models, StoredModels};
 use super::packet::PacketModels;
@@ -24,11 +24,14 @@ struct LaneSigns {
 pub(super) struct ShorterTape {
     operations: Vec<Operation>,
     chosen: Vec<[u8; 2]>,
+    /// For each operation the lanes that need its value.
+    needed_by: Vec<u8>,
     result: Index,
     /// The signs of the operations that combine signs.
     signs: Vec<LaneSigns>,
-    /// For each index the lanes that need its value, then its index in the shorter tape.
+    /// For each index of the tape, the lanes that need its value.
     needed: Vec<u8>,
+    /// The indices in the shorter tape; 0 for a value that no lane needs.
     places: Vec<Index>,
     /// The choices for all operations of the tape.
     choices: Vec<[u8; 2]>,
@@ -37,7 +40,8 @@ pub(super) struct ShorterTape {
 impl ShorterTape {
     /// Returns the steps that are left.
     pub(super) fn steps(&self) -> Steps<'_> {
-        Steps { operations: &self.operations, chosen: &self.chosen, result: self.result }
+        let Self { operations, chosen, needed_by, result, .. } = self;
+        Steps { operations, chosen, needed: needed_by, result: *result }
     }
 
     /// Shortens a tape to what is needed on the pieces of `packet`; returns the lanes in which the
@@ -156,10 +160,13 @@ impl ShorterTape {
 
     /// Makes the shorter tape.
     ///
-    /// Operations that are one of their operands in all lanes get the index of that operand.
+    /// Operations that are one of their operands in all lanes that need them get the index of that operand.
+    // Not if the operand is a constant: models of a sum with a constant have other bounds than those of other sums, so
+    // the pieces of one lane would depend on the choices of the others.
     fn renumber(&mut self, tape: &Tape) {
         self.operations.clear();
         self.chosen.clear();
+        self.needed_by.clear();
         self.places.clear();
         self.places.resize(self.needed.len(), 0);
         for (index, place) in (0..).zip(&mut self.places[..COORDINATES]) {
@@ -171,12 +178,13 @@ impl ShorterTape {
                 continue;
             }
             let [a, b] = operation.operands();
-            self.places[COORDINATES + at] = if choice[0] == needed {
+            self.places[COORDINATES + at] = if choice[0] == needed && tape.constant(a).is_none() {
                 place(&self.places, a)
-            } else if choice[1] == needed {
+            } else if choice[1] == needed && tape.constant(b).is_none() {
                 place(&self.places, b)
             } else {
                 self.chosen.push(choice);
+                self.needed_by.push(needed);
                 self.operations.push(operation.with_operands(|operand| place(&self.places, operand)));
                 (COORDINATES + self.operations.len() - 1) as Index
             };

@@ -143,6 +143,7 @@ fn first_zero<N: Lanes>(start: N, slope: N, curvature: N) -> N {
     let share = numerator / denominator;
     N::select(zero.lt(share), share, N::splat(f32::INFINITY))
 }
+
 impl SignForecast {
     /// Returns the forecast from a model in f64.
     pub(super) fn of(&Model { c: [c0, c1, c2], error }: &Model) -> Self {

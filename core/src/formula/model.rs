@@ -355,6 +355,10 @@ impl Tape {
             None => models[usize::from(index)],
         };
         for (at, &operation) in steps.operations.iter().enumerate() {
+            if steps.needed(at) >> lane & 1 == 0 {
+                models.push(Model::ANYTHING);
+                continue;
+            }
             let [is_first, is_second] = steps.chosen(at).map(|lanes| lanes >> lane & 1 == 1);
             let model = match operation {
                 Operation::Unary(_, a) if is_first => of(models, a),

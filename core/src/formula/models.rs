@@ -9,6 +9,7 @@ use std::f64::consts::FRAC_2_PI;
 
 /// Twice the largest relative rounding error of an f32 operation.
 pub(super) const EPSILON: f32 = f32::EPSILON;
+
 /// A bound of the absolute error of the polynomials for sine and cosine.
 // The largest measured error, at every 37th float up to 8000, is 9.3e-8.
 const SINE_ERROR: f32 = 2.0 * EPSILON;
@@ -24,6 +25,7 @@ const LARGEST_ANGLE: f32 = 8000.0;
 /// Eight Taylor models in memory, one per lane: the three coefficients of the quadratic polynomial,
 /// then the largest distance from it.
 pub(super) type StoredModels = [F32x8; 4];
+
 /// Returns the model of one lane.
 pub(super) fn model_of_lane(models: &StoredModels, lane: usize) -> Model {
     let [c0, c1, c2, error] = models.map(|numbers| f64::from(numbers.0[lane]));
@@ -123,7 +125,8 @@ impl<N: Lanes> Models<N> {
     pub(super) fn tight_range(self) -> [N; 2] {
         let (Self { c: [c0, c1, c2], error }, two) = (self, N::splat(2.0));
         let (size, slack) = (c1.abs(), error + N::splat(8.0 * EPSILON) * self.coefficient_abs_sum());
-        let extremum = c0 - c1 * c1 / (N::splat(4.0) * c2);
+        // The quotient, below 2 where this is selected, comes first: `c1 * c1` may underflow to 0.
+        let extremum = c0 - c1 * (N::splat(0.25) * (c1 / c2));
         let low = N::select(size.lt(two * c2), extremum, c0 - size + c2);
         let high = N::select(size.lt(-(two * c2)), extremum, c0 + size + c2);
         [low - slack, high + slack]

@@ -92,6 +92,7 @@ impl<'a> PacketModels<'a> {
                 _ => {
                     let with_next = steps.operations.get(at + 1) == operation.twin().as_ref();
                     let (chosen, evaluation) = (steps.chosen(at), &mut evaluation);
+                    evaluation.lanes = lanes & steps.needed(at);
                     N::call_no_inline(RareOperation { tape, operation, with_next, chosen, known, rest, evaluation });
                 }
             }
@@ -166,6 +167,7 @@ impl SimdKernel for CoordinateModels<'_> {
 
 /// The evaluation of operations, which records the lanes in which they may jump or are undefined.
 struct PacketEvaluation {
+    /// The lanes that need the operation that is evaluated; only these are recorded.
     lanes: u32,
     may_jump: u32,
     is_undefined: u32,
@@ -203,8 +205,8 @@ impl PacketEvaluation {
     /// Records that the lanes of `mask` may jump; their models become [`Models::anything`].
     #[inline(always)]
     fn anything_where<N: Lanes>(&mut self, mask: N::Mask, is_undefined: N::Mask, else_: Models<N>) -> Models<N> {
-        self.may_jump |= mask.bits();
-        self.is_undefined |= is_undefined.bits();
+        self.may_jump |= mask.bits() & self.lanes;
+        self.is_undefined |= is_undefined.bits() & self.lanes;
         Models::select(mask, Models::anything(), else_)
     }
 
@@ -220,7 +222,7 @@ impl PacketEvaluation {
         let is_positive = zero.lt(low);
         let of_any = Models::select(is_positive, of_positive, Models::hull(zero, high.max(zero).sqrt()));
         if !is_non_negative {
-            self.may_jump |= (!is_positive).bits();
+            self.may_jump |= (!is_positive).bits() & self.lanes;
         }
         let (is_undefined, is_known) = (high.lt(zero), (high - low).lt(N::splat(f32::INFINITY)));
         self.anything_where(is_undefined | !is_known, is_undefined, of_any)

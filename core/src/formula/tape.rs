@@ -1,5 +1,6 @@
 //! The tape: the operations of a formula, each after its operands, in which equal terms are shared.
 
+use crate::lanes::ALL;
 use std::collections::HashMap;
 
 /// The largest number of operations of a formula.
@@ -87,6 +88,10 @@ pub(super) struct Steps<'t> {
     /// For each operation the lanes in which it is its first operand, and those in which it is its
     /// second operand; empty if there are no such lanes.
     pub(super) chosen: &'t [[u8; 2]],
+    /// For each operation the lanes that need its value; empty if all lanes need all values.
+    ///
+    /// In other lanes its operands may have any value, so it must not count as undefined or as a jump there.
+    pub(super) needed: &'t [u8],
     /// The index of the result.
     pub(super) result: Index,
 }
@@ -147,17 +152,24 @@ impl Operation {
 }
 
 impl Steps<'_> {
-    /// Returns whether a lane is known to have the value of the first operand, and of the second.
+    /// Returns the lanes in which an operation is its first operand, then those in which it is its
+    /// second.
     #[inline(always)]
     pub(super) fn chosen(&self, operation: usize) -> [u8; 2] {
         self.chosen.get(operation).copied().unwrap_or_default()
+    }
+
+    /// Returns the lanes that need the value of an operation.
+    #[inline(always)]
+    pub(super) fn needed(&self, operation: usize) -> u32 {
+        self.needed.get(operation).map_or(ALL, |&lanes| u32::from(lanes))
     }
 }
 
 impl Tape {
     /// Returns all operations.
     pub(super) fn steps(&self) -> Steps<'_> {
-        Steps { operations: &self.operations, chosen: &[], result: self.result }
+        Steps { operations: &self.operations, chosen: &[], needed: &[], result: self.result }
     }
 
     pub(super) fn operations(&self) -> &[Operation] {

@@ -4,13 +4,15 @@ use super::models::{Models, StoredModels, model_of_lane};
 use super::packet::{EightValues, Lines, PacketModels};
 use super::values::PacketValues;
 use super::*;
-use crate::lanes::{ALL, LANES, Lanes, SimdKernel};
+use crate::lanes::{ALL, F32x8, LANES, Lanes, SimdKernel};
 use crate::simd;
 use glam::DVec3;
 use std::array::from_fn;
 
 #[path = "../../../benches/formulas/pictures.rs"]
 mod pictures;
+
+mod lanes;
 
 /// Random numbers (xorshift) from a seed that a failure prints.
 struct Random(u64);
@@ -674,27 +676,6 @@ fn shorter_tapes_have_the_same_signs() {
         }
     }
     assert!(certain_count > 1000 && 5 * kept < 4 * whole, "{certain_count} are certain, {kept} of {whole} are kept");
-}
-
-/// A search returns the same bits as if it ran alone, whatever the other lanes search for.
-#[test]
-fn eight_searches_find_what_each_finds_alone() {
-    const SEED: u64 = 0x5eed_0006;
-    let (mut random, mut count) = (Random(SEED), 0);
-    for _ in 0..300 {
-        let text = random.formula(3);
-        let Ok(formula) = Formula::parse(&text, &[]) else { continue };
-        let lines: [Line; LANES] = from_fn(|_| Line { origin: random.point(2.0), direction: random.point(1.0) });
-        let mut searches = Searches::NONE;
-        lines.iter().enumerate().for_each(|(lane, line)| searches.add(lane, line, [0.0, 4.0], 4.0));
-        let (found, roots) = Solver::new(&formula).first_roots(&searches);
-        for (lane, line) in lines.iter().enumerate() {
-            let root = (found >> lane & 1 == 1).then_some(roots.0[lane]);
-            assert_eq!(root, Solver::new(&formula).first_root(line, [0.0, 4.0], 4.0), "{text}, seed {SEED:#x}");
-            count += found >> lane & 1;
-        }
-    }
-    assert!(count > 300, "{count} roots");
 }
 
 #[test]
