@@ -17,7 +17,9 @@ fn roots_found_alone(text: &str, lines: &[Line; LANES], range: [f32; 2]) -> u32 
 }
 
 impl Random {
-    /// Returns a formula of which each lane needs some terms, inside functions that are undefined for some operands.
+    /// Returns a formula of which each lane needs some terms.
+    ///
+    /// Their functions are undefined for some operands.
     fn formula_with_partial_functions(&mut self) -> String {
         let terms = [(); 5].map(|()| {
             let (axis, size) = (["x", "y", "z"][self.below(3) as usize], self.between(0.5, 2.0));
@@ -59,7 +61,9 @@ fn eight_searches_find_what_each_finds_alone() {
     assert!(counts.iter().all(|&count| count > 200), "{counts:?} roots");
 }
 
-/// Only the second lane needs the function, whose operand it takes to be `y`, which is negative in the others.
+/// Only the second lane needs the function, and there its operand is `y`.
+///
+/// In the other lanes `y` is negative, which the function must not see.
 #[test]
 fn an_operation_is_undefined_only_in_the_lanes_that_need_it() {
     for function in ["sqrt(max(y, 1)) - 2", "ln(max(y, 1)) - 1.4", "asin(0.2*max(y, 1)) - 0.95"] {
@@ -73,7 +77,7 @@ fn an_operation_is_undefined_only_in_the_lanes_that_need_it() {
     }
 }
 
-/// In f32 and in f64, the models of a shorter tape have the same bits whatever the other lanes need.
+/// The models of a shorter tape have the same bits, in f32 and f64, whatever other lanes need.
 #[test]
 fn models_of_shorter_tapes_are_those_of_single_lanes() {
     const SEED: u64 = 0x5eed_000b;
