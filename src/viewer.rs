@@ -100,6 +100,8 @@ use pacing::Pacing;
 use playback::Playback;
 use pointer::PointerState;
 use progress::ProgressPanel;
+#[cfg(feature = "serve")]
+pub(crate) use quality_control::TRACING_SHARE;
 use rest::Rest;
 #[cfg(all(unit_tests, feature = "test-hooks"))]
 pub use scenario::run_scenario;

@@ -18,7 +18,7 @@ use super::viewer_session::{AudienceChange, Company, PendingInput, ViewerSession
 use crate::app::Tracer;
 use crate::grid::{Grid, Size};
 use crate::progress::Cancellation;
-use crate::viewer::{FIRST_FRAME_MOTION, Frame, Job};
+use crate::viewer::{FIRST_FRAME_MOTION, Frame, Job, TRACING_SHARE};
 use std::collections::HashMap;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -368,7 +368,8 @@ impl WorkerPool {
             let trace = trace.max(frame.trace);
             // Between two frames of a viewer, all others who draw get as much time. The time is that of whole frames:
             // as long as tracing alone counted, some of 200 viewers got 30 coarse frames a second, others 14 fine ones.
-            frame.interval = (trace + untraced).mul_f64(share);
+            // The quality control compares it with the share of a frame that tracing may take.
+            frame.interval = (trace + untraced).mul_f64(share * TRACING_SHARE);
             Some(frame)
         };
         let mut out = Vec::new();

@@ -87,7 +87,7 @@ pub(crate) struct Frame {
     /// The wall-clock time that tracing took.
     pub(crate) trace: Duration,
     /// The time from which the sampling of the next frames is chosen: that of tracing or, on a
-    /// server, the expected time between two frames of this viewer.
+    /// server, the same share of the expected time between two frames of this viewer.
     pub(crate) interval: Duration,
 }
 

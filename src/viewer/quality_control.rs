@@ -28,7 +28,7 @@ const MAX_MOTION_LEVEL: usize = 3;
 const INITIAL_COST_RATIOS: [f64; MAX_MOTION_LEVEL + 1] = [1.0, 4.0, 2.0, 3.0];
 /// Share of a frame's time that tracing may take.
 // The rest of the time is for making cells and bytes, and for the terminal, which draws on the same cores.
-const TRACING_SHARE: f64 = 0.75;
+pub(crate) const TRACING_SHARE: f64 = 0.75;
 /// A finer level is tried only if it is predicted to take at most this share of the time for
 /// tracing.
 // A share below 1 keeps the level from oscillating: a level that takes more than this share is kept if it is in use,
