@@ -5,7 +5,6 @@ use super::screens::{Clusters, glyph_of};
 use super::watched::Watched;
 use arbitrary::{Result, Unstructured};
 use std::time::Duration;
-use termtrace::internals::capabilities::Shifts;
 use termtrace::internals::encode::Allowance;
 use termtrace::internals::grid::{Attributes, HalfBlocks};
 use termtrace::{Cell, Glyph, Grid, Ink, Order, Quality, Size, Srgb8};
@@ -24,10 +23,6 @@ fn tell(bytes: &mut Unstructured<'_>) -> Result<()> {
     let half_blocks = if bytes.arbitrary()? { HalfBlocks::Either } else { HalfBlocks::Lower };
     let mut watched = Watched::new(order, half_blocks, grid.size(), Clusters::None)
         .in_pieces(vec![bytes.int_in_range(1..=64)?, bytes.int_in_range(1..=8)?]);
-    // By the length, which takes no bytes from the input.
-    if order == Order::Color && bytes.len() % 2 == 1 {
-        watched = watched.with_shifts(Shifts::Direct);
-    }
     let mut now = Duration::ZERO;
     while !bytes.is_empty() {
         match bytes.int_in_range(0..=15)? {
