@@ -5,11 +5,10 @@
 //! (Roth, Ray Casting for Modeling Solids, 1982).
 
 use super::described::size_in_words;
-use super::exact::{self, Crossings, Inside};
+use super::exact;
 use super::placement::{Placeable, Placement, WrittenPlacement};
 use super::{
-    CheckedShape, Described, Equation, EquationStep, Meshes, Plane, Shape, Side, Sphere, Surface, SurfacePoint, Torus,
-    WrittenShape,
+    CheckedShape, Described, Equation, EquationStep, Meshes, Shape, Side, Surface, SurfacePoint, WrittenShape,
 };
 use crate::bounds::Bounds;
 use crate::checks::Message;
@@ -18,19 +17,15 @@ use crate::ray::{EightRays, Interval, Probe, Ray};
 use crate::scene_text::{Span, SyntaxNode};
 use crate::written::{Fields, InSceneFile, NodeReader, Spanned, Validator};
 use glam::Vec3;
-use std::cmp::Ordering;
 use std::sync::Arc;
+
+mod boundaries;
+
+use boundaries::{Boundary, FEW_BOUNDARIES, MAX_BOUNDARIES};
 
 /// The most shapes in a solid, those of the solids among its parts counted.
 // A line has up to four crossings with each, and all of them are kept in an array on the stack.
 const MAX_SHAPES: usize = 16;
-
-/// The most boundaries of a solid along a line.
-const MAX_BOUNDARIES: usize = 4 * MAX_SHAPES;
-
-/// The distance, relative to the largest t, within which two boundaries are one.
-// Two parts that share a face compute its t with different roundings, of about 1e-15. Points in f32 are off by 1e-7.
-const TOLERANCE: f64 = 1e-11;
 
 /// The operation by which a solid is made of its parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,118 +88,20 @@ impl Operation {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
     operation: Operation,
-    parts: Arc<[Shape]>,
-    /// A box around each part, which no point of the part is outside of; `None` for half spaces.
-    boxes: Arc<[Option<Bounds>]>,
+    parts: Arc<[Part]>,
     bounds: Bounds,
+    /// Whether no line has more than [`FEW_BOUNDARIES`] boundaries.
+    has_few_boundaries: bool,
 }
 
-/// An end of a piece of a line inside a solid.
-#[derive(Clone, Copy)]
-struct Boundary<'s> {
-    t: f64,
-    /// The shape on whose surface it is.
-    shape: &'s Shape,
-    /// Whether the line enters the solid here.
-    enters: bool,
-}
-
-/// The boundaries of a solid along a line, in ascending order.
-struct Boundaries<'s> {
-    found: [Option<Boundary<'s>>; MAX_BOUNDARIES],
-    count: usize,
-    /// Whether the line begins inside, at t = -infinity.
-    begins_inside: bool,
-}
-
-impl<'s> Boundaries<'s> {
-    fn new(begins_inside: bool) -> Self {
-        Self { found: [None; MAX_BOUNDARIES], count: 0, begins_inside }
-    }
-
-    fn push(&mut self, boundary: Boundary<'s>) {
-        // There is always a free place: the number of shapes is limited.
-        if let Some(free) = self.found.get_mut(self.count) {
-            *free = Some(boundary);
-            self.count += 1;
-        }
-    }
-
-    fn iter(&self) -> impl Iterator<Item = Boundary<'s>> {
-        self.found[..self.count].iter().copied().flatten()
-    }
-
-    /// Returns the t of each boundary, in ascending order.
-    fn ts(self) -> impl Iterator<Item = f64> {
-        self.found.into_iter().flatten().map(|boundary| boundary.t)
-    }
-}
-
-/// Calls `add` with the boundaries of a part along the line of a ray, in ascending order.
-///
-/// Returns whether the line begins inside the part, at t = -infinity.
-fn add_boundaries<'s>(part: &'s Shape, probe: &Probe, mut add: impl FnMut(Boundary<'s>)) -> bool {
-    let ray = &probe.ray;
-    let crossings = match part {
-        Shape::Solid(solid) => {
-            let boundaries = solid.boundaries(probe);
-            boundaries.iter().for_each(add);
-            return boundaries.begins_inside;
-        }
-        Shape::Plane(plane) => return add_boundary_of_half_space(part, plane, ray, add),
-        Shape::Torus(torus) => {
-            add_boundaries_of_torus(part, torus, ray, add);
-            return false;
-        }
-        Shape::Sphere(sphere) => sphere_crossings(sphere, ray),
-        Shape::Cuboid(shape) => exact::crossings(shape, ray),
-        Shape::Cylinder(shape) => exact::crossings(shape, ray),
-        Shape::Cone(shape) => exact::crossings(shape, ray),
-        Shape::Capsule(shape) => exact::crossings(shape, ray),
-        Shape::Ellipsoid(shape) => exact::crossings(shape, ray),
-        _ => Crossings::NONE,
-    };
-    for (number, crossing) in crossings.iter().enumerate() {
-        add(Boundary { t: crossing.t, shape: part, enters: number % 2 == 0 });
-    }
-    false
-}
-
-/// Adds the boundaries of a torus, without the points at which a line only touches it.
-fn add_boundaries_of_torus<'s>(shape: &'s Shape, torus: &Torus, ray: &Ray, mut add: impl FnMut(Boundary<'s>)) {
-    let crossings = exact::crossings(torus, ray);
-    let mut crossings = crossings.iter().map(|crossing| crossing.t).peekable();
-    let mut is_inside = false;
-    while let Some(t) = crossings.next() {
-        let enters = crossings.peek().is_some_and(|next| torus.contains_at(ray, 0.5 * (t + next)));
-        if enters != is_inside {
-            is_inside = enters;
-            add(Boundary { t, shape, enters });
-        }
-    }
-}
-
-/// Adds the boundary of all that is behind a plane, and returns whether the line begins there.
-fn add_boundary_of_half_space<'s>(
-    shape: &'s Shape,
-    plane: &Plane,
-    ray: &Ray,
-    mut add: impl FnMut(Boundary<'s>),
-) -> bool {
-    let [point, normal] = [plane.point(), plane.normal()].map(Vec3::as_dvec3);
-    let height = (ray.origin.as_dvec3() - point).dot(normal);
-    let change = ray.direction.as_dvec3().dot(normal);
-    if change == 0.0 {
-        return height < 0.0;
-    }
-    add(Boundary { t: -height / change, shape, enters: change < 0.0 });
-    change > 0.0
-}
-
-/// Returns the crossings of a sphere, computed in f64.
-fn sphere_crossings(sphere: &Sphere, ray: &Ray) -> Crossings {
-    let from_center = ray.origin.as_dvec3() - sphere.center().as_dvec3();
-    Inside::ball(from_center, ray.direction.as_dvec3(), sphere.radius().into()).crossings()
+/// A part of a solid.
+#[derive(Debug, PartialEq)]
+struct Part {
+    shape: Shape,
+    /// A box that no point of the part is outside of; `None` for half spaces.
+    bounds: Option<Bounds>,
+    /// The number of its first shape among the shapes of all parts.
+    first_shape: u8,
 }
 
 impl Solid {
@@ -222,72 +119,37 @@ impl Solid {
         if !bounds.min.cmplt(bounds.max).all() {
             return Err("the parts have no volume in common; nothing is left of the intersection".into());
         }
-        // The box of a sphere is rounded to the nearest numbers, and may cut off the outermost points.
-        let boxes = parts.iter().map(|part| part.bounds().map(Bounds::one_step_larger)).collect();
-        Ok(Self { operation, parts: parts.into(), boxes, bounds })
+        let mut first_shape = 0;
+        let parts = parts.into_iter().map(|shape| {
+            let first = first_shape;
+            first_shape += shape_count(&shape) as u8;
+            // The box of a sphere is rounded to the nearest numbers, and may cut off the outermost points.
+            Part { bounds: shape.bounds().map(Bounds::one_step_larger), shape, first_shape: first }
+        });
+        let mut solid = Self { operation, parts: parts.collect(), bounds, has_few_boundaries: false };
+        solid.has_few_boundaries = solid.most_boundaries() <= FEW_BOUNDARIES;
+        Ok(solid)
     }
 
-    /// Returns where the line of a ray enters and leaves the solid.
-    fn boundaries(&self, probe: &Probe) -> Boundaries<'_> {
-        let (mut events, mut count) = ([(0.0, 0, None); MAX_BOUNDARIES], 0);
-        let mut inside = 0_u32;
-        for (number, (part, bounds)) in self.parts.iter().zip(&*self.boxes).enumerate() {
-            // Most lines miss most parts. No crossing is lost (`culling.md`, 3).
-            if bounds.is_some_and(|bounds| !bounds.is_crossed(probe)) {
-                if self.operation.needs(number) {
-                    return Boundaries::new(false);
-                }
-                continue;
-            }
-            let begins_inside = add_boundaries(part, probe, |boundary| {
-                if !boundary.t.is_nan() {
-                    events[count.min(MAX_BOUNDARIES - 1)] = (boundary.t, number, Some(boundary));
-                    count = (count + 1).min(MAX_BOUNDARIES);
-                }
-            });
-            inside |= u32::from(begins_inside) << number;
+    /// Returns the number of shapes, those of the solids among the parts counted.
+    fn shape_count(&self) -> usize {
+        self.parts.iter().map(|part| shape_count(&part.shape)).sum()
+    }
+
+    /// Returns the shape with this number among the shapes of all parts.
+    fn shape(&self, number: u8) -> &Shape {
+        let part = self.parts.iter().rfind(|part| part.first_shape <= number).unwrap_or(&self.parts[0]);
+        match &part.shape {
+            Shape::Solid(solid) => solid.shape(number - part.first_shape),
+            shape => shape,
         }
-        let events = &mut events[..count];
-        // A stable sort, so that boundaries at one t keep the order of the parts.
-        events.sort_by(|(a, ..), (b, ..)| a.partial_cmp(b).unwrap_or(Ordering::Equal));
-        let contains = |inside| self.operation.contains(inside, self.parts.len());
-        let mut boundaries = Boundaries::new(contains(inside));
-        // The t of a plane that is almost parallel to the line is no measure of the solid.
-        let is_bounded =
-            |boundary: &Option<Boundary<'_>>| boundary.is_some_and(|found| !matches!(found.shape, Shape::Plane(_)));
-        let bounded = events.iter().filter(|(.., boundary)| is_bounded(boundary));
-        let largest = bounded.map(|(t, ..)| t.abs()).filter(|t| t.is_finite()).fold(0.0, f64::max);
-        let is_one = |(a, ..): &Event<'_>, (b, ..): &Event<'_>| b - a <= TOLERANCE * largest;
-        let (mut start, mut was_inside) = (0, boundaries.begins_inside);
-        while start < events.len() {
-            let end = (start..events.len()).find(|&at| !is_one(&events[start], &events[at])).unwrap_or(events.len());
-            let mut decisive = None;
-            for (_, number, boundary) in &events[start..end.max(start + 1)] {
-                let before = contains(inside);
-                inside ^= 1 << number;
-                if contains(inside) != before {
-                    decisive = *boundary;
-                }
-            }
-            if contains(inside) != was_inside
-                && let Some(boundary) = decisive
-            {
-                was_inside = !was_inside;
-                boundaries.push(Boundary { enters: was_inside, ..boundary });
-            }
-            start = end.max(start + 1);
-        }
-        boundaries
     }
 }
-
-/// A boundary of a part: its t, the number of the part, and the boundary.
-type Event<'s> = (f64, usize, Option<Boundary<'s>>);
 
 /// Returns the number of shapes that a shape is made of.
 fn shape_count(shape: &Shape) -> usize {
     match shape {
-        Shape::Solid(solid) => solid.parts.iter().map(shape_count).sum(),
+        Shape::Solid(solid) => solid.shape_count(),
         _ => 1,
     }
 }
@@ -314,20 +176,31 @@ impl Surface for Solid {
     }
 
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        exact::first_in_box(self.bounds.crossed(probe), within, || self.boundaries(probe).ts())
+        let inside = self.bounds.crossed(probe);
+        if self.has_few_boundaries {
+            exact::first_in_box(inside, within, || self.boundaries::<FEW_BOUNDARIES>(probe).ts())
+        } else {
+            exact::first_in_box(inside, within, || self.boundaries::<MAX_BOUNDARIES>(probe).ts())
+        }
     }
 
     fn closest_crossings(&self, rays: &EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8) {
-        exact::first_in_boxes(rays, inside, within, |ray| self.boundaries(&Probe::new(*ray)).ts())
+        if self.has_few_boundaries {
+            let boundaries = |ray: &Ray| self.boundaries::<FEW_BOUNDARIES>(&Probe::new(*ray)).ts();
+            exact::first_in_boxes(rays, inside, within, boundaries)
+        } else {
+            let boundaries = |ray: &Ray| self.boundaries::<MAX_BOUNDARIES>(&Probe::new(*ray)).ts();
+            exact::first_in_boxes(rays, inside, within, boundaries)
+        }
     }
 
     /// Returns the point on the part that the boundary belongs to; its side is that of the solid.
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {
-        let off = |boundary: &Boundary<'_>| (boundary.t as f32 - t).abs();
-        let boundaries = self.boundaries(&Probe::new(*ray));
+        let off = |boundary: &Boundary| (boundary.t as f32 - t).abs();
+        let boundaries = self.boundaries::<MAX_BOUNDARIES>(&Probe::new(*ray));
         let nearest = boundaries.iter().min_by(|one, other| off(one).total_cmp(&off(other)));
         let (shape, t, enters) =
-            nearest.map_or((&self.parts[0], t, true), |Boundary { t, shape, enters }| (shape, t as f32, enters));
+            nearest.map_or((self.shape(0), t, true), |found| (self.shape(found.shape), found.t as f32, found.enters));
         let point = shape.primitive(0).at_crossing(ray, t);
         SurfacePoint { side: if enters { Side::Front } else { Side::Back }, ..point }
     }
@@ -335,7 +208,8 @@ impl Surface for Solid {
 
 impl Placeable for Solid {
     fn placed(self, placement: &Placement) -> Option<Shape> {
-        let parts: Option<Vec<_>> = self.parts.iter().map(|part| part.clone().placed_anywhere(placement)).collect();
+        let parts: Option<Vec<_>> =
+            self.parts.iter().map(|part| part.shape.clone().placed_anywhere(placement)).collect();
         Some(Self::new(self.operation, parts?).ok()?.into())
     }
 }
@@ -344,13 +218,12 @@ impl Described for Solid {
     const KIND: &'static str = "solid";
 
     fn described(&self, color: &str) -> String {
-        let count: usize = self.parts.iter().map(shape_count).sum();
-        format!("a {color} solid of {count} shapes, {}", size_in_words(&self.bounds))
+        format!("a {color} solid of {} shapes, {}", self.shape_count(), size_in_words(&self.bounds))
     }
 
     /// Returns the boundaries of the solid, without the equations of its parts.
     fn equation(&self, ray: &Ray) -> Equation {
-        let boundaries = self.boundaries(&Probe::new(*ray));
+        let boundaries = self.boundaries::<MAX_BOUNDARIES>(&Probe::new(*ray));
         let mut roots: Vec<_> = boundaries.iter().map(|boundary| boundary.t).collect();
         // Two are shown, preferably in front of the eye.
         let behind = roots.iter().filter(|&&root| root < 0.0).count();
@@ -370,7 +243,7 @@ impl Described for Solid {
     }
 
     fn encloses(&self, point: Vec3) -> bool {
-        let encloses = |part: &Shape| match part {
+        let encloses = |part: &Part| match &part.shape {
             Shape::Plane(plane) => (point.as_dvec3() - plane.point().as_dvec3()).dot(plane.normal().as_dvec3()) < 0.0,
             part => part.encloses(point),
         };

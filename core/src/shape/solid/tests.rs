@@ -11,7 +11,7 @@ fn solid(text: &str) -> Shape {
 fn crossings(shape: &Shape, origin: [f32; 3], direction: [f32; 3]) -> Vec<f32> {
     let ray = Ray { origin: origin.into(), direction: direction.into() };
     let Shape::Solid(solid) = shape else { panic!("a solid") };
-    solid.boundaries(&Probe::new(ray)).iter().map(|boundary| boundary.t as f32).collect()
+    solid.boundaries::<MAX_BOUNDARIES>(&Probe::new(ray)).iter().map(|boundary| boundary.t as f32).collect()
 }
 
 const FROM_LEFT: ([f32; 3], [f32; 3]) = ([-5.0, 0.25, 0.0], [1.0, 0.0, 0.0]);
@@ -99,6 +99,24 @@ fn examples() -> Vec<Shape> {
     .into()
 }
 
+/// Twelve balls in a row have more boundaries than most solids have room for.
+#[test]
+fn every_boundary_of_a_solid_of_many_shapes_is_found() {
+    let ball = |at: i32| format!("Sphere(center: ({}, 0, 0), radius: 0.5)", 2 * at);
+    let balls: Vec<_> = (0..12).map(ball).collect();
+    let shape = solid(&format!("Solid(union: [{}])", balls.join(", ")));
+    let Shape::Solid(row) = &shape else { panic!("a solid") };
+    assert!(!row.has_few_boundaries);
+    let probe = Probe::new(Ray { origin: Vec3::new(-1.0, 0.0, 0.0), direction: Vec3::X });
+    let (mut from, mut found) = (0.0, Vec::new());
+    while let Some(t) = row.closest_crossing(&probe, Interval { min: from, max: f32::INFINITY }) {
+        found.push(t);
+        from = t.next_up();
+    }
+    let expected: Vec<_> = (0..12).flat_map(|at| [2.0 * at as f32 + 0.5, 2.0 * at as f32 + 1.5]).collect();
+    assert_eq!(found, expected);
+}
+
 proptest! {
     /// Between two neighbouring boundaries all points are inside, or none is.
     #[test]
@@ -110,10 +128,12 @@ proptest! {
         let (origin, target) = (Vec3::from(from), Vec3::from(to));
         prop_assume!(origin.distance(target) > 0.1);
         let ray = Ray { origin, direction: target - origin };
-        let boundaries = solid.boundaries(&Probe::new(ray));
+        let boundaries = solid.boundaries::<MAX_BOUNDARIES>(&Probe::new(ray));
+        let few = solid.boundaries::<FEW_BOUNDARIES>(&Probe::new(ray));
+        prop_assert!(solid.has_few_boundaries && few.ts().eq(boundaries.iter().map(|boundary| boundary.t)));
         for step in -200..400 {
             let t = 0.01 * f64::from(step) + 0.003;
-            let near = |boundary: Boundary<'_>| (boundary.t - t).abs() < 1e-3;
+            let near = |boundary: Boundary| (boundary.t - t).abs() < 1e-3;
             if boundaries.iter().any(near) {
                 continue;
             }
