@@ -63,6 +63,8 @@ mod format;
 #[cfg(feature = "mesh")]
 mod left_out;
 mod limits;
+#[cfg_attr(not(feature = "mesh"), allow(dead_code, reason = "only glTF files move"))]
+mod motion;
 mod staging;
 #[cfg(feature = "mesh")]
 mod marks;
@@ -94,6 +96,7 @@ pub use limits::{MAX_MESH_BYTES, MAX_TEXELS, MAX_TRIANGLES};
 use material::MeshMaterials;
 pub use material::{Emission, MeshMaterial, Opacity};
 pub use mesh_error::{FilePosition, MeshError};
+pub(crate) use motion::Motion;
 #[cfg(feature = "mesh")]
 pub use read::{format_name, is_mesh};
 pub use staging::{FileCamera, FileLight, FileLightKind, FilePlace, Staging};
@@ -110,6 +113,7 @@ pub(crate) use up::guessed;
 
 use crate::color::LinearRgb;
 use glam::{DVec3, Mat3, Vec2, Vec3};
+use std::sync::Arc;
 
 /// Warm clay, `#d98b5f`: the reflectance of missing materials and textures, and of a mesh without
 /// colours in a scene made around it.
@@ -143,6 +147,8 @@ pub struct MeshFile {
     material_runs: Vec<(u32, Option<u32>)>,
     /// The cameras and lights.
     staging: Staging,
+    /// The motion of its parts. The triangles above are where they are at time 0.
+    motion: Option<Arc<Motion>>,
 }
 
 impl MeshFile {
@@ -158,6 +164,7 @@ impl MeshFile {
             materials: MeshMaterials::default(),
             material_runs: Vec::new(),
             staging: Staging::default(),
+            motion: None,
         };
         mesh.is_valid().then_some(mesh)
     }
@@ -171,9 +178,10 @@ impl MeshFile {
     }
 
     /// Returns the mesh scaled along its axes (factors not 0), then rotated, then translated. A
-    /// mirrored mesh keeps its triangles counterclockwise seen from outside. `None` if a position exceeds the range of
-    /// f32.
+    /// mirrored mesh keeps its triangles counterclockwise seen from outside, and one that moves stays as at time 0.
+    /// `None` if a position exceeds the range of f32.
     pub fn transformed(mut self, scale: Vec3, turn: Mat3, translation: Vec3) -> Option<Self> {
+        self.motion = None;
         for position in &mut self.positions {
             *position = turn * (*position * scale) + translation;
         }
@@ -197,7 +205,11 @@ impl MeshFile {
             return Some(self);
         }
         let staging = self.staging.clone().turned(up.turn());
-        self.transformed(Vec3::ONE, up.turn(), Vec3::ZERO).map(|mesh| Self { staging, ..mesh })
+        let motion = match &self.motion {
+            Some(motion) => Some(Arc::new(motion.turned(up.turn())?)),
+            None => None,
+        };
+        self.transformed(Vec3::ONE, up.turn(), Vec3::ZERO).map(|mesh| Self { staging, motion, ..mesh })
     }
 
     /// Returns whether the mesh has colours of its own: of materials, vertices or a texture.
@@ -293,6 +305,16 @@ impl MeshFile {
     /// Returns the cameras and lights of the file.
     pub fn staging(&self) -> &Staging {
         &self.staging
+    }
+
+    /// Returns whether the file has an animation that moves the mesh.
+    pub fn moves(&self) -> bool {
+        self.motion.is_some()
+    }
+
+    /// Returns the motion of the mesh, if it moves.
+    pub(crate) fn motion(&self) -> Option<&Arc<Motion>> {
+        self.motion.as_ref()
     }
 
     /// Checks the invariants of the type.

@@ -5,12 +5,14 @@ use super::fault::MeshFault;
 use super::left_out::LeftOut;
 use super::limits::MAX_TRIANGLES;
 use super::marks::{BYTES_PER_MARK, MAX_MARKS, Mark, MarkEnd, MarkStyle};
+use super::motion::Motion;
 use super::staging::Staging;
 use super::{MeshFile, MeshMaterial, is_flat};
 use crate::color::LinearRgb;
 use crate::memory;
 use glam::{DVec3, Vec2, Vec3};
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
+use std::sync::Arc;
 
 /// The triangles and attributes read so far.
 #[derive(Default)]
@@ -28,6 +30,8 @@ pub(super) struct MeshBuilder {
     pub(super) marks: Vec<Mark>,
     /// The cameras and lights.
     pub(super) staging: Staging,
+    /// The motion of the nodes.
+    pub(super) motion: Option<Arc<Motion>>,
     /// Whether the file has faces or surfaces. In a file without them, and without marks, all
     /// vertices are points.
     pub(super) has_faces: bool,
@@ -87,11 +91,15 @@ impl MeshBuilder {
     ///
     /// `nothing` describes the contents of a file without triangles, for the message.
     pub(super) fn finish(mut self, nothing: &str, left_out: &mut LeftOut<'_>) -> Result<MeshFile, MeshFault> {
-        self.add_marks(left_out)?;
+        if let Some((what, count)) = self.add_marks()? {
+            left_out.not_shown(format!("{what} (too many; evenly selected)"), count);
+        }
         if self.triangles.is_empty() || (left_out.has_faults() && !self.flatten_incomplete_triangles(left_out)) {
             return Err(left_out.fault_of_nothing(format!("there are no triangles in this file: {nothing}")));
         }
-        if self.triangles.iter().all(|&corners| is_flat(corners, &self.positions)) {
+        // A part that is flat at time 0 may grow later.
+        let is_flat = || self.triangles.iter().all(|&corners| is_flat(corners, &self.positions));
+        if self.motion.as_ref().map_or_else(is_flat, |motion| motion.is_flat()) {
             left_out.not_shown("triangle (no triangle of the file has an area)", self.triangles.len());
         }
         let used: HashSet<_> = self.material_runs.iter().filter_map(|&(_, material)| material).collect();
@@ -103,8 +111,30 @@ impl MeshBuilder {
         self.into_mesh().ok_or_else(|| MeshFault::of_file("this mesh has numbers or indices out of range"))
     }
 
+    /// Returns a mesh of triangles and marks whose numbers are checked already, with those of
+    /// `materials` that it uses; `None` if it has no triangle.
+    pub(super) fn finish_part(mut self, materials: &[MeshMaterial]) -> Result<Option<MeshFile>, MeshFault> {
+        // A part without marks has no points either.
+        self.has_faces = true;
+        // The whole mesh has told of the marks that are left out.
+        self.add_marks()?;
+        let mut places = BTreeMap::new();
+        for material in self.material_runs.iter_mut().filter_map(|(_, material)| material.as_mut()) {
+            let place = places.len() as u32; // at most as many as there are runs
+            let place = *places.entry(*material).or_insert(place);
+            // A material is copied when it is met first.
+            if place as usize == self.materials.len() {
+                self.materials.push(materials[*material as usize].clone());
+            }
+            *material = place;
+        }
+        Ok(self.into_mesh())
+    }
+
     /// Adds the triangles of the points and lines.
-    fn add_marks(&mut self, left_out: &mut LeftOut<'_>) -> Result<(), MeshFault> {
+    ///
+    /// Returns what is left out if there are too many: its name in the singular, and the number.
+    fn add_marks(&mut self) -> Result<Option<(&'static str, usize)>, MeshFault> {
         let mut marks = std::mem::take(&mut self.marks);
         if marks.is_empty() && self.triangles.is_empty() && !self.has_faces {
             marks = self.vertices_as_points();
@@ -112,13 +142,14 @@ impl MeshBuilder {
         // A position that could not be read is not finite.
         marks.retain(|mark| mark.ends.iter().all(|end| self.positions[end.position as usize].is_finite()));
         let kept = marks.len().div_ceil(marks.len().div_ceil(MAX_MARKS).max(1));
+        let mut left_out = None;
         if kept < marks.len() {
             let what = if marks.iter().all(Mark::is_point) { "point" } else { "line" };
-            left_out.not_shown(format!("{what} (too many; evenly selected)"), marks.len() - kept);
+            left_out = Some((what, marks.len() - kept));
             marks = marks.iter().step_by(marks.len().div_ceil(MAX_MARKS)).copied().collect();
         }
         if marks.is_empty() {
-            return Ok(());
+            return Ok(left_out);
         }
         let count = marks.len();
         memory::check(count * BYTES_PER_MARK)
@@ -140,7 +171,7 @@ impl MeshBuilder {
             self.set_material(mark.material);
             self.add_body(&style, place(mark), mark_colors)?;
         }
-        Ok(())
+        Ok(left_out)
     }
 
     /// Returns a point for each position, with the colour of the same index.
@@ -197,6 +228,7 @@ impl MeshBuilder {
             materials: materials.into(),
             material_runs,
             staging: self.staging,
+            motion: self.motion,
         };
         mesh.is_valid().then_some(mesh)
     }

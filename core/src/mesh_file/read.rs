@@ -159,7 +159,7 @@ fn read(
     }?;
     // The trees over the triangles are built later. If memory will not suffice for them, the error should come from
     // here, where it names the mesh file.
-    let triangles = mesh.triangles().len();
+    let triangles = mesh.triangles().len() + mesh.motion().map_or(0, |motion| motion.triangle_count());
     has_memory(triangles * PEAK_PER_TRIANGLE, &format!("for its {triangles} triangles"))?;
     Ok(mesh)
 }
