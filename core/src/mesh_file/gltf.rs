@@ -4,15 +4,20 @@
 //! Meshopt compression is decoded, and Draco with the feature `draco`. Perspective cameras and the lights of
 //! `KHR_lights_punctual` are read.
 //!
-//! Not read: animations, orthographic cameras, and other properties of materials than the base colour.
+//! The first animation of the nodes becomes a [`Motion`](super::motion::Motion); the mesh itself is as at time 0.
+//!
+//! Not read: animations of skins, morph targets, cameras and lights, orthographic cameras, and other properties of
+//! materials than the base colour.
 
 mod accessor;
+mod animation;
 mod buffers;
 #[cfg(feature = "draco")]
 mod draco;
 mod json;
 mod materials;
 mod meshopt;
+mod moving;
 mod nodes;
 mod pose;
 mod primitives;
@@ -196,6 +201,5 @@ fn check_extensions(root: Json<'_>, left_out: &mut LeftOut<'_>) -> Result<(), Me
             left_out.not_shown(format!("extension ({})", clipped(name)), 1);
         }
     }
-    left_out.not_shown("animation", root.list_len("animations")?);
     Ok(())
 }

@@ -57,6 +57,20 @@ impl<'a> LeftOut<'a> {
         Ok(())
     }
 
+    /// Tells of a fault that costs a part of the file other than its shape. `what` says which.
+    ///
+    /// # Errors
+    /// The fault, if the reporter takes no notices or it is a cancellation.
+    pub(super) fn notify_of(&mut self, fault: MeshFault, what: &str) -> Result<(), MeshFault> {
+        match self.error_of(fault) {
+            Unfinished::Failed(error) if self.reporter.takes_notices() => {
+                self.reporter.notify_if_possible(|| format!("{error} ({what})"));
+                Ok(())
+            }
+            unfinished => Err(unfinished.into()),
+        }
+    }
+
     /// Converts a fault of the mesh file to an error with the file's name.
     pub(super) fn error_of(&self, fault: MeshFault) -> Unfinished<MeshError> {
         fault.into_error(self.name, self.bytes)

@@ -1,23 +1,28 @@
 //! The pose of a glTF mesh: morph targets, then joints of a skin or the transform of the node.
 
 use super::accessor::Accessor;
+use super::animation::Animation;
 use super::buffers::Buffers;
 use super::json::Json;
-use super::tree::{local_transform, nodes_in};
+use super::tree::nodes_in;
 use crate::mesh_file::builder::unit;
 use crate::mesh_file::fault::MeshFault;
 use glam::{DMat3, DMat4, Vec3};
 
-/// The transforms of all nodes to the scene's coordinates, for the joints of skins; empty in a file
-/// without skins.
-pub(super) struct Globals(Vec<DMat4>);
+/// The transforms of all nodes to the scene's coordinates at time 0, for the joints of skins; empty
+/// in a file without skins.
+pub(super) struct Globals {
+    transforms: Vec<DMat4>,
+    /// Whether the animation moves each node, or one above it.
+    moves: Vec<bool>,
+}
 
 impl Globals {
-    pub(super) fn of(root: Json<'_>) -> Result<Self, MeshFault> {
+    pub(super) fn of(root: Json<'_>, animation: &Animation) -> Result<Self, MeshFault> {
         let count = if root.list_len("skins")? > 0 { root.list_len("nodes")? } else { 0 };
-        let mut globals = vec![DMat4::IDENTITY; count];
+        let mut globals = Self { transforms: vec![DMat4::IDENTITY; count], moves: vec![false; count] };
         if count == 0 {
-            return Ok(Self(globals));
+            return Ok(globals);
         }
         let mut is_child = vec![false; count];
         for node in root.list("nodes")? {
@@ -26,23 +31,32 @@ impl Globals {
             }
         }
         let roots = root.list("nodes")?.enumerate().filter(|&(number, _)| !is_child[number]);
-        let mut open: Vec<_> = roots.map(|node| (node, DMat4::IDENTITY)).collect();
+        let mut open: Vec<_> = roots.map(|node| (node, DMat4::IDENTITY, false)).collect();
         let mut is_visited = vec![false; count];
-        while let Some(((number, node), parent)) = open.pop() {
+        while let Some(((number, node), parent, is_moved)) = open.pop() {
             if std::mem::replace(&mut is_visited[number], true) {
                 return Err(node.fault("this node is reached twice: nodes must form a tree"));
             }
-            globals[number] = parent * local_transform(node)?;
-            open.extend(nodes_in(node, "children", root)?.into_iter().map(|child| (child, globals[number])));
+            let transform = parent * animation.local_transform(number, node)?;
+            let moves = is_moved || animation.moves_node(number);
+            (globals.transforms[number], globals.moves[number]) = (transform, moves);
+            open.extend(nodes_in(node, "children", root)?.into_iter().map(|child| (child, transform, moves)));
         }
-        Ok(Self(globals))
+        Ok(globals)
+    }
+
+    /// Returns whether the animation moves a joint of the skin of a node.
+    pub(super) fn moves_skin_of<'a>(&self, node: Json<'a>, root: Json<'a>) -> Result<bool, MeshFault> {
+        let Some(skin) = node.field("skin")? else { return Ok(false) };
+        let (_, skin) = skin.item_of(root, "skins")?;
+        Ok(nodes_in(skin, "joints", root)?.iter().any(|&(number, _)| self.moves[number]))
     }
 
     /// Returns the matrices of a skin's joints.
     pub(super) fn joints<'a>(&self, skin: Json<'a>, buffers: &mut Buffers<'a, '_>) -> Result<Vec<DMat4>, MeshFault> {
         let (_, skin) = skin.item_of(buffers.root(), "skins")?;
         let joints = nodes_in(skin, "joints", buffers.root())?;
-        let mut matrices: Vec<_> = joints.iter().map(|&(number, _)| self.0[number]).collect();
+        let mut matrices: Vec<_> = joints.iter().map(|&(number, _)| self.transforms[number]).collect();
         if let Some(index) = skin.field("inverseBindMatrices")? {
             let inverse = Accessor::read(index, buffers)?.vectors::<16>()?;
             if inverse.len() < matrices.len() {

@@ -11,9 +11,11 @@ use crate::mesh_file::builder::{MeshBuilder, TriangleIndices};
 use crate::mesh_file::fault::MeshFault;
 use crate::mesh_file::left_out::LeftOut;
 use crate::mesh_file::marks::{Mark, MarkEnd};
+use crate::mesh_file::motion::Motion;
 use crate::mesh_file::staging::Staging;
 use glam::{DMat3, DMat4, Vec2};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A builder of the mesh from the glTF primitives read so far.
 pub(super) struct Primitives<'r, 'a, 'b> {
@@ -28,6 +30,17 @@ pub(super) struct Primitives<'r, 'a, 'b> {
     /// Ranges of texture coordinates and colours, which no node transforms.
     texture_coordinates: Ranges,
     colors: Ranges,
+}
+
+/// A mesh in the place and the pose of the node that shows it.
+#[derive(Clone, Copy)]
+pub(super) struct Placed<'a, 'w> {
+    pub(super) mesh: Json<'a>,
+    pub(super) node: Json<'a>,
+    /// The transform from the node's coordinates.
+    pub(super) transform: DMat4,
+    /// The weights of the morph targets, if the animation gives them.
+    pub(super) weights: Option<&'w Vec<f64>>,
 }
 
 /// The range of each accessor that was read.
@@ -75,26 +88,36 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         self.buffers.left_out()
     }
 
-    /// Returns the mesh, with the cameras and lights of the file.
-    pub(super) fn finish(mut self, staging: Staging) -> Result<MeshFile, MeshFault> {
-        self.mesh.staging = staging;
+    /// Returns the mesh, with the cameras and lights of the file, and its motion.
+    pub(super) fn finish(mut self, staging: Staging, motion: Option<Motion>) -> Result<MeshFile, MeshFault> {
+        (self.mesh.staging, self.mesh.motion) = (staging, motion.map(Arc::new));
         self.mesh.finish("its scene shows no mesh of triangles", self.buffers.left_out())
     }
 
-    /// Adds the primitives of a mesh, in the pose of the node that shows it.
-    pub(super) fn add_mesh(
+    /// Returns what `add` adds as a mesh of its own; `None` if it adds no triangle.
+    pub(super) fn apart(
         &mut self,
-        mesh: Json<'a>,
-        node: Json<'a>,
-        transform: DMat4,
-        globals: &Globals,
-    ) -> Result<(), MeshFault> {
+        add: impl FnOnce(&mut Self) -> Result<(), MeshFault>,
+    ) -> Result<Option<MeshFile>, MeshFault> {
+        let whole = std::mem::take(&mut self.mesh);
+        // These ranges are of lists of the whole mesh.
+        self.texture_coordinates.clear();
+        self.colors.clear();
+        let added = add(self);
+        let apart = std::mem::replace(&mut self.mesh, whole);
+        added?;
+        apart.finish_part(&self.mesh.materials)
+    }
+
+    /// Adds the primitives of a mesh.
+    pub(super) fn add_mesh(&mut self, placed: &Placed<'a, '_>, globals: &Globals) -> Result<(), MeshFault> {
+        let Placed { mesh, node, transform, weights } = *placed;
         // These ranges are of positions and normals to which the transform of the previous node was applied.
         self.positions.clear();
         self.normals.clear();
-        let mut weights = node.any_numbers("weights")?;
+        // In glTF the weights of a node take precedence over those of its mesh.
+        let mut weights = weights.map_or_else(|| node.any_numbers("weights"), |weights| Ok(weights.clone()))?;
         if weights.is_empty() {
-            // In glTF the weights of a node take precedence over those of its mesh.
             weights = mesh.any_numbers("weights")?;
         }
         let mut pose = Pose { node, transform, joints: Vec::new(), weights };

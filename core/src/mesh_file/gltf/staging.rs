@@ -76,6 +76,14 @@ impl StagingReader {
     }
 }
 
+/// Counts the motion of the camera and the light of a moving node, which stay where they are at
+/// time 0.
+pub(super) fn count_motion(node: Json<'_>, left_out: &mut LeftOut<'_>) -> Result<(), MeshFault> {
+    left_out.not_shown("animation (of a camera)", usize::from(node.field("camera")?.is_some()));
+    left_out.not_shown("animation (of a light)", usize::from(node.extension(LIGHTS)?.is_some()));
+    Ok(())
+}
+
 /// Returns the camera at a node, or what it is if it is not shown.
 fn camera_at(
     camera: Json<'_>,

@@ -16,18 +16,41 @@ pub(super) fn nodes_in<'a>(
     json.list(list)?.map(|index| index.item_of(root, "nodes")).collect()
 }
 
-/// Returns the transform from a node's coordinates to its parent's.
-pub(super) fn local_transform(node: Json<'_>) -> Result<DMat4, MeshFault> {
+/// The transform from a node's coordinates to its parent's, as in the file.
+pub(super) enum NodeTransform {
+    /// A matrix.
+    Matrix(DMat4),
+    /// A scale, then a rotation, then a translation.
+    Parts { translation: [f64; 3], rotation: [f64; 4], scale: [f64; 3] },
+}
+
+/// The message about a rotation that is none.
+pub(super) const NO_ROTATION: &str = "the rotation is not a quaternion: its length is zero or too large";
+
+impl NodeTransform {
+    /// Returns the matrix; `None` if the rotation is [none](NO_ROTATION).
+    pub(super) fn matrix(self) -> Option<DMat4> {
+        Some(match self {
+            Self::Matrix(matrix) => matrix,
+            Self::Parts { translation, rotation, scale } => {
+                let [translation, scale] = [translation, scale].map(DVec3::from_array);
+                // A quaternion whose length is not 1, after rounding for example, would also scale the mesh.
+                let rotation = DQuat::from_vec4(DVec4::from_array(rotation).try_normalize()?);
+                DMat4::from_scale_rotation_translation(scale, rotation, translation)
+            }
+        })
+    }
+}
+
+/// Returns the transform of a node, without its animation.
+pub(super) fn node_transform(node: Json<'_>) -> Result<NodeTransform, MeshFault> {
     if let Some(matrix) = node.numbers::<16>("matrix")? {
         // glTF: a node with a matrix has no translation, rotation or scale.
-        return Ok(DMat4::from_cols_array(&matrix));
+        return Ok(NodeTransform::Matrix(DMat4::from_cols_array(&matrix)));
     }
-    let translation = node.numbers("translation")?.map_or(DVec3::ZERO, DVec3::from_array);
-    let scale = node.numbers("scale")?.map_or(DVec3::ONE, DVec3::from_array);
-    let rotation = node.numbers("rotation")?.map_or(DVec4::W, DVec4::from_array);
-    // A quaternion whose length is not 1, after rounding for example, would also scale the mesh.
-    let Some(rotation) = rotation.try_normalize() else {
-        return Err(node.fault("the rotation is not a quaternion: its length is zero or too large"));
-    };
-    Ok(DMat4::from_scale_rotation_translation(scale, DQuat::from_vec4(rotation), translation))
+    Ok(NodeTransform::Parts {
+        translation: node.numbers("translation")?.unwrap_or([0.0; 3]),
+        rotation: node.numbers("rotation")?.unwrap_or([0.0, 0.0, 0.0, 1.0]),
+        scale: node.numbers("scale")?.unwrap_or([1.0; 3]),
+    })
 }
