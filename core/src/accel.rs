@@ -137,7 +137,10 @@ macro_rules! accelerator {
             pub(crate) has_smooth: bool,
             /// Whether any surface depends on the time.
             depends_on_time: bool,
+            /// The box around all bounded primitives.
             bounds: Option<Bounds>,
+            /// The box around those that are no instances, which may move.
+            tree_bounds: Option<Bounds>,
         }
 
         impl Accelerator {
@@ -217,6 +220,7 @@ macro_rules! accelerator {
                 } })*
                 built.scalars = self.scalars.build(end, report)?;
                 built.add_bounds(built.scalars.bvh.bounds());
+                built.tree_bounds = built.bounds;
                 built.instances = Instances::build(self.instances, built.scalars.end_index(), report)?;
                 built.add_bounds(built.instances.bvh.bounds());
                 Ok(built)
@@ -347,10 +351,19 @@ impl Accelerator {
     }
 
     /// Returns the accelerator with the surfaces as they are at a time in seconds.
-    // Bounds do not move, so the trees stay as they are. Triangles are copied: 100,000 take about a millisecond.
-    pub(crate) fn at_time(&self, seconds: f64) -> Self {
+    ///
+    /// `shape` returns the shape of an object at that time.
+    // The bounds of formulas do not move, so the trees stay as they are. Triangles that are no instances are copied:
+    // 100,000 take about a millisecond. The boxes of instances move, so the tree over them is built again.
+    pub(crate) fn at_time<'s>(&self, seconds: f64, shape: impl Fn(u32) -> &'s Shape) -> Self {
         let mut moved = self.clone();
         moved.scalars.leaves.iter_mut().for_each(|leaf| leaf.replace(|surface| surface.at_time(seconds)));
+        moved.instances = moved.instances.with_meshes(|object| match shape(object) {
+            Shape::Mesh(mesh) => Some(Arc::clone(mesh)),
+            _ => None,
+        });
+        moved.bounds = moved.tree_bounds;
+        moved.add_bounds(moved.instances.bvh.bounds());
         moved
     }
 

@@ -42,7 +42,7 @@ use crate::color::LinearRgb;
 use crate::finish::Finish;
 use crate::fog::Fog;
 use crate::light::Light;
-use crate::shape::Shape;
+use crate::shape::{Poses, Shape};
 use std::collections::HashSet;
 use std::fmt;
 use std::sync::Arc;
@@ -316,9 +316,11 @@ impl Scene {
         if !self.depends_on_time() {
             return self;
         }
-        self.accelerator = Arc::new(self.accelerator.at_time(seconds));
-        let at_time = |object: &Object| Object { shape: object.shape.at_time(seconds), ..object.clone() };
-        self.with(|checked| checked.objects = checked.objects.iter().map(at_time).collect())
+        let mut poses = Poses::at(seconds);
+        let at_time = |object: &Object| Object { shape: object.shape.at_time(&mut poses), ..object.clone() };
+        let objects: Arc<[Object]> = self.checked.objects.iter().map(at_time).collect();
+        self.accelerator = Arc::new(self.accelerator.at_time(seconds, |object| &objects[object as usize].shape));
+        self.with(|checked| checked.objects = objects)
     }
 
     /// Returns the scene's own camera.

@@ -30,6 +30,7 @@ pub mod implicit;
 #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have instances"))]
 mod instance;
 pub mod mesh;
+mod moving;
 pub mod scalar_leaf;
 #[cfg_attr(not(feature = "ron"), allow(dead_code, reason = "only scene files have written placements"))]
 mod placement;
@@ -58,6 +59,7 @@ pub use implicit::Implicit;
 pub(crate) use instance::CornerCells;
 pub(crate) use instance::Passage;
 pub use mesh::{Facet, Mesh, WrittenMesh};
+pub(crate) use moving::{MovingParts, Poses};
 pub use placement::{Placement, WrittenPlacement};
 pub use plane::Plane;
 pub use quad::Quad;
@@ -561,13 +563,18 @@ impl From<Mesh> for Shape {
 impl Shape {
     /// Returns whether the shape or its colours depend on the time.
     pub(crate) fn moves(&self) -> bool {
-        matches!(self, Self::Implicit(implicit) if implicit.moves())
+        match self {
+            Self::Implicit(implicit) => implicit.moves(),
+            Self::Mesh(mesh) => mesh.moves(),
+            _ => false,
+        }
     }
 
-    /// Returns the shape at a time in seconds.
-    pub(crate) fn at_time(&self, seconds: f64) -> Self {
+    /// Returns the shape at the time of the poses.
+    pub(crate) fn at_time(&self, poses: &mut Poses) -> Self {
         match self {
-            Self::Implicit(implicit) => Self::Implicit(implicit.at_time(seconds)),
+            Self::Implicit(implicit) => Self::Implicit(implicit.at_time(poses.seconds)),
+            Self::Mesh(mesh) if mesh.moves() => mesh.at_time(poses).into(),
             other => other.clone(),
         }
     }

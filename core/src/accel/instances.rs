@@ -9,6 +9,7 @@ use glam::Vec3;
 use std::array::from_fn;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::convert::Infallible;
 use std::sync::Arc;
 
 /// The instances in a scene.
@@ -72,18 +73,37 @@ impl Instances {
             all.push(Instance { object, mesh, triangles, first });
             first = end;
         }
-        let boxes: Vec<_> = all.iter().map(|instance| *instance.mesh.bounds()).collect();
+        Self::of(all, report)
+    }
+
+    /// Returns the instances with the tree over their boxes.
+    fn of<E: Send>(all: Vec<Instance>, report: &(dyn Fn(usize) -> Result<(), E> + Sync)) -> Result<Self, E> {
+        let seen: Vec<_> = (0..).zip(&all).filter(|(_, instance)| !instance.mesh.is_nowhere()).collect();
+        let boxes: Vec<_> = seen.iter().map(|(_, instance)| *instance.mesh.bounds()).collect();
         let (bvh, places) = Bvh::new_or_cancel(&boxes, &|_| report(0))?;
         let leaf = |leaf: usize| {
-            let numbers = places.boxes(leaf);
-            let of_lane = |lane: usize| numbers.get(lane).map(|&number| &boxes[number as usize]);
+            let places = places.boxes(leaf);
+            let of_lane = |lane: usize| places.get(lane).map(|&place| &boxes[place as usize]);
             let min = from_fn(|lane| of_lane(lane).map_or(Vec3::INFINITY, |bounds| bounds.min));
             let max = from_fn(|lane| of_lane(lane).map_or(Vec3::NEG_INFINITY, |bounds| bounds.max));
-            let numbers = from_fn(|lane| numbers[lane.min(numbers.len() - 1)]);
+            let numbers = from_fn(|lane| seen[places[lane.min(places.len() - 1)] as usize].0);
             InstanceLeaf { boxes: [Vector::of(min), Vector::of(max)], numbers }
         };
         let leaves = (0..places.leaf_count()).map(leaf).collect();
         Ok(Self { bvh, leaves, all })
+    }
+
+    /// Returns the instances with other meshes of the same files: `mesh` returns that of an object.
+    pub(super) fn with_meshes(&self, mesh: impl Fn(u32) -> Option<Arc<Mesh>>) -> Self {
+        let moved = |instance: &Instance| Instance {
+            mesh: mesh(instance.object).unwrap_or_else(|| Arc::clone(&instance.mesh)),
+            ..instance.clone()
+        };
+        if !self.all.iter().any(|instance| instance.mesh.moves()) {
+            return self.clone();
+        }
+        let Ok(moved) = Self::of(self.all.iter().map(moved).collect(), &|_| Ok::<_, Infallible>(()));
+        moved
     }
 
     /// Returns the number of triangles in the trees of all meshes that `instances` share.

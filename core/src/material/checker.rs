@@ -35,6 +35,12 @@ impl Checker {
         let size = checks::checked_number("size", size, |size| checks::length(SIZE, size))?;
         Ok(Self { a, b, size })
     }
+
+    /// Returns the side length of a square in world units.
+    #[cfg(feature = "ron")]
+    pub(crate) fn size(&self) -> f32 {
+        self.size
+    }
 }
 
 impl Reflecting for Checker {

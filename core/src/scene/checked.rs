@@ -11,13 +11,13 @@ use crate::checks::{self, Message, SceneFault};
 use crate::color::{LinearRgb, Srgb8};
 use crate::finish::{Finish, WrittenFinish};
 use crate::material::{Coloring, Image, Images, Material, WrittenMaterial};
-use crate::mesh_file::MeshFile;
+use crate::mesh_file::{MeshFile, Motion};
 use crate::progress::Reporter;
 use crate::scene_file::{MaterialUse, NamedMaterial, SceneFile, WrittenBackground, WrittenObject, WrittenToneCurve};
 use crate::scene_text::{Faults, quoted};
 use crate::shape::{
-    CornerCells, Mesh, Meshes, Placement, Shape, WrittenMesh, WrittenShape, without_chart, without_coordinates,
-    without_inside,
+    CornerCells, Mesh, Meshes, MovingParts, Placement, Shape, WrittenMesh, WrittenShape, without_chart,
+    without_coordinates, without_inside,
 };
 use crate::text::{closest, listed};
 use crate::written::{Spanned, Validator};
@@ -116,7 +116,7 @@ impl Validator<'_> {
                     let placed: Result<Vec<_>, _> = placements.iter().map(placed).collect();
                     let shapes = self.accept(written.span, placed).unwrap_or_default();
                     let image = image.map(|image| image_on(&shape, image, placements.first()));
-                    objects.extend(shapes.into_iter().map(|shape| object(shape, image.clone())));
+                    objects.extend(shapes.into_iter().flatten().map(|shape| object(shape, image.clone())));
                 }
             }
         }
@@ -192,11 +192,17 @@ struct MeshSharing<'f> {
     corner_cells: HashMap<*const MeshFile, Option<CornerCells>>,
     /// The number of triangles so far, those of each copy and instance counted.
     triangles: usize,
+    /// The moving parts of each mesh that moves, and the number of all parts so far.
+    moving: HashMap<*const Motion, MovingParts>,
+    parts: usize,
 }
 
 /// The most triangles of a scene, those of each copy and instance counted.
 // Traversal numbers them with 32 bits, of which other primitives need a part.
 const MAX_TRIANGLES: usize = 2_000_000_000;
+
+/// The most moving parts of the meshes of a scene, those of each copy counted.
+const MAX_PARTS: usize = 1 << 20;
 
 impl<'f> MeshSharing<'f> {
     fn of(file: &'f SceneFile) -> Self {
@@ -208,25 +214,44 @@ impl<'f> MeshSharing<'f> {
                 *count = count.saturating_add(copies);
             }
         }
-        Self { objects, corner_cells: HashMap::new(), triangles: 0 }
+        Self { objects, corner_cells: HashMap::new(), triangles: 0, moving: HashMap::new(), parts: 0 }
     }
 
     /// Returns a shape of an object scaled, rotated and moved.
-    fn placed(&mut self, object: &WrittenObject, shape: &Shape, placement: &Placement) -> Result<Shape, Message> {
+    ///
+    /// A mesh that moves becomes several shapes.
+    fn placed(&mut self, object: &WrittenObject, shape: &Shape, placement: &Placement) -> Result<Vec<Shape>, Message> {
         let of_fault = |fault: SceneFault| fault.message().to_owned().into();
         let (Shape::Mesh(mesh), WrittenShape::Mesh(WrittenMesh { path: Some(path) })) = (shape, &object.shape) else {
-            return shape.clone().placed(placement).map_err(of_fault);
+            return shape.clone().placed(placement).map(|shape| vec![shape]).map_err(of_fault);
         };
         self.triangles = self.triangles.saturating_add(mesh.triangle_count() as usize);
         if self.triangles > MAX_TRIANGLES {
             return Err("a scene may have up to 2,000,000,000 triangles, those of each copy counted".into());
         }
-        let (file, count) = (mesh.shared_file(), self.objects.get(&*path.value).copied().unwrap_or(1));
-        let cells = self.corner_cells.entry(Arc::as_ptr(file));
-        match cells.or_insert_with(|| CornerCells::of_shared(file, count)) {
-            Some(cells) => Mesh::instance(file, cells, placement).map(Shape::from).ok_or(checks::MESH_TOO_FAR.into()),
-            None => shape.clone().placed(placement).map_err(of_fault),
+        let count = self.objects.get(&*path.value).copied().unwrap_or(1);
+        let Some(motion) = mesh.file().motion() else {
+            return self.still(mesh, count, placement).map(|shape| vec![shape]);
+        };
+        self.parts = self.parts.saturating_add(motion.meshes().len());
+        if self.parts > MAX_PARTS {
+            return Err("a scene may have up to 1,048,576 moving parts of meshes, those of each copy counted".into());
         }
+        let still = motion.still().map(|still| self.still(&Mesh::of_checked(Arc::clone(still)), count, placement));
+        let parts = self.moving.entry(Arc::as_ptr(motion)).or_insert_with(|| MovingParts::of(motion));
+        let parts = parts.placed(placement).ok_or(checks::MESH_TOO_FAR)?;
+        Ok(still.transpose()?.into_iter().chain(parts.into_iter().map(Shape::from)).collect())
+    }
+
+    /// Returns a mesh that does not move, of which there are `count`, scaled, rotated and moved.
+    fn still(&mut self, mesh: &Mesh, count: usize, placement: &Placement) -> Result<Shape, Message> {
+        let file = mesh.shared_file();
+        let cells = self.corner_cells.entry(Arc::as_ptr(file));
+        if let Some(cells) = cells.or_insert_with(|| CornerCells::of_shared(file, count)) {
+            return Mesh::instance(file, cells, placement).map(Shape::from).ok_or(checks::MESH_TOO_FAR.into());
+        }
+        let placed = Shape::from(mesh.clone()).placed(placement);
+        placed.map_err(|fault| fault.message().to_owned().into())
     }
 }
 

@@ -380,7 +380,8 @@ fn draft_around_mesh(
         _ => None,
     };
     let guess = usual.filter(|_| up.is_none()).map(|usual| mesh_file::guessed(&mesh, usual, reporter.is_parallel()));
-    let origin = MeshOrigin { format, up: up.or(guess).unwrap_or_default(), is_guess: guess.is_some() };
+    let up = up.or(guess).unwrap_or_default();
+    let origin = MeshOrigin { format, up, is_guess: guess.is_some(), has_lights: false };
     let camera_count = mesh.staging().cameras.len();
     let draft = Draft::around_mesh(mesh, origin).ok_or_else(|| LoadError::Unseen { path: path.to_owned() })?;
     let unshown = camera_count - draft.checked.views.len();

@@ -11,10 +11,11 @@ use crate::material::Material;
 use crate::mesh_file::{CLAY, MeshFile, UpAxis};
 #[cfg(feature = "ron")]
 use crate::shape::Shape;
-use crate::shape::{Mesh, Plane};
+use crate::shape::{Mesh, MovingParts, Placement, Plane, Poses};
 #[cfg(feature = "ron")]
 use crate::text::visible;
 use glam::{Vec2, Vec3};
+use std::sync::Arc;
 
 /// The direction from the middle of the mesh to the eye: slightly to the right, and above.
 // Seen from straight ahead a symmetric mesh would look flat.
@@ -63,7 +64,7 @@ fn ambient() -> LinearRgb {
 }
 
 /// The mesh file around which a scene was made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeshOrigin {
     /// The name of the format; empty if unknown.
     pub format: &'static str,
@@ -71,6 +72,8 @@ pub struct MeshOrigin {
     pub up: UpAxis,
     /// Whether the axis is a guess.
     pub is_guess: bool,
+    /// Whether the lights are those of the file.
+    pub has_lights: bool,
 }
 
 impl Scene {
@@ -92,24 +95,26 @@ impl Scene {
     #[cfg(feature = "ron")]
     #[doc(hidden)]
     pub fn around_mesh_to_ron(&self, name: &str, camera: &Camera) -> Option<String> {
-        let [mesh, floor] = self.objects() else { return None };
-        let (origin, Shape::Mesh(shape), Shape::Plane(plane)) = (self.mesh()?, &mesh.shape, &floor.shape) else {
-            return None;
-        };
+        let [meshes @ .., floor] = self.objects() else { return None };
+        let (origin, first, Shape::Plane(plane)) = (self.mesh()?, meshes.first()?, &floor.shape) else { return None };
         let color = |color: LinearRgb| vector(Vec3::new(color.r, color.g, color.b));
         let lights = self.lights().iter().map(|light| format!("        {},\n", staging::light_to_ron(light)));
         let turn = match origin.up.degrees() {
             [0, 0, 0] => String::new(),
             [x, y, z] => format!(", rotate: ({x}, {y}, {z})"),
         };
-        let clay =
-            if shape.file().has_colors() { String::new() } else { format!(", material: Diffuse({})", color(CLAY)) };
-        let [[bottom, top], [a, b]] = [BACKGROUND, FLOOR].map(|colors| colors.map(color));
-        let size = number(SQUARE * 0.5 * Bounds::of(shape.file().positions().iter().copied()).extent().length());
-        let about_lights = if shape.file().staging().lights.is_empty() {
-            "    // A warm light, a blue one, and one from behind, each as bright everywhere.\n"
+        let clay = if first.material == Material::Own {
+            String::new()
         } else {
+            format!(", material: Diffuse({})", color(CLAY))
+        };
+        let [[bottom, top], [a, b]] = [BACKGROUND, FLOOR].map(|colors| colors.map(color));
+        let Material::Checker(squares) = floor.material else { return None };
+        let size = number(squares.size());
+        let about_lights = if origin.has_lights {
             "    // The lights of the file, all times one factor.\n"
+        } else {
+            "    // A warm light, a blue one, and one from behind, each as bright everywhere.\n"
         };
         let views: Vec<_> = self.views().iter().map(|view| format!("        {},\n", view.value_to_ron())).collect();
         let views = if views.is_empty() { String::new() } else { format!("    views: [\n{}    ],\n", views.concat()) };
@@ -137,14 +142,14 @@ impl Scene {
 impl Draft {
     /// Returns the scene of [`Scene::of_mesh`] as a draft, without trees.
     pub fn of_mesh(mesh: MeshFile) -> Option<Self> {
-        Self::around_mesh(mesh, MeshOrigin { format: "", up: UpAxis::Y, is_guess: false })
+        Self::around_mesh(mesh, MeshOrigin::default())
     }
 
     /// Returns the scene of [`Scene::of_mesh`] as a draft, with the mesh turned so that the axis
     /// `origin.up` points up.
     pub(super) fn around_mesh(mesh: MeshFile, origin: MeshOrigin) -> Option<Self> {
         let mesh = mesh.with_axis_up(origin.up)?;
-        let bounds = Bounds::of(mesh.positions().iter().copied());
+        let bounds = framed(&mesh)?;
         let middle = bounds.min + 0.5 * bounds.extent();
         let radius = 0.5 * bounds.extent().length();
         let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
@@ -158,11 +163,13 @@ impl Draft {
         let material = if mesh.has_colors() { Material::Own } else { Material::diffuse(CLAY).ok()? };
         // The scene has a floor because the shadows on it show the shape and the height of the mesh.
         let staging = mesh.staging().clone();
-        let objects = vec![Object::new(Mesh::of_checked(mesh), material), Object::new(floor, squares)];
+        let mut objects: Vec<_> = meshes_of(mesh)?.into_iter().map(|mesh| Object::new(mesh, material)).collect();
+        objects.push(Object::new(floor, squares));
         let [bottom, top] = BACKGROUND;
         let middle_and_radius = (middle, radius);
         let mut lights = staging::lights(&staging.lights, middle_and_radius);
-        if lights.is_empty() {
+        let has_lights = !lights.is_empty();
+        if !has_lights {
             // The lights are placed relative to the mesh's radius, so that all meshes are lit alike.
             lights = LIGHTS
                 .into_iter()
@@ -171,7 +178,7 @@ impl Draft {
         }
         let (views, view_names) = staging::views(&staging.cameras, middle_and_radius).into_iter().unzip();
         Some(Self::new(Checked {
-            mesh: Some(origin),
+            mesh: Some(MeshOrigin { has_lights, ..origin }),
             views,
             view_names,
             background: Background::Gradient { bottom, top },
@@ -180,6 +187,30 @@ impl Draft {
             ..Checked::new(camera(&bounds, middle)?, objects)
         }))
     }
+}
+
+/// Returns the box that the first picture shows: that of the mesh at time 0.
+///
+/// Of a mesh that appears later, it is the box around all places where it then is.
+fn framed(mesh: &MeshFile) -> Option<Bounds> {
+    /// The number of times at which the mesh is looked for.
+    const TIMES: u32 = 16;
+    let bounds = Bounds::of(mesh.positions().iter().copied());
+    let Some(motion) = mesh.motion().filter(|_| bounds.extent() == Vec3::ZERO) else { return Some(bounds) };
+    let parts = MovingParts::of(motion).placed(&Placement::NONE)?;
+    let at_time = |step: u32| {
+        let mut poses = Poses::at(motion.length() * (f64::from(step) / f64::from(TIMES)));
+        let parts = parts.iter().map(|part| part.at_time(&mut poses)).filter(|part| !part.is_nowhere());
+        parts.map(|part| *part.bounds()).reduce(|a, b| a.union(&b))
+    };
+    (0..TIMES).filter_map(at_time).reduce(|a, b| a.union(&b))
+}
+
+/// Returns the mesh, or the part of it that does not move and the parts that do.
+fn meshes_of(mesh: MeshFile) -> Option<Vec<Mesh>> {
+    let Some(motion) = mesh.motion() else { return Some(vec![Mesh::of_checked(mesh)]) };
+    let still = motion.still().map(|still| Mesh::of_checked(Arc::clone(still)));
+    Some(still.into_iter().chain(MovingParts::of(motion).placed(&Placement::NONE)?).collect())
 }
 
 /// Returns the camera at the distance at which the mesh's box fills `FRAMED_SHARE` of the picture.

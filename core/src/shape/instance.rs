@@ -33,13 +33,15 @@ struct Cell {
 impl CornerCells {
     /// Sorts the corners of a mesh if `objects` objects should share its triangles.
     pub(crate) fn of_shared(file: &MeshFile, objects: usize) -> Option<Self> {
+        let is_shared = objects > 1 && objects.saturating_mul(file.triangles().len()) > MAX_COPIED_TRIANGLES;
+        if is_shared { Self::of_traceable(file) } else { None }
+    }
+
+    /// Sorts the corners of a mesh if rays can be traced in the coordinates of its file.
+    pub(super) fn of_traceable(file: &MeshFile) -> Option<Self> {
         let Bounds { min, max } = Bounds::of(file.positions().iter().copied());
-        let is_shared = objects > 1
-            && objects.saturating_mul(file.triangles().len()) > MAX_COPIED_TRIANGLES
-            // Rays must be traceable in the coordinates of the file.
-            && checks::are_within_range(&[min, max])
-            && checks::is_long_enough(max - min);
-        is_shared.then(|| Self::of(file))
+        let is_traceable = checks::are_within_range(&[min, max]) && checks::is_long_enough(max - min);
+        is_traceable.then(|| Self::of(file))
     }
 
     /// Sorts the corners of a mesh.

@@ -1,6 +1,7 @@
 //! A mesh: triangles that share their corners.
 
 use super::instance::{CornerCells, Passage};
+use super::moving::{MeshMotion, PartPlace, Poses};
 use super::placement::{AffineMap, Placeable, Placement};
 use super::{ChartPoint, CheckedShape, Meshes, Shape, Surface, SurfacePoint, Triangle};
 use crate::bounds::Bounds;
@@ -26,6 +27,10 @@ pub struct Mesh {
     bounds: OnceLock<Bounds>,
     /// The map from the coordinates of the file to the scene, if the mesh is an instance.
     map: Option<AffineMap>,
+    /// The motion, from which the map follows.
+    motion: Option<Arc<MeshMotion>>,
+    /// Whether the mesh is nowhere at this time, so that no ray may be mapped to it.
+    is_nowhere: bool,
 }
 
 /// Compares what is drawn.
@@ -33,7 +38,7 @@ pub struct Mesh {
 /// The bounds follow from it, and may be computed for one of two equal meshes only.
 impl PartialEq for Mesh {
     fn eq(&self, other: &Self) -> bool {
-        self.file == other.file && self.map == other.map
+        self.file == other.file && self.map == other.map && self.motion == other.motion
     }
 }
 
@@ -96,7 +101,7 @@ impl Mesh {
 
     /// Returns the mesh of a file with checked coordinates, or of a file made from such a file.
     pub(crate) fn of_checked(file: impl Into<Arc<MeshFile>>) -> Self {
-        Self { file: file.into(), bounds: OnceLock::new(), map: None }
+        Self { file: file.into(), bounds: OnceLock::new(), map: None, motion: None, is_nowhere: false }
     }
 
     /// Returns the instance of a mesh with this placement; `None` if it reaches too far.
@@ -108,7 +113,34 @@ impl Mesh {
             file: Arc::clone(file),
             bounds: OnceLock::from(bounds),
             map,
+            motion: None,
+            is_nowhere: false,
         })
+    }
+
+    /// Returns a moving mesh at one place of its motion.
+    pub(super) fn moving(file: Arc<MeshFile>, motion: Arc<MeshMotion>, place: &PartPlace) -> Self {
+        let (map, bounds, is_nowhere) = match place {
+            PartPlace::Seen(map, bounds) => (*map, *bounds, false),
+            PartPlace::Nowhere | PartPlace::TooFar => (AffineMap::NOWHERE, Bounds::of([Vec3::ZERO]), true),
+        };
+        Self { file, bounds: bounds.into(), map: Some(map), motion: Some(motion), is_nowhere }
+    }
+
+    /// Returns whether the mesh depends on the time.
+    pub(crate) fn moves(&self) -> bool {
+        self.motion.is_some()
+    }
+
+    /// Returns whether the mesh is nowhere at this time, so that no ray may be traced to it.
+    pub(crate) fn is_nowhere(&self) -> bool {
+        self.is_nowhere
+    }
+
+    /// Returns the mesh at the time of the poses.
+    pub(crate) fn at_time(&self, poses: &mut Poses) -> Self {
+        let Some(motion) = &self.motion else { return self.clone() };
+        Self::moving(Arc::clone(&self.file), Arc::clone(motion), &motion.place_in(poses))
     }
 
     /// Returns the ray in the coordinates of the file; each t stays that of the same point.
@@ -129,7 +161,7 @@ impl Mesh {
     /// Returns the mesh of another file; an instance keeps its place.
     #[cfg(feature = "mesh")]
     pub(crate) fn with_file(&self, file: Arc<MeshFile>) -> Self {
-        Self { file, bounds: OnceLock::new(), map: self.map }
+        Self { file, bounds: OnceLock::new(), ..self.clone() }
     }
 
     /// Returns the smallest box around the mesh.
@@ -209,6 +241,9 @@ impl Surface for Facet<'_> {
 
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
         let Some(map) = &self.mesh.map else { return self.triangle.closest_crossing(probe, within) };
+        if self.mesh.is_nowhere {
+            return None;
+        }
         let Interval { min, max } = self.mesh.bounds().crossed(probe);
         let passage = Passage::new([min, max], within)?;
         let triangle = Triangle::unchecked(self.mesh.file_corners(self.index));

@@ -93,6 +93,19 @@ pub(super) struct AffineMap {
 }
 
 impl AffineMap {
+    /// The map that maps everything to the origin, for a shape that is nowhere.
+    pub(super) const NOWHERE: Self = Self { linear: DMat3::ZERO, inverse: DMat3::ZERO, translation: DVec3::ZERO };
+
+    /// Returns the map with this linear part, whose determinant is not 0.
+    pub(super) fn new(linear: DMat3, translation: DVec3) -> Self {
+        Self { linear, inverse: linear.inverse(), translation }
+    }
+
+    /// Returns whether all numbers are finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.linear.is_finite() && self.inverse.is_finite() && self.translation.is_finite()
+    }
+
     /// Returns the map that applies this map, then another one.
     pub(super) fn then(&self, outer: &Self) -> Self {
         Self {
