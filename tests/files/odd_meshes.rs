@@ -7,10 +7,11 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use termtrace::LinearRgb;
 use termtrace::glam::{Vec2, Vec3};
+use termtrace::internals::bounds::Bounds;
 use termtrace::internals::mesh_file::{Emission, FileCamera, FileLight, FilePlace, MeshFile, MeshMaterial, Opacity};
 use termtrace::internals::progress::Reporter;
+use termtrace::{LinearRgb, Scene};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/odd_meshes")
@@ -47,7 +48,20 @@ fn contents_of(mesh: &MeshFile) -> String {
     let (least, most) = places.fold((Vec3::MAX, Vec3::MIN), |(least, most), p| (least.min(p), most.max(p)));
     let colors: BTreeSet<_> = (0..mesh.triangles().len()).map(|triangle| color_of(mesh, triangle)).collect();
     let colors = colors.into_iter().collect::<Vec<_>>().join(", ");
-    format!("{} triangles from {least} to {most}, {colors}{}", mesh.triangles().len(), staging_of(mesh))
+    let count = mesh.triangles().len();
+    format!("{count} triangles from {least} to {most}, {colors}{}{}", staging_of(mesh), motion_of(mesh))
+}
+
+/// Returns a line for each of some times, if the mesh moves: the extent that it then has.
+fn motion_of(mesh: &MeshFile) -> String {
+    let Some(scene) = mesh.moves().then(|| Scene::of_mesh(mesh.clone())).flatten() else { return String::new() };
+    let extent_at = |seconds: f64| {
+        let bounds = scene.clone().at_time(seconds).bounds();
+        let rounded = |point: Vec3| ((point + 1e4) * 1e3).round() / 1e3 - 1e4;
+        let extent = bounds.map(|Bounds { min, max }| format!("from {:.2} to {:.2}", rounded(min), rounded(max)));
+        format!("\nat {seconds} s {}", extent.unwrap_or_else(|| "nothing".to_owned()))
+    };
+    [0.0, 0.5, 1.0, 3.5].map(extent_at).concat()
 }
 
 /// Returns a line for each camera and light.

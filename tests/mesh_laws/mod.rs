@@ -4,9 +4,12 @@ use glam::{Vec2, Vec3};
 use std::io;
 use std::path::Path;
 use std::sync::Mutex;
+use termtrace::internals::bounds::Bounds;
+use termtrace::internals::hit::closest_hit;
 use termtrace::internals::mesh_file::{FilePosition, MeshFile};
 use termtrace::internals::progress::Reporter;
-use termtrace::{LinearRgb, MeshError};
+use termtrace::internals::ray::Ray;
+use termtrace::{LinearRgb, MeshError, Scene};
 
 /// Asserts that bytes give a valid mesh, or an error that can be printed.
 ///
@@ -66,6 +69,7 @@ pub(crate) fn assert_sound(mesh: &MeshFile) {
         assert!(mesh.colors_of(i).into_iter().flatten().all(is_reflectance));
         assert!(mesh.material_of(i).is_none_or(|material| material < mesh.materials().len()));
     }
+    assert_moves(mesh);
     for material in mesh.materials() {
         assert!(is_reflectance(material.reflectance));
         if let Some(placement) = &material.texture {
@@ -74,6 +78,19 @@ pub(crate) fn assert_sound(mesh: &MeshFile) {
             assert_eq!(texture.texels().len(), texture.width() as usize * texture.height() as usize);
             assert!(placement.transform.iter().all(|row| row.is_finite()));
         }
+    }
+}
+
+/// Asserts that a mesh that moves has an extent at any time, and can be hit by rays.
+fn assert_moves(mesh: &MeshFile) {
+    let Some(scene) = mesh.moves().then(|| Scene::of_mesh(mesh.clone())).flatten() else { return };
+    for seconds in [0.0, 0.3, -7.0, 1e9] {
+        let scene = scene.clone().at_time(seconds);
+        let Some(Bounds { min, max }) = scene.bounds() else { continue };
+        assert!(min.is_finite() && max.is_finite() && min.cmple(max).all(), "{min} {max}");
+        let origin = scene.camera().pose().eye;
+        let hit = closest_hit(&scene, &Ray { origin, direction: min + 0.4 * (max - min) - origin });
+        assert!(hit.is_none_or(|hit| hit.t.is_finite()), "{hit:?}");
     }
 }
 

@@ -726,3 +726,134 @@ mesh.write("s5_mode.gltf")
 mesh = Gltf()
 mesh.json["extensionsUsed"] = mesh.json["extensionsRequired"] = ["ACME_wonder"]
 mesh.write("b14_unknown.gltf")
+
+
+# Animations: two seconds, unless they are faulty.
+QUARTER = [0, 0, 0, 1, 0, 0, HALF, HALF]
+
+
+def channel(mesh, path, output, node=0, times=(0, 2), **sampler):
+    """Adds a channel to the first animation."""
+    animation = mesh.json.setdefault("animations", [{"samplers": [], "channels": []}])[0]
+    inputs = mesh.floats("SCALAR", list(times))
+    animation["samplers"].append({"input": inputs, "output": output} | sampler)
+    animation["channels"].append({"sampler": len(animation["samplers"]) - 1, "target": {"node": node, "path": path}})
+    return mesh
+
+
+def turning():
+    """A square that makes a quarter turn about z."""
+    mesh = staged()
+    return channel(mesh, "rotation", mesh.floats("VEC4", QUARTER))
+
+
+def rising(**sampler):
+    """A square that rises from 0 to 4."""
+    mesh = staged()
+    return channel(mesh, "translation", mesh.floats("VEC3", [0, 0, 0, 0, 4, 0]), **sampler)
+
+
+turning().write("s4_turn.gltf")
+rising().write("s4_rise.gltf")
+rising(interpolation="STEP").write("s4_step.gltf")
+mesh = staged()
+spline = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4, 0, 0, 4, 0, 0, 0, 0]
+channel(mesh, "translation", mesh.floats("VEC3", spline), interpolation="CUBICSPLINE").write("s4_spline.gltf")
+# Growing from nothing: the other two axes have an extent from the start.
+mesh = staged()
+channel(mesh, "scale", mesh.floats("VEC3", [1, 0, 1, 1, 2, 1])).write("s4_grow.gltf")
+# A still square, a turning one, and one on its corner, which rises in its coordinates.
+mesh = turning()
+mesh.json["nodes"][0]["children"] = [1]
+mesh.json["nodes"] += [{"mesh": 0, "translation": [1, 0, 0]}, {"mesh": 0, "translation": [-3, 0, 0]}]
+mesh.json["scenes"][0]["nodes"] = [0, 2]
+channel(mesh, "translation", mesh.floats("VEC3", [1, 0, 0, 1, 2, 0]), node=1).write("s4_parts.gltf")
+# As numbers that stand for 0 to 1, and with one quaternion of a sparse accessor.
+mesh = staged()
+values = mesh.accessor("VEC4", 5122, "h", [0, 0, 0, 32767, 0, 0, 23170, 23170], normalized=True)
+channel(mesh, "rotation", values).write("s4_normalized.gltf")
+mesh = staged()
+values = mesh.floats("VEC4", QUARTER[:4] * 2)
+sparse = {"indices": {"bufferView": mesh.view(b"\1"), "componentType": 5121}}
+sparse["values"] = {"bufferView": mesh.view(struct.pack("<4f", *QUARTER[4:]))}
+mesh.accessors[values]["sparse"] = sparse | {"count": 1}
+channel(mesh, "rotation", values).write("s4_sparse.gltf")
+mesh = staged()
+mesh.primitive["mode"] = 2
+del mesh.primitive["indices"]
+channel(mesh, "translation", mesh.floats("VEC3", [0, 0, 0, 0, 4, 0])).write("s4_lines.gltf")
+# There at the start, then not, and the other way round: without an extent when the picture is framed.
+for name, scales in [("vanish", [1, 0]), ("appear", [0, 1])]:
+    mesh = staged()
+    values = mesh.floats("VEC3", [scale for scale in scales + [1] for _ in range(3)])
+    channel(mesh, "scale", values, times=[0, 1, 2], interpolation="STEP").write(f"s4_{name}.gltf")
+# What is left out: a second animation, what is no node, morph targets, skins, cameras and lights.
+mesh = turning()
+mesh.json["animations"] *= 3
+mesh.write("s4_three.gltf")
+mesh = turning()
+mesh.json["animations"][0]["channels"][0]["target"] = {"path": "pointer", "extensions": {}}
+mesh.write("s4_pointer.gltf")
+mesh = Gltf()
+mesh.primitive["targets"] = [{"POSITION": mesh.floats("VEC3", [0, 0, 0, 0, 0, 0, 0, 4, 0])}]
+channel(mesh, "weights", mesh.floats("SCALAR", [0.5, 1])).write("s4_morph.gltf")
+mesh = skinned()
+channel(mesh, "translation", mesh.floats("VEC3", [0, 0, 0, 0, 4, 0]), node=1).write("s4_skin.gltf")
+mesh = rising()
+mesh.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1}}]
+shine(mesh, [{"type": "point"}])
+mesh.json["nodes"].append({"camera": 0, "translation": [0, 0, 5], "extensions": LIGHT[0]})
+mesh.json["nodes"][0]["children"] = [1]
+mesh.write("s4_camera.gltf")
+# What does not move: a node without a mesh, one key frame, and two of the same value at another place than the node's.
+mesh = rising()
+mesh.json["animations"][0]["channels"][0]["target"]["node"] = 1
+mesh.json["nodes"].append({})
+mesh.write("s4_empty.gltf")
+mesh = staged()
+channel(mesh, "translation", mesh.floats("VEC3", [0, 4, 0]), times=[1]).write("s4_one.gltf")
+mesh = staged()
+channel(mesh, "translation", mesh.floats("VEC3", [0, 4, 0] * 2)).write("s4_constant.gltf")
+# Faults.
+mesh = rising()
+mesh.json["animations"][0]["samplers"] = []
+mesh.write("s4_no_sampler.gltf")
+mesh = rising()
+mesh.json["animations"][0]["channels"][0]["target"]["node"] = 7
+mesh.write("s4_no_node.gltf")
+for name, times in [("unsorted", [2, 0]), ("nan", [0, float("nan")]), ("negative", [-1, 1]), ("count", [0, 1, 2])]:
+    rising(times=times).write(f"s4_{name}.gltf")
+mesh = rising(interpolation="BEZIER")
+mesh.write("s4_bezier.gltf")
+mesh = rising()
+mesh.accessors[-1]["count"] = 0
+mesh.write("s4_none.gltf")
+mesh = rising()
+mesh.accessors[-1] = {"componentType": 5126, "type": "SCALAR", "count": 4000000000}
+mesh.write("s4_huge.gltf")
+mesh = rising()
+mesh.json["nodes"][0]["matrix"] = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+mesh.write("s4_matrix.gltf")
+mesh = staged()
+channel(mesh, "rotation", mesh.floats("VEC4", QUARTER[:4] + [0] * 4)).write("s4_no_turn.gltf")
+mesh = rising()
+mesh.json["animations"][0]["channels"] *= 3
+mesh.write("s4_twice.gltf")
+mesh = rising()
+mesh.json["animations"][0]["channels"] = {}
+mesh.write("s4_no_list.gltf")
+mesh = rising()
+mesh.json["animations"] = 5
+mesh.write("s4_number.gltf")
+
+# Extensions that are no objects.
+mesh = staged()
+mesh.json["nodes"][0]["extensions"] = 5
+mesh.json["materials"][0] = {"extensions": [], "emissiveFactor": [1, 0, 0]}
+mesh.primitive["extensions"] = "none"
+mesh.json["extensions"] = None
+mesh.write("s6_extensions.gltf")
+mesh = staged()
+mesh.json["nodes"][0]["extensions"] = {"KHR_lights_punctual": 5}
+mesh.json["materials"][0]["extensions"] = {"KHR_materials_pbrSpecularGlossiness": True}
+mesh.write("s6_values.gltf")

@@ -11,6 +11,7 @@ mod hashes;
 mod images;
 mod instances;
 mod maps;
+mod motion;
 mod odd;
 mod povray;
 mod properties;
