@@ -96,8 +96,12 @@ impl<'a> Json<'a> {
     }
 
     /// Returns the extension `name` of this value, if it has it.
+    ///
+    /// Extensions that are no objects have no effect, as they cost no more than what they would add.
     pub(super) fn extension(self, name: &'static str) -> Result<Option<Self>, MeshFault> {
-        self.field("extensions")?.map_or(Ok(None), |extensions| extensions.field(name))
+        let is_object = |json: &Self| json.value.is_object();
+        let Some(extensions) = self.field("extensions")?.filter(is_object) else { return Ok(None) };
+        Ok(extensions.field(name)?.filter(is_object))
     }
 
     /// Returns the items of the list in the field `name`; no items if the field is missing.
