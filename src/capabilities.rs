@@ -48,6 +48,14 @@ impl Capabilities {
         Self { shifts: Shifts::Off, ..self }
     }
 
+    /// Returns the capabilities that the frames of an audience use.
+    ///
+    /// They have neither shifts nor finer glyphs at rest, so that viewers with and without them share frames.
+    #[cfg(feature = "serve")]
+    pub(crate) fn for_audience(self) -> Self {
+        Self { resting_glyphs: None, ..self.without_shifts() }
+    }
+
     /// Returns the capabilities for a picture at rest, which has finer glyphs if there are any.
     #[cfg(feature = "live")]
     pub(crate) fn at_rest(self) -> Self {

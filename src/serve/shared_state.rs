@@ -190,6 +190,8 @@ impl SharedState {
         let mut options = Options::new(terminal.hints(&|name| self.terminal_colors(name)));
         options.max_rate = settings.max_rate;
         options.max_frames = Some(settings.max_frames);
+        // A picture in finer glyphs takes several times as much of the time and memory that viewers share.
+        options.finer_at_rest = false;
         options.keymap = keymap.clone();
         options.welcome = Some(welcome_line(scenes.len(), settings.link.as_deref(), columns));
         options

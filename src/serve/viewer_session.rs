@@ -320,9 +320,7 @@ impl ViewerSession {
         for _ in 0..MAX_STEPS {
             let now = clock();
             match self.viewer.next_step(DriverState { sending, tracing: None }, now) {
-                ViewerStep::Wait(until) => {
-                    return AfterTurn::Sleep(until);
-                }
+                ViewerStep::Wait(until) => return AfterTurn::Sleep(until),
                 ViewerStep::CancelRefinement => {}
                 ViewerStep::Draw => {
                     if self.viewer.shows_others() {

@@ -31,6 +31,9 @@ pub struct Options {
     ///
     /// `None`: in motion as many samples as fit the time of a frame, at rest up to [`Sampling::BEST`].
     pub sampling: Option<Sampling>,
+    /// Whether a picture at rest is traced again for finer glyphs, if the terminal shows them well.
+    #[doc(hidden)]
+    pub finer_at_rest: bool,
     /// The number of tracing threads. `None`: one per core.
     pub threads: Option<usize>,
     /// The speed of moving and turning by keys.
@@ -74,6 +77,7 @@ impl Options {
             max_rate: None,
             max_frames: None,
             sampling: None,
+            finer_at_rest: true,
             threads: None,
             key_speed: KeySpeed::default(),
             reduced_motion: false,

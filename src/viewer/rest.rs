@@ -76,7 +76,8 @@ impl Viewer {
     }
 
     fn may_rest(&self, busy: DriverState) -> bool {
-        let is_free = self.display.capabilities().resting_glyphs.is_some()
+        let is_free = self.options.finer_at_rest
+            && self.display.capabilities().resting_glyphs.is_some()
             // On slow links only half blocks are sent with fewer bytes at less quality.
             && !self.pacing.is_link_slow()
             && self.options.max_rate.is_none()

@@ -188,6 +188,18 @@ impl Guest {
         }
     }
 
+    /// Reads until nothing has come for a while.
+    pub(crate) async fn rest(&mut self) {
+        for _ in 0..100 {
+            let before = self.bytes.len();
+            self.read_for(Duration::from_millis(300)).await;
+            if self.bytes.len() == before {
+                return;
+            }
+        }
+        panic!("it does not rest: {:#?}", self.text());
+    }
+
     /// Returns what the cells of the screen look like: two colours, or a character.
     pub(crate) fn cells(&self) -> String {
         let (rows, columns) = self.screen.second_opinion().size();

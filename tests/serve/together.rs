@@ -56,18 +56,6 @@ fn place_of(guest: &Guest, text: &str) -> Option<(usize, usize)> {
     guest.text().iter().enumerate().find_map(|(row, line)| Some((row, line.find(text)?)))
 }
 
-/// Reads until nothing has come for a while.
-async fn rest(guest: &mut Guest) {
-    for _ in 0..100 {
-        let before = guest.bytes.len();
-        guest.read_for(Duration::from_millis(300)).await;
-        if guest.bytes.len() == before {
-            return;
-        }
-    }
-    panic!("it does not rest: {:#?}", guest.text());
-}
-
 /// Reads until the server has made no picture for two seconds, for any of its viewers.
 async fn rest_of_all(hosting: &Hosting, guests: &mut [&mut Guest]) {
     let made = || {
@@ -171,12 +159,12 @@ fn a_followed_viewer_may_resize() {
         second.see_picture().await;
         second.send(b"u1").await;
         second.see_text("with viewer 0").await;
-        rest(&mut second).await;
+        second.rest().await;
         let before = second.cells();
         first.resize_screen(100, 40);
         first.channel.window_change(100, 40, 0, 0).await.expect("it is sent");
         first.see("the picture in the new size", |guest| guest.text()[35].contains(['▀', '▄'])).await;
-        rest(&mut second).await;
+        second.rest().await;
         assert_eq!(second.cells(), before, "the follower's window has not changed");
         // It follows on, in its own size, and the first one's move is the same for a terminal of that size.
         first.send(b"t").await;
@@ -208,7 +196,7 @@ fn a_followed_viewer_who_leaves_gives_followers_views_of_their_own() {
             others.push(other);
         }
         first.send(b"tt]").await;
-        rest(&mut first).await;
+        first.rest().await;
         let camera = camera_of(first).await;
         assert!(!camera.is_empty(), "it has moved");
         for other in &mut others {
@@ -240,7 +228,7 @@ fn a_chain_of_followers_ends_at_one_who_moves() {
         see_the_same(&mut first, &mut third).await;
         first.send(b"w").await;
         first.see_text("you have left the tour").await;
-        rest(&mut first).await;
+        first.rest().await;
         see_the_same(&mut first, &mut third).await;
         drop(second);
         third.see_text("viewer 1 has left").await;
@@ -256,11 +244,11 @@ fn row_31_no_viewer_is_redrawn_because_another_one_moves() {
         // Marks are off until a key asks for them.
         let mut second = Guest::enter(&hosting).await;
         second.see_picture().await;
-        rest(&mut first).await;
+        first.rest().await;
         assert!(!first.text().iter().any(|row| row.contains("watching") || row.contains("(1)")));
         // The second one goes ahead, into the first one's picture, and on and on.
         second.send(b"wwwwww").await;
-        rest(&mut second).await;
+        second.rest().await;
         first.send(b"U").await;
         first.see_text("2 watching").await;
         first.see_text("(1)").await;
@@ -293,7 +281,7 @@ fn row_11_names_are_shown_only_where_asked_for_and_in_plain_letters() {
             let mut other = enter_as(&hosting, HOSTILE, None).await;
             other.see_picture().await;
             other.send(b"wwwwww").await;
-            rest(&mut other).await;
+            other.rest().await;
             let mut guest = enter_as(&hosting, "bert", None).await;
             guest.see_picture().await;
             guest.send(b"uU").await;
@@ -371,7 +359,7 @@ fn a_leader_who_disconnects_in_mid_tour_leaves_the_path_or_views_of_ones_own() {
             let mut guest = enter_as(&hosting, "anybody", None).await;
             guest.see_text("tour led by viewer 0").await;
             leader.send(b"ttwww").await;
-            rest(&mut leader).await;
+            leader.rest().await;
             see_the_same(&mut leader, &mut guest).await;
             let seen = picture(&leader);
             assert_eq!(picture(&guest), seen);
@@ -382,7 +370,7 @@ fn a_leader_who_disconnects_in_mid_tour_leaves_the_path_or_views_of_ones_own() {
                 guest.see("the path goes on", |guest| picture(guest) != seen).await;
             } else {
                 guest.see_text("the tour has ended").await;
-                rest(&mut guest).await;
+                guest.rest().await;
                 assert!(!camera_of(guest).await.is_empty(), "the view is where the leader was");
             }
         });

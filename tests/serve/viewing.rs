@@ -41,6 +41,20 @@ fn the_first_picture_waits_for_no_answer() {
     });
 }
 
+/// Finer glyphs take several times as many samples, in time and memory that viewers share.
+#[test]
+fn a_terminal_known_for_its_blocks_keeps_half_blocks_at_rest() {
+    let hosting = Hosting::start(|settings| settings.max_rate = None);
+    run(async {
+        let mut guest = Guest::enter(&hosting).await;
+        guest.send(b"\x1bP>|kitty(0.26.5)\x1b\\").await;
+        guest.see_picture().await;
+        guest.rest().await;
+        guest.see_text("▄").await;
+        assert!(!guest.text().concat().contains(['▘', '▝', '▖', '▗', '▌', '▐', '▂', '▆']), "{:#?}", guest.text());
+    });
+}
+
 #[test]
 fn a_new_size_and_the_mouse_are_followed() {
     let hosting = Hosting::usual();

@@ -91,8 +91,7 @@ impl ViewerSession {
         self.following.filter(|_| self.leaving.is_none()).map(|Following { guide, .. }| AudienceClass {
             guide,
             size: self.viewer.picture_size(),
-            // An audience's frames use no shifts, so viewers with and without them share one.
-            capabilities: self.viewer.capabilities().without_shifts(),
+            capabilities: self.viewer.capabilities().for_audience(),
         })
     }
 

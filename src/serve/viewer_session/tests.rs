@@ -264,20 +264,25 @@ fn a_reply_counts_from_its_arrival() {
 
 /// Returns a session in a tour that another viewer leads, in a terminal that reports releases.
 fn in_a_tour() -> Harness {
+    in_a_tour_with(b"")
+}
+
+/// Returns such a session in a terminal that sends these replies first.
+fn in_a_tour_with(replies: &[u8]) -> Harness {
     let mut harness = Harness::new(LIMITS);
     Harness::new(LIMITS).session.enter(&Company { roster: &harness.roster, id: 1 }, None);
     harness.session.enter(&Company { roster: &harness.roster, id: 0 }, None);
     harness.roster.lead(1);
-    harness.turn(b"\x1b[?11u\x1b[?62c");
+    harness.turn(&[replies, b"\x1b[?11u\x1b[?62c"].concat());
     harness.now.set(2 * SECOND);
     harness.turn(b"\x1b[116:84;2u");
-    assert!(matches!(harness.session.take_audience_change(), Some(AudienceChange::Follow(_))));
     harness
 }
 
 #[test]
 fn the_release_of_a_key_leaves_no_tour() {
     let mut harness = in_a_tour();
+    assert!(matches!(harness.session.take_audience_change(), Some(AudienceChange::Follow(_))));
     harness.now.set(3 * SECOND);
     harness.turn(b"\x1b[116:84;2:3u");
     assert_eq!(harness.session.take_audience_change(), None);
@@ -286,10 +291,23 @@ fn the_release_of_a_key_leaves_no_tour() {
     assert_eq!(harness.session.take_audience_change(), Some(AudienceChange::Leave));
 }
 
+#[test]
+fn terminals_with_and_without_finer_glyphs_at_rest_share_an_audience() {
+    let joined = |name: &str| {
+        let mut harness = in_a_tour_with(format!("\x1bP>|{name}\x1b\\").as_bytes());
+        let Some(AudienceChange::Follow(class)) = harness.session.take_audience_change() else { panic!("{name}") };
+        (harness.session.viewer.capabilities().resting_glyphs, class)
+    };
+    let [(glyphs, class), (other_glyphs, other_class)] = ["kitty(0.26.5)", "WezTerm 20240203"].map(joined);
+    assert_ne!(glyphs, other_glyphs);
+    assert_eq!(class.capabilities, other_class.capabilities);
+}
+
 /// A new audience costs a picture and a key frame.
 #[test]
 fn a_follower_who_resizes_on_and_on_joins_few_audiences() {
     let mut harness = in_a_tour();
+    harness.session.take_audience_change();
     let (mut joined, mut last) = (0, None);
     for step in 1..=100_u64 {
         harness.now.set(2 * SECOND + Duration::from_millis(10 * step));
