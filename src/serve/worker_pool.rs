@@ -69,6 +69,15 @@ struct Load {
     drawing: usize,
 }
 
+impl Load {
+    /// Returns the number of sessions that share one of `threads`, at least 1.
+    ///
+    /// Between two frames of a session that draws all the time, each of the others has had as much time.
+    fn per_thread(self, threads: usize) -> f64 {
+        (self.pending.max(self.drawing) as f64 / threads as f64).max(1.0)
+    }
+}
+
 /// The memory that the turns on one thread share.
 struct Scratch {
     tracer: Tracer,
@@ -352,7 +361,7 @@ impl WorkerPool {
             return AfterTurn::End;
         }
         let mut session = locked(&pooled.session);
-        let share = (load.pending.max(load.drawing) as f64 / self.threads as f64).max(1.0);
+        let share = load.per_thread(self.threads);
         // The first picture of a visit is never interrupted, because the screen is empty until it is drawn.
         let never = Cancellation::default();
         let untraced = Duration::from_micros(pooled.untraced_micros.load(Ordering::Relaxed));
@@ -366,8 +375,8 @@ impl WorkerPool {
             let mut frame = frame?;
             // A picture that was traced for another viewer counts as if it had been traced for this one.
             let trace = trace.max(frame.trace);
-            // Between two frames of a viewer, all others who draw get as much time. The time is that of whole frames:
-            // as long as tracing alone counted, some of 200 viewers got 30 coarse frames a second, others 14 fine ones.
+            // The time is that of whole frames: as long as tracing alone counted, some of 200 viewers got 30 coarse
+            // frames a second, others 14 fine ones.
             // The quality control compares it with the share of a frame that tracing may take.
             frame.interval = (trace + untraced).mul_f64(share * TRACING_SHARE);
             Some(frame)
@@ -463,4 +472,18 @@ impl WorkerPool {
 fn cpu_time() -> Duration {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     Duration::new(time.tv_sec.try_into().unwrap_or(0), time.tv_nsec.try_into().unwrap_or(0))
+}
+
+#[cfg(all(test, unit_tests))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sessions_that_wait_or_drew_share_the_threads() {
+        let per_thread = |pending, drawing, threads| Load { pending, drawing }.per_thread(threads);
+        assert_eq!(per_thread(200, 6, 2), 100.0);
+        assert_eq!(per_thread(6, 200, 2), 100.0);
+        // A session alone has a thread, not more.
+        assert_eq!(per_thread(1, 1, 8), 1.0);
+    }
 }
