@@ -26,10 +26,8 @@ impl Display {
     pub(super) fn new(hints: Hints, window: Window) -> Self {
         // The first picture does not wait for replies, so capabilities are first concluded without them.
         let queries = InitialQueries::needed(&hints);
-        let capabilities = Findings::new(&hints, window.cell, queries.replies()).capabilities();
-        let mut display = Self { hints, window, queries, capabilities, rests: false };
-        display.conclude_capabilities();
-        display
+        let capabilities = capabilities(&hints, &window, &queries, false);
+        Self { hints, window, queries, capabilities, rests: false }
     }
 
     pub(super) fn capabilities(&self) -> &Capabilities {
@@ -106,13 +104,7 @@ impl Display {
     }
 
     fn conclude_capabilities(&mut self) {
-        let findings = Findings::new(&self.hints, self.window.cell, self.queries.replies());
-        let found = findings.capabilities();
-        let found = if self.rests { found.at_rest() } else { found };
-        let covered = extent::covered_size(self.window.size, found.cell_mode);
-        // Shifts move whole rows of the window, of which the picture may cover only a part.
-        let covers_all = covered == self.window.size && !self.window.is_part;
-        self.capabilities = if covers_all { found } else { found.without_shifts() };
+        self.capabilities = capabilities(&self.hints, &self.window, &self.queries, self.rests);
     }
 
     /// Checks that there is memory for pictures of the current size.
@@ -144,4 +136,13 @@ impl Display {
         // These modes are set only if the replies report support, because other terminals might print the sequences.
         keyboard.into_iter().chain(self.pixel_mouse_cell_size().map(|_| TerminalMode::MousePixels))
     }
+}
+
+/// Returns the capabilities of a terminal, for a picture that `rests` or not.
+fn capabilities(hints: &Hints, window: &Window, queries: &InitialQueries, rests: bool) -> Capabilities {
+    let found = Findings::new(hints, window.cell, queries.replies()).capabilities();
+    let found = if rests { found.at_rest() } else { found };
+    // Shifts move whole rows of the window, of which the picture may cover only a part.
+    let covers_all = extent::covered_size(window.size, found.cell_mode) == window.size && !window.is_part;
+    if covers_all { found } else { found.without_shifts() }
 }
