@@ -486,8 +486,10 @@ fn a_terminal_that_has_sent_all_replies_is_left_at_once() {
 /// A terminal that has not replied for three seconds is not waited for.
 #[test]
 fn a_terminal_that_has_never_replied_is_left_at_once() {
-    let mut session = Start::new(PROGRAM).arg(SCENE).mute().spawn();
+    let mut session = Start::new(PROGRAM).arg(SCENE).mute().says_when_it_rests().spawn();
     session.wait_for("a picture", SOON, |seen| seen.bytes().len() > 1_000);
+    // The three seconds are those after the last query, which is sent with the last refinement.
+    session.wait_for_rest();
     session.sees(Duration::from_millis(3_200), |_| false);
     session.send(b"q");
     exit_within(MAX_SILENT_TIME, "never answered", &mut session);
