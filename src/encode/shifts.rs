@@ -316,7 +316,7 @@ fn write_column_shift(row: usize, window: Window, size: Size, bytes: &mut Vec<u8
     let (delete, insert) = places(window);
     let (is_cut, is_last) = (window.by > 0, window.end == usize::from(size.columns));
     let to = |column: usize| Move::To(CellPosition { column: column as u16, row: row as u16 });
-    // An insertion in a window that ends with the row pushes cells off the screen, so that none has to be deleted first.
+    // An insertion in a window that ends with the row pushes cells off the screen: none has to be deleted first.
     if is_cut || !is_last {
         to(delete).write(bytes);
         write_operation(distance, b'P', bytes);
