@@ -7,6 +7,7 @@ use crate::{Hosting, Place, run, until};
 use russh::client;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
@@ -171,7 +172,9 @@ fn haproxy(folder: &std::path::Path, replicas: &[&Program]) -> Option<ListeningP
     let [one, two] = [0, 1].map(|at| replicas[at].address().to_string());
     let config = format!("frontend visitors{documented}").replace(":22\n", &format!("{address}\n"));
     let config = config.replace("10.0.0.11:2222", &one).replace("10.0.0.12:2222", &two);
-    let config = config.replace("inter 2s", "inter 100ms");
+    // The time of a check is otherwise that between two, which a busy machine may miss.
+    let config =
+        config.replace("inter 2s", "inter 100ms").replace("timeout server", "timeout check 20s\n    timeout server");
     let path = folder.join("haproxy.cfg");
     std::fs::write(&path, config).expect("a file");
     // The port is free again, for HAProxy.
@@ -188,14 +191,15 @@ fn views(replica: &Program) -> usize {
 
 /// Waits until a replica can be reached through `haproxy`.
 async fn until_up(haproxy: &ListeningProcess) {
-    for _ in 0..500 {
+    let end = Instant::now() + crate::PATIENCE;
+    while Instant::now() < end {
         if let Ok(mut stream) = TcpStream::connect(haproxy.address).await {
             let mut greeting = [0; 8];
             if stream.read_exact(&mut greeting).await.is_ok() {
                 return;
             }
         }
-        tokio::time::sleep(std::time::Duration::from_millis(20)).await;
+        tokio::time::sleep(Duration::from_millis(20)).await;
     }
     panic!("no replica can be reached");
 }

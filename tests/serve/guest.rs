@@ -221,7 +221,7 @@ impl Guest {
 
     /// Reads until the bytes and the screen are as wanted.
     pub(crate) async fn see(&mut self, what: &str, wanted: impl Fn(&Self) -> bool) {
-        let end = Instant::now() + Duration::from_secs(50);
+        let end = Instant::now() + crate::PATIENCE;
         while !wanted(self) {
             let is_open = timeout_at(end, self.read()).await;
             let is_open = is_open.unwrap_or_else(|_| panic!("{what} is not on the screen: {:#?}", self.text()));

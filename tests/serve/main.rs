@@ -20,7 +20,7 @@ use std::future::Future;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 use termtrace::Scene;
 use termtrace::internals::serve::{HostedScene, Server, Settings};
@@ -81,19 +81,20 @@ fn scenes() -> Vec<HostedScene> {
     vec![scene("three_spheres"), scene("corridor")]
 }
 
+/// The time after which an event is no longer expected. On a busy machine all tests wait for one another.
+const PATIENCE: Duration = Duration::from_secs(120);
+
 /// Waits until something holds that no event tells.
 async fn until(what: &str, mut holds: impl FnMut() -> bool) {
-    for _ in 0..2000 {
-        if holds() {
-            return;
-        }
+    let end = Instant::now() + PATIENCE;
+    while !holds() {
+        assert!(Instant::now() < end, "{what}");
         tokio::time::sleep(Duration::from_millis(10)).await;
     }
-    panic!("{what}");
 }
 
 /// Runs a test. An event that does not come fails it.
 fn run<T>(test: impl Future<Output = T>) -> T {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
-    runtime.block_on(async { tokio::time::timeout(Duration::from_secs(60), test).await.expect("it takes no minute") })
+    runtime.block_on(async { tokio::time::timeout(3 * PATIENCE, test).await.expect("it comes to its end") })
 }

@@ -90,13 +90,16 @@ fn row_03_forwarded_ports_lead_nowhere() {
         let port = free_port();
         let place = if forward == "-L" { format!("{port}:127.0.0.1:{target}") } else { port.to_string() };
         let mut ssh = Command::new("ssh");
-        ssh.args(&options).args(["-N", forward, &place, "127.0.0.1"]).stderr(Stdio::null());
+        ssh.args(&options)
+            .args(["-o", "ExitOnForwardFailure=yes", "-N", forward, &place, "127.0.0.1"])
+            .stderr(Stdio::null());
         let mut ssh = ssh.spawn().expect("ssh runs");
         let mut stream = loop {
-            match TcpStream::connect(("127.0.0.1", port)) {
-                Ok(stream) => break stream,
-                Err(_) => std::thread::sleep(Duration::from_millis(20)),
+            if let Ok(stream) = TcpStream::connect(("127.0.0.1", port)) {
+                break stream;
             }
+            assert!(ssh.try_wait().expect("it is a child").is_none(), "ssh has ended");
+            std::thread::sleep(Duration::from_millis(20));
         };
         stream.write_all(greeting).expect("ssh takes it");
         let mut answer = Vec::new();

@@ -41,14 +41,12 @@ fn picture(guest: &Guest) -> Vec<String> {
 
 /// Reads for both until they show the same picture.
 async fn see_the_same(first: &mut Guest, second: &mut Guest) {
-    for _ in 0..500 {
+    let end = Instant::now() + crate::PATIENCE;
+    while picture(first) != picture(second) {
+        assert!(Instant::now() < end, "the pictures differ: {:#?} {:#?}", first.text(), second.text());
         first.read_for(Duration::from_millis(10)).await;
         second.read_for(Duration::from_millis(10)).await;
-        if picture(first) == picture(second) {
-            return;
-        }
     }
-    panic!("the pictures differ: {:#?} {:#?}", first.text(), second.text());
 }
 
 /// Returns the row and column of a text on the screen.
@@ -57,7 +55,7 @@ fn place_of(guest: &Guest, text: &str) -> Option<(usize, usize)> {
 }
 
 /// Reads until the server has made no picture for two seconds, for any of its viewers.
-async fn rest_of_all(hosting: &Hosting, guests: &mut [&mut Guest]) {
+pub(crate) async fn rest_of_all(hosting: &Hosting, guests: &mut [&mut Guest]) {
     let made = || {
         let counts = counts(hosting);
         ["{from=\"tracer\"}", "{from=\"memory\"}"]
@@ -159,12 +157,12 @@ fn a_followed_viewer_may_resize() {
         second.see_picture().await;
         second.send(b"u1").await;
         second.see_text("with viewer 0").await;
-        second.rest().await;
+        rest_of_all(&hosting, &mut [&mut first, &mut second]).await;
         let before = second.cells();
         first.resize_screen(100, 40);
         first.channel.window_change(100, 40, 0, 0).await.expect("it is sent");
         first.see("the picture in the new size", |guest| guest.text()[35].contains(['▀', '▄'])).await;
-        second.rest().await;
+        rest_of_all(&hosting, &mut [&mut first, &mut second]).await;
         assert_eq!(second.cells(), before, "the follower's window has not changed");
         // It follows on, in its own size, and the first one's move is the same for a terminal of that size.
         first.send(b"t").await;
@@ -359,7 +357,7 @@ fn a_leader_who_disconnects_in_mid_tour_leaves_the_path_or_views_of_ones_own() {
             let mut guest = enter_as(&hosting, "anybody", None).await;
             guest.see_text("tour led by viewer 0").await;
             leader.send(b"ttwww").await;
-            leader.rest().await;
+            rest_of_all(&hosting, &mut [&mut leader, &mut guest]).await;
             see_the_same(&mut leader, &mut guest).await;
             let seen = picture(&leader);
             assert_eq!(picture(&guest), seen);

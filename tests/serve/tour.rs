@@ -5,7 +5,7 @@ use crate::operator::{counts, folder_with, value};
 use crate::program::{Program, termtrace};
 use crate::{Hosting, run, scenes, until};
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use termtrace::CameraPath;
 use termtrace::internals::serve::Settings;
 
@@ -76,7 +76,8 @@ fn a_scene_by_name_is_a_view_of_ones_own() {
 
 /// Reads until all show the same cells, with this text.
 async fn see_the_same(guests: &mut [Guest], text: &str) {
-    for _ in 0..500 {
+    let end = Instant::now() + crate::PATIENCE;
+    while Instant::now() < end {
         for guest in &mut *guests {
             guest.read_for(Duration::from_millis(20)).await;
         }
