@@ -81,7 +81,8 @@ fn scenes() -> Vec<HostedScene> {
     vec![scene("three_spheres"), scene("corridor")]
 }
 
-/// The time after which an event is no longer expected. On a busy machine all tests wait for one another.
+/// The time after which an event is no longer expected.
+// On a busy machine all tests wait for one another.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Waits until something holds that no event tells.
