@@ -1,7 +1,7 @@
 //! The shares of viewers in time, bytes and memory.
 //!
 //! These are rows 5, 8, 12, 13, 21, 22 and 24 of the table in docs/serve.md.
-//! Only ratios are tested: how many frames a machine makes, `examples/serve_load.rs` tells.
+//! Only ratios are tested: how many frames a machine makes, `examples/serve_load` tells.
 
 use crate::abuse::dial_from;
 use crate::counter::{Counter, run_all};

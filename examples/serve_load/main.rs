@@ -8,6 +8,9 @@
 //! `--moving` visitors turn the scene all the time. Of the others ten press a key twice a second, from which the time
 //! to the end of the next frame is taken; the rest only looks. All answer the queries that a terminal answers.
 //!
+//! `--colors 256` gives no visitor all colours. `--sample SCENE` compares the screen of the first moving one with the
+//! pictures of that scene, and prints the PSNR in decibels.
+//!
 //! `--followers N` visitors follow the tour of the server (`--tour`, and `--moving 0`), in `--classes N` kinds of terminals
 //! (up to 8: four sizes, of which that of `--size` is the largest, and two numbers of colours). One more, in a window of
 //! 80x24 cells, leaves the tour and comes back twice a second.
@@ -21,20 +24,28 @@
 //! 200 ms, `slow-turning` ones turn behind such a link. `--seed N` makes visitors come, go, stall and resize, and prints
 //! the server's memory, threads and files every ten seconds.
 
+mod link;
+mod report;
+mod sample;
+mod soak;
+
+use link::link_to;
+use report::{Shares, cpu_of, own_cpu, report};
 use russh::client::{self, Handle, Msg};
 use russh::keys::PublicKeyOrCertificate;
 use russh::{Channel, ChannelMsg};
-use rustix::time::{ClockId, clock_gettime};
+use sample::Sample;
+use soak::soak;
 use std::cell::RefCell;
 use std::collections::VecDeque;
+use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use tokio::io::{AsyncReadExt, AsyncWriteExt, BufReader, DuplexStream};
+use tokio::io::BufReader;
 use tokio::net::TcpStream;
-use tokio::sync::mpsc;
 use tokio::task::LocalSet;
-use tokio::time::{sleep, sleep_until, timeout};
+use tokio::time::{sleep, timeout};
 
 const KEYED: usize = 10;
 /// The end of a synchronized frame.
@@ -74,6 +85,8 @@ struct Measured {
     bytes: u64,
     /// Bytes that came for those who only look.
     idle_bytes: u64,
+    /// The PSNR of frames of the sample, in decibels.
+    psnr: Vec<f64>,
     counts: bool,
     failed: usize,
     visits: usize,
@@ -101,6 +114,8 @@ struct Arguments {
     seed: Option<u64>,
     at_once: bool,
     drain: bool,
+    has_all_colors: bool,
+    sample: Option<PathBuf>,
 }
 
 fn arguments() -> Option<Arguments> {
@@ -118,6 +133,8 @@ fn arguments() -> Option<Arguments> {
         seed: None,
         at_once: false,
         drain: false,
+        has_all_colors: true,
+        sample: None,
     };
     while let (Some(flag), Some(value)) = (words.next(), words.next()) {
         match flag.as_str() {
@@ -128,6 +145,8 @@ fn arguments() -> Option<Arguments> {
             "--seconds" => arguments.seconds = value.parse().ok()?,
             "--at-once" => arguments.at_once = value.parse().ok()?,
             "--drain" => arguments.drain = value.parse().ok()?,
+            "--colors" => arguments.has_all_colors = value != "256",
+            "--sample" => arguments.sample = Some(value.into()),
             "--seed" => arguments.seed = Some(value.parse().ok()?),
             "--odd" => {
                 let (kind, count) = value.split_once(':')?;
@@ -164,11 +183,11 @@ impl Arguments {
             return ((80, 24), true);
         }
         if number < self.moving {
-            return (self.size, true);
+            return (self.size, self.has_all_colors);
         }
         let class = number % self.classes;
         let ((columns, rows), smaller) = (self.size, class as u32 % 4);
-        ((columns.saturating_sub(smaller / 2), rows.saturating_sub(smaller % 2)), class < 4)
+        ((columns.saturating_sub(smaller / 2), rows.saturating_sub(smaller % 2)), class < 4 && self.has_all_colors)
     }
 }
 
@@ -176,7 +195,7 @@ fn main() {
     let Some(arguments) = arguments() else {
         println!(
             "serve_load ADDRESS:PORT [--viewers N] [--moving N] [--followers N] [--classes N] [--seconds S] [--size COLUMNSxROWS] [--pid SERVER] \
-             [--odd big|late|slow|slow-turning:N] [--at-once true] [--drain true] [--seed N]"
+             [--colors 256] [--sample SCENE] [--odd big|late|slow|slow-turning:N] [--at-once true] [--drain true] [--seed N]"
         );
         return;
     };
@@ -262,67 +281,39 @@ async fn load(arguments: Arguments) {
     }
 }
 
-fn report(arguments: &Arguments, measured: &mut Measured, up: Duration, seconds: f64, [server, client]: [f64; 2]) {
-    let Arguments { viewers, moving, followers, size: (columns, rows), .. } = *arguments;
-    let failed = measured.failed;
-    println!("{viewers} viewers of {columns}x{rows}, {moving} moving, {followers} followers, {failed} failed");
-    println!("| figure | value |\n|---|---|");
-    let first = Shares::of(&mut measured.first);
-    println!("| all connected | {:.2} s, {:.0} a second |", up.as_secs_f64(), viewers as f64 / up.as_secs_f64());
-    println!("| first frame, p50, p95, max | {first} ms |");
-    let mut rates: Vec<_> = measured.frames.iter().map(|&frames| f64::from(frames) / seconds).collect();
-    if !rates.is_empty() {
-        let rates = Shares::of(&mut rates);
-        println!("| frames a second, least, p50, most | {:.1}, {:.1}, {:.1} |", rates.least, rates.median, rates.most);
-        println!("| fastest to slowest | {:.2} |", rates.most / rates.least);
-        let still = measured.frames.iter().filter(|&&frames| frames == 0).count();
-        println!("| without a frame | {still} |");
-        println!(
-            "| bytes a second, one viewer | {:.0} |",
-            measured.bytes as f64 / seconds / arguments.counted() as f64
-        );
-        let frames: u64 = measured.frames.iter().map(|&frames| u64::from(frames)).sum();
-        println!("| bytes a frame | {:.0} |", measured.bytes as f64 / frames.max(1) as f64);
-    }
-    println!("| bytes for those at rest | {} |", measured.idle_bytes);
-    if !measured.keys.is_empty() {
-        let keys = Shares::of(&mut measured.keys);
-        println!(
-            "| key to frame, p50, p95, p99, max | {:.1}, {:.1}, {:.1}, {:.1} ms |",
-            keys.median, keys.p95, keys.p99, keys.most
-        );
-    }
-    for (what, times) in [("leaving the tour", &mut measured.left), ("entering the tour", &mut measured.entered)] {
-        if !times.is_empty() {
-            println!("| {what}, p50, p95, max | {} ms |", Shares::of(times));
+/// The keys that all followers press at the same time: one that leaves the tour, and one that enters it.
+#[derive(Default)]
+struct AtOnce {
+    has_left: bool,
+    /// Whether the last key enters the tour, and its time, until its frame has come.
+    pressed: Option<(bool, Instant)>,
+}
+
+impl AtOnce {
+    /// Records the time to the frame of the last key if `data` shows it, and presses the next key.
+    async fn take(
+        &mut self,
+        channel: &Channel<Msg>,
+        kept: &[u8],
+        data: &[u8],
+        measured: &RefCell<Measured>,
+    ) -> Option<()> {
+        match self.pressed {
+            Some((is_back, pressed)) if has_across(kept, data, notice(is_back)) => {
+                let Measured { left_at_once, entered_at_once, .. } = &mut *measured.borrow_mut();
+                let times = if is_back { entered_at_once } else { left_at_once };
+                times.push(1e3 * pressed.elapsed().as_secs_f64());
+                self.pressed = (!is_back).then(|| (true, Instant::now()));
+            }
+            None if !self.has_left && measured.borrow().at_once => {
+                (self.has_left, self.pressed) = (true, Some((false, Instant::now())));
+            }
+            _ => return Some(()),
         }
-    }
-    println!("| CPU of the server, of this client | {server:.0} %, {client:.0} % |");
-    if let Some(kilobytes) = arguments.pid.and_then(memory_of) {
-        println!("| memory of the server | {kilobytes} kB |");
-    }
-}
-
-/// The order statistics of some figures.
-struct Shares {
-    least: f64,
-    median: f64,
-    p95: f64,
-    p99: f64,
-    most: f64,
-}
-
-impl Shares {
-    fn of(figures: &mut [f64]) -> Self {
-        figures.sort_by(f64::total_cmp);
-        let at = |share: f64| figures.get(((figures.len() as f64 - 1.0) * share) as usize).copied().unwrap_or(f64::NAN);
-        Self { least: at(0.0), median: at(0.5), p95: at(0.95), p99: at(0.99), most: at(1.0) }
-    }
-}
-
-impl std::fmt::Display for Shares {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{:.1}, {:.1}, {:.1}", self.median, self.p95, self.most)
+        match self.pressed {
+            Some((is_back, _)) => channel.data(if is_back { &b"T"[..] } else { b"w" }).await.ok(),
+            None => Some(()),
+        }
     }
 }
 
@@ -346,9 +337,11 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
     let slow = matches!(odd, Some(Odd::Slow | Odd::SlowTurning));
     let (mut channel, _session, asked) = enter(&arguments.address, size, (slow, has_all_colors)).await?;
     let (mut tail, mut frames, mut pressed, mut next_key, mut painted) = (Vec::new(), 0_u32, None, asked, false);
-    let (mut at_once, mut has_left) = (None::<(bool, Instant)>, false);
+    let mut at_once = AtOnce::default();
     let (mut owed, mut opens, mut is_following, mut kept) =
         (VecDeque::<(Instant, Vec<u8>)>::new(), false, true, Vec::new());
+    let sampled = arguments.sample.as_ref().filter(|_| number == 0 && arguments.moving > 0);
+    let mut sample = sampled.and_then(|scene| Sample::new(scene, size));
     loop {
         if is_leaving && painted && Instant::now() >= next_key && pressed.is_none() {
             next_key = Instant::now() + pause;
@@ -373,26 +366,8 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
         let Ok(message) = timeout(wait, channel.wait()).await else { continue };
         let ChannelMsg::Data { data } = message? else { continue };
         *is_told |= arguments.drain && has_across(&kept, &data, b"the server restarts");
-        let pressed_at_once = at_once.filter(|_| is_counted && arguments.at_once && arguments.followers > 0);
-        match pressed_at_once {
-            Some((is_back, pressed)) if has_across(&kept, &data, notice(is_back)) => {
-                let time = 1e3 * Instant::elapsed(&pressed).as_secs_f64();
-                if is_back {
-                    measured.borrow_mut().entered_at_once.push(time);
-                } else {
-                    measured.borrow_mut().left_at_once.push(time);
-                }
-                at_once = (!is_back).then(|| (true, Instant::now()));
-                if !is_back {
-                    channel.data(&b"T"[..]).await.ok()?;
-                }
-            }
-            None if is_counted && !has_left && measured.borrow().at_once => {
-                has_left = true;
-                channel.data(&b"w"[..]).await.ok()?;
-                at_once = Some((false, Instant::now()));
-            }
-            _ => {}
+        if is_counted && arguments.followers > 0 {
+            at_once.take(&channel, &kept, &data, measured).await?;
         }
         keep(&mut kept, &data);
         let (ended, replies) = answer(&mut tail, &data);
@@ -404,10 +379,14 @@ async fn visit(number: usize, arguments: &Arguments, measured: &RefCell<Measured
             painted = true;
             measured.borrow_mut().first.push(1e3 * asked.elapsed().as_secs_f64());
             if turns {
-                channel.data(&b"t"[..]).await.ok()?;
+                channel.data(if sample.is_some() { &b"ti"[..] } else { &b"t"[..] }).await.ok()?;
             }
         }
         frames += ended;
+        if let Some(sample) = &mut sample {
+            sample.take(&data);
+            measured.borrow_mut().psnr.append(&mut sample.psnr);
+        }
         let mut measured = measured.borrow_mut();
         let shows = if slow { has(&data, b"three_spheres") } else { ended > 0 };
         if is_leaving {
@@ -481,132 +460,6 @@ fn has(data: &[u8], text: &[u8]) -> bool {
     data.windows(text.len()).any(|window| window == text)
 }
 
-/// Bytes per second of a slow link, each way.
-const LINK_RATE: f64 = 50_000.0;
-/// The time that a byte takes through it, each way.
-const LINK_DELAY: Duration = Duration::from_millis(100);
-/// The size of a packet, and how many wait for the link.
-const PACKET: (usize, usize) = (1024, 48);
-
-/// Connects through a slow link.
-async fn link_to(address: &str) -> Option<DuplexStream> {
-    let (near, far) = tokio::io::duplex(16 * 1024);
-    let (from_server, to_server) = TcpStream::connect(address).await.ok()?.into_split();
-    let (from_client, to_client) = tokio::io::split(far);
-    tokio::task::spawn_local(pass(from_server, to_client));
-    tokio::task::spawn_local(pass(from_client, to_server));
-    Some(near)
-}
-
-/// Passes bytes on at the rate of the link and after its delay.
-async fn pass(mut from: impl AsyncReadExt + Unpin + 'static, mut to: impl AsyncWriteExt + Unpin + 'static) {
-    let (under_way, mut arriving) = mpsc::unbounded_channel::<(Instant, Vec<u8>)>();
-    let (queue, mut queued) = mpsc::channel::<Vec<u8>>(PACKET.1);
-    tokio::task::spawn_local(async move {
-        let mut free_at = Instant::now();
-        while let Some(packet) = queued.recv().await {
-            free_at = free_at.max(Instant::now()) + Duration::from_secs_f64(packet.len() as f64 / LINK_RATE);
-            sleep_until(free_at.into()).await;
-            let _ = under_way.send((free_at + LINK_DELAY, packet));
-        }
-    });
-    tokio::task::spawn_local(async move {
-        while let Some((due, packet)) = arriving.recv().await {
-            sleep_until(due.into()).await;
-            if to.write_all(&packet).await.is_err() {
-                return;
-            }
-        }
-    });
-    let mut packet = [0; PACKET.0];
-    while let Ok(count @ 1..) = from.read(&mut packet).await {
-        if queue.send(packet[..count].to_vec()).await.is_err() {
-            return;
-        }
-    }
-}
-
-/// Random numbers of a seed (a linear congruential generator).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % limit
-    }
-}
-
-/// Lets visitors come, go, stall and resize, and prints what the server takes.
-async fn soak(arguments: Arguments, seed: u64) {
-    let measured = Rc::new(RefCell::new(Measured::default()));
-    let arguments = Rc::new(arguments);
-    for number in 0..arguments.viewers as u64 {
-        let (arguments, measured) = (Rc::clone(&arguments), Rc::clone(&measured));
-        tokio::task::spawn_local(async move {
-            let mut random = Random(seed ^ number.wrapping_mul(0x9e37_79b9_7f4a_7c15));
-            sleep(Duration::from_millis(random.below(5000))).await;
-            loop {
-                if short_visit(&arguments, &mut random).await.is_none() {
-                    measured.borrow_mut().failed += 1;
-                    sleep(Duration::from_secs(1)).await;
-                }
-                measured.borrow_mut().visits += 1;
-            }
-        });
-    }
-    println!(
-        "| s | visits | failed | memory, kB | threads | files | CPU of the server, s |\n|--:|--:|--:|--:|--:|--:|--:|"
-    );
-    let began = Instant::now();
-    while began.elapsed().as_secs() < arguments.seconds {
-        sleep(Duration::from_secs(10)).await;
-        let pid = arguments.pid.unwrap_or(0);
-        let count = |folder: &str| std::fs::read_dir(format!("/proc/{pid}/{folder}")).map_or(0, Iterator::count);
-        let Measured { visits, failed, .. } = *measured.borrow();
-        let (seconds, memory) = (began.elapsed().as_secs(), memory_of(pid).unwrap_or(0));
-        let (threads, files, cpu) = (count("task"), count("fd"), cpu_of(arguments.pid));
-        println!("| {seconds} | {visits} | {failed} | {memory} | {threads} | {files} | {cpu:.1} |");
-    }
-}
-
-/// Visits for some seconds, and leaves by a key or by closing the connection.
-///
-/// The visitor turns the scene or only looks, may resize the window, and may stop reading.
-async fn short_visit(arguments: &Arguments, random: &mut Random) -> Option<()> {
-    let (mut channel, _session, asked) = enter(&arguments.address, arguments.size, (false, true)).await?;
-    let end = asked + Duration::from_millis(2000 + random.below(18_000));
-    let stalls_at = (random.below(4) == 0).then(|| asked + Duration::from_millis(random.below(10_000)));
-    if random.below(2) == 0 {
-        channel.data(&b"t"[..]).await.ok()?;
-    }
-    let (mut tail, mut resize_at) = (Vec::new(), asked + Duration::from_millis(random.below(20_000)));
-    while Instant::now() < end {
-        if stalls_at.is_some_and(|at| at <= Instant::now()) {
-            sleep_until(end.into()).await;
-            break;
-        }
-        if resize_at <= Instant::now() {
-            resize_at = Instant::now() + Duration::from_millis(200 + random.below(5000));
-            let size = (20 + random.below(100), 6 + random.below(40));
-            channel.window_change(size.0 as u32, size.1 as u32, 0, 0).await.ok()?;
-        }
-        let until = end.min(resize_at);
-        let Ok(message) = timeout(until.saturating_duration_since(Instant::now()), channel.wait()).await else {
-            continue;
-        };
-        let ChannelMsg::Data { data } = message? else { continue };
-        let (_, replies) = answer(&mut tail, &data);
-        if !replies.is_empty() {
-            channel.data(&*replies).await.ok()?;
-        }
-    }
-    if stalls_at.is_none() && random.below(2) == 0 {
-        channel.data(&b"q"[..]).await.ok()?;
-        let _ = timeout(Duration::from_secs(2), async { while channel.wait().await.is_some() {} }).await;
-    }
-    Some(())
-}
-
 /// Returns how many frames end in `tail` and `data`, and the replies to the queries in them.
 fn answer(tail: &mut Vec<u8>, data: &[u8]) -> (u32, Vec<u8>) {
     const QUERIES: [(&[u8], &[u8]); 2] = [(b"\x1b[c", b"\x1b[?62;22c"), (b"\x1b[?2026$p", b"\x1b[?2026;2$y")];
@@ -627,22 +480,4 @@ fn answer(tail: &mut Vec<u8>, data: &[u8]) -> (u32, Vec<u8>) {
     }
     tail.drain(..at);
     (ended, replies)
-}
-
-/// Returns the seconds of CPU time that a process has taken.
-fn cpu_of(pid: Option<u32>) -> f64 {
-    let stat = pid.and_then(|pid| std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()).unwrap_or_default();
-    let fields: Vec<_> = stat.rsplit(')').next().unwrap_or_default().split_whitespace().collect();
-    let ticks = |at: usize| fields.get(at).and_then(|field| field.parse::<f64>().ok()).unwrap_or(0.0);
-    (ticks(11) + ticks(12)) / 100.0
-}
-
-fn own_cpu() -> f64 {
-    let time = clock_gettime(ClockId::ProcessCPUTime);
-    time.tv_sec as f64 + time.tv_nsec as f64 / 1e9
-}
-
-fn memory_of(pid: u32) -> Option<u64> {
-    let status = std::fs::read_to_string(format!("/proc/{pid}/status")).ok()?;
-    status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?.split_whitespace().next()?.parse().ok()
 }
