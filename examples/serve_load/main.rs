@@ -281,7 +281,7 @@ async fn load(arguments: Arguments) {
     }
 }
 
-/// The keys that all followers press at the same time: one that leaves the tour, and one that enters it.
+/// The keys that all followers press at the same time: one leaves the tour, one enters it.
 #[derive(Default)]
 struct AtOnce {
     has_left: bool,
