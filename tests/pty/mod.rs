@@ -20,6 +20,7 @@ mod phases;
 mod picture;
 mod replies;
 mod rest;
+mod retries;
 mod screen;
 mod signals;
 mod storm;
@@ -54,6 +55,7 @@ pub(crate) use picture::{halves_of, picture, picture_with, shows};
 use replies::Replies;
 pub(crate) use replies::{Fault, Which};
 use rest::Rest;
+pub(crate) use retries::{best_of_three, until_in_time};
 pub(crate) use screen::{Colour, Screen, without_colors};
 pub(crate) use signals::reset_for_children;
 pub(crate) use storm::Storm;
@@ -66,8 +68,11 @@ pub(crate) const SOON: Duration = Duration::from_secs(60);
 /// The time between two looks at whether the child has exited, which only its parent is told.
 const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
-/// The longest wait for the last output of a dead child. Only a stopped terminal takes that long.
-const LAST_OUTPUT_TIMEOUT: Duration = Duration::from_secs(1);
+/// The longest wait for the last output of a dead child, which an idle machine delivers at once.
+const LAST_OUTPUT_TIMEOUT: Duration = Duration::from_secs(10);
+
+/// The wait for the last output on a terminal that was stopped or is not read: it does not come.
+const HELD_OUTPUT_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// The marker that the harness writes after the child's last byte: all output before it has come.
 const END_MARKER: &[u8] = b"\x1b_the end of the output\x1b\\";
@@ -251,6 +256,7 @@ impl Start {
             slave_side,
             before,
             output,
+            last_output_timeout: LAST_OUTPUT_TIMEOUT,
             replies,
             rest,
             typed: Cell::new(0),
@@ -359,6 +365,7 @@ pub(crate) struct Session {
     slave_side: std::fs::File,
     before: Termios,
     output: Output,
+    last_output_timeout: Duration,
     replies: Replies,
     rest: Option<Rest>,
     /// The number of bytes that were typed or sent as replies.
@@ -404,11 +411,45 @@ impl Session {
     pub(crate) fn stop_reading(&mut self) {
         self.output.stop();
         self.pump();
+        self.last_output_timeout = HELD_OUTPUT_TIMEOUT;
+    }
+
+    /// Stops reading, and types `keys` until the output that they cause fills the terminal.
+    #[track_caller]
+    pub(crate) fn fill(&mut self, keys: &[u8]) {
+        self.stop_reading();
+        let moment = POLL_INTERVAL.try_into().expect("it is short");
+        let mut deadline = Deadline::after(SOON);
+        let mut full_looks = 0;
+        // One look is not enough: the kernel passes bytes on to the reader's side some time after they were written,
+        // which makes room again.
+        while full_looks < 25 {
+            assert!(!deadline.has_passed(), "the terminal takes all output");
+            let mut polled = [PollFd::new(&self.slave_side, PollFlags::OUT)];
+            if rustix::event::poll(&mut polled, Some(&moment)) == Ok(0) {
+                full_looks += 1;
+                continue;
+            }
+            full_looks = 0;
+            if self.unread() == 0 {
+                self.send(keys);
+            }
+            self.output.wait_for_more(Instant::now() + POLL_INTERVAL);
+        }
     }
 
     /// Reads the child's output again.
     pub(crate) fn start_reading(&mut self) {
         self.output.start(Arc::clone(&self.master)).expect("a pipe and a thread can be had");
+        self.last_output_timeout = LAST_OUTPUT_TIMEOUT;
+    }
+
+    /// Types Ctrl-S, which stops the output, the echo of what is typed included, but not the
+    /// reading.
+    #[track_caller]
+    pub(crate) fn stop_output(&mut self) {
+        self.send(b"\x13");
+        self.last_output_timeout = HELD_OUTPUT_TIMEOUT;
     }
 
     /// Resizes the terminal again and again until the returned storm is dropped.
@@ -446,10 +487,15 @@ impl Session {
     #[track_caller]
     pub(crate) fn wait_until_read(&mut self) {
         let mut deadline = Deadline::after(SOON);
-        while rustix::io::ioctl_fionread(&self.slave_side).expect("a terminal counts what was typed") > 0 {
+        while self.unread() > 0 {
             assert!(!deadline.has_passed(), "what was typed is not read");
             self.output.wait_for_more(Instant::now() + POLL_INTERVAL);
         }
+    }
+
+    /// Returns the number of typed bytes that the child has not read.
+    fn unread(&self) -> u64 {
+        rustix::io::ioctl_fionread(&self.slave_side).expect("a terminal counts what was typed")
     }
 
     /// Returns the typed bytes that are unread, which the next reader, such as a shell, would get.
@@ -625,7 +671,7 @@ impl Session {
     ///
     /// The child stays a zombie until the drop, so that its number, which is its group's too, is not used again:
     /// processes that it left behind can then be killed without hitting others.
-    fn look_for_exit(&self) -> Option<ExitStatus> {
+    pub(crate) fn look_for_exit(&self) -> Option<ExitStatus> {
         let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
         let exited =
             rustix::process::waitid(WaitId::Pid(self.pid()), options).expect("one's own child can be waited for")?;
@@ -642,7 +688,7 @@ impl Session {
     /// writes comes after all of it.
     #[track_caller]
     fn take_last_output(&mut self) {
-        let deadline = Instant::now() + LAST_OUTPUT_TIMEOUT;
+        let deadline = Instant::now() + self.last_output_timeout;
         let bytes = match write_before(&mut self.slave_side, END_MARKER, deadline) {
             Ok(true) => self.output.take_up_to(Some(END_MARKER)),
             // The terminal was stopped (Ctrl-S): what it holds back is never shown.
