@@ -105,16 +105,13 @@ const CHUNK: usize = 1 << 16;
 pub(crate) fn guessed(mesh: &MeshFile, usual: UpAxis, is_parallel: bool) -> UpAxis {
     let other = if usual == UpAxis::Z { UpAxis::Y } else { UpAxis::Z };
     let bounds = Bounds::of(mesh.positions().iter().copied());
-    let count = mesh.triangles().len().div_ceil(CHUNK).max(mesh.positions().len().div_ceil(CHUNK));
-    let chunk = |chunk: usize| Evidence::of_chunk(mesh, &bounds, chunk);
-    let chunks = if is_parallel && count > 1 { threads::map(count, chunk) } else { (0..count).map(chunk).collect() };
-    let evidence = chunks.iter().fold(Evidence::default(), Evidence::plus);
+    let evidence = Evidence::of(mesh, &bounds, is_parallel);
     let score = |axis| evidence.score(mesh, &bounds, if axis == UpAxis::Z { 2 } else { 1 });
     if score(other) > score(usual) + CLEAR_DIFFERENCE { other } else { usual }
 }
 
 /// Sums over a mesh from which the score of each axis follows.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Evidence {
     /// For each axis, the areas of flat faces at its lower and at its upper end.
     flat: [[f64; 2]; 3],
@@ -123,6 +120,15 @@ struct Evidence {
 }
 
 impl Evidence {
+    /// Returns the sums of a mesh. They do not depend on `is_parallel`.
+    fn of(mesh: &MeshFile, bounds: &Bounds, is_parallel: bool) -> Self {
+        let count = mesh.triangles().len().div_ceil(CHUNK).max(mesh.positions().len().div_ceil(CHUNK));
+        let chunk = |chunk: usize| Self::of_chunk(mesh, bounds, chunk);
+        let chunks =
+            if is_parallel && count > 1 { threads::map(count, chunk) } else { (0..count).map(chunk).collect() };
+        chunks.iter().fold(Self::default(), Self::plus)
+    }
+
     /// Returns the sums of one chunk of the triangles and of the vertices.
     fn of_chunk(mesh: &MeshFile, bounds: &Bounds, chunk: usize) -> Self {
         let mut sums = Self::default();

@@ -53,3 +53,30 @@ fn each_axis_is_turned_to_y_without_a_mirror() {
     }
     assert_eq!(axis, UpAxis::Y);
 }
+
+#[test]
+fn all_threads_find_the_same_sums_as_one() {
+    // Triangles that lie flat, in five chunks. The sum of the first is so large that each of the others is rounded away
+    // if it is added to it, but not all others together.
+    let count = 5 * CHUNK - 7;
+    let mut positions = vec![Vec3::Z];
+    for i in 0..count {
+        let side = if i < CHUNK { 1024.0 } else { 1e-5 };
+        positions.extend([Vec3::ZERO, Vec3::Y * side, Vec3::X * side]);
+    }
+    let mut triangles: Vec<_> = (0..count as u32).map(|i| [3 * i + 1, 3 * i + 2, 3 * i + 3]).collect();
+    // One that stands, so that the mesh has a height.
+    triangles.push([0, 1, 2]);
+    let mesh = MeshFile::new(positions, triangles).expect("a mesh");
+    let bounds = Bounds::of(mesh.positions().iter().copied());
+    let alone = Evidence::of(&mesh, &bounds, false);
+    assert_eq!(Evidence::of(&mesh, &bounds, true), alone);
+    // The test can tell the order of the sums.
+    let last = mesh.positions().len().div_ceil(CHUNK);
+    let in_order = |chunks: &mut dyn Iterator<Item = usize>| {
+        let chunks = chunks.map(|chunk| Evidence::of_chunk(&mesh, &bounds, chunk));
+        chunks.fold(Evidence::default(), |sums, chunk| sums.plus(&chunk))
+    };
+    assert_eq!(in_order(&mut (0..last)), alone);
+    assert_ne!(in_order(&mut (0..last).rev()).flat, alone.flat);
+}
