@@ -535,3 +535,20 @@ fn a_build_reports_progress_and_can_be_cancelled() {
     });
     assert_eq!((given_up, placed.into_inner()), (Err(Cancelled), 0));
 }
+
+#[test]
+fn the_floor_lies_below_the_ground_of_a_mesh() {
+    let ground = "v -2 0.1 -2\nv 2 0.1 -2\nv 2 0.1 2\nv -2 0.1 2\n";
+    // With something on it, and alone, also upside down.
+    for faces in ["v 0 1 0\nf 1 4 3 2\nf 1 3 5\n", "f 1 4 3 2\n", "f 1 2 3 4\n"] {
+        let text = format!("{ground}{faces}");
+        let mesh = MeshFile::from_bytes("x.obj", text.as_bytes(), &mut |_| unreachable!()).expect("a mesh");
+        let scene = Scene::of_mesh(mesh).expect("it has a size");
+        let origin = scene.camera().pose().eye;
+        for (x, z) in (-19..=19).flat_map(|x| (-19..=19).map(move |z| (x, z))) {
+            let direction = Vec3::new(0.1 * x as f32, 0.1, 0.1 * z as f32) - origin;
+            let hit = closest_hit(&scene, &Ray { origin, direction }).expect("the ground");
+            assert_eq!(hit.object, 0, "{faces:?} at {x}, {z}");
+        }
+    }
+}

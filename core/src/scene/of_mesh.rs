@@ -51,6 +51,10 @@ const BACKGROUND: [LinearRgb; 2] = [LinearRgb::new(0.0232, 0.0262, 0.0343), Line
 /// The side of a square of the floor, as a multiple of the mesh's radius.
 const SQUARE: f32 = 0.2;
 
+/// The distance from a mesh's own ground to the floor below it, as a multiple of the mesh's radius.
+// Of two surfaces in one plane, rounding would decide for each pixel which one is seen.
+const GROUND_GAP: f32 = 1e-3;
+
 /// Returns the ambient light that makes an otherwise unlit floor as bright as the background at the
 /// horizon.
 // Far from the mesh the lights reach the floor at grazing angles, so that only ambient light remains there. With any
@@ -158,7 +162,9 @@ impl Draft {
         if !(radius > 1e-5 * farthest && radius > 1e-9 && farthest <= 1e9) {
             return None;
         }
-        let floor = Plane::new(Vec3::new(middle.x, bounds.min.y, middle.z), Vec3::Y).ok()?;
+        let gap =
+            if has_ground(&mesh, &bounds, radius) { GROUND_GAP * radius + 4.0 * f32::EPSILON * farthest } else { 0.0 };
+        let floor = Plane::new(Vec3::new(middle.x, bounds.min.y - gap, middle.z), Vec3::Y).ok()?;
         let squares = Material::checker(FLOOR[0], FLOOR[1], SQUARE * radius).ok()?;
         let material = if mesh.has_colors() { Material::Own } else { Material::diffuse(CLAY).ok()? };
         // The scene has a floor because the shadows on it show the shape and the height of the mesh.
@@ -187,6 +193,17 @@ impl Draft {
             ..Checked::new(camera(&bounds, middle)?, objects)
         }))
     }
+}
+
+/// Returns whether a triangle that is seen from above lies where the floor would be.
+fn has_ground(mesh: &MeshFile, bounds: &Bounds, radius: f32) -> bool {
+    let top = bounds.min.y + 0.1 * GROUND_GAP * radius;
+    // A flat mesh is seen from above on either side.
+    let is_flat = bounds.max.y <= top;
+    mesh.triangles().iter().any(|corners| {
+        let [a, b, c] = corners.map(|corner| mesh.positions()[corner as usize]);
+        a.y.max(b.y).max(c.y) <= top && (is_flat || (b - a).cross(c - a).y > 0.0)
+    })
 }
 
 /// Returns the box that the first picture shows: that of the mesh at time 0.
