@@ -166,6 +166,38 @@ fn rays_pass_holes_and_meet_what_is_behind_them() {
     assert!(any_hit(&scene, &ray(whole), near) && !any_hit(&scene, &ray(hole), near));
 }
 
+/// The 257th surface counts as whole, for eye rays and shadow rays of all kernels.
+#[test]
+fn rays_pass_at_most_256_holes() {
+    let hole = Ray { origin: Vec3::new(1.5, 3.5, 1.0), direction: -Vec3::Z };
+    let in_front_of_plane = Interval { min: 0.0, max: 6.0 };
+    let screen = SCREEN.strip_suffix(')').expect("an object");
+    for screens in [255, 256, 257, 300] {
+        let objects = format!(
+            "Plane(point: (0, 0, -6), normal: (0, 0, 1), material: Diffuse(0.25)),
+            {screen}, copies: (count: (1, 1, {screens}), step: (0, 0, -0.015625)))"
+        );
+        let scene = scene("", &objects);
+        let passes = screens <= 256;
+        // The plane is object 0, and the 257th screen object 257.
+        let expected = if passes { (0, 7.0) } else { (257, 5.0) };
+        assert_eq!(closest_hit(&scene, &hole).map(|hit| (hit.object, hit.t)), Some(expected), "{screens} screens");
+        let groups = [EightRays::of(&[hole; 8])];
+        for kernel in [Kernel::Auto, Kernel::Single, Kernel::Packet, Kernel::Scalar] {
+            let (mut hits, mut masks) = (Vec::new(), Vec::new());
+            closest_hits(kernel, &scene, &groups, &mut hits);
+            any_hits(kernel, &scene, &groups, in_front_of_plane, &mut masks);
+            for lane in 0..8 {
+                let found = hits[0].hit(&scene, lane).map(|hit| (hit.object, hit.t));
+                assert_eq!(found, Some(expected), "{kernel:?}, {screens} screens");
+            }
+            assert_eq!(masks, [if passes { 0 } else { 255 }], "{kernel:?}, {screens} screens");
+        }
+        let nearest = light_at(&scene, Vec3::new(1.5, 3.5, 0.0), Vec3::Z);
+        assert_eq!(nearest == LinearRgb::grey(0.25), passes, "{screens} screens: {nearest:?}");
+    }
+}
+
 #[test]
 fn light_falls_through_holes() {
     let lit = |x: f32| {

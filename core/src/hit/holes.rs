@@ -39,8 +39,9 @@ impl HolesLeft {
 
     /// Counts a hole; returns false if the ray has passed as many as it may.
     pub(super) fn count(&mut self) -> bool {
+        let may_pass = self.0 > 0;
         self.0 = self.0.saturating_sub(1);
-        self.0 > 0
+        may_pass
     }
 }
 
