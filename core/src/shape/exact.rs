@@ -268,29 +268,42 @@ pub(super) fn crossings<S: Exact>(surface: &S, ray: &Ray) -> Crossings {
 /// It is moved into the interval of the surface's box. Crossings are only computed if that interval has a part within
 /// the ray's.
 pub(super) fn first_in_box<I: Iterator<Item = f64>>(
-    Interval { min, max }: Interval,
+    inside: Interval,
     within: Interval,
     crossings: impl FnOnce() -> I,
 ) -> Option<f32> {
-    if !(min <= max && within.min <= max && min <= within.max) {
-        return None;
-    }
-    let finite = crossings().filter(|t| t.is_finite());
+    if overlap(inside, within) { first_reached(crossings(), inside, within) } else { None }
+}
+
+/// Returns whether the interval of a surface's box has a part within a ray's.
+pub(super) fn overlap(Interval { min, max }: Interval, within: Interval) -> bool {
+    min <= max && within.min <= max && min <= within.max
+}
+
+/// Returns the first of a line's crossings that a ray may reach, moved into the interval of the
+/// surface's box.
+pub(super) fn first_reached(
+    crossings: impl Iterator<Item = f64>,
+    Interval { min, max }: Interval,
+    within: Interval,
+) -> Option<f32> {
+    let finite = crossings.filter(|t| t.is_finite());
     finite.map(|t| clamp_keeping_nan(min, max, t as f32)).find(|&t| within.contains(t))
 }
 
 /// Computes [`first_in_box`] for the active rays, and returns the mask of those with a crossing.
-pub(super) fn first_in_boxes<I: Iterator<Item = f64>>(
+///
+/// `first` is given a ray, the interval of the surface's box, and that of the ray.
+pub(super) fn first_in_boxes(
     rays: &EightRays,
     inside: &[F32x8; 2],
     within: &[F32x8; 2],
-    crossings: impl Fn(&Ray) -> I,
+    first: impl Fn(&Ray, Interval, Interval) -> Option<f32>,
 ) -> (u32, F32x8) {
     let (mut crosses, mut t) = (0, F32x8::ZERO);
     let interval = |[min, max]: &[F32x8; 2], lane: usize| Interval { min: min.0[lane], max: max.0[lane] };
     for lane in set_bits(rays.active) {
-        let of_lane = || crossings(&rays.ray(lane));
-        if let Some(crossing) = first_in_box(interval(inside, lane), interval(within, lane), of_lane) {
+        if let Some(crossing) = first(&rays.ray(lane), interval(inside, lane), interval(within, lane)) {
             crosses |= 1 << lane;
             t.0[lane] = crossing;
         }
@@ -331,7 +344,9 @@ impl<S: Exact> Surface for S {
     }
 
     fn closest_crossings(&self, rays: &EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8) {
-        first_in_boxes(rays, inside, within, |ray| crossings(self, ray).iter().map(|crossing| crossing.t))
+        first_in_boxes(rays, inside, within, |ray, inside, within| {
+            first_in_box(inside, within, || crossings(self, ray).iter().map(|crossing| crossing.t))
+        })
     }
 
     fn at_crossing(&self, ray: &Ray, t: f32) -> SurfacePoint {

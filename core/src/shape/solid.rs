@@ -131,6 +131,15 @@ impl Solid {
         Ok(solid)
     }
 
+    /// Returns the first boundary that a ray may reach, as [`exact::first_in_box`] does.
+    fn first(&self, ray: &Ray, inside: Interval, within: Interval) -> Option<f32> {
+        if self.has_few_boundaries {
+            self.first_boundary::<FEW_BOUNDARIES>(ray, inside, within)
+        } else {
+            self.first_boundary::<MAX_BOUNDARIES>(ray, inside, within)
+        }
+    }
+
     /// Returns the number of shapes, those of the solids among the parts counted.
     fn shape_count(&self) -> usize {
         self.parts.iter().map(|part| shape_count(&part.shape)).sum()
@@ -176,22 +185,11 @@ impl Surface for Solid {
     }
 
     fn closest_crossing(&self, probe: &Probe, within: Interval) -> Option<f32> {
-        let inside = self.bounds.crossed(probe);
-        if self.has_few_boundaries {
-            exact::first_in_box(inside, within, || self.boundaries::<FEW_BOUNDARIES>(probe).ts())
-        } else {
-            exact::first_in_box(inside, within, || self.boundaries::<MAX_BOUNDARIES>(probe).ts())
-        }
+        self.first(&probe.ray, self.bounds.crossed(probe), within)
     }
 
     fn closest_crossings(&self, rays: &EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8) {
-        if self.has_few_boundaries {
-            let boundaries = |ray: &Ray| self.boundaries::<FEW_BOUNDARIES>(&Probe::new(*ray)).ts();
-            exact::first_in_boxes(rays, inside, within, boundaries)
-        } else {
-            let boundaries = |ray: &Ray| self.boundaries::<MAX_BOUNDARIES>(&Probe::new(*ray)).ts();
-            exact::first_in_boxes(rays, inside, within, boundaries)
-        }
+        exact::first_in_boxes(rays, inside, within, |ray, inside, within| self.first(ray, inside, within))
     }
 
     /// Returns the point on the part that the boundary belongs to; its side is that of the solid.

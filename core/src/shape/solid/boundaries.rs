@@ -1,7 +1,7 @@
 //! Where lines enter and leave solids.
 
 use super::{MAX_SHAPES, Operation, Part, Solid};
-use crate::ray::{Probe, Ray};
+use crate::ray::{Interval, Probe, Ray};
 use crate::shape::exact::{self, Crossings, Inside};
 use crate::shape::{Plane, Shape, Sphere, Torus};
 use glam::Vec3;
@@ -62,11 +62,6 @@ impl<const N: usize> Boundaries<N> {
         self.found.iter().take(self.count).copied()
     }
 
-    /// Returns the t of each boundary, in ascending order.
-    pub(super) fn ts(self) -> impl Iterator<Item = f64> {
-        self.found.into_iter().take(self.count).map(|boundary| boundary.t)
-    }
-
     /// Adds the boundaries of the part with this number along the line of a ray, in ascending
     /// order.
     ///
@@ -76,7 +71,8 @@ impl<const N: usize> Boundaries<N> {
             (&probe.ray, Boundary { t: 0.0, part: number, shape: *first_shape, is_of_plane: false, enters: false });
         let crossings = match shape {
             Shape::Solid(solid) => {
-                let boundaries = solid.boundaries::<N>(probe);
+                let mut boundaries = Boundaries::<N>::none();
+                solid.find(probe, &mut boundaries);
                 for boundary in boundaries.iter() {
                     self.push(Boundary { part: number, shape: first_shape + boundary.shape, ..boundary });
                 }
@@ -178,7 +174,27 @@ impl Solid {
     ///
     /// `N` is at least [`most_boundaries`](Self::most_boundaries).
     pub(super) fn boundaries<const N: usize>(&self, probe: &Probe) -> Boundaries<N> {
-        let (mut boundaries, mut inside) = (Boundaries::none(), 0_u32);
+        let mut boundaries = Boundaries::none();
+        self.find(probe, &mut boundaries);
+        boundaries
+    }
+
+    /// Returns the first boundary that a ray may reach, as [`exact::first_in_box`] does.
+    ///
+    /// `N` is at least [`most_boundaries`](Self::most_boundaries).
+    pub(super) fn first_boundary<const N: usize>(&self, ray: &Ray, inside: Interval, within: Interval) -> Option<f32> {
+        if !exact::overlap(inside, within) {
+            return None;
+        }
+        let mut boundaries = Boundaries::<N>::none();
+        self.find(&Probe::new(*ray), &mut boundaries);
+        exact::first_reached(boundaries.iter().map(|boundary| boundary.t), inside, within)
+    }
+
+    /// Adds where the line of a ray enters and leaves the solid, to no boundaries.
+    // Into a place of the caller's, because returned values are copied.
+    fn find<const N: usize>(&self, probe: &Probe, boundaries: &mut Boundaries<N>) {
+        let mut inside = 0_u32;
         for (number, part) in (0..).zip(&*self.parts) {
             let before = boundaries.count;
             // Most lines miss most parts. No crossing is lost (`culling.md`, 3).
@@ -187,11 +203,11 @@ impl Solid {
             }
             // The line is outside the whole part, and so outside the solid.
             if boundaries.count == before && inside >> number & 1 == 0 && self.operation.needs(number.into()) {
-                return Boundaries::none();
+                boundaries.count = 0;
+                return;
             }
         }
         boundaries.combine(self.operation, inside, self.parts.len());
-        boundaries
     }
 
     /// Returns an upper bound of the number of boundaries along any line.
