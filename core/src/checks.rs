@@ -151,6 +151,15 @@ pub(crate) fn cone_angle(degrees: f64) -> Result<f32, Message> {
     }
 }
 
+/// Checks the angle that a sun is seen under in degrees, and returns it in degrees.
+pub(crate) fn sun_size(degrees: f64) -> Result<f32, Message> {
+    if (0.0..=90.0).contains(&degrees) {
+        Ok(degrees as f32)
+    } else {
+        Err("the size of a sun must lie between 0 and 90 degrees".into())
+    }
+}
+
 /// Checks the softness of a light's cone: the share of half its angle in which the light fades.
 pub(crate) fn softness(share: f64) -> Result<f32, Message> {
     if (0.0..=1.0).contains(&share) { Ok(share as f32) } else { Err("the softness must lie within 0 and 1".into()) }

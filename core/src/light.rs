@@ -72,8 +72,10 @@ pub trait LightSource: InSceneFile + Copy {
         None
     }
 
-    /// Whether the light has a size, so that its shadows have penumbras.
-    const HAS_SIZE: bool = false;
+    /// Returns whether the light has a size, so that its shadows have penumbras.
+    fn has_size(&self) -> bool {
+        false
+    }
 
     /// Returns the vectors from points to a part of the light.
     ///
@@ -123,6 +125,12 @@ pub trait LightSource: InSceneFile + Copy {
     /// infinity.
     fn point_source(&self) -> Option<PointLight> {
         None
+    }
+
+    /// Returns the light without its size, if it is at infinity.
+    #[must_use]
+    fn without_size(self) -> Self {
+        self
     }
 
     /// Returns the light at another position; unchanged if it is at infinity or the position is
@@ -187,11 +195,11 @@ macro_rules! lights {
                 }
             }
 
-            /// Returns whether the light has a size, by [`LightSource::HAS_SIZE`].
+            /// Returns whether the light has a size, by [`LightSource::has_size`].
             #[doc(hidden)]
             pub fn has_size(&self) -> bool {
                 match self {
-                    $(Self::$name(_) => $light::HAS_SIZE,)*
+                    $(Self::$name(light) => LightSource::has_size(light),)*
                 }
             }
 
@@ -249,10 +257,13 @@ macro_rules! lights {
                 }
             }
 
-            /// Returns the light as it is in the lecture's model, by [`LightSource::point_source`].
+            /// Returns the light as it is in the lecture's model, by [`LightSource::point_source`]
+            /// or [`LightSource::without_size`].
             pub(crate) fn as_in_lecture(&self) -> Self {
                 match self {
-                    $(Self::$name(light) => light.point_source().map_or(*self, Self::from),)*
+                    $(Self::$name(light) => {
+                        light.point_source().map_or_else(|| light.without_size().into(), Self::from)
+                    })*
                 }
             }
 

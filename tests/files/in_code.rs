@@ -95,12 +95,16 @@ fn lights_and_materials_are_refused_in_the_words_of_scene_files() {
 fn spots_and_suns_are_refused_in_the_words_of_scene_files() {
     let (grey, o, y) = (LinearRgb::grey, Vec3::ZERO, Vec3::Y);
     let sun = |sun: &str| in_file(&format!("lights: [Sun({sun})]"));
+    let sized = |degrees| Sun::new(y, grey(1.0)).expect("a light").with_size(degrees);
     let spot = |rest: &str| in_file(&format!("lights: [Spot(position: (0, 1, 0), {rest})]"));
     let cone = |degrees, softness| SpotLight::new(y, o, grey(1.0)).expect("a light").with_cone(degrees, softness);
     for (code, file) in [
         (message(Sun::new(o, grey(1.0))), sun("direction: (0, 0, 0)")),
         (message(Sun::new(y * 2e9, grey(1.0))), sun("direction: (0, 2e9, 0)")),
         (message(Sun::new(y, grey(-1.0))), sun("direction: (0, 1, 0), color: -1")),
+        (message(sized(-0.5)), sun("direction: (0, 1, 0), size: -0.5")),
+        (message(sized(90.5)), sun("direction: (0, 1, 0), size: 90.5")),
+        (message(sized(f32::NAN)), sun("direction: (0, 1, 0), size: NaN")),
         (message(SpotLight::new(y, y, grey(1.0))), spot("target: (0, 1, 0)")),
         (message(SpotLight::new(y, Vec3::NAN, grey(1.0))), spot("target: (NaN, 0, 0)")),
         (message(SpotLight::new(y, o, grey(2e12))), spot("target: (0, 0, 0), color: 2e12")),
@@ -204,7 +208,7 @@ fn a_scene_in_code_is_the_scene_of_a_file() {
         lights: [
             Point(position: (3, 5, 4), intensity: 45), Point(position: (0, 9, 0), color: (1, 0.5, 0), falloff: None),
             Spot(position: (3, 5, 4), target: (0, 1, 0), angle: 30, softness: 1, intensity: 2, falloff: None),
-            Sun(direction: (1, 2, -3), color: (1, 0.5, 0)),
+            Sun(direction: (1, 2, -3), size: 0.5, color: (1, 0.5, 0)),
         ],
         objects: [
             Sphere(center: (0, 1, 0), radius: 1, material: Diffuse((0.8, 0.1, 0.1))),
@@ -234,7 +238,7 @@ fn a_scene_in_code_is_the_scene_of_a_file() {
             .light(PointLight::new(Vec3::new(3.0, 5.0, 4.0), LinearRgb::grey(45.0))?)
             .light(above.with_falloff(Falloff::None))
             .light(spot.with_falloff(Falloff::None))
-            .light(Sun::new(Vec3::new(1.0, 2.0, -3.0), LinearRgb::new(1.0, 0.5, 0.0))?)
+            .light(Sun::new(Vec3::new(1.0, 2.0, -3.0), LinearRgb::new(1.0, 0.5, 0.0))?.with_size(0.5)?)
             .object(Sphere::new(Vec3::Y, 1.0)?, red)
             .object(Sphere::new(Vec3::new(1.0, 1.0, 0.0), 1e-9)?, Material::DEFAULT)
             .object(Plane::new(Vec3::ZERO, Vec3::new(1.0, 2.0, -3.0))?, pattern)

@@ -48,7 +48,9 @@ impl Globe {
 }
 
 impl LightSource for Globe {
-    const HAS_SIZE: bool = true;
+    fn has_size(&self) -> bool {
+        true
+    }
 
     #[inline(always)]
     fn to_light<N: Number>(&self, point: Vector<N>) -> Vector<N> {

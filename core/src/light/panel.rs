@@ -64,7 +64,9 @@ impl Panel {
 }
 
 impl LightSource for Panel {
-    const HAS_SIZE: bool = true;
+    fn has_size(&self) -> bool {
+        true
+    }
 
     #[inline(always)]
     fn to_light<N: Number>(&self, point: Vector<N>) -> Vector<N> {

@@ -1,6 +1,6 @@
 //! Directional light, such as that of the sun.
 
-use super::LightSource;
+use super::{LightSource, PartPosition};
 use crate::checks::{self, SceneFault};
 use crate::color::LinearRgb;
 use crate::lanes::{Number, Vector};
@@ -9,12 +9,40 @@ use crate::written::{Fields, InSceneFile, NodeReader, Validator, WrittenColor, W
 use glam::Vec3;
 
 /// A directional light, which has the same direction and irradiance everywhere.
+///
+/// It is infinitely far away. With a size it is a disc in the sky, whose shadows have penumbras.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
     /// The direction to the light. Unit length.
     direction: Vec3,
     /// The [intensity](Self::new), not negative.
     intensity: LinearRgb,
+    disc: Disc,
+}
+
+/// The disc of a sun in the sky.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Disc {
+    /// 1 minus the cosine of the angle between the middle and the edge; 0 without a size.
+    below_one: f32,
+    /// The factor of the light of a part.
+    ///
+    /// The mean cosine of a surface's normal and the directions to a disc above the horizon is that of the middle,
+    /// times the mean of 1 and the cosine of the angle to the edge. All parts together give what the middle does.
+    brightness: f32,
+}
+
+impl Disc {
+    /// The disc of a sun without a size.
+    const POINT: Self = Self { below_one: 0.0, brightness: 1.0 };
+
+    /// Returns the disc that is seen under an angle.
+    fn new(degrees: f32) -> Self {
+        // 1 - cos a = 2 sin^2 (a / 2), which keeps the size of a small disc.
+        let sine = libm::sin(0.25 * f64::from(degrees).to_radians());
+        let below_one = 2.0 * sine * sine;
+        Self { below_one: below_one as f32, brightness: (2.0 / (2.0 - below_one)) as f32 }
+    }
 }
 
 impl Sun {
@@ -28,7 +56,19 @@ impl Sun {
     pub fn new(direction: Vec3, intensity: LinearRgb) -> Result<Self, SceneFault> {
         let direction = checks::checked_direction("direction", direction)?;
         let intensity = checks::checked_color("intensity", intensity, checks::light)?;
-        Ok(Self { direction, intensity })
+        Ok(Self { direction, intensity, disc: Disc::POINT })
+    }
+
+    /// Returns the light with a size: the angle that its disc is seen under, in degrees.
+    ///
+    /// That of the sun of the earth is 0.53 degrees. A surface receives as much light as without a size.
+    ///
+    /// # Errors
+    /// If the angle is not within 0 and 90.
+    #[doc(hidden)]
+    pub fn with_size(self, degrees: f32) -> Result<Self, SceneFault> {
+        let degrees = checks::checked_number("size", degrees, checks::sun_size)?;
+        Ok(Self { disc: Disc::new(degrees), ..self })
     }
 }
 
@@ -52,7 +92,28 @@ impl LightSource for Sun {
     #[inline(always)]
     fn irradiance_over_pi<N: Number>(&self, _: Vector<N>, _: N, cosine: N) -> [N; 3] {
         let LinearRgb { r, g, b } = self.intensity;
+        // Without a size, this multiplies by 1.
+        let cosine = cosine * N::splat(self.disc.brightness);
         [N::splat(r) * cosine, N::splat(g) * cosine, N::splat(b) * cosine]
+    }
+
+    fn has_size(&self) -> bool {
+        self.disc.below_one > 0.0
+    }
+
+    /// Returns unit vectors that are evenly distributed over the solid angle of the disc.
+    #[inline(always)]
+    fn to_part<N: Number>(&self, point: Vector<N>, part: &PartPosition<N>) -> Vector<N> {
+        let towards = self.to_light(point);
+        // A solid angle is proportional to the height on the sphere (Archimedes), here the cosine.
+        let below_one = part.height * N::splat(self.disc.below_one);
+        let (cosine, sine) = (N::splat(1.0) - below_one, (below_one * (N::splat(2.0) - below_one)).sqrt());
+        let ([u, v], [a, b]) = (towards.perpendicular_pair(), part.direction.map(|coordinate| coordinate * sine));
+        towards * cosine + u * a + v * b
+    }
+
+    fn without_size(self) -> Self {
+        Self { disc: Disc::POINT, ..self }
     }
 
     fn color(&self) -> LinearRgb {
@@ -62,7 +123,10 @@ impl LightSource for Sun {
     fn check(written: &WrittenSun, validator: &mut Validator<'_>) -> Option<Self> {
         let direction = written.direction.and_then(|direction| validator.unit_vector("direction", direction));
         let intensity = validator.intensity(written.color, written.intensity);
-        Some(Self { direction: direction?.as_vec3(), intensity: intensity? })
+        let disc = written
+            .size
+            .map_or(Some(Disc::POINT), |size| validator.accept(size.span, checks::sun_size(size.value)).map(Disc::new));
+        Some(Self { direction: direction?.as_vec3(), intensity: intensity?, disc: disc? })
     }
 }
 
@@ -71,6 +135,8 @@ impl LightSource for Sun {
 pub struct WrittenSun {
     /// The direction to the light.
     pub direction: Option<WrittenVector>,
+    /// The angle that the disc is seen under in degrees; 0 if not given.
+    pub size: Option<WrittenNumber>,
     /// The colour; white if not given.
     pub color: Option<WrittenColor>,
     /// The factor of the colour; 1 if not given.
@@ -83,14 +149,19 @@ impl InSceneFile for Sun {
     const NAME: &'static str = "Sun";
     const OWNER: &'static str = "a Sun";
     const FORM: &'static str = "Sun(direction: ...)";
-    const FIELDS: &'static [&'static str] = &["direction", "color", "intensity"];
+    const FIELDS: &'static [&'static str] = &["direction", "size", "color", "intensity"];
     const SUMMARY: &'static str = "Light from infinitely far, in parallel rays.";
-    const MEANINGS: &'static [&'static str] =
-        &["the direction to the light, of any length", "the colour; white", "the factor of the colour; 1"];
+    const MEANINGS: &'static [&'static str] = &[
+        "the direction to the light, of any length",
+        "the angle between opposite edges of the sun in degrees, 0 to 90; 0",
+        "the colour; white",
+        "the factor of the colour; 1",
+    ];
 
     fn read(reader: &mut NodeReader<'_>, fields: &Fields<'_>) -> WrittenSun {
         WrittenSun {
             direction: reader.required(fields, "direction", NodeReader::direction),
+            size: reader.optional(fields, "size", NodeReader::number),
             color: reader.optional(fields, "color", NodeReader::color),
             intensity: reader.optional(fields, "intensity", NodeReader::number),
         }
