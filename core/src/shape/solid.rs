@@ -21,11 +21,7 @@ use std::sync::Arc;
 
 mod boundaries;
 
-use boundaries::{Boundary, FEW_BOUNDARIES, MAX_BOUNDARIES};
-
-/// The most shapes in a solid, those of the solids among its parts counted.
-// A line has up to four crossings with each, and all of them are kept in an array on the stack.
-const MAX_SHAPES: usize = 16;
+use boundaries::{Boundary, FEW_BOUNDARIES, MAX_BOUNDARIES, MAX_SHAPES};
 
 /// The operation by which a solid is made of its parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,11 +1,15 @@
 //! Where lines enter and leave solids.
 
-use super::{MAX_SHAPES, Operation, Part, Solid};
+use super::{Operation, Part, Solid};
 use crate::ray::{Interval, Probe, Ray};
 use crate::shape::exact::{self, Crossings, Inside};
 use crate::shape::{Plane, Shape, Sphere, Torus};
 use glam::Vec3;
 use std::cmp::Ordering;
+
+/// The most shapes in a solid, those of the solids among its parts counted.
+// A line has up to four crossings with each, and all of them are kept in an array on the stack.
+pub(super) const MAX_SHAPES: usize = 16;
 
 /// The most boundaries of a solid along a line.
 pub(super) const MAX_BOUNDARIES: usize = 4 * MAX_SHAPES;

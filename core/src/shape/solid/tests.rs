@@ -130,7 +130,8 @@ proptest! {
         let ray = Ray { origin, direction: target - origin };
         let boundaries = solid.boundaries::<MAX_BOUNDARIES>(&Probe::new(ray));
         let few = solid.boundaries::<FEW_BOUNDARIES>(&Probe::new(ray));
-        prop_assert!(solid.has_few_boundaries && few.iter().map(|boundary| boundary.t).eq(boundaries.iter().map(|boundary| boundary.t)));
+        prop_assert!(solid.has_few_boundaries);
+        prop_assert!(few.iter().map(|few| few.t).eq(boundaries.iter().map(|boundary| boundary.t)));
         for step in -200..400 {
             let t = 0.01 * f64::from(step) + 0.003;
             let near = |boundary: Boundary| (boundary.t - t).abs() < 1e-3;
