@@ -63,7 +63,7 @@ mod format;
 #[cfg(feature = "mesh")]
 mod left_out;
 mod limits;
-#[cfg_attr(not(feature = "mesh"), allow(dead_code, reason = "only glTF files move"))]
+#[cfg_attr(not(feature = "mesh"), allow(dead_code, unused_imports, reason = "only glTF files move"))]
 mod motion;
 mod staging;
 #[cfg(feature = "mesh")]
