@@ -755,7 +755,9 @@ def rising(**sampler):
 
 turning().write("s4_turn.gltf")
 rising().write("s4_rise.gltf")
-rising(interpolation="STEP").write("s4_step.gltf")
+mesh = staged()
+steps = mesh.floats("VEC3", [0, 0, 0, 0, 2, 0, 0, 4, 0])
+channel(mesh, "translation", steps, times=[0, 1, 2], interpolation="STEP").write("s4_step.gltf")
 mesh = staged()
 spline = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4, 0, 0, 4, 0, 0, 0, 0]
 channel(mesh, "translation", mesh.floats("VEC3", spline), interpolation="CUBICSPLINE").write("s4_spline.gltf")
@@ -768,6 +770,13 @@ mesh.json["nodes"][0]["children"] = [1]
 mesh.json["nodes"] += [{"mesh": 0, "translation": [1, 0, 0]}, {"mesh": 0, "translation": [-3, 0, 0]}]
 mesh.json["scenes"][0]["nodes"] = [0, 2]
 channel(mesh, "translation", mesh.floats("VEC3", [1, 0, 0, 1, 2, 0]), node=1).write("s4_parts.gltf")
+# A turning node above a flat one above a tilted square, and a flat one above a turning square.
+mesh = turning()
+tilt = [HALF, 0, 0, HALF]
+mesh.json["nodes"] = [{"children": [1]}, {"scale": [2, 1, 0], "rotation": [0, HALF, 0, HALF], "children": [2]},
+                      {"mesh": 0, "rotation": tilt}, {"scale": [1, 1, 0], "children": [4]}, {"mesh": 0}]
+mesh.json["scenes"][0]["nodes"] = [0, 3]
+channel(mesh, "rotation", mesh.floats("VEC4", tilt + [0, 0, HALF, HALF]), node=4).write("s4_flat.gltf")
 # As numbers that stand for 0 to 1, and with one quaternion of a sparse accessor.
 mesh = staged()
 values = mesh.accessor("VEC4", 5122, "h", [0, 0, 0, 32767, 0, 0, 23170, 23170], normalized=True)
@@ -797,6 +806,11 @@ mesh.write("s4_pointer.gltf")
 mesh = Gltf()
 mesh.primitive["targets"] = [{"POSITION": mesh.floats("VEC3", [0, 0, 0, 0, 0, 0, 0, 4, 0])}]
 channel(mesh, "weights", mesh.floats("SCALAR", [0.5, 1])).write("s4_morph.gltf")
+# Weights that stay, and are the last key frame: the square starts to turn again after three seconds.
+mesh = turning()
+mesh.primitive["targets"] = [{"POSITION": mesh.floats("VEC3", [0, 0, 0] * 3 + [0, 0, 4])}]
+still = mesh.floats("SCALAR", [0, 0.5, 0] * 2)
+channel(mesh, "weights", still, times=[0, 3], interpolation="CUBICSPLINE").write("s4_weights.gltf")
 mesh = skinned()
 channel(mesh, "translation", mesh.floats("VEC3", [0, 0, 0, 0, 4, 0]), node=1).write("s4_skin.gltf")
 mesh = rising()
@@ -836,6 +850,16 @@ mesh.json["nodes"][0]["matrix"] = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 
 mesh.write("s4_matrix.gltf")
 mesh = staged()
 channel(mesh, "rotation", mesh.floats("VEC4", QUARTER[:4] + [0] * 4)).write("s4_no_turn.gltf")
+mesh = staged()
+values = mesh.floats("VEC4", [0] * 12 + [0] * 4 + QUARTER[4:] + [0] * 4)
+channel(mesh, "rotation", values, interpolation="CUBICSPLINE").write("s4_no_turn_spline.gltf")
+# Straight, the same values are faulty too; their tangents are 0 as well.
+mesh = staged()
+values = mesh.floats("VEC4", [0] * 4 + QUARTER[4:] + [0] * 8 + QUARTER[4:] + [0] * 4)
+channel(mesh, "rotation", values, interpolation="CUBICSPLINE")
+channel(mesh, "rotation", values, node=1, times=range(6))
+mesh.json["nodes"].append({})
+mesh.write("s4_shared.gltf")
 mesh = rising()
 mesh.json["animations"][0]["channels"] *= 3
 mesh.write("s4_twice.gltf")

@@ -7,7 +7,7 @@
 mod track;
 
 pub(super) use track::Interpolation;
-pub(crate) use track::Track;
+pub(crate) use track::{KeyTimes, Track};
 
 use super::MeshFile;
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
@@ -77,23 +77,17 @@ impl Channel<4> {
     }
 }
 
-/// Returns a rotation; none at all if the quaternion has no length, as between opposite tangents.
+/// Returns the rotation of a quaternion; the identity if its length is 0.
+// Between the key frames of a spline it may be 0.
 fn unit(rotation: DVec4) -> DQuat {
     rotation.try_normalize().map_or(DQuat::IDENTITY, DQuat::from_vec4)
 }
 
-/// The extent of a mesh along an axis whose scale is 0, as a share of its largest scale.
-// Only an invertible transform maps rays to the coordinates of the part. A part that is flat for a moment remains seen.
-const FLAT: f64 = 1e-6;
-
 impl MovingNode {
     /// Returns the transform from the node's coordinates to those of the moving node above.
     fn transform(&self, seconds: f64) -> DMat4 {
-        let scale = self.scale.at(seconds);
-        let least = FLAT * scale.abs().max_element();
-        let scale = scale.map(|factor| if factor == 0.0 { least } else { factor });
-        let (rotation, translation) = (self.rotation.at(seconds), self.translation.at(seconds));
-        self.above * DMat4::from_scale_rotation_translation(scale, rotation, translation)
+        let (scale, rotation) = (self.scale.at(seconds), self.rotation.at(seconds));
+        self.above * DMat4::from_scale_rotation_translation(scale, rotation, self.translation.at(seconds))
     }
 }
 

@@ -9,7 +9,7 @@ use super::placement::{AffineMap, Placement};
 use crate::bounds::Bounds;
 use crate::checks;
 use crate::mesh_file::{MeshFile, Motion};
-use glam::{DMat3, DMat4};
+use glam::{DMat3, DMat4, DVec3};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -63,6 +63,37 @@ pub(super) enum PartPlace {
     TooFar,
 }
 
+/// The extent of a flat part across its plane, as a share of its largest extent.
+const THICKNESS: f64 = 1e-6;
+
+/// Returns a map that has an inverse, by which rays are mapped to the coordinates of the part.
+///
+/// A map to a plane is given a small extent across the plane, so that a flat part is seen. `None` for a map to a line or
+/// a point, where no triangle has an area.
+fn invertible(map: DMat3) -> Option<DMat3> {
+    let [x, y, z] = [map.x_axis, map.y_axis, map.z_axis];
+    let longest = x.length().max(y.length()).max(z.length());
+    // Of factors whose product is a map to a plane, rounding makes a determinant near 0.
+    if map.determinant().abs() > 1e-12 * longest * longest * longest {
+        return Some(map);
+    }
+    // The normal of the plane, and the direction that is mapped to 0.
+    let across = normal_of_plane([x, y, z])?;
+    let rows = map.transpose();
+    let lost = normal_of_plane([rows.x_axis, rows.y_axis, rows.z_axis])? * (THICKNESS * longest);
+    Some(DMat3::from_cols(x + across * lost.x, y + across * lost.y, z + across * lost.z))
+}
+
+/// Returns the unit normal of the plane that three vectors span; `None` if they span a line or
+/// nothing.
+fn normal_of_plane([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
+    let longest = a.length_squared().max(b.length_squared()).max(c.length_squared());
+    let normals = [a.cross(b), b.cross(c), c.cross(a)];
+    let normal = normals.into_iter().max_by(|one, other| one.length_squared().total_cmp(&other.length_squared()))?;
+    // Rounding makes small normals of vectors along a line.
+    (normal.length() > 1e-12 * longest).then(|| normal.normalize())
+}
+
 impl MovingParts {
     pub(crate) fn of(motion: &Arc<Motion>) -> Self {
         let mut known: HashMap<*const MeshFile, Option<Arc<CornerCells>>> = HashMap::new();
@@ -104,9 +135,9 @@ impl MeshMotion {
         if !transform.is_finite() {
             return PartPlace::TooFar;
         }
-        if linear.determinant() == 0.0 {
+        let Some(linear) = invertible(linear) else {
             return PartPlace::Nowhere;
-        }
+        };
         let part = AffineMap::new(linear, transform.w_axis.truncate());
         let map = part.then(&self.placement);
         let bounds = self.cells.bounds(Some(&map));
@@ -119,3 +150,6 @@ impl MeshMotion {
         PartPlace::Seen(map, bounds)
     }
 }
+
+#[cfg(all(test, unit_tests))]
+mod tests;

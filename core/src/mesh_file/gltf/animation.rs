@@ -7,15 +7,12 @@ use super::buffers::Buffers;
 use super::json::Json;
 use super::tree::{NodeTransform, node_transform};
 use crate::mesh_file::fault::MeshFault;
-use crate::mesh_file::motion::{Channel, Interpolation, Track};
+use crate::mesh_file::motion::{Channel, Interpolation, KeyTimes, Track};
+use crate::progress::Meter;
 use glam::DMat4;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::Arc;
-
-/// Limit on the faulty channels that are read.
-// Each may take as long as its accessors are long.
-const MAX_FAULTY_CHANNELS: usize = 100;
 
 /// The first animation of a file.
 #[derive(Default)]
@@ -47,7 +44,11 @@ pub(super) struct NodeChannels {
 
 impl Animation {
     /// Reads the first animation, and counts the others as not shown.
-    pub(super) fn read<'a>(root: Json<'a>, buffers: &mut Buffers<'a, '_>) -> Result<Self, MeshFault> {
+    pub(super) fn read<'a>(
+        root: Json<'a>,
+        buffers: &mut Buffers<'a, '_>,
+        meter: &mut Meter<'_>,
+    ) -> Result<Self, MeshFault> {
         // A fault of an animation is no reason to refuse the shape.
         let mut animations = match root.list("animations") {
             Ok(animations) => animations,
@@ -59,20 +60,16 @@ impl Animation {
         let Some(animation) = animations.next() else { return Ok(Self::default()) };
         buffers.left_out().not_shown("animation (after the first)", animations.count());
         let mut reader = Reader { animation, buffers, read: Self::default(), samples: Samples::default() };
-        let (mut faulty, mut is_told) = (0, false);
+        let mut is_told = false;
         for channel in animation.list("channels").into_iter().flatten() {
-            if faulty < MAX_FAULTY_CHANNELS {
-                match reader.channel(channel) {
-                    Ok(()) => continue,
-                    Err(fault) if !is_told => {
-                        reader.buffers.left_out().notify_of(fault, "this channel is not played")?;
-                        is_told = true;
-                        continue;
-                    }
-                    Err(_) => faulty += 1,
-                }
+            meter.report_indeterminate()?;
+            let Err(fault) = reader.channel(channel) else { continue };
+            if is_told {
+                reader.buffers.left_out().not_shown("faulty channel (of the animation)", 1);
+            } else {
+                reader.buffers.left_out().notify_of(fault, "this channel is not played")?;
+                is_told = true;
             }
-            reader.buffers.left_out().not_shown("faulty channel (of the animation)", 1);
         }
         if let Err(fault) = animation.list("channels").map(drop) {
             reader.buffers.left_out().notify_of(fault, "not played")?;
@@ -135,15 +132,31 @@ impl Animation {
 /// The times and values of key frames read so far, by the index of their accessor.
 #[derive(Default)]
 struct Samples {
-    times: HashMap<usize, Arc<[f32]>>,
+    times: HashMap<usize, KeyTimes>,
     vectors: HashMap<usize, Values<3>>,
     rotations: HashMap<usize, Values<4>>,
     /// Number of all elements that were read.
     count: usize,
 }
 
-/// The values of an accessor, and whether all are the same.
-type Values<const N: usize> = (Arc<[[f32; N]]>, bool);
+/// The values of an accessor.
+#[derive(Clone)]
+struct Values<const N: usize> {
+    all: Arc<[[f32; N]]>,
+    /// Whether all are the same.
+    is_constant: bool,
+    /// Whether one of them is zero, and whether one of those in the middle of threes is, which are
+    /// the values of a spline.
+    has_zero: [bool; 2],
+}
+
+impl<const N: usize> From<Vec<[f32; N]>> for Values<N> {
+    fn from(all: Vec<[f32; N]>) -> Self {
+        let is_zero = |value: &[f32; N]| *value == [0.0; N];
+        let has_zero = [all.iter().any(is_zero), all.iter().skip(1).step_by(3).any(is_zero)];
+        Self { is_constant: all.iter().all(|value| *value == all[0]), has_zero, all: all.into() }
+    }
+}
 
 struct Reader<'r, 'a, 'b> {
     animation: Json<'a>,
@@ -170,7 +183,7 @@ impl<'a> Reader<'_, 'a, '_> {
             "translation" => entry.is_some_and(|tracks| tracks.translation.is_some()),
             "rotation" => entry.is_some_and(|tracks| tracks.rotation.is_some()),
             "scale" => entry.is_some_and(|tracks| tracks.scale.is_some()),
-            "weights" => return self.weights(sampler, number),
+            "weights" => return self.weights(target, sampler, number),
             other => {
                 let known = "translation, rotation, scale or weights";
                 return Err(path.fault(format!("expected {known}, found {}", super::shown(other.as_bytes()))));
@@ -204,24 +217,23 @@ impl<'a> Reader<'_, 'a, '_> {
         let (times, interpolation) = self.times(sampler)?;
         let output = sampler.required("output")?;
         let (index, _) = output.item_of(self.buffers.root(), "accessors")?;
-        let (values, is_constant) = if let Some(known) = values_of(&mut self.samples).get(&index) {
+        let values = if let Some(known) = values_of(&mut self.samples).get(&index) {
             known.clone()
         } else {
             let accessor = Accessor::read(output, self.buffers)?;
             self.samples.count(&accessor, self.buffers)?;
-            let values = accessor.vectors::<N>()?;
-            if N == 4 && interpolation != Interpolation::CubicSpline && values.contains(&[0.0; N]) {
-                return Err(accessor.fault("a rotation is not a quaternion: its length is zero"));
-            }
-            let is_constant = values.iter().all(|value| *value == values[0]);
-            let values: Values<N> = (values.into(), is_constant);
+            let values = Values::from(accessor.vectors::<N>()?);
             values_of(&mut self.samples).insert(index, values.clone());
             values
         };
-        let (keys, count) = (times.len(), values.len());
-        let moves = keys > 1 && (!is_constant || interpolation == Interpolation::CubicSpline);
-        let length = times.last().copied().map_or(0.0, f64::from);
-        let track = Track::new(times, values, interpolation).ok_or_else(|| {
+        let is_spline = interpolation == Interpolation::CubicSpline;
+        if N == 4 && values.has_zero[usize::from(is_spline)] {
+            return Err(output.fault("a rotation is not a quaternion: its length is zero"));
+        }
+        let (keys, count) = (times.count(), values.all.len());
+        let moves = keys > 1 && (!values.is_constant || is_spline);
+        let length = times.last();
+        let track = Track::new(times, values.all, interpolation).ok_or_else(|| {
             let wanted = keys.saturating_mul(interpolation.values_per_key());
             output.fault(format!("{keys} key frames need {wanted} values, found {count}"))
         })?;
@@ -230,7 +242,7 @@ impl<'a> Reader<'_, 'a, '_> {
     }
 
     /// Reads the times of a sampler, and how the values between them follow.
-    fn times(&mut self, sampler: Json<'a>) -> Result<(Arc<[f32]>, Interpolation), MeshFault> {
+    fn times(&mut self, sampler: Json<'a>) -> Result<(KeyTimes, Interpolation), MeshFault> {
         let interpolation = match sampler.field("interpolation")?.map(Json::string).transpose()? {
             None | Some("LINEAR") => Interpolation::Linear,
             Some("STEP") => Interpolation::Step,
@@ -243,23 +255,21 @@ impl<'a> Reader<'_, 'a, '_> {
         let input = sampler.required("input")?;
         let (index, _) = input.item_of(self.buffers.root(), "accessors")?;
         let times = match self.samples.times.entry(index) {
-            Entry::Occupied(known) => Arc::clone(known.get()),
+            Entry::Occupied(known) => known.get().clone(),
             Entry::Vacant(_) => {
                 let accessor = Accessor::read(input, self.buffers)?;
                 self.samples.count(&accessor, self.buffers)?;
                 let times: Vec<f32> = accessor.vectors::<1>()?.into_iter().map(|[time]| time).collect();
-                if times.is_empty() {
-                    return Err(accessor.fault("there are no key frames"));
-                }
                 if let Some(at) = times.windows(2).position(|pair| pair[1] < pair[0]) {
-                    let [before, after] = [times[at], times[at + 1]];
-                    return Err(accessor.fault(format!("times of key frames increase; {before} is before {after}")));
+                    let [time, next] = [times[at], times[at + 1]];
+                    let message = format!("the times of key frames must not decrease: {time} is followed by {next}");
+                    return Err(accessor.fault(message));
                 }
-                if times[0] < 0.0 {
-                    return Err(accessor.fault(format!("the time {} of a key frame is negative", times[0])));
+                if let Some(first) = times.first().filter(|&&first| first < 0.0) {
+                    return Err(accessor.fault(format!("the time {first} of a key frame is negative")));
                 }
-                let times: Arc<[f32]> = times.into();
-                self.samples.times.insert(index, Arc::clone(&times));
+                let times = KeyTimes::new(times).ok_or_else(|| accessor.fault("there are no key frames"))?;
+                self.samples.times.insert(index, times.clone());
                 times
             }
         };
@@ -267,20 +277,30 @@ impl<'a> Reader<'_, 'a, '_> {
     }
 
     /// Reads the weights of morph targets at time 0.
-    fn weights(&mut self, sampler: Json<'a>, number: usize) -> Result<(), MeshFault> {
+    fn weights(&mut self, target: Json<'a>, sampler: Json<'a>, number: usize) -> Result<(), MeshFault> {
+        if self.read.weights.contains_key(&number) {
+            return Err(target.fault("two channels have this target"));
+        }
         let (times, interpolation) = self.times(sampler)?;
         let accessor = Accessor::read(sampler.required("output")?, self.buffers)?;
         self.samples.count(&accessor, self.buffers)?;
         let values = accessor.vectors::<1>()?;
-        let targets = values.len() / (times.len() * interpolation.values_per_key());
-        if targets == 0 || targets * times.len() * interpolation.values_per_key() != values.len() {
-            return Err(accessor.fault(format!("{} values are not those of {} key frames", values.len(), times.len())));
+        let (keys, values_per_key) = (times.count(), interpolation.values_per_key());
+        let targets = values.len() / (keys * values_per_key);
+        if targets == 0 || targets * keys * values_per_key != values.len() {
+            return Err(accessor.fault(format!("{} values are not those of {keys} key frames", values.len())));
         }
         // Before the values of the first key frame, a cubic spline has its incoming tangents.
         let first = if interpolation == Interpolation::CubicSpline { targets } else { 0 };
-        let at_start: Vec<f64> = values[first..first + targets].iter().map(|&[weight]| f64::from(weight)).collect();
-        self.read.weights.insert(number, at_start);
-        let is_constant = values.chunks(targets).all(|chunk| chunk == &values[..targets]);
+        let weights = values[first..first + targets].iter().map(|&[weight]| f64::from(weight));
+        self.read.weights.insert(number, weights.collect());
+        self.read.length = self.read.length.max(times.last());
+        let at_start = &values[first..first + targets];
+        // A spline with equal values is constant where its tangents are 0.
+        let is_constant = values.chunks(targets).enumerate().all(|(at, chunk)| match (values_per_key, at % 3) {
+            (3, 0 | 2) => chunk.iter().all(|tangent| *tangent == [0.0]),
+            _ => chunk == at_start,
+        });
         if !is_constant {
             self.buffers.left_out().not_shown("animation (of morph targets)", 1);
         }

@@ -97,7 +97,7 @@ impl<'a> Json<'a> {
 
     /// Returns the extension `name` of this value, if it has it.
     ///
-    /// Extensions that are no objects have no effect, as they cost no more than what they would add.
+    /// An extension that is not an object is ignored: only its effect is lost.
     pub(super) fn extension(self, name: &'static str) -> Result<Option<Self>, MeshFault> {
         let is_object = |json: &Self| json.value.is_object();
         let Some(extensions) = self.field("extensions")?.filter(is_object) else { return Ok(None) };

@@ -7,6 +7,7 @@ use super::tree::IndexedNode;
 use crate::mesh_file::MeshFile;
 use crate::mesh_file::fault::MeshFault;
 use crate::mesh_file::motion::{Motion, MovingNode, MovingPart};
+use crate::progress::Meter;
 use glam::{DMat3, DMat4};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -72,11 +73,13 @@ impl<'a, 'w> MovingTree<'a, 'w> {
         self,
         primitives: &mut Primitives<'_, 'a, '_>,
         globals: &Globals,
+        meter: &mut Meter<'_>,
     ) -> Result<Option<Motion>, MeshFault> {
         let Self { animation, nodes, shown } = self;
         let mut meshes: HashMap<MeshKey, Option<Arc<MeshFile>>> = HashMap::new();
         let mut parts = Vec::new();
         for (key, placed, anchor) in &shown {
+            meter.report_indeterminate()?;
             let Some((node, below)) = *anchor else { continue };
             if !meshes.contains_key(key) {
                 let placed = Placed { transform: DMat4::IDENTITY, ..*placed };

@@ -21,7 +21,7 @@ pub(super) fn read<'a>(
     meter: &mut Meter<'_>,
 ) -> Result<MeshFile, MeshFault> {
     let mut is_visited = vec![false; root.list_len("nodes")?];
-    let animation = Animation::read(root, buffers)?;
+    let animation = Animation::read(root, buffers, meter)?;
     let globals = Globals::of(root, &animation)?;
     let mut primitives = Primitives::new(buffers)?;
     let mut stage = StagingReader::default();
@@ -56,7 +56,7 @@ pub(super) fn read<'a>(
         open.extend(children.into_iter().rev().map(|child| (child, transform, moving)));
     }
     let staging = stage.finish(root, primitives.left_out());
-    let motion = tree.finish(&mut primitives, &globals)?;
+    let motion = tree.finish(&mut primitives, &globals, meter)?;
     primitives.finish(staging, motion)
 }
 

@@ -24,11 +24,11 @@ pub(super) enum NodeTransform {
     Parts { translation: [f64; 3], rotation: [f64; 4], scale: [f64; 3] },
 }
 
-/// The message about a rotation that is none.
+/// The message about a rotation whose quaternion has no direction.
 pub(super) const NO_ROTATION: &str = "the rotation is not a quaternion: its length is zero or too large";
 
 impl NodeTransform {
-    /// Returns the matrix; `None` if the rotation is [none](NO_ROTATION).
+    /// Returns the matrix; `None` if the length of the rotation is 0 or too large.
     pub(super) fn matrix(self) -> Option<DMat4> {
         Some(match self {
             Self::Matrix(matrix) => matrix,

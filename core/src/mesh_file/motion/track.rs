@@ -21,10 +21,32 @@ impl Interpolation {
     }
 }
 
+/// The times of key frames in seconds: at least one, and none is less than the one before.
+///
+/// Many tracks may share them, which is why their order is checked once.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct KeyTimes(Arc<[f32]>);
+
+impl KeyTimes {
+    /// Returns the times; `None` if there are none, or they decrease or cannot be compared.
+    pub(crate) fn new(times: Vec<f32>) -> Option<Self> {
+        (!times.is_empty() && times.is_sorted()).then(|| Self(times.into()))
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Returns the last time.
+    pub(crate) fn last(&self) -> f64 {
+        f64::from(self.0[self.0.len() - 1])
+    }
+}
+
 /// Key frames of vectors or quaternions.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Track<const N: usize> {
-    times: Arc<[f32]>,
+    times: KeyTimes,
     values: Arc<[[f32; N]]>,
     interpolation: Interpolation,
 }
@@ -40,12 +62,9 @@ enum Place {
 }
 
 impl<const N: usize> Track<N> {
-    /// Returns the track of these key frames; `None` if there are none, the times decrease, or the
-    /// number of values is another.
-    pub(crate) fn new(times: Arc<[f32]>, values: Arc<[[f32; N]]>, interpolation: Interpolation) -> Option<Self> {
-        let is_valid = !times.is_empty()
-            && times.is_sorted()
-            && times.len().checked_mul(interpolation.values_per_key()) == Some(values.len());
+    /// Returns the track of these key frames; `None` if the number of values is another.
+    pub(crate) fn new(times: KeyTimes, values: Arc<[[f32; N]]>, interpolation: Interpolation) -> Option<Self> {
+        let is_valid = times.count().checked_mul(interpolation.values_per_key()) == Some(values.len());
         is_valid.then_some(Self { times, values, interpolation })
     }
 
@@ -59,15 +78,16 @@ impl<const N: usize> Track<N> {
 
     /// Returns the place of a time.
     fn place(&self, seconds: f64) -> Place {
-        let next = self.times.partition_point(|&time| f64::from(time) <= seconds);
-        let (Some(key), true) = (next.checked_sub(1), next < self.times.len()) else {
-            return Place::At(next.min(self.times.len() - 1));
+        let KeyTimes(times) = &self.times;
+        let next = times.partition_point(|&time| f64::from(time) <= seconds);
+        let (Some(key), true) = (next.checked_sub(1), next < times.len()) else {
+            return Place::At(next.min(times.len() - 1));
         };
         if self.interpolation == Interpolation::Step {
             return Place::At(key);
         }
         // The next time is later than `seconds`, and so later than this one: the step is not 0.
-        let [start, end] = [self.times[key], self.times[next]].map(f64::from);
+        let [start, end] = [times[key], times[next]].map(f64::from);
         Place::Between { key, share: (seconds - start) / (end - start), step: end - start }
     }
 
