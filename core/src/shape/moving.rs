@@ -68,8 +68,8 @@ const THICKNESS: f64 = 1e-6;
 
 /// Returns a map that has an inverse, by which rays are mapped to the coordinates of the part.
 ///
-/// A map to a plane is given a small extent across the plane, so that a flat part is seen. `None` for a map to a line or
-/// a point, where no triangle has an area.
+/// A map to a plane is given a small extent across the plane, so that a flat part is seen. `None` for a map to a line
+/// or a point, where no triangle has an area.
 fn invertible(map: DMat3) -> Option<DMat3> {
     let [x, y, z] = [map.x_axis, map.y_axis, map.z_axis];
     let longest = x.length().max(y.length()).max(z.length());
