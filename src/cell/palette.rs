@@ -10,6 +10,8 @@
 use super::colors::xterm_color;
 use super::mixes::{Mix, Mixes};
 use crate::color::Srgb8;
+use std::sync::atomic::{AtomicU16, Ordering};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// A palette, its mixes, and the mixes chosen so far.
 pub(super) struct Palette {
@@ -18,15 +20,22 @@ pub(super) struct Palette {
     first_index: u8,
     /// The mixes and the choices, computed at the first use.
     // Most painters of the live view are replaced before they paint, as the terminal's replies arrive.
-    choices: Option<Choices>,
+    choices: Option<Arc<Choices>>,
 }
 
+/// The choices of all palettes in use.
+// On a server each viewer's own took 270 kB, and most of the time to the first picture in 256 colours.
+static IN_USE: Mutex<Vec<Weak<Choices>>> = Mutex::new(Vec::new());
+
 /// The possible mixes, and those that were chosen for colours so far.
+///
+/// A choice depends on its colour only, so that it does not matter which painter makes it.
 struct Choices {
+    palette: Vec<Srgb8>,
     mixes: Mixes,
     /// For each colour of [`LEVELS`], the number of its mix, counted from 1; 0 if none is chosen.
     // Memory: 131 kB for the 65,536 colours of `LEVELS`. The rejected mixes of up to sixteen colours took 557 kB.
-    chosen: Vec<u16>,
+    chosen: Vec<AtomicU16>,
 }
 
 impl Palette {
@@ -57,27 +66,41 @@ impl Palette {
     }
 
     fn mix(&mut self, color: Srgb8) -> Mix {
-        let Choices { mixes, chosen } = self.choices.get_or_insert_with(|| Choices::new(&self.colors));
+        let Choices { mixes, chosen, .. } = &**self.choices.get_or_insert_with(|| Choices::shared(&self.colors));
         let levels = levels(color);
-        let number = &mut chosen[choice_index(levels)];
-        if *number == 0 {
-            *number = one_based(mixes.best(color_of(levels)));
+        let choice = &chosen[choice_index(levels)];
+        let mut number = choice.load(Ordering::Relaxed);
+        if number == 0 {
+            number = one_based(mixes.best(color_of(levels)));
+            choice.store(number, Ordering::Relaxed);
         }
-        mixes.get(usize::from(*number) - 1)
+        mixes.get(usize::from(number) - 1)
     }
 }
 
 impl Choices {
+    /// Returns the choices of a palette, which all painters with that palette share.
+    fn shared(palette: &[Srgb8]) -> Arc<Self> {
+        let mut in_use = IN_USE.lock().unwrap_or_else(PoisonError::into_inner);
+        in_use.retain(|choices| choices.strong_count() > 0);
+        let known = in_use.iter().filter_map(Weak::upgrade).find(|choices| choices.palette == palette);
+        known.unwrap_or_else(|| {
+            let new = Arc::new(Self::new(palette));
+            in_use.push(Arc::downgrade(&new));
+            new
+        })
+    }
+
     /// Returns the mixes of a palette, in which each palette colour is already chosen for itself.
     // Chosen by cost alone, a mix of a darker and a lighter grey could replace a grey of the palette, because it may be
     // nearer to the rounded level of that grey than the grey itself.
-    fn new(colors: &[Srgb8]) -> Self {
-        let mixes = Mixes::new(colors);
-        let mut chosen = vec![0; LEVELS.iter().product()];
+    fn new(palette: &[Srgb8]) -> Self {
+        let mixes = Mixes::new(palette);
+        let mut chosen: Vec<_> = (0..LEVELS.iter().product()).map(|_| AtomicU16::new(0)).collect();
         for (number, position) in mixes.single_colors() {
-            chosen[choice_index(levels(colors[position]))] = one_based(number);
+            *chosen[choice_index(levels(palette[position]))].get_mut() = one_based(number);
         }
-        Self { mixes, chosen }
+        Self { palette: palette.to_vec(), mixes, chosen }
     }
 }
 

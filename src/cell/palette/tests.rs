@@ -30,3 +30,21 @@ fn a_share_of_four_pixels_is_lighter() {
     patterns.dedup();
     assert_eq!(patterns, [[0, 0, 0, 0], [1, 0, 0, 0], [1, 0, 0, 1], [1, 1, 0, 1], [1, 1, 1, 1]]);
 }
+
+#[test]
+fn painters_with_one_palette_share_its_choices() {
+    let used = |mut palette: Palette| {
+        palette.index(Srgb8::new(90, 160, 40), 0, 0);
+        palette.choices.expect("it was used")
+    };
+    // A palette that no other test has.
+    let theme: Vec<_> = (0..16).map(|at| Srgb8::new(at, 17 * at, 255 - at)).collect();
+    let other = used(Palette::from_colors(&theme[..15]));
+    let first = used(Palette::from_colors(&theme));
+    let second = used(Palette::from_colors(&theme));
+    assert!(Arc::ptr_eq(&first, &second) && !Arc::ptr_eq(&first, &other));
+    // Unused choices are not kept.
+    let kept = Arc::downgrade(&first);
+    drop((first, second));
+    assert_eq!(kept.strong_count(), 0);
+}
