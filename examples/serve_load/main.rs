@@ -8,6 +8,9 @@
 //! `--moving` visitors turn the scene all the time. Of the others ten press a key twice a second, from which the time
 //! to the end of the next frame is taken; the rest only looks. All answer the queries that a terminal answers.
 //!
+//! Frames are counted for `--seconds`, from `--settle` seconds after the first frame of the last visitor on: until then
+//! the pictures of those at rest are refined.
+//!
 //! `--colors 256` gives no visitor all colours. `--sample SCENE` compares the screen of the first moving one with the
 //! pictures of that scene, and prints the PSNR in decibels.
 //!
@@ -108,6 +111,7 @@ struct Arguments {
     followers: usize,
     classes: usize,
     seconds: u64,
+    settle: u64,
     size: (u32, u32),
     pid: Option<u32>,
     odd: Option<(Odd, usize)>,
@@ -127,6 +131,7 @@ fn arguments() -> Option<Arguments> {
         followers: 0,
         classes: 1,
         seconds: 10,
+        settle: 2,
         size: (80, 24),
         pid: None,
         odd: None,
@@ -143,6 +148,7 @@ fn arguments() -> Option<Arguments> {
             "--followers" => arguments.followers = value.parse().ok()?,
             "--classes" => arguments.classes = value.parse().ok().filter(|classes| (1..=8).contains(classes))?,
             "--seconds" => arguments.seconds = value.parse().ok()?,
+            "--settle" => arguments.settle = value.parse().ok()?,
             "--at-once" => arguments.at_once = value.parse().ok()?,
             "--drain" => arguments.drain = value.parse().ok()?,
             "--colors" => arguments.has_all_colors = value != "256",
@@ -194,7 +200,7 @@ impl Arguments {
 fn main() {
     let Some(arguments) = arguments() else {
         println!(
-            "serve_load ADDRESS:PORT [--viewers N] [--moving N] [--followers N] [--classes N] [--seconds S] [--size COLUMNSxROWS] [--pid SERVER] \
+            "serve_load ADDRESS:PORT [--viewers N] [--moving N] [--followers N] [--classes N] [--seconds S] [--settle S] [--size COLUMNSxROWS] [--pid SERVER] \
              [--colors 256] [--sample SCENE] [--odd big|late|slow|slow-turning:N] [--at-once true] [--drain true] [--seed N]"
         );
         return;
@@ -237,7 +243,7 @@ async fn load(arguments: Arguments) {
     })
     .await;
     let up = began.elapsed();
-    sleep(Duration::from_secs(2)).await;
+    sleep(Duration::from_secs(arguments.settle)).await;
     let before = (cpu_of(arguments.pid), own_cpu());
     let entered = measured.take();
     measured.replace(Measured {
