@@ -15,7 +15,9 @@ mod pty;
 
 use gravel::gravel;
 use mesh_writers::{ball, written};
-use pty::{Answer, Fault, Phases, SOON, Seen, Session, Size, Start, Which, best_of_three, picture_with, shows};
+use pty::{
+    Answer, Fault, Phases, SOON, Seen, Session, Size, Start, Which, best_of_three, picture_with, shows, within_limit,
+};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use rustix::process::Signal;
@@ -70,7 +72,7 @@ fn exit_within(limit: Duration, what: &str, session: &mut Session) -> ExitStatus
     session.wait_until_gone(SOON);
     let took = start.elapsed();
     println!("{what}: left in {took:?}");
-    assert!(took < 3 * limit, "{what}: {took:?}");
+    within_limit(took < 3 * limit, format_args!("{what}: {took:?}"));
     session.wait_exit(SOON)
 }
 
@@ -151,7 +153,7 @@ fn vanish(what: &str, hears: bool, start: Start, before: impl FnOnce(&mut Sessio
     let status = exit_within(MAX_VANISHED_TIME, what, &mut session);
     let used = ticks(&session) - used;
     println!("{what}: {used} ticks, {status}");
-    assert!(used < 3 * MAX_VANISHED_TICKS, "{what}: {used} ticks");
+    within_limit(used < 3 * MAX_VANISHED_TICKS, format_args!("{what}: {used} ticks"));
     let (code, signal) = if hears { (None, Some(Signal::HUP.as_raw())) } else { (Some(1), None) };
     assert_eq!((status.code(), status.signal()), (code, signal), "{what}");
 }
@@ -278,7 +280,7 @@ fn a_saved_scene_is_shown_soon() {
         for color in ["red", "lime", "gold", "white", "red", "lime", "gold", "white"] {
             let took = reload(&mut session, &path, scene_of_mesh(color).as_bytes());
             println!("a saved scene: seen after {took:?}");
-            assert!(took < 3 * MAX_RELOAD_TIME, "{took:?}");
+            within_limit(took < 3 * MAX_RELOAD_TIME, format_args!("{took:?}"));
         }
     });
 }
@@ -367,9 +369,9 @@ fn a_saved_mesh_is_shown_once_it_is_built() {
             assert!(checked.is_ok_and(|output| output.status.success()));
             let built = start.elapsed();
             println!("a saved mesh: seen after {took:?}, read and built in {built:?}");
-            assert!(
+            within_limit(
                 took < built.mul_f64(3.0 * MAX_MESH_RELOAD_RATIO) + 3 * MAX_RELOAD_TIME,
-                "{took:?}, built in {built:?}"
+                format_args!("{took:?}, built in {built:?}"),
             );
         }
     });
@@ -425,7 +427,10 @@ fn a_lost_reply_does_not_delay_a_key() {
                 // Until the second reply the terminal has not replied to a frame.
                 let limit =
                     |which| MAX_KEY_TIMES[usize::from(!matches!(which, Which::Only(1 | 2) | Which::EachThirdFrom(_)))];
-                assert!(which.iter().zip(&waits).all(|(&which, &wait)| wait < 3 * limit(which)), "{waits:?}");
+                within_limit(
+                    which.iter().zip(&waits).all(|(&which, &wait)| wait < 3 * limit(which)),
+                    format_args!("{waits:?}"),
+                );
             });
         }
     }
@@ -472,8 +477,8 @@ fn a_key_does_not_wait_for_a_refinement() {
         assert_eq!(session.wait_exit(6 * SOON).code(), Some(0));
         let left = start.elapsed();
         println!("refined in {refined:?}, a key seen in {seen:?}, left in {left:?}");
-        assert!(seen * 4 < refined, "a key was seen after {seen:?} of {refined:?}");
-        assert!(left * 4 < refined, "left after {left:?} of {refined:?}");
+        within_limit(seen * 4 < refined, format_args!("a key was seen after {seen:?} of {refined:?}"));
+        within_limit(left * 4 < refined, format_args!("left after {left:?} of {refined:?}"));
     });
 }
 
@@ -496,7 +501,7 @@ fn the_rate_is_kept() {
             let rate = bytes as f64 / start.elapsed().as_secs_f64();
             println!("{quality}: {rate:.0} bytes a second");
             // With a frame that has just been sent; a third of the least, as everywhere here.
-            assert!((5_000.0 / 3.0..35_000.0).contains(&rate), "{quality}: {rate} bytes a second");
+            within_limit((5_000.0 / 3.0..35_000.0).contains(&rate), format_args!("{quality}: {rate} bytes a second"));
         }
     });
 }
@@ -551,7 +556,7 @@ fn a_cancelled_render_ends_at_once() {
                 assert_eq!(render.cancelled_by(&token).on_progress(cancel).run(), Err(Cancelled));
                 let took = cancelled.get().expect("it was cancelled").elapsed();
                 println!("{sampling:?} cancelled at {part}: given up in {took:?}");
-                assert!(took < 3 * MAX_CANCEL_TIME, "{sampling:?} at {part}: {took:?}");
+                within_limit(took < 3 * MAX_CANCEL_TIME, format_args!("{sampling:?} at {part}: {took:?}"));
             }
         }
     });
@@ -584,6 +589,6 @@ fn a_draw_call_with_a_pane_in_the_background_is_short() {
             .collect();
         draws.sort_unstable();
         println!("a draw call: {:?}, the 95th of 100 {:?}", draws[50], draws[95]);
-        assert!(draws[95] < 3 * MAX_DRAW_TIME, "{:?}", draws[95]);
+        within_limit(draws[95] < 3 * MAX_DRAW_TIME, format_args!("{:?}", draws[95]));
     });
 }

@@ -1,16 +1,15 @@
 //! Slow links: the time until a key is seen, and the bytes that are sent.
 //!
 //! Limits in time are three times the promise, and one of three measurements is within them, as the machine may be
-//! busy. The figures themselves are taken by hand,
-//! from the output of these tests (`SLOW_LINK_KEYS=200 SLOW_LINK_PROGRAM=target/release/termtrace cargo test --test
-//! slow_link -- --nocapture --test-threads 1`).
+//! busy. The figures themselves are taken by hand, from the output of these tests (`SLOW_LINK_KEYS=200
+//! SLOW_LINK_PROGRAM=target/release/termtrace cargo test --test slow_link -- --nocapture --test-threads 1`).
 
 mod pty;
 #[path = "slow_link/relay.rs"]
 mod relay;
 
 use glam::Vec3;
-use pty::{Colour, SOON, Screen, Start, best_of_three, halves_of, shows};
+use pty::{Colour, SOON, Screen, Start, best_of_three, halves_of, shows, within_limit};
 use relay::{Link, Relay};
 use std::path::Path;
 use std::time::Duration;
@@ -135,15 +134,21 @@ fn a_key_is_soon_seen_on_a_slow_link() {
         println!("{new} of {} frames are of a new picture", frames.len());
         println!("in flight beyond the formula: {:.0} bytes", relay.excess);
         println!("{}", relay.frames.last().expect("there are frames").status);
-        assert!(p50 <= ms(310).mul_f64(TIME_SLACK), "p50 {p50:?}");
-        assert!(p99 <= ms(400).mul_f64(TIME_SLACK), "p99 {p99:?}");
-        assert!(fps >= 10.0 / TIME_SLACK, "{fps} frames/s");
-        assert!(new * 10 >= frames.len() * 9, "{new} of {} frames are of a new picture", frames.len());
-        assert!(share >= 0.85 / TIME_SLACK, "{share} of the link");
-        assert!(largest as f64 <= SLOW_LINK.rate / 15.0 * 1.1, "a frame of {largest} bytes");
+        within_limit(p50 <= ms(310).mul_f64(TIME_SLACK), format_args!("p50 {p50:?}"));
+        within_limit(p99 <= ms(400).mul_f64(TIME_SLACK), format_args!("p99 {p99:?}"));
+        within_limit(fps >= 10.0 / TIME_SLACK, format_args!("{fps} frames/s"));
+        within_limit(
+            new * 10 >= frames.len() * 9,
+            format_args!("{new} of {} frames are of a new picture", frames.len()),
+        );
+        within_limit(share >= 0.85 / TIME_SLACK, format_args!("{share} of the link"));
+        within_limit(largest as f64 <= SLOW_LINK.rate / 15.0 * 1.1, format_args!("a frame of {largest} bytes"));
         // The link's own delays are measured, too: on a busy machine they are longer.
-        assert!(relay.excess <= 5_000.0, "{} bytes too many in flight", relay.excess);
-        assert!(relay.frames.last().is_some_and(|frame| frame.status.contains("slow link")));
+        within_limit(relay.excess <= 5_000.0, format_args!("{} bytes too many in flight", relay.excess));
+        within_limit(
+            relay.frames.last().is_some_and(|frame| frame.status.contains("slow link")),
+            "no slow link is told",
+        );
     });
 }
 
@@ -165,8 +170,8 @@ fn seen_after<T: PartialEq>(
     let times: Vec<_> = times.collect();
     let (p50, p99) = (percentile(&times, 0.5), percentile(&times, 0.99));
     println!("{what}, {} times: p50 {p50:?} p99 {p99:?}", times.len());
-    assert!(p50 <= ms(310).mul_f64(TIME_SLACK), "{what}: p50 {p50:?}");
-    assert!(p99 <= ms(400).mul_f64(TIME_SLACK), "{what}: p99 {p99:?}");
+    within_limit(p50 <= ms(310).mul_f64(TIME_SLACK), format_args!("{what}: p50 {p50:?}"));
+    within_limit(p99 <= ms(400).mul_f64(TIME_SLACK), format_args!("{what}: p99 {p99:?}"));
     times
 }
 
@@ -213,11 +218,11 @@ fn a_key_is_soon_seen_among_frames_of_four_kilobytes() {
         println!("4 kB: {} keys: p50 {p50:?} p99 {p99:?} max {:?}", times.len(), percentile(&times, 1.0));
         println!("4 kB: {fps:.1} frames/s, {:.1} % of the link", 100.0 * share);
         println!("4 kB: in flight beyond the formula: {:.0} bytes", relay.excess);
-        assert!(p50 <= ms(420).mul_f64(TIME_SLACK), "p50 {p50:?}");
-        assert!(p99 <= ms(480).mul_f64(TIME_SLACK), "p99 {p99:?}");
-        assert!(fps >= 10.0 / TIME_SLACK, "{fps} frames/s");
-        assert!(share >= 0.85 / TIME_SLACK, "{share} of the link");
-        assert!(relay.excess <= 5_000.0, "{} bytes too many in flight", relay.excess);
+        within_limit(p50 <= ms(420).mul_f64(TIME_SLACK), format_args!("p50 {p50:?}"));
+        within_limit(p99 <= ms(480).mul_f64(TIME_SLACK), format_args!("p99 {p99:?}"));
+        within_limit(fps >= 10.0 / TIME_SLACK, format_args!("{fps} frames/s"));
+        within_limit(share >= 0.85 / TIME_SLACK, format_args!("{share} of the link"));
+        within_limit(relay.excess <= 5_000.0, format_args!("{} bytes too many in flight", relay.excess));
         relay.session.send(b"q");
         source.join().expect("the source does not panic");
     });
@@ -297,7 +302,7 @@ fn a_picture_in_motion_is_near_on_a_slow_link_and_exact_once_still() {
         let is_exact = relay.run(SOON, |relay| shows(relay.screen(), &wanted));
         println!("still and exact {:?} after the key", relay.since(from));
         assert!(is_exact, "the picture is exact once still");
-        assert!(median >= 15.0, "{median} dB");
+        within_limit(median >= 15.0, format_args!("{median} dB"));
     });
 }
 
@@ -333,8 +338,8 @@ fn a_link_that_becomes_ten_times_slower_is_soon_kept_up_with() {
         keep_moving(&mut relay, ms(3_000));
         let late = late_until(&relay, dropped);
         println!("keys are late until {late:?} after the drop; one {limit:?} after it took {time:?}");
-        assert!(late <= ms(2_000).mul_f64(TIME_SLACK), "{late:?}");
-        assert!(time <= ms(400).mul_f64(TIME_SLACK), "{time:?}");
+        within_limit(late <= ms(2_000).mul_f64(TIME_SLACK), format_args!("{late:?}"));
+        within_limit(time <= ms(400).mul_f64(TIME_SLACK), format_args!("{time:?}"));
     });
 }
 
@@ -344,11 +349,14 @@ fn a_link_that_becomes_fast_is_used() {
     best_of_three(|| {
         let mut relay = looking(termtrace(), SLOW_LINK);
         walk(&mut relay, 6);
-        assert!(relay.frames.last().is_some_and(|frame| frame.status.contains("slow link")));
+        within_limit(
+            relay.frames.last().is_some_and(|frame| frame.status.contains("slow link")),
+            "no slow link is told",
+        );
         relay.link = FAST_LINK;
         walk(&mut relay, 12);
         let status = &relay.frames.last().expect("there are frames").status;
-        assert!(!status.contains("slow link"), "{status}");
+        within_limit(!status.contains("slow link"), format_args!("{status}"));
     });
 }
 
@@ -398,8 +406,8 @@ fn a_terminal_that_never_replies_gets_thirty_frames_a_second_at_most() {
         let mut relay = looking(termtrace(), FAST_LINK);
         let answering = frames_per_second(&mut relay, ms(2_000));
         println!("{silent:.1} frames/s without answers, {answering:.1} with");
-        assert!((30.0 / TIME_SLACK..=31.0).contains(&silent), "{silent} frames/s");
-        assert!(answering > silent && answering <= 62.0, "{answering} frames/s with answers");
+        within_limit((30.0 / TIME_SLACK..=31.0).contains(&silent), format_args!("{silent} frames/s"));
+        within_limit(answering > silent && answering <= 62.0, format_args!("{answering} frames/s with answers"));
     });
 }
 
@@ -409,7 +417,7 @@ fn fps_caps_the_frames() {
         let mut relay = looking(termtrace().arg("--fps").arg("12"), FAST_LINK);
         let fps = frames_per_second(&mut relay, ms(2_000));
         println!("{fps:.1} frames/s of 12");
-        assert!((12.0 / TIME_SLACK..=13.0).contains(&fps), "{fps} frames/s");
+        within_limit((12.0 / TIME_SLACK..=13.0).contains(&fps), format_args!("{fps} frames/s"));
     });
 }
 
@@ -422,7 +430,7 @@ fn max_rate_caps_the_bytes() {
         keep_moving(&mut relay, ms(4_000));
         let rate = (relay.taken() - before) as f64 / relay.since(since).as_secs_f64();
         println!("{rate:.0} bytes/s of 50000");
-        assert!((50_000.0 * 0.95 / TIME_SLACK..=50_000.0 * 1.05).contains(&rate), "{rate} bytes/s");
+        within_limit((50_000.0 * 0.95 / TIME_SLACK..=50_000.0 * 1.05).contains(&rate), format_args!("{rate} bytes/s"));
     });
 }
 
@@ -449,8 +457,9 @@ fn at_rest_nothing_happens() {
             relay.run(ms(2_500), |_| false);
             let (bytes, before) = (relay.taken(), sleeps(&relay));
             relay.run(ms(if cfg!(debug_assertions) { 3_000 } else { 10_000 }), |_| false);
-            assert_eq!(relay.taken(), bytes, "bytes at rest");
-            assert_eq!(sleeps(&relay), before, "wake-ups at rest");
+            // On a slow machine the picture is still refined.
+            within_limit(relay.taken() == bytes, "bytes at rest");
+            within_limit(sleeps(&relay) == before, "wake-ups at rest");
         }
     });
 }
@@ -469,7 +478,9 @@ fn replies_without_a_query_are_ignored() {
             relay.run(ms(20), |_| false);
         }
         relay.run(ms(1_000), |_| false);
-        assert_eq!(relay.frames.last().map(|frame| frame.status.clone()), still, "an answer was taken for a key");
+        let status = relay.frames.last().map(|frame| frame.status.clone());
+        // On a slow machine the picture is still refined.
+        within_limit(status == still, format_args!("an answer was taken for a key: {status:?} after {still:?}"));
         for answer in [&b"\x1b[?62;22c"[..]; 6] {
             walk(&mut relay, 1);
             relay.press(answer);
@@ -477,6 +488,6 @@ fn replies_without_a_query_are_ignored() {
             relay.run(ms(2_500), |_| false);
         }
         let times = walk(&mut relay, 6);
-        assert!(times.iter().all(|&time| time <= ms(800).mul_f64(TIME_SLACK)), "{times:?}");
+        within_limit(times.iter().all(|&time| time <= ms(800).mul_f64(TIME_SLACK)), format_args!("{times:?}"));
     });
 }

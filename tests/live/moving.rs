@@ -407,7 +407,7 @@ fn no_more_than_sixty_frames_are_shown_in_a_second() {
         session.send(b"r");
         eyes.len()
     };
-    // A tap takes a sixth of a second. A busy machine leaves frames out, and shows no more of them.
+    // A tap takes 0.3 s, in which sixty frames a second are 18. A busy machine shows fewer, never more.
     let enough = (0..10).map(|_| frames_of_a_tap()).any(|frames| {
         assert!(frames <= 20, "{frames} frames of a tap");
         frames >= 5

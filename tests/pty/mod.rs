@@ -55,7 +55,7 @@ pub(crate) use picture::{halves_of, picture, picture_with, shows};
 use replies::Replies;
 pub(crate) use replies::{Fault, Which};
 use rest::Rest;
-pub(crate) use retries::{best_of_three, until_in_time};
+pub(crate) use retries::{best_of_three, until_in_time, within_limit};
 pub(crate) use screen::{Colour, Screen, without_colors};
 pub(crate) use signals::reset_for_children;
 pub(crate) use storm::Storm;

@@ -1,6 +1,7 @@
 //! Sessions and measurements that are repeated where the machine was too busy for them.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::fmt::Display;
+use std::panic::{AssertUnwindSafe, catch_unwind, panic_any, resume_unwind};
 
 /// The most sessions for one that is in time.
 const ATTEMPTS: usize = 10;
@@ -15,15 +16,31 @@ pub(crate) fn until_in_time(session: impl FnMut() -> bool) {
     assert!(in_time, "no session in time in {ATTEMPTS} attempts");
 }
 
-/// The number of measurements, one of which must be within its limits.
+/// The most measurements for one that is within its limits.
 const MEASUREMENTS: usize = 3;
 
-/// Measures until what is measured is within its limits, and fails if the last measurement is not.
+/// The panic of a measurement beyond a limit.
+struct BeyondLimit;
+
+/// Asserts a limit of a measurement that [`best_of_three`] may repeat.
+#[track_caller]
+pub(crate) fn within_limit(is_within: bool, told: impl Display) {
+    if !is_within {
+        eprintln!("{}: beyond a limit: {told}", std::panic::Location::caller());
+        panic_any(BeyondLimit);
+    }
+}
+
+/// Measures until a measurement is within its limits, and fails with the third one beyond them.
 ///
 /// Other work on the machine makes any one of them longer: on a virtual one, threads were not scheduled for a second.
+/// Other assertions than [`within_limit`] fail at once.
 pub(crate) fn best_of_three(measure: impl Fn()) {
-    let is_within_limits = || catch_unwind(AssertUnwindSafe(&measure)).is_ok();
-    if !(1..MEASUREMENTS).any(|_| is_within_limits()) {
-        measure();
+    for attempt in 1.. {
+        match catch_unwind(AssertUnwindSafe(&measure)) {
+            Ok(()) => return,
+            Err(panic) if panic.is::<BeyondLimit>() && attempt < MEASUREMENTS => {}
+            Err(panic) => resume_unwind(panic),
+        }
     }
 }

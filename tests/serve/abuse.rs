@@ -341,10 +341,12 @@ fn row_25_no_reply_is_left_for_the_shell() {
             let before = guest.bytes.len();
             guest.see("a moving picture", |guest| guest.bytes.len() > before + 3000).await;
             guest.send(b"q").await;
+            let left = Instant::now();
             assert_eq!(guest.leave().await, Some(0));
-            // On a busy machine this client may answer after the second for which a server waits.
+            // The server waits for a second, which is too short if this client is not scheduled for as long.
             tries += 1;
-            assert!(guest.unanswered() == 0 || tries < 10, "with answers after {delay} ms");
+            let is_late = left.elapsed() > Duration::from_millis(900) && tries < 10;
+            assert!(guest.unanswered() == 0 || is_late, "with answers after {delay} ms");
             delays.next_if(|_| guest.unanswered() == 0);
         }
     });

@@ -42,26 +42,34 @@ async fn enter_all(program: &Program, count: usize, size: (u32, u32), delay: Dur
 /// Asserts that ten viewers of 80x24 cells keep at least nine tenths of their frames beside others.
 async fn assert_ten_keep_frames(others: usize, size: (u32, u32), delay: Duration) {
     let mut seen = Vec::new();
-    // Other work on this machine may take time from one period and not from the other. And on a machine too slow for all
-    // frames, fair shares are smaller than those of ten alone, so that a lower rate is tried there.
-    for fps in ["15", "15", "15", "8", "8", "4", "4"] {
-        let program = Program::start(&["three_spheres", "--max-per-address", "100", "--threads", "2", "--fps", fps]);
-        let mut ten = enter_all(&program, 10, (80, 24), AT_ONCE).await;
-        run_all(&mut ten, Duration::from_secs(2)).await;
-        let alone: usize = run_all(&mut ten, Duration::from_secs(2)).await.iter().sum();
-        let mut all = enter_all(&program, others, size, delay).await;
-        all.append(&mut ten);
-        run_all(&mut all, Duration::from_secs(1)).await;
-        let frames = run_all(&mut all, Duration::from_secs(2)).await;
-        let (others, ten) = frames.split_at(others);
-        let beside: usize = ten.iter().sum();
-        seen.push((fps, alone, beside, others.to_vec()));
-        if 10 * beside >= 9 * alone && others.iter().all(|&count| count > 0) {
-            println!("{seen:?}");
-            return;
+    // On a machine too slow for all frames, fair shares are smaller than those of ten alone: it gets a lower rate.
+    for fps in [15, 8, 4] {
+        let wanted = 10 * 2 * fps;
+        let mut keeps_up = false;
+        // Other work on this machine may take time from one period and not from the other.
+        for _ in 0..TRIES {
+            let fps = fps.to_string();
+            let flags = ["three_spheres", "--max-per-address", "100", "--threads", "2", "--fps", &fps];
+            let program = Program::start(&flags);
+            let mut ten = enter_all(&program, 10, (80, 24), AT_ONCE).await;
+            run_all(&mut ten, Duration::from_secs(2)).await;
+            let alone: usize = run_all(&mut ten, Duration::from_secs(2)).await.iter().sum();
+            let mut all = enter_all(&program, others, size, delay).await;
+            all.append(&mut ten);
+            run_all(&mut all, Duration::from_secs(1)).await;
+            let frames = run_all(&mut all, Duration::from_secs(2)).await;
+            let (others, ten) = frames.split_at(others);
+            let beside: usize = ten.iter().sum();
+            seen.push((fps, alone, beside, others.to_vec()));
+            if 10 * beside >= 9 * alone && others.iter().all(|&count| count > 0) {
+                println!("{seen:?}");
+                return;
+            }
+            keeps_up |= 10 * alone >= 9 * wanted;
         }
+        assert!(!keeps_up, "frames a second, frames of ten alone and beside others, and of the others: {seen:?}");
     }
-    panic!("frames a second, frames of ten alone and beside others, and of the others: {seen:?}");
+    panic!("this machine is too slow: {seen:?}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The view of a visitor.
 
 use crate::guest::{Guest, log_in};
+use crate::together::rest_of_all;
 use crate::{Hosting, Place, run, scenes};
 use std::os::unix::fs::PermissionsExt;
 use std::time::{Duration, Instant};
@@ -29,26 +30,38 @@ fn a_viewer_gets_a_picture_moves_and_leaves_a_clean_terminal() {
 fn the_first_picture_waits_for_no_answer() {
     let hosting = Hosting::usual();
     run(async {
-        let mut guest = Guest::without_terminal(&hosting, (80, 24)).await;
-        guest.answers = false;
-        guest.channel.request_pty(true, "xterm-256color", 80, 24, 0, 0, &[]).await.expect("a terminal");
-        let asked = Instant::now();
-        guest.ask(None).await;
-        guest.see_picture().await;
+        let mut times = Vec::new();
+        for _ in 0..8 {
+            let mut guest = Guest::without_terminal(&hosting, (80, 24)).await;
+            guest.answers = false;
+            guest.channel.request_pty(true, "xterm-256color", 80, 24, 0, 0, &[]).await.expect("a terminal");
+            let asked = Instant::now();
+            guest.ask(None).await;
+            guest.see_picture().await;
+            times.push(asked.elapsed());
+            // A wait for an answer would take a second in each visit.
+            if times.last() < Some(&Duration::from_millis(800)) {
+                break;
+            }
+        }
         // 20 ms are promised of a release build on a machine without other work.
-        println!("first picture after {:?}", asked.elapsed());
+        println!("first picture after {times:?}");
+        assert!(times.len() < 8, "{times:?}");
     });
 }
 
 /// Finer glyphs take several times as many samples, in time and memory that viewers share.
 #[test]
 fn a_terminal_known_for_its_blocks_keeps_half_blocks_at_rest() {
-    let hosting = Hosting::start(|settings| settings.max_rate = None);
+    let hosting = Hosting::start(|settings| {
+        settings.max_rate = None;
+        settings.metrics = Some(([127, 0, 0, 1], 0).into());
+    });
     run(async {
         let mut guest = Guest::enter(&hosting).await;
         guest.send(b"\x1bP>|kitty(0.26.5)\x1b\\").await;
         guest.see_picture().await;
-        guest.rest().await;
+        rest_of_all(&hosting, &mut [&mut guest]).await;
         guest.see_text("▄").await;
         assert!(!guest.text().concat().contains(['▘', '▝', '▖', '▗', '▌', '▐', '▂', '▆']), "{:#?}", guest.text());
     });
