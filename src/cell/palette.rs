@@ -23,15 +23,14 @@ pub(super) struct Palette {
     choices: Option<Arc<Choices>>,
 }
 
-/// The choices of all palettes in use.
+/// The palettes in use, with their choices.
 // On a server each viewer's own took 270 kB, and most of the time to the first picture in 256 colours.
-static IN_USE: Mutex<Vec<Weak<Choices>>> = Mutex::new(Vec::new());
+static IN_USE: Mutex<Vec<(Vec<Srgb8>, Weak<Choices>)>> = Mutex::new(Vec::new());
 
 /// The possible mixes, and those that were chosen for colours so far.
 ///
 /// A choice depends on its colour only, so that it does not matter which painter makes it.
 struct Choices {
-    palette: Vec<Srgb8>,
     mixes: Mixes,
     /// For each colour of [`LEVELS`], the number of its mix, counted from 1; 0 if none is chosen.
     // Memory: 131 kB for the 65,536 colours of `LEVELS`. The rejected mixes of up to sixteen colours took 557 kB.
@@ -82,11 +81,11 @@ impl Choices {
     /// Returns the choices of a palette, which all painters with that palette share.
     fn shared(palette: &[Srgb8]) -> Arc<Self> {
         let mut in_use = IN_USE.lock().unwrap_or_else(PoisonError::into_inner);
-        in_use.retain(|choices| choices.strong_count() > 0);
-        let known = in_use.iter().filter_map(Weak::upgrade).find(|choices| choices.palette == palette);
+        in_use.retain(|(_, choices)| choices.strong_count() > 0);
+        let known = in_use.iter().find(|(known, _)| known == palette).and_then(|(_, choices)| choices.upgrade());
         known.unwrap_or_else(|| {
             let new = Arc::new(Self::new(palette));
-            in_use.push(Arc::downgrade(&new));
+            in_use.push((palette.to_vec(), Arc::downgrade(&new)));
             new
         })
     }
@@ -100,7 +99,7 @@ impl Choices {
         for (number, position) in mixes.single_colors() {
             *chosen[choice_index(levels(palette[position]))].get_mut() = one_based(number);
         }
-        Self { palette: palette.to_vec(), mixes, chosen }
+        Self { mixes, chosen }
     }
 }
 
