@@ -11,27 +11,29 @@
 //! Frames are counted for `--seconds`, from `--settle` seconds after the first frame of the last visitor on: until then
 //! the pictures of those at rest are refined.
 //!
-//! `--colors 256` gives no visitor all colours. `--sample SCENE` compares the screen of the first moving one with the
-//! pictures of that scene, and prints the PSNR in decibels.
+//! `--colors 256` gives all visitors 256 colours. `--sample SCENE` compares the screen of the first moving one with the
+//! pictures of that scene, and prints the PSNR in decibels; it takes time from this client, which has one thread.
 //!
-//! `--followers N` visitors follow the tour of the server (`--tour`, and `--moving 0`), in `--classes N` kinds of terminals
-//! (up to 8: four sizes, of which that of `--size` is the largest, and two numbers of colours). One more, in a window of
-//! 80x24 cells, leaves the tour and comes back twice a second.
+//! `--followers N` visitors follow the tour of the server (`--tour`, and `--moving 0`), in `--classes N` kinds of
+//! terminals (up to 8: four sizes, of which that of `--size` is the largest, and two numbers of colours). One more, in
+//! a window of 80x24 cells, leaves the tour and comes back twice a second.
 //!
-//! `--at-once true` lets all followers press a key at the same time at the end, and come back by another one; windows of
-//! 40 columns have room for the notices by which both are seen. `--drain true`
-//! then ends the server (`--pid`), and counts the visitors who are told before their sessions end.
+//! `--at-once true` lets all followers press a key at the same time at the end, and come back by another one; windows
+//! of 40 columns have room for the notices by which both are seen. `--drain true` then ends the server (`--pid`), and
+//! counts the visitors who are told before their sessions end.
 //!
 //! `--odd KIND:N` adds visitors of another kind, whose frames are not counted: `big` ones turn in windows of 500x200
-//! cells, `late` ones turn and answer after 400 ms, `slow` ones press keys behind a link of 50 KB/s with a round trip of
-//! 200 ms, `slow-turning` ones turn behind such a link. `--seed N` makes visitors come, go, stall and resize, and prints
-//! the server's memory, threads and files every ten seconds.
+//! cells, `late` ones turn and answer after 400 ms, `slow` ones press keys behind a link of 50 KB/s with a round trip
+//! of 200 ms, `slow-turning` ones turn behind such a link. `--seed N` makes visitors come, go, stall and resize, and
+//! prints the server's memory, threads and files every ten seconds.
 
+mod arguments;
 mod link;
 mod report;
 mod sample;
 mod soak;
 
+use arguments::{Arguments, Odd, USAGE, arguments};
 use link::link_to;
 use report::{Shares, cpu_of, own_cpu, report};
 use russh::client::{self, Handle, Msg};
@@ -41,10 +43,10 @@ use sample::Sample;
 use soak::soak;
 use std::cell::RefCell;
 use std::collections::VecDeque;
-use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use termtrace::Scene;
 use tokio::io::BufReader;
 use tokio::net::TcpStream;
 use tokio::task::LocalSet;
@@ -95,116 +97,15 @@ struct Measured {
     visits: usize,
 }
 
-/// A kind of visitors besides those who are counted.
-#[derive(Clone, Copy, PartialEq)]
-enum Odd {
-    Big,
-    Late,
-    Slow,
-    SlowTurning,
-}
-
-struct Arguments {
-    address: String,
-    viewers: usize,
-    moving: usize,
-    followers: usize,
-    classes: usize,
-    seconds: u64,
-    settle: u64,
-    size: (u32, u32),
-    pid: Option<u32>,
-    odd: Option<(Odd, usize)>,
-    seed: Option<u64>,
-    at_once: bool,
-    drain: bool,
-    has_all_colors: bool,
-    sample: Option<PathBuf>,
-}
-
-fn arguments() -> Option<Arguments> {
-    let mut words = std::env::args().skip(1);
-    let mut arguments = Arguments {
-        address: words.next()?,
-        viewers: 50,
-        moving: 50,
-        followers: 0,
-        classes: 1,
-        seconds: 10,
-        settle: 2,
-        size: (80, 24),
-        pid: None,
-        odd: None,
-        seed: None,
-        at_once: false,
-        drain: false,
-        has_all_colors: true,
-        sample: None,
-    };
-    while let (Some(flag), Some(value)) = (words.next(), words.next()) {
-        match flag.as_str() {
-            "--viewers" => arguments.viewers = value.parse().ok()?,
-            "--moving" => arguments.moving = value.parse().ok()?,
-            "--followers" => arguments.followers = value.parse().ok()?,
-            "--classes" => arguments.classes = value.parse().ok().filter(|classes| (1..=8).contains(classes))?,
-            "--seconds" => arguments.seconds = value.parse().ok()?,
-            "--settle" => arguments.settle = value.parse().ok()?,
-            "--at-once" => arguments.at_once = value.parse().ok()?,
-            "--drain" => arguments.drain = value.parse().ok()?,
-            "--colors" => arguments.has_all_colors = value != "256",
-            "--sample" => arguments.sample = Some(value.into()),
-            "--seed" => arguments.seed = Some(value.parse().ok()?),
-            "--odd" => {
-                let (kind, count) = value.split_once(':')?;
-                let kind = match kind {
-                    "big" => Odd::Big,
-                    "late" => Odd::Late,
-                    "slow" => Odd::Slow,
-                    "slow-turning" => Odd::SlowTurning,
-                    _ => return None,
-                };
-                arguments.odd = Some((kind, count.parse().ok()?));
-            }
-            "--pid" => arguments.pid = Some(value.parse().ok()?),
-            "--size" => {
-                let (columns, rows) = value.split_once('x')?;
-                arguments.size = (columns.parse().ok()?, rows.parse().ok()?);
-            }
-            _ => return None,
-        }
-    }
-    Some(arguments)
-}
-
-impl Arguments {
-    /// Returns the number of visitors whose frames are counted.
-    fn counted(&self) -> usize {
-        self.moving + self.followers
-    }
-
-    /// Returns the size of a visitor's window, and whether it has all colours.
-    fn terminal(&self, number: usize) -> ((u32, u32), bool) {
-        if self.followers > 0 && number >= self.counted() {
-            // Its notices have to fit into a row.
-            return ((80, 24), true);
-        }
-        if number < self.moving {
-            return (self.size, self.has_all_colors);
-        }
-        let class = number % self.classes;
-        let ((columns, rows), smaller) = (self.size, class as u32 % 4);
-        ((columns.saturating_sub(smaller / 2), rows.saturating_sub(smaller % 2)), class < 4 && self.has_all_colors)
-    }
-}
-
 fn main() {
     let Some(arguments) = arguments() else {
-        println!(
-            "serve_load ADDRESS:PORT [--viewers N] [--moving N] [--followers N] [--classes N] [--seconds S] [--settle S] [--size COLUMNSxROWS] [--pid SERVER] \
-             [--colors 256] [--sample SCENE] [--odd big|late|slow|slow-turning:N] [--at-once true] [--drain true] [--seed N]"
-        );
+        println!("{USAGE}");
         return;
     };
+    if let Some(Err(error)) = arguments.sample.as_deref().map(Scene::load) {
+        println!("{error}");
+        return;
+    }
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
     LocalSet::new().block_on(&runtime, async {
         match arguments.seed {

@@ -58,7 +58,7 @@ impl Sample {
         let (mut sum, mut count) = (0.0, 0_u32);
         for row in 0..self.size.rows {
             let halves: Option<Vec<_>> = (0..columns).map(|column| self.halves(row, column)).collect();
-            // A row without the halves of pixels has text.
+            // Rows with text are left out.
             for (column, shown) in halves.into_iter().flatten().enumerate() {
                 let cell = wanted.at(usize::from(row) * usize::from(columns) + column);
                 let wanted = [cell.bg, cell.fg].map(srgb_of_ink);
