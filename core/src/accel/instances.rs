@@ -93,7 +93,7 @@ impl Instances {
         Ok(Self { bvh, leaves, all })
     }
 
-    /// Returns the instances with other meshes, which `mesh` returns for objects.
+    /// Returns the instances with the meshes that `mesh` returns for their objects.
     pub(super) fn with_meshes(&self, mesh: impl Fn(u32) -> Option<Arc<Mesh>>) -> Self {
         let moved = |instance: &Instance| Instance {
             mesh: mesh(instance.object).unwrap_or_else(|| Arc::clone(&instance.mesh)),

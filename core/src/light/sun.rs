@@ -61,7 +61,8 @@ impl Sun {
 
     /// Returns the light with a size: the angle that its disc is seen under, in degrees.
     ///
-    /// That of the sun of the earth is 0.53 degrees. A surface receives as much light as without a size.
+    /// The Sun seen from the Earth has 0.53 degrees. A surface that faces the whole disc receives as much light as from
+    /// a sun without a size.
     ///
     /// # Errors
     /// If the angle is not within 0 and 90.
@@ -150,7 +151,7 @@ impl InSceneFile for Sun {
     const OWNER: &'static str = "a Sun";
     const FORM: &'static str = "Sun(direction: ...)";
     const FIELDS: &'static [&'static str] = &["direction", "size", "color", "intensity"];
-    const SUMMARY: &'static str = "Light from infinitely far, in parallel rays.";
+    const SUMMARY: &'static str = "Light from infinitely far, such as that of the sun.";
     const MEANINGS: &'static [&'static str] = &[
         "the direction to the light, of any length",
         "the angle between opposite edges of the sun in degrees, 0 to 90; 0",

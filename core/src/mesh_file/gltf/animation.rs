@@ -145,16 +145,21 @@ struct Values<const N: usize> {
     all: Arc<[[f32; N]]>,
     /// Whether all are the same.
     is_constant: bool,
-    /// Whether one of them is zero, and whether one of those in the middle of threes is, which are
-    /// the values of a spline.
-    has_zero: [bool; 2],
+    /// Whether any value is zero.
+    has_zero: bool,
+    /// Whether any middle value of three is zero: in a spline the others are tangents.
+    has_zero_at_key: bool,
 }
 
 impl<const N: usize> From<Vec<[f32; N]>> for Values<N> {
     fn from(all: Vec<[f32; N]>) -> Self {
         let is_zero = |value: &[f32; N]| *value == [0.0; N];
-        let has_zero = [all.iter().any(is_zero), all.iter().skip(1).step_by(3).any(is_zero)];
-        Self { is_constant: all.iter().all(|value| *value == all[0]), has_zero, all: all.into() }
+        Self {
+            is_constant: all.iter().all(|value| *value == all[0]),
+            has_zero: all.iter().any(is_zero),
+            has_zero_at_key: all.iter().skip(1).step_by(3).any(is_zero),
+            all: all.into(),
+        }
     }
 }
 
@@ -227,7 +232,7 @@ impl<'a> Reader<'_, 'a, '_> {
             values
         };
         let is_spline = interpolation == Interpolation::CubicSpline;
-        if N == 4 && values.has_zero[usize::from(is_spline)] {
+        if N == 4 && (if is_spline { values.has_zero_at_key } else { values.has_zero }) {
             return Err(output.fault("a rotation is not a quaternion: its length is zero"));
         }
         let (keys, count) = (times.count(), values.all.len());
