@@ -151,7 +151,7 @@ pub(crate) fn cone_angle(degrees: f64) -> Result<f32, Message> {
     }
 }
 
-/// Checks the angle that a sun is seen under in degrees, and returns it in degrees.
+/// Checks the angular diameter of a sun in degrees, and returns it in degrees.
 pub(crate) fn sun_size(degrees: f64) -> Result<f32, Message> {
     if (0.0..=90.0).contains(&degrees) {
         Ok(degrees as f32)

@@ -36,7 +36,7 @@ impl Disc {
     /// The disc of a sun without a size.
     const POINT: Self = Self { below_one: 0.0, brightness: 1.0 };
 
-    /// Returns the disc that is seen under an angle.
+    /// Returns the disc of this angular diameter.
     fn new(degrees: f32) -> Self {
         // 1 - cos a = 2 sin^2 (a / 2), which keeps the size of a small disc.
         let sine = libm::sin(0.25 * f64::from(degrees).to_radians());
@@ -59,7 +59,7 @@ impl Sun {
         Ok(Self { direction, intensity, disc: Disc::POINT })
     }
 
-    /// Returns the light with a size: the angle that its disc is seen under, in degrees.
+    /// Returns the light with a size, its angular diameter in degrees.
     ///
     /// The Sun seen from the Earth has 0.53 degrees. A surface that faces the whole disc receives as much light as from
     /// a sun without a size.
@@ -136,7 +136,7 @@ impl LightSource for Sun {
 pub struct WrittenSun {
     /// The direction to the light.
     pub direction: Option<WrittenVector>,
-    /// The angle that the disc is seen under in degrees; 0 if not given.
+    /// The angular diameter in degrees; 0 if not given.
     pub size: Option<WrittenNumber>,
     /// The colour; white if not given.
     pub color: Option<WrittenColor>,
@@ -154,7 +154,7 @@ impl InSceneFile for Sun {
     const SUMMARY: &'static str = "Light from infinitely far, such as that of the sun.";
     const MEANINGS: &'static [&'static str] = &[
         "the direction to the light, of any length",
-        "the angle between opposite edges of the sun in degrees, 0 to 90; 0",
+        "the angular diameter in degrees, 0 to 90; 0",
         "the colour; white",
         "the factor of the colour; 1",
     ];
