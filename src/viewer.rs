@@ -331,10 +331,7 @@ impl Viewer {
         {
             self.warn(warning);
         }
-        if let Some(mesh) = scene.mesh().filter(|mesh| mesh.is_guess) {
-            let turn = self.hint(Command::TurnMesh, "turns it");
-            self.warn(format!("{} is up in this {} (a guess){turn}", mesh.up.name(), mesh.format));
-        }
+        self.warn_about_mesh(&scene);
         // An open panel of metadata still describes the scene before, or the mesh before it was turned.
         if self.screen.get::<Metadata>().is_some() {
             let name = self.names.get(index).cloned().unwrap_or_default();

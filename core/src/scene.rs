@@ -310,6 +310,16 @@ impl Scene {
         self.accelerator.depends_on_time()
     }
 
+    /// Returns the length in seconds of the longest animation of a mesh; `None` if no mesh moves.
+    #[doc(hidden)]
+    pub fn animation_length(&self) -> Option<f64> {
+        let length = |object: &Object| match &object.shape {
+            Shape::Mesh(mesh) => mesh.motion_length(),
+            _ => None,
+        };
+        self.objects().iter().filter_map(length).reduce(f64::max)
+    }
+
     /// Returns the scene at a time in seconds; a scene that is loaded or built is at time 0.
     #[doc(hidden)]
     pub fn at_time(mut self, seconds: f64) -> Self {

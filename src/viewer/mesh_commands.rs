@@ -7,6 +7,8 @@ use crate::bounds::Bounds;
 use crate::camera::{Camera, Pose};
 use crate::control::{Command, KeyMode};
 use crate::hit::{Hit, closest_hit};
+use crate::scene::Scene;
+use crate::text::number;
 use glam::{Vec2, Vec3};
 
 /// The direction from the target to the eye in a view from above: 0.02 radians from the vertical,
@@ -19,6 +21,23 @@ impl Viewer {
         match self.scene_at_current_time().and_then(|scene| scene.mesh()) {
             Some(mesh) => self.requests.push_back(super::Request::TurnMesh(mesh.up)),
             None => self.show_note("only a mesh that is opened by itself can be turned"),
+        }
+    }
+
+    /// Warns of a guessed axis of the mesh that `scene` was made around, and of its animation.
+    pub(super) fn warn_about_mesh(&mut self, scene: &Scene) {
+        let Some(mesh) = scene.mesh() else { return };
+        if mesh.is_guess {
+            let turn = self.hint(Command::TurnMesh, "turns it");
+            self.warn(format!("{} is up in this {} (a guess){turn}", mesh.up.name(), mesh.format));
+        }
+        if let Some(seconds) = scene.animation_length() {
+            let pause = if self.options.reduced_motion {
+                "; --reduced-motion pauses it".to_owned()
+            } else {
+                self.hint(Command::Pause, "pauses it")
+            };
+            self.warn(format!("an animation of {} s{pause}", number(seconds as f32)));
         }
     }
 

@@ -36,6 +36,9 @@ impl Metadata {
             lines.push(format!("triangles  {}", grouped(triangles)));
             lines.push(format!("vertices   {}", grouped(meshes().map(|mesh| mesh.file().positions().len()).sum())));
         }
+        if let Some(seconds) = scene.animation_length() {
+            lines.push(format!("animation  {} s", number(seconds as f32)));
+        }
         if let Some(bounds) = scene.bounds() {
             // The size along the axes of the mesh file, before it was turned.
             let turn = scene.mesh().map_or(glam::Mat3::IDENTITY, |mesh| mesh.up.turn());

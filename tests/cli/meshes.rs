@@ -95,6 +95,31 @@ fn what_is_left_out_of_a_mesh_is_told_by_every_command() {
     );
 }
 
+#[test]
+fn a_mesh_that_moves_is_described_with_the_length_of_its_animation() {
+    let folder = Folder::new();
+    let rising = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/odd_meshes/s4_rise.gltf")).expect("a file");
+    folder.write("rise.gltf", rising);
+    folder.write("plain.obj", TRIANGLE);
+    assert!(folder.run("describe rise.gltf").text().contains(", which moves in an animation of 2 s: "));
+    assert!(!folder.run("describe plain.obj").text().contains("moves"));
+}
+
+#[test]
+fn a_missing_buffer_of_key_frames_is_a_warning_but_an_error_of_check() {
+    let folder = Folder::new();
+    let gone = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/odd_meshes/s4_gone.gltf");
+    let gone = std::fs::read_to_string(gone).expect("a file");
+    // The channel with another fault is played.
+    folder.write("gone.gltf", gone.replace("BEZIER", "LINEAR"));
+    let missing = "gone.gltf: buffers[1].uri: \"gone.bin\": there is no such file";
+    let run = folder.run("frame gone.gltf");
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert!(run.stderr.contains(&format!("warning: {missing} (this channel is not played)\n")), "{}", run.stderr);
+    folder.run("frame gone.gltf --strict").fails_in_a_line(2, missing);
+    folder.run("check gone.gltf").fails(2, missing);
+}
+
 /// A message may leave out folders, but not the name of the file.
 #[test]
 fn the_name_of_a_missing_file_is_told_however_long_its_folder_is() {

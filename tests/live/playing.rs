@@ -40,6 +40,20 @@ fn a_scene_that_moves_plays_until_it_is_paused() {
 }
 
 #[test]
+fn the_length_of_an_animation_is_told_when_its_mesh_is_opened() {
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/odd_meshes/s4_rise.gltf");
+    for (flag, text) in
+        [("", "an animation of 2 s; Space pauses it"), ("--reduced-motion", "; --reduced-motion pauses")]
+    {
+        let start = Start::new(env!("CARGO_BIN_EXE_termtrace")).arg(mesh).size(Size::cells(60, 12));
+        let start = if flag.is_empty() { start } else { start.arg(flag) };
+        let mut session = start.says_when_it_rests().spawn();
+        session.wait_for_text(text);
+        leave(session);
+    }
+}
+
+#[test]
 fn a_scene_stands_still_where_motion_is_reduced() {
     let mut session = started("--reduced-motion");
     session.wait_for_rest();

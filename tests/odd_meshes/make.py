@@ -58,6 +58,7 @@ obj("a5_map", TEXTURED, mtl="newmtl a\nKd 0 0 0\nmap_Ke t.png\n")
 obj("a5_bright", TEXTURED, mtl="newmtl a\nmap_Ke t.png\nKe 2 1 1\n")
 obj("a9_map", TEXTURED, mtl="newmtl a\nmap_d grey.png\n")
 obj("a9_whole", TEXTURED, mtl="newmtl a\nmap_d whole.png\n")
+obj("a9_zero", TEXTURED, mtl="newmtl a\nd 0\nnewmtl unused\nd 0\n")
 beside("grey.png", png((64, 64, 64)))
 beside("whole.png", png((64, 64, 64, 255)))
 beside("half.png", png((255, 0, 0, 128)))
@@ -255,6 +256,7 @@ class Gltf:
         self.bytes = b""
         self.views = []
         self.accessors = []
+        self.more_buffers = []
         self.primitive = {"attributes": {"POSITION": self.floats("VEC3", [0, 0, 0, 1, 0, 0, 0, 1, 0])}}
         self.json = {
             "asset": {"version": "2.0"},
@@ -283,7 +285,8 @@ class Gltf:
         buffer = {"byteLength": len(self.bytes)}
         if uri:
             buffer["uri"] = "data:;base64," + base64.b64encode(self.bytes).decode()
-        return json.dumps(self.json | {"accessors": self.accessors, "bufferViews": self.views, "buffers": [buffer]})
+        buffers = [buffer] + self.more_buffers
+        return json.dumps(self.json | {"accessors": self.accessors, "bufferViews": self.views, "buffers": buffers})
 
     def write(self, name):
         write(name, self.document(True) + "\n")
@@ -328,6 +331,8 @@ mesh.json["materials"] = [{"emissiveFactor": [1, 0, 0], "pbrMetallicRoughness": 
 mesh.write("a5.gltf")
 mesh.json["materials"] = [{"alphaMode": "MASK"}]
 mesh.write("a9_mask.gltf")
+mesh.json["materials"] = [{"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 0.4]}}]
+mesh.write("a9_nowhere.gltf")
 mesh.json["materials"] = [{"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 1, 0.2]}}]
 mesh.write("a9_blend.gltf")
 mesh.primitive["attributes"]["TEXCOORD_0"] = mesh.floats("VEC2", [0, 0] * 3)
@@ -869,6 +874,30 @@ mesh.write("s4_no_list.gltf")
 mesh = rising()
 mesh.json["animations"] = 5
 mesh.write("s4_number.gltf")
+
+# A buffer of key frames that is missing, after a faulty channel, and of two channels.
+mesh = rising(interpolation="BEZIER")
+mesh.json["nodes"].append({})
+view = mesh.view(b"")
+mesh.views[view] = {"buffer": 1, "byteLength": 24}
+for node in (0, 1):
+    mesh.accessors.append({"bufferView": view, "componentType": 5126, "type": "VEC3", "count": 2})
+    channel(mesh, "scale", len(mesh.accessors) - 1, node=node)
+mesh.more_buffers = [{"uri": "gone.bin", "byteLength": 24}]
+mesh.write("s4_gone.gltf")
+# A moving square in coordinates in which no ray is traced: too far, and too small.
+for name, factor in [("far", 1e10), ("small", 1e-12)]:
+    mesh = staged()
+    mesh.primitive["attributes"]["POSITION"] = mesh.floats("VEC3", [factor * x for x in [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0]])
+    mesh.json["nodes"] = [{"children": [1]}, {"mesh": 0, "scale": [1 / factor] * 3}, {"mesh": 0, "scale": [2 / factor] * 3}]
+    mesh.json["scenes"][0]["nodes"] = [0, 2]
+    channel(mesh, "translation", mesh.floats("VEC3", [0, 0, 0, 0, 4, 0]))
+    mesh.write(f"s4_{name}_part.gltf")
+# A part of a mesh with a skin that has no joints, so that its node would move it.
+mesh = skinned()
+part = {"attributes": {"POSITION": mesh.floats("VEC3", [0, 0, 0, 100, 0, 0, 0, 100, 0])}}
+mesh.json["meshes"][0]["primitives"].append(part)
+channel(mesh, "translation", mesh.floats("VEC3", [0, 0, 0, 0, 4, 0])).write("s4_no_joints.gltf")
 
 # Extensions that are no objects.
 mesh = staged()

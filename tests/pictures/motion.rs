@@ -5,7 +5,7 @@
 
 use super::goldens::folder;
 use std::fs;
-use termtrace::glam::Vec3;
+use termtrace::glam::{BVec3, Vec3};
 use termtrace::internals::hit::closest_hit;
 use termtrace::internals::mesh_file::MeshFile;
 use termtrace::internals::ray::Ray;
@@ -87,6 +87,34 @@ fn a_part_of_scale_zero_is_nowhere() {
             assert_eq!(scene.bounds().is_some(), is_seen, "{name} at {seconds}");
         }
     }
+}
+
+/// Of a mesh that moves far away, the first view frames the start.
+#[test]
+fn the_first_view_frames_the_whole_animation() {
+    let tangent = 0.364; // of half the field of view
+    for name in ["s4_rise.gltf", "s4_parts.gltf", "s4_step.gltf"] {
+        let scene = load(name);
+        let (pose, basis) = (scene.camera().pose(), scene.camera().basis());
+        let is_inside = |corner: Vec3| {
+            let from_eye = corner - pose.eye;
+            let at = |axis: Vec3| from_eye.dot(axis) / -from_eye.dot(basis.w);
+            at(basis.u).abs() < tangent * 4.0 / 3.0 && at(basis.v).abs() < tangent
+        };
+        let corners = |seconds: f64| {
+            let bounds = scene.clone().at_time(seconds).bounds().expect("a mesh");
+            (0..8).map(move |i| Vec3::select(BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), bounds.min, bounds.max))
+        };
+        assert!((0..16).flat_map(|step| corners(f64::from(step) / 8.0)).all(is_inside), "{name}");
+    }
+    // Of a mesh that leaves for a place a thousand times its size away, it is the start.
+    let text = fs::read_to_string(folder("tests/odd_meshes/s4_rise.gltf")).expect("a file");
+    let far =
+        text.replacen("\"nodes\": [{\"mesh\": 0}]", "\"nodes\": [{\"mesh\": 0, \"scale\": [0.001, 0.001, 0.001]}]", 1);
+    assert_ne!(far, text);
+    let far = MeshFile::from_bytes("x.gltf", far.as_bytes(), &mut |_| unreachable!()).expect("a mesh");
+    let eye = Scene::of_mesh(far).expect("a scene").camera().pose().eye;
+    assert!(eye.length() < 0.01, "{eye}");
 }
 
 #[test]

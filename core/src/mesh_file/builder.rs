@@ -106,6 +106,11 @@ impl MeshBuilder {
         for &(_, what) in self.not_shown.iter().filter(|(material, _)| used.contains(material)) {
             left_out.not_shown(what, 1);
         }
+        let is_charted = !self.texture_coordinates.values().is_empty();
+        let invisible = used.iter().filter(|&&material| {
+            self.materials.get(material as usize).is_some_and(|material| material.is_invisible(is_charted))
+        });
+        left_out.not_shown("invisible material (its opacity is too low)", invisible.count());
         // Readers have already checked all this, and reported faults with their positions; this is the last line of
         // defence.
         self.into_mesh().ok_or_else(|| MeshFault::of_file("this mesh has numbers or indices out of range"))

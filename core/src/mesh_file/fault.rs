@@ -32,6 +32,8 @@ enum Cause {
 #[derive(Clone, Copy, Debug)]
 enum FaultOffset {
     File,
+    /// As `File`, for a side file that is missing or cannot be read.
+    SideFile,
     Text(usize),
     Byte(usize),
 }
@@ -42,6 +44,20 @@ impl MeshFault {
     #[cold]
     pub(super) fn of_file(message: impl Into<String>) -> Self {
         Self(Box::new(Cause::Here { offset: FaultOffset::File, message: message.into() }))
+    }
+
+    /// Returns the fault, told as that of a side file that is missing or cannot be read.
+    #[cold]
+    pub(super) fn of_side_file(mut self) -> Self {
+        if let Cause::Here { offset, .. } = &mut *self.0 {
+            *offset = FaultOffset::SideFile;
+        }
+        self
+    }
+
+    /// Returns whether the fault is that of a side file that is missing or cannot be read.
+    pub(super) fn is_of_side_file(&self) -> bool {
+        matches!(*self.0, Cause::Here { offset: FaultOffset::SideFile, .. })
     }
 
     /// Returns a fault at a byte of a text.
@@ -64,7 +80,9 @@ impl MeshFault {
     /// Returns the error of the file with these bytes.
     pub(super) fn into_error(self, name: &str, bytes: &[u8]) -> Unfinished<MeshError> {
         Unfinished::Failed(match *self.0 {
-            Cause::Here { offset: FaultOffset::File, message } => MeshError::of_file(name, &message),
+            Cause::Here { offset: FaultOffset::File | FaultOffset::SideFile, message } => {
+                MeshError::of_file(name, &message)
+            }
             Cause::Here { offset: FaultOffset::Byte(byte), message } => {
                 MeshError::at(name, FilePosition::Byte(byte), &message)
             }

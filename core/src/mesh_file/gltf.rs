@@ -106,6 +106,7 @@ fn read(
     let document: Value = serde_json::from_slice(text).map_err(|error| syntax_fault(&error, json, text, at))?;
     let root = Json::root(&document)?;
     check_version(root)?;
+    side_files.left_out.not_shown("extension (not an object)", json::count_faulty_extensions(&document));
     check_extensions(root, &mut side_files.left_out)?;
     nodes::read(root, &mut Buffers::new(root, json.len(), glb_buffer, side_files), &mut meter)
 }

@@ -60,15 +60,21 @@ impl<'a> LeftOut<'a> {
     /// Tells of a fault that costs a part of the file other than its shape. `what` says which.
     ///
     /// # Errors
-    /// The fault, if the reporter takes no notices or it is a cancellation.
+    /// The fault, if the reporter takes no notices, if it is a cancellation, or if a side file is missing and warnings
+    /// are errors.
     pub(super) fn notify_of(&mut self, fault: MeshFault, what: &str) -> Result<(), MeshFault> {
-        match self.error_of(fault) {
-            Unfinished::Failed(error) if self.reporter.takes_notices() => {
-                self.reporter.notify_if_possible(|| format!("{error} ({what})"));
-                Ok(())
-            }
-            unfinished => Err(unfinished.into()),
-        }
+        let is_of_side_file = fault.is_of_side_file();
+        let error = match self.error_of(fault) {
+            Unfinished::Failed(error) => error,
+            Unfinished::Cancelled => return Err(Unfinished::Cancelled.into()),
+        };
+        let notice = || format!("{error} ({what})");
+        let is_told = if is_of_side_file {
+            self.reporter.warn_instead_of_error(notice)
+        } else {
+            self.reporter.notify_if_possible(notice)
+        };
+        if is_told { Ok(()) } else { Err(error.into()) }
     }
 
     /// Converts a fault of the mesh file to an error with the file's name.

@@ -94,6 +94,16 @@ impl MeshMaterial {
         }
     }
 
+    /// Returns whether the surface is seen nowhere: a hole everywhere, or blended with opacity 0.
+    ///
+    /// `is_charted` tells whether the mesh has texture coordinates.
+    #[cfg_attr(not(feature = "mesh"), allow(dead_code, reason = "only readers tell of materials"))]
+    pub(super) fn is_invisible(&self, is_charted: bool) -> bool {
+        let is_hole = |(opacity, cutoff): &(Opacity, f32)| opacity.largest(is_charted) < *cutoff;
+        self.holes.as_ref().is_some_and(is_hole)
+            || self.blended.as_ref().is_some_and(|opacity| opacity.largest(is_charted) <= 0.0)
+    }
+
     /// Checks the invariants of the type.
     pub(super) fn is_valid(&self) -> bool {
         let is_share = |share: f32| (0.0..=1.0).contains(&share);
@@ -119,6 +129,12 @@ impl Opacity {
     #[cfg_attr(not(feature = "mesh"), allow(dead_code, reason = "only readers make materials"))]
     pub(super) fn may_be_below(&self, limit: f32) -> bool {
         self.factor < limit || self.texture.as_ref().is_some_and(|texture| texture.texture.is_transparent())
+    }
+
+    /// Returns the largest opacity anywhere, with or without texture coordinates.
+    fn largest(&self, is_charted: bool) -> f32 {
+        let texture = self.texture.as_ref().filter(|_| is_charted);
+        self.factor * texture.map_or(1.0, |placement| placement.texture.largest_opacity())
     }
 
     /// Returns the opacity at texture coordinates; the factor where there are none.

@@ -136,6 +136,11 @@ impl Texture {
         !self.opacities.is_empty()
     }
 
+    /// Returns the largest opacity of a texel, from 0 to 1.
+    pub(super) fn largest_opacity(&self) -> f32 {
+        self.opacities.iter().max().map_or(1.0, |&largest| f32::from(largest) / 255.0)
+    }
+
     /// Returns the image whose opacities this image gives: its own, or else the lightnesses of its
     /// texels.
     ///

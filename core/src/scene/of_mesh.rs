@@ -162,8 +162,9 @@ impl Draft {
         if !(radius > 1e-5 * farthest && radius > 1e-9 && farthest <= 1e9) {
             return None;
         }
-        let gap =
-            if has_ground(&mesh, &bounds, radius) { GROUND_GAP * radius + 4.0 * f32::EPSILON * farthest } else { 0.0 };
+        // The lowest place of a part that moves may be its ground.
+        let has_ground = mesh.moves() || has_ground(&mesh, &bounds, radius);
+        let gap = if has_ground { GROUND_GAP * radius + 4.0 * f32::EPSILON * farthest } else { 0.0 };
         let floor = Plane::new(Vec3::new(middle.x, bounds.min.y - gap, middle.z), Vec3::Y).ok()?;
         let squares = Material::checker(FLOOR[0], FLOOR[1], SQUARE * radius).ok()?;
         let material = if mesh.has_colors() { Material::Own } else { Material::diffuse(CLAY).ok()? };
@@ -206,21 +207,31 @@ fn has_ground(mesh: &MeshFile, bounds: &Bounds, radius: f32) -> bool {
     })
 }
 
-/// Returns the box that the first picture shows: that of the mesh at time 0.
+/// Returns the box that the first picture shows: that around all places of the mesh over time.
 ///
-/// Of a mesh that appears later, it is the box around all places where it then is.
+/// Of a mesh that moves far away, it is that of the mesh at time 0.
 fn framed(mesh: &MeshFile) -> Option<Bounds> {
     /// The number of times at which the mesh is looked for.
     const TIMES: u32 = 16;
+    /// Limit on the size of the box, as a multiple of that at time 0.
+    // In a larger one the mesh would be hard to see.
+    const MAX_GROWTH: f32 = 5.0;
     let bounds = Bounds::of(mesh.positions().iter().copied());
-    let Some(motion) = mesh.motion().filter(|_| bounds.extent() == Vec3::ZERO) else { return Some(bounds) };
+    let Some(motion) = mesh.motion() else { return Some(bounds) };
     let parts = MovingParts::of(motion).placed(&Placement::NONE)?;
     let at_time = |step: u32| {
         let mut poses = Poses::at(motion.length() * (f64::from(step) / f64::from(TIMES)));
         let parts = parts.iter().map(|part| part.at_time(&mut poses)).filter(|part| !part.is_nowhere());
         parts.map(|part| *part.bounds()).reduce(|a, b| a.union(&b))
     };
-    (0..TIMES).filter_map(at_time).reduce(|a, b| a.union(&b))
+    let moving = (0..TIMES).filter_map(at_time).reduce(|a, b| a.union(&b));
+    if bounds.extent() == Vec3::ZERO {
+        // The mesh appears later.
+        return moving;
+    }
+    let whole = moving.map_or(bounds, |moving| bounds.union(&moving));
+    let is_near = whole.extent().length() <= MAX_GROWTH * bounds.extent().length();
+    Some(if is_near { whole } else { bounds })
 }
 
 /// Returns the mesh, or the part of it that does not move and the parts that do.

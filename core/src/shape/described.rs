@@ -51,8 +51,11 @@ macro_rules! described {
                 match self {
                     $($(#[$on])* Self::$surface(surface) => surface.described(color),)*
                     Self::Mesh(mesh) => {
-                        let size = size_in_words(mesh.bounds());
-                        format!("a {color} mesh of {} triangles, {size}", mesh.triangle_count())
+                        let (count, size) = (mesh.triangle_count(), size_in_words(mesh.bounds()));
+                        let motion = mesh.motion_length().map_or_else(String::new, |seconds| {
+                            format!(", which moves in an animation of {} s", length_in_words(seconds))
+                        });
+                        format!("a {color} mesh of {count} triangles, {size}{motion}")
                     }
                 }
             }

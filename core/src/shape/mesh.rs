@@ -132,6 +132,12 @@ impl Mesh {
         self.motion.is_some()
     }
 
+    /// Returns the length of the motion in seconds, after which it starts again; `None` if the mesh
+    /// does not move.
+    pub(crate) fn motion_length(&self) -> Option<f64> {
+        self.motion.as_ref().map(|motion| motion.length())
+    }
+
     /// Returns whether the mesh is nowhere at this time, so that no ray may be traced to it.
     pub(crate) fn is_nowhere(&self) -> bool {
         self.is_nowhere

@@ -122,6 +122,11 @@ impl MovingParts {
 }
 
 impl MeshMotion {
+    /// Returns the length in seconds, after which the motion starts again.
+    pub(super) fn length(&self) -> f64 {
+        self.motion.length()
+    }
+
     /// Returns the place at the time of the poses.
     pub(super) fn place_in(&self, poses: &mut Poses) -> PartPlace {
         let seconds = poses.seconds;

@@ -60,15 +60,16 @@ impl Animation {
         let Some(animation) = animations.next() else { return Ok(Self::default()) };
         buffers.left_out().not_shown("animation (after the first)", animations.count());
         let mut reader = Reader { animation, buffers, read: Self::default(), samples: Samples::default() };
-        let mut is_told = false;
+        // Of either kind of fault the first is told.
+        let (mut is_fault_told, mut is_missing_file_told) = (false, false);
         for channel in animation.list("channels").into_iter().flatten() {
             meter.report_indeterminate()?;
             let Err(fault) = reader.channel(channel) else { continue };
-            if is_told {
+            let is_told = if fault.is_of_side_file() { &mut is_missing_file_told } else { &mut is_fault_told };
+            if std::mem::replace(is_told, true) {
                 reader.buffers.left_out().not_shown("faulty channel (of the animation)", 1);
             } else {
                 reader.buffers.left_out().notify_of(fault, "this channel is not played")?;
-                is_told = true;
             }
         }
         if let Err(fault) = animation.list("channels").map(drop) {

@@ -259,7 +259,7 @@ impl<'a, 'b> Buffers<'a, 'b> {
             Resource::Buffer => self.side_files.read(&path).map(Some),
             Resource::Picture => self.side_files.read_colors(&path, "texture"),
         };
-        let Some(bytes) = bytes.map_err(|message| uri.fault(message))? else { return Ok(None) };
+        let Some(bytes) = bytes.map_err(|message| uri.fault(message).of_side_file())? else { return Ok(None) };
         self.size += bytes.len();
         let bytes: Rc<[u8]> = bytes.into();
         self.files.insert(path, Rc::clone(&bytes));

@@ -97,7 +97,7 @@ impl<'a> Json<'a> {
 
     /// Returns the extension `name` of this value, if it has it.
     ///
-    /// An extension that is not an object is ignored: only its effect is lost.
+    /// An extension that is not an object is ignored, and counted by [`count_faulty_extensions`].
     pub(super) fn extension(self, name: &'static str) -> Result<Option<Self>, MeshFault> {
         let is_object = |json: &Self| json.value.is_object();
         let Some(extensions) = self.field("extensions")?.filter(is_object) else { return Ok(None) };
@@ -174,5 +174,31 @@ impl<'a> Json<'a> {
             *number = Self { value, ..list }.number()?;
         }
         Ok(Some(numbers))
+    }
+}
+
+/// Returns the number of extensions in a document that are not objects, and of fields `extensions`.
+///
+/// [`Json::extension`] ignores them.
+pub(super) fn count_faulty_extensions(document: &Value) -> usize {
+    match document {
+        Value::Array(items) => items.iter().map(count_faulty_extensions).sum(),
+        Value::Object(fields) => fields.iter().map(|(name, value)| count_faulty_extensions_of(name, value)).sum(),
+        _ => 0,
+    }
+}
+
+/// Returns the number of faulty extensions in the field of an object.
+// No deep recursion: the parser refuses documents that are nested more than 127 levels deep.
+fn count_faulty_extensions_of(name: &str, value: &Value) -> usize {
+    match (name, value) {
+        // Programs write there what they like.
+        ("extras", _) => 0,
+        ("extensions", Value::Object(extensions)) => {
+            let is_faulty = |value: &&Value| !value.is_object();
+            extensions.values().filter(is_faulty).count() + count_faulty_extensions(value)
+        }
+        ("extensions", _) => 1,
+        _ => count_faulty_extensions(value),
     }
 }

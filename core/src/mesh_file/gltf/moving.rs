@@ -4,11 +4,13 @@ use super::animation::{Animation, NodeChannels};
 use super::pose::Globals;
 use super::primitives::{Placed, Primitives};
 use super::tree::IndexedNode;
+use crate::bounds::Bounds;
+use crate::checks;
 use crate::mesh_file::MeshFile;
 use crate::mesh_file::fault::MeshFault;
 use crate::mesh_file::motion::{Motion, MovingNode, MovingPart};
 use crate::progress::Meter;
-use glam::{DMat3, DMat4};
+use glam::{DMat3, DMat4, DVec3, Mat3, Vec3};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -76,7 +78,7 @@ impl<'a, 'w> MovingTree<'a, 'w> {
         meter: &mut Meter<'_>,
     ) -> Result<Option<Motion>, MeshFault> {
         let Self { animation, nodes, shown } = self;
-        let mut meshes: HashMap<MeshKey, Option<Arc<MeshFile>>> = HashMap::new();
+        let mut meshes: HashMap<MeshKey, Option<(Arc<MeshFile>, DMat4)>> = HashMap::new();
         let mut parts = Vec::new();
         for (key, placed, anchor) in &shown {
             meter.report_indeterminate()?;
@@ -84,9 +86,10 @@ impl<'a, 'w> MovingTree<'a, 'w> {
             if !meshes.contains_key(key) {
                 let placed = Placed { transform: DMat4::IDENTITY, ..*placed };
                 let mesh = primitives.apart(|primitives| primitives.add_mesh(&placed, globals))?;
-                meshes.insert(*key, mesh.map(Arc::new));
+                meshes.insert(*key, mesh.map(within_range).map(|(mesh, back)| (mesh.into(), back)));
             }
-            parts.extend(meshes[key].clone().map(|mesh| MovingPart { node, below, mesh }));
+            let placed = meshes[key].clone();
+            parts.extend(placed.map(|(mesh, back)| MovingPart { node, below: below * back, mesh }));
         }
         if parts.is_empty() {
             return Ok(None);
@@ -96,5 +99,32 @@ impl<'a, 'w> MovingTree<'a, 'w> {
             still.into_iter().try_for_each(|(_, placed, _)| primitives.add_mesh(placed, globals))
         })?;
         Ok(Some(Motion { length: animation.length(), nodes, parts, still: still.map(Arc::new), turn: DMat3::IDENTITY }))
+    }
+}
+
+/// Returns a mesh in coordinates in which rays can be traced, and the scale back to its own.
+///
+/// The scale is a power of two, so that no coordinate is rounded.
+fn within_range(mesh: MeshFile) -> (MeshFile, DMat4) {
+    /// Limit on the factor: a coordinate below its inverse counts as 0.
+    const MAX_FACTOR: f32 = (1_u128 << 100) as f32;
+    let Bounds { min, max } = Bounds::of(mesh.positions().iter().copied());
+    let (farthest, extent) = (min.abs().max(max.abs()).max_element(), (max - min).max_element());
+    let mut factor = 1.0;
+    while !checks::are_within_range(&[Vec3::splat(farthest * factor)]) {
+        factor *= 0.5;
+    }
+    // Of a mesh without an extent no triangle has an area.
+    if factor == 1.0 && extent > 0.0 && !checks::is_long_enough(max - min) {
+        while extent * factor < 1.0 && farthest * factor < 1.0 && factor < MAX_FACTOR {
+            factor *= 2.0;
+        }
+    }
+    if factor == 1.0 {
+        return (mesh, DMat4::IDENTITY);
+    }
+    match mesh.clone().transformed(Vec3::splat(factor), Mat3::IDENTITY, Vec3::ZERO) {
+        Some(scaled) => (scaled, DMat4::from_scale(DVec3::splat(1.0 / f64::from(factor)))),
+        None => (mesh, DMat4::IDENTITY),
     }
 }

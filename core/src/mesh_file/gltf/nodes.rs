@@ -4,7 +4,7 @@ use super::animation::Animation;
 use super::buffers::Buffers;
 use super::json::Json;
 use super::moving::MovingTree;
-use super::pose::Globals;
+use super::pose::{Globals, has_primitive_without_joints};
 use super::primitives::{Placed, Primitives};
 use super::staging::{self, StagingReader};
 use super::tree::{IndexedNode, nodes_in};
@@ -49,6 +49,9 @@ pub(super) fn read<'a>(
             primitives.add_mesh(&placed, &globals)?;
             if globals.moves_skin_of(node, root)? {
                 primitives.left_out().not_shown("animation (of a skin)", 1);
+            }
+            if moving.is_some() && node.field("skin")?.is_some() && has_primitive_without_joints(mesh)? {
+                primitives.left_out().not_shown("animation (of a part without joints in a skin)", 1);
             }
             tree.add_mesh(index, number, &placed, moving)?;
         }

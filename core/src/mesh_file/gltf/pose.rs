@@ -70,6 +70,17 @@ impl Globals {
     }
 }
 
+/// Returns whether a primitive of a mesh has no joints, so that the node places it even if the mesh
+/// has a skin.
+pub(super) fn has_primitive_without_joints(mesh: Json<'_>) -> Result<bool, MeshFault> {
+    for primitive in mesh.list("primitives")? {
+        if primitive.required("attributes")?.field(JOINTS[0][0])?.is_none() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
 /// The pose of the mesh of a node.
 pub(super) struct Pose<'a> {
     /// The node, for faults.
