@@ -40,6 +40,7 @@ fn assets() -> PathBuf {
 }
 
 #[test]
+#[cfg_attr(feature = "serve", ignore = "those in `assets` are of the default features")]
 fn the_manual_and_the_completions_are_current() {
     let folder = Folder::new();
     let mut stale = vec![];

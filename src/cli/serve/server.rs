@@ -66,7 +66,7 @@ pub(in crate::cli) struct ServeArgs {
     /// Connections from one address [default: 10]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), hide_short_help = true)]
     max_per_address: Option<u32>,
-    /// Longest time without a key, such as 90s or 10m [default: 10m]
+    /// Longest time without a key [default: 10m]
     #[arg(long, value_name = "TIME", value_parser = parse_time)]
     idle: Option<Duration>,
     /// Longest visit [default: 1h]
@@ -84,11 +84,11 @@ pub(in crate::cli) struct ServeArgs {
     /// Threads that draw [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), hide_short_help = true)]
     threads: Option<u16>,
-    /// Only let in those who have one of the public keys in this file
+    /// Only let in holders of the keys in this file
     #[arg(long, value_name = "FILE")]
     authorized_keys: Option<PathBuf>,
     /// Let the user `leader` with one of the public keys in this file lead the tour
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", hide_short_help = true)]
     leaders: Option<PathBuf>,
     /// Show viewers the login names of one another
     #[arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
@@ -97,19 +97,19 @@ pub(in crate::cli) struct ServeArgs {
     /// Text that is printed before the login
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     banner: Option<PathBuf>,
-    /// Link in the first line that a viewer sees, and on leaving
+    /// Link that viewers see first, and on leaving
     #[arg(long, value_name = "URL")]
     link: Option<String>,
     /// Address of this machine with counts for Prometheus, and a health check
     #[arg(long, value_name = "ADDRESS:PORT", hide_short_help = true)]
     metrics: Option<SocketAddr>,
-    /// Camera path through the first scene, which all viewers follow until a key
+    /// Camera path that viewers follow until a key
     #[arg(long, value_name = "PATH")]
     tour: Option<PathBuf>,
     /// Networks of load balancers that send the PROXY protocol, such as 10.0.0.0/8
     #[arg(long, value_name = "CIDR,...", value_delimiter = ',', hide_short_help = true)]
     proxy_protocol: Vec<Network>,
-    /// File of settings, such as (listen: "0.0.0.0:22", public: true, fps: 20)
+    /// File of settings, such as (public: true)
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
 }
