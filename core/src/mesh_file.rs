@@ -180,7 +180,14 @@ impl MeshFile {
     /// Returns the mesh scaled along its axes (factors not 0), then rotated, then translated. A
     /// mirrored mesh keeps its triangles counterclockwise seen from outside, and one that moves stays as at time 0.
     /// `None` if a position exceeds the range of f32.
-    pub fn transformed(mut self, scale: Vec3, turn: Mat3, translation: Vec3) -> Option<Self> {
+    pub fn transformed(self, scale: Vec3, turn: Mat3, translation: Vec3) -> Option<Self> {
+        let mesh = self.transformed_unchecked(scale, turn, translation);
+        mesh.is_valid().then_some(mesh)
+    }
+
+    /// Returns the mesh as [`transformed`](Self::transformed) does, although a position may exceed
+    /// the range of f32.
+    fn transformed_unchecked(mut self, scale: Vec3, turn: Mat3, translation: Vec3) -> Self {
         self.motion = None;
         for position in &mut self.positions {
             *position = turn * (*position * scale) + translation;
@@ -194,7 +201,7 @@ impl MeshFile {
             self.texture_coordinates = self.texture_coordinates.with_reversed_triangles();
             self.colors = self.colors.with_reversed_triangles();
         }
-        self.is_valid().then_some(self)
+        self
     }
 
     /// Returns the mesh turned so that this axis of its file points along +y; `None` if a position
@@ -209,7 +216,8 @@ impl MeshFile {
             Some(motion) => Some(Arc::new(motion.turned(up.turn())?)),
             None => None,
         };
-        self.transformed(Vec3::ONE, up.turn(), Vec3::ZERO).map(|mesh| Self { staging, motion, ..mesh })
+        // Axes that change their places and signs keep all numbers within their range.
+        Some(Self { staging, motion, ..self.transformed_unchecked(Vec3::ONE, up.turn(), Vec3::ZERO) })
     }
 
     /// Returns whether the mesh has colours of its own: of materials, vertices or a texture.

@@ -142,6 +142,10 @@ const MAX_BINS: usize = 16;
 /// time at each node.
 const MIN_ITEMS_FOR_MAX_BINS: usize = 48;
 
+/// The number of items of a node that are sorted into bins: of more, an even selection is.
+// Sorting all of them, a file of 2.7 M triangles opens in 1.2 times the CPU time, and rays are as fast.
+const MAX_SORTED: usize = 4096;
+
 /// The division of an axis into bins of equal size, to which items belong by their centers.
 #[derive(Clone, Copy)]
 struct AxisBins {
@@ -180,15 +184,24 @@ struct Cut {
 
 impl Cut {
     fn cheapest(items: &[Item], doubled_centers: &BoxRows) -> Option<Self> {
+        let step = (items.len() / MAX_SORTED).max(1);
+        let cheapest = Self::cheapest_for_every(step, items, doubled_centers);
+        // The selection may lie in one bin although all items do not.
+        if cheapest.is_none() && step > 1 { Self::cheapest_for_every(1, items, doubled_centers) } else { cheapest }
+    }
+
+    /// Returns the cheapest cut for every `step`th item.
+    #[inline(always)]
+    fn cheapest_for_every(step: usize, items: &[Item], doubled_centers: &BoxRows) -> Option<Self> {
         let count = if items.len() < MIN_ITEMS_FOR_MAX_BINS { MAX_BINS / 2 } else { MAX_BINS };
         let axes = [0, 1, 2].map(|axis| AxisBins::divide(axis, doubled_centers, count));
         let mut contents = [[(BoxRows::EMPTY, 0_u32); MAX_BINS]; 3];
-        for item in items {
+        for item in items.iter().step_by(step) {
             for (bins, contents) in axes.iter().zip(&mut contents) {
                 let Some(bins) = bins else { continue };
                 let (rows, count) = &mut contents[bins.index_of(item)];
                 rows.grow(item);
-                *count += 1;
+                *count += step as u32; // fewer than 2^31 items
             }
         }
         let planes = axes.into_iter().zip(&contents);
