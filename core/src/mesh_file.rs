@@ -67,6 +67,8 @@ mod limits;
 mod motion;
 mod staging;
 #[cfg(feature = "mesh")]
+mod pieces;
+#[cfg(feature = "mesh")]
 mod marks;
 mod material;
 #[cfg_attr(not(feature = "mesh"), allow(dead_code, reason = "only mesh files are turned"))]

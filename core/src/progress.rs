@@ -81,8 +81,14 @@ pub struct Reporter<'w> {
     on_warning: Option<&'w (dyn Fn(String) + Sync)>,
     is_strict: bool,
     is_parallel: bool,
+    piece_bytes: usize,
     cancellation: Cancellation,
 }
+
+/// The size of the pieces in which large files are parsed, in bytes.
+// A little less than 256 KiB, which take one or two milliseconds: a cancel takes effect within a frame, and a piece
+// costs little besides.
+const PIECE_BYTES: usize = 252 << 10;
 
 impl<'w> Reporter<'w> {
     /// Returns a reporter that calls `on_progress`, which cancels the work by returning `Break`.
@@ -93,6 +99,7 @@ impl<'w> Reporter<'w> {
             on_warning: None,
             is_strict: false,
             is_parallel: true,
+            piece_bytes: PIECE_BYTES,
             cancellation: Cancellation::default(),
         }
     }
@@ -128,6 +135,16 @@ impl<'w> Reporter<'w> {
     /// Returns whether files may be parsed on all threads of the current rayon pool.
     pub fn is_parallel(&self) -> bool {
         self.is_parallel
+    }
+
+    /// Returns the reporter for parsing files in pieces of about this size, for tests.
+    pub fn in_pieces_of(self, bytes: usize) -> Self {
+        Self { piece_bytes: bytes, ..self }
+    }
+
+    /// Returns the size in bytes of the pieces in which files are parsed.
+    pub fn piece_bytes(&self) -> usize {
+        self.piece_bytes
     }
 
     /// Returns the reporter with a token that cancels the work.

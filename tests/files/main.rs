@@ -8,6 +8,7 @@ mod invalid_mesh_files;
 mod keys;
 mod mesh_corpus;
 mod mesh_files;
+mod mesh_pieces;
 #[path = "../mesh_laws/mod.rs"]
 mod mesh_laws;
 mod mesh_properties;

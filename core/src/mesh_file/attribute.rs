@@ -25,6 +25,21 @@ enum CornerIndices {
 /// The value that is stored instead of indices for a triangle without the attribute.
 const NONE: [u32; 3] = [u32::MAX; 3];
 
+/// The bit that marks an index into the values of a piece, which are not appended to those before
+/// them yet. All lists have fewer than 2^31 values.
+const OF_PIECE: u32 = 1 << 31;
+
+/// Returns the index of a value of a piece, until the piece is appended.
+#[cfg_attr(not(feature = "mesh"), allow(dead_code, reason = "only readers read in pieces"))]
+pub(super) fn of_piece(index: u32) -> u32 {
+    index | OF_PIECE
+}
+
+/// Returns the index in a list to which the values of a piece are appended after `base` others.
+pub(super) fn index_after(base: u32, index: u32) -> u32 {
+    if index & OF_PIECE == 0 { index } else { base + (index & !OF_PIECE) }
+}
+
 /// Exchanges the last two corners of each triangle, which turns it inside out.
 pub(super) fn reverse_orientation(triangles: &mut [[u32; 3]]) {
     for corners in triangles {
@@ -112,6 +127,36 @@ impl<T: Copy> Attribute<T> {
             }
             (CornerIndices::Own(own), _) => own.push(corner.unwrap_or(NONE)),
         }
+    }
+
+    /// Appends the values and indices of a piece with the triangles `piece_triangles`, whose own
+    /// values have the indices of [`of_piece`]. `triangles` are all triangles before it.
+    pub(super) fn append(&mut self, mut piece: Self, triangles: &[[u32; 3]], piece_triangles: &[[u32; 3]]) {
+        if let CornerIndices::Own(corners) = &mut piece.corners {
+            let base = self.values.len() as u32; // fewer than 2^31
+            for corner in corners.iter_mut().filter(|corner| **corner != NONE) {
+                *corner = corner.map(|index| index_after(base, index));
+            }
+        }
+        self.values.append(&mut piece.values);
+        if piece_triangles.is_empty() {
+            return;
+        }
+        let own = |corners, triangles: &[[u32; 3]]| match corners {
+            CornerIndices::Absent => vec![NONE; triangles.len()],
+            CornerIndices::OfPositions => triangles.to_vec(),
+            CornerIndices::Own(own) => own,
+        };
+        self.corners = match (std::mem::take(&mut self.corners), piece.corners) {
+            (_, corners) if triangles.is_empty() => corners,
+            (CornerIndices::Absent, CornerIndices::Absent) => CornerIndices::Absent,
+            (CornerIndices::OfPositions, CornerIndices::OfPositions) => CornerIndices::OfPositions,
+            (before, corners) => {
+                let mut all = own(before, triangles);
+                all.append(&mut own(corners, piece_triangles));
+                CornerIndices::Own(all)
+            }
+        };
     }
 
     /// Frees unused capacity, and all values if no triangle refers to one.

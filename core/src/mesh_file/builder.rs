@@ -1,6 +1,6 @@
 //! A mesh under construction.
 
-use super::attribute::Attribute;
+use super::attribute::{Attribute, index_after};
 use super::fault::MeshFault;
 use super::left_out::LeftOut;
 use super::limits::MAX_TRIANGLES;
@@ -70,9 +70,43 @@ impl MeshBuilder {
         Ok(())
     }
 
+    /// Appends a piece: its vertices, triangles and marks.
+    ///
+    /// Its indices are those in the whole mesh, except for values of its own, which have the indices of
+    /// [`of_piece`](super::attribute::of_piece). Its triangles before its first run have the material `material`.
+    ///
+    /// # Errors
+    /// If the mesh then has more than [`MAX_TRIANGLES`].
+    pub(super) fn append(&mut self, mut piece: Self, material: Option<u32>) -> Result<(), MeshFault> {
+        if self.triangles.len() + piece.triangles.len() > MAX_TRIANGLES {
+            return Err(MeshFault::of_file(too_many_triangles()));
+        }
+        let base = self.positions.len() as u32; // fewer than 2^31
+        for corner in piece.triangles.as_flattened_mut() {
+            *corner = index_after(base, *corner);
+        }
+        self.positions.append(&mut piece.positions);
+        self.normals.append(piece.normals, &self.triangles, &piece.triangles);
+        self.texture_coordinates.append(piece.texture_coordinates, &self.triangles, &piece.triangles);
+        self.colors.append(piece.colors, &self.triangles, &piece.triangles);
+        let first = self.triangles.len() as u32; // at most MAX_TRIANGLES
+        self.set_material_from(first, material);
+        for (from, material) in piece.material_runs {
+            self.set_material_from(first + from, material);
+        }
+        self.triangles.append(&mut piece.triangles);
+        self.marks.append(&mut piece.marks);
+        self.has_faces |= piece.has_faces;
+        Ok(())
+    }
+
     /// Sets the material of the triangles added from here on.
     pub(super) fn set_material(&mut self, material: Option<u32>) {
-        let from = self.triangles.len() as u32; // at most MAX_TRIANGLES
+        self.set_material_from(self.triangles.len() as u32, material); // at most MAX_TRIANGLES
+    }
+
+    /// Sets the material from a triangle on that is not before any run.
+    fn set_material_from(&mut self, from: u32, material: Option<u32>) {
         // A run that has no triangle yet is replaced, so that no two runs start at the same triangle.
         if self.material_runs.last().is_some_and(|&(start, _)| start == from) {
             self.material_runs.pop();

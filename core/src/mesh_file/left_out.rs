@@ -33,6 +33,38 @@ impl<'a> LeftOut<'a> {
         Self { reporter, name, bytes, first: None, faults: 0, limit: None, triangles: 0, not_shown: BTreeMap::new() }
     }
 
+    /// Returns what is left out of a piece of the file: nothing so far.
+    ///
+    /// Any number of its parts may be faulty; [`absorb`](Self::absorb) compares the number with the limit.
+    pub(super) fn of_piece(&self) -> Self {
+        Self { limit: Some(usize::MAX), ..self.anew() }
+    }
+
+    /// Returns what is left out of the file if it is read once more: nothing so far.
+    pub(super) fn anew(&self) -> Self {
+        Self::new(self.reporter, self.name, self.bytes)
+    }
+
+    /// Adds what is left out of the next piece of the file.
+    ///
+    /// # Errors
+    /// The first fault of the file, if too many parts are faulty.
+    pub(super) fn absorb(&mut self, piece: Self) -> Result<(), MeshFault> {
+        let Self { first, faults, triangles, not_shown, .. } = piece;
+        self.triangles += triangles;
+        for (what, count) in not_shown {
+            self.not_shown(what, count);
+        }
+        self.faults += faults;
+        match first {
+            Some(first) => {
+                self.first.get_or_insert(first);
+                self.check_limit()
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Leaves out a faulty line, face or facet.
     ///
     /// The parts of a file are its lines, unless [`set_fault_limit_for`](Self::set_fault_limit_for) counts others.
@@ -46,12 +78,17 @@ impl<'a> LeftOut<'a> {
             return Err(fault);
         }
         self.faults += 1;
-        let first = self.first.get_or_insert(fault);
+        self.first.get_or_insert(fault);
+        self.check_limit()
+    }
+
+    /// Returns the first fault as an error if too many parts are faulty.
+    fn check_limit(&mut self) -> Result<(), MeshFault> {
         if self.faults > FEW_FAULTS {
             let lines = || self.bytes.split(|&byte| byte == b'\n').count();
             if self.faults > *self.limit.get_or_insert_with(|| lines() / 100) {
-                // The empty fault that replaces the first one is never shown, because this error ends the reading.
-                return Err(std::mem::replace(first, MeshFault::of_file("")));
+                // This error ends the reading, so that the first fault is needed no longer.
+                return self.first.take().map_or(Ok(()), Err);
             }
         }
         Ok(())

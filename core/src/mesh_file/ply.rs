@@ -14,7 +14,7 @@ use super::texture::{TexelBudget, TexturePlacement, decode};
 use super::{CLAY, MeshFile, MeshMaterial};
 use crate::color::LinearRgb;
 use crate::progress::Meter;
-use body::{AsciiRows, BinaryRows, RowReader, each_row};
+use body::{AsciiRows, BinaryRows, Body, RowReader};
 use header::{Encoding, Header, Property};
 use std::path::Path;
 use std::sync::Arc;
@@ -26,50 +26,47 @@ pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, meter: Meter<'_
     // The header may claim more rows than the file has bytes.
     side_files.left_out.set_fault_limit_for(rows.min(bytes.len()));
     match header.encoding {
-        Encoding::Ascii => read_body(&header, AsciiRows::new(bytes, header.end, meter), side_files),
-        Encoding::LittleEndian => read_body(&header, BinaryRows::<false>::new(bytes, header.end, meter), side_files),
-        Encoding::BigEndian => read_body(&header, BinaryRows::<true>::new(bytes, header.end, meter), side_files),
+        Encoding::Ascii => read_body(&header, AsciiRows::new(bytes, header.end), side_files, meter),
+        Encoding::LittleEndian => read_body(&header, BinaryRows::<false>::new(bytes, header.end), side_files, meter),
+        Encoding::BigEndian => read_body(&header, BinaryRows::<true>::new(bytes, header.end), side_files, meter),
     }
 }
 
 fn read_body<R: RowReader>(
     header: &Header<'_>,
-    mut rows: R,
+    rows: R,
     side_files: &mut SideFiles<'_>,
+    meter: Meter<'_>,
 ) -> Result<MeshFile, MeshFault> {
     let vertices = header.elements.iter().find(|element| element.name == "vertex");
     let vertex_count = vertices.map_or(0, |element| element.count);
     let mut mesh = MeshBuilder { materials: materials(header, side_files)?, ..MeshBuilder::default() };
     let material = (!mesh.materials.is_empty()).then_some(0);
     mesh.set_material(material);
-    let left_out = &mut side_files.left_out;
+    let mut body = Body { rows, mesh, left_out: &mut side_files.left_out, meter };
     let mut has_colors = false;
     for element in &header.elements {
-        mesh.has_faces |= ["face", "tristrips"].contains(&element.name) && element.count > 0;
+        body.mesh.has_faces |= ["face", "tristrips"].contains(&element.name) && element.count > 0;
         let indices = element.properties.iter().position(Property::is_indices);
         match (element.name, indices) {
             ("vertex", _) => {
-                vertices::read(element, &mut rows, &mut mesh, left_out)?;
+                vertices::read(element, &mut body)?;
                 // Colours of faces, which come later, have other indices than vertices.
-                has_colors = !mesh.colors.values().is_empty();
+                has_colors = !body.mesh.colors.values().is_empty();
             }
-            ("face", Some(at)) => faces::read(element, at, vertex_count, &mut rows, &mut mesh, left_out)?,
-            ("tristrips", Some(at)) => {
-                faces::read_strips(element, at, vertex_count, &mut rows, &mut mesh, left_out)?;
-            }
-            ("edge", _) if edges::are_read(element) => {
-                edges::read(element, vertex_count, has_colors, &mut rows, &mut mesh, left_out)?;
-            }
+            ("face", Some(at)) => faces::read(element, at, vertex_count, &mut body)?,
+            ("tristrips", Some(at)) => faces::read_strips(element, at, vertex_count, &mut body)?,
+            ("edge", _) if edges::are_read(element) => edges::read(element, vertex_count, has_colors, &mut body)?,
             // Rows without properties take no bytes and are not looped over: the header may claim 4 billion of them.
             _ if element.properties.is_empty() => {}
             (name, _) => {
                 let what = if name == "edge" { "line" } else { "row (of other elements)" };
-                left_out.not_shown(what, element.count as usize);
-                let skip = |rows: &mut R, _: &mut MeshBuilder| rows.skip_properties(&element.properties);
-                each_row(element, &mut rows, left_out, &mut mesh, skip, |_, _| {})?;
+                body.left_out.not_shown(what, element.count as usize);
+                body.each_row(element, |piece, ()| piece.rows.skip_properties(&element.properties), |_, _| {})?;
             }
         }
     }
+    let Body { mesh, left_out, .. } = body;
     mesh.finish("it has no faces", left_out)
 }
 

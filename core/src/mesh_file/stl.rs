@@ -2,17 +2,19 @@
 //! because the corners give them with more digits. Colours are read if the attribute bytes are known to hold colours.
 
 use super::MeshFile;
-use super::attribute::Attribute;
+use super::attribute::{Attribute, of_piece};
 use super::builder::{MeshBuilder, TriangleIndices, too_many_triangles};
 use super::fault::{MeshFault, shown};
 use super::left_out::LeftOut;
 use super::limits::MAX_TRIANGLES;
+use super::pieces::parse_in_order;
 use super::polygon;
-use super::text::TextCursor;
+use super::text::{self, TextCursor};
 use crate::color::{LinearRgb, Srgb8};
 use crate::progress::Meter;
 use crate::threads;
 use glam::Vec3;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Size of the header in bytes: 80 arbitrary ones, and 4 for the number of triangles.
@@ -173,19 +175,45 @@ fn fault_of_vertex(vertex: Vec3, offset: usize) -> MeshFault {
 
 /// Reads a text STL file, of one or several solids.
 pub(super) fn read_text(bytes: &[u8], left_out: &mut LeftOut<'_>, mut meter: Meter<'_>) -> Result<MeshFile, MeshFault> {
-    let mut reader = TextReader { text: TextCursor::new(bytes), mesh: MeshBuilder::default(), open: None };
-    while reader.text.go_to_statement() {
-        let start = reader.text.at();
-        meter.advance_to(start)?;
-        if let Err(fault) = reader.statement() {
-            left_out.leave_out(fault)?;
-            reader.skip_faulty_line(start);
+    let start = TextCursor::new(bytes).at();
+    let begins_facet = |text: &mut TextCursor<'_>| text.word().eq_ignore_ascii_case(b"facet");
+    let pieces = text::pieces(bytes, start, meter.piece_bytes(), begins_facet);
+    let mut mesh = read_pieces(bytes, &pieces, left_out, &mut meter)?;
+    if mesh.is_none() {
+        // A facet that begins within a loop is a fault, and what follows depends on what is before it.
+        *left_out = left_out.anew();
+        mesh = read_pieces(bytes, std::slice::from_ref(&(start..bytes.len())), left_out, &mut meter)?;
+    }
+    mesh.unwrap_or_default().finish("it has no facets", left_out)
+}
+
+/// Reads the pieces of a text; `None` if a piece but the last ends within a loop.
+fn read_pieces<'a>(
+    bytes: &[u8],
+    pieces: &[Range<usize>],
+    left_out: &mut LeftOut<'a>,
+    meter: &mut Meter<'_>,
+) -> Result<Option<MeshBuilder>, MeshFault> {
+    let mut mesh = MeshBuilder::default();
+    let mut ends_within_loop = false;
+    let parse = |piece: &Range<usize>, left_out: &mut LeftOut<'a>| {
+        let text = TextCursor::of_piece(bytes, piece);
+        let mut reader = TextReader { text, mesh: MeshBuilder::default(), open: None };
+        let read = reader.read(piece.end == bytes.len(), left_out);
+        ((reader.mesh, reader.open.is_some()), read)
+    };
+    let read = parse_in_order(pieces, Range::clone, (left_out, meter), parse, |_, (piece, is_open)| {
+        ends_within_loop = is_open;
+        if is_open {
+            // This fault, which is never shown, ends the reading of the pieces.
+            return Err(MeshFault::of_file(""));
         }
+        mesh.append(piece, None)
+    });
+    if ends_within_loop {
+        return Ok(None);
     }
-    if reader.open.is_some() {
-        return Err(reader.text.expected("the rest of this facet (vertex, endloop, endfacet)"));
-    }
-    reader.mesh.finish("it has no facets", left_out)
+    read.map(|()| Some(mesh))
 }
 
 struct TextReader<'a> {
@@ -196,6 +224,21 @@ struct TextReader<'a> {
 }
 
 impl TextReader<'_> {
+    /// Reads all lines of a piece. `is_last` tells whether it is the last one.
+    fn read(&mut self, is_last: bool, left_out: &mut LeftOut<'_>) -> Result<(), MeshFault> {
+        while self.text.go_to_statement() {
+            let start = self.text.at();
+            if let Err(fault) = self.statement() {
+                left_out.leave_out(fault)?;
+                self.skip_faulty_line(start);
+            }
+        }
+        if is_last && self.open.is_some() {
+            return Err(self.text.expected("the rest of this facet (vertex, endloop, endfacet)"));
+        }
+        Ok(())
+    }
+
     fn statement(&mut self) -> Result<(), MeshFault> {
         let word = self.text.word();
         let at = self.text.at() - word.len();
@@ -245,7 +288,7 @@ impl TextReader<'_> {
             return Err(MeshFault::in_text(offset, message));
         }
         for triangle in polygon::triangulated(&corners, &self.mesh.positions) {
-            self.mesh.push(TriangleIndices::new(triangle.map(|i| corners[i])))?;
+            self.mesh.push(TriangleIndices::new(triangle.map(|i| of_piece(corners[i]))))?;
         }
         Ok(())
     }

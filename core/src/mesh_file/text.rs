@@ -5,10 +5,12 @@
 
 use super::fault::{MeshFault, shown};
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// A position in a text, from which words and numbers are read.
 ///
 /// Works on bytes, not `str`: checking for UTF-8 would take a second pass, and comments in Latin-1 would be refused.
+#[derive(Clone)]
 pub(super) struct TextCursor<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -24,6 +26,11 @@ impl<'a> TextCursor<'a> {
     /// Returns a cursor at byte `offset` of a text.
     pub(super) fn starting_at(bytes: &'a [u8], offset: usize) -> Self {
         Self { bytes, at: offset }
+    }
+
+    /// Returns a cursor over a piece of a text, with the positions of the whole text.
+    pub(super) fn of_piece(bytes: &'a [u8], piece: &Range<usize>) -> Self {
+        Self { bytes: &bytes[..piece.end], at: piece.start }
     }
 
     /// Returns the position in bytes.
@@ -95,9 +102,7 @@ impl<'a> TextCursor<'a> {
     pub(super) fn rest_of_line(&mut self) -> &'a [u8] {
         self.skip_blanks();
         let start = self.at;
-        while !matches!(self.peek(), None | Some(b'\n' | b'\r')) {
-            self.at += 1;
-        }
+        self.at = find(self.bytes, start, [b'\n', b'\r']);
         self.bytes[start..self.at].trim_ascii_end()
     }
 
@@ -246,6 +251,54 @@ fn line_ending_len(bytes: &[u8]) -> usize {
         [b'\n' | b'\r', ..] => 1,
         _ => 0,
     }
+}
+
+/// Returns the position of the first of some bytes from `start` on; the length if there is none.
+#[inline]
+fn find<const N: usize>(bytes: &[u8], start: usize, wanted: [u8; N]) -> usize {
+    const LOWEST: u64 = 0x0101_0101_0101_0101;
+    const HIGHEST: u64 = 0x8080_8080_8080_8080;
+    let (blocks, rest) = bytes[start..].as_chunks::<8>();
+    for (number, &block) in blocks.iter().enumerate() {
+        let block = u64::from_le_bytes(block);
+        // The highest bit of each byte that is 0, and maybe those of bytes behind it.
+        let zeros = |bytes: u64| bytes.wrapping_sub(LOWEST) & !bytes & HIGHEST;
+        let found = wanted.iter().fold(0, |found, &byte| found | zeros(block ^ (LOWEST * u64::from(byte))));
+        if found != 0 {
+            return start + 8 * number + found.trailing_zeros() as usize / 8;
+        }
+    }
+    let at = rest.iter().position(|byte| wanted.contains(byte)).unwrap_or(rest.len());
+    start + 8 * blocks.len() + at
+}
+
+/// Cuts a text from `start` on into pieces of about `size` bytes, each of which is whole lines.
+///
+/// Each but the first begins with a line for which `may_begin` is true, and which does not continue another.
+pub(super) fn pieces(
+    bytes: &[u8],
+    start: usize,
+    size: usize,
+    may_begin: impl Fn(&mut TextCursor<'_>) -> bool,
+) -> Vec<Range<usize>> {
+    let mut pieces = Vec::new();
+    let mut first = start;
+    while first < bytes.len() {
+        let mut end = first.saturating_add(size.max(1)).min(bytes.len());
+        loop {
+            end = find(bytes, end, [b'\n', b'\r']);
+            // The search may begin between the two bytes of a line ending.
+            let line_end = if bytes[..end].ends_with(b"\r") && bytes[end..].starts_with(b"\n") { end - 1 } else { end };
+            let is_continued = bytes[..line_end].ends_with(b"\\");
+            end += line_ending_len(&bytes[end..]);
+            if end == bytes.len() || (!is_continued && may_begin(&mut TextCursor::starting_at(bytes, end))) {
+                break;
+            }
+        }
+        pieces.push(first..end);
+        first = end;
+    }
+    pieces
 }
 
 /// Returns a text as UTF-8, if it begins with the byte order mark of UTF-16; other bytes unchanged.

@@ -32,10 +32,25 @@ impl<'a> Meter<'a> {
         if position < self.next { Ok(()) } else { self.report(position, self.total) }
     }
 
+    /// Returns the size in bytes of the pieces in which the file is parsed.
+    #[cfg(feature = "mesh")]
+    pub(crate) fn piece_bytes(&self) -> usize {
+        self.reporter.piece_bytes()
+    }
+
     /// Returns whether the file may be parsed on all threads of the current rayon pool.
     #[cfg(feature = "mesh")]
     pub(crate) fn is_parallel(&self) -> bool {
         self.reporter.is_parallel()
+    }
+
+    /// Moves the parser's position to byte `position`, and reports it.
+    ///
+    /// # Errors
+    /// [`Cancelled`], if the work is cancelled.
+    #[cfg(feature = "mesh")]
+    pub(crate) fn report_at(&mut self, position: usize) -> Result<(), Cancelled> {
+        self.report(position, self.total)
     }
 
     /// Reports progress without a position, for a parser that reads its file in any order.

@@ -4,12 +4,14 @@ use super::header::{Element, Property, PropertyType, ScalarType};
 use crate::mesh_file::builder::MeshBuilder;
 use crate::mesh_file::fault::MeshFault;
 use crate::mesh_file::left_out::LeftOut;
+use crate::mesh_file::pieces::parse_in_order;
 use crate::mesh_file::text::TextCursor;
 use crate::progress::Meter;
+use std::ops::Range;
 
 /// A reader of a PLY body, which consists of rows of numbers. It is a generic parameter, not a
 /// trait object, so that reading a number is inlined: a body has millions.
-pub(super) trait RowReader {
+pub(super) trait RowReader: Clone + Send + Sync {
     /// Starts reading row number `row` of the element, counted from 0.
     fn begin_row(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault>;
     /// Checks that a row ends after its last number.
@@ -18,6 +20,10 @@ pub(super) trait RowReader {
     fn number(&mut self, kind: ScalarType) -> Result<f32, MeshFault>;
     /// Reads a number, which may be infinite or NaN.
     fn any_number(&mut self, kind: ScalarType) -> Result<f32, MeshFault>;
+    /// Passes the next row without reading it. Returns false if its end is unknown.
+    ///
+    /// `row_size` is the [size](Element::row_size) of a row in a binary file.
+    fn pass_row(&mut self, element: &Element<'_>, row_size: Option<usize>) -> bool;
     /// Skips the row that begins at `start`, a byte offset, after a fault within it.
     fn skip_row(&mut self, element: &Element<'_>, start: usize) -> Result<(), MeshFault>;
     /// Reads an integer of a type that is not a float.
@@ -52,36 +58,105 @@ pub(super) trait RowReader {
     }
 }
 
-/// Calls `read` for each row of an element, and `leave_out` with the index of each faulty row.
-pub(super) fn each_row<R: RowReader>(
-    element: &Element<'_>,
-    rows: &mut R,
-    left_out: &mut LeftOut<'_>,
-    mesh: &mut MeshBuilder,
-    mut read: impl FnMut(&mut R, &mut MeshBuilder) -> Result<(), MeshFault>,
-    leave_out: impl Fn(&mut MeshBuilder, usize),
-) -> Result<(), MeshFault> {
-    for row in 0..element.count {
-        rows.begin_row(element, row)?;
-        let start = rows.position();
-        if let Err(fault) = read(rows, mesh).and_then(|()| rows.end_row(element)) {
-            left_out.leave_out(fault)?;
-            rows.skip_row(element, start)?;
-            leave_out(mesh, row as usize);
-        }
+/// The state of reading the body of a PLY file.
+pub(super) struct Body<'a, 'm, R> {
+    pub(super) rows: R,
+    pub(super) mesh: MeshBuilder,
+    pub(super) left_out: &'m mut LeftOut<'a>,
+    pub(super) meter: Meter<'m>,
+}
+
+/// Rows of an element that follow each other, and the mesh that is made of them.
+pub(super) struct Piece<'p, 'a, R> {
+    pub(super) rows: R,
+    pub(super) mesh: MeshBuilder,
+    pub(super) left_out: &'p mut LeftOut<'a>,
+}
+
+/// Part of an element: the reader at its first row, the numbers of its rows, and their byte
+/// offsets.
+struct Part<R> {
+    rows: R,
+    range: Range<u32>,
+    offsets: Range<usize>,
+}
+
+impl<'a, R: RowReader> Body<'a, '_, R> {
+    /// Reads all rows of an element, in pieces that are joined in their order.
+    ///
+    /// `read` reads a row of a piece, with a value that lasts as long as the piece, and `leave_out` is called with the
+    /// index in its piece of each faulty row.
+    pub(super) fn each_row<S: Default>(
+        &mut self,
+        element: &Element<'_>,
+        read: impl Fn(&mut Piece<'_, 'a, R>, &mut S) -> Result<(), MeshFault> + Sync,
+        leave_out: impl Fn(&mut MeshBuilder, usize) + Sync,
+    ) -> Result<(), MeshFault> {
+        let Self { rows, mesh, left_out, meter } = self;
+        let parts = parts(element, rows, meter.piece_bytes());
+        let parse = |part: &Part<R>, left_out: &mut LeftOut<'a>| {
+            let mut piece = Piece { rows: part.rows.clone(), mesh: MeshBuilder::default(), left_out };
+            let mut scratch = S::default();
+            let read = part.range.clone().try_for_each(|row| {
+                piece.rows.begin_row(element, row)?;
+                let start = piece.rows.position();
+                if let Err(fault) = read(&mut piece, &mut scratch).and_then(|()| piece.rows.end_row(element)) {
+                    piece.left_out.leave_out(fault)?;
+                    piece.rows.skip_row(element, start)?;
+                    leave_out(&mut piece.mesh, (row - part.range.start) as usize);
+                }
+                Ok(())
+            });
+            ((piece.rows, piece.mesh), read)
+        };
+        parse_in_order(
+            &parts,
+            |part| part.offsets.clone(),
+            (&mut **left_out, meter),
+            parse,
+            |_, (after, piece)| {
+                *rows = after;
+                let material = mesh.current_material();
+                mesh.append(piece, material)
+            },
+        )
     }
-    Ok(())
+}
+
+/// Cuts the rows of an element into parts of about `size` bytes.
+///
+/// Where the rows cannot be told apart, the last part has the rest of them.
+fn parts<R: RowReader>(element: &Element<'_>, rows: &R, size: usize) -> Vec<Part<R>> {
+    let mut parts = Vec::new();
+    let (mut next, mut first) = (rows.clone(), 0);
+    let row_size = element.row_size();
+    while first < element.count {
+        let (start, mut row) = (next.clone(), first);
+        while row < element.count && next.position() - start.position() < size {
+            if !next.pass_row(element, row_size) {
+                row = element.count;
+                break;
+            }
+            row += 1;
+        }
+        let offsets = start.position()..next.position();
+        parts.push(Part { rows: start, range: first..row, offsets });
+        first = row;
+    }
+    parts
 }
 
 /// A text body, in which each line is a row.
+#[derive(Clone)]
 pub(super) struct AsciiRows<'a> {
     text: TextCursor<'a>,
-    meter: Meter<'a>,
+    /// Whether a backslash may continue a line, so that a row may be more than a line.
+    may_continue: bool,
 }
 
 impl<'a> AsciiRows<'a> {
-    pub(super) fn new(bytes: &'a [u8], at: usize, meter: Meter<'a>) -> Self {
-        Self { text: TextCursor::starting_at(bytes, at), meter }
+    pub(super) fn new(bytes: &'a [u8], at: usize) -> Self {
+        Self { text: TextCursor::starting_at(bytes, at), may_continue: bytes[at..].contains(&b'\\') }
     }
 }
 
@@ -89,7 +164,7 @@ impl RowReader for AsciiRows<'_> {
     #[inline]
     fn begin_row(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault> {
         if self.text.go_to_statement() {
-            return Ok(self.meter.advance_to(self.text.at())?);
+            return Ok(());
         }
         let Element { name, count, .. } = element;
         Err(MeshFault::in_text(
@@ -115,6 +190,14 @@ impl RowReader for AsciiRows<'_> {
     #[inline]
     fn any_number(&mut self, _kind: ScalarType) -> Result<f32, MeshFault> {
         self.text.any_number()
+    }
+
+    fn pass_row(&mut self, _element: &Element<'_>, _row_size: Option<usize>) -> bool {
+        let has_row = !self.may_continue && self.text.go_to_statement();
+        if has_row {
+            self.text.skip_line();
+        }
+        has_row
     }
 
     fn skip_row(&mut self, _element: &Element<'_>, start: usize) -> Result<(), MeshFault> {
@@ -161,15 +244,15 @@ impl RowReader for AsciiRows<'_> {
 /// A binary body, in which rows follow each other without gaps and each number has the size of its
 /// type.
 // The byte order is a constant, so that it is not tested for each number.
+#[derive(Clone)]
 pub(super) struct BinaryRows<'a, const BIG_ENDIAN: bool> {
     bytes: &'a [u8],
     at: usize,
-    meter: Meter<'a>,
 }
 
 impl<'a, const BIG_ENDIAN: bool> BinaryRows<'a, BIG_ENDIAN> {
-    pub(super) fn new(bytes: &'a [u8], at: usize, meter: Meter<'a>) -> Self {
-        Self { bytes, at, meter }
+    pub(super) fn new(bytes: &'a [u8], at: usize) -> Self {
+        Self { bytes, at }
     }
 
     #[inline]
@@ -206,7 +289,7 @@ impl<const BIG_ENDIAN: bool> RowReader for BinaryRows<'_, BIG_ENDIAN> {
     #[inline]
     fn begin_row(&mut self, element: &Element<'_>, row: u32) -> Result<(), MeshFault> {
         if self.at < self.bytes.len() {
-            return Ok(self.meter.advance_to(self.at)?);
+            return Ok(());
         }
         let Element { name, count, .. } = element;
         Err(MeshFault::at_byte(self.at, format!("the file ends after {row} of {count} rows of the element {name}")))
@@ -232,6 +315,13 @@ impl<const BIG_ENDIAN: bool> RowReader for BinaryRows<'_, BIG_ENDIAN> {
     #[inline]
     fn any_number(&mut self, kind: ScalarType) -> Result<f32, MeshFault> {
         Ok(self.value(kind)? as f32)
+    }
+
+    fn pass_row(&mut self, element: &Element<'_>, row_size: Option<usize>) -> bool {
+        match row_size {
+            Some(size) => self.skip(ScalarType::U8, size).is_ok(),
+            None => self.skip_properties(&element.properties).is_ok(),
+        }
     }
 
     fn skip_row(&mut self, element: &Element<'_>, start: usize) -> Result<(), MeshFault> {

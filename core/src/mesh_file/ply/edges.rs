@@ -1,11 +1,9 @@
 //! The edges of a PLY file, which are drawn as lines.
 
-use super::body::{RowReader, each_row};
+use super::body::{Body, Piece, RowReader};
 use super::faces::checked_index;
 use super::header::{Element, PropertyType, ScalarType};
-use crate::mesh_file::builder::MeshBuilder;
 use crate::mesh_file::fault::MeshFault;
-use crate::mesh_file::left_out::LeftOut;
 use crate::mesh_file::marks::{Mark, MarkEnd};
 
 /// The names of the properties that hold the vertices of an edge.
@@ -32,11 +30,10 @@ pub(super) fn read<R: RowReader>(
     element: &Element<'_>,
     vertex_count: u32,
     has_colors: bool,
-    rows: &mut R,
-    mesh: &mut MeshBuilder,
-    left_out: &mut LeftOut<'_>,
+    body: &mut Body<'_, '_, R>,
 ) -> Result<(), MeshFault> {
-    let read = |rows: &mut R, mesh: &mut MeshBuilder| {
+    let material = body.mesh.current_material();
+    let read = |Piece { rows, mesh, .. }: &mut Piece<'_, '_, R>, (): &mut ()| {
         let mut ends = [0; 2];
         for property in &element.properties {
             let end = ENDS.iter().position(|name| *name == property.name);
@@ -50,8 +47,8 @@ pub(super) fn read<R: RowReader>(
             }
         }
         let end = |position| MarkEnd { position, color: has_colors.then_some(position) };
-        mesh.marks.push(Mark { ends: ends.map(end), material: mesh.current_material() });
+        mesh.marks.push(Mark { ends: ends.map(end), material });
         Ok(())
     };
-    each_row(element, rows, left_out, mesh, read, |_, _| {})
+    body.each_row(element, read, |_, _| {})
 }

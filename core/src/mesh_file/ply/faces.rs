@@ -1,13 +1,14 @@
 //! The faces and triangle strips of a PLY file.
 
-use super::body::{RowReader, each_row};
+use super::body::{Body, Piece, RowReader};
 use super::header::{Element, Property, PropertyType, ScalarType};
 use super::vertices::{color, color_channel, row_capacity, texture_coordinate};
 use crate::color::LinearRgb;
+use crate::mesh_file::attribute::of_piece;
 use crate::mesh_file::builder::{MeshBuilder, TriangleIndices};
 use crate::mesh_file::fault::MeshFault;
-use crate::mesh_file::left_out::LeftOut;
 use crate::mesh_file::polygon;
+use glam::Vec3;
 
 /// A face, which is filled property by property as its row is read.
 #[derive(Default)]
@@ -51,19 +52,18 @@ pub(super) fn read<R: RowReader>(
     element: &Element<'_>,
     list_index: usize,
     vertex_count: u32,
-    rows: &mut R,
-    mesh: &mut MeshBuilder,
-    left_out: &mut LeftOut<'_>,
+    body: &mut Body<'_, '_, R>,
 ) -> Result<(), MeshFault> {
-    let has_texture = !mesh.materials.is_empty();
-    let role = |(i, property)| Role::of(property, i, list_index, has_texture);
+    let material_count = body.mesh.materials.len();
+    let role = |(i, property)| Role::of(property, i, list_index, material_count > 0);
     let roles: Vec<Role> = element.properties.iter().enumerate().map(role).collect();
     let color_type = element.properties.iter().find(|property| color_channel(property) == Some(0)).map(|red| red.shape);
-    mesh.triangles.reserve(row_capacity(element, rows));
-    // One face, reused for all, so that a face costs no allocation.
-    let mut face = Face::default();
-    let attributes = VertexAttributes::of(mesh);
-    let read = |rows: &mut R, mesh: &mut MeshBuilder| {
+    body.mesh.triangles.reserve(row_capacity(element, &body.rows));
+    // Faces add no positions, so that all pieces can use those of the mesh.
+    let positions = std::mem::take(&mut body.mesh.positions);
+    let surroundings =
+        Surroundings { attributes: VertexAttributes::of(&body.mesh), positions: &positions, material_count };
+    let read = |Piece { rows, mesh, .. }: &mut Piece<'_, '_, R>, face: &mut Face| {
         let start = rows.position();
         for (property, role) in element.properties.iter().zip(&roles) {
             match *role {
@@ -83,36 +83,45 @@ pub(super) fn read<R: RowReader>(
             let message = format!("a face has at least 3 corners; this one has {}", face.corners.len());
             return Err(rows.fault(start, message));
         }
-        face.add_to(mesh, attributes, color_type.map(|shape| color(face.color, shape)))
+        face.add_to(mesh, &surroundings, color_type.map(|shape| color(face.color, shape)))
     };
-    each_row(element, rows, left_out, mesh, read, |_, _| {})
+    let read = body.each_row(element, read, |_, _| {});
+    body.mesh.positions = positions;
+    read
+}
+
+/// The parts of the whole mesh that the faces of a piece use.
+struct Surroundings<'m> {
+    attributes: VertexAttributes,
+    positions: &'m [Vec3],
+    material_count: usize,
 }
 
 impl Face {
-    /// Adds the triangles of the face, which has the colour `color`.
+    /// Adds the triangles of the face, which has the colour `color`, to those of its piece.
     fn add_to(
         &self,
         mesh: &mut MeshBuilder,
-        attributes: VertexAttributes,
+        surroundings: &Surroundings<'_>,
         color: Option<LinearRgb>,
     ) -> Result<(), MeshFault> {
-        let corners = &self.corners;
-        if mesh.materials.len() > 1 && self.texture < mesh.materials.len() {
+        let (corners, material_count) = (&self.corners, surroundings.material_count);
+        if material_count > 1 && self.texture < material_count {
             mesh.set_material(Some(self.texture as u32)); // fewer than the file's bytes
         }
-        let own_colors = color.map(|color| index_of_last(mesh.colors.values_mut(), color));
+        let own_colors = color.map(|color| of_piece(index_of_last(mesh.colors.values_mut(), color)));
         let first_coordinate = (self.texture_coordinates.len() == 2 * corners.len()).then(|| {
             let values = mesh.texture_coordinates.values_mut();
             let first = values.len() as u32; // fewer than the file's bytes
             values.extend(self.texture_coordinates.chunks_exact(2).map(|uv| texture_coordinate(uv[0], uv[1])));
             first
         });
-        for triangle in polygon::triangulated(corners, &mesh.positions) {
-            let indices = attributes.indices(triangle.map(|i| corners[i]));
+        for triangle in polygon::triangulated(corners, surroundings.positions) {
+            let indices = surroundings.attributes.indices(triangle.map(|i| corners[i]));
             mesh.push(TriangleIndices {
                 colors: own_colors.map(|color| [color; 3]).or(indices.colors),
                 texture_coordinates: first_coordinate
-                    .map(|first| triangle.map(|i| first + i as u32))
+                    .map(|first| triangle.map(|i| of_piece(first + i as u32)))
                     .or(indices.texture_coordinates),
                 ..indices
             })?;
@@ -165,14 +174,12 @@ pub(super) fn read_strips<R: RowReader>(
     element: &Element<'_>,
     list_index: usize,
     vertex_count: u32,
-    rows: &mut R,
-    mesh: &mut MeshBuilder,
-    left_out: &mut LeftOut<'_>,
+    body: &mut Body<'_, '_, R>,
 ) -> Result<(), MeshFault> {
     let (before, rest) = element.properties.split_at(list_index);
     let PropertyType::List { length, item } = rest[0].shape else { return Ok(()) };
-    let attributes = VertexAttributes::of(mesh);
-    let read = |rows: &mut R, mesh: &mut MeshBuilder| {
+    let attributes = VertexAttributes::of(&body.mesh);
+    let read = |Piece { rows, mesh, .. }: &mut Piece<'_, '_, R>, (): &mut ()| {
         rows.skip_properties(before)?;
         let mut strip = Strip::default();
         for _ in 0..rows.length(length)? {
@@ -189,7 +196,7 @@ pub(super) fn read_strips<R: RowReader>(
         }
         rows.skip_properties(&rest[1..])
     };
-    each_row(element, rows, left_out, mesh, read, |_, _| {})
+    body.each_row(element, read, |_, _| {})
 }
 
 /// The last two corners of a strip, and the number of corners so far.

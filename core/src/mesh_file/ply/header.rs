@@ -30,6 +30,17 @@ pub(super) struct Element<'a> {
     pub(super) at: usize,
 }
 
+impl Element<'_> {
+    /// Returns the size of a row in a binary file; `None` if it differs between rows.
+    pub(super) fn row_size(&self) -> Option<usize> {
+        let size = |property: &Property<'_>| match property.shape {
+            PropertyType::Scalar(kind) => Some(kind.size()),
+            PropertyType::List { .. } => None,
+        };
+        self.properties.iter().map(size).sum()
+    }
+}
+
 pub(super) struct Property<'a> {
     pub(super) name: &'a str,
     pub(super) shape: PropertyType,

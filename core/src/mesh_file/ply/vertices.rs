@@ -1,11 +1,10 @@
 //! The vertices of a PLY file.
 
-use super::body::{RowReader, each_row};
+use super::body::{Body, Piece, RowReader};
 use super::header::{Element, Property, PropertyType, ScalarType};
 use crate::color::{LinearRgb, Srgb8, linear_from_srgb};
 use crate::mesh_file::builder::{MeshBuilder, unit};
 use crate::mesh_file::fault::MeshFault;
-use crate::mesh_file::left_out::LeftOut;
 use glam::{Vec2, Vec3};
 
 /// Indices into an array that a row of the vertex element is read into: the first one for position,
@@ -44,12 +43,7 @@ pub(super) fn color_channel(property: &Property<'_>) -> Option<usize> {
     }
 }
 
-pub(super) fn read<R: RowReader>(
-    element: &Element<'_>,
-    rows: &mut R,
-    mesh: &mut MeshBuilder,
-    left_out: &mut LeftOut<'_>,
-) -> Result<(), MeshFault> {
+pub(super) fn read<R: RowReader>(element: &Element<'_>, body: &mut Body<'_, '_, R>) -> Result<(), MeshFault> {
     let slots: Vec<usize> = element.properties.iter().map(slot_of).collect();
     let has = |group: usize, count: usize| (group..group + count).all(|slot| slots.contains(&slot));
     if !has(POSITION, 3) {
@@ -58,15 +52,14 @@ pub(super) fn read<R: RowReader>(
     let color_type = slots.iter().position(|&slot| slot == COLOR).map(|i| element.properties[i].shape);
     let (has_normals, color_type) = (has(NORMAL, 3), color_type.filter(|_| has(COLOR, 3)));
     // Without a texture, texture coordinates would only take memory.
-    let has_texture = has(TEXTURE, 2) && !mesh.materials.is_empty();
-    let capacity = row_capacity(element, rows);
+    let has_texture = has(TEXTURE, 2) && !body.mesh.materials.is_empty();
+    let (capacity, mesh) = (row_capacity(element, &body.rows), &mut body.mesh);
     // Reserved exactly, because a vector that doubles needs up to three times the memory while it is copied.
     mesh.positions.reserve_exact(capacity);
     mesh.normals.values_mut().reserve_exact(if has_normals { capacity } else { 0 });
     mesh.colors.values_mut().reserve_exact(if color_type.is_some() { capacity } else { 0 });
     mesh.texture_coordinates.values_mut().reserve_exact(if has_texture { capacity } else { 0 });
-    let mut odd_normals = 0;
-    let read = |rows: &mut R, mesh: &mut MeshBuilder| {
+    let read = |Piece { rows, mesh, left_out }: &mut Piece<'_, '_, R>, (): &mut ()| {
         // An array on the stack, so that a vertex costs no allocation.
         let mut values = [0.0; SKIPPED + 1];
         for (property, &slot) in element.properties.iter().zip(&slots) {
@@ -80,7 +73,9 @@ pub(super) fn read<R: RowReader>(
         mesh.positions.push(Vec3::new(x, y, z));
         if has_normals {
             let normal = Vec3::new(nx, ny, nz);
-            odd_normals += usize::from(!normal.is_finite());
+            if !normal.is_finite() {
+                left_out.not_shown("normal (not finite)", 1);
+            }
             mesh.normals.values_mut().push(unit(normal.as_dvec3()));
         }
         if let Some(shape) = color_type {
@@ -98,9 +93,7 @@ pub(super) fn read<R: RowReader>(
         mesh.colors.values_mut().resize(if color_type.is_some() { row + 1 } else { 0 }, LinearRgb::BLACK);
         mesh.texture_coordinates.values_mut().resize(if has_texture { row + 1 } else { 0 }, Vec2::ZERO);
     };
-    each_row(element, rows, left_out, mesh, read, leave_out)?;
-    left_out.not_shown("normal (not finite)", odd_normals);
-    Ok(())
+    body.each_row(element, read, leave_out)
 }
 
 /// Converts texture coordinates: v is measured from the bottom of the image in PLY files, and from
