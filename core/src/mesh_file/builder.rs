@@ -10,6 +10,7 @@ use super::staging::Staging;
 use super::{MeshFile, MeshMaterial, is_flat};
 use crate::color::LinearRgb;
 use crate::memory;
+use crate::threads;
 use glam::{DVec3, Vec2, Vec3};
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
@@ -67,6 +68,36 @@ impl MeshBuilder {
         self.texture_coordinates.push(&self.triangles, positions, texture_coordinates);
         self.colors.push(&self.triangles, positions, colors);
         self.triangles.push(positions);
+        Ok(())
+    }
+
+    /// Adds `count` triangles, on several threads if they are many and `is_parallel` is true.
+    ///
+    /// # Errors
+    /// If the mesh then has more than [`MAX_TRIANGLES`].
+    pub(super) fn push_all(
+        &mut self,
+        count: usize,
+        is_parallel: bool,
+        triangle: impl Fn(usize) -> TriangleIndices + Send + Sync,
+    ) -> Result<(), MeshFault> {
+        /// The number of triangles that a thread adds to a piece.
+        const PIECE: usize = 1 << 15;
+        let pieces = count.div_ceil(PIECE);
+        let of_piece = |piece: usize| piece * PIECE..count.min((piece + 1) * PIECE);
+        if !is_parallel || pieces < 4 {
+            return (0..count).try_for_each(|i| self.push(triangle(i)));
+        }
+        let batch = 4 * threads::count();
+        for first in (0..pieces).step_by(batch) {
+            let made = threads::map(batch.min(pieces - first), |piece| {
+                let mut mesh = Self::default();
+                of_piece(first + piece).try_for_each(|i| mesh.push(triangle(i))).map(|()| mesh)
+            });
+            for piece in made {
+                self.append(piece?, self.current_material())?;
+            }
+        }
         Ok(())
     }
 

@@ -41,6 +41,11 @@ impl<'a> SideFiles<'a> {
         Self { open, bytes_left: MAX_MESH_BYTES, mesh, warnings: HashSet::new(), reporter, left_out }
     }
 
+    /// Returns whether the mesh may be parsed on all threads of the current rayon pool.
+    pub(super) fn is_parallel(&self) -> bool {
+        self.reporter.is_parallel()
+    }
+
     /// Returns a side file's name for messages: relative to the user's current folder, like the
     /// mesh's own.
     pub(super) fn name_of(&self, path: &Path) -> String {

@@ -5,8 +5,10 @@ use super::json::Json;
 #[cfg(feature = "draco")]
 use crate::memory;
 use crate::mesh_file::fault::MeshFault;
+use crate::threads;
 #[cfg(feature = "draco")]
 use draco_core::DataType;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The extension that compresses primitives.
 pub(super) const DRACO: &str = "KHR_draco_mesh_compression";
@@ -22,7 +24,13 @@ pub(super) struct Accessor<'a> {
     /// zero.
     elements: Option<Elements<'a>>,
     sparse: Option<Sparse<'a>>,
+    /// Whether many elements may be read on several threads.
+    is_parallel: bool,
 }
+
+/// The number of elements or triangles from which on they are read on several threads.
+// Fewer are read in a millisecond, for which no threads need to be started.
+pub(super) const MIN_PARALLEL: usize = 1 << 16;
 
 /// Elements in a buffer view: the first at `offset`, each `stride` bytes after the previous one.
 struct Elements<'a> {
@@ -173,7 +181,8 @@ impl<'a> Accessor<'a> {
             Some(sparse) => Some(Sparse::read(sparse, width * component.size(), count, buffers)?),
             None => None,
         };
-        Ok(Self { json, component, width, count, normalized: json.is_true("normalized")?, elements, sparse })
+        let (normalized, is_parallel) = (json.is_true("normalized")?, buffers.is_parallel());
+        Ok(Self { json, component, width, count, normalized, elements, sparse, is_parallel })
     }
 
     /// Returns the accessor of a primitive's attribute `name`, whose elements may be compressed.
@@ -219,11 +228,20 @@ impl<'a> Accessor<'a> {
         if self.width < N {
             return Err(self.fault(format!("expected elements of {N} numbers, found elements of {}", self.width)));
         }
+        // Copied, because the buffers cannot be shared between threads.
+        let (component, normalized) = (self.component, self.normalized);
+        let has_faults = AtomicBool::new(false);
+        let is_faulty = |vector: &[f32; N]| vector.iter().any(|number| !number.is_finite());
         let vector = |bytes: &[u8]| -> [f32; N] {
-            std::array::from_fn(|i| self.component.number(&bytes[i * self.component.size()..], self.normalized))
+            let vector = std::array::from_fn(|i| component.number(&bytes[i * component.size()..], normalized));
+            if is_faulty(&vector) {
+                has_faults.store(true, Ordering::Relaxed);
+            }
+            vector
         };
         let vectors = self.read_elements([0.0; N], vector);
-        match vectors.iter().position(|vector| vector.iter().any(|number| !number.is_finite())) {
+        // A faulty element may have been replaced by one of the sparse part.
+        match has_faults.into_inner().then(|| vectors.iter().position(is_faulty)).flatten() {
             Some(i) => Err(self.fault(format!("element {i} is not finite: {:?}", vectors[i]))),
             None => Ok(vectors),
         }
@@ -234,11 +252,16 @@ impl<'a> Accessor<'a> {
         if self.width != 1 || !self.component.is_index() {
             return Err(self.fault("indices are SCALAR and of component type 5121, 5123 or 5125"));
         }
-        Ok(self.read_elements(0, |bytes| self.component.index(bytes)))
+        let component = self.component;
+        Ok(self.read_elements(0, |bytes| component.index(bytes)))
     }
 
-    fn read_elements<T: Copy>(&self, zero: T, read: impl Fn(&[u8]) -> T) -> Vec<T> {
+    fn read_elements<T: Copy + Send>(&self, zero: T, read: impl Fn(&[u8]) -> T + Send + Sync) -> Vec<T> {
         let mut all = match &self.elements {
+            Some(elements) if self.is_parallel && self.count >= MIN_PARALLEL => {
+                let (bytes, stride) = (&elements.view.bytes()[elements.offset..], elements.stride);
+                threads::map(self.count, |i| read(&bytes[i * stride..]))
+            }
             Some(elements) => (0..self.count).map(|i| read(elements.element_bytes(i))).collect(),
             None => vec![zero; self.count],
         };

@@ -107,6 +107,11 @@ impl<'a, 'b> Buffers<'a, 'b> {
         self.root
     }
 
+    /// Returns whether the file may be parsed on all threads of the current rayon pool.
+    pub(super) fn is_parallel(&self) -> bool {
+        self.side_files.is_parallel()
+    }
+
     pub(super) fn left_out(&mut self) -> &mut LeftOut<'b> {
         &mut self.side_files.left_out
     }

@@ -1,12 +1,13 @@
 //! The pose of a glTF mesh: morph targets, then joints of a skin or the transform of the node.
 
-use super::accessor::Accessor;
+use super::accessor::{Accessor, MIN_PARALLEL};
 use super::animation::Animation;
 use super::buffers::Buffers;
 use super::json::Json;
 use super::tree::nodes_in;
 use crate::mesh_file::builder::unit;
 use crate::mesh_file::fault::MeshFault;
+use crate::threads;
 use glam::{DMat3, DMat4, Vec3};
 
 /// The transforms of all nodes to the scene's coordinates at time 0, for the joints of skins; empty
@@ -115,14 +116,16 @@ impl<'a> Pose<'a> {
         self.add_targets(primitive, name, &mut vectors, buffers)?;
         let matrices = self.matrices(primitive, vectors.len(), buffers)?;
         let matrix = |i: usize| matrices.as_ref().map_or(self.transform, |matrices| matrices[i]);
-        let place = |(i, vector): (usize, [f32; 3])| {
-            let vector = Vec3::from(vector).as_dvec3();
+        let place = |i: usize| {
+            let vector = Vec3::from(vectors[i]).as_dvec3();
             if name == "NORMAL" {
                 return unit(cofactors(DMat3::from_mat4(matrix(i))) * vector);
             }
             matrix(i).transform_point3(vector).as_vec3()
         };
-        Ok(vectors.into_iter().enumerate().map(place).collect())
+        let count = vectors.len();
+        let is_parallel = buffers.is_parallel() && count >= MIN_PARALLEL;
+        Ok(if is_parallel { threads::map(count, place) } else { (0..count).map(place).collect() })
     }
 
     /// Adds the weighted morph targets.

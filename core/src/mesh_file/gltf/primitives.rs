@@ -174,19 +174,22 @@ impl<'r, 'a, 'b> Primitives<'r, 'a, 'b> {
         self.mesh.set_material(material.map(|index| index as u32)); // fewer than the file's bytes
         // glTF: a negative determinant reverses the orientation of the triangles.
         let is_mirrored = DMat3::from_mat4(pose.transform).determinant() < 0.0;
-        for mut corners in triangles(mode, length).ok_or_else(|| primitive.fault(format!("there is no mode {mode}")))? {
+        let count = triangle_count(mode, length).ok_or_else(|| primitive.fault(format!("there is no mode {mode}")))?;
+        let triangle = |i: usize| {
+            let mut corners = triangle_corners(mode, i);
             if is_mirrored {
                 corners.swap(1, 2);
             }
             let vertices = corners.map(|corner| indices.as_ref().map_or(corner as u32, |indices| indices[corner]));
             let at = |range: Range| vertices.map(|vertex| range.start + vertex);
-            self.mesh.push(TriangleIndices {
+            TriangleIndices {
                 positions: at(positions),
                 normals: normals.map(at),
                 texture_coordinates: texture_coordinates.map(at),
                 colors: colors.map(at),
-            })?;
-        }
+            }
+        };
+        self.mesh.push_all(count, self.buffers.is_parallel(), triangle)?;
         self.check_size(primitive)
     }
 
@@ -340,18 +343,22 @@ fn marks(mode: usize, length: usize) -> impl Iterator<Item = [usize; 2]> {
     })
 }
 
-/// Returns the corners of each triangle, as positions in an index list of `length`, for a glTF
-/// primitive mode: 4 is triangles, 5 a strip, 6 a fan. `None` for an unknown mode.
-fn triangles(mode: usize, length: usize) -> Option<impl Iterator<Item = [usize; 3]>> {
-    let count = match mode {
-        4 => length / 3,
-        5 | 6 => length.saturating_sub(2),
-        _ => return None,
-    };
-    Some((0..count).map(move |i| match mode {
+/// Returns the number of triangles of an index list of `length`, for a glTF primitive mode: 4 is
+/// triangles, 5 a strip, 6 a fan. `None` for an unknown mode.
+fn triangle_count(mode: usize, length: usize) -> Option<usize> {
+    match mode {
+        4 => Some(length / 3),
+        5 | 6 => Some(length.saturating_sub(2)),
+        _ => None,
+    }
+}
+
+/// Returns the corners of triangle number `i`, as positions in an index list.
+fn triangle_corners(mode: usize, i: usize) -> [usize; 3] {
+    match mode {
         4 => [3 * i, 3 * i + 1, 3 * i + 2],
         // Every second triangle of a strip has the opposite orientation.
         5 => [i, i + 1 + i % 2, i + 2 - i % 2],
         _ => [i + 1, i + 2, 0],
-    }))
+    }
 }
