@@ -78,6 +78,22 @@ impl<'a> TextCursor<'a> {
         self.at += line_ending_len(&self.bytes[self.at..]);
     }
 
+    /// Moves to the start of the next line that does not continue this one.
+    pub(super) fn skip_continued_line(&mut self) {
+        loop {
+            let from = self.at;
+            self.at = find(self.bytes, from, [b'\n', b'\r', b'\\', b'#']);
+            match self.peek() {
+                Some(b'\\') => self.at += 1 + line_ending_len(&self.bytes[self.at + 1..]),
+                // Within a word it begins no comment.
+                Some(b'#') if !self.bytes[..self.at].last().is_none_or(|byte| b" \t\n\r".contains(byte)) => {
+                    self.at += 1;
+                }
+                _ => return self.skip_line(),
+            }
+        }
+    }
+
     /// Moves past blank lines and comments to the next statement. Returns whether there is one.
     pub(super) fn go_to_statement(&mut self) -> bool {
         while self.is_at_line_end() {
