@@ -910,3 +910,19 @@ mesh = staged()
 mesh.json["nodes"][0]["extensions"] = {"KHR_lights_punctual": 5}
 mesh.json["materials"][0]["extensions"] = {"KHR_materials_pbrSpecularGlossiness": True}
 mesh.write("s6_values.gltf")
+
+# Files as found in other programs' samples: corners without their attributes, extensions of OBJ, whole numbers with a
+# point, and bytes behind the end.
+obj("e1_absent", VERTICES + "vn 0 0 1\nf 1/1/1 2/2/1 3/3/1\nf 1/1 3/3 4/4\nf 1//1 3//7 4//1\n")
+obj("e2_tags", SQUARE + "t crease 2/1/0 1 2 3.0\nvw 1 0 1\nvw 2 0 1\n")
+mesh = Gltf()
+mesh.json["scene"] = 0.0
+mesh.json["scenes"][0]["nodes"] = [0.0]
+mesh.primitive["mode"] = 4.0
+mesh.write("e3_point.gltf")
+mesh.json["scene"] = 0.5
+mesh.write("e3_half.gltf")
+text = Gltf().document(True).encode()
+text += b" " * (-len(text) % 4)
+parts = struct.pack("<I4s", len(text), b"JSON") + text
+write("e4_more.glb", struct.pack("<4sII", b"glTF", 2, 12 + len(parts)) + parts + b"more")

@@ -61,7 +61,8 @@ pub(super) fn read_binary(
     if version != 2 {
         return Err(MeshFault::at_byte(4, format!("this is version {version} of GLB; only version 2 is read")));
     }
-    // A file longer than its header claims is accepted, and the bytes beyond that length are ignored.
+    // A file longer than its header claims is accepted, and the bytes beyond that length are ignored, unless they are
+    // the buffer.
     if length as usize > bytes.len() {
         let found = bytes.len();
         return Err(MeshFault::at_byte(
@@ -86,7 +87,11 @@ pub(super) fn read_binary(
     // A chunk starts at a multiple of four bytes. Some writers include the padding in the chunk length before it,
     // others do not.
     let buffer_at = (HEADER + 8 + json.len()).next_multiple_of(4);
-    let buffer = if buffer_at < bytes.len() { Some(chunk(buffer_at, b"BIN\0", "BIN")?) } else { None };
+    let buffer = match buffer_at {
+        at if at < length as usize => Some(chunk(at, b"BIN\0", "BIN")?),
+        // Some writers state a length without the buffer. Other bytes there are no part of the file.
+        at => chunk(at, b"BIN\0", "BIN").ok(),
+    };
     read(json, HEADER + 8, buffer, side_files, meter)
 }
 

@@ -94,6 +94,11 @@ impl<'a> LeftOut<'a> {
         Ok(())
     }
 
+    /// Returns whether faulty parts are left out, not errors.
+    pub(super) fn takes_notices(&self) -> bool {
+        self.reporter.takes_notices()
+    }
+
     /// Tells of a fault that costs a part of the file other than its shape. `what` says which.
     ///
     /// # Errors

@@ -90,7 +90,7 @@ pub(super) fn is_statement(word: &[u8]) -> bool {
 /// Returns whether a word is a keyword of OBJ whose line is skipped, because it adds no triangles.
 /// A word that is not a keyword of OBJ is a fault: it is the first sign of a file that is not OBJ.
 fn is_skipped(word: &[u8]) -> bool {
-    const WORDS: [&str; 36] = [
+    const WORDS: [&str; 38] = [
         "g",
         "o",
         "s",
@@ -127,6 +127,9 @@ fn is_skipped(word: &[u8]) -> bool {
         "cdc",
         "cdp",
         "res",
+        // Extensions by other programs: OpenSubdiv's tags, and the weights of joints.
+        "t",
+        "vw",
     ];
     WORDS.iter().any(|known| known.as_bytes() == word)
 }

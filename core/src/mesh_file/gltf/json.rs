@@ -137,7 +137,10 @@ impl<'a> Json<'a> {
 
     /// Returns the value as a non-negative integer.
     pub(super) fn index(self) -> Result<usize, MeshFault> {
-        let number = self.value.as_u64().and_then(|number| usize::try_from(number).ok());
+        // In JSON, 1.0 is the same number as 1. Up to 2^53 the conversion is exact.
+        let whole = |number: f64| (number.fract() == 0.0 && (0.0..=9e15).contains(&number)).then_some(number as u64);
+        let number = self.value.as_u64().or_else(|| self.value.as_f64().and_then(whole));
+        let number = number.and_then(|number| usize::try_from(number).ok());
         number.ok_or_else(|| self.mismatch("a whole number that is not negative"))
     }
 

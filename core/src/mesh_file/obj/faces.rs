@@ -36,6 +36,9 @@ pub(super) struct FaceReader<'a> {
     /// The number of positions that need a colour.
     // Vertices after the last coloured one need one as soon as a triangle with colours uses them.
     pub(super) colored: usize,
+    /// Whether a corner may have a texture coordinate or a normal that the file does not have.
+    // All vertices are known only at the end.
+    forgives_absent: bool,
     /// Whether the reading ends in this piece, at a fault about materials.
     pub(super) is_stopped: bool,
 }
@@ -46,6 +49,8 @@ struct FaceCorners {
     positions: Vec<u32>,
     texture_coordinates: Vec<u32>,
     normals: Vec<u32>,
+    /// Whether a texture coordinate or normal is left out because the file does not have it.
+    has_absent: bool,
 }
 
 /// The index of a texture coordinate or normal that a corner lacks.
@@ -75,6 +80,7 @@ impl<'a> FaceReader<'a> {
             corners: FaceCorners::default(),
             early_faces: Vec::new(),
             colored: 0,
+            forgives_absent: false,
             is_stopped: false,
         }
     }
@@ -153,9 +159,12 @@ impl<'a> FaceReader<'a> {
         let what = match word {
             b"curv" | b"curv2" => "curve",
             b"surf" => "curved surface",
+            b"t" => "tag (of a subdivision surface)",
+            b"vw" => "weight (of a skin)",
             _ => return,
         };
-        self.mesh.has_faces = true;
+        // A file of curves and surfaces alone is not one of points.
+        self.mesh.has_faces |= what.starts_with("curve");
         left_out.not_shown(what, 1);
     }
 
@@ -191,7 +200,7 @@ impl<'a> FaceReader<'a> {
     fn face(&mut self, at: usize, left_out: &mut LeftOut<'_>) -> Result<(), MeshFault> {
         self.mesh.has_faces = true;
         let start = self.text.at();
-        match self.face_corners() {
+        match self.face_corners(left_out) {
             Err(Corner::Early(_)) => {
                 self.early_faces.push((start as u32, self.mesh.current_material())); // a file has at most 2^31 bytes
                 Ok(())
@@ -207,10 +216,11 @@ impl<'a> FaceReader<'a> {
         early_faces: Vec<(u32, Option<u32>)>,
         left_out: &mut LeftOut<'_>,
     ) -> Result<(), MeshFault> {
+        self.forgives_absent = left_out.takes_notices();
         for (start, material) in early_faces {
             self.text = self.text.cursor_at(start as usize);
             self.mesh.set_material(material);
-            let read = match self.face_corners() {
+            let read = match self.face_corners(left_out) {
                 Ok(()) => self.add_face(start as usize, left_out),
                 Err(Corner::Early(fault) | Corner::Faulty(fault)) => Err(fault),
             };
@@ -221,19 +231,20 @@ impl<'a> FaceReader<'a> {
         Ok(())
     }
 
-    fn face_corners(&mut self) -> Result<(), Corner> {
+    fn face_corners(&mut self, left_out: &mut LeftOut<'_>) -> Result<(), Corner> {
         self.corners.positions.clear();
         self.corners.texture_coordinates.clear();
         self.corners.normals.clear();
+        self.corners.has_absent = false;
         while !self.text.is_at_line_end() {
-            self.corner()?;
+            self.corner(left_out)?;
         }
         Ok(())
     }
 
     /// Adds the triangles of the face at byte `face_at`, whose corners have been read.
     fn add_face(&mut self, face_at: usize, left_out: &mut LeftOut<'_>) -> Result<(), MeshFault> {
-        let FaceCorners { positions, texture_coordinates, normals } = &mut self.corners;
+        let FaceCorners { positions, texture_coordinates, normals, has_absent } = &mut self.corners;
         let count = positions.len();
         if count < 3 {
             let message = format!("a face has at least 3 corners; this one has {count}");
@@ -246,7 +257,7 @@ impl<'a> FaceReader<'a> {
                 indices.clear();
             }
         }
-        if is_uneven {
+        if is_uneven && !*has_absent {
             let message = "the corners of this face are not written alike: all v, all v/vt, all v//vn or all v/vt/vn";
             left_out.leave_out(MeshFault::in_text(face_at, message))?;
         }
@@ -259,7 +270,7 @@ impl<'a> FaceReader<'a> {
         if has_colors {
             self.colored = self.counts[0];
         }
-        let FaceCorners { positions, texture_coordinates, normals } = &self.corners;
+        let FaceCorners { positions, texture_coordinates, normals, .. } = &self.corners;
         let pick = |indices: &[u32], corners: [usize; 3]| corners.map(|i| indices[i]);
         let pick_any = |indices: &[u32], corners| (!indices.is_empty()).then(|| pick(indices, corners));
         for corners in polygon::triangulated(positions, self.parts.positions) {
@@ -277,16 +288,16 @@ impl<'a> FaceReader<'a> {
     /// Reads a corner of a face: `v`, `v/vt`, `v//vn` or `v/vt/vn`. After a slash the index may be
     /// missing.
     #[inline]
-    fn corner(&mut self) -> Result<(), Corner> {
+    fn corner(&mut self, left_out: &mut LeftOut<'_>) -> Result<(), Corner> {
         let start = self.text.at();
         let vertex = self.index("vertex", self.counts[0])?;
         let (mut texture_coordinate, mut normal) = (NONE, NONE);
         if self.text.skip_byte(b'/') {
             if !self.text.is_at_slash() && !self.text.is_at_word_end() {
-                texture_coordinate = self.index("texture coordinate", self.counts[1])?;
+                texture_coordinate = self.attribute_index("texture coordinate", self.counts[1], left_out)?;
             }
             if self.text.skip_byte(b'/') && !self.text.is_at_word_end() {
-                normal = self.index("normal", self.counts[2])?;
+                normal = self.attribute_index("normal", self.counts[2], left_out)?;
             }
         }
         if !self.text.is_at_word_end() {
@@ -296,6 +307,20 @@ impl<'a> FaceReader<'a> {
         self.corners.texture_coordinates.push(texture_coordinate);
         self.corners.normals.push(normal);
         Ok(())
+    }
+
+    /// Reads the index of a texture coordinate or normal; [`NONE`] if the file has none of this
+    /// number, and a face without it is still drawn.
+    #[inline]
+    fn attribute_index(&mut self, what: &'static str, count: usize, left_out: &mut LeftOut<'_>) -> Result<u32, Corner> {
+        match self.index(what, count) {
+            Err(Corner::Early(_)) if self.forgives_absent => {
+                left_out.not_shown(format!("{what} (the file has fewer)"), 1);
+                self.corners.has_absent = true;
+                Ok(NONE)
+            }
+            index => index,
+        }
     }
 
     #[cold]
