@@ -1,6 +1,7 @@
 //! Eight Taylor models in registers, in f32.
 //!
-//! They are the models of [`model`](super::model) with the rounding of f32.
+//! They are the models of [`model`](super::model) with the rounding of f32 and with smaller errors: terms of orders 3
+//! and 4 do not go into the error as a whole, but are replaced by the closest polynomials of order 2.
 
 use super::model::Model;
 use super::tape::{Index, Tape};
@@ -46,10 +47,11 @@ pub(super) struct Models<N> {
 
 /// A function at c0 of eight models.
 pub(super) struct Taylor<N> {
-    /// The function, its derivative, and half the second derivative, at c0.
-    pub(super) at: [N; 3],
-    /// A bound of the third derivative's magnitude on the range, divided by 6.
-    pub(super) third: N,
+    /// The coefficients of the Taylor polynomial at c0: the function, its derivative, half the second derivative, and
+    /// a sixth of the third one.
+    pub(super) at: [N; 4],
+    /// A bound of the fourth derivative's magnitude on the range, divided by 24.
+    pub(super) fourth: N,
     /// The absolute error of each number in `at`.
     pub(super) off: N,
 }
@@ -150,10 +152,20 @@ impl<N: Lanes> Models<N> {
     pub(super) fn times(self, other: Self) -> Self {
         let ([a0, a1, a2], [b0, b1, b2]) = (self.c, other.c);
         let (of_a, of_b) = (self.coefficient_abs_sum(), other.coefficient_abs_sum());
-        let beyond = (a1 * b2).abs() + (a2 * b1).abs() + (a2 * b2).abs();
+        let orders = [a0 * b0, a0 * b1 + a1 * b0, a0 * b2 + a1 * b1 + a2 * b0, a1 * b2 + a2 * b1, a2 * b2];
         let rounding = N::splat(4.0 * EPSILON) * of_a * of_b;
         let error = self.error * (of_b + other.error) + other.error * of_a + rounding;
-        Self::with_enlarged_error([a0 * b0, a0 * b1 + a1 * b0, a0 * b2 + a1 * b1 + a2 * b0], beyond + error)
+        Self::lowered(orders, error)
+    }
+
+    /// Returns the models of polynomials of order 4, from their coefficients.
+    // By Chebyshev's polynomials: from -1 to 1, u^3 is 3/4 u but for 1/4, and u^4 is u^2 - 1/8 but for 1/8. With the
+    // whole terms in the error, rays took up to a half more pieces.
+    #[inline(always)]
+    fn lowered([c0, c1, c2, c3, c4]: [N; 5], error: N) -> Self {
+        let (quarter, eighth) = (N::splat(0.25), N::splat(0.125) * c4);
+        let beyond = quarter * c3.abs() + eighth.abs();
+        Self::with_enlarged_error([c0 - eighth, c1 + N::splat(0.75) * c3, c2 + c4], beyond + error)
     }
 
     /// Returns the product with a number; the error allows for a number that was rounded to f32.
@@ -180,19 +192,21 @@ impl<N: Lanes> Models<N> {
     }
 
     #[inline(always)]
-    pub(super) fn taylor(self, Taylor { at: [g, g1, g2], third, off }: Taylor<N>) -> Self {
-        let Self { c: [_, c1, c2], error } = self;
-        let (two, sizes) = (N::splat(2.0), c1.abs() + c2.abs());
-        let spread = sizes + error;
-        let beyond = two * (c1 * c2).abs() + c2 * c2 + error * (two * sizes + error);
-        let (linear, square) = (g1 * c2, g2 * c1 * c1);
-        let rounding = N::splat(8.0 * EPSILON) * (g.abs() + (g1 * c1).abs() + linear.abs() + square.abs());
-        let of_values = off * (N::splat(1.0) + sizes + c1 * c1);
+    pub(super) fn taylor(self, Taylor { at: [g, g1, g2, g3], fourth, off }: Taylor<N>) -> Self {
+        let (Self { c: [_, c1, c2], error }, one, two, three) = (self, N::splat(1.0), N::splat(2.0), N::splat(3.0));
+        let (sizes, square) = (c1.abs() + c2.abs(), c1 * c1);
+        let (spread, of_g1, of_g2, of_g3) = (sizes + error, g1.abs(), g2.abs(), g3.abs());
+        let cubic = c1 * (two * g2 * c2 + g3 * square);
+        let orders = [g, g1 * c1, g1 * c2 + g2 * square, cubic, c2 * (g2 * c2 + three * g3 * square)];
+        // The terms of orders 5 and 6.
+        let beyond = of_g3 * c2 * c2 * (three * c1.abs() + c2.abs());
+        let of_error = error * (of_g1 + spread * (two * of_g2 + three * spread * of_g3));
+        let rounding = N::splat(8.0 * EPSILON) * (g.abs() + sizes * (of_g1 + sizes * (of_g2 + sizes * of_g3)));
+        let of_values = off * (one + spread * (one + spread * (one + spread)));
         // A bound that has underflowed to 0 no longer bounds anything.
-        let third = N::select(third.lt(N::splat(f32::MIN_POSITIVE)), N::splat(f32::INFINITY), third);
-        let remainder = third * spread * spread * spread;
-        let error = g1.abs() * error + g2.abs() * beyond + remainder + rounding + of_values;
-        Self::with_enlarged_error([g, g1 * c1, linear + square], error)
+        let fourth = N::select(fourth.lt(N::splat(f32::MIN_POSITIVE)), N::splat(f32::INFINITY), fourth);
+        let squared = spread * spread;
+        Self::lowered(orders, beyond + of_error + fourth * squared * squared + rounding + of_values)
     }
 
     /// Returns the models with the smaller errors.
@@ -206,10 +220,9 @@ impl<N: Lanes> Models<N> {
     pub(super) fn squared(self) -> Self {
         let (Self { c: [c0, c1, c2], error }, size) = (self, self.coefficient_abs_sum());
         let (two, four) = (N::splat(2.0), N::splat(4.0 * EPSILON));
-        let beyond = (two * c1.abs() + c2.abs()) * c2.abs();
         let doubled = two * c0;
-        let squares = [c0 * c0, doubled * c1, doubled * c2 + c1 * c1];
-        let taylor = Self::with_enlarged_error(squares, beyond + error * (two * size + error) + four * size * size);
+        let orders = [c0 * c0, doubled * c1, doubled * c2 + c1 * c1, two * c1 * c2, c2 * c2];
+        let taylor = Self::lowered(orders, error * (two * size + error) + four * size * size);
         // With an error this small, the Taylor model is narrower than the hull. Each lane chooses for itself, so that
         // its bits do not depend on the others; only this shortcut depends on all lanes.
         let is_close = taylor.error.le(size * size * N::splat(0.25));
@@ -267,8 +280,8 @@ impl<N: Lanes> Models<N> {
     /// Returns the sines or cosines from their values and slopes at c0, and the error of both.
     #[inline(always)]
     pub(super) fn sine(self, [value, slope, off]: [N; 3], hull: Self) -> Self {
-        let at = [value, slope, N::splat(-0.5) * value];
-        self.function(Taylor { at, third: N::splat(1.0 / 5.9), off }, hull)
+        let at = [value, slope, N::splat(-0.5) * value, N::splat(-1.0 / 6.0) * slope];
+        self.function(Taylor { at, fourth: N::splat(1.0 / 23.9), off }, hull)
     }
 
     /// Returns e to the quantity by its Taylor polynomial.
@@ -277,8 +290,8 @@ impl<N: Lanes> Models<N> {
     // Not a closure, which would be compiled without the kernel's target features: that took four times as long.
     #[inline(always)]
     pub(super) fn exponential_taylor(self, [value, most, off]: [N; 3]) -> Self {
-        let third = most * N::splat(1.0 / 5.9);
-        self.taylor(Taylor { at: [value, value, N::splat(0.5) * value], third, off })
+        let fourth = most * N::splat(1.0 / 23.9);
+        self.taylor(Taylor { at: [value, value, N::splat(0.5) * value, N::splat(1.0 / 6.0) * value], fourth, off })
     }
 
     #[inline(always)]
@@ -346,6 +359,8 @@ fn exp<N: Lanes>(x: N) -> N {
     for c in [1.398_199_950_7e-3, 8.333_451_907_3e-3, 4.166_579_589_4e-2, 1.666_666_545_9e-1, 0.5] {
         sum = sum * r + number::<N>(c);
     }
-    let [scale] = N::map_lanes([power], |[power]| [f32::from_bits(((power as i32 + 127) as u32) << 23)]);
+    // The sum is a whole number between 2^23 and 2^24: its lowest bits are the biased exponent.
+    let biased = power + N::splat(12_582_912.0 + 127.0);
+    let [scale] = N::map_lanes([biased], |[biased]| [f32::from_bits(biased.to_bits() << 23)]);
     (sum * r * r + r + number::<N>(1.0)) * scale
 }

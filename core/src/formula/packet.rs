@@ -1,7 +1,7 @@
 //! Taylor models of a formula on pieces of rays, of eight rays at once, in f32.
 //!
-//! They are the models of [`model`](super::model) with the rounding of f32. The frequent operations have a vector form
-//! here; all others are computed lane by lane in f64. The bits of a lane do not depend on the other lanes.
+//! The frequent operations have a vector form, in [`models`](super::models) and here; all others are computed lane by
+//! lane in f64. The bits of a lane do not depend on the other lanes.
 
 use super::forecast::SignForecasts;
 use super::model::{Continuity, EPSILON as EPSILON_64, Evaluation, Model};
@@ -216,8 +216,11 @@ impl PacketEvaluation {
         let value = a.c[0].sqrt();
         let slope = N::splat(0.5) / value;
         let root = low.sqrt();
-        let third = N::splat(1.0) / (N::splat(15.9) * low * low * root);
-        let taylor = Taylor { at: [value, slope, N::splat(-0.25) * slope / a.c[0]], third, off: zero };
+        let inverse = N::splat(1.0) / a.c[0];
+        let half_second = N::splat(-0.25) * slope * inverse;
+        let at = [value, slope, half_second, N::splat(-0.5) * half_second * inverse];
+        let fourth = N::splat(1.0) / (N::splat(25.5) * low * low * low * root);
+        let taylor = Taylor { at, fourth, off: zero };
         let of_positive = a.function(taylor, Models::hull(root, high.sqrt()));
         let is_positive = zero.lt(low);
         let of_any = Models::select(is_positive, of_positive, Models::hull(zero, high.max(zero).sqrt()));
@@ -234,8 +237,8 @@ impl PacketEvaluation {
         let (value, nearest) = (one / b.c[0], low.abs().min(high.abs()));
         let squared = nearest * nearest;
         let taylor = Taylor {
-            at: [value, -(value * value), value * value * value],
-            third: N::splat(1.01) / (squared * squared),
+            at: [value, -(value * value), value * value * value, -(value * value) * (value * value)],
+            fourth: N::splat(1.01) / (squared * squared * nearest),
             off: zero,
         };
         let inverse = b.function(taylor, Models::hull(one / high, one / low));

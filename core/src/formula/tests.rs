@@ -12,6 +12,7 @@ use std::array::from_fn;
 #[path = "../../../benches/formulas/pictures.rs"]
 mod pictures;
 
+mod forecasts;
 mod lanes;
 
 /// Random numbers (xorshift) from a seed that a failure prints.
