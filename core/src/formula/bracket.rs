@@ -40,6 +40,17 @@ impl Brackets {
         (self.before[lane], self.after[lane], self.sign[lane]) = (low, high, sign);
     }
 
+    /// Adds the roots of the lanes that are true: their `low`, `high` and `sign`.
+    // Without branches, so that the loop becomes vector instructions.
+    #[inline(always)]
+    pub(super) fn add_each(&mut self, lanes: [bool; LANES], [lows, highs, signs]: [&EightValues; 3]) {
+        for lane in 0..LANES {
+            self.before[lane] = if lanes[lane] { lows[lane] } else { self.before[lane] };
+            self.after[lane] = if lanes[lane] { highs[lane] } else { self.after[lane] };
+            self.sign[lane] = if lanes[lane] { signs[lane] } else { self.sign[lane] };
+        }
+    }
+
     /// Rounds the ends of all brackets to f32, away from the root, and sets the first two t.
     #[inline(always)]
     fn start(&mut self) {

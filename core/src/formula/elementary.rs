@@ -54,71 +54,81 @@ const INVERSE_FACTORIALS: [f64; 12] = [
     0.5,
 ];
 
+/// Computes a polynomial of each number.
+// Loop by loop, because the compiler makes no vector instructions of a loop in another one.
 #[inline(always)]
-fn polynomial(coefficients: &[f64], x: f64) -> f64 {
-    coefficients.iter().fold(0.0, |sum, c| sum * x + c)
+fn polynomial<const COUNT: usize>(coefficients: &[f64], x: &[f64; COUNT]) -> [f64; COUNT] {
+    let mut sums = [0.0; COUNT];
+    for c in coefficients {
+        for (sum, x) in sums.iter_mut().zip(x) {
+            *sum = *sum * x + c;
+        }
+    }
+    sums
 }
 
-/// Returns the sine and the cosine of an angle up to [`LARGEST_ANGLE`].
+/// Returns the sines and the cosines of angles up to [`LARGEST_ANGLE`].
 #[inline(always)]
-fn sin_and_cos_in_range(x: f64) -> [f64; 2] {
-    let shifted = x * FRAC_2_PI + TO_WHOLE;
-    let quarters = shifted - TO_WHOLE;
-    let r = x - quarters * QUARTER[0] - quarters * QUARTER[1] - quarters * QUARTER[2];
-    let squared = r * r;
-    let sin = r + r * squared * polynomial(&SINE, squared);
-    let cos = 1.0 - (0.5 * squared - squared * squared * polynomial(&COSINE, squared));
-    let turn = shifted.to_bits();
-    [turn, turn + 1].map(|turn| {
-        let value = if turn & 1 == 0 { sin } else { cos };
-        f64::from_bits(value.to_bits() ^ ((turn & 2) << 62))
-    })
+fn sin_and_cos_in_range<const COUNT: usize>(x: &[f64; COUNT]) -> [[f64; COUNT]; 2] {
+    let (mut turns, mut rests, mut squares) = ([0; COUNT], [0.0; COUNT], [0.0; COUNT]);
+    for at in 0..COUNT {
+        let shifted = x[at] * FRAC_2_PI + TO_WHOLE;
+        let quarters = shifted - TO_WHOLE;
+        let r = x[at] - quarters * QUARTER[0] - quarters * QUARTER[1] - quarters * QUARTER[2];
+        (turns[at], rests[at], squares[at]) = (shifted.to_bits(), r, r * r);
+    }
+    let (of_sine, of_cosine) = (polynomial(&SINE, &squares), polynomial(&COSINE, &squares));
+    let (mut sines, mut cosines) = ([0.0; COUNT], [0.0; COUNT]);
+    for at in 0..COUNT {
+        let (turn, r, squared) = (turns[at], rests[at], squares[at]);
+        let sin = r + r * squared * of_sine[at];
+        let cos = 1.0 - (0.5 * squared - squared * squared * of_cosine[at]);
+        // By bits, because a branch would keep the loop from becoming vector instructions.
+        let exchanged = (sin.to_bits() ^ cos.to_bits()) & 0_u64.wrapping_sub(turn & 1);
+        sines[at] = f64::from_bits(sin.to_bits() ^ exchanged ^ ((turn & 2) << 62));
+        cosines[at] = f64::from_bits(cos.to_bits() ^ exchanged ^ (((turn + 1) & 2) << 62));
+    }
+    [sines, cosines]
 }
 
-/// Returns e^x, for x up to [`LARGEST_EXPONENT`] in magnitude.
+/// Returns e to the power of numbers up to [`LARGEST_EXPONENT`] in magnitude.
 #[inline(always)]
-fn exp_in_range(x: f64) -> f64 {
-    let shifted = x * LOG2_E + TO_WHOLE;
-    let power = shifted - TO_WHOLE;
-    let r = x - power * LN_2[0] - power * LN_2[1];
-    let value = 1.0 + (r + r * r * polynomial(&INVERSE_FACTORIALS, r));
-    value * f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52)
+fn exp_in_range<const COUNT: usize>(x: &[f64; COUNT]) -> [f64; COUNT] {
+    let (mut scales, mut rests) = ([0.0; COUNT], [0.0; COUNT]);
+    for at in 0..COUNT {
+        let shifted = x[at] * LOG2_E + TO_WHOLE;
+        let power = shifted - TO_WHOLE;
+        rests[at] = x[at] - power * LN_2[0] - power * LN_2[1];
+        scales[at] = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
+    }
+    let (mut powers, sums) = ([0.0; COUNT], polynomial(&INVERSE_FACTORIALS, &rests));
+    for at in 0..COUNT {
+        let r = rests[at];
+        powers[at] = (1.0 + (r + r * r * sums[at])) * scales[at];
+    }
+    powers
 }
 
 pub(super) fn sin(x: f64) -> f64 {
-    if x.abs() <= LARGEST_ANGLE { sin_and_cos_in_range(x)[0] } else { libm::sin(x) }
+    if x.abs() <= LARGEST_ANGLE { sin_and_cos_in_range(&[x])[0][0] } else { libm::sin(x) }
 }
 
 pub(super) fn cos(x: f64) -> f64 {
-    if x.abs() <= LARGEST_ANGLE { sin_and_cos_in_range(x)[1] } else { libm::cos(x) }
+    if x.abs() <= LARGEST_ANGLE { sin_and_cos_in_range(&[x])[1][0] } else { libm::cos(x) }
 }
 
 pub(super) fn exp(x: f64) -> f64 {
-    if x.abs() <= LARGEST_EXPONENT { exp_in_range(x) } else { libm::exp(x) }
+    if x.abs() <= LARGEST_EXPONENT { exp_in_range(&[x])[0] } else { libm::exp(x) }
 }
 
-/// Computes the sine and the cosine of each number.
+/// Returns the sines and the cosines of numbers.
 #[inline(always)]
-pub(super) fn sin_and_cos_of_each<const COUNT: usize>(
-    x: &[f64; COUNT],
-    sines: &mut [f64; COUNT],
-    cosines: &mut [f64; COUNT],
-) {
-    for at in 0..COUNT {
-        [sines[at], cosines[at]] = sin_and_cos_in_range(x[at]);
-    }
-    if !x.iter().all(|x| x.abs() <= LARGEST_ANGLE) {
-        (0..COUNT).for_each(|at| (sines[at], cosines[at]) = (sin(x[at]), cos(x[at])));
-    }
+pub(super) fn sin_and_cos_of_each<const COUNT: usize>(x: &[f64; COUNT]) -> [[f64; COUNT]; 2] {
+    if x.iter().all(|x| x.abs() <= LARGEST_ANGLE) { sin_and_cos_in_range(x) } else { [x.map(sin), x.map(cos)] }
 }
 
-/// Computes e to the power of each number.
+/// Returns e to the power of each number.
 #[inline(always)]
-pub(super) fn exp_of_each<const COUNT: usize>(x: &[f64; COUNT], to: &mut [f64; COUNT]) {
-    for (to, &x) in to.iter_mut().zip(x) {
-        *to = exp_in_range(x);
-    }
-    if !x.iter().all(|x| x.abs() <= LARGEST_EXPONENT) {
-        (0..COUNT).for_each(|at| to[at] = exp(x[at]));
-    }
+pub(super) fn exp_of_each<const COUNT: usize>(x: &[f64; COUNT]) -> [f64; COUNT] {
+    if x.iter().all(|x| x.abs() <= LARGEST_EXPONENT) { exp_in_range(x) } else { x.map(exp) }
 }

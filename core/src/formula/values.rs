@@ -33,17 +33,19 @@ impl PacketValues<'_> {
         }
         let all = &mut scratch[..count];
         for (to, (o, d)) in all.iter_mut().zip(origins.iter().zip(directions)) {
-            for (to, t) in to.chunks_exact_mut(LANES).zip(t) {
-                (0..LANES).for_each(|lane| to[lane] = o[lane] + d[lane] * t[lane]);
+            let mut values = [[0.0; LANES]; 2];
+            for (values, t) in values.iter_mut().zip(t) {
+                for (value, (t, (o, d))) in values.iter_mut().zip(t.iter().zip(o.iter().zip(d))) {
+                    *value = o + d * t;
+                }
             }
+            to.copy_from_slice(values.as_flattened());
         }
         for (at, &operation) in steps.operations.iter().enumerate() {
             let (known, rest) = all.split_at_mut(COORDINATES + at);
             match operation {
                 Operation::Unary(Unary::Sin, a) if steps.operations.get(at + 1) == operation.twin().as_ref() => {
-                    let ((sines, cosines), mut constant) = (rest.split_at_mut(1), [0.0; COUNT]);
-                    let a = values_at(tape, known, a, &mut constant);
-                    sin_and_cos_of_each(a, &mut sines[0], &mut cosines[0]);
+                    [rest[0], rest[1]] = sin_and_cos_of_each(values_at(tape, known, a, &mut [0.0; COUNT]));
                 }
                 // Computed together with the sine.
                 Operation::Unary(Unary::Cos, _) if at > 0 && Some(steps.operations[at - 1]) == operation.twin() => {}
@@ -68,9 +70,10 @@ impl PacketValues<'_> {
                 }
             }
         }
-        let mut constant = [0.0; COUNT];
-        let values = values_at(tape, all, steps.result, &mut constant);
-        [0, LANES].map(|first| std::array::from_fn(|lane| values[first + lane]))
+        // Copied as a whole: number by number, the copy would wait for its own stores.
+        let mut values = [[0.0; LANES]; 2];
+        values.as_flattened_mut().copy_from_slice(values_at(tape, all, steps.result, &mut [0.0; COUNT]));
+        values
     }
 }
 
@@ -105,43 +108,64 @@ fn choose(chosen: [u8; 2], operands: [&PairedValues; 2], values: &mut PairedValu
     }
 }
 
+/// Computes a number from each value.
+// In an array of its own, which overlaps no operand: in place, the loop would not become vector instructions.
+#[inline(always)]
+fn map(a: &PairedValues, function: impl Fn(f64) -> f64) -> PairedValues {
+    let mut results = [0.0; COUNT];
+    for (result, &a) in results.iter_mut().zip(a) {
+        *result = function(a);
+    }
+    results
+}
+
+/// Computes a number from each pair of values.
+#[inline(always)]
+fn map_pairs(a: &PairedValues, b: &PairedValues, function: impl Fn(f64, f64) -> f64) -> PairedValues {
+    let mut results = [0.0; COUNT];
+    for (result, (&a, &b)) in results.iter_mut().zip(a.iter().zip(b)) {
+        *result = function(a, b);
+    }
+    results
+}
+
 /// Computes a function of each value.
 ///
 /// Frequent functions have a loop of their own, which becomes vector instructions.
 #[inline(always)]
 fn unary_of_each(function: Unary, a: &PairedValues, to: &mut PairedValues) {
-    match function {
-        Unary::Negate => (0..COUNT).for_each(|at| to[at] = -a[at]),
-        Unary::Abs => (0..COUNT).for_each(|at| to[at] = a[at].abs()),
-        Unary::Square => (0..COUNT).for_each(|at| to[at] = a[at] * a[at]),
-        Unary::Sqrt | Unary::SqrtOfNonNegative => (0..COUNT).for_each(|at| to[at] = a[at].sqrt()),
-        Unary::Sin => sin_and_cos_of_each(a, to, &mut [0.0; COUNT]),
-        Unary::Cos => sin_and_cos_of_each(a, &mut [0.0; COUNT], to),
-        Unary::Exp => exp_of_each(a, to),
-        _ => (0..COUNT).for_each(|at| to[at] = function.at(a[at])),
+    *to = match function {
+        Unary::Negate => map(a, |a| -a),
+        Unary::Abs => map(a, f64::abs),
+        Unary::Square => map(a, |a| a * a),
+        Unary::Sqrt | Unary::SqrtOfNonNegative => map(a, f64::sqrt),
+        Unary::Sin => sin_and_cos_of_each(a)[0],
+        Unary::Cos => sin_and_cos_of_each(a)[1],
+        Unary::Exp => exp_of_each(a),
+        _ => map(a, |a| function.at(a)),
     }
 }
 
 /// Computes a function of two values in each lane; see [`unary_of_each`].
 #[inline(always)]
 fn binary_of_each(function: Binary, a: &PairedValues, b: &PairedValues, to: &mut PairedValues) {
-    match function {
-        Binary::Add => (0..COUNT).for_each(|at| to[at] = a[at] + b[at]),
-        Binary::Subtract => (0..COUNT).for_each(|at| to[at] = a[at] - b[at]),
-        Binary::Multiply => (0..COUNT).for_each(|at| to[at] = a[at] * b[at]),
-        Binary::Divide => (0..COUNT).for_each(|at| to[at] = a[at] / b[at]),
-        Binary::Min => (0..COUNT).for_each(|at| to[at] = Binary::Min.at(a[at], b[at])),
-        Binary::Max => (0..COUNT).for_each(|at| to[at] = Binary::Max.at(a[at], b[at])),
-        Binary::Atan2 => (0..COUNT).for_each(|at| to[at] = function.at(a[at], b[at])),
+    *to = match function {
+        Binary::Add => map_pairs(a, b, |a, b| a + b),
+        Binary::Subtract => map_pairs(a, b, |a, b| a - b),
+        Binary::Multiply => map_pairs(a, b, |a, b| a * b),
+        Binary::Divide => map_pairs(a, b, |a, b| a / b),
+        Binary::Min => map_pairs(a, b, |a, b| Binary::Min.at(a, b)),
+        Binary::Max => map_pairs(a, b, |a, b| Binary::Max.at(a, b)),
+        Binary::Atan2 => map_pairs(a, b, |a, b| function.at(a, b)),
     }
 }
 
 /// Computes a sum, difference or product of each value and a constant.
 #[inline(always)]
 fn with_constant_of_each(function: Binary, a: &PairedValues, b: f64, to: &mut PairedValues) {
-    match function {
-        Binary::Add => (0..COUNT).for_each(|at| to[at] = a[at] + b),
-        Binary::Subtract => (0..COUNT).for_each(|at| to[at] = a[at] - b),
-        _ => (0..COUNT).for_each(|at| to[at] = a[at] * b),
+    *to = match function {
+        Binary::Add => map(a, |a| a + b),
+        Binary::Subtract => map(a, |a| a - b),
+        _ => map(a, |a| a * b),
     }
 }

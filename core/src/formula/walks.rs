@@ -11,7 +11,7 @@ use super::bracket::{Brackets, Root};
 use super::forecast::{SignForecast, SignForecasts, TARGET, cube_root};
 use super::model::Continuity;
 use super::packet::EightValues;
-use crate::lanes::{F32x8, LANES, set_bits};
+use crate::lanes::{F32x8, LANES};
 use std::array::from_fn;
 
 /// The length of the first piece, relative to the range, of a ray that starts in the bounds.
@@ -207,11 +207,8 @@ impl Walks {
             (starts[lane], ends[lane], done[lane]) = (start, end, is_done);
             arrived[lane] = moves && has_end && (end - start <= BRACKET * self.range[lane]);
         }
-        let arrived = bits(arrived);
-        for lane in set_bits(arrived) {
-            brackets.add(lane, Root { low: starts[lane], high: ends[lane], sign: self.sign[lane] });
-        }
-        [bits(done), arrived]
+        brackets.add_each(arrived, [&starts, &ends, &self.sign]);
+        [bits(done), bits(arrived)]
     }
 }
 
