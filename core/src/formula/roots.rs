@@ -122,7 +122,7 @@ impl SimdKernel for RootSearch<'_> {
     fn run<N: Lanes>(self) -> (u32, F32x8) {
         let Self { tape, searches, scratch: SearchScratch { models, packets, values, shorter } } = self;
         let Searches { lines, ranges, until, lanes } = searches;
-        let mut walks = Walks::new(ranges, until, *lanes);
+        let mut walks = Walks::new(ranges, until, *lanes, tape.is_algebraic());
         if walks.lanes == 0 {
             return (0, F32x8::ZERO);
         }
@@ -151,6 +151,9 @@ impl SimdKernel for RootSearch<'_> {
             }
             found |= ended;
             walks.lanes &= !ended;
+            if walks.lanes == 0 {
+                break;
+            }
         }
         // The root is narrowed down to the first f32 of the other sign, so that it does not depend on the pieces of the
         // walk: without this step up to 61 of 24,000 depths did.

@@ -79,6 +79,7 @@ pub(super) struct Tape {
     result: Index,
     /// The number of minima, maxima and absolute values.
     choices: Index,
+    is_algebraic: bool,
 }
 
 /// The operations to evaluate: all of a tape, or a part of them.
@@ -113,6 +114,12 @@ impl Operation {
     /// Returns whether the sign depends on the signs of the operands only.
     fn combines_signs(self) -> bool {
         matches!(self, Self::Unary(Unary::Negate, _) | Self::Binary(Binary::Min | Binary::Max, ..))
+    }
+
+    /// Returns whether the operation has only arithmetic, roots, comparisons and rounding.
+    fn is_algebraic(self) -> bool {
+        use Unary::{Asin, Atan, Cos, Exp, Ln, Sin, Tan};
+        !matches!(self, Self::Unary(Asin | Atan | Cos | Exp | Ln | Sin | Tan, _) | Self::Binary(Binary::Atan2, ..))
     }
 
     /// Returns the cosine for the sine of an angle, and the sine for the cosine.
@@ -202,6 +209,11 @@ impl Tape {
     /// each search.
     pub(super) fn has_many_choices(&self) -> bool {
         usize::from(self.choices) >= MANY_CHOICES
+    }
+
+    /// Returns whether the formula has only arithmetic, roots, comparisons and rounding.
+    pub(super) fn is_algebraic(&self) -> bool {
+        self.is_algebraic
     }
 
     /// Returns whether the value of the formula depends on the time.
@@ -399,7 +411,8 @@ impl TapeBuilder {
         }
         let result = places[usize::from(result)];
         let (constants, operations) = (constants.into_boxed_slice(), operations.into_boxed_slice());
-        Tape { constants, operations, combining, result, choices }
+        let is_algebraic = operations.iter().all(|operation| operation.is_algebraic());
+        Tape { constants, operations, combining, result, choices, is_algebraic }
     }
 
     /// Returns for each term up to `result` what of it the sign of the result depends on.
