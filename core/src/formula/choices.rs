@@ -6,6 +6,7 @@
 //! Each lane has its own choices. An operation that some lane needs is kept for all, but counts only in the lanes that
 //! need it: so the bits of a lane do not depend on the other lanes.
 
+use super::extremes::Extreme;
 use super::models::{Models, StoredModels};
 use super::packet::PacketModels;
 use super::tape::{Binary, COORDINATES, Index, Operation, Steps, Tape, Unary};
@@ -26,7 +27,7 @@ pub(super) struct ShorterTape {
     chosen: Vec<[u8; 2]>,
     /// For each operation the lanes that need its value.
     needed_by: Vec<u8>,
-    result: Index,
+    result: Extreme,
     /// The signs of the operations that combine signs.
     signs: Vec<LaneSigns>,
     /// For each index of the tape, the lanes that need its value.
@@ -41,7 +42,8 @@ impl ShorterTape {
     /// Returns the steps that are left.
     pub(super) fn steps(&self) -> Steps<'_> {
         let Self { operations, chosen, needed_by, result, .. } = self;
-        Steps { operations, chosen, needed: needed_by, result: *result }
+        let extremes = std::slice::from_ref(result);
+        Steps { operations, chosen, needed: needed_by, result: result.index, extremes, is_least: false }
     }
 
     /// Shortens a tape to what is needed on the pieces of `packet`; returns the lanes in which the
@@ -189,7 +191,7 @@ impl ShorterTape {
                 (COORDINATES + self.operations.len() - 1) as Index
             };
         }
-        self.result = place(&self.places, tape.result());
+        self.result = Extreme { index: place(&self.places, tape.result()), is_negated: false };
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::model::{Continuity, Model};
 use super::models::{EPSILON, Models};
-use crate::lanes::{F32x8, LaneMask, Lanes};
+use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes};
 
 /// The error of a model, relative to the value of f, for which the lengths of pieces are chosen.
 // Of five values from .12 to .6, this one took the fewest pieces in the pictures of `benches/formulas`.
@@ -46,6 +46,65 @@ pub(super) struct SignForecast {
 }
 
 impl SignForecasts {
+    /// The forecasts of a formula of which nothing is known.
+    pub(super) const UNKNOWN: Self = Self {
+        may_jump: ALL,
+        is_undefined: 0,
+        shares: [F32x8::ZERO, F32x8([2.0; LANES]), F32x8([f32::INFINITY; LANES])],
+        is_certain: 0,
+        has_no_zero: 0,
+        is_negative: 0,
+        has_small_error: 0,
+    };
+
+    /// Returns the forecasts of the formula with the other sign.
+    #[inline(always)]
+    pub(super) fn negated(self) -> Self {
+        Self { is_negative: !self.is_negative, ..self }
+    }
+
+    /// Returns `near`, `far` and `blur`, with `near` at the end of a piece without a change of the sign.
+    #[inline(always)]
+    fn complete_shares<N: Lanes>(&self) -> [N; 3] {
+        let ([near, far, blur], same) = (self.shares.each_ref().map(N::load), N::mask_from_bits(self.has_no_zero));
+        [N::select(same, N::splat(1.0), near), N::select(same, N::splat(2.0), far), blur]
+    }
+
+    /// Returns the forecasts of the greater one of two formulas of the same rays and pieces.
+    #[inline(always)]
+    pub(super) fn of_greatest<N: Lanes>(&self, other: &Self) -> Self {
+        let [near_a, far_a, blur_a] = self.complete_shares::<N>();
+        let [near_b, far_b, blur_b] = other.complete_shares::<N>();
+        let [(positive_a, negative_a), (positive_b, negative_b)] =
+            [self, other].map(|of| (of.is_certain & !of.is_negative, of.is_certain & of.is_negative));
+        // The greater one is positive where either is, and negative where both are.
+        let (positive, negative) = (positive_a | positive_b, negative_a & negative_b);
+        let (is_a, is_b) = (N::mask_from_bits(positive_a), N::mask_from_bits(positive_b));
+        let (both_negative, is_positive) = (N::mask_from_bits(negative), N::mask_from_bits(positive));
+        let (zero, two, infinity) = (N::splat(0.0), N::splat(2.0), N::splat(f32::INFINITY));
+        let last_positive = N::select(is_a, near_a, zero).max(N::select(is_b, near_b, zero));
+        let near = N::select(both_negative, near_a.min(near_b), last_positive);
+        // A fall is only certain where one is positive and the other is still negative behind that.
+        let falls_a = N::mask_from_bits(positive_a & negative_b) & far_a.lt(near_b);
+        let falls_b = N::mask_from_bits(positive_b & negative_a) & far_b.lt(near_a);
+        let fall = N::select(falls_a, far_a, N::select(falls_b, far_b, two));
+        let far = N::select(both_negative, far_a.min(far_b), fall);
+        let of_positive = N::select(is_a, blur_a, infinity).min(N::select(is_b, blur_b, infinity));
+        let blur = N::select(is_positive, of_positive, blur_a.max(blur_b));
+        let is_small = (self.has_small_error | self.has_no_zero) & (other.has_small_error | other.has_no_zero);
+        Self {
+            may_jump: self.may_jump | other.may_jump,
+            is_undefined: self.is_undefined | other.is_undefined,
+            shares: [near.store(), far.store(), blur.store()],
+            is_certain: positive | negative,
+            has_no_zero: positive_a & self.has_no_zero
+                | positive_b & other.has_no_zero
+                | negative & self.has_no_zero & other.has_no_zero,
+            is_negative: negative,
+            has_small_error: positive_a & self.has_small_error | positive_b & other.has_small_error | is_small,
+        }
+    }
+
     pub(super) fn continuity(&self, lane: usize) -> Continuity {
         Continuity { may_jump: self.may_jump >> lane & 1 == 1, is_undefined: self.is_undefined >> lane & 1 == 1 }
     }

@@ -3,6 +3,7 @@
 //! The frequent operations have a vector form, in [`models`](super::models) and here; all others are computed lane by
 //! lane in f64. The bits of a lane do not depend on the other lanes.
 
+use super::extremes::Extreme;
 use super::forecast::SignForecasts;
 use super::model::{Continuity, EPSILON as EPSILON_64, Evaluation, Model};
 use super::models::{EPSILON, Models, StoredModels, Taylor, enlarged, model_of_lane};
@@ -31,9 +32,24 @@ impl SimdKernel for PacketModels<'_> {
 
     #[inline(always)]
     fn run<N: Lanes>(self) -> Self::Output {
-        let (tape, steps, lanes) = (self.tape, self.steps, self.lanes);
-        let (models, [may_jump, is_undefined]) = self.models::<N>();
-        Models::<N>::of_index(tape, models, steps.result).sign_forecasts(lanes, may_jump, is_undefined)
+        let Self { tape, mut steps, lanes, .. } = self;
+        if steps.extremes.len() > 1 {
+            steps.operations = &steps.operations[..tape.combining()];
+        }
+        let (models, [may_jump, is_undefined]) = PacketModels { steps, ..self }.models::<N>();
+        let mut greatest: Option<SignForecasts> = None;
+        for &Extreme { index, is_negated } in steps.extremes {
+            let models = Models::<N>::of_index(tape, models, index);
+            // The least value is the greatest negated one, negated.
+            let models = if is_negated == steps.is_least { models } else { models.negate() };
+            let forecasts = models.sign_forecasts(lanes, may_jump, is_undefined);
+            greatest = Some(match greatest {
+                None => forecasts,
+                Some(others) => others.of_greatest::<N>(&forecasts),
+            });
+        }
+        let greatest = greatest.unwrap_or(SignForecasts::UNKNOWN);
+        if steps.is_least { greatest.negated() } else { greatest }
     }
 }
 

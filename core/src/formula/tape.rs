@@ -1,5 +1,6 @@
 //! The tape: the operations of a formula, each after its operands, in which equal terms are shared.
 
+use super::extremes::{Extreme, extremes_of};
 use crate::lanes::ALL;
 use std::collections::HashMap;
 
@@ -79,6 +80,10 @@ pub(super) struct Tape {
     result: Index,
     /// The number of minima, maxima and absolute values.
     choices: Index,
+    /// The values of which the result is the least or the greatest; only the result if it is neither.
+    extremes: Box<[Extreme]>,
+    /// Whether the result is the least of `extremes`.
+    is_least: bool,
     is_algebraic: bool,
 }
 
@@ -95,6 +100,10 @@ pub(super) struct Steps<'t> {
     pub(super) needed: &'t [u8],
     /// The index of the result.
     pub(super) result: Index,
+    /// The values of which the result is the least or the greatest; only the result if it is neither.
+    pub(super) extremes: &'t [Extreme],
+    /// Whether the result is the least of `extremes`.
+    pub(super) is_least: bool,
 }
 
 /// The part of a term on which the sign of the result depends.
@@ -176,7 +185,8 @@ impl Steps<'_> {
 impl Tape {
     /// Returns all operations.
     pub(super) fn steps(&self) -> Steps<'_> {
-        Steps { operations: &self.operations, chosen: &[], needed: &[], result: self.result }
+        let Self { operations, extremes, result, is_least, .. } = self;
+        Steps { operations, chosen: &[], needed: &[], result: *result, extremes, is_least: *is_least }
     }
 
     pub(super) fn operations(&self) -> &[Operation] {
@@ -412,7 +422,13 @@ impl TapeBuilder {
         let result = places[usize::from(result)];
         let (constants, operations) = (constants.into_boxed_slice(), operations.into_boxed_slice());
         let is_algebraic = operations.iter().all(|operation| operation.is_algebraic());
-        Tape { constants, operations, combining, result, choices, is_algebraic }
+        let extremes = Box::new([Extreme { index: result, is_negated: false }]);
+        let mut tape =
+            Tape { constants, operations, combining, result, choices, extremes, is_least: false, is_algebraic };
+        if let Some((extremes, is_least)) = extremes_of(&tape) {
+            (tape.extremes, tape.is_least) = (extremes, is_least);
+        }
+        tape
     }
 
     /// Returns for each term up to `result` what of it the sign of the result depends on.

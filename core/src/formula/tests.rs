@@ -85,6 +85,15 @@ impl Random {
     }
 }
 
+impl Random {
+    /// Returns a formula that is the least or the greatest of a few values.
+    fn formula_of_extremes(&mut self) -> String {
+        let function = ["min", "max"][self.below(2) as usize];
+        let [a, b] = [(); 2].map(|()| self.formula(2));
+        if self.below(2) == 0 { format!("{function}({a}, {b})") } else { format!("{function}({a}, {b}, x - 0.5)") }
+    }
+}
+
 fn formula(text: &str) -> Formula {
     Formula::parse(text, &[]).unwrap_or_else(|fault| panic!("{text}: {fault:?}"))
 }
@@ -508,7 +517,7 @@ fn models_of_eight_pieces_enclose_all_values() {
     let (mut random, mut checked) = (Random(SEED), 0);
     let (mut scratch, mut values) = (Vec::new(), Vec::new());
     while checked < samples {
-        let text = random.formula(3);
+        let text = if random.below(3) > 0 { random.formula(3) } else { random.formula_of_extremes() };
         let Ok(formula) = Formula::parse(&text, &[]) else { continue };
         let lines: [[DVec3; 2]; LANES] = from_fn(|_| [random.point(2.0), random.point(1.0)]);
         let pieces = from_fn(|_| {
@@ -566,10 +575,10 @@ impl SimdKernel for WithModels<'_> {
 
     #[inline(always)]
     fn run<N: Lanes>(self) -> Self::Output {
-        let PacketModels { tape, steps, lanes, .. } = self.0;
-        let (models, [may_jump, is_undefined]) = self.0.models::<N>();
-        let result = Models::<N>::of_index(tape, models, steps.result);
-        (result.store(), result.sign_forecasts(lanes, may_jump, is_undefined))
+        let PacketModels { tape, steps, lines, pieces, lanes, scratch } = self.0;
+        let (models, _) = PacketModels { tape, steps, lines, pieces, lanes, scratch: &mut *scratch }.models::<N>();
+        let model = Models::<N>::of_index(tape, models, steps.result).store();
+        (model, PacketModels { tape, steps, lines, pieces, lanes, scratch }.run::<N>())
     }
 }
 
