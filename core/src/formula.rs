@@ -1,11 +1,12 @@
 //! Formulas f(x, y, z): text -> tape -> values, gradients, and the first root along a ray.
 //!
-//! `parse` reads the text into a `tape`, a list of operations in which equal terms are shared. `point` evaluates the
+//! `parse` reads the text into a `tape`, a list of `operation`s in which equal terms are shared. `point` evaluates the
 //! tape in f64; `model` encloses its values on a piece of a ray by a quadratic polynomial and a bound of its error.
-//! `models` holds eight of them in f32, `packet` computes those of a tape, `choices` leaves out what no ray of the eight
-//! needs, and `extremes` are the values of which a formula is the least or the greatest. `forecast` tells from an
-//! enclosure where the sign may change; with it, `walks` go along eight rays at once, so that no sign change is stepped
-//! over. `bracket` narrows sign changes down to the `roots`, by `values` that are those of `point` for eight rays.
+//! `models` holds eight of them in f32, `packet` computes those of a tape, `choices` leaves out what no ray of the
+//! eight needs, and `extremes` are the values of which a formula is the least or the greatest. `forecast` tells from
+//! an enclosure where the sign may change; with it, `walks` go along eight rays at once, so that no sign change is
+//! stepped over. `bracket` narrows sign changes down to the `roots`, by `values` that are those of `point` for eight
+//! rays.
 
 mod bracket;
 mod check;
@@ -15,6 +16,7 @@ mod extremes;
 mod forecast;
 mod model;
 mod models;
+mod operation;
 mod packet;
 mod parse;
 mod point;

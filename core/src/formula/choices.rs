@@ -8,8 +8,9 @@
 
 use super::extremes::Extreme;
 use super::models::{Models, StoredModels};
+use super::operation::{Binary, COORDINATES, Index, Operation, Unary};
 use super::packet::PacketModels;
-use super::tape::{Binary, COORDINATES, Index, Operation, Steps, Tape, Unary};
+use super::tape::{Steps, Tape};
 use crate::lanes::{LaneMask, Lanes};
 
 /// The lanes in which a value has a certain sign, or is certainly defined.

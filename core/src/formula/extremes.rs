@@ -3,7 +3,7 @@
 //! Their sign is that of the value that decides it, while a model of the whole formula has a large error where the
 //! values are far apart.
 
-use super::tape::{Binary, COORDINATES, Index, Operation, Tape};
+use super::operation::{Binary, COORDINATES, Index, Operation};
 
 /// A value of which a formula is the least or the greatest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,18 +12,15 @@ pub(super) struct Extreme {
     pub(super) is_negated: bool,
 }
 
-/// Returns the values of which a formula is the least or the greatest, and whether it is the least.
+/// Returns the values of which a result is the least or the greatest, and whether it is the least.
 ///
-/// `None` if the formula is neither, or has so many choices that its tape is shortened instead.
-pub(super) fn extremes_of(tape: &Tape) -> Option<(Box<[Extreme]>, bool)> {
-    if tape.has_many_choices() {
-        return None;
-    }
-    let combining = &tape.operations()[tape.combining()..];
+/// Of the operations from `first` on, only the sign matters. `None` if the result is neither.
+pub(super) fn extremes_of(operations: &[Operation], first: usize, result: Index) -> Option<(Box<[Extreme]>, bool)> {
+    let combining = &operations[first..];
     let (mut extremes, mut is_least) = (Vec::new(), None);
-    let mut pending = vec![Extreme { index: tape.result(), is_negated: false }];
+    let mut pending = vec![Extreme { index: result, is_negated: false }];
     while let Some(extreme @ Extreme { index, is_negated }) = pending.pop() {
-        let at = usize::from(index).checked_sub(COORDINATES + tape.combining());
+        let at = usize::from(index).checked_sub(COORDINATES + first);
         match at.and_then(|at| combining.get(at)) {
             None => extremes.push(extreme),
             Some(&Operation::Unary(_, index)) => pending.push(Extreme { index, is_negated: !is_negated }),

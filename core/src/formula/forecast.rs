@@ -63,7 +63,9 @@ impl SignForecasts {
         Self { is_negative: !self.is_negative, ..self }
     }
 
-    /// Returns `near`, `far` and `blur`, with `near` at the end of a piece without a change of the sign.
+    /// Returns `near`, `far` and `blur`.
+    ///
+    /// Without a change of the sign, `near` is at the end of the piece, and `far` behind it.
     #[inline(always)]
     fn complete_shares<N: Lanes>(&self) -> [N; 3] {
         let ([near, far, blur], same) = (self.shares.each_ref().map(N::load), N::mask_from_bits(self.has_no_zero));

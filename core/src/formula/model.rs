@@ -6,7 +6,8 @@
 //! be written so that NaN decides nothing.
 
 use super::elementary;
-use super::tape::{Binary, Index, Operation, Steps, Tape, Unary};
+use super::operation::{Binary, Index, Operation, Unary};
+use super::tape::{Steps, Tape};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Twice the largest relative rounding error of an f64 operation.

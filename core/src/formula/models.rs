@@ -4,7 +4,8 @@
 //! and 4 do not go into the error as a whole, but are replaced by the closest polynomials of order 2.
 
 use super::model::Model;
-use super::tape::{Index, Tape};
+use super::operation::Index;
+use super::tape::Tape;
 use crate::lanes::{F32x8, Lanes, Mask};
 use std::f64::consts::FRAC_2_PI;
 
@@ -47,8 +48,9 @@ pub(super) struct Models<N> {
 
 /// A function at c0 of eight models.
 pub(super) struct Taylor<N> {
-    /// The coefficients of the Taylor polynomial at c0: the function, its derivative, half the second derivative, and
-    /// a sixth of the third one.
+    /// The coefficients of the Taylor polynomial at c0.
+    ///
+    /// They are the function, its derivative, half the second derivative, and a sixth of the third one.
     pub(super) at: [N; 4],
     /// A bound of the fourth derivative's magnitude on the range, divided by 24.
     pub(super) fourth: N,

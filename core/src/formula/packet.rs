@@ -7,7 +7,8 @@ use super::extremes::Extreme;
 use super::forecast::SignForecasts;
 use super::model::{Continuity, EPSILON as EPSILON_64, Evaluation, Model};
 use super::models::{EPSILON, Models, StoredModels, Taylor, enlarged, model_of_lane};
-use super::tape::{Binary, COORDINATES, Operation, Steps, Tape, Unary};
+use super::operation::{Binary, COORDINATES, Operation, Unary};
+use super::tape::{Steps, Tape};
 use crate::lanes::{F32x8, LANES, LaneMask, Lanes, SimdKernel, set_bits};
 
 /// The origins of eight lines, then their directions, axis by axis.

@@ -12,7 +12,8 @@
 mod functions;
 mod tokens;
 
-use super::tape::{Binary, Index, MAX_OPERATIONS, TIME, Tape, TapeBuilder, TooLong, Unary};
+use super::operation::{Binary, Index, Unary};
+use super::tape::{MAX_OPERATIONS, TIME, Tape, TapeBuilder, TooLong};
 use crate::text::{closest, visible};
 use functions::{CONSTANTS, FUNCTIONS, VARIABLES};
 use std::collections::HashMap;

@@ -2,7 +2,8 @@
 
 use super::Formula;
 use super::elementary;
-use super::tape::{Binary, COORDINATES, Index, Operation, Tape, Unary};
+use super::operation::{Binary, COORDINATES, Index, Operation, Unary};
+use super::tape::Tape;
 use glam::DVec3;
 
 impl Unary {

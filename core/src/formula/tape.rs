@@ -1,6 +1,7 @@
 //! The tape: the operations of a formula, each after its operands, in which equal terms are shared.
 
 use super::extremes::{Extreme, extremes_of};
+use super::operation::{Binary, COORDINATES, FIRST_CONSTANT, Index, Operation, Unary};
 use crate::lanes::ALL;
 use std::collections::HashMap;
 
@@ -8,67 +9,13 @@ use std::collections::HashMap;
 // Models and values take 256 bytes for each operation: at most a megabyte in each thread.
 pub(super) const MAX_OPERATIONS: usize = 4096;
 
-/// The number of slots for x, y, z and the time, in front of those of the operations.
-pub(super) const COORDINATES: usize = 4;
-
 /// The slot of the time; tapes with it are evaluated only after [`Tape::at_time`].
 pub(super) const TIME: u8 = 3;
-
-/// The index of a value: first the coordinates, then the operations; constants start at
-/// [`FIRST_CONSTANT`].
-///
-/// While a tape is built, it is the index of a term.
-pub(super) type Index = u16;
-
-/// The index of the first constant, which is above that of each operation.
-const FIRST_CONSTANT: Index = 1 << 13;
 
 /// The number of [choices](Tape::has_many_choices) from which on it is worthwhile to shorten the
 /// tape for each search.
 // Shortening takes about as long as one step of the search.
 const MANY_CHOICES: usize = 4;
-
-/// An operation of a tape.
-// 6 bytes: with its constants, the longest formula that moves takes 58 KB.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Operation {
-    Unary(Unary, Index),
-    Binary(Binary, Index, Index),
-}
-
-/// A function of one operand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Unary {
-    Negate,
-    Abs,
-    Square,
-    Sqrt,
-    /// The square root of an operand that is known to be at least 0.
-    SqrtOfNonNegative,
-    Cbrt,
-    Exp,
-    Ln,
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Atan,
-    Floor,
-    /// 0 for negative operands, else 1.
-    Step,
-}
-
-/// A function of two operands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Binary {
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Min,
-    Max,
-    Atan2,
-}
 
 /// The operations of a formula in the order of evaluation.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +27,7 @@ pub(super) struct Tape {
     result: Index,
     /// The number of minima, maxima and absolute values.
     choices: Index,
-    /// The values of which the result is the least or the greatest; only the result if it is neither.
+    /// The values of which the result is the least or the greatest; else only the result.
     extremes: Box<[Extreme]>,
     /// Whether the result is the least of `extremes`.
     is_least: bool,
@@ -100,7 +47,7 @@ pub(super) struct Steps<'t> {
     pub(super) needed: &'t [u8],
     /// The index of the result.
     pub(super) result: Index,
-    /// The values of which the result is the least or the greatest; only the result if it is neither.
+    /// The values of which the result is the least or the greatest; else only the result.
     pub(super) extremes: &'t [Extreme],
     /// Whether the result is the least of `extremes`.
     pub(super) is_least: bool,
@@ -112,59 +59,6 @@ enum Need {
     Nothing,
     Sign,
     Value,
-}
-
-impl Operation {
-    /// Returns whether the value is often that of one operand, or its negative.
-    fn is_choice(self) -> bool {
-        matches!(self, Self::Unary(Unary::Abs, _) | Self::Binary(Binary::Min | Binary::Max, ..))
-    }
-
-    /// Returns whether the sign depends on the signs of the operands only.
-    fn combines_signs(self) -> bool {
-        matches!(self, Self::Unary(Unary::Negate, _) | Self::Binary(Binary::Min | Binary::Max, ..))
-    }
-
-    /// Returns whether the operation has only arithmetic, roots, comparisons and rounding.
-    fn is_algebraic(self) -> bool {
-        use Unary::{Asin, Atan, Cos, Exp, Ln, Sin, Tan};
-        !matches!(self, Self::Unary(Asin | Atan | Cos | Exp | Ln | Sin | Tan, _) | Self::Binary(Binary::Atan2, ..))
-    }
-
-    /// Returns the cosine for the sine of an angle, and the sine for the cosine.
-    pub(super) fn twin(self) -> Option<Self> {
-        match self {
-            Self::Unary(Unary::Sin, a) => Some(Self::Unary(Unary::Cos, a)),
-            Self::Unary(Unary::Cos, a) => Some(Self::Unary(Unary::Sin, a)),
-            _ => None,
-        }
-    }
-
-    /// Returns the operation with its constant last, if it is a sum or product with one.
-    fn with_constant_last(self) -> Self {
-        match self {
-            Self::Binary(function @ (Binary::Add | Binary::Multiply), a, b) if a >= FIRST_CONSTANT => {
-                Self::Binary(function, b, a)
-            }
-            _ => self,
-        }
-    }
-
-    /// Returns the operands; a unary operation's operand twice.
-    pub(super) fn operands(self) -> [Index; 2] {
-        match self {
-            Self::Unary(_, a) => [a, a],
-            Self::Binary(_, a, b) => [a, b],
-        }
-    }
-
-    /// Returns the operation with other operands.
-    pub(super) fn with_operands(self, mut place: impl FnMut(Index) -> Index) -> Self {
-        match self {
-            Self::Unary(function, a) => Self::Unary(function, place(a)),
-            Self::Binary(function, a, b) => Self::Binary(function, place(a), place(b)),
-        }
-    }
 }
 
 impl Steps<'_> {
@@ -422,13 +316,11 @@ impl TapeBuilder {
         let result = places[usize::from(result)];
         let (constants, operations) = (constants.into_boxed_slice(), operations.into_boxed_slice());
         let is_algebraic = operations.iter().all(|operation| operation.is_algebraic());
-        let extremes = Box::new([Extreme { index: result, is_negated: false }]);
-        let mut tape =
-            Tape { constants, operations, combining, result, choices, extremes, is_least: false, is_algebraic };
-        if let Some((extremes, is_least)) = extremes_of(&tape) {
-            (tape.extremes, tape.is_least) = (extremes, is_least);
-        }
-        tape
+        let is_shortened = usize::from(choices) >= MANY_CHOICES;
+        let found = if is_shortened { None } else { extremes_of(&operations, usize::from(combining), result) };
+        let of_result = || (Box::from([Extreme { index: result, is_negated: false }]), false);
+        let (extremes, is_least) = found.unwrap_or_else(of_result);
+        Tape { constants, operations, combining, result, choices, extremes, is_least, is_algebraic }
     }
 
     /// Returns for each term up to `result` what of it the sign of the result depends on.

@@ -414,7 +414,7 @@ fn change(value: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
 ///
 /// A sign change there is no root, also where the whole formula has a limit, as `x^2/x` has at 0.
 fn has_gap(formula: &Formula, point: DVec3) -> bool {
-    use tape::{Binary, Operation, Unary};
+    use operation::{Binary, Operation, Unary};
     const NEAR: f64 = 1e-7;
     let mut values = Vec::new();
     let result = formula.tape.value(point, &mut values);

@@ -1,8 +1,9 @@
 //! Values of a formula in f64 at two points on each of eight lines.
 
 use super::elementary::{exp_of_each, sin_and_cos_of_each};
+use super::operation::{Binary, COORDINATES, Index, Operation, Unary};
 use super::packet::{EightValues, Lines};
-use super::tape::{Binary, COORDINATES, Index, Operation, Steps, Tape, Unary};
+use super::tape::{Steps, Tape};
 use crate::lanes::LANES;
 
 /// The number of values that are computed together.

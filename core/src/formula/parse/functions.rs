@@ -1,7 +1,7 @@
 //! The functions of formulas, and the operations that they consist of.
 
 use super::{FormulaFault, FormulaParser};
-use crate::formula::tape::{Binary, Index, Unary};
+use crate::formula::operation::{Binary, Index, Unary};
 use std::f64::consts::{E, FRAC_PI_2, LOG2_E, PI, TAU};
 use std::ops::Range;
 
