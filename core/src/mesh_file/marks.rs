@@ -99,7 +99,9 @@ impl MarkStyle {
         Self {
             // A radius of more than half the distance leaves few gaps between the points of a surface.
             point_radius: neighbour_distance(points).map_or(0.01 * extent, |d| (0.7 * d).min(0.01 * extent)),
-            line_radius: (0.004 * extent).min(0.2 * line_length),
+            // A prism is at least 1.5 times as wide as its radius: in the first view in 200 x 60 cells, wider than a
+            // pixel also at the far side. Thinner lines look dashed.
+            line_radius: (0.0066 * extent).min(0.3 * line_length),
             is_large_cloud: points.len() > MAX_OCTAHEDRA,
         }
     }
