@@ -14,6 +14,7 @@ use crate::shape::Shape;
 use crate::shape::{Mesh, MovingParts, Placement, Plane, Poses};
 #[cfg(feature = "ron")]
 use crate::text::visible;
+use crate::threads;
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -170,7 +171,8 @@ impl Draft {
         let material = if mesh.has_colors() { Material::Own } else { Material::diffuse(CLAY).ok()? };
         // The scene has a floor because the shadows on it show the shape and the height of the mesh.
         let staging = mesh.staging().clone();
-        let mut objects: Vec<_> = meshes_of(mesh)?.into_iter().map(|mesh| Object::new(mesh, material)).collect();
+        let mut objects: Vec<_> =
+            meshes_of(mesh, bounds)?.into_iter().map(|mesh| Object::new(mesh, material)).collect();
         objects.push(Object::new(floor, squares));
         let [bottom, top] = BACKGROUND;
         let middle_and_radius = (middle, radius);
@@ -201,11 +203,18 @@ fn has_ground(mesh: &MeshFile, bounds: &Bounds, radius: f32) -> bool {
     let top = bounds.min.y + 0.1 * GROUND_GAP * radius;
     // A flat mesh is seen from above on either side.
     let is_flat = bounds.max.y <= top;
-    mesh.triangles().iter().any(|corners| {
+    let is_ground = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|corner| mesh.positions()[corner as usize]);
         a.y.max(b.y).max(c.y) <= top && (is_flat || (b - a).cross(c - a).y > 0.0)
-    })
+    };
+    let chunks: Vec<_> = mesh.triangles().chunks(GROUND_CHUNK).collect();
+    let has_ground = |chunk: usize| chunks[chunk].iter().any(is_ground);
+    if chunks.len() == 1 { has_ground(0) } else { threads::map(chunks.len(), has_ground).contains(&true) }
 }
+
+/// The number of triangles that a thread searches for one on the ground.
+// Fewer are searched in a millisecond, for which no threads need to be started.
+const GROUND_CHUNK: usize = 1 << 17;
 
 /// Returns the box that the first picture shows: that around all places of the mesh over time.
 ///
@@ -235,8 +244,10 @@ fn framed(mesh: &MeshFile) -> Option<Bounds> {
 }
 
 /// Returns the mesh, or the part of it that does not move and the parts that do.
-fn meshes_of(mesh: MeshFile) -> Option<Vec<Mesh>> {
-    let Some(motion) = mesh.motion() else { return Some(vec![Mesh::of_checked(mesh)]) };
+///
+/// `bounds` is the box around a mesh that does not move.
+fn meshes_of(mesh: MeshFile, bounds: Bounds) -> Option<Vec<Mesh>> {
+    let Some(motion) = mesh.motion() else { return Some(vec![Mesh::within(mesh, bounds)]) };
     let still = motion.still().map(|still| Mesh::of_checked(Arc::clone(still)));
     Some(still.into_iter().chain(MovingParts::of(motion).placed(&Placement::NONE)?).collect())
 }

@@ -104,6 +104,11 @@ impl Mesh {
         Self { file: file.into(), bounds: OnceLock::new(), map: None, motion: None, is_nowhere: false }
     }
 
+    /// Returns the mesh of a file with checked coordinates, and the smallest box around it.
+    pub(crate) fn within(file: MeshFile, bounds: Bounds) -> Self {
+        Self { bounds: bounds.into(), ..Self::of_checked(file) }
+    }
+
     /// Returns the instance of a mesh with this placement; `None` if it reaches too far.
     #[cfg(feature = "ron")]
     pub(crate) fn instance(file: &Arc<MeshFile>, corners: &CornerCells, placement: &Placement) -> Option<Self> {
