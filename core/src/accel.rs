@@ -331,7 +331,11 @@ impl Accelerator {
         builds::count_build();
         let (mut lists, mut has_smooth, mut depends_on_time) = (PrimitiveLists::default(), false, false);
         for (object, shape) in (0..).zip(shapes) {
-            has_smooth |= matches!(shape, Shape::Mesh(mesh) if mesh.is_smooth());
+            has_smooth |= match shape {
+                Shape::Mesh(mesh) => mesh.is_smooth(),
+                Shape::Solid(solid) => solid.is_smooth(),
+                _ => false,
+            };
             depends_on_time |= shape.moves();
             lists.push(object, shape);
         }

@@ -565,6 +565,7 @@ impl Shape {
     pub(crate) fn moves(&self) -> bool {
         match self {
             Self::Implicit(implicit) => implicit.moves(),
+            Self::Solid(solid) => solid.moves(),
             Self::Mesh(mesh) => mesh.moves(),
             _ => false,
         }
@@ -574,6 +575,7 @@ impl Shape {
     pub(crate) fn at_time(&self, poses: &mut Poses) -> Self {
         match self {
             Self::Implicit(implicit) => Self::Implicit(implicit.at_time(poses.seconds)),
+            Self::Solid(solid) => Self::Solid(solid.at_time(poses.seconds)),
             Self::Mesh(mesh) if mesh.moves() => mesh.at_time(poses).into(),
             other => other.clone(),
         }

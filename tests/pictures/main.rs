@@ -18,6 +18,7 @@ mod properties;
 mod rasterized;
 mod sampling;
 mod shapes;
+mod solids;
 mod staging;
 mod tilted;
 mod triangles;

@@ -8,7 +8,7 @@ use crate::hit::EightHits;
 use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Vector, set_bits};
 use crate::ray::{EightRays, Rays};
 use crate::scene::{OwnPoint, Scene};
-use crate::shape::{AtCrossing, Endless, Points, Primitive, SoaLeaf, SurfacePoint};
+use crate::shape::{AtCrossing, Endless, Points, Primitive, SoaLeaf, Surface, SurfacePoint};
 use crate::simd::{self, SimdKernel};
 use glam::Vec2;
 
@@ -84,7 +84,7 @@ impl SimdKernel for SurfacePoints<'_> {
             if at.hit_mask != 0 {
                 gather_surfaces::<N>(scene.accelerator(), rays, hits, at);
                 if scene.accelerator().has_smooth {
-                    interpolate_normals(scene, at);
+                    interpolate_normals(scene, rays, hits, at);
                 }
             }
         }
@@ -210,18 +210,26 @@ fn surfaces_in_tree<N: Lanes, S: SoaLeaf>(
 /// Replaces positions and shading normals by those of the smooth surface that a mesh's triangles
 /// approximate.
 // Works lane by lane: vertex normals are stored by triangle, and few meshes have any.
-fn interpolate_normals(scene: &Scene, points: &mut EightPoints) {
+fn interpolate_normals(scene: &Scene, rays: &EightRays, hits: &EightHits, points: &mut EightPoints) {
     for lane in set_bits(points.hit_mask) {
         let PrimitiveId { object, index } = points.ids.id(lane);
-        if let Primitive::Facet(facet) = scene.objects()[object as usize].shape.primitive(index)
-            && let Some((position, normal)) = facet.smooth_position_and_normal(
-                points.position.of_lane(lane),
-                points.geometric_normal.of_lane(lane),
-                points.uv(lane),
-            )
-        {
-            points.position.put(lane, position);
-            points.shading_normal.put(lane, normal);
+        match scene.objects()[object as usize].shape.primitive(index) {
+            Primitive::Facet(facet) => {
+                if let Some((position, normal)) = facet.smooth_position_and_normal(
+                    points.position.of_lane(lane),
+                    points.geometric_normal.of_lane(lane),
+                    points.uv(lane),
+                ) {
+                    points.position.put(lane, position);
+                    points.shading_normal.put(lane, normal);
+                }
+            }
+            // The positions are those of the smooth surface already.
+            Primitive::Solid(solid) if solid.is_smooth() => {
+                let point = solid.at_crossing(&rays.ray(lane), hits.t.0[lane]);
+                points.shading_normal.put(lane, point.shading_normal);
+            }
+            _ => {}
         }
     }
 }

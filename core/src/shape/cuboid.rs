@@ -19,7 +19,7 @@ pub struct Cuboid {
 }
 
 impl Cuboid {
-    fn new(min: DVec3, max: DVec3) -> Self {
+    pub(super) fn new(min: DVec3, max: DVec3) -> Self {
         exact::with_bounds(Self { min, max, placed_bounds: PlacedBounds::NONE })
     }
 

@@ -293,17 +293,17 @@ pub(super) fn first_reached(
 
 /// Computes [`first_in_box`] for the active rays, and returns the mask of those with a crossing.
 ///
-/// `first` is given a ray, the interval of the surface's box, and that of the ray.
+/// `first` is given a lane, its ray, the interval of the surface's box, and that of the ray.
 pub(super) fn first_in_boxes(
     rays: &EightRays,
     inside: &[F32x8; 2],
     within: &[F32x8; 2],
-    first: impl Fn(&Ray, Interval, Interval) -> Option<f32>,
+    first: impl Fn(usize, &Ray, Interval, Interval) -> Option<f32>,
 ) -> (u32, F32x8) {
     let (mut crosses, mut t) = (0, F32x8::ZERO);
     let interval = |[min, max]: &[F32x8; 2], lane: usize| Interval { min: min.0[lane], max: max.0[lane] };
     for lane in set_bits(rays.active) {
-        if let Some(crossing) = first(&rays.ray(lane), interval(inside, lane), interval(within, lane)) {
+        if let Some(crossing) = first(lane, &rays.ray(lane), interval(inside, lane), interval(within, lane)) {
             crosses |= 1 << lane;
             t.0[lane] = crossing;
         }
@@ -344,7 +344,7 @@ impl<S: Exact> Surface for S {
     }
 
     fn closest_crossings(&self, rays: &EightRays, inside: &[F32x8; 2], within: &[F32x8; 2]) -> (u32, F32x8) {
-        first_in_boxes(rays, inside, within, |ray, inside, within| {
+        first_in_boxes(rays, inside, within, |_, ray, inside, within| {
             first_in_box(inside, within, || crossings(self, ray).iter().map(|crossing| crossing.t))
         })
     }

@@ -3,7 +3,9 @@
 use super::cuboid::WrittenBox;
 use super::described::size_in_words;
 use super::placement::{AffineMap, Placeable, Placement, shape_line};
-use super::{CheckedShape, Cuboid, Described, Equation, EquationStep, Meshes, Points, Shape, Surface, SurfacePoint};
+use super::{
+    CheckedShape, Cuboid, Described, Equation, EquationStep, Meshes, Points, Shape, Sphere, Surface, SurfacePoint,
+};
 use crate::bounds::Bounds;
 use crate::color::LinearRgb;
 use crate::formula::{Formula, Line, Searches, Solver, is_free_name};
@@ -14,6 +16,8 @@ use crate::text::visible;
 use crate::written::{Fields, InSceneFile, NodeReader, Spanned, Validator, WrittenNumber, WrittenVector, values};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
+
+mod crossings;
 
 /// The largest number of roots that an explanation shows, all in front of the eye.
 const MAX_ROOTS: usize = 2;
@@ -125,6 +129,14 @@ impl Implicit {
     /// Returns a point of the scene in the coordinates of the formula.
     fn in_formula_space(&self, point: Vec3) -> DVec3 {
         self.0.map.as_ref().map_or(point.as_dvec3(), |map| map.shape_point(point.as_dvec3()))
+    }
+
+    /// Returns the box or ball of the bounds, of a surface that is not placed.
+    pub(super) fn shape_of_bounds(&self) -> Shape {
+        match self.0.ball {
+            Some(Ball { center, radius }) => Sphere::unchecked(center.as_vec3(), radius as f32).into(),
+            None => Cuboid::new(self.0.bounds.min.as_dvec3(), self.0.bounds.max.as_dvec3()).into(),
+        }
     }
 
     /// Returns the formula as an equation on one line, shortened if it is long.

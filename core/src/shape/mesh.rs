@@ -123,6 +123,20 @@ impl Mesh {
         })
     }
 
+    /// Returns the mesh scaled, rotated and moved; it shares the triangles of its file.
+    ///
+    /// `of_file` is a box around the triangles of the file. The box of the mesh contains it, and may be larger than the
+    /// smallest one.
+    // The smallest box takes a look at all corners, which is too much for each of many copies.
+    pub(super) fn placed_sharing(&self, placement: &Placement, of_file: &Bounds) -> Self {
+        let new = placement.map();
+        let map = self.map.as_ref().map_or(new, |old| old.then(&new));
+        let [min, max] = [of_file.min, of_file.max].map(Vec3::as_dvec3);
+        let half = (max - min) * 0.5;
+        let bounds = AffineMap::bounds(Some(&map), (min + max) * 0.5, |direction| half.dot(direction.abs()));
+        Self { map: Some(map), bounds: bounds.into(), ..self.clone() }
+    }
+
     /// Returns a moving mesh at one place of its motion.
     pub(super) fn moving(file: Arc<MeshFile>, motion: Arc<MeshMotion>, place: &PartPlace) -> Self {
         let (map, bounds, is_nowhere) = match place {

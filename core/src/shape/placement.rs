@@ -208,7 +208,7 @@ impl Shape {
 }
 
 /// The message for a shape that is not near, or too small, after it has been placed.
-const OUT_OF_REACH: &str =
+pub(super) const OUT_OF_REACH: &str =
     "scaled, rotated and moved, a shape must lie within ±1e9 and measure at least 1e-9; light cannot reach this one";
 
 /// A placement as written: `scale: ..., rotate: ..., translate: ...`.

@@ -63,6 +63,7 @@ impl Scalar {
     pub(crate) fn at_time(&self, seconds: f64) -> Self {
         match self {
             Self::Implicit(implicit) => implicit.at_time(seconds).into(),
+            Self::Solid(solid) => solid.at_time(seconds).into(),
             other => other.clone(),
         }
     }

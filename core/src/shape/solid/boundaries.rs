@@ -1,26 +1,29 @@
 //! Where lines enter and leave solids.
 
-use super::{Operation, Part, Solid};
-use crate::ray::{Interval, Probe, Ray};
+use super::closed_mesh::MeshCrossing;
+use super::{Body, FormulaRoots, Operation, Solid};
+use crate::ray::{Probe, Ray};
 use crate::shape::exact::{self, Crossings, Inside};
 use crate::shape::{Plane, Shape, Sphere, Torus};
 use glam::Vec3;
 use std::cmp::Ordering;
 
 /// The most shapes in a solid, those of the solids among its parts counted.
-// A line has up to four crossings with each, and all of them are kept in an array on the stack.
+// Their numbers are the bits of a mask, and all shapes are tested against each ray that reaches the solid.
 pub(super) const MAX_SHAPES: usize = 16;
 
-/// The most boundaries of a solid along a line.
-pub(super) const MAX_BOUNDARIES: usize = 4 * MAX_SHAPES;
-
-/// The room for boundaries that is enough for most solids.
-// Room is written before it is used. For the most boundaries, that took longer than finding the few that a line has.
-pub(super) const FEW_BOUNDARIES: usize = 16;
+/// The number of boundaries that are stored without an allocation, which is enough for most lines.
+// Room is written before it is used. Room for 64 boundaries took longer to write than the few of a line took to find.
+const FEW_BOUNDARIES: usize = 16;
 
 /// The distance, relative to the largest t, within which two boundaries are one.
 // Two parts that share a face compute its t with different roundings, of about 1e-15. Points in f32 are off by 1e-7.
 const TOLERANCE: f64 = 1e-11;
+
+/// The distance, relative to t, within which boundaries of two parts are one, if one is rounded.
+// Roots and crossings of triangles are rounded to f32, by a few units of 2^-24. Without this, a hole whose face lies in
+// that of a mesh would be covered by speckles.
+const ROUNDED_TOLERANCE: f64 = 8.0 / 16_777_216.0;
 
 /// An end of a piece of a line inside a solid.
 #[derive(Clone, Copy)]
@@ -30,55 +33,111 @@ pub(super) struct Boundary {
     part: u8,
     /// The number of the shape on whose surface it is, among the shapes of all parts.
     pub(super) shape: u8,
+    /// The number of the triangle, if that shape is a mesh.
+    pub(super) triangle: u32,
     /// Whether that shape is a plane.
     is_of_plane: bool,
+    /// Whether t is rounded to f32, as those of formulas and meshes are.
+    is_rounded: bool,
     /// Whether the line enters the solid here.
     pub(super) enters: bool,
 }
 
-/// Up to `N` boundaries of a solid along a line, in ascending order.
-pub(super) struct Boundaries<const N: usize> {
-    found: [Boundary; N],
-    count: usize,
+/// A boundary whose values are not set yet.
+const UNPLACED: Boundary =
+    Boundary { t: 0.0, part: 0, shape: 0, triangle: 0, is_of_plane: false, is_rounded: false, enters: false };
+
+/// A ray whose line's boundaries are searched for.
+#[derive(Clone, Copy)]
+pub(super) struct RayOfSolid<'a> {
+    pub(super) probe: &'a Probe,
+    /// The roots of the formulas in the solid along up to eight rays.
+    pub(super) roots: &'a FormulaRoots,
+    /// The lane of this ray among them.
+    pub(super) lane: usize,
+}
+
+/// The boundaries of a solid along a line, in ascending order.
+pub(super) struct Boundaries {
+    few: [Boundary; FEW_BOUNDARIES],
+    few_count: usize,
+    /// All boundaries, if there are too many for `few`.
+    many: Vec<Boundary>,
     /// Whether the line begins inside, at t = -infinity.
     pub(super) begins_inside: bool,
 }
 
-impl<const N: usize> Boundaries<N> {
+impl Boundaries {
     /// Returns the boundaries of a line that misses the solid.
     fn none() -> Self {
-        let unused = Boundary { t: 0.0, part: 0, shape: 0, is_of_plane: false, enters: false };
-        Self { found: [unused; N], count: 0, begins_inside: false }
+        Self { few: [UNPLACED; FEW_BOUNDARIES], few_count: 0, many: Vec::new(), begins_inside: false }
     }
 
     /// Adds a boundary of a part; one without a place on the line is left out.
     fn push(&mut self, boundary: Boundary) {
-        // There is always a free place: the number of shapes is limited.
-        if !boundary.t.is_nan()
-            && let Some(free) = self.found.get_mut(self.count)
-        {
-            *free = boundary;
-            self.count += 1;
+        if boundary.t.is_nan() {
+            return;
+        }
+        match self.few.get_mut(self.few_count) {
+            Some(free) if self.many.is_empty() => {
+                *free = boundary;
+                self.few_count += 1;
+            }
+            _ => {
+                if self.many.is_empty() {
+                    self.many.extend_from_slice(&self.few);
+                }
+                self.many.push(boundary);
+            }
+        }
+    }
+
+    fn all(&self) -> &[Boundary] {
+        if self.many.is_empty() { &self.few[..self.few_count] } else { &self.many }
+    }
+
+    fn all_mut(&mut self) -> &mut [Boundary] {
+        if self.many.is_empty() { &mut self.few[..self.few_count] } else { &mut self.many }
+    }
+
+    /// Keeps the first boundaries only.
+    fn truncate(&mut self, count: usize) {
+        if self.many.is_empty() {
+            self.few_count = count;
+        } else if count > 0 {
+            self.many.truncate(count);
+        } else {
+            (self.few_count, self.many) = (0, Vec::new());
         }
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = Boundary> {
-        self.found.iter().take(self.count).copied()
+        self.all().iter().copied()
     }
 
-    /// Adds the boundaries of the part with this number along the line of a ray, in ascending
-    /// order.
+    /// Adds the boundaries of the part with this number along a line, in ascending order.
     ///
-    /// Returns whether the line begins inside the part, at t = -infinity.
-    fn add_part(&mut self, number: u8, Part { shape, first_shape, .. }: &Part, probe: &Probe) -> bool {
-        let (ray, unplaced) =
-            (&probe.ray, Boundary { t: 0.0, part: number, shape: *first_shape, is_of_plane: false, enters: false });
+    /// `first_shape` is the number of the part's first shape. Returns whether the line begins inside the part, at t =
+    /// -infinity.
+    fn add_part(&mut self, number: u8, body: &Body, first_shape: u8, line: RayOfSolid<'_>) -> bool {
+        let ray = &line.probe.ray;
+        let unplaced = Boundary { part: number, shape: first_shape, ..UNPLACED };
+        let shape = match body {
+            Body::Shape(shape) => shape,
+            Body::Mesh(mesh) => {
+                let crossings = mesh.crossings(ray);
+                for &MeshCrossing { t, triangle, enters, .. } in &crossings {
+                    self.push(Boundary { t: t.into(), triangle, enters, is_rounded: true, ..unplaced });
+                }
+                return crossings.first().is_some_and(|crossing| !crossing.enters);
+            }
+        };
         let crossings = match shape {
             Shape::Solid(solid) => {
-                let mut boundaries = Boundaries::<N>::none();
-                solid.find(probe, &mut boundaries);
+                let mut boundaries = Self::none();
+                solid.find(line, first_shape, &mut boundaries);
                 for boundary in boundaries.iter() {
-                    self.push(Boundary { part: number, shape: first_shape + boundary.shape, ..boundary });
+                    self.push(Boundary { part: number, ..boundary });
                 }
                 return boundaries.begins_inside;
             }
@@ -86,6 +145,12 @@ impl<const N: usize> Boundaries<N> {
             Shape::Torus(torus) => {
                 self.add_torus(unplaced, torus, ray);
                 return false;
+            }
+            Shape::Implicit(_) => {
+                for (t, enters) in line.roots.of_lane(first_shape, line.lane) {
+                    self.push(Boundary { t: t.into(), enters, is_rounded: true, ..unplaced });
+                }
+                return line.roots.begins_inside(first_shape, line.lane);
             }
             Shape::Sphere(sphere) => sphere_crossings(sphere, ray),
             Shape::Cuboid(shape) => exact::crossings(shape, ray),
@@ -131,20 +196,21 @@ impl<const N: usize> Boundaries<N> {
     ///
     /// `inside` is the mask of the parts in which the line begins, and `count` the number of parts.
     fn combine(&mut self, operation: Operation, mut inside: u32, count: usize) {
-        let events = &mut self.found[..self.count];
-        // A stable sort, so that boundaries at one t keep the order of the parts.
-        events.sort_by(|a, b| a.t.partial_cmp(&b.t).unwrap_or(Ordering::Equal));
         let contains = |inside| operation.contains(inside, count);
         self.begins_inside = contains(inside);
+        let begins_inside = self.begins_inside;
+        let events = self.all_mut();
+        // A stable sort, so that boundaries at one t keep the order of the parts.
+        events.sort_by(|a, b| a.t.partial_cmp(&b.t).unwrap_or(Ordering::Equal));
         // The t of a plane that is almost parallel to the line is no measure of the solid.
         let bounded = events.iter().filter(|boundary| !boundary.is_of_plane);
         let largest = bounded.map(|boundary| boundary.t.abs()).filter(|t| t.is_finite()).fold(0.0, f64::max);
-        let (mut start, mut was_inside, mut kept) = (0, self.begins_inside, 0);
+        let (mut start, mut was_inside, mut kept) = (0, begins_inside, 0);
         while start < events.len() {
             let mut end = start;
             let mut decisive = None;
             while let Some(event) = events.get(end)
-                && (end == start || event.t - events[start].t <= TOLERANCE * largest)
+                && (end == start || are_one(&events[start..end], event, largest))
             {
                 let before = contains(inside);
                 inside ^= 1 << event.part;
@@ -163,8 +229,18 @@ impl<const N: usize> Boundaries<N> {
             }
             start = end;
         }
-        self.count = kept;
+        self.truncate(kept);
     }
+}
+
+/// Returns whether a boundary is at the same point as those before it.
+///
+/// `largest` is the largest t of the solid.
+fn are_one(before: &[Boundary], next: &Boundary, largest: f64) -> bool {
+    let distance = next.t - before[0].t;
+    // Two boundaries of one formula may be that near to each other: a thin sheet is not lost.
+    let is_rounded = |one: &Boundary| (one.is_rounded || next.is_rounded) && one.part != next.part;
+    distance <= TOLERANCE * largest || distance <= ROUNDED_TOLERANCE * next.t.abs() && before.iter().all(is_rounded)
 }
 
 /// Returns the crossings of a sphere, computed in f64.
@@ -175,53 +251,31 @@ fn sphere_crossings(sphere: &Sphere, ray: &Ray) -> Crossings {
 
 impl Solid {
     /// Returns where the line of a ray enters and leaves the solid.
-    ///
-    /// `N` is at least [`most_boundaries`](Self::most_boundaries).
-    pub(super) fn boundaries<const N: usize>(&self, probe: &Probe) -> Boundaries<N> {
+    pub(super) fn boundaries(&self, line: RayOfSolid<'_>) -> Boundaries {
         let mut boundaries = Boundaries::none();
-        self.find(probe, &mut boundaries);
+        self.find(line, 0, &mut boundaries);
         boundaries
     }
 
-    /// Returns the first boundary that a ray may reach, as [`exact::first_in_box`] does.
-    ///
-    /// `N` is at least [`most_boundaries`](Self::most_boundaries).
-    pub(super) fn first_boundary<const N: usize>(&self, ray: &Ray, inside: Interval, within: Interval) -> Option<f32> {
-        if !exact::overlap(inside, within) {
-            return None;
-        }
-        let mut boundaries = Boundaries::<N>::none();
-        self.find(&Probe::new(*ray), &mut boundaries);
-        exact::first_reached(boundaries.iter().map(|boundary| boundary.t), inside, within)
-    }
-
-    /// Adds where the line of a ray enters and leaves the solid, to no boundaries.
+    /// Adds where a line enters and leaves the solid, whose first shape has the number
+    /// `first_shape`, to no boundaries.
     // Into a place of the caller's, because returned values are copied.
-    fn find<const N: usize>(&self, probe: &Probe, boundaries: &mut Boundaries<N>) {
+    fn find(&self, line: RayOfSolid<'_>, first_shape: u8, boundaries: &mut Boundaries) {
         let mut inside = 0_u32;
         for (number, part) in (0..).zip(&*self.parts) {
-            let before = boundaries.count;
+            let before = boundaries.all().len();
             // Most lines miss most parts. No crossing is lost (`culling.md`, 3).
-            if part.bounds.is_none_or(|bounds| bounds.is_crossed(probe)) {
-                inside |= u32::from(boundaries.add_part(number, part, probe)) << number;
+            if part.bounds.is_none_or(|bounds| bounds.is_crossed(line.probe)) {
+                let begins_inside = boundaries.add_part(number, &part.body, first_shape + part.first_shape, line);
+                inside |= u32::from(begins_inside) << number;
             }
             // The line is outside the whole part, and so outside the solid.
-            if boundaries.count == before && inside >> number & 1 == 0 && self.operation.needs(number.into()) {
-                boundaries.count = 0;
+            let is_outside = boundaries.all().len() == before && inside >> number & 1 == 0;
+            if is_outside && self.operation.needs(number.into()) {
+                boundaries.truncate(0);
                 return;
             }
         }
         boundaries.combine(self.operation, inside, self.parts.len());
-    }
-
-    /// Returns an upper bound of the number of boundaries along any line.
-    pub(super) fn most_boundaries(&self) -> usize {
-        let of_part = |part: &Part| match &part.shape {
-            Shape::Solid(solid) => solid.most_boundaries(),
-            Shape::Torus(_) => 4,
-            Shape::Plane(_) => 1,
-            _ => 2,
-        };
-        self.parts.iter().map(of_part).sum()
     }
 }
