@@ -913,6 +913,8 @@ mesh.write("s6_values.gltf")
 
 # Files as found in other programs' samples: corners without their attributes, extensions of OBJ, whole numbers with a
 # point, and bytes behind the end.
+obj("e5_points", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nusemtl red\n", mtl="newmtl red\nKd 1 0 0\n")
+obj("e5_uncharted", VERTICES + "vt 0 0\nusemtl a\nf 1 2 3 4\n", mtl="newmtl a\nmap_d grey.png\n")
 obj("e1_absent", VERTICES + "vn 0 0 1\nf 1/1/1 2/2/1 3/3/1\nf 1/1 3/3 4/4\nf 1//1 3//7 4//1\n")
 obj("e2_tags", SQUARE + "t crease 2/1/0 1 2 3.0\nvw 1 0 1\nvw 2 0 1\n")
 mesh = Gltf()

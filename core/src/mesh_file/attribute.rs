@@ -91,6 +91,15 @@ impl<T: Copy> Attribute<T> {
         }
     }
 
+    /// Returns whether any triangle has values.
+    pub(super) fn is_of_any(&self) -> bool {
+        match &self.corners {
+            CornerIndices::Absent => false,
+            CornerIndices::OfPositions => true,
+            CornerIndices::Own(corners) => corners.iter().any(|&corner| corner != NONE),
+        }
+    }
+
     /// Returns the values at a triangle's corners.
     pub(super) fn values_at(&self, triangle: usize, triangles: &[[u32; 3]]) -> Option<[T; 3]> {
         self.indices_of(triangle, triangles).map(|corners| corners.map(|index| self.values[index as usize]))

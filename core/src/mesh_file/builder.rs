@@ -116,7 +116,7 @@ impl MeshBuilder {
         for corner in piece.triangles.as_flattened_mut() {
             *corner = index_after(base, *corner);
         }
-        self.positions.append(&mut piece.positions);
+        append(&mut self.positions, &mut piece.positions);
         self.normals.append(piece.normals, &self.triangles, &piece.triangles);
         self.texture_coordinates.append(piece.texture_coordinates, &self.triangles, &piece.triangles);
         self.colors.append(piece.colors, &self.triangles, &piece.triangles);
@@ -125,8 +125,8 @@ impl MeshBuilder {
         for (from, material) in piece.material_runs {
             self.set_material_from(first + from, material);
         }
-        self.triangles.append(&mut piece.triangles);
-        self.marks.append(&mut piece.marks);
+        append(&mut self.triangles, &mut piece.triangles);
+        append(&mut self.marks, &mut piece.marks);
         self.has_faces |= piece.has_faces;
         Ok(())
     }
@@ -171,11 +171,11 @@ impl MeshBuilder {
         for &(_, what) in self.not_shown.iter().filter(|(material, _)| used.contains(material)) {
             left_out.not_shown(what, 1);
         }
-        let is_charted = !self.texture_coordinates.values().is_empty();
+        let is_charted = self.texture_coordinates.is_of_any();
         let invisible = used.iter().filter(|&&material| {
             self.materials.get(material as usize).is_some_and(|material| material.is_invisible(is_charted))
         });
-        left_out.not_shown("invisible material (its opacity is too low)", invisible.count());
+        left_out.not_shown("invisible material (opacity too low)", invisible.count());
         // Readers have already checked all this, and reported faults with their positions; this is the last line of
         // defence.
         self.into_mesh().ok_or_else(|| MeshFault::of_file("this mesh has numbers or indices out of range"))
@@ -332,6 +332,15 @@ impl MeshBuilder {
         self.normals.shrink_to_fit();
         self.texture_coordinates.shrink_to_fit();
         self.colors.shrink_to_fit();
+    }
+}
+
+/// Moves all values of one list to the end of another, without a copy if that is empty.
+fn append<T>(all: &mut Vec<T>, more: &mut Vec<T>) {
+    if all.is_empty() {
+        *all = std::mem::take(more);
+    } else {
+        all.append(more);
     }
 }
 

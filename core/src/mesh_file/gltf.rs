@@ -90,7 +90,8 @@ pub(super) fn read_binary(
     let buffer = match buffer_at {
         at if at < length as usize => Some(chunk(at, b"BIN\0", "BIN")?),
         // Some writers state a length without the buffer. Other bytes there are no part of the file.
-        at => chunk(at, b"BIN\0", "BIN").ok(),
+        at if bytes.get(at + 4..at + 8) == Some(b"BIN\0") => Some(chunk(at, b"BIN\0", "BIN")?),
+        _ => None,
     };
     read(json, HEADER + 8, buffer, side_files, meter)
 }

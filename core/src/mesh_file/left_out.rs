@@ -94,6 +94,11 @@ impl<'a> LeftOut<'a> {
         Ok(())
     }
 
+    /// Returns a number of faulty lines above which a file is refused, however many lines it has.
+    pub(super) fn upper_fault_limit(&self) -> usize {
+        if self.takes_notices() { FEW_FAULTS.max((self.bytes.len() + 1) / 100) } else { 0 }
+    }
+
     /// Returns whether faulty parts are left out, not errors.
     pub(super) fn takes_notices(&self) -> bool {
         self.reporter.takes_notices()

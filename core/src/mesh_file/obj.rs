@@ -18,6 +18,7 @@ use super::text::{TextCursor, pieces};
 use crate::color::LinearRgb;
 use crate::progress::Meter;
 use faces::{FaceReader, FileParts};
+use std::ops::ControlFlow;
 use vertices::{VertexPiece, Vertices};
 
 /// Reads an OBJ file.
@@ -51,7 +52,7 @@ pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, mut meter: Mete
         mesh.append(reader.mesh, None)?;
         match fault.take_if(|_| reader.is_stopped) {
             Some((_, fault)) => Err(fault),
-            None => Ok(()),
+            None => Ok(ControlFlow::Continue(())),
         }
     })?;
     let counts = [mesh.texture_coordinates.values().len(), mesh.normals.values().len()];
@@ -59,6 +60,8 @@ pub(super) fn read(bytes: &[u8], side_files: &mut SideFiles<'_>, mut meter: Mete
     reader.read_early_faces(early_faces, left_out)?;
     colored = colored.max(reader.colored);
     mesh.append(reader.mesh, None)?;
+    // Without faces the vertices are points, of the last material.
+    mesh.set_material(changes.last().and_then(|&(_, material)| material));
     mesh.positions = positions;
     // Vertices without a colour, after or between those with one, are white.
     mesh.colors.values_mut().resize(colored, LinearRgb::grey(1.0));

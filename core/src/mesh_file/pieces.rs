@@ -6,7 +6,7 @@ use super::fault::MeshFault;
 use super::left_out::LeftOut;
 use crate::progress::Meter;
 use crate::threads;
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 /// The number of pieces for each thread that are parsed before any of them is joined.
 // With more, the last thread of a batch is waited for less often; with fewer, less memory is in use.
@@ -17,13 +17,13 @@ const BATCH: usize = 4;
 const MIN_PARALLEL_PIECES: usize = 4;
 
 /// A parsed piece: its value, what was left out of it, and the fault that ended its reading.
-pub(super) struct Parsed<'a, T> {
-    pub(super) value: T,
-    pub(super) left_out: LeftOut<'a>,
-    pub(super) read: Result<(), MeshFault>,
+struct Parsed<'a, T> {
+    value: T,
+    left_out: LeftOut<'a>,
+    read: Result<(), MeshFault>,
 }
 
-/// Parses pieces, and passes them to `join` in the order of the file.
+/// Parses pieces, and passes them to `join` in the order of the file, until it returns `Break`.
 ///
 /// `offsets_of` returns the byte offsets of a piece, for reports of progress.
 ///
@@ -34,7 +34,7 @@ pub(super) fn parse_in_order<'a, P: Sync, T: Send>(
     offsets_of: impl Fn(&P) -> Range<usize>,
     (left_out, meter): (&mut LeftOut<'a>, &mut Meter<'_>),
     parse: impl Fn(&P, &mut LeftOut<'a>) -> (T, Result<(), MeshFault>) + Send + Sync,
-    mut join: impl FnMut(&P, T) -> Result<(), MeshFault>,
+    mut join: impl FnMut(&P, T) -> Result<ControlFlow<()>, MeshFault>,
 ) -> Result<(), MeshFault> {
     let is_parallel = meter.is_parallel() && pieces.len() >= MIN_PARALLEL_PIECES;
     let batch = if is_parallel { BATCH * threads::count() } else { 1 };
@@ -57,7 +57,9 @@ pub(super) fn parse_in_order<'a, P: Sync, T: Send>(
             // What the piece left out comes before the fault that ended it.
             left_out.absorb(of_piece)?;
             read?;
-            join(piece, value)?;
+            if join(piece, value)?.is_break() {
+                return Ok(());
+            }
             meter.report_at(offsets_of(piece).end)?;
         }
     }

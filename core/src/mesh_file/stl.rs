@@ -14,7 +14,7 @@ use crate::color::{LinearRgb, Srgb8};
 use crate::progress::Meter;
 use crate::threads;
 use glam::Vec3;
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Size of the header in bytes: 80 arbitrary ones, and 4 for the number of triangles.
@@ -202,18 +202,14 @@ fn read_pieces<'a>(
         let read = reader.read(piece.end == bytes.len(), left_out);
         ((reader.mesh, reader.open.is_some()), read)
     };
-    let read = parse_in_order(pieces, Range::clone, (left_out, meter), parse, |_, (piece, is_open)| {
+    parse_in_order(pieces, Range::clone, (left_out, meter), parse, |_, (piece, is_open)| {
         ends_within_loop = is_open;
         if is_open {
-            // This fault, which is never shown, ends the reading of the pieces.
-            return Err(MeshFault::of_file(""));
+            return Ok(ControlFlow::Break(()));
         }
-        mesh.append(piece, None)
-    });
-    if ends_within_loop {
-        return Ok(None);
-    }
-    read.map(|()| Some(mesh))
+        mesh.append(piece, None).map(ControlFlow::Continue)
+    })?;
+    Ok((!ends_within_loop).then_some(mesh))
 }
 
 struct TextReader<'a> {

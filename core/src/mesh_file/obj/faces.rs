@@ -315,7 +315,7 @@ impl<'a> FaceReader<'a> {
     fn attribute_index(&mut self, what: &'static str, count: usize, left_out: &mut LeftOut<'_>) -> Result<u32, Corner> {
         match self.index(what, count) {
             Err(Corner::Early(_)) if self.forgives_absent => {
-                left_out.not_shown(format!("{what} (the file has fewer)"), 1);
+                left_out.not_shown(format!("{what} (not in the file)"), 1);
                 self.corners.has_absent = true;
                 Ok(NONE)
             }

@@ -11,7 +11,7 @@ use crate::mesh_file::side_files::SideFiles;
 use crate::mesh_file::text::TextCursor;
 use crate::progress::Meter;
 use glam::{Vec2, Vec3};
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 /// All vertices of a file, in the lists of a mesh without triangles.
 #[derive(Default)]
@@ -58,7 +58,9 @@ impl Vertices {
         side_files: &mut SideFiles<'_>,
         meter: &mut Meter<'_>,
     ) -> Result<Self, MeshFault> {
-        let mut all = Self::default();
+        let (mut all, mut faults) = (Self::default(), 0);
+        // With more faults than this, the second pass refuses the file before it is through with these pieces.
+        let most_faults = side_files.left_out.upper_fault_limit();
         let parse = |piece: &Range<usize>, left_out: &mut LeftOut<'_>| {
             let mut reader = VertexReader::new(TextCursor::of_piece(bytes, piece));
             reader.read();
@@ -70,8 +72,9 @@ impl Vertices {
         // The first half of the work.
         let offsets_of = |piece: &Range<usize>| piece.start / 2..piece.end / 2;
         parse_in_order(pieces, offsets_of, (&mut side_files.left_out, meter), parse, |range, reader| {
+            faults += reader.faults.len();
             all.add(range.clone(), reader);
-            Ok(())
+            Ok(if faults > most_faults { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
         })?;
         Ok(all)
     }

@@ -7,7 +7,7 @@ use crate::mesh_file::left_out::LeftOut;
 use crate::mesh_file::pieces::parse_in_order;
 use crate::mesh_file::text::TextCursor;
 use crate::progress::Meter;
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 /// A reader of a PLY body, which consists of rows of numbers. It is a generic parameter, not a
 /// trait object, so that reading a number is inlined: a body has millions.
@@ -117,7 +117,7 @@ impl<'a, R: RowReader> Body<'a, '_, R> {
             |_, (after, piece)| {
                 *rows = after;
                 let material = mesh.current_material();
-                mesh.append(piece, material)
+                mesh.append(piece, material).map(ControlFlow::Continue)
             },
         )
     }
