@@ -173,6 +173,15 @@ impl AxisBins {
     }
 }
 
+/// Returns the index of the item that stands for the `count` items of a chunk with this number.
+// Always the first one would be in the same column of a height field whose rows are a multiple of chunks.
+#[inline(always)]
+fn chosen(chunk: usize, count: usize) -> usize {
+    // The multiples of the golden ratio are spread evenly (Knuth, The Art of Computer Programming, 6.4).
+    let fraction = (chunk as u32).wrapping_mul(0x9E37_79B1);
+    ((u64::from(fraction) * count as u64) >> 32) as usize
+}
+
 /// A cut between two bins.
 struct Cut {
     bins: AxisBins,
@@ -190,13 +199,14 @@ impl Cut {
         if cheapest.is_none() && step > 1 { Self::cheapest_for_every(1, items, doubled_centers) } else { cheapest }
     }
 
-    /// Returns the cheapest cut for every `step`th item.
+    /// Returns the cheapest cut for one of every `step` items.
     #[inline(always)]
     fn cheapest_for_every(step: usize, items: &[Item], doubled_centers: &BoxRows) -> Option<Self> {
         let count = if items.len() < MIN_ITEMS_FOR_MAX_BINS { MAX_BINS / 2 } else { MAX_BINS };
         let axes = [0, 1, 2].map(|axis| AxisBins::divide(axis, doubled_centers, count));
         let mut contents = [[(BoxRows::EMPTY, 0_u32); MAX_BINS]; 3];
-        for item in items.iter().step_by(step) {
+        for (at, items) in items.chunks(step).enumerate() {
+            let item = &items[chosen(at, items.len())];
             for (bins, contents) in axes.iter().zip(&mut contents) {
                 let Some(bins) = bins else { continue };
                 let (rows, count) = &mut contents[bins.index_of(item)];
