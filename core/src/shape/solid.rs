@@ -141,6 +141,8 @@ impl Solid {
         let parts: Arc<[Part]> = parts.collect();
         let has_formulas = parts.iter().any(|part| part.body.has_formulas());
         let is_known_in_front_only = has_formulas || parts.iter().any(|part| part.body.has_meshes());
+        // Boundaries in front of the box are not known, so the rounding of the box must not cut off any.
+        let bounds = if is_known_in_front_only { bounds.one_step_larger() } else { bounds };
         Ok(Self { operation, parts, bounds, has_formulas, is_known_in_front_only })
     }
 

@@ -17,7 +17,8 @@ impl Implicit {
     /// are those in front of the ray with `from <= t`, and up to the first one after `until`. Returns the mask of the
     /// lanes whose rays begin inside. The bounds limit the search, and enclose nothing by themselves.
     ///
-    /// Where the sign changes at a jump there is a point, too, although it is no root. Undefined values are outside.
+    /// Where the sign changes at a jump there is a point, too, although it is no root. Undefined values are outside. Of
+    /// several jumps between two roots one is found, or none if they are even in number.
     pub(in crate::shape) fn enter_and_leave(
         &self,
         rays: &EightRays,
@@ -46,7 +47,8 @@ impl Implicit {
                 // In front of a root, or of the end of the range, the ray is where it was after the last one, unless
                 // the sign has changed at a jump.
                 let end = if is_root { roots.0[lane].next_down() } else { searches.ranges[1].0[lane] };
-                let jumps = end > start && end <= until.0[lane] && self.is_inside_at(line, end) != is_inside;
+                let end = end.min(until.0[lane]);
+                let jumps = end > start && self.is_inside_at(line, end) != is_inside;
                 if jumps {
                     visit(lane, self.change(line, [start, end], is_inside), !is_inside);
                     inside ^= 1 << lane;
@@ -72,8 +74,7 @@ impl Implicit {
         value < 0.0 || value == 0.0 && self.0.formula.gradient(at).1.dot(line.direction) < 0.0
     }
 
-    /// Returns the least t found by bisection at which a line is inside what it is outside at the
-    /// start of a range, or the other way round.
+    /// Returns a t at which a line changes between inside and outside, found by bisection.
     fn change(&self, line: &Line, [mut start, mut end]: [f32; 2], is_inside_at_start: bool) -> f32 {
         loop {
             let middle = start + 0.5 * (end - start);

@@ -13,7 +13,7 @@ use std::cmp::Ordering;
 pub(super) const MAX_SHAPES: usize = 16;
 
 /// The number of boundaries that are stored without an allocation, which is enough for most lines.
-// Room is written before it is used. Room for 64 boundaries took longer to write than the few of a line took to find.
+// Room is written before it is used, and for 64 boundaries that took longer than finding the few of most lines.
 const FEW_BOUNDARIES: usize = 16;
 
 /// The distance, relative to the largest t, within which two boundaries are one.

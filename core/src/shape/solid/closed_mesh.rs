@@ -284,9 +284,10 @@ impl LeafVisitor for LineSearch<'_> {
             let corners = self.mesh.mesh.file_corners(index);
             if let Some(t) = Triangle::unchecked(corners).closest_crossing(self.probe, IN_FRONT) {
                 let Ray { origin, direction } = self.probe.ray;
-                let [a, b, c] = corners.map(|corner| (corner - origin).as_dvec3());
-                let direction = direction.as_dvec3();
-                let along = [a, b, c].map(|corner| corner.dot(direction).abs()).into_iter().fold(0.0, f64::max);
+                let (origin, direction, [a, b, c]) =
+                    (origin.as_dvec3(), direction.as_dvec3(), corners.map(Vec3::as_dvec3));
+                let along = [a, b, c].map(|corner| (corner - origin).dot(direction).abs());
+                let along = along.into_iter().fold(0.0, f64::max);
                 let tolerance = TOLERANCE * t.max((along / direction.dot(direction)) as f32);
                 let facing = (b - a).cross(c - a).dot(direction);
                 // A triangle that is seen edge-on is between others, which decide.

@@ -244,6 +244,35 @@ fn a_formula_in_a_solid_is_closed_where_it_jumps() {
     assert!(found.len() == 2 && (found[0] - 5.0).abs() < 1e-5, "{found:?}");
 }
 
+/// A jump is found although the search ends in front of the end of the bounds.
+#[test]
+fn a_jump_is_found_whatever_is_behind_it() {
+    let halved = solid(
+        "Solid(difference: [Box(min: (-1, -1, -1), max: (1, 1, 1)), Implicit(f: \"floor(x) + 0.5\", bounds: Box(min: \
+            (-2, -2, -2), max: (2, 2, 2)))])",
+    );
+    let Shape::Solid(halved) = &halved else { panic!("a solid") };
+    let probe = Probe::new(Ray { origin: Vec3::new(-5.0, 0.2, 0.3), direction: Vec3::X });
+    for max in [5.5, 6.5, 1e9] {
+        let found = halved.closest_crossing(&probe, Interval { min: 0.0, max });
+        assert!(found.is_some_and(|t| (t - 5.0).abs() < 1e-5), "{max}: {found:?}");
+    }
+}
+
+/// A ball far from the origin, whose box is rounded, is entered, not left.
+#[test]
+fn the_box_of_a_solid_cuts_nothing_off() {
+    let far = solid(
+        "Solid(union: [Sphere(center: (1000, 0, 0), radius: 0.1), Implicit(f: \"x + 1000\", bounds: Box(min: (1000.2, \
+            0, 0), max: (1000.3, 1, 1)))])",
+    );
+    let Shape::Solid(far) = &far else { panic!("a solid") };
+    let ray = Ray { origin: Vec3::new(1000.5, 0.0, 0.0), direction: Vec3::NEG_X };
+    let found = far.closest_crossing(&Probe::new(ray), Interval { min: 0.0, max: 9.0 });
+    assert!(found.is_some_and(|t| (t - 0.4).abs() < 1e-3), "{found:?}");
+    assert_eq!(found.map(|t| far.at_crossing(&ray, t).side), Some(Side::Front));
+}
+
 /// A ray that starts on the surface of a formula goes the way that its direction says.
 #[test]
 fn a_ray_may_start_where_a_formula_is_zero() {
