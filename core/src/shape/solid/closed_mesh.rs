@@ -73,12 +73,13 @@ impl ClosedMesh {
             1 => return Err("1 edge is not shared by two triangles of the same orientation".to_owned()),
             count => return Err(format!("{count} edges are not shared by two triangles of the same orientation")),
         }
-        let volume = six_fold_volume(&file);
+        let mesh = Mesh::of_checked(file);
+        let volume = six_fold_volume(&mesh);
         if volume == 0.0 {
             return Err("its volume is 0".to_owned());
         }
-        let tree = TriangleTree::of(&file, corners, volume < 0.0);
-        Ok(Self { tree: Arc::new(tree), mesh: Arc::new(Mesh::of_checked(file)) })
+        let tree = TriangleTree::of(&mesh, corners, volume < 0.0);
+        Ok(Self { tree: Arc::new(tree), mesh: Arc::new(mesh) })
     }
 
     /// Returns the mesh scaled, rotated and moved; it shares its triangles and their tree.
@@ -129,16 +130,11 @@ impl ClosedMesh {
 }
 
 impl TriangleTree {
-    fn of(file: &MeshFile, corners: Vec<[u32; 3]>, is_inside_out: bool) -> Self {
-        let bounds = |index: usize| Bounds::of(positions_of(file, index));
+    fn of(mesh: &Mesh, corners: Vec<[u32; 3]>, is_inside_out: bool) -> Self {
+        let bounds = |index: usize| Bounds::of(mesh.file_corners(index as u32));
         let Ok((bvh, leaves)) = Bvh::of_boxes(corners.len(), bounds, &|_| Ok::<_, Infallible>(()));
         Self { bvh, leaves, corners, is_inside_out }
     }
-}
-
-/// Returns the corners of a triangle.
-fn positions_of(file: &MeshFile, triangle: usize) -> [Vec3; 3] {
-    file.triangles()[triangle].map(|corner| file.positions()[corner as usize])
 }
 
 /// Returns the corners of all triangles by numbers that are equal for equal coordinates.
@@ -177,13 +173,13 @@ fn open_edge_count(triangles: &[[u32; 3]]) -> usize {
 ///
 /// It is the sum over the tetrahedra between the triangles and one corner.
 // The origin would not do: far from it, the products of coordinates cancel each other.
-fn six_fold_volume(file: &MeshFile) -> f64 {
-    let [apex, ..] = positions_of(file, 0).map(Vec3::as_dvec3);
+fn six_fold_volume(mesh: &Mesh) -> f64 {
+    let [apex, ..] = mesh.file_corners(0).map(Vec3::as_dvec3);
     let of_triangle = |index| {
-        let [a, b, c] = positions_of(file, index).map(|corner| corner.as_dvec3() - apex);
+        let [a, b, c] = mesh.file_corners(index).map(|corner| corner.as_dvec3() - apex);
         a.dot(b.cross(c))
     };
-    (0..file.triangles().len()).map(of_triangle).sum()
+    (0..mesh.triangle_count()).map(of_triangle).sum()
 }
 
 /// Returns the crossings at which a line changes between outside and inside of a mesh.
@@ -254,9 +250,6 @@ struct Traversal<'a> {
     stack: &'a mut RayStack,
 }
 
-/// All that is in front of a ray.
-const IN_FRONT: Interval = Interval { min: 0.0, max: f32::MAX };
-
 impl SimdKernel for Traversal<'_> {
     type Output = ();
 
@@ -266,7 +259,7 @@ impl SimdKernel for Traversal<'_> {
         let bvh = &search.mesh.tree.bvh;
         let rays = Rays::<N>::load(&EightRays::of(&[search.probe.ray]), false);
         if let Some(root) = bvh.root() {
-            bvh.visit_by_single_ray(root, &rays, IN_FRONT, stack, &mut search);
+            bvh.visit_by_single_ray(root, &rays, Interval::IN_FRONT, stack, &mut search);
         }
     }
 }
@@ -282,7 +275,7 @@ impl LeafVisitor for LineSearch<'_> {
         let TriangleTree { leaves, is_inside_out, .. } = &*self.mesh.tree;
         for &index in leaves.boxes(leaf) {
             let corners = self.mesh.mesh.file_corners(index);
-            if let Some(t) = Triangle::unchecked(corners).closest_crossing(self.probe, IN_FRONT) {
+            if let Some(t) = Triangle::unchecked(corners).closest_crossing(self.probe, Interval::IN_FRONT) {
                 let Ray { origin, direction } = self.probe.ray;
                 let (origin, direction, [a, b, c]) =
                     (origin.as_dvec3(), direction.as_dvec3(), corners.map(Vec3::as_dvec3));
@@ -297,7 +290,7 @@ impl LeafVisitor for LineSearch<'_> {
                 }
             }
         }
-        ControlFlow::Continue(f32::MAX)
+        ControlFlow::Continue(Interval::IN_FRONT.max)
     }
 }
 
