@@ -54,17 +54,26 @@ pub(super) fn attributes_imply_truecolor(attributes: &[u16]) -> bool {
     }
 }
 
-/// Names, in lower case, of terminals in which quadrants and eighths of blocks are better than
-/// half blocks.
-// Measured on screenshots of kitty 0.26, Alacritty 0.11, foot 1.13 and xterm 379 against the picture in the pixels of
-// the screen: docs/glyphs.md has the figures. st 0.9 shows them as well, but tells its name in `TERM` only.
-const NAMES_WITH_BLOCK_PARTS: [&str; 4] = ["alacritty", "foot", "kitty", "xterm"];
+/// Terminals in which quadrants and eighths of blocks are better than half blocks.
+///
+/// Each has its name in lower case, and the oldest version that was measured.
+// Measured on screenshots against the picture in the pixels of the screen: docs/glyphs.md has the figures. st 0.9 shows
+// them as well, but tells its name in `TERM` only.
+const BLOCK_PARTS_SINCE: [(&str, [u32; 2]); 4] =
+    [("alacritty", [0, 11]), ("foot", [1, 13]), ("kitty", [0, 26]), ("xterm", [379, 0])];
 
 /// Returns whether a terminal with this name and version (XTVERSION) shows parts of blocks well.
 pub(super) fn name_implies_block_parts(name: &str) -> bool {
     let name = name.to_lowercase();
     // The version follows in parentheses or after a space. `xterm.js` is another terminal.
-    NAMES_WITH_BLOCK_PARTS.iter().any(|known| name.strip_prefix(known).is_some_and(|rest| rest.starts_with(['(', ' '])))
+    let version = |known| name.strip_prefix(known)?.strip_prefix(['(', ' ']).map(leading_version);
+    BLOCK_PARTS_SINCE.iter().any(|&(known, oldest)| version(known).is_some_and(|version| version >= oldest))
+}
+
+/// Returns the first two numbers of a version; 0 for each that is missing.
+fn leading_version(text: &str) -> [u32; 2] {
+    let mut numbers = text.split(|character: char| !character.is_ascii_digit()).map(|digits| digits.parse().ok());
+    [0; 2].map(|missing| numbers.next().flatten().unwrap_or(missing))
 }
 
 /// Returns whether a terminal with these secondary device attributes (DA2) shows parts of blocks
