@@ -39,6 +39,9 @@ struct CellColorSums {
     parts: [Sum; 8],
     rows: [Sum; 8],
     columns: [Sum; 4],
+    /// The least and the greatest value of each channel.
+    least: [u8; 3],
+    greatest: [u8; 3],
 }
 
 /// A choice of the ink of a cell: its glyph, and the sum and number of the pixels inside.
@@ -57,6 +60,74 @@ enum Coverage {
     Eighths(char),
 }
 
+impl CellColorSums {
+    /// Returns whether no two pixels differ by more than is drawn.
+    // The means of any two sets of pixels then differ by no more either.
+    fn is_flat(&self) -> bool {
+        self.greatest.iter().zip(self.least).all(|(greatest, least)| greatest - least <= MAX_HIDDEN_DIFFERENCE)
+    }
+}
+
+/// For each channel, the sum over the parts of each mask without the upper left part.
+///
+/// Bit 0 of an index is the second part.
+struct MaskSums<const N: usize>([[i32; N]; 3]);
+
+/// The largest number of masks without the upper left part: that of a cell with eight parts.
+const MASKS: usize = 128;
+
+impl<const N: usize> MaskSums<N> {
+    /// Returns the sums for a cell whose parts have `N` masks.
+    fn of(parts: &[Sum]) -> Self {
+        let mut sums = [[0; N]; 3];
+        for (bit, part) in parts[1..].iter().enumerate() {
+            // The sums for masks with this as the highest bit are those for the masks below it, plus the part's sum.
+            for (sums, part) in sums.iter_mut().zip(part) {
+                let (below, with) = sums.split_at_mut(1 << bit);
+                with.iter_mut().zip(below).for_each(|(with, below)| *with = *below + part.cast_signed());
+            }
+        }
+        Self(sums)
+    }
+
+    /// Returns the mask with the greatest gain, and its sum; 0 if there is no gain.
+    ///
+    /// Of several equal masks it is the first.
+    // All gains are computed before they are compared, so that the loop is vectorised: octants take 0.7 instead of 1.3
+    // us per cell.
+    fn best(&self, total: Sum, pixels: u32, part_pixels: u32) -> (usize, Sum) {
+        let [reds, greens, blues] = &self.0;
+        let (total, pixels) = (total.map(u32::cast_signed), pixels.cast_signed());
+        let mut gains = [0.0_f32; N];
+        let channels = reds.iter().zip(greens).zip(blues);
+        for ((gain, parts), ((&red, &green), &blue)) in gains.iter_mut().zip(&PART_COUNTS).zip(channels) {
+            let count = parts * part_pixels.cast_signed();
+            let [r, g, b] = [[red, total[0]], [green, total[1]], [blue, total[2]]]
+                .map(|[sum, total]| (pixels * sum - count * total) as f32);
+            // The empty mask has neither a sum nor a count: its gain is not a number, and never the greatest.
+            *gain = (r * r + g * g + b * b) / (count * (pixels - count)) as f32;
+        }
+        let mut best = (0, 0.0);
+        for (mask, &gain) in gains.iter().enumerate() {
+            if gain > best.1 {
+                best = (mask, gain);
+            }
+        }
+        (best.0, self.0.map(|sums| sums[best.0].cast_unsigned()))
+    }
+}
+
+/// The number of parts in each mask.
+const PART_COUNTS: [i32; MASKS] = {
+    let mut counts = [0; MASKS];
+    let mut mask = 0;
+    while mask < MASKS {
+        counts[mask] = mask.count_ones().cast_signed();
+        mask += 1;
+    }
+    counts
+};
+
 impl Mosaic {
     /// Returns the number of pixels in a cell, across and down.
     pub(super) const fn pixels_per_cell(&self) -> (u32, u32) {
@@ -70,7 +141,7 @@ impl Mosaic {
                 let sums = self.cell_color_sums(picture, column, row);
                 *grid.cell_mut(column, row) = match inks {
                     InkConverter::Monochrome => self.dithered(&sums, column, row),
-                    _ => self.colored(&sums, column, row, inks),
+                    _ => self.colored(&sums, [column, row], inks),
                 };
             }
         }
@@ -80,7 +151,7 @@ impl Mosaic {
     fn cell_color_sums(&self, picture: &Picture, column: u16, row: u16) -> CellColorSums {
         let (across, down) = self.pixels_per_cell();
         let (left, top) = (u32::from(column) * across, u32::from(row) * down);
-        let mut sums = CellColorSums::default();
+        let mut sums = CellColorSums { least: [u8::MAX; 3], ..CellColorSums::default() };
         for y in 0..down {
             let line = (top + y).min(picture.height() - 1) as usize * picture.width() as usize;
             let parts = y / self.part_pixels[1] * self.parts[0];
@@ -90,6 +161,10 @@ impl Mosaic {
                 add(&mut sums.parts[part], pixel);
                 add(&mut sums.rows[y as usize], pixel);
                 add(&mut sums.columns[x as usize], pixel);
+                for (channel, value) in [pixel.r, pixel.g, pixel.b].into_iter().enumerate() {
+                    sums.least[channel] = sums.least[channel].min(value);
+                    sums.greatest[channel] = sums.greatest[channel].max(value);
+                }
             }
         }
         sums
@@ -97,10 +172,13 @@ impl Mosaic {
 
     /// Returns the cell in the two best colours: a space if they hardly differ.
     // A full block is never used, because fonts leave hairlines between full blocks.
-    fn colored(&self, sums: &CellColorSums, column: u16, row: u16, inks: &mut InkConverter) -> Cell {
+    fn colored(&self, sums: &CellColorSums, [column, row]: [u16; 2], inks: &mut InkConverter) -> Cell {
         let (x, y) = (usize::from(column), 2 * usize::from(row));
         let (across, down) = self.pixels_per_cell();
         let (total, pixels) = (sums.rows.into_iter().fold([0; 3], plus), across * down);
+        if sums.is_flat() {
+            return Cell::new(' ', Ink::Default, inks.ink_at(mean(total, pixels), x, y));
+        }
         let InkChoice { shape, sum, count, .. } = self.best(sums, total, pixels);
         let [fg, bg] = [mean(sum, count), mean(minus(total, sum), pixels - count)];
         if count == 0
@@ -134,12 +212,13 @@ impl Mosaic {
             }
         };
         let part_pixels = self.part_pixels[0] * self.part_pixels[1];
-        let mut inside = [[0; 3]; 128];
-        for half in 1..1_usize << (self.parts[0] * self.parts[1] - 1) {
-            // The sum for a mask is that of the mask without its lowest bit, plus the sum of that bit's part.
-            let rest = half & (half - 1);
-            inside[half] = plus(inside[rest], sums.parts[half.trailing_zeros() as usize + 1]);
-            consider(Coverage::Parts(half << 1), inside[half], half.count_ones() * part_pixels);
+        let (half, sum) = match self.parts {
+            [2, 2] => MaskSums::<8>::of(&sums.parts[..4]).best(total, pixels, part_pixels),
+            [2, 3] => MaskSums::<32>::of(&sums.parts[..6]).best(total, pixels, part_pixels),
+            _ => MaskSums::<MASKS>::of(&sums.parts).best(total, pixels, part_pixels),
+        };
+        if half > 0 {
+            consider(Coverage::Parts(half << 1), sum, half.count_ones() * part_pixels);
         }
         if self.has_eighths {
             let mut lower = [0; 3];
