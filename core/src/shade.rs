@@ -209,7 +209,8 @@ fn incident_light_of_part<N: Number>(
     normal: Vector<N>,
 ) -> (N::Mask, IncidentLight<N>) {
     let (reaches, incident) = light_from(light, light.to_part(position, part), normal);
-    (reaches, IncidentLight { light: incident.light.map(|channel| channel * N::splat(PART_SHARE)), ..incident })
+    let (share, [r, g, b]) = (N::splat(PART_SHARE), incident.light);
+    (reaches, IncidentLight { light: [r * share, g * share, b * share], ..incident })
 }
 
 /// Returns the mask of points that face a light, and the light that arrives there along `to_light`.
@@ -225,9 +226,9 @@ fn light_from<N: Number>(light: &Light, to_light: Vector<N>, normal: Vector<N>) 
         Some(shines) => faces & shines,
         None => faces,
     };
-    let light =
-        light.irradiance_over_pi(l, distance_squared, cosine).map(|channel| channel.min(N::splat(MAX_IRRADIANCE)));
-    (reaches, IncidentLight { l, distance, cosine, light })
+    // Written out, because closures of `map` that are not inlined have no target features: they took 3 % of a frame.
+    let ([r, g, b], most) = (light.irradiance_over_pi(l, distance_squared, cosine), N::splat(MAX_IRRADIANCE));
+    (reaches, IncidentLight { l, distance, cosine, light: [r.min(most), g.min(most), b.min(most)] })
 }
 
 /// The largest arriving light per channel and light source.

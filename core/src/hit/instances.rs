@@ -138,7 +138,8 @@ impl<N: Lanes, const ANY: bool, W: Observation> LeafVisitor for InMesh<'_, N, AN
     #[inline(always)]
     fn visit(&mut self, leaf: usize) -> ControlFlow<(), f32> {
         let shapes = self.tree.leaves[leaf].one_per_lane::<N>();
-        let crossing = shapes.first_crossing_with_hint(self.rays, [self.within.min, self.within.max].map(N::splat));
+        let crossing =
+            shapes.first_crossing_with_hint(self.rays, [N::splat(self.within.min), N::splat(self.within.max)]);
         if W::ENABLED {
             self.report_tests(leaf, crossing);
         }

@@ -130,7 +130,7 @@ impl<'p, N: Lanes, const ANY: bool, W: Observation> SingleRay<'p, N, ANY, W> {
     #[inline(always)]
     fn test_leaf<S: SoaLeaf>(&mut self, rays: &Rays<N>, leaf: usize, tree: &Tree<S>) {
         let shapes = tree.leaves[leaf].one_per_lane::<N>();
-        let crossing = shapes.first_crossing_with_hint(rays, [self.within.min, self.within.max].map(N::splat));
+        let crossing = shapes.first_crossing_with_hint(rays, [N::splat(self.within.min), N::splat(self.within.max)]);
         if W::ENABLED {
             self.report_tests(tree.primitives(leaf), crossing);
         }

@@ -71,7 +71,8 @@ impl LightSource for Globe {
         let (sine_squared, edge) = self.edge(distance_squared);
         let below_one = part.height * (sine_squared / (one + edge));
         let (cosine, sine) = (one - below_one, (below_one * (N::splat(2.0) - below_one)).sqrt());
-        let ([u, v], [a, b]) = (towards.perpendicular_pair(), part.direction.map(|coordinate| coordinate * sine));
+        let ([u, v], [a, b]) = (towards.perpendicular_pair(), part.direction);
+        let (a, b) = (a * sine, b * sine);
         let direction = towards * cosine + u * a + v * b;
         direction * distance
     }

@@ -75,9 +75,9 @@ impl LightSource for Panel {
 
     #[inline(always)]
     fn to_part<N: Number>(&self, point: Vector<N>, part: &PartPosition<N>) -> Vector<N> {
-        let [x, y] = part.square.map(|coordinate| coordinate - N::splat(0.5));
-        let [a, b] = self.edges.map(Vector::splat);
-        self.to_light(point) + (a * x + b * y)
+        let ([x, y], half) = (part.square, N::splat(0.5));
+        let [a, b] = [Vector::splat(self.edges[0]), Vector::splat(self.edges[1])];
+        self.to_light(point) + (a * (x - half) + b * (y - half))
     }
 
     /// Returns a part just below 1, so that an object in the same place does not block the light.

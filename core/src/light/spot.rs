@@ -92,7 +92,8 @@ impl SpotLight {
     /// `l` is the unit vector to the light.
     #[inline(always)]
     fn share<N: Number>(&self, l: Vector<N>) -> N {
-        let [zero, half, one, two, three] = [0.0, 0.5, 1.0, 2.0, 3.0].map(N::splat);
+        let (zero, half, one) = (N::splat(0.0), N::splat(0.5), N::splat(1.0));
+        let (two, three) = (N::splat(2.0), N::splat(3.0));
         let apart = Vector::splat(self.axis) - l;
         // 1 minus the cosine of the angle between two unit vectors is half the square of their distance.
         let below_one = half * apart.dot(apart);

@@ -109,7 +109,8 @@ impl LightSource for Sun {
         // A solid angle is proportional to the height on the sphere (Archimedes), here the cosine.
         let below_one = part.height * N::splat(self.disc.below_one);
         let (cosine, sine) = (N::splat(1.0) - below_one, (below_one * (N::splat(2.0) - below_one)).sqrt());
-        let ([u, v], [a, b]) = (towards.perpendicular_pair(), part.direction.map(|coordinate| coordinate * sine));
+        let ([u, v], [a, b]) = (towards.perpendicular_pair(), part.direction);
+        let (a, b) = (a * sine, b * sine);
         towards * cosine + u * a + v * b
     }
 

@@ -78,7 +78,7 @@ impl Reflecting for Noise {
 /// An octave fades to its mean as the footprint grows to four of its cells along an axis.
 #[inline(always)]
 fn noise<N: Number>([x, y]: [N; 2], footprint: [N; 2]) -> N {
-    let [half, two, three] = [0.5, 2.0, 3.0].map(N::splat);
+    let (half, two, three) = (N::splat(0.5), N::splat(2.0), N::splat(3.0));
     let mut sum = half;
     for Octave { cells, weight, shift } in OCTAVES {
         let (cells, shift) = (N::splat(cells), N::splat(shift));
@@ -104,7 +104,7 @@ fn remaining<N: Number>(cells: N) -> N {
 /// Each corner of a cell has a random number. Between corners the noise is a smooth mean of them.
 #[inline(always)]
 fn cell_noise<N: Number>([x, y]: [N; 2]) -> N {
-    let [one, two, three] = [1.0, 2.0, 3.0].map(N::splat);
+    let (one, two, three) = (N::splat(1.0), N::splat(2.0), N::splat(3.0));
     let (left, bottom) = (x.floor(), y.floor());
     // For an infinite place the difference is NaN, for which `max` returns 0.
     let zero = N::splat(0.0);

@@ -55,7 +55,8 @@ impl PartShifts {
             let sum = N::splat(start) + N::load(shift);
             sum - sum.floor()
         };
-        let ([x, y], [cosine, sine]) = (base.direction.map(N::splat), [N::load(&self.turn[0]), N::load(&self.turn[1])]);
+        let [x, y] = [N::splat(base.direction[0]), N::splat(base.direction[1])];
+        let [cosine, sine] = [N::load(&self.turn[0]), N::load(&self.turn[1])];
         PartPosition {
             square: [wrapped(base.square[0], &self.square[0]), wrapped(base.square[1], &self.square[1])],
             direction: [x * cosine - y * sine, x * sine + y * cosine],

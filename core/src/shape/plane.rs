@@ -123,7 +123,7 @@ impl Surface for Plane {
         _: impl Fn() -> Vector<N>,
         direction_steps: [Vec3; 2],
     ) -> [N; 2] {
-        let [normal, u, v] = [self.normal, self.u, self.v].map(Vector::splat);
+        let (normal, u, v) = (Vector::splat(self.normal), Vector::splat(self.u), Vector::splat(self.v));
         flat_footprint(direction, t, normal, [u, v], direction_steps)
     }
 

@@ -341,7 +341,8 @@ impl Triangle {
     }
 
     fn as_one_lane(&self) -> TriangleN<f32> {
-        TriangleN(self.corners.map(Vector::splat))
+        let [a, b, c] = self.corners;
+        TriangleN([Vector::splat(a), Vector::splat(b), Vector::splat(c)])
     }
 }
 
