@@ -95,6 +95,15 @@ macro_rules! materials {
                 }
             }
 
+            /// Returns whether the reflectance differs from point to point by a pattern.
+            #[inline(always)]
+            pub(crate) fn is_patterned(&self) -> bool {
+                match self {
+                    $(Self::$material(_) => $material::PATTERN.is_some(),)*
+                    Self::Own => false,
+                }
+            }
+
             /// Returns the adjective of [`Reflecting::described`]; `None` for [`Own`](Self::Own).
             pub(crate) fn described(&self, name: fn(LinearRgb) -> &'static str) -> Option<String> {
                 match self {

@@ -140,9 +140,14 @@ impl Reflect<'_> {
             }
             (material, shape) => {
                 let uv = [N::load(&points.uv[0]), N::load(&points.uv[1])];
-                let (direction, t) = (self.rays[at].direction.load(), N::load(&self.hits[at].t));
-                let normal = || points.geometric_normal.load();
-                material.reflectance(uv, shape.footprint(direction, t, normal, self.direction_steps))
+                let mut footprint = [N::splat(0.0); 2];
+                // The footprint on a placed box or torus takes longer than the rest of shading.
+                if material.is_patterned() {
+                    let (direction, t) = (self.rays[at].direction.load(), N::load(&self.hits[at].t));
+                    let normal = || points.geometric_normal.load();
+                    footprint = shape.footprint(direction, t, normal, self.direction_steps);
+                }
+                material.reflectance(uv, footprint)
             }
         }
     }
