@@ -213,8 +213,9 @@
 //! `hit` finds the closest hits: among the unbounded objects, then in the trees (`accel`, over `bvh`), whose leaves
 //! hold primitives of `shape`s -> `shade` computes the surface points (`shade::points`) -> it traces shadow rays (`hit`
 //! again) and adds up the light of the `light`s that reach the points (`shade::arriving`) -> the `material` reflects
-//! it -> where a `finish` mirrors or refracts, further rays are traced and shaded (`shade::bounces`). `render::tiles`
-//! writes a tile's light into the `framebuffer` -> `tone` -> `cell` -> `encode` or `export`.
+//! it -> the `finish` adds highlights and glows and mirrors rays (`shade::finishes`), and bounced rays are traced and
+//! shaded (`shade::bounces`). `render::tiles` writes a tile's light into the `framebuffer` -> `tone` -> `cell` ->
+//! `encode` or `export`.
 //!
 //! # One scene with a typo
 //!

@@ -114,7 +114,8 @@ impl Finish {
             Self::Matte | Self::Shiny { .. } | Self::Glowing { .. } => 0.0,
             Self::Metal { .. } => 1.0,
             Self::Polished { index } | Self::Glass { index } => {
-                fresnel(cosine_of_incidence(ray.direction, normal), 1.0 / index)
+                let [direction, normal] = [ray.direction, normal].map(Vector::<f32>::splat);
+                mirrored_part(direction, normal, 1.0 / index)
             }
         }
     }
@@ -133,31 +134,45 @@ impl Finish {
     }
 }
 
+/// Returns the part of the light along `direction` that the boundary between two media reflects.
+///
+/// `normal` is a unit vector on the side that the direction comes from, and `ratio` is that of [`fresnel`].
+#[inline(always)]
+pub(crate) fn mirrored_part<N: Number>(direction: Vector<N>, normal: Vector<N>, ratio: N) -> N {
+    fresnel(cosine_of_incidence(direction, normal), ratio)
+}
+
 /// Returns the part of unpolarized light that the boundary between two media reflects.
 ///
 /// `cosine` is that of the angle of incidence, from 0 to 1, and `ratio` the index of refraction of the first medium
 /// over that of the second. The part is 1 for total internal reflection (Hecht, 4.6 and 4.7).
-pub fn fresnel(cosine: f32, ratio: f32) -> f32 {
-    let Some(refracted) = refracted_cosine(cosine, ratio) else { return 1.0 };
+#[inline(always)]
+pub fn fresnel<N: Number>(cosine: N, ratio: N) -> N {
+    let squared = squared_refracted_cosine(cosine, ratio);
+    let refracted = squared.sqrt();
     let perpendicular = (ratio * cosine - refracted) / (ratio * cosine + refracted);
     let parallel = (cosine - ratio * refracted) / (cosine + ratio * refracted);
-    let reflected = 0.5 * (perpendicular * perpendicular + parallel * parallel);
+    let reflected = N::splat(0.5) * (perpendicular * perpendicular + parallel * parallel);
+    let (zero, one) = (N::splat(0.0), N::splat(1.0));
     // Both quotients are 0 / 0 for a ratio of 1 at grazing incidence, where nothing is reflected.
-    if reflected <= 1.0 { reflected } else { 0.0 }
+    let reflected = N::select(reflected.le(one), reflected, zero);
+    N::select(zero.le(squared), reflected, one)
 }
 
-/// Returns the cosine of the angle of refraction, or `None` for total internal reflection.
-fn refracted_cosine(cosine: f32, ratio: f32) -> Option<f32> {
+/// Returns the square of the cosine of the angle of refraction; negative or NaN for total internal
+/// reflection.
+#[inline(always)]
+fn squared_refracted_cosine<N: Number>(cosine: N, ratio: N) -> N {
     // This form is exact for a ratio of 1, and keeps small cosines, which `1 - cosine * cosine` loses.
-    let squared = (1.0 - ratio * ratio) + ratio * ratio * (cosine * cosine);
-    (squared >= 0.0).then(|| squared.sqrt())
+    (N::splat(1.0) - ratio * ratio) + ratio * ratio * (cosine * cosine)
 }
 
 /// Returns the mirror image of a direction; the length stays the same.
 ///
 /// `normal` is a unit vector on the side that the direction comes from.
-pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
-    direction - normal * (2.0 * direction.dot(normal))
+#[inline(always)]
+pub fn reflect<N: Number>(direction: Vector<N>, normal: Vector<N>) -> Vector<N> {
+    direction - normal * (N::splat(2.0) * direction.dot(normal))
 }
 
 /// Returns the direction after refraction by Snell's law, or `None` for total internal reflection.
@@ -166,8 +181,9 @@ pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
 /// of [`fresnel`].
 pub fn refract(direction: Vec3, normal: Vec3, ratio: f32) -> Option<Vec3> {
     let length = direction.dot(direction).sqrt();
-    let cosine = cosine_of_incidence(direction, normal);
-    let refracted = refracted_cosine(cosine, ratio)?;
+    let cosine = cosine_of_incidence(Vector::<f32>::splat(direction), Vector::splat(normal));
+    let squared = squared_refracted_cosine(cosine, ratio);
+    let refracted = (squared >= 0.0).then(|| squared.sqrt())?;
     Some(direction * ratio + normal * (length * (ratio * cosine - refracted)))
 }
 
@@ -178,31 +194,34 @@ const MAX_HIGHLIGHT: f32 = 1e18;
 ///
 /// h is the unit vector halfway between l and the direction to the eye. `direction` is that of the ray from the eye,
 /// `normal` n, and `exponent` p.
-pub(crate) fn highlight(
+#[inline(always)]
+pub(crate) fn highlight<N: Number>(
     light: &Light,
-    to_light: Vector<f32>,
-    direction: Vec3,
-    normal: Vec3,
+    to_light: Vector<N>,
+    direction: Vector<N>,
+    normal: Vector<N>,
     exponent: u32,
-) -> [f32; 3] {
+) -> [N; 3] {
+    let one = N::splat(1.0);
     let distance_squared = to_light.dot(to_light);
-    let l = to_light * (1.0 / distance_squared.sqrt());
-    let halfway = Vec3::from(l) - direction * (1.0 / direction.dot(direction).sqrt());
+    let l = to_light * (one / distance_squared.sqrt());
+    let halfway = l - direction * (one / direction.dot(direction).sqrt());
     let cosine = halfway.dot(normal) / halfway.dot(halfway).sqrt();
-    let power = whole_power(<f32 as Number>::max(cosine, 0.0), exponent);
-    light
-        .irradiance_over_pi(l, distance_squared, 1.0)
-        .map(|channel| <f32 as Number>::min(channel, MAX_HIGHLIGHT) * power)
+    let power = whole_power(cosine.max(N::splat(0.0)), exponent);
+    let [r, g, b] = light.irradiance_over_pi(l, distance_squared, one);
+    let most = N::splat(MAX_HIGHLIGHT);
+    [r.min(most) * power, g.min(most) * power, b.min(most) * power]
 }
 
 /// Returns `base` raised to a power by repeated squaring, in the same order on every CPU.
-fn whole_power(base: f32, mut exponent: u32) -> f32 {
-    let (mut power, mut square) = (1.0, base);
+#[inline(always)]
+fn whole_power<N: Number>(base: N, mut exponent: u32) -> N {
+    let (mut power, mut square) = (N::splat(1.0), base);
     while exponent > 0 {
         if exponent % 2 == 1 {
-            power *= square;
+            power = power * square;
         }
-        square *= square;
+        square = square * square;
         exponent /= 2;
     }
     power
@@ -223,10 +242,13 @@ pub(crate) fn facet_normal(normal: Vec3, roughness: f32, part: &PartPosition<f32
 }
 
 /// Returns the cosine of the angle of incidence, from 0 to 1.
-pub fn cosine_of_incidence(direction: Vec3, normal: Vec3) -> f32 {
+#[inline(always)]
+fn cosine_of_incidence<N: Number>(direction: Vector<N>, normal: Vector<N>) -> N {
     let cosine = -direction.dot(normal) / direction.dot(direction).sqrt();
-    // `clamp` keeps NaN, for which `refracted_cosine` returns `None`: total reflection.
-    cosine.clamp(0.0, 1.0)
+    let (zero, one) = (N::splat(0.0), N::splat(1.0));
+    // The comparisons keep NaN, for which `fresnel` returns total reflection.
+    let cosine = N::select(cosine.lt(zero), zero, cosine);
+    N::select(one.lt(cosine), one, cosine)
 }
 
 /// Checks an index of refraction.

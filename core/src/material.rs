@@ -34,7 +34,7 @@ pub use stripes::{Stripes, WrittenStripes};
 // kernels.
 pub trait Reflecting: InSceneFile + Copy {
     /// The name of the material's pattern for messages, such as "its squares"; `None` for a plain
-    /// material.
+    /// material, whose reflectance ignores coordinates and footprint.
     ///
     /// Only a surface that has surface coordinates can have a pattern.
     const PATTERN: Option<&'static str> = None;

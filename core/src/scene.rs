@@ -161,7 +161,7 @@ impl ShadingNeeds {
     fn of(objects: &[Object]) -> Self {
         Self {
             bounces: !objects.iter().all(Object::is_matte),
-            transparency: objects.iter().any(|object| object.opacity < 1.0 || object.is_blended()),
+            transparency: !objects.iter().all(Object::is_opaque),
             highlights: objects.iter().any(|object| matches!(object.finish, Finish::Shiny { .. })),
             holes: objects.iter().any(Object::has_holes),
             emission: objects.iter().any(Object::has_emission),

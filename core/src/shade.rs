@@ -29,16 +29,32 @@ use glam::Vec3;
 
 mod arriving;
 mod bounces;
+mod finishes;
 mod light_parts;
 mod points;
 mod transparent_shadows;
 
 pub use arriving::{EightArriving, ShadowRays, Surfaces, arriving_light, count, shadow_rays};
-pub use bounces::{Bounces, Generation};
+pub use bounces::Bounces;
 pub use points::{EightPoints, surface_points};
 
 /// The light along eight rays, per channel.
 pub type EightLights = [F32x8; 3];
+
+/// The results of the steps for one generation of rays, from the rays to the shadow rays of their
+/// surface points.
+pub struct Generation<'a> {
+    /// The rays.
+    pub rays: &'a [EightRays],
+    /// The closest hits.
+    pub hits: &'a [EightHits],
+    /// The surface points of the hits.
+    pub points: &'a [EightPoints],
+    /// The shadow rays of the points, with the highlights that they found.
+    pub shadows: &'a ShadowRays,
+    /// The number of each ray's sample in its pixel; empty if all are 0.
+    pub samples: &'a [u32],
+}
 
 /// Returns the light along one of eight rays.
 #[inline(always)]
@@ -61,7 +77,8 @@ pub fn reflected_light(
     lights: &mut Vec<EightLights>,
 ) {
     lights.clear();
-    simd::dispatch(Reflect { scene, rays, direction_steps, hits, points, arriving, lights });
+    let materials = MaterialsAtPoints { rays, direction_steps, hits, points };
+    simd::dispatch(Reflect { scene, materials, arriving, lights });
 }
 
 /// Adds the light that surfaces send out by the files of their meshes to the light along the rays.
@@ -83,10 +100,7 @@ pub fn add_emission(scene: &Scene, points: &[EightPoints], lights: &mut [EightLi
 /// The SIMD kernel of [`reflected_light`].
 struct Reflect<'w> {
     scene: &'w Scene,
-    rays: &'w [EightRays],
-    direction_steps: [Vec3; 2],
-    hits: &'w [EightHits],
-    points: &'w [EightPoints],
+    materials: MaterialsAtPoints<'w>,
     arriving: &'w [EightArriving],
     lights: &'w mut Vec<EightLights>,
 }
@@ -96,10 +110,10 @@ impl SimdKernel for Reflect<'_> {
 
     #[inline(always)]
     fn run<N: Lanes>(self) {
-        for (at, points) in self.points.iter().enumerate() {
+        for (at, points) in self.materials.points.iter().enumerate() {
             let mut light = [N::splat(0.0); 3];
             if points.hit_mask != ALL {
-                light = backgrounds(self.scene, self.rays[at].direction.load());
+                light = backgrounds(self.scene, self.materials.rays[at].direction.load());
             }
             // The loop is over the objects that were hit: most groups of eight rays hit a single object, whose material
             // is then evaluated for all lanes at once.
@@ -107,20 +121,28 @@ impl SimdKernel for Reflect<'_> {
             while remaining != 0 {
                 let object = points.ids.id(remaining.trailing_zeros() as usize % LANES).object;
                 let same = remaining & points.ids.mask_of_object::<N>(object);
-                let reflectance = self.reflectances::<N>(&self.scene.objects()[object as usize], at, same);
+                let reflectance = self.materials.reflectances::<N>(&self.scene.objects()[object as usize], at, same);
                 for (channel, light) in light.iter_mut().enumerate() {
                     let reflected = reflectance[channel] * N::load(&self.arriving[at].light[channel]);
                     *light = N::select(N::mask_from_bits(same), reflected, *light);
                 }
                 remaining &= !same;
             }
-            let [r, g, b] = light;
-            self.lights.push([r.store(), g.store(), b.store()]);
+            self.lights.push(stored(light));
         }
     }
 }
 
-impl Reflect<'_> {
+/// The materials at surface points, in arrays with an entry for each group of eight rays.
+struct MaterialsAtPoints<'w> {
+    rays: &'w [EightRays],
+    /// The differences in direction to the neighbouring eye rays, for footprints.
+    direction_steps: [Vec3; 2],
+    hits: &'w [EightHits],
+    points: &'w [EightPoints],
+}
+
+impl MaterialsAtPoints<'_> {
     /// Returns the reflectances of an object at the points of group `at`; lanes outside the mask
     /// `own` are unspecified.
     #[inline(always)]
@@ -136,7 +158,7 @@ impl Reflect<'_> {
                     let LinearRgb { r, g, b } = reflectance.unwrap_or(Material::DEFAULT_REFLECTANCE);
                     [channels[0].0[lane], channels[1].0[lane], channels[2].0[lane]] = [r, g, b];
                 }
-                [N::load(&channels[0]), N::load(&channels[1]), N::load(&channels[2])]
+                loaded(&channels)
             }
             (material, shape) => {
                 let uv = [N::load(&points.uv[0]), N::load(&points.uv[1])];
@@ -151,6 +173,23 @@ impl Reflect<'_> {
             }
         }
     }
+}
+
+// Written out: closures of `map` that are not inlined have no target features, so that their vectors pass through
+// memory.
+#[inline(always)]
+fn loaded<N: Lanes>([r, g, b]: &EightLights) -> [N; 3] {
+    [N::load(r), N::load(g), N::load(b)]
+}
+
+#[inline(always)]
+fn stored<N: Lanes>([r, g, b]: [N; 3]) -> EightLights {
+    [r.store(), g.store(), b.store()]
+}
+
+#[inline(always)]
+fn scaled<N: Number>([r, g, b]: [N; 3], factor: N) -> [N; 3] {
+    [r * factor, g * factor, b * factor]
 }
 
 /// The light that arrives at a point from one light source, if it is not blocked.
@@ -214,8 +253,7 @@ fn incident_light_of_part<N: Number>(
     normal: Vector<N>,
 ) -> (N::Mask, IncidentLight<N>) {
     let (reaches, incident) = light_from(light, light.to_part(position, part), normal);
-    let (share, [r, g, b]) = (N::splat(PART_SHARE), incident.light);
-    (reaches, IncidentLight { light: [r * share, g * share, b * share], ..incident })
+    (reaches, IncidentLight { light: scaled(incident.light, N::splat(PART_SHARE)), ..incident })
 }
 
 /// Returns the mask of points that face a light, and the light that arrives there along `to_light`.
@@ -231,7 +269,7 @@ fn light_from<N: Number>(light: &Light, to_light: Vector<N>, normal: Vector<N>) 
         Some(shines) => faces & shines,
         None => faces,
     };
-    // Written out, because closures of `map` that are not inlined have no target features: they took 3 % of a frame.
+    // Without `map`, as in `scaled`: its closures took 3 % of a frame.
     let ([r, g, b], most) = (light.irradiance_over_pi(l, distance_squared, cosine), N::splat(MAX_IRRADIANCE));
     (reaches, IncidentLight { l, distance, cosine, light: [r.min(most), g.min(most), b.min(most)] })
 }

@@ -1,4 +1,8 @@
 use super::*;
+use crate::color::LinearRgb;
+use crate::lanes::{F32x8, LANES, Lanes};
+use crate::light::PointLight;
+use crate::simd::{self, SimdKernel};
 
 fn degrees(angle: f64) -> Vec3 {
     let (sine, cosine) = libm::sincos(angle.to_radians());
@@ -26,8 +30,8 @@ fn fresnel_at_brewsters_angle_and_at_grazing_incidence() {
     let perpendicular = (1.0 - index * index) / (1.0 + index * index);
     let found = f64::from(fresnel(cosine as f32, (1.0 / index) as f32));
     assert!((found - 0.5 * perpendicular * perpendicular).abs() < 1e-6, "{found}");
-    assert_eq!(fresnel(0.0, 1.0 / 1.5), 1.0);
-    assert_eq!(fresnel(0.0, 1.0), 0.0);
+    assert_eq!(fresnel(0.0_f32, 1.0 / 1.5), 1.0);
+    assert_eq!(fresnel(0.0_f32, 1.0), 0.0);
 }
 
 /// sin a = n sin b (Snell), for rays into and out of glass.
@@ -57,7 +61,8 @@ fn total_internal_reflection_starts_at_the_critical_angle() {
 
 #[test]
 fn a_mirror_image_has_the_same_angle_on_the_other_side() {
-    assert_eq!(reflect(Vec3::new(3.0, -4.0, 1.0), Vec3::Y), Vec3::new(3.0, 4.0, 1.0));
+    let mirrored = reflect(Vector::<f32>::splat(Vec3::new(3.0, -4.0, 1.0)), Vector::splat(Vec3::Y));
+    assert_eq!(Vec3::from(mirrored), Vec3::new(3.0, 4.0, 1.0));
 }
 
 #[test]
@@ -79,5 +84,51 @@ fn half_of_the_facets_are_within_alpha() {
         let tangent = (1.0 / (facet.dot(normal) * facet.dot(normal)) - 1.0).sqrt();
         assert!((tangent - 0.25).abs() < 1e-3, "{normal}: {tangent}");
         assert!((facet_normal(normal, 0.0, &part) - normal).length() < 1e-6);
+    }
+}
+
+/// The mirrored part, the mirrored direction and a highlight of eight rays.
+struct OfEightRays<'w> {
+    directions: &'w Vector<F32x8>,
+    normals: &'w Vector<F32x8>,
+    ratio: f32,
+}
+
+impl SimdKernel for OfEightRays<'_> {
+    type Output = [F32x8; 7];
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) -> Self::Output {
+        let (direction, normal) = (self.directions.load::<N>(), self.normals.load());
+        let part = mirrored_part(direction, normal, N::splat(self.ratio));
+        let Vector { x, y, z } = reflect(direction, normal);
+        let light = PointLight::new(Vec3::new(1.0, 4.0, -2.0), LinearRgb::new(1.0, 2.0, 3.0)).expect("a light");
+        let light = Light::from(light);
+        let [r, g, b] = highlight(&light, light.to_light(normal), direction, normal, 37);
+        [part, x, y, z, r, g, b].map(N::store)
+    }
+}
+
+/// Eight rays have the bits of single ones, also without a direction and at total reflection.
+#[test]
+fn finishes_of_all_lanes_have_the_bits_of_single_rays() {
+    let mut directions = [Vec3::ZERO; LANES];
+    for (lane, direction) in directions.iter_mut().enumerate().skip(1) {
+        *direction = degrees(15.0 * lane as f64 - 15.0) * lane as f32;
+    }
+    let normals = [Vec3::Y, Vec3::Y, Vec3::Y, Vec3::new(0.6, 0.8, 0.0), Vec3::Y, Vec3::Z, Vec3::Y, Vec3::NEG_Y];
+    let [of_all, normal_of_all] = [directions, normals].map(Vector::of);
+    for ratio in [1.0 / 1.5, 1.0, 1.5] {
+        let eight = || OfEightRays { directions: &of_all, normals: &normal_of_all, ratio };
+        let (array, registers) = (simd::run_scalar(eight()), simd::dispatch(eight()));
+        for lane in 0..LANES {
+            let [directions, normals] = [directions[lane], normals[lane]].map(|v| Vector::of([v; LANES]));
+            let alone = simd::run_scalar(OfEightRays { directions: &directions, normals: &normals, ratio });
+            for (at, alone) in alone.iter().enumerate() {
+                let alone = alone.0[0].to_bits();
+                assert_eq!(array[at].0[lane].to_bits(), alone, "value {at} of lane {lane} in an array, ratio {ratio}");
+                assert_eq!(registers[at].0[lane].to_bits(), alone, "value {at} of lane {lane}, ratio {ratio}");
+            }
+        }
     }
 }

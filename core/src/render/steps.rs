@@ -132,9 +132,9 @@ impl Buffers {
     ///
     /// Returns the number of traced rays.
     fn add_bounced_light(&mut self, &RenderJob { scene, tiles, .. }: &RenderJob<'_>, batch: &SampleBatch) -> u64 {
-        let Self { samples, rays, hits, points, shadows, arriving, lights, bounces, .. } = self;
+        let Self { samples, rays, hits, points, shadows, lights, bounces, .. } = self;
         let steps = tiles.sample_direction_steps(batch.samples.start);
-        bounces.add(scene, steps, &Generation { rays, hits, points, arriving, shadows, samples }, lights)
+        bounces.add(scene, steps, &Generation { rays, hits, points, shadows, samples }, lights)
     }
 
     /// Returns the reflected light of all rays as one array per channel.

@@ -153,9 +153,15 @@ impl Object {
         Some(value(facet.file_material()?, facet.texture_coordinates(point.uv)))
     }
 
-    /// Returns whether the surface only reflects diffusely, so that it makes no further rays.
+    /// Returns whether the surface is opaque and only reflects diffusely, so that it needs no step
+    /// but the lecture's.
     pub(crate) fn is_matte(&self) -> bool {
-        self.finish.is_matte() && self.opacity == 1.0 && !self.is_blended()
+        self.finish.is_matte() && self.is_opaque()
+    }
+
+    /// Returns whether no light passes straight through the surface.
+    pub(crate) fn is_opaque(&self) -> bool {
+        self.opacity == 1.0 && !self.is_blended()
     }
 }
 

@@ -2,11 +2,13 @@
 
 use super::light_parts::PartShifts;
 use super::transparent_shadows::TransparentShadows;
-use super::{EightLights, EightPoints, IncidentLight, PART_SHARE, incident_light, incident_light_of_part};
+use super::{
+    EightLights, EightPoints, IncidentLight, PART_SHARE, incident_light, incident_light_of_part, scaled, stored,
+};
 use crate::color::LinearRgb;
 use crate::finish::{self, Finish};
 use crate::hit::{self, Kernel};
-use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Vector, set_bits};
+use crate::lanes::{ALL, F32x8, LANES, LaneMask, Lanes, Vector};
 use crate::light::{Light, PARTS};
 use crate::ray::EightRays;
 use crate::scene::Scene;
@@ -101,11 +103,11 @@ impl SimdKernel for AimShadowRays<'_> {
         rays.clear();
         lights.clear();
         for points in points {
-            let (reaches, IncidentLight { light: [r, g, b], .. }) =
+            let (reaches, IncidentLight { light: incident, .. }) =
                 incident_light::<N>(light, points.position.load(), points.shading_normal.load());
             let direction = |origin| light.to_light(origin);
             rays.push(eight_shadow_rays::<N>(points, reaches.bits() & points.hit_mask, direction));
-            lights.push([r.store(), g.store(), b.store()]);
+            lights.push(stored(incident));
         }
     }
 }
@@ -129,14 +131,14 @@ impl SimdKernel for AimAtPart<'_> {
         for (points, shifts) in points.iter().zip(shifts) {
             let part = shifts.position::<N>(part);
             let (position, normal) = (points.position.load(), points.shading_normal.load());
-            let (reaches, IncidentLight { light: [r, g, b], .. }) =
+            let (reaches, IncidentLight { light: incident, .. }) =
                 incident_light_of_part::<N>(light, &part, position, normal);
             let direction = |origin| {
                 let whole = light.to_part(origin, &part);
                 whole * light.blocking_share(whole.dot(whole).sqrt())
             };
             rays.push(eight_shadow_rays::<N>(points, reaches.bits() & points.hit_mask, direction));
-            lights.push([r.store(), g.store(), b.store()]);
+            lights.push(stored(incident));
         }
     }
 }
@@ -157,42 +159,14 @@ impl ShadowRays {
         let traced = self.trace(scene, light);
         simd::dispatch(AddUnblocked { number, shadows: self, arriving });
         if scene.has_highlights() {
-            self.add_highlights(scene, surfaces, light, part);
+            simd::dispatch(AddHighlights { scene, surfaces, light, part, shadows: self });
         }
         traced
     }
 
-    /// Adds the highlights of a light, or of a part of it, at points that it reaches.
-    // Works lane by lane: highlights cover few pixels, and the exponents differ.
-    fn add_highlights(&mut self, scene: &Scene, surfaces: &Surfaces<'_>, light: &Light, part: Option<u32>) {
-        let is_weakened = scene.shadows() && scene.has_transparent();
-        let passed = |through: &TransparentShadows, group, lane| {
-            if is_weakened { through.part(group, lane) } else { 1.0 }
-        };
-        for (group, points) in surfaces.points.iter().enumerate() {
-            for lane in set_bits(self.rays[group].active & !self.blocked[group]) {
-                let Finish::Shiny { exponent, .. } = scene.objects()[points.ids.id(lane).object as usize].finish else {
-                    continue;
-                };
-                let (position, normal) = (points.position.of_lane(lane), points.shading_normal.of_lane(lane));
-                let position = Vector::<f32>::splat(position);
-                let share = if part.is_some() { PART_SHARE } else { 1.0 } * passed(&self.through, group, lane);
-                let to_light = match part {
-                    None => light.to_light(position),
-                    Some(part) => light.to_part(position, &self.shifts[group].position::<F32x8>(part).of_lane(lane)),
-                };
-                let direction = surfaces.rays[group].direction.of_lane(lane);
-                let lights = finish::highlight(light, to_light, direction, normal, exponent).map(|light| light * share);
-                for (sum, more) in self.highlights[group].iter_mut().zip(lights) {
-                    sum.0[lane] += more;
-                }
-            }
-        }
-    }
-
-    /// Returns the light of the highlights at one point, for a strength of 1.
-    pub(super) fn highlight(&self, group: usize, lane: usize) -> LinearRgb {
-        self.highlights.get(group).map_or(LinearRgb::BLACK, |lights| super::lane_light(lights, lane))
+    /// Returns the light of the highlights at the points of a group, for a strength of 1.
+    pub(super) fn highlights(&self, group: usize) -> &EightLights {
+        self.highlights.get(group).unwrap_or(&[F32x8::ZERO; 3])
     }
 
     /// Finds the blocked rays, and returns the number of traced rays.
@@ -243,6 +217,57 @@ impl SimdKernel for AddUnblocked<'_> {
     }
 }
 
+/// The SIMD kernel that adds the highlights of a light, or of a part of it, at points that it
+/// reaches.
+struct AddHighlights<'w> {
+    scene: &'w Scene,
+    surfaces: &'w Surfaces<'w>,
+    light: &'w Light,
+    part: Option<u32>,
+    shadows: &'w mut ShadowRays,
+}
+
+impl SimdKernel for AddHighlights<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        for (group, points) in self.surfaces.points.iter().enumerate() {
+            let mut remaining = self.shadows.rays[group].active & !self.shadows.blocked[group];
+            // Object by object, as in the kernel of reflected light: the exponents differ.
+            while remaining != 0 {
+                let object = points.ids.id(remaining.trailing_zeros() as usize % LANES).object;
+                let same = remaining & points.ids.mask_of_object::<N>(object);
+                remaining &= !same;
+                let Finish::Shiny { exponent, .. } = self.scene.objects()[object as usize].finish else { continue };
+                let lights = self.eight_highlights::<N>(group, exponent);
+                for (sum, more) in self.shadows.highlights[group].iter_mut().zip(lights) {
+                    let before = N::load(sum);
+                    *sum = N::select(N::mask_from_bits(same), before + more, before).store();
+                }
+            }
+        }
+    }
+}
+
+impl AddHighlights<'_> {
+    /// Returns the highlights at the points of a group.
+    #[inline(always)]
+    fn eight_highlights<N: Lanes>(&self, group: usize, exponent: u32) -> [N; 3] {
+        let Self { scene, surfaces, light, part, shadows } = self;
+        let position = surfaces.points[group].position.load();
+        let (to_light, mut share) = match *part {
+            None => (light.to_light(position), N::splat(1.0)),
+            Some(part) => (light.to_part(position, &shadows.shifts[group].position::<N>(part)), N::splat(PART_SHARE)),
+        };
+        if scene.shadows() && scene.has_transparent() {
+            share = share * N::load(shadows.through.parts(group));
+        }
+        let (direction, normal) = (surfaces.rays[group].direction.load(), surfaces.points[group].shading_normal.load());
+        scaled(finish::highlight(light, to_light, direction, normal, exponent), share)
+    }
+}
+
 /// Makes a shadow ray from each point to a light, even from points that face away from it.
 pub fn shadow_rays(light: &Light, points: &[EightPoints], rays: &mut Vec<EightRays>) {
     rays.clear();
@@ -278,7 +303,7 @@ fn eight_shadow_rays<N: Lanes>(
     active: u32,
     direction: impl Fn(Vector<N>) -> Vector<N>,
 ) -> EightRays {
-    let origin = points.position.load() + points.geometric_normal.load() * N::load(&points.clearance);
+    let origin = points.ray_origins::<N>();
     let direction = direction(origin);
     let rays = EightRays { origin: origin.store(), direction: direction.store(), active };
     if active == ALL || active == 0 {

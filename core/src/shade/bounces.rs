@@ -3,15 +3,15 @@
 //! The rays of a batch are traced generation by generation, so that neighbouring rays stay in one packet. Each ray has
 //! a weight, the part of its light that reaches the eye; a ray ends if its weight is too small to be seen.
 
+use super::finishes::{EightFinishes, finish_surfaces};
 use super::light_parts::PartShifts;
-use super::{EightArriving, EightLights, EightPoints, ShadowRays, Surfaces};
-use crate::accel::PrimitiveId;
+use super::{EightArriving, EightLights, EightPoints, Generation, ShadowRays, Surfaces};
 use crate::color::LinearRgb;
 use crate::finish::{self, Finish};
 use crate::hit::{self, EightHits, Kernel};
-use crate::lanes::{F32x8, LANES, Number};
+use crate::lanes::{F32x8, LANES, Number, Vector, set_bits};
 use crate::ray::{EightRays, Ray};
-use crate::scene::Scene;
+use crate::scene::{Object, Scene};
 use glam::Vec3;
 
 /// The smallest weight of a ray that is followed.
@@ -57,26 +57,10 @@ pub struct Bounces {
     points: Vec<EightPoints>,
     shadows: ShadowRays,
     arriving: Vec<EightArriving>,
-    /// The diffusely reflected light.
-    diffuse: Vec<EightLights>,
-    reflectances: Reflectances,
+    /// The light that the surfaces would send to the rays' origins if they were opaque.
+    surface_lights: Vec<EightLights>,
+    finishes: Vec<EightFinishes>,
     samples: Vec<u32>,
-}
-
-/// The results of the steps for one generation of rays, from eye rays to diffusely reflected light.
-pub struct Generation<'a> {
-    /// The rays.
-    pub rays: &'a [EightRays],
-    /// The closest hits.
-    pub hits: &'a [EightHits],
-    /// The surface points of the hits.
-    pub points: &'a [EightPoints],
-    /// The light that arrives at the points.
-    pub arriving: &'a [EightArriving],
-    /// The shadow rays of the points, with the highlights that they found.
-    pub shadows: &'a ShadowRays,
-    /// The number of each ray's sample in its pixel; empty if all are 0.
-    pub samples: &'a [u32],
 }
 
 impl Bounces {
@@ -93,13 +77,10 @@ impl Bounces {
         eye: &Generation<'_>,
         lights: &mut [EightLights],
     ) -> u64 {
-        if eye.points.iter().all(|points| finished_lanes(scene, points).next().is_none()) {
-            return 0;
-        }
         self.next.clear();
-        self.reflectances.find(scene, direction_steps, eye);
-        for (group, points) in eye.points.iter().enumerate() {
-            for lane in finished_lanes(scene, points) {
+        finish_surfaces(scene, direction_steps, eye, lights, &mut self.finishes);
+        for (group, finishes) in self.finishes.iter().enumerate() {
+            for lane in set_bits(finishes.bouncing) {
                 let ray = BouncedRay {
                     ray: eye.rays[group].ray(lane),
                     t: 0.0,
@@ -109,10 +90,8 @@ impl Bounces {
                     sample: eye.samples.get(group * LANES + lane).copied().unwrap_or(0),
                     sibling: 0,
                 };
-                let reflectance = super::lane_light(&self.reflectances.found[group], lane);
-                let surface = Surface::of(scene, points, lane, eye.hits[group].t.0[lane], reflectance);
-                let diffuse = super::lane_light(&lights[group], lane);
-                let light = surface.light(&ray, diffuse, eye.shadows.highlight(group, lane), &mut self.next);
+                let surface = Surface::new(scene, &eye.points[group], finishes, lane, eye.hits[group].t.0[lane]);
+                let light = surface.light(&ray, super::lane_light(&lights[group], lane), &mut self.next);
                 put(&mut lights[group], lane, light);
             }
         }
@@ -129,7 +108,7 @@ impl Bounces {
 
     /// Traces the current generation, adds its light to the eye rays, and makes the next one.
     fn trace(&mut self, scene: &Scene, direction_steps: [Vec3; 2], lights: &mut [EightLights]) -> u64 {
-        let Self { current, next, rays, hits, points, shadows, arriving, diffuse, reflectances, samples } = self;
+        let Self { current, next, rays, hits, points, shadows, arriving, surface_lights, finishes, samples } = self;
         rays.clear();
         rays.extend(current.chunks(LANES).map(|group| {
             let mut eight = [current[0].ray; LANES];
@@ -146,25 +125,24 @@ impl Bounces {
         samples.extend(current.iter().map(|ray| ray.sample));
         let surfaces = Surfaces { rays, points, samples };
         let traced = current.len() as u64 + super::arriving_light(scene, &surfaces, shadows, arriving);
-        super::reflected_light(scene, rays, direction_steps, hits, points, arriving, diffuse);
+        super::reflected_light(scene, rays, direction_steps, hits, points, arriving, surface_lights);
         if scene.has_emission() {
-            super::add_emission(scene, points, diffuse);
+            super::add_emission(scene, points, surface_lights);
         }
-        reflectances.find(scene, direction_steps, &Generation { rays, hits, points, arriving, shadows, samples });
+        let generation = Generation { rays, hits, points, shadows, samples };
+        finish_surfaces(scene, direction_steps, &generation, surface_lights, finishes);
         next.clear();
         for (at, ray) in current.iter().enumerate() {
             let (group, lane) = (at / LANES, at % LANES);
-            let mut light = super::lane_light(&diffuse[group], lane);
+            let mut light = super::lane_light(&surface_lights[group], lane);
             let is_hit = points[group].hit_mask >> lane & 1 == 1;
             let t = if is_hit { hits[group].t.0[lane] - ray.t } else { f32::INFINITY };
             // Glass keeps the fog out.
             let fog = scene.fog().filter(|_| ray.inside.is_none());
             let transmittance = fog.map_or(1.0, |fog| fog.transmittance(t * ray.ray.direction.length()));
-            if is_finished(scene, &points[group], lane) {
-                let reflectance = super::lane_light(&reflectances.found[group], lane);
-                let surface = Surface::of(scene, &points[group], lane, t, reflectance);
-                let dimmed = BouncedRay { weight: ray.weight * transmittance, ..*ray };
-                light = surface.light(&dimmed, light, shadows.highlight(group, lane), next);
+            if finishes[group].bouncing >> lane & 1 == 1 {
+                let surface = Surface::new(scene, &points[group], &finishes[group], lane, t);
+                light = surface.light(&BouncedRay { weight: ray.weight * transmittance, ..*ray }, light, next);
             }
             if let Some(fog) = fog {
                 light = fog.dimmed(light, transmittance);
@@ -177,104 +155,70 @@ impl Bounces {
     }
 }
 
-/// A surface that a ray meets, with its finish.
-struct Surface {
-    finish: Finish,
-    opacity: f32,
-    object: u32,
-    position: Vec3,
-    shading_normal: Vec3,
-    geometric_normal: Vec3,
-    clearance: f32,
+/// The surface that a ray has met.
+struct Surface<'a> {
+    object: &'a Object,
+    points: &'a EightPoints,
+    finishes: &'a EightFinishes,
+    lane: usize,
     /// The t of the ray's hit.
     t: f32,
-    reflectance: LinearRgb,
 }
 
-impl Surface {
-    fn of(scene: &Scene, points: &EightPoints, lane: usize, t: f32, reflectance: LinearRgb) -> Self {
-        let PrimitiveId { object, index } = points.ids.id(lane);
-        let of_scene = &scene.objects()[object as usize];
-        Self {
-            finish: of_scene.finish,
-            opacity: of_scene.opacity_at(index, &points.own_point(lane)),
-            object,
-            position: points.position.of_lane(lane),
-            shading_normal: points.shading_normal.of_lane(lane),
-            geometric_normal: points.geometric_normal.of_lane(lane),
-            clearance: points.clearance.0[lane],
-            t,
-            reflectance,
-        }
+impl<'a> Surface<'a> {
+    fn new(scene: &'a Scene, points: &'a EightPoints, finishes: &'a EightFinishes, lane: usize, t: f32) -> Self {
+        Self { object: &scene.objects()[points.ids.id(lane).object as usize], points, finishes, lane, t }
     }
 
     /// Returns the light towards the ray's origin, without that of bounced rays.
     ///
     /// Bounced rays are added to `next`.
     ///
-    /// `diffuse` is the light that a matte surface would reflect, and `highlight` that of a highlight of strength 1.
-    fn light(
-        &self,
-        ray: &BouncedRay,
-        diffuse: LinearRgb,
-        highlight: LinearRgb,
-        next: &mut Vec<BouncedRay>,
-    ) -> LinearRgb {
-        if self.opacity < 1.0 {
-            self.add_passing(ray, next);
+    /// `light` is that of an opaque surface.
+    fn light(&self, ray: &BouncedRay, light: LinearRgb, next: &mut Vec<BouncedRay>) -> LinearRgb {
+        let index = self.points.ids.id(self.lane).index;
+        let opacity = self.object.opacity_at(index, &self.points.own_point(self.lane));
+        if opacity < 1.0 {
+            self.add_passing(ray, 1.0 - opacity, next);
         }
-        let ray = &BouncedRay { weight: ray.weight * self.opacity, ..*ray };
-        self.finished_light(ray, diffuse, highlight, next) * self.opacity
+        let ray = &BouncedRay { weight: ray.weight * opacity, ..*ray };
+        let part = super::lane_light(&self.finishes.part, self.lane);
+        match self.object.finish {
+            Finish::Matte | Finish::Shiny { .. } | Finish::Glowing { .. } => {}
+            Finish::Metal { roughness: 0.0 } | Finish::Polished { .. } => {
+                self.add_mirrored(self.mirrored_direction(), ray, part, next);
+            }
+            Finish::Metal { roughness } => self.add_rough_reflections(ray, roughness, part, next),
+            Finish::Glass { index } => self.add_split(ray, index, part, next),
+        }
+        light * opacity
     }
 
-    /// Returns the light of the part of the surface that is not transparent; `ray` has its weight.
-    fn finished_light(
-        &self,
-        ray: &BouncedRay,
-        diffuse: LinearRgb,
-        highlight: LinearRgb,
-        next: &mut Vec<BouncedRay>,
-    ) -> LinearRgb {
-        let direction = ray.ray.direction;
-        let cosine = finish::cosine_of_incidence(direction, self.shading_normal);
-        match self.finish {
-            Finish::Matte => diffuse,
-            Finish::Glowing { strength } => self.reflectance * strength,
-            Finish::Shiny { strength, .. } => diffuse + highlight * strength,
-            Finish::Metal { roughness: 0.0 } => {
-                self.add_reflection(ray, self.reflectance, next);
-                LinearRgb::BLACK
-            }
-            Finish::Metal { roughness } => {
-                self.add_rough_reflections(ray, roughness, next);
-                LinearRgb::BLACK
-            }
-            Finish::Polished { index } => {
-                let mirrored = finish::fresnel(cosine, 1.0 / index);
-                self.add_reflection(ray, LinearRgb::grey(mirrored), next);
-                diffuse * (1.0 - mirrored)
-            }
-            Finish::Glass { index } => {
-                let is_leaving = ray.inside == Some(self.object);
-                let ratio = if is_leaving { index } else { 1.0 / index };
-                let mirrored = followed_part(finish::fresnel(cosine, ratio), ray.weight);
-                self.add_reflection(ray, LinearRgb::grey(mirrored), next);
-                if mirrored < 1.0 {
-                    self.add_refraction(ray, ratio, is_leaving, 1.0 - mirrored, next);
-                }
-                LinearRgb::BLACK
-            }
-        }
+    fn shading_normal(&self) -> Vec3 {
+        self.points.shading_normal.of_lane(self.lane)
     }
 
-    /// Adds the ray that passes straight through the surface.
-    fn add_passing(&self, ray: &BouncedRay, next: &mut Vec<BouncedRay>) {
+    fn geometric_normal(&self) -> Vec3 {
+        self.points.geometric_normal.of_lane(self.lane)
+    }
+
+    fn mirrored_direction(&self) -> Vec3 {
+        self.finishes.direction.of_lane(self.lane)
+    }
+
+    /// Returns the index of the object in the scene.
+    fn object_index(&self) -> u32 {
+        self.points.ids.id(self.lane).object
+    }
+
+    /// Adds the ray that passes straight through the surface; `part` is its part of the light.
+    fn add_passing(&self, ray: &BouncedRay, part: f32, next: &mut Vec<BouncedRay>) {
         let passing = Ray { origin: self.origin_behind(ray), direction: ray.ray.direction };
-        let weight = LinearRgb::grey(1.0 - self.opacity);
+        let weight = LinearRgb::grey(part);
         // A ray that passes the surface of glass is inside it, or outside again.
-        let inside = match self.finish {
-            Finish::Glass { .. } if ray.inside == Some(self.object) => None,
-            Finish::Glass { .. } => Some(self.object),
+        let inside = match self.object.finish {
+            Finish::Glass { .. } if ray.inside == Some(self.object_index()) => None,
+            Finish::Glass { .. } => Some(self.object_index()),
             _ => ray.inside,
         };
         add(next, BouncedRay { ray: passing, t: ray.t + self.t, weight, inside, ..*ray }, ray);
@@ -283,61 +227,77 @@ impl Surface {
     /// Returns the origin of a ray that leaves the surface on the side away from the ray that met
     /// it.
     fn origin_behind(&self, ray: &BouncedRay) -> Vec3 {
-        super::origin_behind(self.position, self.geometric_normal, self.clearance, ray.ray.at(self.t))
+        let (position, clearance) = (self.points.position.of_lane(self.lane), self.points.clearance.0[self.lane]);
+        super::origin_behind(position, self.geometric_normal(), clearance, ray.ray.at(self.t))
     }
 
-    /// Adds the refracted ray; `part` is its part of the light.
-    fn add_refraction(&self, ray: &BouncedRay, ratio: f32, is_leaving: bool, part: f32, next: &mut Vec<BouncedRay>) {
-        let direction = ray.ray.direction;
-        // As with reflections, an interpolated normal may refract the ray back out of the surface.
-        let refracted = finish::refract(direction, self.shading_normal, ratio)
-            .filter(|refracted| refracted.dot(self.geometric_normal) < 0.0)
-            .or_else(|| finish::refract(direction, self.geometric_normal, ratio));
-        let Some(refracted) = refracted else { return };
-        let origin = self.origin_behind(ray);
-        // Light is coloured once on its way through, where it enters.
-        let color = if is_leaving { LinearRgb::grey(1.0) } else { self.reflectance };
-        let inside = if is_leaving { None } else { Some(self.object) };
-        let (ray_inside, t) = (Ray { origin, direction: refracted }, ray.t + self.t);
-        add(next, BouncedRay { ray: ray_inside, t, weight: color * part, inside, ..*ray }, ray);
-    }
-
-    /// Adds the mirrored ray; `weight` is its part of the light.
-    fn add_reflection(&self, ray: &BouncedRay, weight: LinearRgb, next: &mut Vec<BouncedRay>) {
-        let mut direction = finish::reflect(ray.ray.direction, self.shading_normal);
-        // Near the outline of a smooth mesh, the mirror image about an interpolated normal may point into the surface.
-        if direction.dot(self.geometric_normal) <= 0.0 {
-            direction = finish::reflect(ray.ray.direction, self.geometric_normal);
+    /// Adds the rays that glass mirrors and refracts.
+    fn add_split(&self, ray: &BouncedRay, index: f32, reflectance: LinearRgb, next: &mut Vec<BouncedRay>) {
+        let is_leaving = ray.inside == Some(self.object_index());
+        let ratio = if is_leaving { index } else { 1.0 / index };
+        let [direction, normal] = [ray.ray.direction, self.shading_normal()].map(Vector::<f32>::splat);
+        let mirrored = followed_part(finish::mirrored_part(direction, normal, ratio), ray.weight);
+        self.add_mirrored(self.mirrored_direction(), ray, LinearRgb::grey(mirrored), next);
+        if mirrored < 1.0 {
+            // Light is coloured once on its way through, where it enters.
+            let color = if is_leaving { LinearRgb::grey(1.0) } else { reflectance };
+            self.add_refraction(ray, ratio, is_leaving, color * (1.0 - mirrored), next);
         }
-        self.add_mirrored(direction, ray, weight, next);
+    }
+
+    /// Adds the refracted ray; `weight` is its part of the light.
+    fn add_refraction(
+        &self,
+        ray: &BouncedRay,
+        ratio: f32,
+        is_leaving: bool,
+        weight: LinearRgb,
+        next: &mut Vec<BouncedRay>,
+    ) {
+        let direction = ray.ray.direction;
+        // As with mirrored rays, an interpolated normal may refract the ray back out of the surface.
+        let refracted = finish::refract(direction, self.shading_normal(), ratio)
+            .filter(|refracted| refracted.dot(self.geometric_normal()) < 0.0)
+            .or_else(|| finish::refract(direction, self.geometric_normal(), ratio));
+        let Some(direction) = refracted else { return };
+        let refracted = Ray { origin: self.origin_behind(ray), direction };
+        let inside = if is_leaving { None } else { Some(self.object_index()) };
+        add(next, BouncedRay { ray: refracted, t: ray.t + self.t, weight, inside, ..*ray }, ray);
     }
 
     /// Adds the rays that facets of rough metal mirror.
-    fn add_rough_reflections(&self, ray: &BouncedRay, roughness: f32, next: &mut Vec<BouncedRay>) {
+    fn add_rough_reflections(
+        &self,
+        ray: &BouncedRay,
+        roughness: f32,
+        reflectance: LinearRgb,
+        next: &mut Vec<BouncedRay>,
+    ) {
         let shifts = PartShifts::of(&[ray.sample]);
+        let geometric_normal = Vector::<f32>::splat(self.geometric_normal());
         let mut add = |part: u32, sibling: u32, weight: LinearRgb| {
             let part = shifts.position::<F32x8>(part).of_lane(0);
-            let normal = finish::facet_normal(self.shading_normal, roughness, &part);
-            let mut direction = finish::reflect(ray.ray.direction, normal);
+            let normal = Vector::splat(finish::facet_normal(self.shading_normal(), roughness, &part));
+            let mut direction = finish::reflect(Vector::splat(ray.ray.direction), normal);
             // A ray that a facet mirrors into the surface is mirrored by another facet.
-            if direction.dot(self.geometric_normal) <= 0.0 {
-                direction = finish::reflect(direction, self.geometric_normal);
+            if direction.dot(geometric_normal) <= 0.0 {
+                direction = finish::reflect(direction, geometric_normal);
             }
-            self.add_mirrored(direction, &BouncedRay { sibling, ..*ray }, weight, next);
+            self.add_mirrored(direction.into(), &BouncedRay { sibling, ..*ray }, weight, next);
         };
         let LinearRgb { r, g, b } = ray.weight;
         if r.max(g).max(b) < MIN_SPREAD_WEIGHT {
             // Each of the rays that were mirrored at once takes another facet.
-            add(ray.sibling, ray.sibling, self.reflectance);
+            add(ray.sibling, ray.sibling, reflectance);
         } else {
-            (0..SPREAD).for_each(|part| add(part, part, self.reflectance * (1.0 / SPREAD as f32)));
+            (0..SPREAD).for_each(|part| add(part, part, reflectance * (1.0 / SPREAD as f32)));
         }
     }
 
     /// Adds the mirrored ray with this direction; `weight` is its part of the light.
     fn add_mirrored(&self, direction: Vec3, ray: &BouncedRay, weight: LinearRgb, next: &mut Vec<BouncedRay>) {
-        let origin = self.position + self.geometric_normal * self.clearance;
-        add(next, BouncedRay { ray: Ray { origin, direction }, t: ray.t + self.t, weight, ..*ray }, ray);
+        let mirrored = Ray { origin: self.finishes.origin.of_lane(self.lane), direction };
+        add(next, BouncedRay { ray: mirrored, t: ray.t + self.t, weight, ..*ray }, ray);
     }
 }
 
@@ -364,35 +324,6 @@ fn add(next: &mut Vec<BouncedRay>, mut ray: BouncedRay, before: &BouncedRay) {
     // A weight or direction that is NaN ends the ray, too.
     if (r >= MIN_WEIGHT || g >= MIN_WEIGHT || b >= MIN_WEIGHT) && ray.ray.direction.length_squared() > 0.0 {
         next.push(ray);
-    }
-}
-
-/// Returns whether a point is on an object that is not matte.
-fn is_finished(scene: &Scene, points: &EightPoints, lane: usize) -> bool {
-    points.hit_mask >> lane & 1 == 1 && !scene.objects()[points.ids.id(lane).object as usize].is_matte()
-}
-
-/// Returns the lanes whose point is on an object that is not matte.
-fn finished_lanes(scene: &Scene, points: &EightPoints) -> impl Iterator<Item = usize> {
-    (0..LANES).filter(|&lane| is_finished(scene, points, lane))
-}
-
-/// The reflectances of materials at surface points.
-#[derive(Default)]
-struct Reflectances {
-    found: Vec<EightLights>,
-    /// Light of 1 at each point.
-    ones: Vec<EightArriving>,
-}
-
-impl Reflectances {
-    /// Computes the reflectance of the material at each point.
-    // The kernel of diffuse reflection returns it if the arriving light is 1.
-    fn find(&mut self, scene: &Scene, direction_steps: [Vec3; 2], of: &Generation<'_>) {
-        let one = EightArriving { light: [F32x8([1.0; LANES]); 3], lit_by: [0; LANES] };
-        self.ones.resize(of.points.len(), one);
-        let Self { found, ones } = self;
-        super::reflected_light(scene, of.rays, direction_steps, of.hits, of.points, ones, found);
     }
 }
 

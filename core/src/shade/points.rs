@@ -45,6 +45,13 @@ impl EightPoints {
         OwnPoint { position, normal, uv: self.uv(lane) }
     }
 
+    /// Returns the origins of rays that leave the points, as
+    /// [`SurfacePoint::ray_origin`](crate::shape::SurfacePoint::ray_origin) does.
+    #[inline(always)]
+    pub(super) fn ray_origins<N: Lanes>(&self) -> Vector<N> {
+        self.position.load() + self.geometric_normal.load() * N::load(&self.clearance)
+    }
+
     /// Returns the surface coordinates of a point.
     #[inline(always)]
     fn uv(&self, lane: usize) -> Vec2 {

@@ -67,9 +67,10 @@ impl TransparentShadows {
         traced
     }
 
-    /// Returns the part of the light that a ray still had at the end of the last trace.
-    pub(super) fn part(&self, group: usize, lane: usize) -> f32 {
-        self.parts[group].0[lane]
+    /// Returns the parts of the light that the rays of a group still had at the end of the last
+    /// trace.
+    pub(super) fn parts(&self, group: usize) -> &F32x8 {
+        &self.parts[group]
     }
 
     /// Moves the rays of a group behind the surfaces that they have met, and returns the mask of
