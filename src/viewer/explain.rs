@@ -186,7 +186,11 @@ fn color_difference_notes(frame: &Frame, [x, y]: [u32; 2], explanation: &Explana
     }
     let samples = match frame.sampling {
         Sampling::Coarse => return vec!["shown with one ray for 2x2 pixels".to_owned()],
-        Sampling::Split => return vec!["shown with one ray for 2x2 pixels of even light".to_owned()],
+        Sampling::Split => {
+            return vec![
+                "shown with one ray for 2x2 pixels of even light, and up to 16 for a pixel at an edge".to_owned(),
+            ];
+        }
         Sampling::Each(samples) => format!("this is the first of {samples} rays"),
         Sampling::UpTo(samples) => format!("this is the first of up to {samples} rays"),
         _ => return Vec::new(),

@@ -15,7 +15,8 @@ pub enum Sampling {
     /// most.
     ///
     /// Blocks that differ most from a neighbour get one ray for each pixel, but at most nine of 32 blocks: a picture
-    /// has at most 2.125 rays per block.
+    /// has at most 2.125 rays per block. If fewer blocks differ, the rays that are left go to the pixels of these
+    /// blocks that differ most, 16 to each.
     Split,
     /// The same number of rays through each pixel, at most 65,536.
     Each(NonZeroU32),
@@ -35,7 +36,7 @@ impl Sampling {
         match self {
             // Coarse sampling traces one ray for 2x2 pixels.
             Self::Coarse => "1/4 sample".to_owned(),
-            Self::Split => "1/4 to 1 sample".to_owned(),
+            Self::Split => "1/4 to 16 samples".to_owned(),
             Self::Each(samples) | Self::UpTo(samples) if samples.get() == 1 => "1 sample".to_owned(),
             Self::Each(samples) | Self::UpTo(samples) => format!("{samples} samples"),
         }

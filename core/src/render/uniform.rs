@@ -3,7 +3,7 @@
 use super::sampling::{MAX_BATCH_RAYS, SampleBatch, SampleBatches};
 use super::steps::{Buffers, RenderJob, Stage};
 use super::tiles::{PIXELS, Tiles};
-use super::{Executor, Rendered};
+use super::{Cost, Executor, Rendered};
 use crate::framebuffer::Framebuffer;
 use crate::lanes::{F32x8, LANES};
 use crate::scene::Scene;
@@ -27,6 +27,29 @@ pub(super) fn render(executor: Executor<'_>, scene: &Scene, tiles: &Tiles, sampl
         );
     });
     Rendered { framebuffer, cost }
+}
+
+/// Traces some pixels again, with `samples` samples per pixel: those for which `is_wanted` is true.
+///
+/// It gets their positions. These pixels have the same bits as if all pixels of the picture had that number of samples.
+pub(super) fn retrace(
+    executor: Executor<'_>,
+    job: &RenderJob<'_>,
+    framebuffer: &mut Framebuffer,
+    samples: u32,
+    is_wanted: impl Fn([u32; 2]) -> bool + Send + Sync,
+) -> Cost {
+    let tiles = job.tiles;
+    let (batches, share) = (SampleBatches::of(0..samples), 1.0 / samples as f32);
+    executor.trace(job, tiles.split(framebuffer.pixels_mut()), |tile, mut part| {
+        let number = tile.number;
+        tile.buffers.active.retain(|&pixel| is_wanted(tiles.position(number, pixel)));
+        let mut sums = [[F32x8::ZERO; 3]; PIXELS / LANES];
+        tile.trace(&batches, |buffers, batch, pixels| add_lights(&mut sums, buffers, batch, pixels));
+        for (at, &pixel) in tile.buffers.active.iter().enumerate() {
+            tiles.fill_traced_pixel(pixel, shade::lane_light(&sums[at / LANES], at % LANES) * share, &mut part);
+        }
+    })
 }
 
 /// Adds the light of a batch to the sums of its pixels.

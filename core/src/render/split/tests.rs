@@ -1,5 +1,5 @@
 use super::*;
-use crate::render::{Sampling, render};
+use crate::render::{Sampling, render, render_by};
 use std::num::NonZeroU32;
 
 fn scene(sphere_count: i32) -> Scene {
@@ -11,15 +11,16 @@ fn scene(sphere_count: i32) -> Scene {
 }
 
 #[test]
-fn pixels_are_those_of_blocks_or_of_one_sample_and_few_blocks_are_split() {
+fn pixels_are_those_of_blocks_or_of_1_or_16_samples_and_few_blocks_are_split() {
     let resolution = Resolution::square(101, 75);
     for sphere_count in [1, 4, 32] {
         let scene = scene(sphere_count);
-        let [split, coarse, fine] = [Sampling::Split, Sampling::Coarse, Sampling::Each(NonZeroU32::MIN)]
+        let each = |samples| Sampling::Each(NonZeroU32::new(samples).expect("not 0"));
+        let [split, coarse, fine, finest] = [Sampling::Split, Sampling::Coarse, each(1), each(FINEST_SAMPLES)]
             .map(|sampling| render(&scene, scene.camera(), resolution, sampling));
         let mut changed = std::collections::HashSet::new();
         for (at, light) in split.pixels().iter().enumerate() {
-            assert!([&coarse, &fine].iter().any(|other| other.pixels()[at] == *light), "pixel {at}");
+            assert!([&coarse, &fine, &finest].iter().any(|other| other.pixels()[at] == *light), "pixel {at}");
             if *light != coarse.pixels()[at] {
                 changed.insert((at % 101 / 2, at / 101 / 2));
             }
@@ -32,6 +33,25 @@ fn pixels_are_those_of_blocks_or_of_one_sample_and_few_blocks_are_split() {
         };
         assert!(error(&split) < 0.5 * error(&coarse), "{sphere_count}: {} of {}", error(&split), error(&coarse));
     }
+}
+
+/// Checks that the rays that are left bring a picture nearer to that of many samples, and are fewer
+/// than those of one per pixel.
+#[test]
+fn rays_that_are_left_go_to_the_pixels_that_differ_most() {
+    let resolution = Resolution::square(128, 96);
+    let scene = scene(1);
+    let [split, fine, finest] = [Sampling::Split, Sampling::Each(NonZeroU32::MIN), Sampling::BEST].map(|sampling| {
+        render_by(Executor::CurrentThread, &scene, scene.camera(), resolution, sampling).expect("it is not cancelled")
+    });
+    let error = |other: &Framebuffer| {
+        let differences =
+            other.pixels().iter().zip(finest.framebuffer.pixels()).map(|(a, b)| (a.g - b.g) * (a.g - b.g));
+        differences.sum::<f32>()
+    };
+    let errors = [&split, &fine].map(|rendered| error(&rendered.framebuffer));
+    assert!(errors[0] < 0.5 * errors[1], "{errors:?}");
+    assert!(split.cost.rays < fine.cost.rays, "{} of {}", split.cost.rays, fine.cost.rays);
 }
 
 #[test]
