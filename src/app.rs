@@ -18,6 +18,7 @@ mod session_recording;
 mod save_view;
 mod live;
 mod loading;
+mod refinements;
 mod renderer;
 mod large_picture;
 mod scenes;

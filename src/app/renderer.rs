@@ -2,12 +2,13 @@
 //!
 //! The loop itself traces frames that take less time than waking the thread and being woken by it.
 
+use super::refinements::{RefinablePicture, Refinements, ViewerId};
 use crate::camera::Camera;
 use crate::framebuffer::Resolution;
 use crate::maps::{self, Map, TracedMap};
 use crate::progress::{Cancellation, Cancelled};
 use crate::rasterize::Comparison;
-use crate::render::{Cost, Executor, Geometry, ProgressiveRender, Sampling, trace_geometry};
+use crate::render::{Cost, Executor, Sampling, trace_geometry};
 use crate::scene::Scene;
 use crate::terminal::{self, Waker};
 use crate::tone::tone;
@@ -32,6 +33,9 @@ type Traced = Result<Result<Frame, Cancelled>, Box<dyn Any + Send>>;
 // median time from a key to its first byte fell from 0.87 to 0.65 ms. Keys wait for such a frame, so the limit stays
 // well below a frame time.
 const MAX_INLINE_TRACE_TIME: Duration = Duration::from_micros(1500);
+
+/// The number of the viewer in the pool of refinements, which has no other.
+const ONLY_VIEWER: ViewerId = 0;
 
 /// The event loop's handle of the tracing thread.
 pub(super) struct Renderer {
@@ -66,7 +70,7 @@ impl Renderer {
         let (jobs, wanted) = channel::<TraceTask>();
         let (begun, started) = channel();
         let (done, frames) = channel();
-        let mut tracer = Tracer::default();
+        let tracer = Tracer::new(1);
         let thread = thread::Builder::new().name("render".to_owned()).spawn(move || {
             // The pool is not rayon's global one, which other work of the process may occupy for seconds.
             let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).use_current_thread().build();
@@ -80,7 +84,7 @@ impl Renderer {
             let _ = begun.send(Ok(()));
             for task in wanted {
                 // A panic is passed to the loop, which restores the terminal before it continues the panic.
-                let traced = catch_unwind(AssertUnwindSafe(|| pool.install(|| task(&mut tracer))));
+                let traced = catch_unwind(AssertUnwindSafe(|| pool.install(|| task(&tracer))));
                 // If the receiver is gone, the loop has ended.
                 let heard = done.send(traced).is_ok();
                 waker.wake();
@@ -111,15 +115,11 @@ impl Renderer {
         }
         let work = PendingJob { refines: job.refines, token: Cancellation::default() };
         let token = work.token.clone();
-        self.submit(work, move |tracer| tracer.trace(&job, &token));
+        self.submit(work, move |tracer| tracer.trace(ONLY_VIEWER, &job, &token));
         None
     }
 
-    fn submit(
-        &mut self,
-        work: PendingJob,
-        task: impl FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send + 'static,
-    ) {
+    fn submit(&mut self, work: PendingJob, task: impl FnOnce(&Tracer) -> Result<Frame, Cancelled> + Send + 'static) {
         if let Some(jobs) = &self.jobs
             && jobs.send(Box::new(task)).is_ok()
         {
@@ -206,7 +206,7 @@ impl Drop for Renderer {
 }
 
 /// A job in the form in which it is sent to the tracing thread.
-type TraceTask = Box<dyn FnOnce(&mut Tracer) -> Result<Frame, Cancelled> + Send>;
+type TraceTask = Box<dyn FnOnce(&Tracer) -> Result<Frame, Cancelled> + Send>;
 
 /// Returns the frame of a job: `trace_map` traces each of its maps, which are then combined.
 pub(super) fn frame_of(
@@ -273,91 +273,98 @@ fn trace_once(job: &Job) -> Result<Frame, Cancelled> {
     frame_of(job, trace_map)
 }
 
-/// The state that a tracing thread keeps from frame to frame.
-#[derive(Default)]
+/// Tracing of frames, with the pictures that are kept between two refinements.
+///
+/// Shared by all threads that trace for the viewers of a process.
 pub(crate) struct Tracer {
-    /// The last picture with its samples, if it can be refined.
-    kept: Option<RefinablePicture>,
-}
-
-/// A picture with its samples, which the next job may refine if it has the same scene, camera and
-/// size.
-struct RefinablePicture {
-    scene: Scene,
-    view: (Camera, Resolution),
-    picture: ProgressiveRender,
-    geometry: Option<Arc<Geometry>>,
-}
-
-impl RefinablePicture {
-    fn new(scene: &Scene, camera: Camera, resolution: Resolution) -> Self {
-        let picture = ProgressiveRender::new(&camera, resolution);
-        Self { scene: scene.clone(), view: (camera, resolution), picture, geometry: None }
-    }
-
-    fn has_view_of(&self, scene: &Scene, camera: Camera, resolution: Resolution) -> bool {
-        self.scene.is_copy_of(scene) && self.view == (camera, resolution)
-    }
+    refinements: Refinements,
 }
 
 impl Tracer {
-    /// Traces or refines a frame, on the calling thread or on the current rayon pool.
+    /// Returns a tracer for this number of threads, which keeps as many pictures at most.
+    pub(crate) fn new(threads: usize) -> Self {
+        Self { refinements: Refinements::new(threads) }
+    }
+
+    /// Drops the picture that is kept for a viewer's next refinement, if there is one.
+    #[cfg(feature = "serve")]
+    pub(crate) fn release(&self, viewer: ViewerId) {
+        self.refinements.release(viewer);
+    }
+
+    /// Traces or refines a frame of any viewer, on the calling thread or on the current rayon pool.
     ///
     /// A new frame with one sample per pixel is traced on the calling thread and ignores `token`. All others are traced
-    /// on the pool, and `token` may cancel them. A refinement starts anew if no picture is kept, or if the kept one is
-    /// another viewer's.
+    /// on the pool, and `token` may cancel them.
     #[cfg(feature = "serve")]
-    pub(crate) fn trace_for_any_viewer(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
+    pub(crate) fn trace_for(&self, viewer: ViewerId, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
         if job.refines || !has_one_sample(job.sampling) {
-            return self.trace(job, token);
+            return self.trace(viewer, job, token);
         }
+        self.refinements.release(viewer);
         trace_once(job)
     }
 
-    fn trace(&mut self, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
-        // The kept picture may be older than the last frame, because the loop traces small frames itself.
-        let mut kept = self.kept.take();
-        frame_of(job, |map, resolution, camera| {
-            let last = if map.refines() { kept.take() } else { None };
-            let last = last.filter(|kept| job.refines && kept.has_view_of(&job.scene, *camera, resolution));
-            self.trace_or_refine(job, token, (map, resolution, camera), last)
-        })
-    }
-
-    /// Traces one map of a frame, or refines `kept` if it is given.
-    fn trace_or_refine(
-        &mut self,
-        job: &Job,
-        token: &Cancellation,
-        (map, resolution, camera): (Map, Resolution, &Camera),
-        kept: Option<RefinablePicture>,
-    ) -> Result<TracedMap, Cancelled> {
-        let Job { scene, shot, .. } = job;
-        let samples = match job.sampling {
-            Sampling::UpTo(samples) if map.refines() => samples,
-            sampling => {
-                return trace_function(shot)(map, Executor::Cancellable(token), scene, camera, resolution, sampling);
-            }
+    /// Traces or refines a frame of a viewer.
+    ///
+    /// A refinement starts anew if no picture of its view is kept.
+    fn trace(&self, viewer: ViewerId, job: &Job, token: &Cancellation) -> Result<Frame, Cancelled> {
+        let Sampling::UpTo(samples) = job.sampling else {
+            self.refinements.release(viewer);
+            return frame_of(job, |map, resolution, camera| trace_all(job, token, (map, resolution, camera)));
         };
-        let mut kept = kept.unwrap_or_else(|| RefinablePicture::new(scene, *camera, resolution));
-        let cost = kept.picture.refine_or_cancel(token, scene, samples)?;
-        let mut traced = TracedMap::new(tone(&kept.picture.framebuffer(), scene), cost);
-        if shot.geometry {
-            let geometry = kept.geometry.get_or_insert_with(|| {
-                let executor = Executor::Cancellable(token);
-                let (geometry, cost) = trace_geometry(executor, scene, camera, resolution, job.sampling);
-                traced.cost += cost;
-                geometry.into()
-            });
-            traced = traced.with_geometry(geometry.clone());
+        // The kept picture may be older than the last frame, because the loop traces small frames itself.
+        let (place, mut kept) = self.refinements.take_place(viewer);
+        let mut next = None;
+        let frame = frame_of(job, |map, resolution, camera| {
+            if !map.refines() {
+                return trace_all(job, token, (map, resolution, camera));
+            }
+            let last = kept.take().filter(|kept| job.refines && kept.has_view_of(&job.scene, *camera, resolution));
+            next = None;
+            let mut picture = last.unwrap_or_else(|| RefinablePicture::new(&job.scene, *camera, resolution));
+            let traced = refine(&mut picture, job, samples, token)?;
+            next = Some(picture);
+            Ok(traced)
+        })?;
+        // A final picture rests, and is not kept.
+        if let Some(picture) = next.filter(|picture| !picture.picture.is_final()) {
+            place.keep(picture);
         }
-        // The geometry of a cancelled job is incomplete and must not be kept.
-        if token.is_cancelled() {
-            return Err(Cancelled);
-        }
-        self.kept = Some(kept);
-        Ok(traced)
+        Ok(frame)
     }
+}
+
+/// Traces one map of a frame that has all its samples at once.
+fn trace_all(
+    Job { scene, shot, sampling, .. }: &Job,
+    token: &Cancellation,
+    (map, resolution, camera): (Map, Resolution, &Camera),
+) -> Result<TracedMap, Cancelled> {
+    trace_function(shot)(map, Executor::Cancellable(token), scene, camera, resolution, *sampling)
+}
+
+/// Refines a picture up to this number of samples per pixel.
+fn refine(
+    kept: &mut RefinablePicture,
+    Job { scene, shot, sampling, .. }: &Job,
+    samples: NonZeroU32,
+    token: &Cancellation,
+) -> Result<TracedMap, Cancelled> {
+    let cost = kept.picture.refine_or_cancel(token, scene, samples)?;
+    let mut traced = TracedMap::new(tone(&kept.picture.framebuffer(), scene), cost);
+    if shot.geometry {
+        let (camera, resolution) = kept.view();
+        let geometry = kept.geometry.get_or_insert_with(|| {
+            let executor = Executor::Cancellable(token);
+            let (geometry, cost) = trace_geometry(executor, scene, &camera, resolution, *sampling);
+            traced.cost += cost;
+            geometry.into()
+        });
+        traced = traced.with_geometry(geometry.clone());
+    }
+    // The geometry of a cancelled job is incomplete and must not be kept.
+    if token.is_cancelled() { Err(Cancelled) } else { Ok(traced) }
 }
 
 /// Returns the function that traces a shot's maps, with their geometry if the shot needs it.

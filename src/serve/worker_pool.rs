@@ -78,20 +78,6 @@ impl Load {
     }
 }
 
-/// The memory that the turns on one thread share.
-struct Scratch {
-    tracer: Tracer,
-    /// The cells of the frame that is drawn.
-    // Each moving viewer would need 30 kB of 160 for a grid of their own.
-    grid: Grid,
-}
-
-impl Default for Scratch {
-    fn default() -> Self {
-        Self { tracer: Tracer::default(), grid: Grid::new(Size::new(0, 0)) }
-    }
-}
-
 #[derive(Default)]
 struct PoolState {
     queue: RunQueue,
@@ -124,6 +110,7 @@ pub(super) struct WorkerPool {
     pub(super) roster: Roster,
     /// The cache of pictures that several viewers see.
     pictures: Mutex<Pictures>,
+    tracer: Tracer,
     /// The byte of input at which a turn panics, for a test.
     #[cfg(feature = "test-hooks")]
     pub(super) panics: std::sync::OnceLock<u8>,
@@ -142,6 +129,7 @@ impl WorkerPool {
             metrics: Metrics::default(),
             roster: Roster::default(),
             pictures: Mutex::default(),
+            tracer: Tracer::new(threads),
             #[cfg(feature = "test-hooks")]
             panics: std::sync::OnceLock::new(),
         });
@@ -272,12 +260,13 @@ impl WorkerPool {
         let _ = rustix::process::nice(WORKER_NICENESS);
         // Makes this thread a rayon pool. Without it, each `rayon::join` would run on the global pool.
         let rayon_pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
-        let mut scratch = Scratch::default();
+        // The cells of the frame that is drawn. Each moving viewer would need 30 kB of 160 for a grid of their own.
+        let mut grid = Grid::new(Size::new(0, 0));
         while let Some((id, owner, load, token)) = self.next_turn() {
             // CPU time, because on a busy machine the elapsed time would charge a session for the turns of others.
             let started = cpu_time();
             let mut turn = || match &owner {
-                TurnOwner::Session(pooled) => self.take_turn(pooled, load, &token, &mut scratch),
+                TurnOwner::Session(pooled) => self.take_turn(pooled, load, &token, &mut grid),
                 TurnOwner::Audience(pooled) => self.draw_for(id, pooled, load, &token),
             };
             let turned = catch_unwind(AssertUnwindSafe(|| match &rayon_pool {
@@ -285,9 +274,8 @@ impl WorkerPool {
                 Err(_) => turn(),
             }));
             let next = turned.unwrap_or_else(|_| {
-                // The panic hook has already printed the message. The panic may have left the tracer in an invalid
-                // state.
-                scratch = Scratch::default();
+                // The panic hook has already printed the message. The panic may have left the grid in the session.
+                grid = Grid::new(Size::new(0, 0));
                 self.metrics.panics.add(1);
                 match &owner {
                     // Only this viewer ends, with a clean terminal.
@@ -305,6 +293,10 @@ impl WorkerPool {
                     }
                 }
             });
+            if next == AfterTurn::End {
+                // Before the lock, as freeing a picture and the last copy of its scene may take long.
+                self.tracer.release(id);
+            }
             let cost = cpu_time().saturating_sub(started);
             self.metrics.turn_micros.add(u64::try_from(cost.as_micros()).unwrap_or(0));
             let mut state = locked(&self.state);
@@ -355,7 +347,7 @@ impl WorkerPool {
         }
     }
 
-    fn take_turn(&self, pooled: &PooledSession, load: Load, token: &Cancellation, scratch: &mut Scratch) -> AfterTurn {
+    fn take_turn(&self, pooled: &PooledSession, load: Load, token: &Cancellation, grid: &mut Grid) -> AfterTurn {
         let buffers = &pooled.buffers;
         if buffers.is_hung_up() {
             return AfterTurn::End;
@@ -369,7 +361,7 @@ impl WorkerPool {
         let mut trace = |job: &Job, may_interrupt: bool| -> Option<Frame> {
             let token = if may_interrupt { token } else { &never };
             let before = cpu_time();
-            let frame = self.picture(job, token, &mut scratch.tracer);
+            let frame = self.picture(pooled.id, job, token);
             let trace = cpu_time().saturating_sub(before);
             traced += trace;
             let mut frame = frame?;
@@ -392,9 +384,9 @@ impl WorkerPool {
         let kind = if load.pending <= self.threads { WorkKind::Refinement } else { WorkKind::Picture };
         let company = Company { roster: &self.roster, id: pooled.id };
         let state = (buffers.is_sending(), kind);
-        session.swap_grid(&mut scratch.grid);
+        session.swap_grid(grid);
         let next = session.take_turn((&input, &company), state, &|| self.now(), &mut trace, &mut out);
-        session.swap_grid(&mut scratch.grid);
+        session.swap_grid(grid);
         let drawn = session.take_drawn();
         self.metrics.frames.add(drawn);
         if drawn > 0 {
@@ -407,7 +399,10 @@ impl WorkerPool {
             self.wake_all(&mut locked(&self.state), told);
         }
         let source = session.take_audience_change().map(|change| match change {
-            AudienceChange::Follow(class) => ScreenSource::Tour(self.follow(class)),
+            AudienceChange::Follow(class) => {
+                self.tracer.release(pooled.id);
+                ScreenSource::Tour(self.follow(class))
+            }
             AudienceChange::Leave => ScreenSource::Session,
         });
         buffers.send(out, source, session.leave_reason().filter(|_| next == AfterTurn::End));
@@ -450,16 +445,17 @@ impl WorkerPool {
         AfterTurn::Sleep(Some(next))
     }
 
-    /// Returns the picture of a job, or `None` if it is cancelled.
+    /// Returns the picture of a session's job, or `None` if it is cancelled.
     ///
     /// The picture may have been traced for another viewer.
-    fn picture(&self, job: &Job, token: &Cancellation, tracer: &mut Tracer) -> Option<Frame> {
+    fn picture(&self, id: SessionId, job: &Job, token: &Cancellation) -> Option<Frame> {
         let is_worth_sharing = is_worth_sharing(job);
         if is_worth_sharing && let Some(kept) = locked(&self.pictures).get(job) {
             self.metrics.shared.add(1);
+            self.tracer.release(id);
             return Some(Frame { shot: job.shot, refines: job.refines, ..Frame::clone(&kept) });
         }
-        let frame = tracer.trace_for_any_viewer(job, token).ok()?;
+        let frame = self.tracer.trace_for(id, job, token).ok()?;
         self.metrics.traced.add(1);
         if is_worth_sharing {
             locked(&self.pictures).keep(Arc::new(frame.clone()));

@@ -67,6 +67,29 @@ fn a_terminal_known_for_its_blocks_keeps_half_blocks_at_rest() {
     });
 }
 
+/// Viewers of one thread, whose pool has one place, each at a place of their own.
+#[test]
+fn more_viewers_than_threads_get_refined_pictures() {
+    let hosting = Hosting::start(|settings| {
+        settings.threads = Some(1);
+        settings.max_per_address = 100;
+        settings.max_rate = None;
+    });
+    run(async {
+        let mut guests = Vec::new();
+        for number in 0..6 {
+            let mut guest = Guest::enter_with(&hosting, (120, 40), None).await;
+            guest.see_picture().await;
+            guest.send(&b"d".repeat(number + 1)).await;
+            guest.send(b"i").await;
+            guests.push(guest);
+        }
+        for guest in &mut guests {
+            guest.see_text("64 samples").await;
+        }
+    });
+}
+
 #[test]
 fn a_new_size_and_the_mouse_are_followed() {
     let hosting = Hosting::usual();

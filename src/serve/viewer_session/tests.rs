@@ -44,7 +44,7 @@ impl Harness {
         let mut bytes = Vec::new();
         let session =
             ViewerSession::new(scenes(), 0, options, window, limits, SECOND, &mut bytes).expect("there is memory");
-        Self { roster: Roster::default(), session, tracer: Tracer::default(), now: Cell::new(SECOND), traced: 0, bytes }
+        Self { roster: Roster::default(), session, tracer: Tracer::new(1), now: Cell::new(SECOND), traced: 0, bytes }
     }
 
     fn turn_for(&mut self, kind: WorkKind, input: &PendingInput) -> AfterTurn {
@@ -54,7 +54,7 @@ impl Harness {
             assert!(job.refines || !may_interrupt, "the frame of a new view is lost if it is interrupted");
             *traced += 1;
             // On a busy machine the time that tracing takes would change the samples, and with them the bytes.
-            let frame = tracer.trace_for_any_viewer(job, &Cancellation::default()).ok()?;
+            let frame = tracer.trace_for(0, job, &Cancellation::default()).ok()?;
             Some(Frame { trace: Duration::ZERO, interval: Duration::ZERO, ..frame })
         };
         session.take_turn((input, &company), (false, kind), &|| now.get(), &mut trace, bytes)

@@ -31,9 +31,7 @@ fn frame() -> Frame {
         geometry: false,
     };
     let job = Job { scene, shot, sampling: Sampling::Each(NonZeroU32::MIN), refines: false };
-    Tracer::default()
-        .trace_for_any_viewer(&job, &Cancellation::default())
-        .unwrap_or_else(|_| panic!("nothing cancels it"))
+    Tracer::new(1).trace_for(0, &job, &Cancellation::default()).unwrap_or_else(|_| panic!("nothing cancels it"))
 }
 
 /// Returns the rows of text that a layer draws over a frame.
