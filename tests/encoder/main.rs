@@ -1,4 +1,4 @@
-//! The encoder's bytes, judged by the screens of three terminals.
+//! The encoder's bytes, judged by the screens of four terminals, and of a real tmux.
 //!
 //! Frames are random grids, changes, panels and resizes. After each frame every cell of every screen is the wanted one,
 //! or, where that is allowed, near it.
@@ -9,6 +9,7 @@ mod bytes;
 mod corpus;
 mod fuzzed;
 mod grids;
+mod kinds;
 mod lossy;
 mod memory;
 mod near;
@@ -20,6 +21,7 @@ mod scenes;
 mod screens;
 mod sequences;
 mod shifted;
+mod tmux;
 mod watched;
 mod widgets;
 

@@ -1,4 +1,4 @@
-//! Screens of terminals: two emulators that are not ours, and a strict model that refuses other
+//! Screens of terminals: three emulators that are not ours, and a strict model that refuses other
 //! bytes.
 //!
 //! Where an emulator does not keep what was sent, it is not asked, and the model alone is the judge:
@@ -6,8 +6,15 @@
 //! - `avt` does not know hidden text, nor two speeds of blinking;
 //! - both take bold and dim for two ends of one scale, of which the last said counts;
 //! - neither knows the colour of an underline;
+//! - `alacritty_terminal` does not know blinking text, and it alone executes synchronized output;
 //! - `vt100` keeps marks with their letter, but not a family or a flag in one place; `avt` gives every mark a cell.
 
+use alacritty_terminal::event::VoidListener;
+use alacritty_terminal::grid::Dimensions;
+use alacritty_terminal::index::{Column, Line};
+use alacritty_terminal::term::Config;
+use alacritty_terminal::term::cell::Flags;
+use alacritty_terminal::vte::ansi;
 use std::num::NonZeroU16;
 use termtrace::internals::grid::Attributes;
 use termtrace::{Cell, Glyph, Grid, Ink, Size, Srgb8};
@@ -24,6 +31,14 @@ const AVT_KNOWS: Attributes = Attributes::BOLD
 
 const VT100_KNOWS: Attributes = AVT_KNOWS.difference(Attributes::SLOW_BLINK).difference(Attributes::CROSSED_OUT);
 
+const ALACRITTY_KNOWS: Attributes = Attributes::BOLD
+    .union(Attributes::DIM)
+    .union(Attributes::ITALIC)
+    .union(Attributes::UNDERLINED)
+    .union(Attributes::REVERSED)
+    .union(Attributes::HIDDEN)
+    .union(Attributes::CROSSED_OUT);
+
 /// The clusters of a frame, by the emulators that keep them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Clusters {
@@ -34,12 +49,104 @@ pub(crate) enum Clusters {
     Joined,
 }
 
-/// Three terminals on one line, those of them that are asked.
+/// The mark of a synchronized update that is lost on the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Loss {
+    Begin,
+    /// The end: the terminal shows the frame after a while.
+    End,
+    /// The end, and the terminal waits until the next frame ends.
+    EndUntilNextFrame,
+}
+
+/// Four terminals on one line, those of them that are asked.
 pub(crate) struct Screens {
     avt: Option<avt::Terminal>,
     vt100: Option<vt100::Parser>,
+    alacritty: Option<Alacritty>,
+    /// Whether a terminal holds back a synchronized update whose end was lost.
+    is_held: bool,
     model: Model,
     parser: vte::Parser,
+}
+
+/// An emulator that executes synchronized output.
+struct Alacritty {
+    terminal: alacritty_terminal::Term<VoidListener>,
+    parser: ansi::Processor,
+}
+
+impl Dimensions for Lines {
+    fn total_lines(&self) -> usize {
+        self.0.rows.into()
+    }
+
+    fn screen_lines(&self) -> usize {
+        self.0.rows.into()
+    }
+
+    fn columns(&self) -> usize {
+        self.0.columns.into()
+    }
+}
+
+/// The size of a terminal without scrollback.
+struct Lines(Size);
+
+impl Alacritty {
+    fn new(size: Size) -> Self {
+        let config = Config { scrolling_history: 0, ..Config::default() };
+        let terminal = alacritty_terminal::Term::new(config, &Lines(size), VoidListener);
+        Self { terminal, parser: ansi::Processor::new() }
+    }
+
+    fn feed(&mut self, bytes: &[u8]) {
+        self.parser.advance(&mut self.terminal, bytes);
+    }
+
+    /// Replaces the terminal by an empty one of another size with the same pen.
+    // Without scrollback, `alacritty_terminal` 0.26 takes all memory to wrap lines anew. On its alternate screen, which
+    // does not wrap them, half of a wide character stays behind and clears its neighbour later.
+    fn resize(&mut self, size: Size) {
+        let pen = self.terminal.grid().cursor.template.clone();
+        *self = Self::new(size);
+        self.terminal.grid_mut().cursor.template = pen;
+    }
+
+    /// Shows what a synchronized update holds back, as a terminal does if its end does not come.
+    fn end_wait(&mut self) {
+        if self.parser.sync_bytes_count() > 0 {
+            self.parser.stop_sync(&mut self.terminal);
+        }
+    }
+
+    fn seen(&self, column: u16, row: u16) -> Cell {
+        let cell = &self.terminal.grid()[Line(row.into())][Column(column.into())];
+        let attributes = attributes_of([
+            (cell.flags.contains(Flags::BOLD), Attributes::BOLD),
+            (cell.flags.contains(Flags::DIM), Attributes::DIM),
+            (cell.flags.contains(Flags::ITALIC), Attributes::ITALIC),
+            (cell.flags.intersects(Flags::ALL_UNDERLINES), Attributes::UNDERLINED),
+            (cell.flags.contains(Flags::INVERSE), Attributes::REVERSED),
+            (cell.flags.contains(Flags::HIDDEN), Attributes::HIDDEN),
+            (cell.flags.contains(Flags::STRIKEOUT), Attributes::CROSSED_OUT),
+        ]);
+        let glyph = if cell.flags.contains(Flags::WIDE_CHAR_SPACER) { Glyph::Covered } else { cell.c.into() };
+        let underline = cell.underline_color().map_or(Ink::Default, seen_by_alacritty);
+        let (fg, bg) = (seen_by_alacritty(cell.fg), seen_by_alacritty(cell.bg));
+        seen_of(Cell { glyph, fg, bg, underline, attributes })
+    }
+}
+
+fn seen_by_alacritty(color: ansi::Color) -> Ink {
+    match color {
+        ansi::Color::Spec(ansi::Rgb { r, g, b }) => Ink::Rgb(Srgb8::new(r, g, b)),
+        ansi::Color::Indexed(index) => Ink::Indexed(index),
+        // The first sixteen are the palette's, and the others are the terminal's own.
+        ansi::Color::Named(name) => {
+            u8::try_from(name as usize).ok().filter(|&index| index < 16).map_or(Ink::Default, Ink::Indexed)
+        }
+    }
 }
 
 fn side(length: u16) -> NonZeroU16 {
@@ -55,6 +162,8 @@ impl Screens {
         let mut screens = Self {
             avt: matches!(clusters, Clusters::None).then(avt),
             vt100: matches!(clusters, Clusters::None | Clusters::Marks).then(vt100),
+            alacritty: matches!(clusters, Clusters::None).then(|| Alacritty::new(size)),
+            is_held: false,
             model: Model::new(size),
             parser: vte::Parser::new(),
         };
@@ -74,6 +183,9 @@ impl Screens {
         }
         if let Some(vt100) = &mut self.vt100 {
             vt100.screen_mut().set_size(side(size.rows), side(size.columns));
+        }
+        if let Some(alacritty) = &mut self.alacritty {
+            alacritty.resize(size);
         }
         let pen = self.model.pen.clone();
         self.model = Model { pen, ..Model::new(size) };
@@ -105,7 +217,27 @@ impl Screens {
             if let Some(vt100) = &mut self.vt100 {
                 vt100.process(piece);
             }
+            if let Some(alacritty) = &mut self.alacritty {
+                alacritty.feed(piece);
+            }
             self.parser.advance(&mut self.model, piece);
+        }
+        // What is held back was shown with the end of this frame, if it had one.
+        self.is_held = self.alacritty.as_ref().is_some_and(|alacritty| alacritty.parser.sync_bytes_count() > 0);
+    }
+
+    /// Shows the bytes of a frame of which a mark of its synchronized update is lost.
+    #[track_caller]
+    pub(crate) fn feed_losing(&mut self, loss: Loss, lengths: &[usize], bytes: &[u8]) {
+        let text = std::str::from_utf8(bytes).expect("a frame ends in no character's middle");
+        let rest = match loss {
+            Loss::Begin => text.replacen("\x1b[?2026h", "", 1),
+            Loss::End | Loss::EndUntilNextFrame => text.replacen("\x1b[?2026l", "", 1),
+        };
+        self.feed_in(lengths, rest.as_bytes());
+        if let Some(alacritty) = self.alacritty.as_mut().filter(|_| loss == Loss::End) {
+            alacritty.end_wait();
+            self.is_held = false;
         }
     }
 
@@ -143,6 +275,12 @@ impl Screens {
                 assert_eq!(look(&self.model.cells[self.model.index(column, row)]), look(&wanted), "the model, {place}");
                 if let Some(avt) = &self.avt {
                     assert_eq!(look(&seen_by_avt(avt, column, row)), look(&wanted.as_known(AVT_KNOWS)), "avt, {place}");
+                }
+                if let Some(alacritty) = self.alacritty.as_ref().filter(|_| !self.is_held) {
+                    // A space has no glyph, and so no colour but that of its line.
+                    let by_alacritty =
+                        seen_of(Cell { attributes: wanted.attributes & ALACRITTY_KNOWS, ..wanted.clone() });
+                    assert_eq!(look(&alacritty.seen(column, row)), look(&by_alacritty), "alacritty, {place}");
                 }
                 if let Some(vt100) = &self.vt100 {
                     let mut by_vt100 = wanted.as_known(VT100_KNOWS);
@@ -184,6 +322,28 @@ fn whole_characters<'a>(text: &'a str, lengths: &'a [usize]) -> impl Iterator<It
 /// The first end of a character at that byte or after it.
 fn next_boundary(text: &str, at: usize) -> usize {
     (at..text.len()).find(|&at| text.is_char_boundary(at)).unwrap_or(text.len())
+}
+
+/// Returns whether an emulator's upper left corner of a size shows these cells, by half cells.
+pub(crate) fn avt_shows(avt: &avt::Terminal, shown: &[Cell], size: Size) -> bool {
+    first_difference(avt, shown, size).is_none()
+}
+
+/// Asserts that an emulator's upper left corner shows these cells, by half cells.
+#[track_caller]
+pub(crate) fn assert_avt_shows(avt: &avt::Terminal, shown: &[Cell], size: Size) {
+    assert_eq!(first_difference(avt, shown, size), None, "a cell as seen, and as it should be");
+}
+
+/// Returns the first cell that differs from what an emulator shows.
+///
+/// The cell is given by its column and row, as seen and as it should be.
+fn first_difference(avt: &avt::Terminal, shown: &[Cell], size: Size) -> Option<(u16, u16, [Cell; 2])> {
+    let places = (0..size.rows).flat_map(|row| (0..size.columns).map(move |column| (column, row)));
+    places.zip(shown).find_map(|((column, row), cell)| {
+        let both = [seen_by_avt(avt, column, row), seen_of(cell.clone()).as_known(AVT_KNOWS)].map(lower_half);
+        (both[0] != both[1]).then_some((column, row, both))
+    })
 }
 
 pub(crate) fn seen_by_avt(avt: &avt::Terminal, column: u16, row: u16) -> Cell {
@@ -288,7 +448,7 @@ impl Known for Cell {
 }
 
 /// A strict model of a terminal in raw mode. It knows CUP, CUF, CHA, CR, BS, LF, SGR, ICH, DCH, IL,
-/// DL and characters.
+/// DL, the marks of synchronized output and characters.
 ///
 /// It panics at anything else: erasing, scrolling, going over an edge, moving from beyond the last column (where
 /// terminals disagree), other control characters, anything but CUP after a cluster (where terminals disagree, too), and
@@ -472,6 +632,9 @@ impl vte::Perform for Model {
 
     fn csi_dispatch(&mut self, params: &vte::Params, intermediates: &[u8], ignore: bool, action: char) {
         let numbers: Vec<u16> = params.iter().flatten().copied().collect();
+        if intermediates == b"?" && numbers == [2026] && matches!(action, 'h' | 'l') {
+            return;
+        }
         assert!(intermediates.is_empty() && !ignore, "{intermediates:?} {numbers:?} {action:?}");
         let alone = params.iter().count() == 1;
         let colons = params.iter().any(|group| group.len() > 1);

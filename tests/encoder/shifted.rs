@@ -3,7 +3,7 @@
 
 use super::grids::put;
 use super::pictures::noise;
-use super::screens::{Clusters, glyph_of};
+use super::screens::{Clusters, Loss, glyph_of};
 use super::watched::Watched;
 use super::{config, rgb};
 use proptest::collection::vec;
@@ -57,7 +57,7 @@ impl View {
 
 /// A change from one frame to the next.
 #[derive(Clone, Debug)]
-enum Event {
+pub(crate) enum Event {
     /// The view moves by columns and rows of half cells.
     Pan(i32, i32),
     /// Text is laid over a corner of the picture, or at a place of it.
@@ -100,6 +100,11 @@ fn pace() -> impl Strategy<Value = (Quality, Option<usize>, u64)> {
     (quality, limit, prop_oneof![4 => Just(33), 1 => 0_u64..1_200])
 }
 
+/// A mark that the frame loses, if any.
+fn loss() -> impl Strategy<Value = Option<Loss>> {
+    prop::sample::select(&[None, None, Some(Loss::Begin), Some(Loss::End), Some(Loss::EndUntilNextFrame)][..])
+}
+
 fn put_text(grid: &mut Grid, panel: &Event) {
     let Event::Panel { column, row, columns, rows, text } = *panel else { return };
     let Size { columns: most_columns, rows: most_rows } = grid.size();
@@ -117,8 +122,8 @@ fn put_text(grid: &mut Grid, panel: &Event) {
 }
 
 /// Sends a view with shifts, and its panel.
-struct Story {
-    watched: Watched,
+pub(crate) struct Story {
+    pub(crate) watched: Watched,
     view: View,
     size: Size,
     panel: Option<Event>,
@@ -126,12 +131,12 @@ struct Story {
 }
 
 impl Story {
-    fn new(view: View, size: Size, half_blocks: HalfBlocks, shifts: Shifts) -> Self {
+    pub(crate) fn new(view: View, size: Size, half_blocks: HalfBlocks, shifts: Shifts) -> Self {
         let watched = Watched::new(Order::Color, half_blocks, size, Clusters::None).with_shifts(shifts);
         Self { watched, view, size, panel: None, now: Duration::ZERO }
     }
 
-    fn take(&mut self, event: &Event) {
+    pub(crate) fn take(&mut self, event: &Event) {
         match *event {
             Event::Pan(x, y) => self.view.at = [self.view.at[0] + x, self.view.at[1] + y],
             Event::Panel { .. } => self.panel = Some(event.clone()),
@@ -153,7 +158,7 @@ impl Story {
     }
 
     #[track_caller]
-    fn send(&mut self, quality: Quality, max_bytes: Option<usize>, millis: u64) -> usize {
+    pub(crate) fn send(&mut self, quality: Quality, max_bytes: Option<usize>, millis: u64) -> usize {
         self.now += Duration::from_millis(millis);
         self.watched.send_within(&self.grid(), Allowance { quality, now: self.now, max_bytes })
     }
@@ -188,6 +193,27 @@ proptest! {
             let (grid, (quality, max_bytes)) = (story.grid(), last);
             story.watched.rest(&grid, Allowance { quality, now: story.now, max_bytes });
         }
+    }
+
+    /// All of that at once, in synchronized updates whose marks get lost.
+    #[test]
+    fn lost_marks_of_synchronized_updates_do_no_harm(
+        seed in any::<u32>(),
+        size in screen(),
+        pieces in vec(1_usize..200, 1..4),
+        steps in vec((event(), pace(), loss()), 1..12),
+    ) {
+        let view = View { seed, at: [0; 2], grain: 2, shade: 0 };
+        let mut story = Story::new(view, size, HalfBlocks::Either, Shifts::Direct);
+        story.watched = story.watched.synchronized().in_pieces(pieces);
+        for (event, (quality, max_bytes, millis), loss) in &steps {
+            story.take(event);
+            story.watched.lose(*loss);
+            story.send(*quality, *max_bytes, *millis);
+        }
+        let grid = story.grid();
+        story.watched.lose(None);
+        story.watched.send(&grid);
     }
 
     /// Exact frames with shifts are exact.

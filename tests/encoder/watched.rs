@@ -1,7 +1,7 @@
-//! An encoder whose bytes three terminals read; after each frame they are asked.
+//! An encoder whose bytes four terminals read; after each frame they are asked.
 
 use super::near::{Caps, assert_text_is_exact, assert_within, distance, halves, square};
-use super::screens::{Clusters, Screens};
+use super::screens::{Clusters, Loss, Screens};
 use std::time::Duration;
 use termtrace::internals::capabilities::Shifts;
 use termtrace::internals::encode::Allowance;
@@ -22,6 +22,10 @@ pub(crate) struct Watched {
     is_known: bool,
     /// The lengths of the pieces in which the terminals read, which repeat.
     pieces: Vec<usize>,
+    /// The mark of the next frame that is lost.
+    loss: Option<Loss>,
+    /// The bytes of the last frame.
+    sent: Vec<u8>,
 }
 
 /// The time and bytes from a frame until all is exact.
@@ -43,6 +47,8 @@ impl Watched {
             last: None,
             is_known: false,
             pieces: vec![usize::MAX],
+            loss: None,
+            sent: Vec::new(),
         }
     }
 
@@ -54,6 +60,35 @@ impl Watched {
     /// Lets the encoder shift what the terminals show.
     pub(crate) fn with_shifts(self, shifts: Shifts) -> Self {
         Self { encoder: self.encoder.with_shifts(shifts), has_shifts: true, ..self }
+    }
+
+    /// Makes each frame a synchronized update.
+    pub(crate) fn synchronized(self) -> Self {
+        Self { encoder: self.encoder.with_synchronized_output(true), ..self }
+    }
+
+    /// Makes the next frame lose a mark of its synchronized update.
+    pub(crate) fn lose(&mut self, loss: Option<Loss>) {
+        self.loss = loss;
+    }
+
+    /// Returns the bytes of the last frame.
+    pub(crate) fn sent(&self) -> &[u8] {
+        &self.sent
+    }
+
+    /// Returns the cells that the terminals show.
+    pub(crate) fn shown(&self) -> &[Cell] {
+        self.screens.shown()
+    }
+
+    #[track_caller]
+    fn feed(&mut self, bytes: Vec<u8>) {
+        match self.loss.take().filter(|_| !bytes.is_empty()) {
+            Some(loss) => self.screens.feed_losing(loss, &self.pieces, &bytes),
+            None => self.screens.feed_in(&self.pieces, &bytes),
+        }
+        self.sent = bytes;
     }
 
     /// Resizes the window.
@@ -79,14 +114,15 @@ impl Watched {
     pub(crate) fn send(&mut self, wanted: &Grid) -> usize {
         let mut bytes = Vec::new();
         self.encoder.encode(wanted, &mut bytes);
-        self.screens.feed_in(&self.pieces, &bytes);
+        let length = bytes.len();
+        self.feed(bytes);
         self.last = Some(wanted.clone());
         self.is_known = true;
         self.assert_exact(wanted);
         let mut more = Vec::new();
         self.encoder.encode(wanted, &mut more);
         assert!(more.is_empty(), "nothing has changed, and {:?} is sent", String::from_utf8_lossy(&more));
-        bytes.len()
+        length
     }
 
     #[track_caller]
@@ -105,12 +141,13 @@ impl Watched {
         let before = self.pictures_shown();
         let mut bytes = Vec::new();
         self.encoder.encode_within(wanted, allowance, &mut bytes);
-        self.screens.feed_in(&self.pieces, &bytes);
+        let length = bytes.len();
+        self.feed(bytes);
         let seen = assert_text_is_exact(&self.screens, wanted);
         let caps = Caps::of(allowance.quality);
         match allowance.max_bytes {
             Some(most) if allowance.quality != Quality::Exact => {
-                assert_limited(&before, &seen, wanted, (bytes.len(), most));
+                assert_limited(&before, &seen, wanted, (length, most));
                 // A shift counts errors up to that of a cell that is worth writing: a few may grow beyond it.
                 if !self.has_shifts {
                     assert_nearer(caps, &before, &seen, wanted);
@@ -124,7 +161,7 @@ impl Watched {
         if self.has_shifts {
             self.assert_believed(&seen);
         }
-        bytes.len()
+        length
     }
 
     /// Returns the sum of the squared differences of all halves on the screen from those wanted.
@@ -197,6 +234,12 @@ impl Watched {
         self.encoder.encode_within(wanted, Allowance { now: from.now + Duration::from_secs(99), ..from }, &mut more);
         assert!(more.is_empty(), "all is exact, and {:?} is sent", String::from_utf8_lossy(&more));
         rest
+    }
+
+    /// Asserts that all is exact, and no frame is due.
+    #[track_caller]
+    pub(crate) fn assert_rests(&self, what: &str) {
+        assert_eq!(self.encoder.due(), None, "{what}: a frame is due");
     }
 
     /// Returns the peak signal-to-noise ratio of the picture that is shown, in decibels.
