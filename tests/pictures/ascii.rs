@@ -87,19 +87,15 @@ fn motion(name: &str, step: f32, glyphs: Glyphs) -> [f64; 2] {
     [share(&changes), share(&|at, cell| changes(at, cell) && returns(at, cell))]
 }
 
-/// Checks that a moving view changes no more cells than shapes do, and flickers half as often.
+/// Checks that a moving view changes no more cells than shapes do, and flickers far less often.
 #[test]
 fn a_moving_view_is_calmer_than_shapes() {
-    let mut sums = [[0.0; 2]; 2];
     for (name, step) in [("three_spheres.ron", 0.01), ("three_spheres.ron", 0.04), ("teapots.ron", 0.03)] {
         let shares = [Glyphs::Ascii, Glyphs::Shape].map(|glyphs| motion(name, step, glyphs));
         println!("{name}, {step} a frame: changed and flickering {shares:.5?}");
         let [ascii, shape] = shares;
-        assert!(ascii[0] <= 1.2 * shape[0] && ascii[1] <= 0.5 * shape[1], "{name}, {step}: {shares:?}");
-        (0..4).for_each(|at| sums[at / 2][at % 2] += shares[at / 2][at % 2]);
+        assert!(ascii[0] <= shape[0] && ascii[1] <= 0.3 * shape[1], "{name}, {step}: {shares:?}");
     }
-    let [ascii, shape] = sums;
-    assert!(ascii[0] <= shape[0] && ascii[1] <= 0.4 * shape[1], "{sums:?}");
 }
 
 /// Checks that cells with equal samples keep their glyphs in motion, and none do at rest.

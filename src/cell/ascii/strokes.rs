@@ -23,7 +23,8 @@ const CREASE_INK: f32 = 0.6;
 const LEAST_LENGTH: u32 = 2;
 /// The margin by which a character must be better to replace the one shown before, as a mean
 /// difference per point.
-const CLEAR_DIFFERENCE: f32 = 0.006;
+// With .02 a moving outline leaves characters of the wrong direction behind.
+const CLEAR_DIFFERENCE: f32 = 0.008;
 /// The number of points of the shortest crease in and around a cell, .75 of a cell's width.
 // A cell is eight points wide, and a stroke two points thick: 0.75 * 8 * 2.
 const LEAST_CREASE_POINTS: u32 = 12;
