@@ -41,7 +41,7 @@ impl RefinablePicture {
 ///
 /// Pictures that are being traced have places, too. If all places are taken, the picture that has waited longest makes
 /// room, and its viewer's next refinement begins anew: it takes longer, and gives the same picture.
-// A thread traces one picture at a time, so that with a place for each thread none waits for a place.
+// A thread traces one picture at a time: with a place for each thread, the pictures that are traced always have one.
 pub(super) struct Refinements {
     places: usize,
     occupancy: Mutex<Occupancy>,

@@ -222,7 +222,7 @@ impl Screens {
             }
             self.parser.advance(&mut self.model, piece);
         }
-        // What is held back was shown with the end of this frame, if it had one.
+        // The end of a synchronized update shows it. Without one, the emulator still shows the frame before.
         self.is_held = self.alacritty.as_ref().is_some_and(|alacritty| alacritty.parser.sync_bytes_count() > 0);
     }
 
@@ -234,11 +234,17 @@ impl Screens {
             Loss::Begin => text.replacen("\x1b[?2026h", "", 1),
             Loss::End | Loss::EndUntilNextFrame => text.replacen("\x1b[?2026l", "", 1),
         };
+        assert!(rest != text, "the frame is not a synchronized update: {text:?}");
         self.feed_in(lengths, rest.as_bytes());
         if let Some(alacritty) = self.alacritty.as_mut().filter(|_| loss == Loss::End) {
             alacritty.end_wait();
             self.is_held = false;
         }
+    }
+
+    /// Returns whether a terminal holds back a synchronized update that has not ended.
+    pub(crate) fn is_held(&self) -> bool {
+        self.is_held
     }
 
     /// Returns the model's screen, row by row from the top.

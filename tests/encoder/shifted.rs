@@ -195,7 +195,7 @@ proptest! {
         }
     }
 
-    /// All of that at once, in synchronized updates whose marks get lost.
+    /// Sends all events in synchronized updates that lose the mark of their begin or end.
     #[test]
     fn lost_marks_of_synchronized_updates_do_no_harm(
         seed in any::<u32>(),

@@ -86,7 +86,10 @@ impl Watched {
     fn feed(&mut self, bytes: Vec<u8>) {
         match self.loss.take().filter(|_| !bytes.is_empty()) {
             Some(loss) => self.screens.feed_losing(loss, &self.pieces, &bytes),
-            None => self.screens.feed_in(&self.pieces, &bytes),
+            None => {
+                self.screens.feed_in(&self.pieces, &bytes);
+                assert!(bytes.is_empty() || !self.screens.is_held(), "a synchronized update has no end");
+            }
         }
         self.sent = bytes;
     }
