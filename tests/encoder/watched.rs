@@ -84,12 +84,11 @@ impl Watched {
 
     #[track_caller]
     fn feed(&mut self, bytes: Vec<u8>) {
-        match self.loss.take().filter(|_| !bytes.is_empty()) {
-            Some(loss) => self.screens.feed_losing(loss, &self.pieces, &bytes),
-            None => {
-                self.screens.feed_in(&self.pieces, &bytes);
-                assert!(bytes.is_empty() || !self.screens.is_held(), "a synchronized update has no end");
-            }
+        if let Some(loss) = self.loss.take().filter(|_| !bytes.is_empty()) {
+            self.screens.feed_losing(loss, &self.pieces, &bytes);
+        } else {
+            self.screens.feed_in(&self.pieces, &bytes);
+            assert!(bytes.is_empty() || !self.screens.is_held(), "a synchronized update has no end");
         }
         self.sent = bytes;
     }
