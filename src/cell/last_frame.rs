@@ -53,7 +53,13 @@ impl LastFrame {
         ranges: LightRanges,
         cells: Vec<KeptCell>,
     ) {
-        self.frame = Some(Remembered { picture: picture.clone(), geometry: geometry.clone(), ranges, cells });
+        if let Some(frame) = &mut self.frame {
+            frame.geometry.clone_from(geometry);
+            frame.picture.clone_from(picture);
+            (frame.ranges, frame.cells) = (ranges, cells);
+        } else {
+            self.frame = Some(Remembered { picture: picture.clone(), geometry: geometry.clone(), ranges, cells });
+        }
     }
 }
 

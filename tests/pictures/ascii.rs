@@ -27,10 +27,43 @@ fn scenes_can_be_recognised_without_colour() {
 
 /// Returns a picture with geometry of the scene of the benches with this name, and its cost.
 fn traced(name: &str, map: Map, executor: Executor<'_>, size: Size, right: f32) -> TracedMap {
+    traced_by(Sampling::Each(NonZeroU32::MIN), name, map, executor, size, right)
+}
+
+fn traced_by(sampling: Sampling, name: &str, map: Map, executor: Executor<'_>, size: Size, right: f32) -> TracedMap {
     let scene = Scene::load(format!("benches/scenes/{name}").as_ref()).expect("a scene of the benches");
     let resolution = resolution(MODE, size, 2.0).expect("a small screen");
-    let (camera, sampling) = (scene.camera().moved(right, 0.0, 0.0), Sampling::Each(NonZeroU32::MIN));
+    let camera = scene.camera().moved(right, 0.0, 0.0);
     maps::trace_with_geometry(map, executor, &scene, &camera, resolution, sampling).expect("it is not cancelled")
+}
+
+/// Returns the characters of a view at rest.
+fn glyphs(seen: &TracedMap) -> String {
+    let mut grid = Grid::new(Size::new(0, 0));
+    Painter::new(MODE).paint(&seen.picture, seen.geometry.as_deref(), &mut grid);
+    grid.cells().map(|cell| cell.glyph.to_string()).collect()
+}
+
+/// Checks that frames of a slow machine in motion, with one ray for four pixels, have outlines too.
+#[test]
+fn coarse_frames_have_outlines() {
+    let size = Size::new(80, 24);
+    for name in SCENES {
+        let [fine, coarse] = [Sampling::Each(NonZeroU32::MIN), Sampling::Coarse].map(|sampling| {
+            let seen = traced_by(sampling, name, Map::Shaded, Executor::Pool, size, 0.0);
+            (glyphs(&seen), seen.cost.rays as f64 / size.cell_count() as f64)
+        });
+        // Level lines are left out: a horizon may be `_` in one frame and `-`, which fills planes too, in the other.
+        let is_line = |glyph: char| "/\\|'`,()\"^".contains(glyph);
+        let lines = fine.0.chars().filter(|&glyph| is_line(glyph)).count();
+        let both = fine.0.chars().zip(coarse.0.chars());
+        let same = both.filter(|&(fine, coarse)| is_line(fine) && (is_line(coarse) || coarse == '_')).count();
+        println!("{name} {}: {same} of {lines}, {:.1} and {:.1} rays per cell", size.columns, fine.1, coarse.1);
+        // Of spheres of three by two cells some are drawn by their fill, others by their outline.
+        let least = if name == "many_spheres.ron" { 0.5 } else { 0.9 };
+        assert!(same as f64 >= least * lines as f64, "{name}: {same} of {lines}");
+        assert!(2.0 * coarse.1 < fine.1, "{name}: {} and {} rays per cell", coarse.1, fine.1);
+    }
 }
 
 #[test]

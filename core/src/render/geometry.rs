@@ -5,7 +5,7 @@
 
 use super::sampling::SampleBatches;
 use super::steps::{Buffers, RenderJob, Stage};
-use super::tiles::{PIXELS, Tiles};
+use super::tiles::Tiles;
 use super::{Cost, Executor, Rendered, Sampling, render_partial};
 use crate::camera::Camera;
 use crate::color::LinearRgb;
@@ -67,18 +67,19 @@ impl Facet {
     /// Returns whether a neighbouring facet is on another object, or across a crease of the
     /// same bounded object.
     fn may_border(&self, other: &Self) -> bool {
-        self.object != other.object || self.extent == Extent::Bounded && self.cosine(other) < CREASE_COSINE
+        self.object != other.object || self.extent == Extent::Bounded && self.is_across_crease(other)
     }
 
-    /// Returns the cosine of the angle between the normals of two facets, exact to two digits.
-    pub fn cosine(&self, other: &Self) -> f32 {
+    /// Returns whether the normals of two facets are more than 40 degrees apart.
+    #[inline]
+    pub fn is_across_crease(&self, other: &Self) -> bool {
         let products = self.normal.iter().zip(other.normal).map(|(&a, b)| i32::from(a) * i32::from(b));
-        products.sum::<i32>() as f32 / (127.0 * 127.0)
+        products.sum::<i32>() < CREASE_PRODUCT
     }
 }
 
 /// The facets of a picture with two by four pixels per cell.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Geometry {
     /// The picture's width in pixels.
     width: usize,
@@ -96,6 +97,24 @@ pub struct Geometry {
 
 /// The entry in `fine_indices` of a cell without fine facets.
 const NOT_FINE: u32 = u32::MAX;
+
+impl Clone for Geometry {
+    fn clone(&self) -> Self {
+        let Self { width, ref facets, least_jump, ref fine_indices, ref fine } = *self;
+        Self { width, facets: facets.clone(), least_jump, fine_indices: fine_indices.clone(), fine: fine.clone() }
+    }
+
+    /// Copies a geometry and reuses the memory of this one.
+    // The live view keeps a copy of each frame's geometry, which may have 6 MB at 200x60. New memory for each would
+    // cost page faults.
+    fn clone_from(&mut self, other: &Self) {
+        let Self { width, ref facets, least_jump, ref fine_indices, ref fine } = *other;
+        (self.width, self.least_jump) = (width, least_jump);
+        self.facets.clone_from(facets);
+        self.fine_indices.clone_from(fine_indices);
+        self.fine.clone_from(fine);
+    }
+}
 
 impl Geometry {
     /// Returns the geometry of a picture of a single surface.
@@ -126,7 +145,7 @@ impl Geometry {
         let at_pixel = |pixel: usize| facet(middle(pixel % width, CELL[0]), middle(pixel / width, CELL[1]));
         let facets = (0..width * height).map(at_pixel).collect();
         let mut geometry = Self::new(Resolution::square(width as u32, height as u32), facets, 0.0);
-        for cell in geometry.cells_with(&geometry.crossed_pixels()) {
+        for cell in geometry.cells_with(&geometry.crossed_pixels(1)) {
             geometry.fine_indices[cell] = geometry.fine.len() as u32;
             let (left, top) = ((cell % columns) as f32, (cell / columns) as f32);
             geometry.fine.push(std::array::from_fn(|at| {
@@ -142,6 +161,7 @@ impl Geometry {
     }
 
     /// Returns the number of cells in a row.
+    #[inline]
     pub fn columns(&self) -> usize {
         self.width.div_ceil(CELL[0])
     }
@@ -156,6 +176,7 @@ impl Geometry {
     }
 
     /// Returns the facet of the pixel with this index.
+    #[inline]
     pub fn pixel(&self, index: usize) -> &Facet {
         &self.facets[index]
     }
@@ -167,6 +188,7 @@ impl Geometry {
     }
 
     /// Returns whether a cell has fine facets: an edge may be in or beside it.
+    #[inline]
     pub fn has_edge(&self, column: usize, row: usize) -> bool {
         self.fine_indices[row * self.columns() + column] != NOT_FINE
     }
@@ -179,49 +201,81 @@ impl Geometry {
         pixels.iter().all(|&pixel| self.facets[pixel] == other.facets[pixel]) && fine(self) == fine(other)
     }
 
-    /// Returns the facet at a position in quarters of a cell's width and eighths of its height.
-    pub fn at(&self, x: usize, y: usize) -> &Facet {
-        let index = self.fine_indices[y / FINE[1] * self.columns() + x / FINE[0]];
-        match self.fine.get(index as usize) {
-            Some(facets) => &facets[y % FINE[1] * FINE[0] + x % FINE[0]],
-            None => self.at_pixel(x / 2, y / 2),
+    /// Returns a row of four facets of the cells in this column, at a position in eighths of a
+    /// cell's height.
+    #[inline]
+    pub fn row_of_cell(&self, column: usize, y: usize) -> [&Facet; FINE[0]] {
+        let index = self.fine_indices[y / FINE[1] * self.columns() + column];
+        if let Some(facets) = self.fine.get(index as usize) {
+            let row = &facets[y % FINE[1] * FINE[0]..][..FINE[0]];
+            return std::array::from_fn(|x| &row[x]);
         }
+        let [left, right] = [0, 1].map(|x| self.at_pixel(CELL[0] * column + x, y / 2));
+        [left, left, right, right]
     }
 
-    /// Returns whether the depths of three facets in a line are far from linear: a jump or a sharp
-    /// bend.
-    pub fn jumps(&self, [before, middle, after]: [&Facet; 3]) -> bool {
-        let bend = before.depth - 2.0 * middle.depth + after.depth;
-        bend.abs() > 0.03 * middle.depth + self.least_jump
+    /// Returns whether three depths in a line are far from linear: a jump or a sharp bend.
+    #[inline]
+    pub fn jumps(&self, [before, middle, after]: [f32; 3]) -> bool {
+        let bend = before - 2.0 * middle + after;
+        bend.abs() > 0.03 * middle + self.least_jump
     }
 
     /// Returns the mask of pixels beside which an edge may be.
-    fn crossed_pixels(&self) -> Vec<bool> {
+    ///
+    /// Pixels are compared at this distance; with 2, only those in even columns of even rows are.
+    fn crossed_pixels(&self, distance: usize) -> Vec<bool> {
         let mut crossed = vec![false; self.facets.len()];
         let (width, height) = (self.width, self.height());
-        let mut mark = |x: usize, y: usize| crossed[y * width + x] = true;
-        for y in 0..height {
-            for x in 0..width {
-                let facet = self.at_pixel(x, y);
-                for (right, down) in [(1, 0), (0, 1)] {
-                    if x + right >= width || y + down >= height {
-                        continue;
-                    }
-                    let next = self.at_pixel(x + right, y + down);
-                    let bends = || {
-                        facet.extent == Extent::Bounded
-                            && x >= right
-                            && y >= down
-                            && self.jumps([self.at_pixel(x - right, y - down), facet, next])
-                    };
-                    if facet.may_border(next) || bends() {
-                        mark(x, y);
-                        mark(x + right, y + down);
-                    }
+        let row = |y: usize| &self.facets[y * width..][..width];
+        let is_crossed = |before: Option<&Facet>, facet: &Facet, next: &Facet| {
+            let is_jump = |before: &Facet| self.jumps([before, facet, next].map(|facet| facet.depth));
+            facet.may_border(next) || facet.extent == Extent::Bounded && before.is_some_and(is_jump)
+        };
+        for y in (0..height).step_by(distance) {
+            let (above, level) = (y.checked_sub(distance).map(row), row(y));
+            let below = Some(y + distance).filter(|&below| below < height).map(row);
+            for x in (0..width).step_by(distance) {
+                let (facet, at) = (&level[x], y * width + x);
+                let left = x.checked_sub(distance).map(|left| &level[left]);
+                if level.get(x + distance).is_some_and(|right| is_crossed(left, facet, right)) {
+                    (crossed[at], crossed[at + distance]) = (true, true);
+                }
+                if below.is_some_and(|below| is_crossed(above.map(|above| &above[x]), facet, &below[x])) {
+                    (crossed[at], crossed[at + distance * width]) = (true, true);
                 }
             }
         }
         crossed
+    }
+
+    /// Gives the cells with a pixel of the mask `pixels` fine facets: those of their pixels.
+    fn add_fine_cells(&mut self, pixels: &[bool]) {
+        for cell in self.cells_with(pixels) {
+            let (left, top) = (cell % self.columns() * CELL[0], cell / self.columns() * CELL[1]);
+            let of_pixels: [[Facet; CELL[0]]; CELL[1]] =
+                std::array::from_fn(|y| std::array::from_fn(|x| *self.at_pixel(left + x, top + y)));
+            self.fine_indices[cell] = self.fine.len() as u32;
+            self.fine.push(std::array::from_fn(|at| of_pixels[at / FINE[0] / 2][at % FINE[0] / 2]));
+        }
+    }
+
+    /// Sets the fine facets that a traced sample stands for: a square of this side.
+    ///
+    /// Those in the last column and row of samples stand for all beyond the picture's edge, too.
+    fn set_fine(&mut self, [x, y]: [usize; 2], side: usize, facet: Facet) {
+        let end = |at: usize, samples: usize, cells: usize, fine: usize| {
+            if at + 1 == samples { cells * fine } else { (at + 1) * side }
+        };
+        let columns = self.columns();
+        let right = end(x, 2 * self.width / side, columns, FINE[0]);
+        let bottom = end(y, 2 * self.height() / side, self.rows(), FINE[1]);
+        for y in y * side..bottom {
+            for x in x * side..right {
+                let cell = self.fine_indices[y / FINE[1] * columns + x / FINE[0]] as usize;
+                self.fine[cell][y % FINE[1] * FINE[0] + x % FINE[0]] = facet;
+            }
+        }
     }
 
     /// Returns the indices of the cells in which at least one pixel is set in the mask `pixels`.
@@ -234,8 +288,9 @@ impl Geometry {
     }
 }
 
-/// The cosine of the least angle between the normals at a crease, 40 degrees.
-pub const CREASE_COSINE: f32 = 0.766;
+/// The product of the normals at the least angle of a crease, 40 degrees, in units of 1/127^2.
+// The cosine is 0.766, and 12355 is the least integer that is not below 0.766 * 127 * 127.
+const CREASE_PRODUCT: i32 = 12355;
 
 /// Renders a picture with two by four pixels per cell, and its geometry.
 ///
@@ -294,15 +349,16 @@ fn trace_facets(
     let job = RenderJob::new(scene, tiles, last_stage);
     let cost = executor.trace(&job, tiles.split(&mut pixels), |tile, mut part| {
         tile.trace(&batches, |buffers, _, _| {
-            for (ray, &pixel) in buffers.pixels.iter().enumerate() {
+            let light_and_facet = |ray: usize| {
                 // Adding to zero turns -0 into 0. The sums in `uniform` do so too, so the light has the same bits in
                 // both.
                 let light = buffers
                     .lights
                     .get(ray / LANES)
                     .map_or(LinearRgb::BLACK, |lights| LinearRgb::BLACK + shade::lane_light(lights, ray % LANES));
-                tiles.fill_traced_pixel(pixel, (light, facet(scene, buffers, ray)), &mut part);
-            }
+                (light, facet(scene, buffers, ray))
+            };
+            tiles.fill_traced_pixels(&buffers.pixels, light_and_facet, &mut part);
         });
     });
     (pixels, cost)
@@ -327,12 +383,11 @@ fn with_fine_facets(
     let resolution = coarse.resolution;
     let facets = pixels.into_iter().map(|(_, facet)| facet).collect();
     let mut geometry = Geometry::new(resolution, facets, 0.012 * camera.pose().eye.distance(camera.pose().target));
-    // Coarse pictures, with one ray for two by two pixels, are made by machines that are too slow for fine facets.
-    if coarse.pixel_side > 1 {
-        return (geometry, Cost::default());
-    }
-    let crossed = geometry.crossed_pixels();
-    let (width, fine_size) = (geometry.width, [2 * resolution.width(), 2 * resolution.height()]);
+    // A coarse picture has one ray for two by two pixels, and at an edge one for each pixel.
+    let side = coarse.pixel_side as usize;
+    let crossed = geometry.crossed_pixels(side);
+    let (width, scale) = (geometry.width, 2 / coarse.pixel_side);
+    let fine_size = [scale * resolution.width(), scale * resolution.height()];
     let fine =
         Resolution::new(fine_size[0], fine_size[1]).and_then(|size| size.with_pixel_aspect(resolution.pixel_aspect()));
     // A picture that would have too many pixels at twice the resolution gets no fine facets.
@@ -341,36 +396,27 @@ fn with_fine_facets(
     let mut traced = vec![Vec::new(); tiles.count()];
     let batches = SampleBatches::of(0..1);
     let job = RenderJob::new(scene, &tiles, Stage::Points);
-    let cost = executor.trace(&job, traced.iter_mut().collect(), |tile, facets: &mut Vec<Facet>| {
+    let cost = executor.trace(&job, traced.iter_mut().collect(), |tile, facets: &mut Vec<(u8, Facet)>| {
         let number = tile.number;
-        tile.buffers.active.retain(|&pixel| {
-            let [x, y] = tiles.position(number, pixel).map(|at| at as usize);
-            crossed[y / 2 * width + x / 2]
-        });
-        // Tiles without an edge need no memory. Most tiles have none: in the measured scenes 9 to 15 % of the cells
-        // have an edge.
-        if tile.buffers.active.is_empty() {
+        let place = |at: u32| at as usize / 2 * side;
+        // Most tiles have no edge: in the measured scenes 9 to 15 % of the cells have one.
+        if !tiles.is_flagged(number, &crossed, width, place) {
             return;
         }
-        facets.resize(PIXELS, Facet::NOTHING);
+        tile.buffers.active.retain(|&pixel| {
+            let [x, y] = tiles.position(number, pixel).map(place);
+            crossed[y * width + x]
+        });
         tile.trace(&batches, |buffers, _, _| {
-            for (ray, &pixel) in buffers.pixels.iter().enumerate() {
-                facets[usize::from(pixel)] = facet(scene, buffers, ray);
-            }
+            let of_ray = |(ray, &pixel): (usize, &u8)| (pixel, facet(scene, buffers, ray));
+            facets.extend(buffers.pixels.iter().enumerate().map(of_ray));
         });
     });
-    for cell in geometry.cells_with(&crossed) {
-        let (left, top) = (cell % geometry.columns() * FINE[0], cell / geometry.columns() * FINE[1]);
-        let facets = std::array::from_fn(|at| {
-            let (x, y) = ((left + at % FINE[0]) as u32, (top + at / FINE[0]) as u32);
-            let [x, y] = [x.min(fine_size[0] - 1), y.min(fine_size[1] - 1)];
-            let coarse = y as usize / 2 * width + x as usize / 2;
-            let (tile, pixel) = tiles.tile_and_index([x, y]);
-            let fine = traced[tile].get(pixel).filter(|_| crossed[coarse]);
-            *fine.unwrap_or(&geometry.facets[coarse])
-        });
-        geometry.fine_indices[cell] = geometry.fine.len() as u32;
-        geometry.fine.push(facets);
+    geometry.add_fine_cells(&crossed);
+    for (tile, facets) in traced.iter().enumerate() {
+        for &(pixel, facet) in facets {
+            geometry.set_fine(tiles.position(tile, pixel).map(|at| at as usize), side, facet);
+        }
     }
     (geometry, cost)
 }

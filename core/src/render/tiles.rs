@@ -127,6 +127,16 @@ impl Tiles {
         (tile as usize, PIXELS_BY_ROW[(y % SIDE) as usize][(x % SIDE) as usize].into())
     }
 
+    /// Returns whether a flag is set in a tile, in rows of `columns` flags.
+    ///
+    /// `place` returns the column or row of a pixel's flag for the pixel's column or row.
+    pub(super) fn is_flagged(&self, tile: usize, flags: &[bool], columns: usize, place: impl Fn(u32) -> usize) -> bool {
+        let [left, top] = self.corner(tile);
+        let [right, bottom] = [(left + SIDE).min(self.columns) - 1, (top + SIDE).min(self.rows) - 1];
+        let rows = &flags[place(top) * columns..(place(bottom) + 1) * columns];
+        rows.chunks_exact(columns).any(|row| row[place(left)..=place(right)].contains(&true))
+    }
+
     /// Writes the indices of a tile's pixels that are in the picture to `pixels`.
     pub(super) fn pixels_in_picture(&self, tile: usize, pixels: &mut Vec<u8>) {
         pixels.clear();

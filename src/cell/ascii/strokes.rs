@@ -1,7 +1,7 @@
 //! The edges in a cell as strokes of a pen, and the character that is most like them.
 
 use super::glyphs::GLYPHS;
-use crate::render::{CREASE_COSINE, Extent, Facet, Geometry};
+use crate::render::{Extent, Facet, Geometry};
 use std::sync::LazyLock;
 
 /// The samples of a cell's geometry, across and down.
@@ -67,7 +67,14 @@ pub(super) fn edge(geometry: &Geometry, [column, row]: [usize; 2], kept: Option<
 }
 
 /// The facets in and around a cell, row by row.
-struct FacetWindow<'g>([[&'g Facet; WINDOW[0]]; WINDOW[1]]);
+// The objects and depths are copied, so that a row of them is compared in a few instructions.
+struct FacetWindow<'g> {
+    facets: [[&'g Facet; WINDOW[0]]; WINDOW[1]],
+    objects: [[u32; WINDOW[0]]; WINDOW[1]],
+    depths: [[f32; WINDOW[0]]; WINDOW[1]],
+    /// The facets of bounded objects.
+    bounded: [Row; WINDOW[1]],
+}
 
 /// The points of the strokes in and around a cell.
 struct Strokes {
@@ -77,95 +84,145 @@ struct Strokes {
     lengths: [u32; 2],
 }
 
+/// A mask of the facets in a row of the window, with the left one in the lowest bit.
+type Row = u8;
+
+/// Returns the mask of the facets of a row for which a condition holds.
+fn row_where(is_set: impl Fn(usize) -> bool) -> Row {
+    let mut bytes = [0; WINDOW[0]];
+    for (x, byte) in bytes.iter_mut().enumerate() {
+        *byte = u8::from(is_set(x));
+    }
+    // The product has bit 8 x of the number, the lowest of byte x, at bit 56 + x too.
+    (u64::from_le_bytes(bytes).wrapping_mul(0x0102_0408_1020_4080) >> 56) as Row
+}
+
 impl<'g> FacetWindow<'g> {
     fn of(geometry: &'g Geometry, column: usize, row: usize) -> Self {
-        let end = [geometry.columns() * SAMPLES[0] - 1, geometry.rows() * SAMPLES[1] - 1];
-        let at = |first: usize, offset: usize, end: usize| (first + offset).saturating_sub(MARGIN).min(end);
-        Self(std::array::from_fn(|y| {
-            let y = at(row * SAMPLES[1], y, end[1]);
-            std::array::from_fn(|x| geometry.at(at(column * SAMPLES[0], x, end[0]), y))
-        }))
+        const LAST: usize = SAMPLES[0] - 1;
+        let (last_column, end) = (geometry.columns() - 1, geometry.rows() * SAMPLES[1] - 1);
+        let first = geometry.row_of_cell(column, row * SAMPLES[1])[0];
+        let mut window = Self { facets: [[first; _]; _], objects: [[0; _]; _], depths: [[0.0; _]; _], bounded: [0; _] };
+        for y in 0..WINDOW[1] {
+            let at = (row * SAMPLES[1] + y).saturating_sub(MARGIN).min(end);
+            let cell = geometry.row_of_cell(column, at);
+            let left = if column > 0 { geometry.row_of_cell(column - 1, at) } else { [cell[0]; _] };
+            let right = if column < last_column { geometry.row_of_cell(column + 1, at) } else { [cell[LAST]; _] };
+            let [[a, b], [c, d]] = [[left[LAST - 1], left[LAST]], [right[0], right[1]]];
+            let facets = [a, b, cell[0], cell[1], cell[2], cell[3], c, d];
+            window.facets[y] = facets;
+            for (x, facet) in facets.iter().enumerate() {
+                (window.objects[y][x], window.depths[y][x]) = (facet.object, facet.depth);
+                window.bounded[y] |= Row::from(facet.extent == Extent::Bounded) << x;
+            }
+        }
+        window
     }
 
     /// Returns the index, plus 1, of the nearest object in the cell and just right of and below it.
     // The cell also shows the edges to its right and lower neighbours, even where the nearer object of such an edge is
     // in the neighbour.
     fn nearest_object_at_cell(&self) -> u32 {
-        let rows = self.0[MARGIN..].iter().take(SAMPLES[1] + 1);
-        let facets = rows.flat_map(|row| &row[MARGIN..=MARGIN + SAMPLES[0]]).copied();
-        facets.min_by(|a, b| a.depth.total_cmp(&b.depth)).map_or(0, |facet| facet.object)
+        let mut nearest = (self.depths[MARGIN][MARGIN], self.objects[MARGIN][MARGIN]);
+        for (depths, objects) in self.depths.iter().zip(&self.objects).skip(MARGIN).take(SAMPLES[1] + 1) {
+            for x in MARGIN..=MARGIN + SAMPLES[0] {
+                if depths[x] < nearest.0 {
+                    nearest = (depths[x], objects[x]);
+                }
+            }
+        }
+        nearest.1
     }
 
     fn cell_has_two_objects(&self) -> bool {
-        let first = self.0[MARGIN][MARGIN].object;
-        self.cell().any(|facet| facet.object != first)
-    }
-
-    /// Returns the facets in the cell.
-    fn cell(&self) -> impl Iterator<Item = &'g Facet> {
-        self.0[MARGIN..][..SAMPLES[1]].iter().flat_map(|row| &row[MARGIN..][..SAMPLES[0]]).copied()
+        let first = self.objects[MARGIN][MARGIN];
+        let mut rows = self.objects[MARGIN..][..SAMPLES[1]].iter();
+        rows.any(|row| row[MARGIN..][..SAMPLES[0]].iter().any(|&object| object != first))
     }
 
     /// Draws the strokes between all samples that an edge separates.
     fn strokes(&self, geometry: &Geometry) -> Strokes {
         let mut strokes = Strokes { border: [0; _], crease: [0; _], lengths: [0; 2] };
-        for (y, row) in self.0.iter().enumerate() {
-            for (x, &facet) in row.iter().enumerate() {
-                if let Some(&right) = row.get(x + 1) {
-                    let line = || Some([row.get(x.wrapping_sub(1))?, facet, right, row.get(x + 2)?]);
-                    strokes.draw(separation(geometry, facet, right, line), [x, y], 0);
-                }
-                if let Some(below) = self.0.get(y + 1) {
-                    let at = |y: usize| self.0.get(y).map(|row| row[x]);
-                    let line = || Some([at(y.wrapping_sub(1))?, facet, below[x], at(y + 2)?]);
-                    strokes.draw(separation(geometry, facet, below[x], line), [x, y], 1);
-                }
+        let [mut bends_before, mut bends] = [0, self.bends_down(geometry, 1)];
+        for y in 0..WINDOW[1] {
+            // Planes have no creases: towards the horizon the depth jumps from each row to the next.
+            let (facets, objects, bounded) = (&self.facets[y], &self.objects[y], self.bounded[y]);
+            let beside = |x: usize| (x + 1).min(WINDOW[0] - 1);
+            let border = row_where(|x| objects[x] != objects[beside(x)]);
+            // The depth jumps between two facets if it bends at both of them. If it bends at the first alone, the jump
+            // is before it; if at the second alone, after it.
+            let across = if bounded == 0 { 0 } else { self.bends_across(geometry, y) };
+            let crease = creases(facets, |x| facets[beside(x)], bounded & !border, across & across >> 1);
+            strokes.draw(y, 0, border, crease);
+            if let (Some(below), Some(objects_below)) = (self.facets.get(y + 1), self.objects.get(y + 1)) {
+                let border = row_where(|x| objects[x] != objects_below[x]);
+                strokes.draw(y, 1, border, creases(facets, |x| below[x], bounded & !border, bends_before & bends));
             }
+            (bends_before, bends) = (bends, self.bends_down(geometry, y + 2));
         }
         strokes.drop_doubtful_creases();
         strokes
     }
-}
 
-/// The kind of an edge between two samples.
-#[derive(Clone, Copy, PartialEq)]
-enum Separation {
-    Border,
-    Crease,
-}
-
-/// Returns the kind of edge between the two middle facets of `line`.
-fn separation<'g>(
-    geometry: &Geometry,
-    a: &Facet,
-    b: &Facet,
-    line: impl Fn() -> Option<[&'g Facet; 4]>,
-) -> Option<Separation> {
-    if a.object != b.object {
-        return Some(Separation::Border);
+    /// Returns the facets of a row at which the depth bends along the row.
+    fn bends_across(&self, geometry: &Geometry, y: usize) -> Row {
+        // The row is padded, so that all of its facets are examined together.
+        let mut row = [0.0; WINDOW[0] + 2];
+        row[..WINDOW[0]].copy_from_slice(&self.depths[y]);
+        let middle = row_where(|x| geometry.jumps([row[x], row[x + 1], row[x + 2]])) << 1;
+        middle & !(1 | 1 << (WINDOW[0] - 1))
     }
-    // The depth jumps between the two middle facets, `a` and `b`, if it bends at both of them. If it bends at `a`
-    // alone, the jump is between `o` and `a`; if at `b` alone, between `b` and `c`.
-    let jumps = || line().is_some_and(|[o, a, b, c]| geometry.jumps([o, a, b]) && geometry.jumps([a, b, c]));
-    // Planes have no creases: towards the horizon the depth jumps from each row to the next.
-    (a.extent == Extent::Bounded && (a.cosine(b) < CREASE_COSINE || jumps())).then_some(Separation::Crease)
+
+    /// Returns the facets of a row at which the depth bends downwards.
+    fn bends_down(&self, geometry: &Geometry, y: usize) -> Row {
+        let Some([above, row, below]) = y.checked_sub(1).and_then(|y| self.depths.get(y..y + 3)?.first_chunk()) else {
+            return 0;
+        };
+        row_where(|x| geometry.jumps([above[x], row[x], below[x]]))
+    }
 }
+
+/// Returns the facets of `candidates`, in a row, that a crease separates from the facet that `next`
+/// returns for their position, on the same object.
+///
+/// `jumps` are those at which the depth jumps.
+fn creases<'g>(row: &[&Facet; WINDOW[0]], next: impl Fn(usize) -> &'g Facet, candidates: Row, jumps: Row) -> Row {
+    if candidates == 0 {
+        return 0;
+    }
+    candidates & (jumps | row_where(|x| row[x].is_across_crease(next(x))))
+}
+
+/// The points of the facets of a row, two for each.
+static POINTS_OF_ROW: [u16; 1 << WINDOW[0]] = {
+    let mut points = [0; 1 << WINDOW[0]];
+    let mut row = 0;
+    while row < points.len() {
+        let mut x = 0;
+        while x < WINDOW[0] {
+            points[row] |= (3 * (row as u16 >> x & 1)) << (2 * x);
+            x += 1;
+        }
+        row += 1;
+    }
+    points
+};
 
 impl Strokes {
-    /// Draws the stroke between a sample and the next one on its right (`axis` 0) or below (1).
-    fn draw(&mut self, separation: Option<Separation>, [x, y]: [usize; 2], axis: usize) {
-        let points = match separation {
-            Some(Separation::Border) => &mut self.border,
-            Some(Separation::Crease) => &mut self.crease,
-            None => return,
-        };
-        let (right, down) = (2 * x + usize::from(axis == 0), 2 * y + usize::from(axis == 1));
-        for row in &mut points[down..(down + 2).min(2 * WINDOW[1])] {
-            *row |= (0b11_u32 << right) as u16;
+    /// Draws the strokes between facets of a row and the next ones on the right (`axis` 0) or below
+    /// (1).
+    fn draw(&mut self, y: usize, axis: usize, border: Row, crease: Row) {
+        if border | crease == 0 {
+            return;
         }
-        let inside = |at: usize, axis: usize| (MARGIN..MARGIN + SAMPLES[axis]).contains(&at);
-        if inside(x, 0) && inside(y, 1) {
-            self.lengths[axis] += 1;
+        let (right, down) = (usize::from(axis == 0), 2 * y + usize::from(axis == 1));
+        for (points, row) in [(&mut self.border, border), (&mut self.crease, crease)] {
+            let row = POINTS_OF_ROW[usize::from(row)] << right;
+            points[down..(down + 2).min(2 * WINDOW[1])].iter_mut().for_each(|points| *points |= row);
+        }
+        if (MARGIN..MARGIN + SAMPLES[1]).contains(&y) {
+            let in_cell = (border | crease) >> MARGIN & ((1 << SAMPLES[0]) - 1);
+            self.lengths[axis] += in_cell.count_ones();
         }
     }
 
@@ -177,10 +234,12 @@ impl Strokes {
         if self.crease.iter().all(|&row| row == 0) {
             return;
         }
-        let wide = self.border.map(|row| (1..=REACH).fold(row, |wide, by| wide | row << by | row >> by));
+        let mut wide = [0; 2 * (WINDOW[1] + REACH)];
+        for (wide, row) in wide[REACH..].iter_mut().zip(self.border) {
+            *wide = (1..=REACH).fold(row, |wide, by| wide | row << by | row >> by);
+        }
         for (y, row) in self.crease.iter_mut().enumerate() {
-            let near = &wide[y.saturating_sub(REACH)..(y + REACH + 1).min(wide.len())];
-            *row &= !near.iter().fold(0, |near, row| near | row);
+            *row &= !wide[y..=y + 2 * REACH].iter().fold(0, |near, row| near | row);
         }
         if self.crease.iter().map(|row| row.count_ones()).sum::<u32>() < LEAST_CREASE_POINTS {
             self.crease = [0; _];
@@ -198,11 +257,14 @@ const POINTS: usize = 128;
 
 /// The precomputed part of the differences between strokes and characters, as in `shape::Matcher`.
 struct Matcher {
-    /// For each point, the weights of all characters.
-    weights: [[f32; GLYPHS.len()]; POINTS],
+    /// For each point, the weights of all characters, and unused ones.
+    weights: [[f32; PADDED_GLYPHS]; POINTS],
     /// For each character, the squared norm of its blurred ink, plus its penalty times [`POINTS`].
-    constants: [f32; GLYPHS.len()],
+    constants: [f32; PADDED_GLYPHS],
 }
+
+/// The number of characters, rounded up to whole vectors of four.
+const PADDED_GLYPHS: usize = GLYPHS.len().next_multiple_of(4);
 
 static MATCHER: LazyLock<Matcher> = LazyLock::new(|| {
     let inks = GLYPHS.map(|(_, _, rows)| -> [f32; POINTS] {
@@ -212,8 +274,13 @@ static MATCHER: LazyLock<Matcher> = LazyLock::new(|| {
     // the characters are blurred, and not the strokes, which change with each cell.
     let blurred_inks = inks.map(|ink| blurred(&blurred(&ink)));
     Matcher {
-        weights: std::array::from_fn(|point| blurred_inks.map(|ink| 2.0 * ink[point])),
+        weights: std::array::from_fn(|point| {
+            std::array::from_fn(|glyph| blurred_inks.get(glyph).map_or(0.0, |ink| 2.0 * ink[point]))
+        }),
         constants: std::array::from_fn(|glyph| {
+            if glyph >= GLYPHS.len() {
+                return f32::INFINITY;
+            }
             let square: f32 = inks[glyph].iter().zip(&blurred_inks[glyph]).map(|(ink, blurred)| ink * blurred).sum();
             square + POINTS as f32 * GLYPHS[glyph].1
         }),
