@@ -4,7 +4,8 @@
 
 use super::steps::{ProgressUnit, RenderJob, Stage};
 use super::tiles::Tiles;
-use super::{Executor, Rendered, uniform};
+use super::uniform::{self, PixelFlags};
+use super::{Executor, Rendered};
 use crate::camera::Camera;
 use crate::color::LinearRgb;
 use crate::framebuffer::{Framebuffer, Resolution};
@@ -49,19 +50,18 @@ pub(super) fn render(executor: Executor<'_>, scene: &Scene, camera: &Camera, res
     }
     let splits = blocks_to_split(&rendered.framebuffer, &blocks, white);
     let tiles = Tiles::new(camera, resolution, 1);
-    let is_split = |[x, y]: [u32; 2]| splits[(y / 2 * blocks.columns + x / 2) as usize];
+    let splits = PixelFlags { flags: &splits, columns: blocks.columns, side: 2 };
     let stage = |unit| RenderJob { unit: ProgressUnit::Tile(unit), ..RenderJob::new(scene, &tiles, Stage::Reflected) };
-    rendered.cost += uniform::retrace(executor, &stage(SPLIT_UNITS), &mut rendered.framebuffer, 1, is_split);
+    rendered.cost += uniform::retrace(executor, &stage(SPLIT_UNITS), &mut rendered.framebuffer, 1, splits);
     if executor.is_cancelled() {
         return rendered;
     }
-    let split_count = splits.iter().filter(|&&is_split| is_split).count();
-    let left = 4 * (most_blocks(splits.len()) - split_count) / FINEST_SAMPLES as usize;
-    let most = left.min(4 * split_count);
-    let finest = finest_pixels(&rendered.framebuffer, is_split, white, most);
-    let is_finest = |[x, y]: [u32; 2]| finest[(y * resolution.width() + x) as usize];
+    let split_count = splits.flags.iter().filter(|&&is_split| is_split).count();
+    let left = 4 * (most_blocks(splits.flags.len()) - split_count) / FINEST_SAMPLES as usize;
+    let finest = finest_pixels(&rendered.framebuffer, splits, white, left.min(4 * split_count));
+    let finest = PixelFlags { flags: &finest, columns: resolution.width(), side: 1 };
     rendered.cost +=
-        uniform::retrace(executor, &stage(FINEST_UNITS), &mut rendered.framebuffer, FINEST_SAMPLES, is_finest);
+        uniform::retrace(executor, &stage(FINEST_UNITS), &mut rendered.framebuffer, FINEST_SAMPLES, finest);
     rendered
 }
 
@@ -78,25 +78,37 @@ fn blocks_to_split(framebuffer: &Framebuffer, blocks: &Tiles, white: f32) -> Vec
     let width = blocks.resolution.width() as usize;
     let light = |block: usize| framebuffer.pixels()[2 * (block / columns) * width + 2 * (block % columns)];
     let roots: Vec<[f32; 3]> = (0..columns * rows).map(|block| roots(light(block), white)).collect();
-    highest(&contrasts(&roots, columns), most_blocks(roots.len()))
+    let contrasts = (0..).zip(contrasts(&roots, columns)).collect();
+    highest(roots.len(), contrasts, most_blocks(roots.len()))
 }
 
 /// Returns for each pixel whether it is one of the finest, which are at most `most`.
 ///
 /// These are the pixels of split blocks that differ most from a neighbour.
-fn finest_pixels(framebuffer: &Framebuffer, is_split: impl Fn([u32; 2]) -> bool, white: f32, most: usize) -> Vec<bool> {
-    if most == 0 {
-        return vec![false; framebuffer.pixels().len()];
-    }
-    let width = framebuffer.resolution().width();
-    let roots: Vec<[f32; 3]> = framebuffer.pixels().iter().map(|&light| roots(light, white)).collect();
-    let mut contrasts = contrasts(&roots, width as usize);
-    for (pixel, contrast) in (0..).zip(&mut contrasts) {
-        if !is_split([pixel % width, pixel / width]) {
-            *contrast = 0.0;
+fn finest_pixels(framebuffer: &Framebuffer, splits: PixelFlags<'_>, white: f32, most: usize) -> Vec<bool> {
+    let resolution = framebuffer.resolution();
+    let (width, height) = (resolution.width() as usize, resolution.height() as usize);
+    let mut contrasts = Vec::new();
+    let root = |x: usize, y: usize| roots(framebuffer.pixels()[y * width + x], white);
+    let is_split = |block: &usize| splits.flags[*block];
+    for block in (0..splits.flags.len()).filter(is_split).take_while(|_| most > 0) {
+        let [left, top] = [2 * (block % splits.columns as usize), 2 * (block / splits.columns as usize)];
+        // The block and the pixels beside it; beyond the picture's edge its last pixels are repeated, whose contrast
+        // to themselves is 0.
+        let near: [[[f32; 3]; 4]; 4] = std::array::from_fn(|y| {
+            let y = (top + y).saturating_sub(1).min(height - 1);
+            std::array::from_fn(|x| root((left + x).saturating_sub(1).min(width - 1), y))
+        });
+        for (x, y) in [(1, 1), (2, 1), (1, 2), (2, 2)] {
+            let at = [left + x - 1, top + y - 1];
+            if at[0] < width && at[1] < height {
+                let others = [near[y][x - 1], near[y][x + 1], near[y - 1][x], near[y + 1][x]];
+                let contrast = others.iter().fold(0.0, |most: f32, other| most.max(difference(&near[y][x], other)));
+                contrasts.push(((at[1] * width + at[0]) as u32, contrast));
+            }
         }
     }
-    highest(&contrasts, most)
+    highest(width * height, contrasts, most)
 }
 
 /// Returns the square roots of a light's channels, limited to those of displayed light.
@@ -104,48 +116,53 @@ fn roots(LinearRgb { r, g, b }: LinearRgb, white: f32) -> [f32; 3] {
     [r, g, b].map(|light| (light / white).clamp(0.0, 1.0).sqrt())
 }
 
-/// Returns for each contrast whether it is one of the `most` highest.
+/// Returns for each of `count` places whether its contrast is one of the `most` highest.
 ///
-/// Contrasts below [`MIN_CONTRAST`] never are.
-fn highest(contrasts: &[f32], most: usize) -> Vec<bool> {
+/// Contrasts below [`MIN_CONTRAST`], and those of places without one, never are.
+fn highest(count: usize, mut contrasts: Vec<(u32, f32)>, most: usize) -> Vec<bool> {
     // The key's lower bits are a hash of the index, so that of blocks with equal contrast those that are split are
     // scattered over the picture.
-    let key = |(at, &contrast): (u32, &f32)| {
+    let key = |&(at, contrast): &(u32, f32)| {
         let scattered = at.wrapping_mul(0x9e37_79b1);
-        if contrast < MIN_CONTRAST { 0 } else { u64::from(contrast.to_bits()) << 32 | u64::from(scattered) }
+        u64::from(contrast.to_bits()) << 32 | u64::from(scattered)
     };
-    let keys: Vec<u64> = (0..).zip(contrasts).map(key).collect();
-    let mut wanted: Vec<u64> = keys.iter().copied().filter(|&key| key > 0).collect();
-    let least = if wanted.len() > most {
-        // Keys above this one are taken; there are at most `most` of them.
-        let at = wanted.len() - most - 1;
-        *wanted.select_nth_unstable(at).1
-    } else {
-        0
-    };
-    keys.into_iter().map(|key| key > least).collect()
+    contrasts.retain(|&(_, contrast)| contrast >= MIN_CONTRAST);
+    if contrasts.len() > most {
+        let at = contrasts.len() - most;
+        contrasts.select_nth_unstable_by_key(at.saturating_sub(1), key);
+        contrasts.drain(..at);
+    }
+    let mut highest = vec![false; count];
+    for (at, _) in contrasts {
+        highest[at as usize] = true;
+    }
+    highest
+}
+
+/// Returns the greatest difference of a channel.
+fn difference(a: &[f32; 3], b: &[f32; 3]) -> f32 {
+    let [r, g, b] = [(a[0] - b[0]).abs(), (a[1] - b[1]).abs(), (a[2] - b[2]).abs()];
+    r.max(g).max(b)
 }
 
 /// Returns for each place the greatest difference of a channel from its four direct neighbours.
 // Each pair is compared once. With the diagonal neighbours too, a frame took a third longer, and quadrants of
 // many_spheres lost 0.1 dB.
 fn contrasts(roots: &[[f32; 3]], columns: usize) -> Vec<f32> {
-    let difference = |a: &[f32; 3], b: &[f32; 3]| {
-        let [r, g, b] = [(a[0] - b[0]).abs(), (a[1] - b[1]).abs(), (a[2] - b[2]).abs()];
-        r.max(g).max(b)
-    };
     let mut most = vec![0.0_f32; roots.len()];
-    let mut compare = |a: usize, b: usize| {
-        let difference = difference(&roots[a], &roots[b]);
-        most[a] = most[a].max(difference);
-        most[b] = most[b].max(difference);
+    let compare = |(a, b): (&[f32; 3], &[f32; 3]), of_a: &mut f32, of_b: &mut f32| {
+        let difference = difference(a, b);
+        (*of_a, *of_b) = (of_a.max(difference), of_b.max(difference));
     };
-    for block in 0..roots.len() {
-        if (block + 1) % columns != 0 {
-            compare(block, block + 1);
+    for start in (0..roots.len()).step_by(columns.max(1)) {
+        let (of_row, of_others) = most[start..].split_at_mut(columns);
+        let (row, others) = roots[start..].split_at(columns);
+        for x in 1..columns {
+            let [left, right] = &mut of_row[x - 1..=x] else { unreachable!("these are two") };
+            compare((&row[x - 1], &row[x]), left, right);
         }
-        if block + columns < roots.len() {
-            compare(block, block + columns);
+        for (at, (of_this, of_below)) in of_row.iter_mut().zip(of_others).enumerate() {
+            compare((&row[at], &others[at]), of_this, of_below);
         }
     }
     most

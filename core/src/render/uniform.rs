@@ -29,21 +29,42 @@ pub(super) fn render(executor: Executor<'_>, scene: &Scene, tiles: &Tiles, sampl
     Rendered { framebuffer, cost }
 }
 
-/// Traces some pixels again, with `samples` samples per pixel: those for which `is_wanted` is true.
+/// A flag for each square of pixels, row by row.
+#[derive(Clone, Copy)]
+pub(super) struct PixelFlags<'f> {
+    pub(super) flags: &'f [bool],
+    /// The number of flags in a row.
+    pub(super) columns: u32,
+    /// The side of a square in pixels.
+    pub(super) side: u32,
+}
+
+impl PixelFlags<'_> {
+    /// Returns the flag of a pixel.
+    pub(super) fn at(&self, [x, y]: [u32; 2]) -> bool {
+        self.flags[(y / self.side * self.columns + x / self.side) as usize]
+    }
+}
+
+/// Traces the pixels that are flagged again, with `samples` samples per pixel.
 ///
-/// It gets their positions. These pixels have the same bits as if all pixels of the picture had that number of samples.
+/// These pixels have the same bits as if all pixels of the picture had that number of samples.
 pub(super) fn retrace(
     executor: Executor<'_>,
     job: &RenderJob<'_>,
     framebuffer: &mut Framebuffer,
     samples: u32,
-    is_wanted: impl Fn([u32; 2]) -> bool + Send + Sync,
+    wanted: PixelFlags<'_>,
 ) -> Cost {
     let tiles = job.tiles;
     let (batches, share) = (SampleBatches::of(0..samples), 1.0 / samples as f32);
     executor.trace(job, tiles.split(framebuffer.pixels_mut()), |tile, mut part| {
         let number = tile.number;
-        tile.buffers.active.retain(|&pixel| is_wanted(tiles.position(number, pixel)));
+        let place = |at: u32| (at / wanted.side) as usize;
+        if !tiles.is_flagged(number, wanted.flags, wanted.columns as usize, place) {
+            return;
+        }
+        tile.buffers.active.retain(|&pixel| wanted.at(tiles.position(number, pixel)));
         let mut sums = [[F32x8::ZERO; 3]; PIXELS / LANES];
         tile.trace(&batches, |buffers, batch, pixels| add_lights(&mut sums, buffers, batch, pixels));
         for (at, &pixel) in tile.buffers.active.iter().enumerate() {
