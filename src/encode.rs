@@ -47,7 +47,7 @@ mod widths;
 pub use backend::EncoderBackend;
 use change_times::ChangeTimes;
 use differences::Differences;
-use moves::CellPosition;
+use moves::{CellPosition, KnownCursor};
 pub(crate) use pen::Pen;
 use shifts::{ShiftMemory, ShiftTerms};
 use std::cell::RefCell;
@@ -264,9 +264,9 @@ impl Encoder {
 
     /// Appends a lossy frame without the marks of a synchronized update.
     ///
-    /// Returns the cursor's position after the frame, or `None` if it depends on the terminal: in the last column, or
-    /// after a grapheme cluster.
-    fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> Option<CellPosition> {
+    /// Returns the cursor after the frame. Its position depends on the terminal in the last column, and after a grapheme
+    /// cluster.
+    fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> KnownCursor {
         let Some(caps) = lossy::QualityCaps::for_quality(allowance.quality) else { return self.draw(wanted, bytes) };
         let in_motion = self.change_times.record(wanted, allowance.now);
         let mut known = self.take_or_reset_state(wanted.size(), bytes);
@@ -311,8 +311,8 @@ impl Encoder {
 
     /// Appends a frame of the allowed quality or, if that exceeds `cap`, one within the cap.
     ///
-    /// The frame begins at `start` of the bytes, with shifts if there are any. Returns the cursor's position after the
-    /// frame, or `None` if it depends on the terminal.
+    /// The frame begins at `start` of the bytes, with shifts if there are any. Returns the cursor after the
+    /// frame.
     fn draw_lossy(
         &mut self,
         wanted: &Grid,
@@ -320,7 +320,7 @@ impl Encoder {
         (allowance, caps, in_motion, cap): (Allowance, lossy::QualityCaps, bool, Option<usize>),
         (frame, start): (&mut FrameMemory, usize),
         bytes: &mut Vec<u8>,
-    ) -> Option<CellPosition> {
+    ) -> KnownCursor {
         let FrameMemory { drawn, next, differences, .. } = &mut *frame;
         let has_shifts = bytes.len() > start;
         let mut used = self.used_part;
@@ -415,7 +415,7 @@ impl Encoder {
     ///
     /// Only text may take more.
     ///
-    /// Returns the cursor's position after the frame, or `None` if it depends on the terminal.
+    /// Returns the cursor after the frame.
     fn draw_capped(
         &mut self,
         wanted: &Grid,
@@ -423,9 +423,9 @@ impl Encoder {
         (max_bytes, now): (usize, Duration),
         frame: &mut FrameMemory,
         bytes: &mut Vec<u8>,
-    ) -> Option<CellPosition> {
+    ) -> KnownCursor {
         let start = bytes.len();
-        let mut cursor = None;
+        let mut cursor = KnownCursor::Unknown;
         let FrameMemory { drawn, differences, shifts, .. } = &mut *frame;
         shifts.vacated.clear();
         if differences.has_text(&known.shown, wanted) {
@@ -457,7 +457,7 @@ impl Encoder {
             drawn = self.draw_capped_picture(wanted, &mut known, (max_bytes, 0), &frame.differences, bytes);
         }
         if bytes.len() > after_text {
-            cursor = drawn.ok().flatten();
+            cursor = drawn.unwrap_or_default();
         }
         self.due = frame.differences.inexact_cells(&known.shown).next().map(|_| now);
         self.known = Some(known);
@@ -466,7 +466,7 @@ impl Encoder {
 
     /// Appends the picture of a frame under a cap, after its text and its shifts.
     ///
-    /// Returns the cursor's position after the picture, or `None` if it depends on the terminal.
+    /// Returns the cursor after the picture.
     fn draw_capped_picture(
         &mut self,
         wanted: &Grid,
@@ -474,12 +474,12 @@ impl Encoder {
         (max_bytes, shift_bytes): (usize, usize),
         differences: &Differences,
         bytes: &mut Vec<u8>,
-    ) -> Result<Option<CellPosition>, VacatedExceed> {
+    ) -> Result<KnownCursor, VacatedExceed> {
         let (start, pen) = (bytes.len(), known.pen);
         let TerminalState { shown, pen: pen_after } = known;
         let half_blocks = self.half_blocks;
         let frame = capped::CappedFrame { shown, wanted, differences, half_blocks, max_bytes, shift_bytes };
-        let mut cursor = None;
+        let mut cursor = KnownCursor::Unknown;
         let mut shortage = self.shortage;
         let is_whole = capped::draw(frame, &mut shortage, |grid, changed| {
             bytes.truncate(start);
@@ -518,8 +518,8 @@ impl Encoder {
 
     /// Appends an exact frame without the marks of a synchronized update.
     ///
-    /// Returns the cursor's position after the frame, or `None` if it depends on the terminal.
-    fn draw(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) -> Option<CellPosition> {
+    /// Returns the cursor after the frame.
+    fn draw(&mut self, wanted: &Grid, bytes: &mut Vec<u8>) -> KnownCursor {
         let mut known = self.take_or_reset_state(wanted.size(), bytes);
         if self.shifts != Shifts::Off {
             FRAME.with_borrow_mut(|frame| self.shift(&mut known.shown, wanted, ShiftTerms::EXACT, frame, bytes));
@@ -554,9 +554,9 @@ impl Encoder {
         writer.write_all(bytes).and_then(|()| writer.flush()).inspect_err(|_| self.forget())
     }
 
-    /// Appends the bytes that change the `shown` grid to `wanted`. Returns the cursor's position
-    /// after them, or `None` if it depends on the terminal.
-    fn write(&self, wanted: &Grid, shown: &mut Grid, pen: &mut Pen, bytes: &mut Vec<u8>) -> Option<CellPosition> {
+    /// Appends the bytes that change the `shown` grid to `wanted`. Returns the cursor after
+    /// them.
+    fn write(&self, wanted: &Grid, shown: &mut Grid, pen: &mut Pen, bytes: &mut Vec<u8>) -> KnownCursor {
         WRITING.with_borrow_mut(|writing| {
             let mut changed = mem::take(&mut writing.changed);
             update_grid(shown, wanted, &mut changed);
@@ -566,15 +566,15 @@ impl Encoder {
         })
     }
 
-    /// Appends the bytes that write the `changed` cells of `wanted`. Returns the cursor's position
-    /// after them, or `None` if it depends on the terminal.
+    /// Appends the bytes that write the `changed` cells of `wanted`. Returns the cursor after
+    /// them.
     fn write_changed(
         &self,
         wanted: &Grid,
         changed: &[CellPosition],
         pen: &mut Pen,
         bytes: &mut Vec<u8>,
-    ) -> Option<CellPosition> {
+    ) -> KnownCursor {
         WRITING.with_borrow_mut(|writing| writing.write(self, wanted, changed, pen, bytes))
     }
 }
@@ -582,7 +582,7 @@ impl Encoder {
 /// A lossy frame that fits: the pen and the cursor after it, and when to encode it again.
 struct Drawn {
     pen: Pen,
-    cursor: Option<CellPosition>,
+    cursor: KnownCursor,
     due: Option<Duration>,
     /// Whether the frame took over 90 % of the bytes that a frame may take if it makes cells exact.
     is_full: bool,
@@ -634,8 +634,8 @@ thread_local! {
 }
 
 impl Writing {
-    /// Appends the bytes that write the `changed` cells of `wanted`, and returns the cursor's
-    /// position after them.
+    /// Appends the bytes that write the `changed` cells of `wanted`, and returns the cursor
+    /// after them.
     fn write(
         &mut self,
         encoder: &Encoder,
@@ -643,7 +643,7 @@ impl Writing {
         changed: &[CellPosition],
         pen: &mut Pen,
         bytes: &mut Vec<u8>,
-    ) -> Option<CellPosition> {
+    ) -> KnownCursor {
         let half_blocks = encoder.half_blocks;
         match encoder.order {
             Order::Raster => self.strokes.choose(wanted, changed, half_blocks, *pen),

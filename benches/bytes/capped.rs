@@ -129,7 +129,7 @@ pub(crate) fn print(size: Size, frames: usize, rounds: usize, seeds: &[u64]) {
 }
 
 fn shown(Judged { psnr, ssim, bytes, millis, over }: &Judged) -> String {
-    format!("{psnr:.1} {ssim:.3} {bytes:.0} {millis:.2}; {over}")
+    format!("{psnr:.2} {ssim:.3} {bytes:.0} {millis:.2}; {over}")
 }
 
 /// Sends the pictures within the limit, the first without, and judges what an emulator shows.

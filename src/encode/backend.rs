@@ -349,7 +349,7 @@ impl<W: Write> EncoderBackend<W> {
         // Reset, so that bytes that the program writes itself, and the shell's prompt later, do not get the pen's
         // colours.
         self.encoder.reset_pen(&mut bytes);
-        self.shown_cursor.position = end.map(|CellPosition { column, row }| Position::new(column, row));
+        self.shown_cursor.position = end.position().map(|CellPosition { column, row }| Position::new(column, row));
         self.shown_cursor.switch_to(self.cursor, &mut bytes);
         self.encoder.enclose_in_synchronized(0, &mut bytes);
         bytes

@@ -10,7 +10,7 @@
 //! `bc` and `ac` in either order (one colour each), then `dd`.
 
 use super::halves::{LOWER_HALF, SPACE, UPPER_HALF};
-use super::moves::{CellPosition, Move, cheapest_len};
+use super::moves::{CellPosition, KnownCursor, Move, cheapest_len};
 use super::numbering::Numbering;
 use super::pen::{Pen, rgb_parameters_len};
 use super::strokes::cursor_after;
@@ -55,7 +55,7 @@ pub(super) fn order(
     scratch.list_pairs(half_blocks);
     scratch.list_positions();
     scratch.link_pairs();
-    let cursor = last.and_then(|position| cursor_after(wanted, position));
+    let cursor = last.map_or(KnownCursor::Unknown, |position| cursor_after(wanted, position));
     Tour::new(half_blocks, pen, cursor, scratch).visit_all(wanted, order);
 }
 
@@ -113,7 +113,7 @@ struct PlacedCell {
     /// The number of bytes of the codes at the start of the next sequence that end the
     /// attributes of text.
     code_len: u32,
-    cursor: Option<CellPosition>,
+    cursor: KnownCursor,
 }
 
 /// A colour of the picture, and the list of the pairs that contain it and are not visited.
@@ -149,7 +149,7 @@ const MAX_NEIGHBOURS_PER_COLOR: usize = 64;
 const MEAN_LOOKUPS_PER_PAIR: usize = 8;
 
 impl<'a> Tour<'a> {
-    fn new(half_blocks: HalfBlocks, pen: Pen, cursor: Option<CellPosition>, scratch: &'a mut OrderScratch) -> Self {
+    fn new(half_blocks: HalfBlocks, pen: Pen, cursor: KnownCursor, scratch: &'a mut OrderScratch) -> Self {
         let OrderScratch { inks, positions, pairs, colors, links, .. } = scratch;
         let color_of = |ink: PackedInk| inks.get(ink).map(|color| color as u32);
         let plain = pen.after_attributes(Attributes::empty());
@@ -209,7 +209,7 @@ impl<'a> Tour<'a> {
             &[position] => order.push(position),
             _ => order.extend_from_slice(positions),
         }
-        let cursor = positions.last().and_then(|last| cursor_after(wanted, *last));
+        let cursor = positions.last().map_or(KnownCursor::Unknown, |last| cursor_after(wanted, *last));
         self.place = PlacedCell { pen, code_len: 0, cursor, ..self.place };
     }
 

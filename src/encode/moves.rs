@@ -13,6 +13,35 @@ pub(super) struct CellPosition {
     pub(super) row: u16,
 }
 
+/// What is known of the cursor's position.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum KnownCursor {
+    /// The cursor may be anywhere.
+    #[default]
+    Unknown,
+    /// The cursor is in a row, in a column that depends on the terminal.
+    InRow(u16),
+    /// The cursor is at a cell.
+    At(CellPosition),
+}
+
+impl KnownCursor {
+    /// Returns the cursor's position, if it is known.
+    pub(super) fn position(self) -> Option<CellPosition> {
+        if let Self::At(position) = self { Some(position) } else { None }
+    }
+
+    /// Returns the cursor's row and column, as far as they are known.
+    #[inline]
+    fn row_and_column(self) -> Option<(u16, Option<u16>)> {
+        match self {
+            Self::Unknown => None,
+            Self::InRow(row) => Some((row, None)),
+            Self::At(CellPosition { column, row }) => Some((row, Some(column))),
+        }
+    }
+}
+
 /// A sequence that moves the cursor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Move {
@@ -37,33 +66,34 @@ pub(super) enum AlongRow {
     Column(u16),
 }
 
-/// Returns the move with the fewest bytes. `from` is `None` if the cursor's position is unknown or
-/// beyond the last column.
-pub(super) fn cheapest_move(from: Option<CellPosition>, to: CellPosition) -> Move {
-    if from == Some(to) {
+/// Returns the move with the fewest bytes.
+pub(super) fn cheapest_move(from: KnownCursor, to: CellPosition) -> Move {
+    if from == KnownCursor::At(to) {
         return Move::Down(0, AlongRow::Stay);
     }
     // From an unknown position, only CUP is certain. Upwards, CUU would save at most a byte.
     let absolute = Move::To(to);
-    let Some(from) = from.filter(|from| from.row <= to.row) else { return absolute };
-    let relative = Move::Down(to.row - from.row, cheapest_along_row(from.column, to.column));
+    let Some((row, column)) = from.row_and_column().filter(|&(row, _)| row <= to.row) else { return absolute };
+    let relative = Move::Down(to.row - row, cheapest_along_row(column, to.column));
     if relative.len() <= absolute.len() { relative } else { absolute }
 }
 
 /// Returns the number of bytes of the cheapest move, given those of an absolute one.
 #[inline]
-pub(super) fn cheapest_len(from: Option<CellPosition>, to: CellPosition, absolute: usize) -> usize {
-    let Some(from) = from else { return absolute };
+pub(super) fn cheapest_len(from: KnownCursor, to: CellPosition, absolute: usize) -> usize {
+    let Some((row, column)) = from.row_and_column() else { return absolute };
     // For rows upwards, which only an absolute move reaches, the difference wraps around to a large number.
-    let rows = usize::from(to.row.wrapping_sub(from.row));
+    let rows = usize::from(to.row.wrapping_sub(row));
     if rows >= absolute {
         return absolute;
     }
-    absolute.min(rows + cheapest_along_row(from.column, to.column).len())
+    absolute.min(rows + cheapest_along_row(column, to.column).len())
 }
 
 #[inline]
-fn cheapest_along_row(from: u16, to: u16) -> AlongRow {
+fn cheapest_along_row(from: Option<u16>, to: u16) -> AlongRow {
+    // CR and CHA end the state after the last column in which terminals disagree on the column.
+    let Some(from) = from else { return if to == 0 { AlongRow::Start } else { AlongRow::Column(to) } };
     if to == from {
         AlongRow::Stay
     } else if to > from {

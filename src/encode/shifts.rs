@@ -13,7 +13,7 @@
 //! of picture cells only. What is to the right of a window, or below it, moves away and back within the frame, so
 //! frames with shifts have to be enclosed in synchronized output.
 
-use super::moves::{AlongRow, CellPosition, Move, write_sequence};
+use super::moves::{CellPosition, KnownCursor, Move, cheapest_move, write_sequence};
 use crate::capabilities::Shifts;
 use crate::grid::{Grid, PackedCell, Size};
 use planes::{Planes, put_errors};
@@ -133,9 +133,10 @@ impl ShiftMemory {
         if rows.is_none() {
             before.clone_from(shown);
         }
-        let size = shown.size();
+        let (size, mut cursor) = (shown.size(), KnownCursor::Unknown);
         for &RowShift { row, window, .. } in &self.chosen {
-            write_column_shift(row, window, size, bytes);
+            write_column_shift(row, window, size, cursor, bytes);
+            cursor = KnownCursor::InRow(row as u16);
             let start = row * usize::from(size.columns);
             shift_cells(shown, start + window.start..start + window.end, window.by, &mut self.vacated);
         }
@@ -310,22 +311,23 @@ fn shift_cells(grid: &mut Grid, cells: Range<usize>, by: isize, vacated: &mut Ve
 
 /// Appends the operations of a window of a row: DCH, and ICH unless the window reaches the last
 /// column.
-// A terminal that moves the cursor by an operation leaves it in the row, where CHA finds any column.
-fn write_column_shift(row: usize, window: Window, size: Size, bytes: &mut Vec<u8>) {
+// A terminal that moves the cursor by an operation leaves it in the row, where CR or CHA finds any column.
+fn write_column_shift(row: usize, window: Window, size: Size, cursor: KnownCursor, bytes: &mut Vec<u8>) {
     let distance = window.by.unsigned_abs();
     let (delete, insert) = places(window);
     let (is_cut, is_last) = (window.by > 0, window.end == usize::from(size.columns));
-    let to = |column: usize| Move::To(CellPosition { column: column as u16, row: row as u16 });
+    let row = row as u16;
+    let position = |column: usize| CellPosition { column: column as u16, row };
     // An insertion in a window that ends with the row pushes cells off the screen: none has to be deleted first.
     if is_cut || !is_last {
-        to(delete).write(bytes);
+        cheapest_move(cursor, position(delete)).write(bytes);
         write_operation(distance, b'P', bytes);
         if is_cut && is_last {
             return;
         }
-        Move::Down(0, AlongRow::Column(insert as u16)).write(bytes);
+        cheapest_move(KnownCursor::InRow(row), position(insert)).write(bytes);
     } else {
-        to(insert).write(bytes);
+        cheapest_move(cursor, position(insert)).write(bytes);
     }
     write_operation(distance, b'@', bytes);
 }

@@ -4,7 +4,7 @@
 //! exchanged. Which one is cheaper depends on the pen, and so on the form of the cell before. The forms of all cells
 //! are chosen together, by the cheapest path to each form of each cell (Viterbi 1967).
 
-use super::moves::{CellPosition, Move, cheapest_move};
+use super::moves::{CellPosition, KnownCursor, Move, cheapest_move};
 use super::pen::{Pen, is_plain_space, write_char, write_glyph};
 use super::widths;
 use crate::grid::{Grid, HalfBlocks, PackedCell, PackedInk};
@@ -57,9 +57,7 @@ impl Strokes {
         }
     }
 
-    /// Appends the strokes, and returns the cursor's position after them.
-    ///
-    /// The position is `None` if it depends on the terminal.
+    /// Appends the strokes, and returns the cursor after them.
     // The cursor's position is assumed unknown at first, because other output since the last frame may have moved it.
     pub(super) fn write(
         &self,
@@ -67,8 +65,8 @@ impl Strokes {
         half_blocks: HalfBlocks,
         pen: &mut Pen,
         bytes: &mut Vec<u8>,
-    ) -> Option<CellPosition> {
-        let mut cursor = None;
+    ) -> KnownCursor {
+        let mut cursor = KnownCursor::Unknown;
         for (stroke, &cell) in self.chosen.iter().zip(&self.cells) {
             move_to(wanted, cursor, stroke.position, half_blocks, pen, bytes);
             pen.switch_to(stroke.pen, bytes);
@@ -251,13 +249,13 @@ impl SurvivorPath {
 // sequence. At equal length it compresses better, as a longer run of one glyph.
 fn move_to(
     wanted: &Grid,
-    cursor: Option<CellPosition>,
+    cursor: KnownCursor,
     position: CellPosition,
     half_blocks: HalfBlocks,
     pen: &Pen,
     bytes: &mut Vec<u8>,
 ) {
-    if cursor == Some(position) {
+    if cursor == KnownCursor::At(position) {
         return;
     }
     let by_move = cheapest_move(cursor, position);
@@ -279,8 +277,8 @@ fn move_to(
 
 /// Returns the columns from the cursor up to a cell further right in the same row; `None` for other
 /// cells.
-fn columns_between(cursor: Option<CellPosition>, position: CellPosition) -> Option<Range<u16>> {
-    let cursor = cursor.filter(|cursor| cursor.row == position.row && cursor.column < position.column)?;
+fn columns_between(cursor: KnownCursor, position: CellPosition) -> Option<Range<u16>> {
+    let cursor = cursor.position().filter(|cursor| cursor.row == position.row && cursor.column < position.column)?;
     Some(cursor.column..position.column)
 }
 
@@ -298,13 +296,17 @@ fn char_shown_by_pen(cell: PackedCell, half_blocks: HalfBlocks, pen: &Pen) -> Op
     }
 }
 
-/// Returns the cursor's position after writing a cell; `None` if it depends on the terminal.
-// The position depends on the terminal in the last column, and after a cluster: terminals disagree on the width of
-// flags, families and letters with marks. The next move then has to be absolute.
-pub(super) fn cursor_after(wanted: &Grid, position: CellPosition) -> Option<CellPosition> {
+/// Returns the cursor after writing a cell.
+// After a cluster it may be anywhere: terminals disagree on the width of flags, families and letters with marks. After
+// the last column some terminals have it in that column, others behind it.
+pub(super) fn cursor_after(wanted: &Grid, position: CellPosition) -> KnownCursor {
     if wanted.packed_cell(position.column, position.row).is_cluster() {
-        return None;
+        return KnownCursor::Unknown;
     }
     let column = position.column + widths::width_at(wanted, position.column, position.row);
-    (column < wanted.size().columns).then_some(CellPosition { column, ..position })
+    if column < wanted.size().columns {
+        KnownCursor::At(CellPosition { column, ..position })
+    } else {
+        KnownCursor::InRow(position.row)
+    }
 }

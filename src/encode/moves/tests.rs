@@ -1,35 +1,42 @@
+use super::KnownCursor::{At, InRow, Unknown};
 use super::*;
 
-fn bytes(from: Option<(u16, u16)>, to: (u16, u16)) -> String {
-    let position = |(column, row)| CellPosition { column, row };
-    let cheapest = cheapest_move(from.map(position), position(to));
+fn bytes(from: KnownCursor, to: (u16, u16)) -> String {
+    let to = CellPosition { column: to.0, row: to.1 };
+    let cheapest = cheapest_move(from, to);
     let mut bytes = Vec::new();
     cheapest.write(&mut bytes);
     assert_eq!(bytes.len(), cheapest.len(), "{cheapest:?}");
-    let absolute = Move::To(position(to)).len();
-    assert_eq!(bytes.len(), cheapest_len(from.map(position), position(to), absolute), "{cheapest:?}");
+    let absolute = Move::To(to).len();
+    assert_eq!(bytes.len(), cheapest_len(from, to, absolute), "{cheapest:?}");
     String::from_utf8(bytes).unwrap()
 }
 
 #[test]
 fn the_cheapest_move_is_made() {
+    let at = |column, row| At(CellPosition { column, row });
     for (from, to, expected) in [
-        (None, (0, 0), "\x1b[H"),
-        (None, (0, 4), "\x1b[5H"),
-        (None, (9, 4), "\x1b[5;10H"),
-        (Some((3, 3)), (3, 3), ""),
-        (Some((3, 3)), (4, 3), "\x1b[C"),
-        (Some((3, 3)), (14, 3), "\x1b[11C"),
-        (Some((3, 3)), (0, 3), "\r"),
-        (Some((9, 3)), (7, 3), "\x08\x08"),
-        (Some((99, 3)), (7, 3), "\x1b[8G"),
-        (Some((3, 3)), (3, 5), "\n\n"),
-        (Some((3, 3)), (0, 5), "\n\n\r"),
-        (Some((4, 3)), (3, 4), "\n\x08"),
-        (Some((4, 3)), (5, 4), "\n\x1b[C"),
-        (Some((4, 9)), (5, 4), "\x1b[5;6H"),
-        (Some((4, 3)), (200, 4), "\n\x1b[196C"),
-        (Some((4, 0)), (4, 50), "\x1b[51;5H"),
+        (Unknown, (0, 0), "\x1b[H"),
+        (Unknown, (0, 4), "\x1b[5H"),
+        (Unknown, (9, 4), "\x1b[5;10H"),
+        (at(3, 3), (3, 3), ""),
+        (at(3, 3), (4, 3), "\x1b[C"),
+        (at(3, 3), (14, 3), "\x1b[11C"),
+        (at(3, 3), (0, 3), "\r"),
+        (at(9, 3), (7, 3), "\x08\x08"),
+        (at(99, 3), (7, 3), "\x1b[8G"),
+        (at(3, 3), (3, 5), "\n\n"),
+        (at(3, 3), (0, 5), "\n\n\r"),
+        (at(4, 3), (3, 4), "\n\x08"),
+        (at(4, 3), (5, 4), "\n\x1b[C"),
+        (at(4, 9), (5, 4), "\x1b[5;6H"),
+        (at(4, 3), (200, 4), "\n\x1b[196C"),
+        (at(4, 0), (4, 50), "\x1b[51;5H"),
+        (InRow(3), (0, 3), "\r"),
+        (InRow(3), (0, 4), "\n\r"),
+        (InRow(3), (7, 3), "\x1b[8G"),
+        (InRow(3), (65_534, 4), "\n\x1b[65535G"),
+        (InRow(3), (7, 2), "\x1b[3;8H"),
     ] {
         assert_eq!(bytes(from, to), expected, "{from:?} to {to:?}");
     }
