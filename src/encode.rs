@@ -27,7 +27,7 @@ use crate::grid::{Grid, HalfBlocks, PackedCell, Size};
 mod backend;
 mod by_color;
 mod capped;
-mod change_times;
+mod cell_ages;
 mod differences;
 mod eights;
 #[cfg(feature = "backend")]
@@ -37,15 +37,17 @@ mod lossy;
 mod moves;
 mod numbering;
 mod numbers;
+mod oklab_pairs;
 mod palette;
 mod pen;
 mod shifts;
 mod strokes;
 mod widths;
+mod wrong_cells;
 
 #[cfg(feature = "backend")]
 pub use backend::EncoderBackend;
-use change_times::ChangeTimes;
+use cell_ages::CellAges;
 use differences::Differences;
 use moves::{CellPosition, KnownCursor};
 pub(crate) use pen::Pen;
@@ -55,6 +57,7 @@ use std::io::{self, Write};
 use std::mem;
 use std::time::Duration;
 use strokes::Strokes;
+use wrong_cells::WrongCells;
 
 /// The order in which cells are sent.
 // Bytes per frame relative to ratatui's crossterm backend, for the bench's scenes orbit, plain, sphere and gradient: at
@@ -99,10 +102,11 @@ pub struct Allowance {
     /// The largest number of bytes that the frame should take; `None` for no limit.
     ///
     /// While the picture changes, cells get coarser colours, or keep those of earlier frames, so that the frame fits
-    /// with a small error. At rest, the cells with the smallest errors wait for a later frame. Cells that are within
-    /// the quality's caps, and only made exact, also wait if the frame would take more than 8 bytes per cell of the
-    /// screen. Text and picture cells that replace text or unknown contents never wait; with [`Quality::Exact`] no cell
-    /// does.
+    /// with a small error. The longer a cell differs visibly, the more its error weighs: hardly any does for over a
+    /// second, or half as long again as a frame of the allowed quality takes, whichever is longer. At rest, the
+    /// cells with the smallest errors wait for a later frame. Cells that are within the quality's caps, and only made
+    /// exact, also wait if the frame would take more than 8 bytes per cell of the screen. Text and picture cells that
+    /// replace text or unknown contents never wait; with [`Quality::Exact`] no cell does.
     pub max_bytes: Option<usize>,
 }
 
@@ -116,7 +120,7 @@ pub struct Encoder {
     colorless: bool,
     /// The terminal's state; `None` at first and after a resize.
     known: Option<TerminalState>,
-    change_times: ChangeTimes,
+    ages: CellAges,
     /// The time at which the cells that are not exact are to be sent; `None` if all are exact.
     due: Option<Duration>,
     shortage: capped::Shortage,
@@ -264,11 +268,11 @@ impl Encoder {
 
     /// Appends a lossy frame without the marks of a synchronized update.
     ///
-    /// Returns the cursor after the frame. Its position depends on the terminal in the last column, and after a grapheme
-    /// cluster.
+    /// Returns the cursor after the frame. Its position depends on the terminal in the last column, and after a
+    /// grapheme cluster.
     fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> KnownCursor {
         let Some(caps) = lossy::QualityCaps::for_quality(allowance.quality) else { return self.draw(wanted, bytes) };
-        let in_motion = self.change_times.record(wanted, allowance.now);
+        let in_motion = self.ages.record(wanted, allowance.now);
         let mut known = self.take_or_reset_state(wanted.size(), bytes);
         FRAME.with_borrow_mut(|frame| {
             frame.differences.find(&known.shown, wanted);
@@ -330,7 +334,7 @@ impl Encoder {
             caps,
             half_blocks: self.half_blocks,
             pen: [known.pen.fg, known.pen.bg],
-            change_times: &self.change_times,
+            ages: &self.ages,
         };
         let result = lossy::with_plan(inputs, |plan| {
             self.draw_plan(plan, &known, (allowance, in_motion, cap), &mut used, ([drawn, next], start, &mut *bytes))
@@ -393,7 +397,7 @@ impl Encoder {
                 // All inexact cells are made exact together, when the last of them is due. When each was sent at its
                 // own time, a dozen frames of a few scattered cells followed each movement: 1.40 full frames of bytes
                 // (orbit, 80x24) instead of 1.14.
-                let refines = self.change_times.all_exact_at(plan.inexact_cells(writes));
+                let refines = self.ages.all_exact_at(plan.inexact_cells(writes));
                 let due = if is_cut { Some(allowance.now) } else { refines };
                 return Ok(Drawn { pen, cursor, due, is_full: is_full(taken) });
             }
@@ -425,6 +429,7 @@ impl Encoder {
         bytes: &mut Vec<u8>,
     ) -> KnownCursor {
         let start = bytes.len();
+        let share = self.shortage.share_of_deadline(self.ages.elapsed(), max_bytes);
         let mut cursor = KnownCursor::Unknown;
         let FrameMemory { drawn, differences, shifts, .. } = &mut *frame;
         shifts.vacated.clear();
@@ -459,7 +464,8 @@ impl Encoder {
         if bytes.len() > after_text {
             cursor = drawn.unwrap_or_default();
         }
-        self.due = frame.differences.inexact_cells(&known.shown).next().map(|_| now);
+        self.ages.record_wrong(frame.wrong.find(&known.shown, &frame.differences), share);
+        self.due = (!frame.wrong.are_all_exact()).then_some(now);
         self.known = Some(known);
         cursor
     }
@@ -477,8 +483,8 @@ impl Encoder {
     ) -> Result<KnownCursor, VacatedExceed> {
         let (start, pen) = (bytes.len(), known.pen);
         let TerminalState { shown, pen: pen_after } = known;
-        let half_blocks = self.half_blocks;
-        let frame = capped::CappedFrame { shown, wanted, differences, half_blocks, max_bytes, shift_bytes };
+        let (half_blocks, ages) = (self.half_blocks, &self.ages);
+        let frame = capped::CappedFrame { shown, wanted, differences, ages, half_blocks, max_bytes, shift_bytes };
         let mut cursor = KnownCursor::Unknown;
         let mut shortage = self.shortage;
         let is_whole = capped::draw(frame, &mut shortage, |grid, changed| {
@@ -607,6 +613,7 @@ struct FrameMemory {
     before: Grid,
     shifts: ShiftMemory,
     differences: Differences,
+    wrong: WrongCells,
 }
 
 /// The working memory of the bytes of a frame.
@@ -628,6 +635,7 @@ thread_local! {
             before: empty,
             shifts: ShiftMemory::default(),
             differences: Differences::default(),
+            wrong: WrongCells::default(),
         }
     });
     static WRITING: RefCell<Writing> = RefCell::default();

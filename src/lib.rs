@@ -222,7 +222,8 @@
 //! What [`Quality::Equal`] and a limit on the bytes of a frame mean is decided cell by cell (`encode::halves`):
 //! - A half block of two truecolors, or a space on one, is a part of a picture: all cells of `half` and `spaces` in
 //!   truecolor, and the flat and half cells of `blocks`, `octants`, `sextants`, `braille`, `shape`, `ascii`, `ramp`.
-//!   `Equal` lets each half be within 0.01 of its colour. Under a limit it may be coarser, or wait.
+//!   `Equal` lets each half be within 0.01 of its colour. Under a limit it may be coarser, or wait: the longer a cell
+//!   is visibly wrong (`encode::wrong_cells`), the more its error weighs (`encode::capped`).
 //! - All other cells are text: those of panels, all cells in 256, 16 or no colours, and all other glyphs. They are
 //!   exact at every quality and sent whole under every limit; `pace` then sends fewer frames.
 //!

@@ -7,6 +7,7 @@ use crate::seen::{Screen, psnr};
 use crate::send::{Lossy, cpu_time};
 use std::time::Duration;
 use termtrace::internals::capabilities::Shifts;
+use termtrace::internals::color::Oklab;
 use termtrace::{Picture, Quality, Size, Srgb8};
 
 /// The ways to send, each with the PSNR and SSIM, or the bytes, that are wanted at either size.
@@ -84,17 +85,19 @@ struct Judged {
     millis: f64,
     /// The frames above the limit.
     over: f64,
+    /// The cells that are wrong for longer than they may be.
+    late: f64,
 }
 
 impl Judged {
-    fn fields(&self) -> [f64; 5] {
-        [self.psnr, self.ssim, self.bytes, self.millis, self.over]
+    fn fields(&self) -> [f64; 6] {
+        [self.psnr, self.ssim, self.bytes, self.millis, self.over, self.late]
     }
 
     fn mean(all: &[Self]) -> Self {
-        let [psnr, ssim, bytes, millis, over] =
+        let [psnr, ssim, bytes, millis, over, late] =
             std::array::from_fn(|at| all.iter().map(|one| one.fields()[at]).sum::<f64>() / all.len() as f64);
-        Self { psnr, ssim, bytes, millis, over }
+        Self { psnr, ssim, bytes, millis, over, late }
     }
 }
 
@@ -105,17 +108,22 @@ pub(crate) fn print(size: Size, frames: usize, rounds: usize, seeds: &[u64]) {
     for motion in &motions[Motion::ALL.len()..] {
         println!("{motion:?}");
     }
-    let pictures: Vec<Vec<Picture>> = motions.iter().map(|motion| motion.frames(size, frames)).collect();
+    let pictures: Vec<Vec<Picture>> = motions.iter().map(|motion| motion.frames(size, 2 * frames)).collect();
+    let equal_bytes: Vec<f64> = pictures.iter().map(|pictures| equal_bytes(&pictures[..frames])).collect();
     let names: Vec<&str> = motions.iter().map(|motion| motion.name).collect();
     println!(
-        "\n| {}x{}: dB, SSIM, bytes, ms; over the limit | mean of four (at least) | worst of four, dB | {} |",
+        "\n| {}x{}: dB, SSIM, bytes, ms; frames over the limit, cells wrong for too long | mean of four (at least) | worst of four, dB | {} |",
         size.columns,
         size.rows,
         names.join(" | ")
     );
     println!("|---|--:|--:|{}", "--:|".repeat(names.len()));
     for limit in &ROWS {
-        let all: Vec<Judged> = pictures.iter().map(|frames| judged(frames, limit, rounds)).collect();
+        let judge = |(pictures, &equal_bytes): (&Vec<Picture>, &f64)| Judged {
+            late: late(pictures, limit, equal_bytes),
+            ..judged(&pictures[..frames], limit, rounds)
+        };
+        let all: Vec<Judged> = pictures.iter().zip(&equal_bytes).map(judge).collect();
         let mean = Judged::mean(&all[..Motion::ALL.len()]);
         let wanted = match limit.wanted[usize::from(size != crate::SIZES[0])] {
             Wanted::Nothing => String::new(),
@@ -128,38 +136,101 @@ pub(crate) fn print(size: Size, frames: usize, rounds: usize, seeds: &[u64]) {
     }
 }
 
-fn shown(Judged { psnr, ssim, bytes, millis, over }: &Judged) -> String {
-    format!("{psnr:.2} {ssim:.3} {bytes:.0} {millis:.2}; {over}")
+fn shown(Judged { psnr, ssim, bytes, millis, over, late }: &Judged) -> String {
+    format!("{psnr:.2} {ssim:.3} {bytes:.0} {millis:.2}; {over}, {late:.1}")
 }
 
-/// Sends the pictures within the limit, the first without, and judges what an emulator shows.
+/// The state of a way to send pictures, and the screen that shows them.
+struct Sender<'a> {
+    lossy: Lossy,
+    screen: Screen,
+    limit: &'a Row,
+}
+
+/// The cost of sending a picture.
+struct Sent {
+    bytes: usize,
+    millis: f64,
+}
+
+impl<'a> Sender<'a> {
+    fn new(first: &Picture, limit: &'a Row) -> Self {
+        let lossy = Lossy::new(limit.quality).with_shifts(limit.shifts);
+        Self { lossy, screen: Screen::new(first), limit }
+    }
+
+    /// Sends the pictures, the first without a limit, and calls `judge` for each of the others.
+    ///
+    /// Its arguments are the frame's number, the screen's pixels, and the costs.
+    fn send(&mut self, pictures: &[Picture], mut judge: impl FnMut(usize, &[Srgb8], Sent)) {
+        for (k, picture) in pictures.iter().enumerate().step_by(30 / self.limit.rate) {
+            let start = cpu_time();
+            let max_bytes = (k > 0 && self.limit.max_bytes < usize::MAX).then_some(self.limit.max_bytes);
+            let bytes = self.lossy.send_within(picture, Duration::from_secs(k as u64) / 30, max_bytes);
+            let sent = Sent { millis: (cpu_time() - start) * 1e3, bytes: bytes.len() };
+            self.screen.feed(bytes);
+            if k > 0 {
+                judge(k, &self.screen.pixels(), sent);
+            }
+        }
+    }
+}
+
+/// Sends the pictures, and judges what an emulator shows.
 fn judged(pictures: &[Picture], limit: &Row, rounds: usize) -> Judged {
-    let every = 30 / limit.rate;
     let (mut all, mut least) = (Vec::new(), f64::INFINITY);
     for _ in 0..rounds {
         all.clear();
-        let mut lossy = Lossy::new(limit.quality).with_shifts(limit.shifts);
-        let mut screen = Screen::new(&pictures[0]);
-        for (k, picture) in pictures.iter().enumerate().step_by(every) {
-            let start = cpu_time();
-            let max_bytes = (k > 0 && limit.max_bytes < usize::MAX).then_some(limit.max_bytes);
-            let bytes = lossy.send_within(picture, Duration::from_secs(k as u64) / 30, max_bytes);
-            let millis = (cpu_time() - start) * 1e3;
-            let length = bytes.len();
-            screen.feed(bytes);
-            if k > 0 {
-                let seen = screen.pixels();
-                let square = mean_square(&seen, picture.pixels());
-                let ssim = ssim(&seen, picture.pixels(), picture.width() as usize);
-                let over = f64::from(u8::from(length > limit.max_bytes));
-                all.push(Judged { psnr: psnr(square).min(MOST_PSNR), ssim, bytes: length as f64, millis, over });
-            }
-        }
+        Sender::new(&pictures[0], limit).send(pictures, |k, seen, Sent { bytes, millis }| {
+            let wanted = &pictures[k];
+            let psnr = psnr(mean_square(seen, wanted.pixels())).min(MOST_PSNR);
+            let ssim = ssim(seen, wanted.pixels(), wanted.width() as usize);
+            let over = f64::from(u8::from(bytes > limit.max_bytes));
+            all.push(Judged { psnr, ssim, bytes: bytes as f64, millis, over, late: 0.0 });
+        });
         least = least.min(Judged::mean(&all).millis);
     }
     let mean = Judged::mean(&all);
     Judged { millis: least, over: mean.over * all.len() as f64, ..mean }
 }
+
+/// Returns the mean number of bytes of frames that look equal, with moves.
+fn equal_bytes(pictures: &[Picture]) -> f64 {
+    let (mut bytes, mut frames) = (0, 0);
+    Sender::new(&pictures[0], &Row::shifted(30, usize::MAX)).send(pictures, |_, _, sent| {
+        bytes += sent.bytes;
+        frames += 1;
+    });
+    bytes as f64 / f64::from(frames)
+}
+
+/// Returns the mean number of cells that are visibly wrong for longer than they may be.
+///
+/// They are wrong in all frames of a second, or one and a half of the times that the link needs for a frame of `equal_bytes`.
+fn late(pictures: &[Picture], limit: &Row, equal_bytes: f64) -> f64 {
+    let second = f64::from(limit.rate as u32);
+    let most = second.max(1.5 * equal_bytes / limit.max_bytes as f64);
+    let width = pictures[0].width() as usize;
+    let mut ages = vec![0_u32; pictures[0].pixels().len() / 2];
+    let (mut late, mut frames) = (0, 0);
+    let mut sender = Sender::new(&pictures[0], limit);
+    sender.send(pictures, |k, seen, _| {
+        for (cell, age) in ages.iter_mut().enumerate() {
+            let upper = cell / width * 2 * width + cell % width;
+            let is_wrong = [upper, upper + width].iter().any(|&pixel| {
+                let (a, b) = (seen[pixel], pictures[k].pixels()[pixel]);
+                a != b && Oklab::from_srgb8(a).distance(Oklab::from_srgb8(b)) > VISIBLE
+            });
+            *age = if is_wrong { *age + 1 } else { 0 };
+            late += usize::from(f64::from(*age) > most);
+        }
+        frames += usize::from(k * limit.rate / 30 > most as usize);
+    });
+    late as f64 / frames.max(1) as f64
+}
+
+/// The distance in `OKLab` from which a cell counts as wrong.
+const VISIBLE: f32 = 0.02;
 
 fn mean_square(seen: &[Srgb8], wanted: &[Srgb8]) -> f64 {
     let square = |a: u8, b: u8| f64::from(u32::from(a.abs_diff(b)).pow(2));

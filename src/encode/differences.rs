@@ -93,10 +93,4 @@ impl Differences {
             grid.copy_cell(at as usize, wanted, wanted.packed()[at as usize]);
         }
     }
-
-    /// Returns the indices in the grid of the picture cells that `grid` does not show as wanted.
-    pub(super) fn inexact_cells(&self, grid: &Grid) -> impl Iterator<Item = usize> {
-        let cells = self.places.iter().zip(&self.wanted).map(|(&place, &wanted)| (place as usize, wanted));
-        cells.filter(|&(at, wanted)| picture_halves(grid.packed()[at]) != Some(wanted)).map(|(at, _)| at)
-    }
 }

@@ -8,10 +8,10 @@
 // .10, .31 and .16 with `Fast`.
 
 use super::Quality;
-use super::change_times::ChangeTimes;
+use super::cell_ages::CellAges;
 use super::differences::Differences;
-use super::eights::ColorList;
 use super::halves::{Halves, Tolerance, half_block_cell_with_glyph_of, squared_differences};
+use super::oklab_pairs::OklabPairs;
 use super::palette::Reduction;
 use crate::grid::{Grid, HalfBlocks, PackedInk};
 use std::cell::RefCell;
@@ -19,7 +19,8 @@ use std::cell::RefCell;
 /// The working memory of a frame, which all encoders of a thread share.
 #[derive(Default)]
 struct LossyScratch {
-    small: SmallDifferences,
+    /// The differences that are small enough to be tolerated in sRGB.
+    small: OklabPairs,
     /// The differences to write.
     written: Vec<WrittenDifference>,
     /// The indices in the grid of cells that are within the tolerance and wait to be made exact.
@@ -30,16 +31,6 @@ struct LossyScratch {
     unsnapped: Vec<Halves>,
     snapped: Vec<Halves>,
     reduction: Reduction,
-}
-
-/// The differences that are small enough to be tolerated in sRGB.
-#[derive(Default)]
-struct SmallDifferences {
-    shown: Vec<PackedInk>,
-    wanted: Vec<PackedInk>,
-    colors: [ColorList; 2],
-    /// The masks of the halves that are also within the tolerance in OKLab.
-    near: Vec<u8>,
 }
 
 /// A difference to write: its urgency, complemented, and its index among all differences.
@@ -110,7 +101,7 @@ pub(super) struct LossyFrame<'a> {
     pub(super) half_blocks: HalfBlocks,
     /// The pen's foreground and background colours.
     pub(super) pen: [PackedInk; 2],
-    pub(super) change_times: &'a ChangeTimes,
+    pub(super) ages: &'a CellAges,
 }
 
 /// The urgency of writing a cell.
@@ -190,17 +181,8 @@ impl<'a> Plan<'a> {
     /// Compares the colours of all differences that are small enough to be tolerated in sRGB.
     fn compare_small_in_oklab(&mut self) {
         let Differences { wanted, shown, squares, .. } = self.frame.differences;
-        let small = &mut self.scratch.small;
-        small.shown.clear();
-        small.wanted.clear();
-        for at in (0..squares.len()).filter(|&at| is_small(squares[at], self.tolerance)) {
-            small.shown.extend(shown[at]);
-            small.wanted.extend(wanted[at]);
-        }
-        let [shown, wanted] = &mut small.colors;
-        shown.fill(&small.shown);
-        wanted.fill(&small.wanted);
-        shown.compare(wanted, self.tolerance, &mut small.near);
+        let small = (0..squares.len()).filter(|&at| is_small(squares[at], self.tolerance));
+        self.scratch.small.compare(small.map(|at| [shown[at], wanted[at]]), self.tolerance);
     }
 
     /// Lists the differences to write, and their urgency.
@@ -209,13 +191,13 @@ impl<'a> Plan<'a> {
         let LossyScratch { small, written, waiting, .. } = &mut *self.scratch;
         written.clear();
         waiting.clear();
-        let mut pairs_of_bits = small.near.iter().flat_map(|mask| [0, 2, 4, 6].map(|place| mask >> place & 3));
+        let mut are_near = small.are_near();
         for (at, (&squares, &place)) in squares.iter().zip(places).enumerate() {
-            let is_near = is_small(squares, self.tolerance) && pairs_of_bits.next() == Some(3);
+            let is_near = is_small(squares, self.tolerance) && are_near.next() == Some(true);
             let urgency = if !is_near {
                 // Unknown halves have the largest difference.
                 Urgency(squares[0].max(squares[1]).saturating_add(Urgency::DIFFERS.0))
-            } else if self.frame.change_times.has_waited(place as usize) {
+            } else if self.frame.ages.has_waited(place as usize) {
                 Urgency::REFINES
             } else {
                 waiting.push(place);
@@ -269,14 +251,14 @@ impl<'a> Plan<'a> {
         if writes < self.write_count() {
             self.sort();
         }
-        let LossyFrame { wanted, differences, change_times, .. } = self.frame;
+        let LossyFrame { wanted, differences, ages, .. } = self.frame;
         differences.copy_text(wanted, grid);
         let LossyScratch { written, inexact, unsnapped, .. } = &mut *self.scratch;
         inexact.clear();
         unsnapped.clear();
         for at in written[..writes].iter().map(|written| written.at()) {
             let (place, halves) = (differences.places[at], differences.wanted[at]);
-            if change_times.has_waited(place as usize) {
+            if ages.has_waited(place as usize) {
                 grid.set_packed(place as usize, half_block_cell_with_glyph_of(halves, wanted.packed()[place as usize]));
             } else {
                 inexact.push(place);

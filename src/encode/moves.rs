@@ -13,7 +13,7 @@ pub(super) struct CellPosition {
     pub(super) row: u16,
 }
 
-/// What is known of the cursor's position.
+/// The known part of the cursor's position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum KnownCursor {
     /// The cursor may be anywhere.
@@ -47,7 +47,7 @@ impl KnownCursor {
 pub(super) enum Move {
     /// Moves to a cell by its column and row (CUP).
     To(CellPosition),
-    /// Moves down by a number of rows (an LF each), then along the row.
+    /// Moves along the row, then down by a number of rows (an LF each).
     Down(u16, AlongRow),
 }
 
@@ -92,7 +92,7 @@ pub(super) fn cheapest_len(from: KnownCursor, to: CellPosition, absolute: usize)
 
 #[inline]
 fn cheapest_along_row(from: Option<u16>, to: u16) -> AlongRow {
-    // CR and CHA end the state after the last column in which terminals disagree on the column.
+    // CR and CHA are certain in any column.
     let Some(from) = from else { return if to == 0 { AlongRow::Start } else { AlongRow::Column(to) } };
     if to == from {
         AlongRow::Stay
@@ -132,9 +132,10 @@ impl Move {
                 bytes.push(b'H');
             }
             Self::Down(rows, along) => {
+                // The column first: from beyond the last one only CR and CHA are certain, not LF.
+                along.write(bytes);
                 // Few rows: filling a slice takes longer.
                 (0..rows).for_each(|_| bytes.push(b'\n'));
-                along.write(bytes);
             }
         }
     }

@@ -36,7 +36,7 @@ fn a_first_frame_sets_each_colour_once() {
     let grid = flat(&Cell::new('▄', A, B));
     assert_eq!(
         encoded(&mut Encoder::new(), &grid),
-        "\x1b[0m\x1b[H\x1b[38;2;10;20;30;48;2;200;100;0m▄▄▄▄▄\x1b[2H▄▄▄▄▄\x1b[3H▄▄▄▄▄"
+        "\x1b[0m\x1b[H\x1b[38;2;10;20;30;48;2;200;100;0m▄▄▄▄▄\r\n▄▄▄▄▄\r\n▄▄▄▄▄"
     );
 }
 
@@ -131,8 +131,8 @@ fn attributes_are_added_and_all_switched_off_together() {
 
 /// A run of changes has one position.
 ///
-/// A gap of one is written again, if the pen is right for it: a byte instead of three. After the last column the
-/// cursor's position is unknown; from anywhere else a line feed goes down.
+/// A gap of one is written again, if the pen is right for it: a byte instead of three. A line feed goes
+/// down, after the last column behind a carriage return: only the row is known there.
 #[test]
 fn a_run_of_changes_has_one_position() {
     let mut encoder = Encoder::new();
@@ -141,7 +141,7 @@ fn a_run_of_changes_has_one_position() {
     for (column, row) in [(0, 0), (1, 0), (3, 0), (4, 0), (0, 1), (4, 2)] {
         grid.cell_mut(column, row).glyph = 'x'.into();
     }
-    assert_eq!(encoded(&mut encoder, &grid), "\x1b[Hxx xx\x1b[2Hx\n\x1b[3Cx");
+    assert_eq!(encoded(&mut encoder, &grid), "\x1b[Hxx xx\r\nx\x1b[3C\nx");
 }
 
 #[test]
@@ -156,12 +156,12 @@ fn moves_are_the_cheapest() {
         }
         encoded(&mut encoder, &grid)
     };
-    assert_eq!(change(&[(2, 0), (2, 1)]), "\x1b[1;3Hx\n\x08x", "one down, one back");
-    assert_eq!(change(&[(4, 0), (0, 1)]), "\x1b[1;5Hx\n\rx", "one down, to the first column");
+    assert_eq!(change(&[(2, 0), (2, 1)]), "\x1b[1;3Hx\x08\nx", "one down, one back");
+    assert_eq!(change(&[(4, 0), (0, 1)]), "\x1b[1;5Hx\r\nx", "one down, to the first column");
     assert_eq!(change(&[(3, 0), (9, 0)]), "\x1b[1;4Hx\x1b[5Cx", "five cells written again would be a byte more");
-    assert_eq!(change(&[(3, 2), (3, 3)]), "\x1b[3;4Hx\n\x08x", "down to the last row");
-    assert_eq!(change(&[(25, 1), (8, 2)]), "\x1b[2;26Hx\n\x1b[9Gx", "one down, to a column");
-    assert_eq!(change(&[(2, 0), (2, 3)]), "\x1b[1;3Hy\n\n\n\x08x", "three down");
+    assert_eq!(change(&[(3, 2), (3, 3)]), "\x1b[3;4Hx\x08\nx", "down to the last row");
+    assert_eq!(change(&[(25, 1), (8, 2)]), "\x1b[2;26Hx\x1b[9G\nx", "one down, to a column");
+    assert_eq!(change(&[(2, 0), (2, 3)]), "\x1b[1;3Hy\x08\n\n\nx", "three down");
 }
 
 /// In the order of colours, all cells of two colours come before those of the next two.
@@ -177,7 +177,7 @@ fn cells_of_the_same_colours_follow_each_other() {
     assert_eq!(
         encoded(&mut Encoder::new().with_order(Order::Color), &grid),
         // Text first, in the terminal's own colours.
-        "\x1b[0m\x1b[1;5Hx\x1b[H\x1b[38;2;10;20;30;48;2;200;100;0m▄\x1b[C▄\x08\x08\x1b[48;2;1;2;3m \x1b[C "
+        "\x1b[0m\x1b[1;5Hx\r\x1b[38;2;10;20;30;48;2;200;100;0m▄\x1b[C▄\x08\x08\x1b[48;2;1;2;3m \x1b[C "
     );
 }
 

@@ -209,6 +209,47 @@ fn a_limit_does_not_keep_text_back() {
     watched.rest(&wanted, limited);
 }
 
+/// A frame whose text alone exceeds the limit changes no cell of the picture, whether or not bytes
+/// were scarce before.
+#[test]
+fn text_that_exceeds_the_limit_is_sent_alone() {
+    let size = Size::new(30, 8);
+    let limited = |millis| allowance(millis, Quality::Equal, Some(400));
+    for frames_before in [0, 5] {
+        let mut watched = Watched::new(Order::Color, HalfBlocks::Either, size, Clusters::None);
+        watched.send(&grey(size, 20));
+        let mut number = super::pictures::noise(3);
+        for k in 0..frames_before {
+            assert!(watched.send_within(&noisy(size, &mut number), limited(33 * k)) <= 400);
+        }
+        let shown = watched.shown().to_vec();
+        let mut wanted = grey(size, 200);
+        for column in 0..30 {
+            *wanted.cell_mut(column, 3) = Cell::new('x', rgb(255, 8 * column as u8, 0), Ink::Default);
+        }
+        let sent = watched.send_within(&wanted, limited(300));
+        assert!(sent > 400, "{sent} bytes");
+        let is_text = |at: usize| (90..120).contains(&at);
+        for (at, shown) in shown.iter().enumerate().filter(|&(at, _)| !is_text(at)) {
+            assert_eq!(&watched.shown()[at], shown, "cell {at} after {frames_before} frames");
+        }
+        watched.rest(&wanted, limited(300));
+    }
+}
+
+/// Returns a picture of noise.
+fn noisy(size: Size, number: &mut impl FnMut() -> u32) -> Grid {
+    let mut grid = Grid::new(size);
+    for at in 0..size.cell_count() {
+        let mut ink = || {
+            let [r, g, b, _] = number().to_le_bytes();
+            rgb(r, g, b)
+        };
+        grid.set_at(at, &Cell::new('▄', ink(), ink()));
+    }
+    grid
+}
+
 /// Returns a picture of noise near one grey.
 fn nearly_grey(size: Size, number: &mut impl FnMut() -> u32) -> Grid {
     let mut grid = Grid::new(size);

@@ -207,7 +207,7 @@ impl Screens {
         // Since the last frame something else may have moved the cursor.
         self.model.cursor = None;
         self.model.last = None;
-        self.model.shifted_row = None;
+        self.model.row = None;
         if let Some(avt) = &mut self.avt {
             for piece in whole_characters(text, lengths) {
                 avt.feed(piece);
@@ -456,21 +456,21 @@ impl Known for Cell {
 /// A strict model of a terminal in raw mode. It knows CUP, CUF, CHA, CR, BS, LF, SGR, ICH, DCH, IL,
 /// DL, the marks of synchronized output and characters.
 ///
-/// It panics at anything else: erasing, scrolling, going over an edge, moving from beyond the last column (where
-/// terminals disagree), other control characters, anything but CUP after a cluster (where terminals disagree, too), and
-/// anything but CUP, or CHA in the same row, after cells or rows are inserted or deleted. What comes in is marked, and
-/// what is pushed over the edge of the screen is lost. A sequence that the encoder begins to use must be added here.
+/// It panics at anything else: erasing, scrolling, going over an edge, other control characters, anything but CUP after a
+/// cluster and after rows are inserted or deleted (where terminals disagree on the cursor), and anything but CUP, CHA and
+/// CR beyond the last column and after cells are inserted or deleted (where they disagree on its column). What comes in
+/// is marked, and what is pushed over the edge of the screen is lost. A sequence that the encoder begins to use must be
+/// added here.
 struct Model {
     size: Size,
     cells: Vec<Cell>,
     pen: Cell,
-    /// The position of the next character; `None` if unknown. Beyond the last column only CUP is
-    /// allowed.
+    /// The position of the next character; `None` if unknown.
     cursor: Option<(u16, u16)>,
     /// The position of the last character. The next one may be part of the same cluster.
     last: Option<(u16, u16)>,
-    /// The row in which cells were just inserted or deleted: the cursor may be anywhere in it.
-    shifted_row: Option<u16>,
+    /// The row of a cursor that may be anywhere in it.
+    row: Option<u16>,
 }
 
 /// A mark that no frame has, where cells have come in.
@@ -479,7 +479,7 @@ const COME_IN: char = '\u{fffd}';
 impl Model {
     fn new(size: Size) -> Self {
         let cells = vec![Cell { glyph: '?'.into(), ..Cell::BLANK }; size.cell_count()];
-        Self { size, cells, pen: Cell::BLANK, cursor: None, last: None, shifted_row: None }
+        Self { size, cells, pen: Cell::BLANK, cursor: None, last: None, row: None }
     }
 
     fn index(&self, column: u16, row: u16) -> usize {
@@ -499,16 +499,14 @@ impl Model {
 
     /// The cursor, where it is sure to be on the screen.
     fn cursor(&self) -> (u16, u16) {
-        let (column, row) = self.cursor.expect("the place is said before a relative move");
-        assert!(column < self.size.columns, "beyond the last column, in row {row}, the cursor may be anywhere");
-        (column, row)
+        self.cursor.expect("the place is said before a relative move")
     }
 
     fn place(&mut self, column: u16, row: u16) {
         assert!(column < self.size.columns && row < self.size.rows, "({column}, {row}) is not on the screen");
         self.cursor = Some((column, row));
         self.last = None;
-        self.shifted_row = None;
+        self.row = None;
     }
 
     /// Inserts cells at the start of a range, whose end is an edge of the screen, or deletes them
@@ -536,7 +534,7 @@ impl Model {
         assert!(!is_split(start) && (is_inserted || !is_split(start + usize::from(count))), "a wide character is cut");
         self.shift(start..end, count.into(), is_inserted);
         self.cursor = None;
-        self.shifted_row = Some(row);
+        self.row = Some(row);
     }
 
     /// Inserts or deletes rows at the cursor.
@@ -568,7 +566,9 @@ impl Model {
             self.cells[at + 1] = seen_of(Cell { glyph: Glyph::Covered, ..self.pen.clone() });
         }
         self.last = Some((column, row));
-        self.cursor = Some((column + width, row));
+        let is_last = column + width == self.size.columns;
+        self.cursor = (!is_last).then_some((column + width, row));
+        self.row = is_last.then_some(row);
     }
 
     /// The colour of the line below: with colons, in a sequence of its own.
@@ -629,7 +629,7 @@ impl vte::Perform for Model {
     fn print(&mut self, c: char) {
         if let Some((column, row, text)) = self.cluster_with(c) {
             self.put(column, row, &text);
-            self.cursor = None;
+            (self.cursor, self.row) = (None, None);
         } else {
             let (column, row) = self.cursor.expect("the place is said before a character");
             self.put(column, row, c.encode_utf8(&mut [0; 4]));
@@ -658,7 +658,7 @@ impl vte::Perform for Model {
             ('@' | 'P', &[count]) => self.shift_columns(count.max(1), action == '@'),
             ('L' | 'M', &[count]) => self.shift_rows(count.max(1), action == 'L'),
             ('G', &[number]) => {
-                let row = self.shifted_row.unwrap_or_else(|| self.cursor().1);
+                let row = self.row.unwrap_or_else(|| self.cursor().1);
                 self.place(number.max(1) - 1, row);
             }
             other => panic!("not of the safe core: {other:?}"),
@@ -666,11 +666,14 @@ impl vte::Perform for Model {
     }
 
     fn execute(&mut self, byte: u8) {
-        let (column, row) = self.cursor();
-        match byte {
-            b'\r' => self.place(0, row),
-            b'\n' => self.place(column, row + 1),
-            b'\x08' => self.place(column.checked_sub(1).expect("not left of the first column"), row),
+        match (byte, self.row) {
+            (b'\r', Some(row)) => self.place(0, row),
+            (b'\r', None) => self.place(0, self.cursor().1),
+            (b'\n', None) => self.place(self.cursor().0, self.cursor().1 + 1),
+            (b'\x08', None) => {
+                let (column, row) = self.cursor();
+                self.place(column.checked_sub(1).expect("not left of the first column"), row);
+            }
             _ => panic!("control character {byte:#04x}"),
         }
     }

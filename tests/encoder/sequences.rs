@@ -5,7 +5,7 @@
 //! small screen and every thirtieth on a large one. All of them: `cargo test --release --test encoder -- --ignored`.
 
 use super::WAYS;
-use super::near::halves;
+use super::near::{distance, halves};
 use super::scenes::{FRAMES, Kind, Sequence};
 use super::screens::Clusters;
 use super::watched::Watched;
@@ -106,6 +106,33 @@ fn frames_under_a_limit_are_near() {
     let (psnr, used) = (sum / count as f64, used as f64 / (count * MAX_BYTES) as f64);
     println!("{psnr:.2} dB with {used:.3} of the limit");
     assert!(psnr >= 29.0 && used >= 0.9, "{psnr} dB with {used} of the limit");
+}
+
+/// Under the limit of a slow link hardly any cell is wrong in all frames of a second.
+///
+/// If errors did not weigh more the longer they last, 104 and 6 cells would be.
+#[test]
+fn wrong_cells_are_mended_within_a_second() {
+    let frames: Vec<_> = (0..120).map(|k| Sequence::of(Kind::Orbit).frame(k, SMALL)).collect();
+    for (max_bytes, most) in [(1_667, 30.0), (3_333, 1.0)] {
+        let mut watched = Watched::new(Order::Color, HalfBlocks::Either, SMALL, Clusters::None);
+        let mut ages = vec![0; SMALL.cell_count()];
+        let mut late = 0;
+        for (k, picture) in frames.iter().enumerate() {
+            let (now, max_bytes) = (Duration::from_secs(k as u64) / 30, (k > 0).then_some(max_bytes));
+            let grid = grid_from_picture(CellMode::HALF_BLOCK, picture);
+            watched.send_within(&grid, Allowance { quality: Quality::Equal, now, max_bytes });
+            for (age, (shown, wanted)) in ages.iter_mut().zip(watched.shown().iter().zip(grid.cells())) {
+                let halves = halves(shown).zip(halves(wanted)).expect("a picture");
+                let is_wrong = (0..2).any(|half| distance(halves.0[half], halves.1[half]) > 0.02);
+                *age = if is_wrong { *age + 1 } else { 0 };
+                late += usize::from(*age > 30);
+            }
+        }
+        let mean = late as f64 / 90.0;
+        println!("{mean:.2} cells are late at {max_bytes} bytes");
+        assert!(mean <= most, "{mean} cells are late at {max_bytes} bytes");
+    }
 }
 
 /// While one sphere moves, what has been still for a second is exact.

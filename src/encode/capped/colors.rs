@@ -119,10 +119,12 @@ impl SimdKernel for ChooseLeaders<'_> {
     #[inline(always)]
     fn run<N: Lanes>(self) -> bool {
         let Self { fullest, bins, colors, radius, most } = self;
-        // Distances are capped at `FARTHEST`, so with a larger radius all colours count as near.
-        let limit = N::splat(if 256.0 * radius < FARTHEST { 256.0 * radius } else { FARTHEST });
         for &bin in fullest {
-            let mean = bins[usize::from(bin)].mean;
+            let &Bin { count, weight, mean, .. } = &bins[usize::from(bin)];
+            // The weighted error that a near colour may leave is the same for all bins.
+            let radius = radius * count as f32 / weight;
+            // Distances are capped at `FARTHEST`, so with a larger radius all colours count as near.
+            let limit = N::splat(if 256.0 * radius < FARTHEST { 256.0 * radius } else { FARTHEST });
             let color = splat_scaled::<N>(mean);
             let mut is_near = false;
             for block in &colors.blocks {
@@ -168,6 +170,8 @@ impl PaletteColors {
 struct Bin {
     key: u32,
     count: u32,
+    /// The sum of the weights of the halves' errors.
+    weight: f32,
     sum: [u32; 3],
     mean: [i32; 3],
     nearest: [u8; 2],
@@ -178,7 +182,7 @@ struct Bin {
 struct Share {
     count: u32,
     sum: [u32; 3],
-    /// The error that dropping the colour would add.
+    /// The weighted error that dropping the colour would add.
     loss: f32,
 }
 
@@ -221,10 +225,11 @@ impl FramePalette {
         self.slots.resize(SLOTS, u16::MAX);
         self.bins.clear();
         self.bin_of_half.clear();
-        for color in active.iter().flat_map(|cell| cell.wanted) {
+        for (color, weight) in active.iter().flat_map(|cell| cell.wanted.map(|color| (color, cell.weight))) {
             let bin = self.bin(color, bits);
-            let Bin { count, sum, .. } = &mut self.bins[usize::from(bin)];
+            let Bin { count, weight: sum_of_weights, sum, .. } = &mut self.bins[usize::from(bin)];
             *count += 1;
+            *sum_of_weights += weight;
             for (sum, channel) in sum.iter_mut().zip(color.channels()) {
                 *sum += u32::from(channel);
             }
@@ -254,7 +259,7 @@ impl FramePalette {
         }
         let bin = self.bins.len() as u16;
         self.slots[slot] = bin;
-        self.bins.push(Bin { key, count: 0, sum: [0; 3], mean: [0; 3], nearest: [0; 2] });
+        self.bins.push(Bin { key, count: 0, weight: 0.0, sum: [0; 3], mean: [0; 3], nearest: [0; 2] });
         bin
     }
 
@@ -298,7 +303,7 @@ impl FramePalette {
             for (sum, of_bin) in share.sum.iter_mut().zip(bin.sum) {
                 *sum += of_bin;
             }
-            share.loss += bin.count as f32 * (second - first);
+            share.loss += bin.weight * (second - first);
         }
         // A change of the pen to one new colour takes 15 bytes (`pen_len`).
         let is_kept = |share: &Share| share.count > 0 && share.loss >= 15.0 * rate;

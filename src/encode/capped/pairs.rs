@@ -1,7 +1,7 @@
 //! The pairs of colours of a frame under a limit, and the choice of a pair for each cell.
 
 use super::colors::{FramePalette, MAX_COLORS};
-use super::{ActiveCell, Channels, ExchangeRate, WrittenCell, channels, error, square};
+use super::{ActiveCell, ExchangeRate, WrittenCell, channels, error, square};
 use crate::color::Srgb8;
 use crate::grid::{HalfBlocks, PackedInk};
 
@@ -94,7 +94,7 @@ impl Pairs {
             let halves = shown.map(|color| PackedInk::rgb(means[usize::from(color)]));
             // The mean is best for all cells that share it, but a single cell may be farther from it than from what it
             // shows, and would raise the error of the frame if the limit left out the others.
-            if cell.is_vacated || error(halves.map(channels), cell.channels) < cell.stay {
+            if cell.is_vacated || cell.weight * error(halves.map(channels), cell.channels) < cell.stay {
                 cells.push(WrittenCell { at: cell.at, halves });
             }
         }
@@ -135,16 +135,16 @@ impl Pairs {
         for (at, cell) in active.iter_mut().enumerate() {
             let [upper, lower] = cell.nearest;
             let near = [upper[0], upper[1], lower[0], lower[1]];
-            // Each half's squared difference from each of the four near colours, from which the errors of all pairs
-            // follow.
+            // Each half's weighted squared difference from each of the four near colours, from which the errors of all
+            // pairs follow.
             let near_channels = near.map(|color| colors.palette.color(color));
-            let squares = cell.channels.map(|half| near_channels.map(|color| square(color, half)));
+            let squares = cell.channels.map(|half| near_channels.map(|color| cell.weight * square(color, half)));
             let is_new = |place: usize| !near[..place].contains(&near[place]);
             if cell.is_vacated {
                 // The cheapest pair of the nearest colours pays for itself.
                 let [a, b] = [upper[0], lower[0]];
                 let key = colors.key(a, b);
-                cell.stay = colors.cheapest(key, cell.channels).0 + colors.rate * (key_len(key) + VACATED_WORTH);
+                cell.stay = colors.cheapest(key, cell).0 + colors.rate * (key_len(key) + VACATED_WORTH);
                 cell.cost = cell.stay;
             }
             for a in 0..4 {
@@ -222,7 +222,7 @@ impl Pairs {
         self.open.clear();
         for cell in active.iter_mut() {
             let Some(key) = cell.pair else { continue };
-            let (error, shown) = colors.cheapest(key, cell.channels);
+            let (error, shown) = colors.cheapest(key, cell);
             cell.shown = shown;
             let pair = &mut self.table[usize::from(key)];
             if pair.rank == u16::MAX {
@@ -268,17 +268,16 @@ impl PairColors<'_> {
         u16::from(a) << 8 | u16::from(b)
     }
 
-    /// Returns the least error with which a pair of colours shows the halves, and for each half the
-    /// number of its colour in the palette.
+    /// Returns the least weighted error with which a pair shows a cell, and the halves' colours.
     #[inline]
-    fn cheapest(&self, key: u16, wanted: [Channels; 2]) -> (f32, [u8; 2]) {
+    fn cheapest(&self, key: u16, cell: &ActiveCell) -> (f32, [u8; 2]) {
         let [a, b] = key.to_be_bytes();
         let [upper, lower] = [a, b].map(|color| self.palette.color(color));
-        let plain = error([upper, lower], wanted);
+        let plain = cell.weight * error([upper, lower], cell.channels);
         if a == b || self.half_blocks == HalfBlocks::Lower {
             return (plain, [a, b]);
         }
-        let flipped = error([lower, upper], wanted);
+        let flipped = cell.weight * error([lower, upper], cell.channels);
         if flipped < plain { (flipped, [b, a]) } else { (plain, [a, b]) }
     }
 }
@@ -293,7 +292,7 @@ fn take_neighbours(active: &mut [ActiveCell], colors: &PairColors<'_>, columns: 
             if !is_beside {
                 continue;
             }
-            let cost = colors.cheapest(key, cell.channels).0 + colors.rate * glyph_len(key);
+            let cost = colors.cheapest(key, cell).0 + colors.rate * glyph_len(key);
             if cost < cell.cost {
                 (cell.cost, cell.pair) = (cost, Some(key));
             }

@@ -81,15 +81,18 @@ fn errors_are_squared_differences_up_to_a_limit() {
 #[test]
 fn windows_are_written_with_deletion_before_insertion() {
     let size = Size::new(80, 24);
-    let columns = |start, end, by| {
+    let columns_from = |cursor, start, end, by| {
         let mut bytes = Vec::new();
-        write_column_shift(4, Window { start, end, by, gain: 1 }, size, &mut bytes);
+        write_column_shift(4, Window { start, end, by, gain: 1 }, size, cursor, &mut bytes);
         String::from_utf8(bytes).expect("ASCII")
     };
+    let columns = |start, end, by| columns_from(KnownCursor::Unknown, start, end, by);
     assert_eq!(columns(10, 80, 3), "\x1b[5;11H\x1b[3P");
     assert_eq!(columns(10, 80, -3), "\x1b[5;11H\x1b[3@");
     assert_eq!(columns(10, 40, 1), "\x1b[5;11H\x1b[P\x1b[40G\x1b[@");
     assert_eq!(columns(10, 40, -2), "\x1b[5;39H\x1b[2P\x1b[11G\x1b[2@");
+    assert_eq!(columns_from(KnownCursor::InRow(3), 10, 80, 3), "\x1b[11G\n\x1b[3P");
+    assert_eq!(columns_from(KnownCursor::InRow(2), 0, 40, -2), "\x1b[39G\n\n\x1b[2P\r\x1b[2@");
     let rows = |start, end, by| {
         let mut bytes = Vec::new();
         write_row_shift(Window { start, end, by, gain: 1 }, size, &mut bytes);
