@@ -5,6 +5,7 @@ use super::screens::{Clusters, glyph_of};
 use super::watched::Watched;
 use arbitrary::{Result, Unstructured};
 use std::time::Duration;
+use termtrace::internals::capabilities::Shifts;
 use termtrace::internals::encode::Allowance;
 use termtrace::internals::grid::{Attributes, HalfBlocks};
 use termtrace::{Cell, Glyph, Grid, Ink, Order, Quality, Size, Srgb8};
@@ -13,16 +14,22 @@ const GLYPHS: [&str; 9] = ["▄", "▀", " ", "a", "@", "é", "│", "世", "�
 
 /// Asserts that all terminals show what they should.
 pub(crate) fn hold_for(data: &[u8]) {
+    // The last byte, so that the inputs of the corpus tell what they told before there were shifts.
+    let Some((&last, story)) = data.split_last() else { return };
+    let shifts = [Shifts::Off, Shifts::Direct, Shifts::ThroughTmux][usize::from(last) % 3];
     // The session ends with the bytes.
-    let _ = tell(&mut Unstructured::new(data));
+    let _ = tell(&mut Unstructured::new(story), shifts);
 }
 
-fn tell(bytes: &mut Unstructured<'_>) -> Result<()> {
+fn tell(bytes: &mut Unstructured<'_>, shifts: Shifts) -> Result<()> {
     let order = if bytes.arbitrary()? { Order::Color } else { Order::Raster };
     let mut grid = Grid::new(size(bytes)?);
     let half_blocks = if bytes.arbitrary()? { HalfBlocks::Either } else { HalfBlocks::Lower };
     let mut watched = Watched::new(order, half_blocks, grid.size(), Clusters::None)
         .in_pieces(vec![bytes.int_in_range(1..=64)?, bytes.int_in_range(1..=8)?]);
+    if shifts != Shifts::Off {
+        watched = watched.with_shifts(shifts);
+    }
     let mut now = Duration::ZERO;
     while !bytes.is_empty() {
         match bytes.int_in_range(0..=15)? {
