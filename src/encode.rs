@@ -102,9 +102,9 @@ pub struct Allowance {
     /// The largest number of bytes that the frame should take; `None` for no limit.
     ///
     /// While the picture changes, cells get coarser colours, or keep those of earlier frames, so that the frame fits
-    /// with a small error. The longer a cell differs visibly, the more its error weighs: hardly any does for over a
-    /// second, or half as long again as a frame of the allowed quality takes, whichever is longer. At rest, the
-    /// cells with the smallest errors wait for a later frame. Cells that are within the quality's caps, and only made
+    /// with a small error. The longer a cell differs visibly, the more its error weighs, so that few differ for over a
+    /// second, or over one and a half times as long as frames of the allowed quality would take. At rest, the cells
+    /// with the smallest errors wait for a later frame. Cells that are within the quality's caps, and only made
     /// exact, also wait if the frame would take more than 8 bytes per cell of the screen. Text and picture cells that
     /// replace text or unknown contents never wait; with [`Quality::Exact`] no cell does.
     pub max_bytes: Option<usize>,
@@ -228,6 +228,7 @@ impl Encoder {
     pub fn forget(&mut self) {
         self.known = None;
         self.due = Some(Duration::ZERO);
+        self.ages.clear_wrong();
     }
 
     /// Appends a reset of the pen's colours.
@@ -272,6 +273,10 @@ impl Encoder {
     /// grapheme cluster.
     fn draw_within(&mut self, wanted: &Grid, allowance: Allowance, bytes: &mut Vec<u8>) -> KnownCursor {
         let Some(caps) = lossy::QualityCaps::for_quality(allowance.quality) else { return self.draw(wanted, bytes) };
+        if self.ages.size() != wanted.size() {
+            // A frame of another size takes other numbers of bytes.
+            self.shortage = capped::Shortage::default();
+        }
         let in_motion = self.ages.record(wanted, allowance.now);
         let mut known = self.take_or_reset_state(wanted.size(), bytes);
         FRAME.with_borrow_mut(|frame| {
@@ -315,8 +320,7 @@ impl Encoder {
 
     /// Appends a frame of the allowed quality or, if that exceeds `cap`, one within the cap.
     ///
-    /// The frame begins at `start` of the bytes, with shifts if there are any. Returns the cursor after the
-    /// frame.
+    /// The frame begins at `start` of the bytes, with shifts if there are any. Returns the cursor after the frame.
     fn draw_lossy(
         &mut self,
         wanted: &Grid,
@@ -348,6 +352,7 @@ impl Encoder {
                 known.shown.clone_from(next);
                 self.known = Some(TerminalState { pen, ..known });
                 self.due = due;
+                self.ages.clear_wrong();
                 cursor
             }
             Err(Exceeds { bytes: taken, max_bytes }) => {
@@ -533,6 +538,7 @@ impl Encoder {
         let cursor = self.write(wanted, &mut known.shown, &mut known.pen, bytes);
         self.known = Some(known);
         self.due = None;
+        self.ages.clear_wrong();
         cursor
     }
 
@@ -560,8 +566,7 @@ impl Encoder {
         writer.write_all(bytes).and_then(|()| writer.flush()).inspect_err(|_| self.forget())
     }
 
-    /// Appends the bytes that change the `shown` grid to `wanted`. Returns the cursor after
-    /// them.
+    /// Appends the bytes that change the `shown` grid to `wanted`. Returns the cursor after them.
     fn write(&self, wanted: &Grid, shown: &mut Grid, pen: &mut Pen, bytes: &mut Vec<u8>) -> KnownCursor {
         WRITING.with_borrow_mut(|writing| {
             let mut changed = mem::take(&mut writing.changed);
@@ -572,8 +577,7 @@ impl Encoder {
         })
     }
 
-    /// Appends the bytes that write the `changed` cells of `wanted`. Returns the cursor after
-    /// them.
+    /// Appends the bytes that write the `changed` cells of `wanted`. Returns the cursor after them.
     fn write_changed(
         &self,
         wanted: &Grid,
@@ -642,8 +646,8 @@ thread_local! {
 }
 
 impl Writing {
-    /// Appends the bytes that write the `changed` cells of `wanted`, and returns the cursor
-    /// after them.
+    /// Appends the bytes that write the `changed` cells of `wanted`, and returns the cursor after
+    /// them.
     fn write(
         &mut self,
         encoder: &Encoder,

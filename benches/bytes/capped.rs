@@ -112,7 +112,7 @@ pub(crate) fn print(size: Size, frames: usize, rounds: usize, seeds: &[u64]) {
     let equal_bytes: Vec<f64> = pictures.iter().map(|pictures| equal_bytes(&pictures[..frames])).collect();
     let names: Vec<&str> = motions.iter().map(|motion| motion.name).collect();
     println!(
-        "\n| {}x{}: dB, SSIM, bytes, ms; frames over the limit, cells wrong for too long | mean of four (at least) | worst of four, dB | {} |",
+        "\n| {}x{}: dB, SSIM, bytes, ms; frames over the limit, late cells | mean of four (at least) | worst | {} |",
         size.columns,
         size.rows,
         names.join(" | ")
@@ -206,7 +206,8 @@ fn equal_bytes(pictures: &[Picture]) -> f64 {
 
 /// Returns the mean number of cells that are visibly wrong for longer than they may be.
 ///
-/// They are wrong in all frames of a second, or one and a half of the times that the link needs for a frame of `equal_bytes`.
+/// They are wrong in all frames of a second or, if longer, of one and a half of the times that the link needs for a
+/// frame of `equal_bytes`.
 fn late(pictures: &[Picture], limit: &Row, equal_bytes: f64) -> f64 {
     let second = f64::from(limit.rate as u32);
     let most = second.max(1.5 * equal_bytes / limit.max_bytes as f64);

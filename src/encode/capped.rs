@@ -81,9 +81,11 @@ pub(super) struct Shortage {
     /// limit.
     rate: Option<ExchangeRate>,
     /// The least squared distance of two colours in the last frame's palette.
+    ///
+    /// It is for halves of weight 1.
     radius: f32,
-    /// The bytes of the last frame of the allowed quality, which exceeded the limit.
-    bytes_of_equal: u32,
+    /// The bytes of the frame of the allowed quality with which the shortage began.
+    allowed_bytes: u32,
 }
 
 impl Shortage {
@@ -102,7 +104,7 @@ impl Shortage {
     pub(super) fn set_first_rate(&mut self, bytes: usize, max_bytes: usize) {
         let share = bytes as f32 / max_bytes as f32;
         self.rate = Some(2.0 * share * share);
-        self.bytes_of_equal = bytes as u32;
+        self.allowed_bytes = bytes as u32;
     }
 
     /// Returns the share that a frame has of the time for which a cell may be wrong.
@@ -111,7 +113,7 @@ impl Shortage {
     /// `elapsed` are the seconds since the frame before.
     // A frame fills the link until the next one, so that the share of its bytes is the share of the time.
     pub(super) fn share_of_deadline(self, elapsed: f32, max_bytes: usize) -> f32 {
-        elapsed.min(max_bytes as f32 / (1.5 * self.bytes_of_equal as f32)).min(1.0)
+        elapsed.min(max_bytes as f32 / (1.5 * self.allowed_bytes as f32)).min(1.0)
     }
 
     /// Adapts the rate after a frame whose chosen cells would take `share_of_limit` times the
@@ -325,8 +327,10 @@ fn find_active(differences: &Differences, ages: &CellAges, rate: ExchangeRate, a
 // 1.7 kB, at the same PSNR; at 200x60 858 and 449 of 12,000 cells with 1.7 kB, 291 and 54 with 3.3 kB, at .3 and .1 dB
 // less. Without the last summand .1 and 0 dB less and twice as many cells; with 30 .7 and .1 dB less and half as many.
 fn weight(wrong_share: f32) -> f32 {
-    let is_due = wrong_share > 0.85;
-    1.0 + 3.0 * wrong_share * wrong_share + if is_due { 10.0 } else { 0.0 }
+    let is_nearly_overdue = wrong_share > 0.85;
+    // The share has an end, because colours are chosen by the mean weight of their halves.
+    let wrong_share = wrong_share.min(2.0);
+    1.0 + 3.0 * wrong_share * wrong_share + if is_nearly_overdue { 10.0 } else { 0.0 }
 }
 
 fn is_unknown(squares: [u32; 2]) -> bool {

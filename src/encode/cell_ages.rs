@@ -1,4 +1,4 @@
-//! The ages of cells: the times since each was last wanted otherwise, and since it was last right.
+//! The ages of cells: the times since the wanted contents changed, and since the shown were right.
 //!
 //! From the first follows the time to make a lossy cell exact, from the second how urgent it is to mend a cell under a
 //! limit of bytes.
@@ -15,6 +15,10 @@ const EXACT_AFTER: Duration = Duration::from_millis(500);
 /// The steps that a wrong cell takes to its deadline.
 const STEPS_TO_DEADLINE: f32 = 4096.0;
 
+/// The greatest number of steps of a cell that was right in the frame before.
+// About those of a frame at 15 a second.
+const MOST_FIRST_STEPS: u16 = 256;
+
 /// The ages of all cells.
 #[derive(Clone, Debug)]
 pub(super) struct CellAges {
@@ -24,6 +28,8 @@ pub(super) struct CellAges {
     /// The seconds from the frame before to the last one.
     elapsed: f32,
     cells: Vec<CellAge>,
+    /// Whether any cell was wrong after the last frame under a limit.
+    has_wrong: bool,
 }
 
 /// A digest of a cell of the last wanted grid, and its ages.
@@ -39,17 +45,16 @@ struct CellAge {
 
 impl Default for CellAges {
     fn default() -> Self {
-        Self { size: Size::new(0, 0), now: Duration::ZERO, elapsed: 0.0, cells: Vec::new() }
+        Self { size: Size::new(0, 0), now: Duration::ZERO, elapsed: 0.0, cells: Vec::new(), has_wrong: false }
     }
 }
 
 impl CellAges {
-    /// Records a wanted grid, and `now` as the time of change for cells that differ from the last
-    /// one.
+    /// Records a grid that is wanted `now`. Cells that differ from the last one begin a new age.
     ///
     /// Returns whether any cell has changed.
     pub(super) fn record(&mut self, wanted: &Grid, now: Duration) -> bool {
-        // Both rounded down, so that the sum of the differences is that of the times.
+        // Both times are rounded down before subtracting, so that rounding errors do not add up.
         let millis = now.as_millis().saturating_sub(self.now.as_millis()).min(u16::MAX.into()) as u16;
         self.elapsed = now.saturating_sub(self.now).as_secs_f32();
         self.now = now;
@@ -72,6 +77,11 @@ impl CellAges {
         has_changed
     }
 
+    /// Returns the size of the last recorded grid.
+    pub(super) fn size(&self) -> Size {
+        self.size
+    }
+
     /// Returns the seconds from the frame before the last recorded one to that one.
     pub(super) fn elapsed(&self) -> f32 {
         self.elapsed
@@ -92,17 +102,30 @@ impl CellAges {
     /// Records which cells are wrong after a frame: those at the given indices, in ascending order.
     ///
     /// Each of them comes nearer to its deadline by `share` of the time that it may be wrong.
+    // A cell that was right before has become wrong at some time of `share`, which may be a long rest.
     pub(super) fn record_wrong(&mut self, wrong: &[u32], share: f32) {
         let steps = (STEPS_TO_DEADLINE * share).round() as u16;
+        let first_steps = steps.min(MOST_FIRST_STEPS);
+        self.has_wrong = !wrong.is_empty();
         let mut others = 0;
         for &cell_index in wrong {
             let cell_index = cell_index as usize;
             self.cells[others..cell_index].iter_mut().for_each(|age| age.wrong_steps = 0);
             let age = &mut self.cells[cell_index];
-            age.wrong_steps = age.wrong_steps.saturating_add(steps);
+            age.wrong_steps = match age.wrong_steps {
+                0 => first_steps,
+                before => before.saturating_add(steps),
+            };
             others = cell_index + 1;
         }
         self.cells[others..].iter_mut().for_each(|age| age.wrong_steps = 0);
+    }
+
+    /// Records that no cell is wrong.
+    pub(super) fn clear_wrong(&mut self) {
+        if self.has_wrong {
+            self.record_wrong(&[], 0.0);
+        }
     }
 
     /// Returns for how long the cell at index `cell_index` has been wrong, as a share of the time
@@ -118,3 +141,6 @@ fn digest_of(text: &str, of_colors: u32) -> u32 {
     (text, of_colors).hash(&mut hasher);
     hasher.finish() as u32
 }
+
+#[cfg(all(test, unit_tests))]
+mod tests;

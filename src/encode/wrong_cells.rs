@@ -13,13 +13,13 @@ const VISIBLE: f32 = 0.02;
 // under a tight limit exceed it.
 const FAR: u32 = 1000;
 
-/// The working memory of [`find`](Self::find).
+/// The cells that are not exact after a frame, and those of them that are wrong.
 #[derive(Default)]
 pub(super) struct WrongCells {
     /// The cells that are not exact: their indices in the grid, and whether they are far off.
     inexact: Vec<(u32, bool)>,
-    /// The halves of those that are not far off, `[shown, wanted]`.
-    near: Vec<[Halves; 2]>,
+    /// The halves of those that are not far off, `[shown, wanted]`, which are compared in OKLab.
+    undecided: Vec<[Halves; 2]>,
     pairs: OklabPairs,
     wrong: Vec<u32>,
 }
@@ -29,21 +29,22 @@ impl WrongCells {
     ///
     /// `shown` is the grid after a frame, and `differences` are those before it.
     pub(super) fn find(&mut self, shown: &Grid, differences: &Differences) -> &[u32] {
-        let Self { inexact, near, pairs, wrong } = self;
+        let Self { inexact, undecided, pairs, wrong } = self;
         inexact.clear();
-        near.clear();
+        undecided.clear();
         for (&place, &wanted) in differences.places.iter().zip(&differences.wanted) {
-            let Some(halves) = picture_halves(shown.packed()[place as usize]).filter(|&halves| halves != wanted) else {
+            let halves = picture_halves(shown.packed()[place as usize]);
+            if halves == Some(wanted) {
                 continue;
-            };
-            let [upper, lower] = squared_differences(halves, wanted);
-            let is_far = upper.max(lower) > FAR;
-            inexact.push((place, is_far));
-            if !is_far {
-                near.push([halves, wanted]);
             }
+            let is_near =
+                |&halves: &Halves| squared_differences(halves, wanted).into_iter().all(|square| square <= FAR);
+            let near = halves.filter(is_near);
+            inexact.push((place, near.is_none()));
+            undecided.extend(near.map(|halves| [halves, wanted]));
         }
-        pairs.compare(near.iter().copied(), Tolerance { distance: VISIBLE, square: u32::MAX });
+        // The error of the cube roots is not subtracted: at the very limit either answer will do.
+        pairs.compare(undecided.iter().copied(), Tolerance { distance: VISIBLE, square: u32::MAX });
         let mut are_near = pairs.are_near();
         wrong.clear();
         let is_wrong = |&&(_, is_far): &&(u32, bool)| is_far || are_near.next() != Some(true);

@@ -14,7 +14,7 @@ const GLYPHS: [&str; 9] = ["▄", "▀", " ", "a", "@", "é", "│", "世", "�
 
 /// Asserts that all terminals show what they should.
 pub(crate) fn hold_for(data: &[u8]) {
-    // The last byte, so that the inputs of the corpus tell what they told before there were shifts.
+    // By the last byte, so that the inputs of the corpus make the choices that they made before there were shifts.
     let Some((&last, story)) = data.split_last() else { return };
     let shifts = [Shifts::Off, Shifts::Direct, Shifts::ThroughTmux][usize::from(last) % 3];
     // The session ends with the bytes.

@@ -456,11 +456,11 @@ impl Known for Cell {
 /// A strict model of a terminal in raw mode. It knows CUP, CUF, CHA, CR, BS, LF, SGR, ICH, DCH, IL,
 /// DL, the marks of synchronized output and characters.
 ///
-/// It panics at anything else: erasing, scrolling, going over an edge, other control characters, anything but CUP after a
-/// cluster and after rows are inserted or deleted (where terminals disagree on the cursor), and anything but CUP, CHA and
-/// CR beyond the last column and after cells are inserted or deleted (where they disagree on its column). What comes in
-/// is marked, and what is pushed over the edge of the screen is lost. A sequence that the encoder begins to use must be
-/// added here.
+/// It panics at anything else: erasing, scrolling, going over an edge, other control characters, anything but CUP after
+/// a cluster and after rows are inserted or deleted (where terminals disagree on the cursor), and anything but CUP, CHA
+/// and CR beyond the last column and after cells are inserted or deleted (where they disagree on its column). Cells
+/// that come in are marked, and what is pushed over the edge of the screen is lost. A sequence that the encoder begins to
+/// use must be added here.
 struct Model {
     size: Size,
     cells: Vec<Cell>,

@@ -57,11 +57,16 @@ fn coarse_frames_have_outlines() {
         let is_line = |glyph: char| "/\\|'`,()\"^".contains(glyph);
         let lines = fine.0.chars().filter(|&glyph| is_line(glyph)).count();
         let both = fine.0.chars().zip(coarse.0.chars());
+        let of_coarse = coarse.0.chars().filter(|&glyph| is_line(glyph)).count();
         let same = both.filter(|&(fine, coarse)| is_line(fine) && (is_line(coarse) || coarse == '_')).count();
-        println!("{name} {}: {same} of {lines}, {:.1} and {:.1} rays per cell", size.columns, fine.1, coarse.1);
+        println!(
+            "{name} {}: {same} of {lines}, {of_coarse} in all, {:.1} and {:.1} rays per cell",
+            size.columns, fine.1, coarse.1
+        );
         // Of spheres of three by two cells some are drawn by their fill, others by their outline.
         let least = if name == "many_spheres.ron" { 0.5 } else { 0.9 };
-        assert!(same as f64 >= least * lines as f64, "{name}: {same} of {lines}");
+        assert!(lines > 50 && same as f64 >= least * lines as f64, "{name}: {same} of {lines}");
+        assert!(of_coarse <= 2 * lines, "{name}: {of_coarse} instead of {lines}");
         assert!(2.0 * coarse.1 < fine.1, "{name}: {} and {} rays per cell", coarse.1, fine.1);
     }
 }

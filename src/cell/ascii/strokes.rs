@@ -152,7 +152,8 @@ impl<'g> FacetWindow<'g> {
             // The depth jumps between two facets if it bends at both of them. If it bends at the first alone, the jump
             // is before it; if at the second alone, after it.
             let across = if bounded == 0 { 0 } else { self.bends_across(geometry, y) };
-            let crease = creases(facets, |x| facets[beside(x)], bounded & !border, across & across >> 1);
+            let with_right = bounded & !border & !(1 << (WINDOW[0] - 1));
+            let crease = creases(facets, |x| facets[beside(x)], with_right, across & across >> 1);
             strokes.draw(y, 0, border, crease);
             if let (Some(below), Some(objects_below)) = (self.facets.get(y + 1), self.objects.get(y + 1)) {
                 let border = row_where(|x| objects[x] != objects_below[x]);

@@ -104,6 +104,8 @@ impl SimdKernel for FindTwoNearest<'_> {
 
 /// Makes colours of the means of bins, the fullest first, unless one is within the radius.
 ///
+/// The radius is for halves of weight 1, and smaller for heavier ones.
+///
 /// Returns whether the palette has room for all of them.
 struct ChooseLeaders<'a> {
     fullest: &'a [u16],
