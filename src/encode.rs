@@ -738,3 +738,6 @@ fn look_alike(shown: &Grid, own: PackedCell, wanted: &Grid, other: PackedCell) -
     }
     pen::look_alike(own, other)
 }
+
+#[cfg(all(test, unit_tests))]
+mod tests;

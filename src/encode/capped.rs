@@ -68,8 +68,8 @@ pub(super) const LEAST_BYTES: usize = 200;
 const LEAST_RATE: ExchangeRate = 0.3;
 
 /// The bytes of the chosen cells at which the rate aims, as a share of the limit.
-// A little too much: giving up the worst pairs uses 95 to 98 % of the limit. An aim of 1 used 92 to 96 % (0.1 dB less
-// with 1.0 and 1.7 kB), and 1.08 cost 0.4 dB in slow motions, which then seldom return to the allowed quality.
+// A little too much: giving up the worst pairs uses 94 to 98 % of the limit. An aim of 1 used 92 to 96 % (0.1 dB less
+// with 1.0 and 1.7 kB), and 1.08 cost 0.4 dB with 8 kB in the bench's random motions.
 const AIM: f32 = 1.05;
 
 /// How scarce bytes are, as learnt from the frames so far, for choosing the cells of the next one.
@@ -325,7 +325,8 @@ fn find_active(differences: &Differences, ages: &CellAges, rate: ExchangeRate, a
 // A small error may never be worth its bytes, and would stay until the motion ends. Cells that were wrong too long,
 // without weights and with them, 30/s with shifts: at 80x24 76 and 22 of 1,920 cells with 1.0 kB, 19 and 1.7 with
 // 1.7 kB, at the same PSNR; at 200x60 858 and 449 of 12,000 cells with 1.7 kB, 291 and 54 with 3.3 kB, at .3 and .1 dB
-// less. Without the last summand .1 and 0 dB less and twice as many cells; with 30 .7 and .1 dB less and half as many.
+// less. Without the last summand .1 and 0 dB less and up to twice as many cells; with factors of 5 and 30 .7 and .1 dB
+// less, and 415 and 27 cells.
 fn weight(wrong_share: f32) -> f32 {
     let is_nearly_overdue = wrong_share > 0.85;
     // The share has an end, because colours are chosen by the mean weight of their halves.

@@ -23,7 +23,7 @@ pub(super) struct Differences {
 pub(super) const VACATED: [u32; 2] = [u32::MAX - 1; 2];
 
 /// The shown halves of a cell that shows text or is unknown.
-const UNKNOWN: Halves = [PackedInk::DEFAULT; 2];
+pub(super) const UNKNOWN: Halves = [PackedInk::DEFAULT; 2];
 
 impl Differences {
     /// Lists the differences of two grids of equal size.
