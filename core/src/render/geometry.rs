@@ -1,7 +1,8 @@
 //! The geometry of a picture: the surface that each eye ray meets, for glyphs with outlines.
 //!
 //! A cell has two by four pixels, whose first rays give light and geometry. Pixels at an edge get four more rays each,
-//! so that outlines are placed to an eighth of a cell's height; this takes a third more rays.
+//! so that outlines are placed to an eighth of a cell's height; this takes a third more rays. A coarse picture has one
+//! ray for two by two pixels, and at an edge one for each pixel.
 
 use super::sampling::SampleBatches;
 use super::steps::{Buffers, RenderJob, Stage};
@@ -201,8 +202,7 @@ impl Geometry {
         pixels.iter().all(|&pixel| self.facets[pixel] == other.facets[pixel]) && fine(self) == fine(other)
     }
 
-    /// Returns a row of four facets of the cells in this column, at a position in eighths of a
-    /// cell's height.
+    /// Returns a row of four facets of a cell, at a position in eighths of a cell's height.
     #[inline]
     pub fn row_of_cell(&self, column: usize, y: usize) -> [&Facet; FINE[0]] {
         let index = self.fine_indices[y / FINE[1] * self.columns() + column];
@@ -383,7 +383,6 @@ fn with_fine_facets(
     let resolution = coarse.resolution;
     let facets = pixels.into_iter().map(|(_, facet)| facet).collect();
     let mut geometry = Geometry::new(resolution, facets, 0.012 * camera.pose().eye.distance(camera.pose().target));
-    // A coarse picture has one ray for two by two pixels, and at an edge one for each pixel.
     let side = coarse.pixel_side as usize;
     let crossed = geometry.crossed_pixels(side);
     let (width, scale) = (geometry.width, 2 / coarse.pixel_side);

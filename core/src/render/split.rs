@@ -88,10 +88,12 @@ fn blocks_to_split(framebuffer: &Framebuffer, blocks: &Tiles, white: f32) -> Vec
 fn finest_pixels(framebuffer: &Framebuffer, splits: PixelFlags<'_>, white: f32, most: usize) -> Vec<bool> {
     let resolution = framebuffer.resolution();
     let (width, height) = (resolution.width() as usize, resolution.height() as usize);
+    if most == 0 {
+        return vec![false; width * height];
+    }
     let mut contrasts = Vec::new();
     let root = |x: usize, y: usize| roots(framebuffer.pixels()[y * width + x], white);
-    let is_split = |block: &usize| splits.flags[*block];
-    for block in (0..splits.flags.len()).filter(is_split).take_while(|_| most > 0) {
+    for block in (0..splits.flags.len()).filter(|&block| splits.flags[block]) {
         let [left, top] = [2 * (block % splits.columns as usize), 2 * (block / splits.columns as usize)];
         // The block and the pixels beside it; beyond the picture's edge its last pixels are repeated, whose contrast
         // to themselves is 0.

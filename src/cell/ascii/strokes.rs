@@ -183,10 +183,10 @@ impl<'g> FacetWindow<'g> {
     }
 }
 
-/// Returns the facets of `candidates`, in a row, that a crease separates from the facet that `next`
-/// returns for their position, on the same object.
+/// Returns the facets of a row that a crease separates from the next ones.
 ///
-/// `jumps` are those at which the depth jumps.
+/// `candidates` are those whose next facet is on the same bounded object, `jumps` those at which the depth jumps.
+/// `next` returns the next facet for a position in the row.
 fn creases<'g>(row: &[&Facet; WINDOW[0]], next: impl Fn(usize) -> &'g Facet, candidates: Row, jumps: Row) -> Row {
     if candidates == 0 {
         return 0;
