@@ -1,5 +1,5 @@
 use super::*;
-use crate::grid::PackedInk;
+use crate::grid::{PackedCell, PackedInk};
 
 const SIZE: Size = Size::new(20, 6);
 
