@@ -132,7 +132,8 @@ pub(crate) struct Story {
 
 impl Story {
     pub(crate) fn new(view: View, size: Size, half_blocks: HalfBlocks, shifts: Shifts) -> Self {
-        let watched = Watched::new(Order::Color, half_blocks, size, Clusters::None).with_shifts(shifts);
+        let watched =
+            Watched::new(Order::Color, half_blocks, size, Clusters::None).with_shifts(shifts).asserting_belief();
         Self { watched, view, size, panel: None, now: Duration::ZERO }
     }
 

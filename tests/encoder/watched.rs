@@ -13,6 +13,7 @@ pub(crate) struct Watched {
     encoder: Encoder,
     half_blocks: HalfBlocks,
     has_shifts: bool,
+    asserts_belief: bool,
     clusters: Clusters,
     screens: Screens,
     /// The last wanted grid. (A blank of text looks like one of the picture.)
@@ -42,6 +43,7 @@ impl Watched {
             encoder,
             half_blocks,
             has_shifts: false,
+            asserts_belief: false,
             clusters,
             screens: Screens::disturbed(size, clusters),
             last: None,
@@ -60,6 +62,13 @@ impl Watched {
     /// Lets the encoder shift what the terminals show.
     pub(crate) fn with_shifts(self, shifts: Shifts) -> Self {
         Self { encoder: self.encoder.with_shifts(shifts), has_shifts: true, ..self }
+    }
+
+    /// Asserts after each lossy frame that the encoder believes what the terminals show.
+    ///
+    /// The wanted grids must have no upper half blocks, of which it may have written the other form.
+    pub(crate) fn asserting_belief(self) -> Self {
+        Self { asserts_belief: true, ..self }
     }
 
     /// Makes each frame a synchronized update.
@@ -160,7 +169,7 @@ impl Watched {
         self.last = Some(wanted.clone());
         self.is_known = true;
         self.assert_due(&seen, wanted, allowance);
-        if self.has_shifts {
+        if self.asserts_belief {
             self.assert_believed(&seen);
         }
         length
