@@ -85,7 +85,7 @@ fn goldens_are_of_any_kind() {
     }
 }
 
-/// Checks that a golden of the former default, a ramp in another order, says how to go on.
+/// Checks that a golden of the former default, a ramp with other steps, says how to go on.
 #[test]
 fn an_older_golden_names_the_glyphs_that_it_needs() {
     let folder = Folder::new();
@@ -101,10 +101,24 @@ fn an_older_golden_names_the_glyphs_that_it_needs() {
         differs("", &format!("the golden frame has the characters of --glyphs {kind}: compare it with that flag"));
     }
     let now = String::from_utf8(folder.read("a.txt")).expect("text");
-    let before = now.chars().map(|c| " .-:*+=%#@".find(c).map_or(c, |at| char::from(b" .:-=+*#%@"[at])));
-    folder.write("a.txt", before.collect::<String>());
+    // The steps were higher by 2 of 10, so that a character was at the same place in the ramp or at the one before.
+    let places = now.chars().map(|c| " .-:*+=%#@".find(c));
+    let before = |step: fn(usize, usize) -> usize| -> String {
+        let of_before = |(k, at)| char::from(b" .:-=+*#%@"[step(k, at)]);
+        (0..).zip(places.clone()).map(|(k, at)| at.map_or('\n', |at| of_before((k, at)))).collect()
+    };
+    folder.write("a.txt", before(|k, at| at.saturating_sub(k % 2)));
     differs("", "the golden frame has the characters of --glyphs ramp: compare it with that flag");
-    differs("--glyphs ramp", "only the order of the ramp's characters has changed; --bless writes the frame anew");
+    let hint = "it seems that only the ramp's characters have changed; --bless writes the frame anew";
+    differs("--glyphs ramp", hint);
+    let others: [fn(usize, usize) -> usize; 2] = [|k, at| at.saturating_sub(k % 3), |k, at| (at + k % 2).min(9)];
+    for other in others {
+        folder.write("a.txt", before(other));
+        let said = said("--glyphs ramp");
+        assert_eq!(said.code, Some(1));
+        let diff = String::from_utf8(said.stdout).expect("text");
+        assert!(!diff.contains(hint), "another picture: {diff}");
+    }
     said("--bless --glyphs ramp").done();
     said("--glyphs ramp").done();
 }

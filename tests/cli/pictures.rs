@@ -142,7 +142,9 @@ fn judge(folder: &Folder, arguments: &str) {
     }
 }
 
-/// Asserts the ramp in ten equal steps of CIE 1976 lightness, worked out in f64 from the PNG.
+/// Asserts the ramp's steps of CIE 1976 lightness, worked out in f64 from the PNG.
+///
+/// They begin at 8, 18, ... 88.
 #[track_caller]
 fn assert_lightness(glyph: char, (upper, lower): (Rgb, Option<Rgb>)) {
     let linear = |band: u8| {
@@ -153,8 +155,8 @@ fn assert_lightness(glyph: char, (upper, lower): (Rgb, Option<Rgb>)) {
     let y = lower.map_or(luminance(upper), |lower| f64::midpoint(luminance(upper), luminance(lower)));
     let lightness = if y > 216.0 / 24389.0 { 116.0 * libm::cbrt(y) - 16.0 } else { y * 24389.0 / 27.0 };
     let place = " .-:*+=%#@".find(glyph).unwrap_or_else(|| panic!("{glyph:?} is not of the ramp")) as f64;
-    // The last step has white in it; where two steps meet, either will do.
-    let (least, most) = (10.0 * place - 1e-3, if place < 9.0 { 10.0 * place + 10.0 + 1e-3 } else { 100.1 });
+    // The first step has black in it, and the last one white; where two steps meet, either will do.
+    let (least, most) = (10.0 * place - 2.0 - 1e-3, if place < 9.0 { 10.0 * place + 8.0 + 1e-3 } else { 100.1 });
     assert!((least..=most).contains(&lightness), "{glyph:?} for lightness {lightness}");
 }
 

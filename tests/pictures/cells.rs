@@ -82,8 +82,8 @@ fn assert_ramp(rows: &[&str], expected: &str) {
 
 /// Lightness is worked out by hand.
 ///
-/// Red's luminance is 0.2126, L* = 116 * 0.5968 - 16 = 53.2, the sixth step; the grey's is 0.1845, L* = 50.03, the
-/// sixth as well.
+/// Red's luminance is 0.2126, L* = 116 * 0.5968 - 16 = 53.2, the sixth step, which begins at 48; the grey's is 0.1845,
+/// L* = 50.03, the sixth as well.
 #[test]
 fn the_ramp_is_by_lightness() {
     assert_ramp(&["bwrg", "bwrg"], " @++\n");
@@ -93,11 +93,11 @@ fn the_ramp_is_by_lightness() {
 
 /// A cell's lightness is that of the mean light of its pixels, not of their codes.
 ///
-/// Half black and half white is a luminance of 0.5, L* = 76.1, the eighth step; red and black 0.1063, L* = 38.9, the
-/// fourth.
+/// Half black and half white is a luminance of 0.5, L* = 76.07, the eighth step, which ends at 78; red and black
+/// 0.1063, L* = 38.9, the fifth, which begins at 38.
 #[test]
 fn the_ramp_takes_the_mean_of_light() {
-    assert_ramp(&["bwr", "wbb"], "%%:\n");
+    assert_ramp(&["bwr", "wbb"], "%%*\n");
     assert_ramp(&["bw", "wb", "wr"], "%%\n@+\n");
 }
 
