@@ -39,7 +39,7 @@ pub use count::{Counts, count_rays_and_hits};
 pub(crate) use gbuffer::trace_g_buffer_partial;
 pub use gbuffer::{GBufferSample, PixelValues, TraceDepth, trace_g_buffer};
 pub use geometry::Geometry;
-pub use geometry::{Extent, Facet, render_with_geometry, trace_geometry};
+pub use geometry::{Extent, Facet, are_across_crease, render_with_geometry, trace_geometry};
 pub use sampling::Sampling;
 pub use schedule::Executor;
 pub use single_pixel::{PixelTrace, trace_pixel};

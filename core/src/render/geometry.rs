@@ -61,7 +61,7 @@ impl Facet {
             None if normal.y.abs() > 0.6 => Extent::Level,
             None => Extent::Upright,
         };
-        let normal = normal.to_array().map(|coordinate| (coordinate * 127.0) as i8);
+        let normal = normal.to_array().map(|coordinate| (coordinate * 127.0).clamp(-127.0, 127.0) as i8);
         Self { depth, object: object + 1, normal, extent }
     }
 
@@ -71,11 +71,15 @@ impl Facet {
         self.object != other.object || self.extent == Extent::Bounded && self.is_across_crease(other)
     }
 
-    /// Returns whether the normals of two facets are more than 40 degrees apart.
+    /// Returns the shading normal, in units of 1/127.
     #[inline]
-    pub fn is_across_crease(&self, other: &Self) -> bool {
-        let products = self.normal.iter().zip(other.normal).map(|(&a, b)| i32::from(a) * i32::from(b));
-        products.sum::<i32>() < CREASE_PRODUCT
+    pub fn normal(&self) -> [i8; 3] {
+        self.normal
+    }
+
+    /// Returns whether the normals of two facets are more than 40 degrees apart.
+    fn is_across_crease(&self, other: &Self) -> bool {
+        are_across_crease(self.normal.map(i16::from), other.normal.map(i16::from))
     }
 }
 
@@ -290,7 +294,17 @@ impl Geometry {
 
 /// The product of the normals at the least angle of a crease, 40 degrees, in units of 1/127^2.
 // The cosine is 0.766, and 12355 is the least integer that is not below 0.766 * 127 * 127.
-const CREASE_PRODUCT: i32 = 12355;
+const CREASE_PRODUCT: i16 = 12355;
+
+/// Returns whether two normals are more than 40 degrees apart.
+///
+/// Their coordinates are in units of 1/127, and within ±127.
+// In 16 bits, so that eight pairs of normals are compared together. The sum of two products fits; that of three might
+// not.
+#[inline]
+pub fn are_across_crease([x, y, z]: [i16; 3], [other_x, other_y, other_z]: [i16; 3]) -> bool {
+    x * other_x + y * other_y < CREASE_PRODUCT - z * other_z
+}
 
 /// Renders a picture with two by four pixels per cell, and its geometry.
 ///

@@ -1,7 +1,7 @@
 //! The edges in a cell as strokes of a pen, and the character that is most like them.
 
 use super::glyphs::GLYPHS;
-use crate::render::{Extent, Facet, Geometry};
+use crate::render::{Extent, Geometry, are_across_crease};
 use std::sync::LazyLock;
 
 /// The samples of a cell's geometry, across and down.
@@ -67,9 +67,10 @@ pub(super) fn edge(geometry: &Geometry, [column, row]: [usize; 2], kept: Option<
 }
 
 /// The facets in and around a cell, row by row.
-// The objects and depths are copied, so that a row of them is compared in a few instructions.
-struct FacetWindow<'g> {
-    facets: [[&'g Facet; WINDOW[0]]; WINDOW[1]],
+// Each row of numbers is an array of its own, so that it is compared in a few instructions.
+struct FacetWindow {
+    /// The x, y and z coordinates of the normals, in units of 1/127.
+    normals: [[[i16; WINDOW[0]]; 3]; WINDOW[1]],
     objects: [[u32; WINDOW[0]]; WINDOW[1]],
     depths: [[f32; WINDOW[0]]; WINDOW[1]],
     /// The facets of bounded objects.
@@ -97,22 +98,23 @@ fn row_where(is_set: impl Fn(usize) -> bool) -> Row {
     (u64::from_le_bytes(bytes).wrapping_mul(0x0102_0408_1020_4080) >> 56) as Row
 }
 
-impl<'g> FacetWindow<'g> {
-    fn of(geometry: &'g Geometry, column: usize, row: usize) -> Self {
+impl FacetWindow {
+    fn of(geometry: &Geometry, column: usize, row: usize) -> Self {
         const LAST: usize = SAMPLES[0] - 1;
         let (last_column, end) = (geometry.columns() - 1, geometry.rows() * SAMPLES[1] - 1);
-        let first = geometry.row_of_cell(column, row * SAMPLES[1])[0];
-        let mut window = Self { facets: [[first; _]; _], objects: [[0; _]; _], depths: [[0.0; _]; _], bounded: [0; _] };
+        let mut window =
+            Self { normals: [[[0; _]; _]; _], objects: [[0; _]; _], depths: [[0.0; _]; _], bounded: [0; _] };
         for y in 0..WINDOW[1] {
             let at = (row * SAMPLES[1] + y).saturating_sub(MARGIN).min(end);
             let cell = geometry.row_of_cell(column, at);
             let left = if column > 0 { geometry.row_of_cell(column - 1, at) } else { [cell[0]; _] };
             let right = if column < last_column { geometry.row_of_cell(column + 1, at) } else { [cell[LAST]; _] };
             let [[a, b], [c, d]] = [[left[LAST - 1], left[LAST]], [right[0], right[1]]];
-            let facets = [a, b, cell[0], cell[1], cell[2], cell[3], c, d];
-            window.facets[y] = facets;
-            for (x, facet) in facets.iter().enumerate() {
+            for (x, facet) in [a, b, cell[0], cell[1], cell[2], cell[3], c, d].into_iter().enumerate() {
                 (window.objects[y][x], window.depths[y][x]) = (facet.object, facet.depth);
+                for (coordinates, coordinate) in window.normals[y].iter_mut().zip(facet.normal()) {
+                    coordinates[x] = coordinate.into();
+                }
                 window.bounded[y] |= Row::from(facet.extent == Extent::Bounded) << x;
             }
         }
@@ -146,18 +148,18 @@ impl<'g> FacetWindow<'g> {
         let [mut bends_before, mut bends] = [0, self.bends_down(geometry, 1)];
         for y in 0..WINDOW[1] {
             // Planes have no creases: towards the horizon the depth jumps from each row to the next.
-            let (facets, objects, bounded) = (&self.facets[y], &self.objects[y], self.bounded[y]);
-            let beside = |x: usize| (x + 1).min(WINDOW[0] - 1);
-            let border = row_where(|x| objects[x] != objects[beside(x)]);
+            let (normals, objects, bounded) = (&self.normals[y], &self.objects[y], self.bounded[y]);
+            let objects_beside = beside(objects);
+            let border = row_where(|x| objects[x] != objects_beside[x]);
             // The depth jumps between two facets if it bends at both of them. If it bends at the first alone, the jump
             // is before it; if at the second alone, after it.
             let across = if bounded == 0 { 0 } else { self.bends_across(geometry, y) };
             let with_right = bounded & !border & !(1 << (WINDOW[0] - 1));
-            let crease = creases(facets, |x| facets[beside(x)], with_right, across & across >> 1);
+            let crease = creases(normals, &normals.map(|row| beside(&row)), with_right, across & across >> 1);
             strokes.draw(y, 0, border, crease);
-            if let (Some(below), Some(objects_below)) = (self.facets.get(y + 1), self.objects.get(y + 1)) {
+            if let (Some(below), Some(objects_below)) = (self.normals.get(y + 1), self.objects.get(y + 1)) {
                 let border = row_where(|x| objects[x] != objects_below[x]);
-                strokes.draw(y, 1, border, creases(facets, |x| below[x], bounded & !border, bends_before & bends));
+                strokes.draw(y, 1, border, creases(normals, below, bounded & !border, bends_before & bends));
             }
             (bends_before, bends) = (bends, self.bends_down(geometry, y + 2));
         }
@@ -183,15 +185,21 @@ impl<'g> FacetWindow<'g> {
     }
 }
 
+/// Returns, for each facet of a row, the value of the facet to its right; for the last, its own.
+fn beside<T: Copy>(row: &[T; WINDOW[0]]) -> [T; WINDOW[0]] {
+    std::array::from_fn(|x| row[(x + 1).min(WINDOW[0] - 1)])
+}
+
 /// Returns the facets of a row that a crease separates from the next ones.
 ///
-/// `candidates` are those whose next facet is on the same bounded object, `jumps` those at which the depth jumps.
-/// `next` returns the next facet for a position in the row.
-fn creases<'g>(row: &[&Facet; WINDOW[0]], next: impl Fn(usize) -> &'g Facet, candidates: Row, jumps: Row) -> Row {
+/// `normals` has the coordinates of the row's normals, `next` those of the next facets. `candidates` are the facets
+/// whose next one is on the same bounded object, `jumps` those at which the depth jumps.
+fn creases(normals: &[[i16; WINDOW[0]]; 3], next: &[[i16; WINDOW[0]]; 3], candidates: Row, jumps: Row) -> Row {
     if candidates == 0 {
         return 0;
     }
-    candidates & (jumps | row_where(|x| row[x].is_across_crease(next(x))))
+    let normal = |of: &[[i16; WINDOW[0]]; 3], x: usize| [of[0][x], of[1][x], of[2][x]];
+    candidates & (jumps | row_where(|x| are_across_crease(normal(normals, x), normal(next, x))))
 }
 
 /// The points of the facets of a row, two for each.
