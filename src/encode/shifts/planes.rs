@@ -3,6 +3,8 @@
 
 use crate::encode::halves::picture_halves;
 use crate::grid::Grid;
+use crate::lanes::{Lanes, SimdKernel};
+use crate::simd::dispatch;
 
 /// The number of channels of a cell: red, green and blue of each half.
 const CHANNELS: usize = 6;
@@ -57,17 +59,35 @@ impl Planes {
 
 /// Sets the errors, at most `limit`, of the cells of one picture from those of another: from an
 /// index in each grid on.
-// The square of a difference of 8 bits has 16, in which the sum saturates: eight cells at once, without wider numbers.
 pub(super) fn put_errors(pictures: [&Planes; 2], from: [usize; 2], limit: u16, errors: &mut [u16]) {
-    errors.fill(0);
-    let [a, b] = [0, 1].map(|picture| pictures[picture].planes_from(from[picture], errors.len()));
-    for (a, b) in a.into_iter().zip(b) {
-        for ((error, a), b) in errors.iter_mut().zip(a).zip(b) {
-            let difference = u16::from(a.abs_diff(*b));
-            *error = error.saturating_add(difference * difference);
+    let planes = [0, 1].map(|picture| pictures[picture].planes_from(from[picture], errors.len()));
+    dispatch(PutErrors { planes, limit, errors });
+}
+
+/// Sets errors as [`put_errors`] does, for as many cells as there are errors.
+struct PutErrors<'a> {
+    planes: [[&'a [u8]; CHANNELS]; 2],
+    limit: u16,
+    errors: &'a mut [u16],
+}
+
+impl SimdKernel for PutErrors<'_> {
+    type Output = ();
+
+    // Plain loops, which the compiler turns into instructions of the widest set. The square of a difference of 8 bits
+    // has 16, in which the sum saturates: many cells at once, without wider numbers.
+    #[inline(always)]
+    fn run<N: Lanes>(self) {
+        let Self { planes: [a, b], limit, errors } = self;
+        errors.fill(0);
+        for (a, b) in a.into_iter().zip(b) {
+            for ((error, a), b) in errors.iter_mut().zip(a).zip(b) {
+                let difference = u16::from(a.abs_diff(*b));
+                *error = error.saturating_add(difference * difference);
+            }
         }
-    }
-    for error in errors {
-        *error = (*error).min(limit);
+        for error in errors {
+            *error = (*error).min(limit);
+        }
     }
 }
