@@ -2,8 +2,9 @@
 //!
 //! When the camera turns, most of the new picture is the old one some columns or rows further. A terminal moves the
 //! cells of a row by ICH and DCH, and whole rows by IL and DL, each of which takes fewer bytes than one written cell. A
-//! frame shifts at most one [window](windows) of rows, and in each row one window of columns: a full edit script for
-//! each row would improve the picture by another 0.3 dB and take forty times as long.
+//! frame shifts at most one [window](windows) of rows, and in each row at most three of columns: the best one, and the
+//! best one on each side of it, which save 1 % of an exact frame's bytes and 4 % of an equal one's (200x60). Compared
+//! with one window, a full edit script for each row would improve the picture by 0.3 dB, in forty times the time.
 //!
 //! A window is worth its bytes if the errors of its cells shrink by more than the exchange rate of the frame demands.
 //! Cells that a shift vacates have unknown contents, because terminals disagree on the background of what comes in.
@@ -94,6 +95,13 @@ struct RowShift {
     row: usize,
     window: Window,
     bytes: usize,
+}
+
+impl RowShift {
+    /// Returns the row and the first column.
+    fn place(&self) -> (usize, usize) {
+        (self.row, self.window.start)
+    }
 }
 
 impl ShiftMemory {
@@ -199,14 +207,14 @@ impl ShiftMemory {
             if cells.iter().any(|cell| cell.is_cluster() || cell.is_covered() || cell.is_foreign()) {
                 continue;
             }
-            if let Some(window) = self.best_columns(row, columns.into(), terms, lens) {
+            for window in self.windows_of_row(row, columns.into(), terms, lens).into_iter().flatten() {
                 let operations = lens[usize::from(window.end < columns.into())];
                 let bytes = terms.bytes(operations, window.by.unsigned_abs());
                 self.chosen.push(RowShift { row, window, bytes });
             }
         }
         let per_byte = |shift: &RowShift| shift.window.gain as f64 / shift.bytes as f64;
-        self.chosen.sort_unstable_by(|a, b| per_byte(b).total_cmp(&per_byte(a)).then(a.row.cmp(&b.row)));
+        self.chosen.sort_unstable_by(|a, b| per_byte(b).total_cmp(&per_byte(a)).then(a.place().cmp(&b.place())));
         let mut left = max_bytes;
         self.chosen.retain(|shift| {
             let fits = shift.bytes <= left;
@@ -215,18 +223,36 @@ impl ShiftMemory {
             }
             fits
         });
-        self.chosen.sort_unstable_by_key(|shift| shift.row);
+        self.chosen.sort_unstable_by_key(RowShift::place);
     }
 
-    /// Returns the best window of a row.
-    fn best_columns(&mut self, row: usize, columns: usize, terms: ShiftTerms, lens: [usize; 2]) -> Option<Window> {
+    /// Returns the best window of a row, and the best one on each side of it, from left to right.
+    fn windows_of_row(
+        &mut self,
+        row: usize,
+        columns: usize,
+        terms: ShiftTerms,
+        lens: [usize; 2],
+    ) -> [Option<Window>; 3] {
+        let mut best_of = |part: Range<usize>| self.best_columns(row, part, columns, terms, lens);
+        let Some(best) = best_of(0..columns) else { return [None; 3] };
+        [best_of(0..best.start), Some(best), best_of(best.end..columns)]
+    }
+
+    /// Returns the best window in a part of a row.
+    fn best_columns(
+        &mut self,
+        row: usize,
+        part: Range<usize>,
+        columns: usize,
+        terms: ShiftTerms,
+        lens: [usize; 2],
+    ) -> Option<Window> {
         let prices = terms.prices(lens);
         let Self { shown, wanted, stay, shifted, sums, .. } = self;
         let start = row * columns;
         let mut best: Option<Window> = None;
-        for segment in
-            segments(0..columns, |column| shown.is_picture(start + column) && wanted.is_picture(start + column))
-        {
+        for segment in segments(part, |column| shown.is_picture(start + column) && wanted.is_picture(start + column)) {
             let (at, len) = (start + segment.start, segment.len());
             stay.resize(len, 0);
             put_errors([&*shown, &*wanted], [at, at], terms.limit, stay);
@@ -309,8 +335,7 @@ fn shift_cells(grid: &mut Grid, cells: Range<usize>, by: isize, vacated: &mut Ve
     }
 }
 
-/// Appends the operations of a window of a row: DCH, and ICH unless the window reaches the last
-/// column.
+/// Appends the operations of a window of a row: DCH and ICH, or one if it has the last column.
 // A terminal that moves the cursor by an operation leaves it in the row, where CR or CHA finds any column.
 fn write_column_shift(row: usize, window: Window, size: Size, cursor: KnownCursor, bytes: &mut Vec<u8>) {
     let distance = window.by.unsigned_abs();
@@ -332,7 +357,7 @@ fn write_column_shift(row: usize, window: Window, size: Size, cursor: KnownCurso
     write_operation(distance, b'@', bytes);
 }
 
-/// Appends the operations of a window of rows: DL, and IL unless the window reaches the last row.
+/// Appends the operations of a window of rows: DL and IL, or one if the window has the last row.
 fn write_row_shift(window: Window, size: Size, bytes: &mut Vec<u8>) {
     let distance = window.by.unsigned_abs();
     let (delete, insert) = places(window);

@@ -280,6 +280,38 @@ fn a_pan_shifts_every_row_by_one_operation() {
     assert!(exact.len() > 20, "{exact:?}");
 }
 
+/// Returns a view whose two sides are moved by different numbers of columns, with a strip between
+/// them that stays.
+fn with_moved_sides(view: View, size: Size, [left, right]: [i32; 2]) -> Grid {
+    let mut grid = view.grid(size);
+    for (columns, by) in [(0..36, left), (44..size.columns, right)] {
+        let moved = View { at: [view.at[0] + by, view.at[1]], ..view }.grid(size);
+        for row in 0..size.rows {
+            for column in columns.clone() {
+                *grid.cell_mut(column, row) = moved.cell(column, row);
+            }
+        }
+    }
+    grid
+}
+
+/// Two operations shift the left side, and one the right side, which reaches the last column.
+#[test]
+fn both_sides_of_a_row_are_shifted() {
+    let size = Size::new(80, 24);
+    for (sides, of_row) in [([3, -2], b"P@@"), ([-3, 2], b"P@P"), ([5, -4], b"P@@"), ([-4, 5], b"P@P")] {
+        let view = View { seed: noise(7)(), at: [0; 2], grain: 3, shade: 0 };
+        let mut watched = Watched::new(Order::Color, HalfBlocks::Either, size, Clusters::None)
+            .with_shifts(Shifts::Direct)
+            .asserting_belief();
+        let allowance =
+            |millis| Allowance { quality: Quality::Equal, now: Duration::from_millis(millis), max_bytes: None };
+        watched.send_within(&view.grid(size), allowance(0));
+        watched.send_within(&with_moved_sides(view, size, sides), allowance(33));
+        assert_eq!(operations(watched.sent()), of_row.repeat(24), "{sides:?}");
+    }
+}
+
 #[test]
 fn frames_under_a_cap_shift() {
     for max_bytes in [1_000, 1_500, 3_000] {

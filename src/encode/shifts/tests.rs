@@ -92,6 +92,7 @@ fn windows_are_written_with_deletion_before_insertion() {
     assert_eq!(columns(10, 40, 1), "\x1b[5;11H\x1b[P\x1b[40G\x1b[@");
     assert_eq!(columns(10, 40, -2), "\x1b[5;39H\x1b[2P\x1b[11G\x1b[2@");
     assert_eq!(columns_from(KnownCursor::InRow(3), 10, 80, 3), "\x1b[11G\n\x1b[3P");
+    assert_eq!(columns_from(KnownCursor::InRow(4), 50, 80, -3), "\x1b[51G\x1b[3@", "a second window of the row");
     assert_eq!(columns_from(KnownCursor::InRow(2), 0, 40, -2), "\x1b[39G\n\n\x1b[2P\r\x1b[2@");
     let rows = |start, end, by| {
         let mut bytes = Vec::new();
