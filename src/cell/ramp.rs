@@ -48,7 +48,7 @@ fn glyph(luminance: f32) -> char {
 
 /// The least luminance of each character but the first: that of a lightness L* of 8, 18, ... 88.
 // With 10, 20, ... 90 the rank correlation of light and ink inside objects was .81 to .85 in `teapot.obj`, which is
-// dark; it is .87 to .90. Lower limits gain more on a dark background, and lose on a light one, which shows the
+// dark; it is .86 to .90. Lower limits gain more on a dark background, and lose on a light one, which shows the
 // negative: with 6, 16, ... 86 it was .91 and .78 at 80x24.
 static LUMINANCE_AT_STEP: LazyLock<[f32; RAMP.len() - 1]> =
     LazyLock::new(|| std::array::from_fn(|k| luminance_from_lightness(0.08 + k as f64 / RAMP.len() as f64) as f32));
