@@ -8,14 +8,15 @@
 //!    colours are as far apart as the rate allows.
 //! 2. A [pair](pairs) of these colours is opened, that is, may be used, if it removes more error than the bytes that
 //!    set its two colours are worth. Each cell takes the cheapest open pair, or keeps what it shows.
-//! 3. If the bytes exceed the limit, the pairs that gain the least per byte are given up. Cells that a
+//! 3. Row by row, cells take the pairs of cells near them where longer [runs] save moves of the cursor.
+//! 4. If the bytes exceed the limit, the pairs that gain the least per byte are given up. Cells that a
 //!    [shift](super::shifts) has vacated are not: if they do not fit, the frame is drawn without shifts.
 //!
 //! The picture here is what [`picture_halves`](super::halves::picture_halves) takes for one: half blocks and spaces in
 //! truecolor. All else is text.
 //!
-//! It is facility location (Cornuejols, Nemhauser and Wolsey 1990), solved in one greedy pass, because a full search
-//! gains another tenth of the quality in forty times the time.
+//! Step 2 is facility location (Cornuejols, Nemhauser and Wolsey 1990), solved in one greedy pass, because a full
+//! search gains another tenth of the quality in forty times the time.
 
 use super::cell_ages::CellAges;
 use super::differences::{Differences, VACATED};
@@ -23,11 +24,14 @@ use super::halves::{Halves, half_block_cell_with_glyph_of};
 use super::moves::CellPosition;
 use crate::grid::{Grid, HalfBlocks, PackedCell, PackedInk};
 use colors::FramePalette;
-use pairs::{PairColors, Pairs};
+use pair_colors::PairColors;
+use pairs::Pairs;
 use std::cell::RefCell;
 
 mod colors;
+mod pair_colors;
 mod pairs;
+mod runs;
 
 /// An exchange rate of a frame: the squared error that each byte has to remove.
 pub(super) type ExchangeRate = f32;

@@ -31,6 +31,11 @@ impl KnownCursor {
         if let Self::At(position) = self { Some(position) } else { None }
     }
 
+    /// Returns the cursor's row, if it is known.
+    pub(super) fn row(self) -> Option<u16> {
+        self.row_and_column().map(|(row, _)| row)
+    }
+
     /// Returns the cursor's row and column, as far as they are known.
     #[inline]
     fn row_and_column(self) -> Option<(u16, Option<u16>)> {

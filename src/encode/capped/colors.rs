@@ -206,6 +206,15 @@ impl FramePalette {
         }
     }
 
+    /// Sets the colours of the palette.
+    #[cfg(all(test, unit_tests))]
+    pub(super) fn set_colors(&mut self, colors: &[[i32; 3]]) {
+        self.colors.clear();
+        for &channels in colors {
+            self.colors.push(channels);
+        }
+    }
+
     /// Returns a colour of the palette.
     #[inline]
     pub(super) fn color(&self, index: u8) -> Channels {

@@ -1,14 +1,12 @@
 //! The pairs of colours of a frame under a limit, and the choice of a pair for each cell.
 
-use super::colors::{FramePalette, MAX_COLORS};
+use super::colors::MAX_COLORS;
+use super::pair_colors::{KEYS, PairColors, glyph_len, is_flat};
+use super::runs::Runs;
 use super::{ActiveCell, ExchangeRate, WrittenCell, channels, error, square};
 use crate::color::Srgb8;
 use crate::grid::{HalfBlocks, PackedInk};
 use std::cmp::Ordering;
-
-/// The number of possible keys of pairs.
-// A key consists of the numbers of two colours, eight bits each.
-const KEYS: usize = 1 << 16;
 
 /// The index that marks the end of a linked list of [`Way`]s.
 const END: u32 = u32::MAX;
@@ -70,6 +68,7 @@ pub(super) struct Pairs {
     /// The keys of the pairs that have a way.
     used: Vec<u16>,
     open: Vec<OpenPair>,
+    runs: Runs,
 }
 
 impl Pairs {
@@ -77,10 +76,7 @@ impl Pairs {
     pub(super) fn choose(&mut self, active: &mut [ActiveCell], colors: &PairColors<'_>, columns: usize) {
         self.collect_ways(active, colors);
         self.open_pairs(active, colors.rate);
-        for _ in 0..2 {
-            // Taking neighbours' pairs, together with the price of cursor moves in the costs, gains 0.4 dB of PSNR.
-            take_neighbours(active, colors, columns);
-        }
+        self.runs.choose(active, colors, columns);
         self.rank_pairs(active, colors);
     }
 
@@ -262,68 +258,9 @@ impl Pairs {
     }
 }
 
-/// The palette, and how its colours may be combined.
-pub(super) struct PairColors<'a> {
-    pub(super) palette: &'a FramePalette,
-    pub(super) rate: ExchangeRate,
-    pub(super) half_blocks: HalfBlocks,
-}
-
-impl PairColors<'_> {
-    /// Returns the key of a pair: the numbers of its upper and lower colour.
-    ///
-    /// They are in ascending order if cells may use either half block, because one pen then shows both orders.
-    fn key(&self, upper: u8, lower: u8) -> u16 {
-        let (a, b) =
-            if self.half_blocks == HalfBlocks::Either && lower < upper { (lower, upper) } else { (upper, lower) };
-        u16::from(a) << 8 | u16::from(b)
-    }
-
-    /// Returns the least weighted error with which a pair shows a cell, and the halves' colours.
-    #[inline]
-    fn cheapest(&self, key: u16, cell: &ActiveCell) -> (f32, [u8; 2]) {
-        let [a, b] = key.to_be_bytes();
-        let [upper, lower] = [a, b].map(|color| self.palette.color(color));
-        let plain = cell.weight * error([upper, lower], cell.channels);
-        if a == b || self.half_blocks == HalfBlocks::Lower {
-            return (plain, [a, b]);
-        }
-        let flipped = cell.weight * error([lower, upper], cell.channels);
-        if flipped < plain { (flipped, [b, a]) } else { (plain, [a, b]) }
-    }
-}
-
-/// Lets cells take the pair of the cell beside them, which saves a move.
-fn take_neighbours(active: &mut [ActiveCell], colors: &PairColors<'_>, columns: usize) {
-    for at in 0..active.len() {
-        for beside in [at.wrapping_sub(1), at + 1] {
-            let Some(&ActiveCell { at: place, pair: Some(key), .. }) = active.get(beside) else { continue };
-            let cell = &mut active[at];
-            let is_beside = place.abs_diff(cell.at) == 1 && place / columns == cell.at / columns;
-            if !is_beside {
-                continue;
-            }
-            let cost = colors.cheapest(key, cell).0 + colors.rate * glyph_len(key);
-            if cost < cell.cost {
-                (cell.cost, cell.pair) = (cost, Some(key));
-            }
-        }
-    }
-}
-
 /// Returns the two colours, or one if they are the same.
 fn distinct(colors: &[u8; 2]) -> &[u8] {
     if colors[0] == colors[1] { &colors[..1] } else { colors }
-}
-
-fn is_flat(key: u16) -> bool {
-    key >> 8 == key & 255
-}
-
-/// Returns the number of bytes of a glyph: a space or a half block.
-fn glyph_len(key: u16) -> f32 {
-    // In UTF-8.
-    if is_flat(key) { 1.0 } else { 3.0 }
 }
 
 /// Returns the mean number of bytes of a glyph and the move to its cell.
