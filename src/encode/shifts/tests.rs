@@ -78,6 +78,69 @@ fn errors_are_squared_differences_up_to_a_limit() {
     }
 }
 
+/// Returns a grid with the half blocks of some colours, row by row, and with text elsewhere.
+fn grid_of(columns: usize, inks: &[Option<PackedInk>]) -> Grid {
+    let mut grid = Grid::new(Size::new(columns as u16, (inks.len() / columns) as u16));
+    for (at, ink) in inks.iter().enumerate() {
+        let text = PackedCell::new('x', PackedInk::DEFAULT, PackedInk::DEFAULT);
+        grid.set_packed(at, ink.map_or(text, |ink| PackedCell::new('▄', ink, ink)));
+    }
+    grid
+}
+
+/// Returns the operations that shift a grid towards another, for equal frames.
+fn operations([shown, wanted]: [&Grid; 2], shifts: Shifts) -> String {
+    let (mut bytes, mut shown, mut before) = (Vec::new(), shown.clone(), Grid::new(shown.size()));
+    let mut memory = ShiftMemory::default();
+    memory.shift([&mut shown, &mut before], wanted, (shifts, ShiftTerms::EQUAL), &mut bytes);
+    let vacated = shown.packed().iter().filter(|cell| cell.is_foreign()).count();
+    assert_eq!(vacated, memory.vacated.len());
+    String::from_utf8(bytes).expect("ASCII")
+}
+
+/// Each row begins with cells of one colour, so that several windows remove the same error.
+#[test]
+fn all_cells_of_rows_are_shifted_if_that_takes_fewer_bytes() {
+    let mut number = noise(7);
+    let mut ink = || Some(PackedInk::rgb(crate::color::Srgb8::new(number() as u8, number() as u8, number() as u8)));
+    let (columns, flat) = (24, ink());
+    let mut rows = [vec![], vec![]];
+    for _ in 0..3 {
+        let inks: Vec<_> = (0..=columns).map(|column| if column < 9 { flat } else { ink() }).collect();
+        rows[0].extend_from_slice(&inks[..columns]);
+        rows[1].extend_from_slice(&inks[1..]);
+    }
+    let [a, b] = rows.map(|inks| grid_of(columns, &inks));
+    assert_eq!(operations([&a, &b], Shifts::Direct), "\x1b[H\x1b[P\r\n\x1b[P\r\n\x1b[P");
+    assert_eq!(operations([&b, &a], Shifts::Direct), "\x1b[H\x1b[@\r\n\x1b[@\r\n\x1b[@");
+    // tmux addresses each operation anew.
+    assert_eq!(operations([&a, &b], Shifts::ThroughTmux), "\x1b[1;9H\x1b[P\x1b[9G\n\x1b[P\x1b[9G\n\x1b[P");
+}
+
+#[test]
+fn the_distance_of_the_row_above_is_tried() {
+    let mut number = noise(9);
+    let mut ink = || Some(PackedInk::rgb(crate::color::Srgb8::new(number() as u8, number() as u8, number() as u8)));
+    let columns = 40;
+    let moved: Vec<_> = (0..columns + 4).map(|_| ink()).collect();
+    // A single cell that moves is not worth an operation with an address.
+    let (flat, other) = (ink(), ink());
+    let mut dots = vec![flat; columns + 4];
+    dots[20] = other;
+    let rows = |first: &[Option<PackedInk>], second: &[Option<PackedInk>]| grid_of(columns, &[first, second].concat());
+    let (a, b) = (rows(&moved[..40], &dots[..40]), rows(&moved[1..41], &dots[1..41]));
+    assert_eq!(operations([&a, &b], Shifts::Direct), "\x1b[H\x1b[P\r\n\x1b[P");
+    let (a, b) = (rows(&dots[..40], &moved[..40]), rows(&dots[1..41], &moved[1..41]));
+    assert_eq!(operations([&a, &b], Shifts::Direct), "\x1b[2H\x1b[P", "no row above it");
+    // It may be farther than all cells of the picture.
+    let mut text = [vec![None; columns], vec![None; columns]];
+    for row in &mut text {
+        row[30..33].fill_with(&mut ink);
+    }
+    let (a, b) = (rows(&moved[..40], &text[0]), rows(&moved[4..], &text[1]));
+    assert_eq!(operations([&a, &b], Shifts::Direct), "\x1b[H\x1b[4P");
+}
+
 #[test]
 fn windows_are_written_with_deletion_before_insertion() {
     let size = Size::new(80, 24);
